@@ -1,0 +1,13 @@
+# Flags of every target of the project; nothing here reaches those who link against it.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+add_library(continuo_flags INTERFACE)
+target_compile_features(continuo_flags INTERFACE cxx_std_20)
+target_compile_options(continuo_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror)
+if(CONTINUO_SANITIZE)
+  target_compile_options(continuo_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+                                                  -fno-omit-frame-pointer)
+  target_link_options(continuo_flags INTERFACE -fsanitize=address,undefined)
+endif()

@@ -1,0 +1,12 @@
+# The parts we take from the distribution; docs/dependencies.md says why each.
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(xsimd REQUIRED)
+
+if(NOT TARGET udunits2)
+  find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
+  find_path(UDUNITS2_INCLUDE_DIR udunits2.h REQUIRED)
+  add_library(udunits2 INTERFACE IMPORTED)
+  target_link_libraries(udunits2 INTERFACE ${UDUNITS2_LIBRARY})
+  target_include_directories(udunits2 INTERFACE ${UDUNITS2_INCLUDE_DIR})
+endif()

@@ -1,0 +1,22 @@
+# continuo_room(NAME [ROOMS ...] [PARTS ...]): one library for a folder of continuo/, static when it has sources.
+# The target is continuo_NAME, Continuo::NAME to those who find the package.
+function(continuo_room name)
+  cmake_parse_arguments(room "" "" "ROOMS;PARTS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/continuo/${name}/*.cpp)
+  list(TRANSFORM room_ROOMS PREPEND continuo_)
+  if(sources)
+    add_library(continuo_${name} STATIC ${sources})
+    set(scope PUBLIC)
+    target_link_libraries(continuo_${name} PRIVATE $<BUILD_INTERFACE:continuo_flags>)
+  else()
+    add_library(continuo_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_compile_features(continuo_${name} ${scope} cxx_std_20)
+  target_include_directories(continuo_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                       $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(continuo_${name} ${scope} ${room_ROOMS} ${room_PARTS})
+  set_target_properties(continuo_${name} PROPERTIES EXPORT_NAME ${name})
+  add_library(Continuo::${name} ALIAS continuo_${name})
+  set_property(GLOBAL APPEND PROPERTY CONTINUO_ROOMS ${name})
+endfunction()

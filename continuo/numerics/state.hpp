@@ -1,0 +1,41 @@
+// continuo/numerics/state.hpp
+// What may serve as the state x of a system: `std::array<double, 3>` (registers, no heap), `std::vector<double>`
+// (size known at run time), an Eigen vector, or any copyable type with contiguous components.
+#pragma once
+#include <concepts>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
+namespace continuo {
+
+/// A copyable block of components of one scalar type, contiguous in memory.
+template <class X>
+concept State = std::copyable<X> && requires(X& x, const X& constant) {
+  typename X::value_type;
+  { x.data() } -> std::convertible_to<typename X::value_type*>;
+  { constant.data() } -> std::convertible_to<const typename X::value_type*>;
+  { constant.size() } -> std::convertible_to<std::size_t>;
+};
+
+/// The scalar of a state: float, double, long double, a quad type, a dual number or Lanes<double, W>.
+template <State X>
+using Scalar = typename X::value_type;
+
+/// The number of components.
+template <State X>
+constexpr std::size_t dimension(const X& x) {
+  return static_cast<std::size_t>(x.size());
+}
+
+/// The components as a span.
+template <State X>
+constexpr std::span<const Scalar<X>> components(const X& x) {
+  return {x.data(), dimension(x)};
+}
+template <State X>
+constexpr std::span<Scalar<X>> components(X& x) {
+  return {x.data(), dimension(x)};
+}
+
+}  // namespace continuo

@@ -1,0 +1,78 @@
+// continuo/system/system.hpp
+// What a continuous system is: dx/dt = f(t, x). A lambda is one already:
+//
+//   auto decay = [](double t, const std::array<double, 1>& x) { return std::array{-x[0]}; };
+//   auto heavy = [](double t, const std::vector<double>& x, std::vector<double>& dxdt) { dxdt[0] = -x[0]; };
+//
+// What a lambda cannot say (names of the components, Jacobian, mass matrix, the pairs of position and velocity)
+// stands in the members of `System` or of a type of your own; each is found by its name and may be missing.
+#pragma once
+#include <concepts>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <continuo/numerics/state.hpp>
+
+namespace continuo {
+
+/// f writes its result: f(t, x, dxdt).
+template <class F, class X>
+concept WritesDerivative = State<X> && std::invocable<F&, Scalar<X>, const X&, X&>;
+
+/// f returns its result: dxdt = f(t, x).
+template <class F, class X>
+concept ReturnsDerivative = State<X> && std::invocable<F&, Scalar<X>, const X&> &&
+    std::convertible_to<std::invoke_result_t<F&, Scalar<X>, const X&>, X>;
+
+/// A right-hand side for states of type X.
+template <class F, class X>
+concept RightHandSide = WritesDerivative<F, X> || ReturnsDerivative<F, X>;
+
+/// dxdt = f(t, x), whichever way f likes to be called.
+template <State X, RightHandSide<X> F>
+void evaluate(F& f, const Scalar<X>& t, const X& x, X& dxdt) {
+  if constexpr (WritesDerivative<F, X>) {
+    f(t, x, dxdt);
+  } else {
+    dxdt = f(t, x);
+  }
+}
+
+/// The system knows the names of its components (used in messages and tables).
+template <class F>
+concept Named = requires(const F& f, std::size_t i) {
+  { f.component_name(i) } -> std::convertible_to<std::string_view>;
+};
+
+/// The system says which components are a position and which the velocity of that position: x[position]' is
+/// x[velocity]. Methods for x'' = a(t, x) need it.
+struct PositionVelocity {
+  std::size_t position, velocity;
+};
+template <class F>
+concept SecondOrder = requires(const F& f, std::size_t size) {
+  { f.pair_count(size) } -> std::convertible_to<std::size_t>;
+  { f.pair(std::size_t{}, size) } -> std::convertible_to<PositionVelocity>;
+};
+
+/// The system gives df/dx: f.jacobian(t, x, span of n*n, row by row). The seat of the implicit methods.
+template <class F, class X>
+concept HasJacobian = requires(F& f, Scalar<X> t, const X& x, std::span<Scalar<X>> rows) { f.jacobian(t, x, rows); };
+
+/// The system reads M x' = f(t, x): f.mass_matrix(span of n*n, row by row).
+template <class F, class X>
+concept HasMassMatrix = requires(const F& f, std::span<Scalar<X>> rows) { f.mass_matrix(rows); };
+
+/// The name of component i, `x[i]` where the system has none.
+template <class F>
+std::string component_name(const F& f, std::size_t i) {
+  if constexpr (Named<F>) {
+    return std::string(f.component_name(i));
+  } else {
+    return "x[" + std::to_string(i) + "]";
+  }
+}
+
+}  // namespace continuo
