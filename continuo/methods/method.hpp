@@ -1,0 +1,73 @@
+// continuo/methods/method.hpp
+// What a method is: one step x(t) -> x(t+h), an error estimate, a polynomial that joins the two ends.
+// A method never chooses h, never looks at events and allocates only in `workspace`.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include <continuo/numerics/state.hpp>
+#include <continuo/system/system.hpp>
+
+namespace continuo {
+
+/// x(t + theta h) = c[0] + theta (c[1] + theta (c[2] + ...)) for theta in 0..1. Each c is a state.
+template <State X, int Degree>
+struct Interpolant {
+  static constexpr int degree = Degree;
+  std::array<X, Degree + 1> c;
+
+  explicit Interpolant(const X& x) { c.fill(x); }
+
+  void operator()(Scalar<X> theta, X& x) const {
+    for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] = component(theta, i);
+  }
+  Scalar<X> component(Scalar<X> theta, std::size_t i) const {
+    Scalar<X> value = c[Degree].data()[i];
+    for (int j = Degree - 1; j >= 0; --j) value = value * theta + c[static_cast<std::size_t>(j)].data()[i];
+    return value;
+  }
+};
+
+/// Weights of the error norm: |error_i| is measured against atol_i + rtol_i max(|x_i|, |x_new_i|).
+/// One number each, or one per component (then the spans have the size of the state).
+template <class Real>
+struct Tolerance {
+  Real rtol, atol;
+  const Real* rtol_each = nullptr;  // null, or one per component
+  const Real* atol_each = nullptr;
+
+  Real scale(std::size_t i, const Real& x, const Real& x_new) const {
+    using std::abs;
+    using std::max;
+    return (atol_each ? atol_each[i] : atol) + (rtol_each ? rtol_each[i] : rtol) * max(abs(x), abs(x_new));
+  }
+};
+
+/// A method is a type with these static members. M::Workspace<X> holds the stages; it lives as long as the run.
+///   M::name           its name in models and on the command line
+///   M::order          order of x_new; M::error_order: order of the embedded solution, 0 where there is no estimate
+///   M::dense_order    order of the interpolant, M::dense_degree its degree in theta
+///   M::second_order   true where the system must be SecondOrder (x'' = a(t, x))
+///   M::workspace(x)   allocates once
+///   M::step(system, t, x, h, made_jump, work, x_new) -> number of evaluations of f;
+///       made_jump: x is not where the last step ended, drop what was kept of it (FSAL stage, history)
+///   M::error_norm(work, h, x, x_new, tolerance) -> the step is good where it is <= 1 (root mean square)
+///   M::error_of(work, h, i) -> estimated local error of component i, to name the worst one
+///   M::interpolate(system, t, x, h, x_new, work, interpolant) -> number of evaluations; once, after a step
+///   M::accept(work)   the step stands: its end becomes the start of the next
+///   M::derivative(work) -> f(t, x) at the start of the last step
+template <class M, class X>
+concept Method = State<X> && requires(const X& x) {
+  typename M::template Workspace<X>;
+  { M::name } -> std::convertible_to<std::string_view>;
+  { M::order } -> std::convertible_to<int>;
+  { M::error_order } -> std::convertible_to<int>;
+  { M::dense_degree } -> std::convertible_to<int>;
+  { M::second_order } -> std::convertible_to<bool>;
+  { M::workspace(x) } -> std::same_as<typename M::template Workspace<X>>;
+};
+
+}  // namespace continuo
