@@ -1,0 +1,57 @@
+// continuo/solve/outcome.hpp
+// How a run ended, and what it cost.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace continuo {
+
+enum class Ending {
+  reached_end,
+  stopped_by_event,
+  step_too_small,
+  too_many_steps,
+  too_many_rejects,
+  not_finite,
+  nonlinear_solve_failed,
+  events_accumulate,
+  interrupted,
+  invalid_input,
+};
+
+/// `reached end`, `step too small`, ...
+std::string_view to_string(Ending ending);
+
+/// True where the run gave what was asked: it reached the end or an event stopped it.
+constexpr bool succeeded(Ending ending) {
+  return ending == Ending::reached_end || ending == Ending::stopped_by_event;
+}
+
+/// How a run ended. t and h are those of the last attempt; `error` is its estimate in units of the tolerance
+/// (accepted where <= 1), `component` the worst of it.
+template <class Real>
+struct Outcome {
+  Ending ending = Ending::reached_end;
+  Real t{}, h{}, error{};
+  std::string component{};  // the worst component by name; empty where none is to blame
+  std::string event{};      // the event that stopped the run or accumulates
+  Real limit_time{};        // where accumulating events tend to
+  std::string hint{};       // what to try
+
+  explicit operator bool() const { return succeeded(ending); }
+};
+
+/// One sentence: what happened, where, why, what to try.
+std::string describe(const Outcome<double>& outcome);
+
+/// What a run cost.
+struct Statistics {
+  std::size_t steps = 0;        // accepted
+  std::size_t rejected = 0;     // tried and not accepted
+  std::size_t evaluations = 0;  // of f
+  std::size_t events = 0;       // fired
+  double seconds = 0;           // wall time
+};
+
+}  // namespace continuo
