@@ -2,6 +2,10 @@
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(xsimd REQUIRED)
+if(NOT TARGET xtl)
+  # The distribution's xsimd names xtl (for complex numbers, which we do not use) without requiring it.
+  add_library(xtl INTERFACE IMPORTED)
+endif()
 
 if(NOT TARGET udunits2)
   find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
