@@ -1,1 +1,34 @@
-# cmake --install: headers, libraries and the package that find_package(Continuo) reads.
+# cmake --install: headers, libraries and the package that find_package(Continuo) reads. Continuo::Continuo is all of
+# it, Continuo::solve and its like are single rooms with what they stand on.
+get_property(rooms GLOBAL PROPERTY CONTINUO_ROOMS)
+add_library(continuo_all INTERFACE)
+set_target_properties(continuo_all PROPERTIES EXPORT_NAME Continuo)
+add_library(Continuo::Continuo ALIAS continuo_all)
+foreach(room IN LISTS rooms)
+  target_link_libraries(continuo_all INTERFACE continuo_${room})
+endforeach()
+if(NOT PROJECT_IS_TOP_LEVEL)
+  return()  # a project that contains Continuo installs itself
+endif()
+
+include(CMakePackageConfigHelpers)
+list(TRANSFORM rooms PREPEND continuo_ OUTPUT_VARIABLE libraries)
+install(TARGETS ${libraries} continuo_all EXPORT ContinuoTargets)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Continuo)
+install(DIRECTORY continuo DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+install(EXPORT ContinuoTargets NAMESPACE Continuo:: DESTINATION ${package_folder})
+install(FILES cmake/parts.cmake DESTINATION ${package_folder})
+write_basic_package_version_file(ContinuoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+file(CONFIGURE OUTPUT ContinuoConfig.cmake CONTENT [[
+include(${CMAKE_CURRENT_LIST_DIR}/parts.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/ContinuoTargets.cmake)
+]] @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/ContinuoConfig.cmake ${PROJECT_BINARY_DIR}/ContinuoConfigVersion.cmake
+        DESTINATION ${package_folder})
+
+if(TARGET continuo)
+  install(TARGETS continuo)
+endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/continuo OPTIONAL)

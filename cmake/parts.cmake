@@ -1,4 +1,5 @@
-# The parts we take from the distribution; docs/dependencies.md says why each.
+# The parts we take from the distribution; docs/dependencies.md says why each. Installed with the library:
+# find_package(Continuo) reads this file too.
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(xsimd REQUIRED)

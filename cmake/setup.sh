@@ -1,0 +1,101 @@
+# cmake/setup.sh: what continuo.sh and test.sh share. Sourced, with `root` set to the folder of the clone.
+# Everything here speaks on standard error.
+
+# What the build and the tests need: package, the command that proves it is there ("-": ask the package system), why.
+packages_to_build=(
+  "g++                    c++          the compiler"
+  "cmake                  cmake        configures the build"
+  "ninja-build            ninja        runs the build"
+  "libfmt-dev             -            text and numbers"
+  "nlohmann-json3-dev     -            JSON: manifests and --json"
+  "libcli11-dev           -            the command line"
+  "libudunits2-dev        -            physical units"
+  "libxsimd-dev           -            vector instructions"
+  "gnuplot-nox            gnuplot      plots"
+)
+packages_to_test=(
+  "libgtest-dev           -            unit tests"
+  "libgmock-dev           -            unit tests"
+  "librapidcheck-dev      -            property tests"
+  "clang-19               clang++-19   the second compiler, with sanitizers"
+  "libclang-rt-19-dev     -            sanitizers and the fuzzer"
+  "clang-format-19        clang-format-19 the layout of the code"
+  "clang-tidy-19          clang-tidy-19 static checks"
+)
+
+say() { printf 'continuo: %s\n' "$*" >&2; }
+
+package_is_there() {  # package command
+  if [[ $2 != - ]] && command -v "$2" >/dev/null 2>&1; then return 0; fi
+  [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+# setup_packages build|test: installs what is missing, after saying what and why.
+setup_packages() {
+  local rows=("${packages_to_build[@]}") row package proof why missing=()
+  if [[ $1 == test ]]; then rows+=("${packages_to_test[@]}"); fi
+  if ! command -v dpkg-query >/dev/null 2>&1; then
+    say "this system has no Debian packages; the build needs (names as on Debian):"
+    for row in "${rows[@]}"; do read -r package proof why <<<"$row"; printf '  %-20s %s\n' "$package" "$why" >&2; done
+    return 0
+  fi
+  for row in "${rows[@]}"; do
+    read -r package proof why <<<"$row"
+    if package_is_there "$package" "$proof"; then continue; fi
+    if ((${#missing[@]} == 0)); then say "installing from the distribution's packages, this once:"; fi
+    missing+=("$package")
+    printf '  %-20s %s\n' "$package" "$why" >&2
+  done
+  if ((${#missing[@]} == 0)); then return 0; fi
+
+  local become=()
+  if [[ $(id -u) != 0 ]]; then
+    if ! command -v sudo >/dev/null 2>&1; then
+      say "cannot install: you are not root and there is no sudo. Ask an administrator for"
+      say "  apt-get install ${missing[*]}"
+      exit 1
+    fi
+    become=(sudo)
+  fi
+  local quiet=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
+  "${become[@]}" "${quiet[@]}" update >&2 || say "apt-get update failed; trying with the lists at hand"
+  if ! "${become[@]}" "${quiet[@]}" install -y --no-install-recommends "${missing[@]}" >&2; then
+    say "the packages could not be installed; the lines above say why. By hand: apt-get install ${missing[*]}"
+    exit 1
+  fi
+}
+
+# quietly LOG COMMAND...: on a terminal the command shows its progress, elsewhere only its failure.
+quietly() {
+  local log=$1
+  shift
+  if [[ -t 2 ]]; then
+    "$@" >&2
+  elif ! "$@" >"$log" 2>&1; then
+    cat "$log" >&2
+    return 1
+  fi
+}
+
+# setup_build FOLDER TARGET STAMP: builds one target; the stamp carries the time at which the build began, so that a
+# file changed while it ran counts as newer.
+setup_build() {
+  local build=$1 target=$2 stamp=$3
+  mkdir -p "$build"
+  exec {lock}>"$build/.lock"
+  flock "$lock"  # two calls at once build once
+  touch "$stamp.began"
+  if [[ ! -e $build/build.ninja ]]; then
+    say "building, which takes some minutes this once"
+    if ! quietly "$build/.log" env -C "$root" cmake --preset release -DCONTINUO_TESTS=OFF; then
+      say "the build could not be configured"
+      exit 1
+    fi
+  fi
+  if ! quietly "$build/.log" cmake --build "$build" --target "$target"; then
+    say "the build failed; the lines above say where"
+    exit 1
+  fi
+  mv "$stamp.began" "$stamp"
+  exec {lock}>&-
+}

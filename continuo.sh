@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# The command continuo from a fresh clone: installs what is missing, builds it once, then hands over.
+#
+#   ./continuo.sh run models/bouncing_ball.sim --plot ball.svg
+#
+# Works from any folder. What it has to say goes to standard error; standard output belongs to the command.
+set -euo pipefail
+
+self=${BASH_SOURCE[0]}
+if [[ -L $self ]]; then self=$(readlink -f -- "$self"); fi
+root=.
+if [[ $self == */* ]]; then root=${self%/*}; fi
+build=$root/build
+stamp=$build/.built
+
+# Nothing newer than the last build: hand over at once. A folder's own time changes when a file comes or goes.
+if [[ ! -x $build/continuo || ! -e $stamp ]] ||
+   [[ -n $(find "$root/continuo" "$root/apps" "$root/cmake" "$root/CMakeLists.txt" "$root/CMakePresets.json" \
+             -newer "$stamp" ! -name '*.md' -print -quit) ]]; then
+  # shellcheck source=cmake/setup.sh
+  source "$root/cmake/setup.sh"
+  setup_packages build
+  setup_build "$build" continuo "$stamp"
+fi
+exec "$build/continuo" "$@"

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# usage: fuzz.sh TARGET FOLDER SECONDS: starts from the gallery and the wrong models, keeps what it finds to itself
+# and prints the input that breaks the target.
+set -euo pipefail
+target=$1 folder=$2 seconds=$3
+found=$(mktemp -d)
+trap 'rm -rf "$found"' EXIT
+mapfile -t seeds < <(cd "$folder" && for seed in models "tests/fuzz/$(basename "${target#*fuzz_}")" tests/model/wrong; do
+  [[ -d $seed ]] && realpath "$seed"; done; true)
+"$target" -max_total_time="$seconds" -timeout=10 -max_len=4096 -rss_limit_mb=4096 -print_final_stats=1 \
+  -artifact_prefix="$found/" "$found" "${seeds[@]}" >"$found.log" 2>&1 || {
+  tail -n 60 "$found.log"
+  for input in "$found"/{crash,timeout,oom,leak}-*; do [[ -f $input ]] && base64 "$input"; done
+  exit 1
+}
+grep -E 'stat::(number_of_executed_units|average_exec_per_sec)' "$found.log"
+rm -f "$found.log"
