@@ -110,6 +110,7 @@ struct Printer {
         text += name(n.number);
         return;
       case Op::negate:
+        if (g[n.a].op == Op::subtract) return infix({.op = Op::subtract, .a = g[n.a].b, .b = g[n.a].a}, mine, depth);
         text += '-';
         return print(n.a, binds_product, depth);
       case Op::logical_not:

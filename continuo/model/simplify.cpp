@@ -76,6 +76,8 @@ struct Simplifier {
     if (op(b) == Op::negate) return g.add(a, inner(b));
     if (op(a) == Op::negate) return g.negate(g.add(inner(a), b));
     if (is_constant(b)) return g.add(a, g.constant(-*g.value(b)));
+    // One order for both: x - y and y - x share a node, so that a pair of bodies computes its distance once.
+    if (!is_constant(a) && b < a) return g.negate(make(Op::subtract, b, a));
     return {};
   }
 
@@ -165,7 +167,6 @@ struct Simplifier {
   NodeId unary(Op what, NodeId a) const {
     const Op argument = op(a);
     if (what == Op::negate && argument == Op::negate) return inner(a);
-    if (what == Op::negate && argument == Op::subtract) return g.subtract(g[a].b, g[a].a);
     if (what == Op::negate && argument == Op::multiply && is_constant(inner(a))) {
       return g.multiply(g.constant(-*g.value(inner(a))), g[a].b);
     }

@@ -27,6 +27,8 @@ TEST_F(Expression, EqualExpressionsAreOneNode) {
   EXPECT_EQ(g.add(x, y), g.add(y, x));
   EXPECT_EQ(g.multiply(k, g.add(x, y)), g.multiply(g.add(y, x), k));
   EXPECT_NE(g.subtract(x, y), g.subtract(y, x));
+  EXPECT_EQ(g.subtract(x, y), g.negate(g.subtract(y, x)));
+  EXPECT_EQ(text(g.subtract(x, y)) + text(g.subtract(y, x)), "x - yy - x");
 }
 
 TEST_F(Expression, NeutralElementsVanish) {

@@ -1,0 +1,85 @@
+// continuo/model/tape.hpp
+// Expressions compiled to a list of instructions on numbered registers, which evaluates at once on any machine:
+//
+//   const Tape tape(graph, derivatives, {.variables = 5, .steady_begin = 4, .steady_end = 5});  // t, x, x', k | m
+//   std::vector<double> registers(tape.register_count()), rates(2);
+//   ... registers[0..5) = t, the state, the parameters ...
+//   tape.prepare<double>(registers);             // after parameters have changed
+//   tape.evaluate<double>(registers, rates);     // after t or the state have changed
+//
+// The registers belong to the caller: a tape is constant and serves any number of threads. Real may be float, double,
+// long double, lanes of them, or a type that carries derivatives.
+//
+// How it is fast: what hangs on parameters alone is computed by `prepare` (a division by a parameter becomes a
+// multiplication by its reciprocal); a product and the sum it goes into are one instruction; equal operations that
+// do not wait for each other are one loop over neighbouring registers.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <continuo/model/expression.hpp>
+#include <continuo/model/table.hpp>
+#include <continuo/model/tape_code.hpp>
+
+namespace continuo::model {
+
+/// The flat space of variables that a register file begins with.
+struct TapeVariables {
+  std::uint32_t variables = 0;  // how many
+  // Those that change seldom, [begin, end): the parameters. `prepare` must follow each change of theirs.
+  std::uint32_t steady_begin = 0, steady_end = 0;
+};
+
+class Tape {
+ public:
+  Tape() = default;
+  Tape(const Graph& graph, std::span<const NodeId> outputs, TapeVariables variables,
+       std::span<const Table> tables = {});
+
+  std::size_t register_count() const { return registers_; }
+  std::size_t output_count() const { return outputs_.size(); }
+
+  /// Constants, and what hangs on them and on the steady variables alone.
+  template <class Real>
+  void prepare(std::span<Real> registers) const;
+
+  /// outputs[i] = the i-th expression.
+  template <class Real>
+  void evaluate(std::span<Real> registers, std::span<Real> outputs) const;
+
+  /// How the work is laid out: for tests and for the curious.
+  struct Size {
+    std::size_t prepared = 0;  // instructions of `prepare`
+    std::size_t single = 0;    // instructions of `evaluate` on one register each
+    std::size_t batches = 0;   // its loops
+    std::size_t batched = 0;   // results of those loops
+  };
+  Size size() const;
+
+ private:
+  friend class TapeCompiler;
+  struct Constant {
+    std::uint32_t target;
+    double value;
+  };
+  struct Program {
+    std::vector<tape::Instruction> instructions;  // the last one is `stop`
+    std::vector<tape::Batch> batches;
+    std::vector<std::uint32_t> gathered;  // registers of the batches' scattered operands
+  };
+
+  template <class Real>
+  void run(const Program& program, Real* registers) const;
+
+  std::size_t registers_ = 0;
+  std::vector<Constant> constants_;
+  Program preparation_, body_;
+  std::vector<std::uint32_t> outputs_;  // registers
+  std::vector<Table> tables_;
+};
+
+}  // namespace continuo::model
+
+#include <continuo/model/tape_run.hpp>  // IWYU pragma: keep

@@ -1,0 +1,188 @@
+// continuo/model/tape_run.hpp
+// The evaluation of a Tape, for any Real. Internal to the tape; included by tape.hpp.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include <continuo/model/tape.hpp>
+
+namespace continuo::model::tape {
+
+template <Code code, class Real>
+void single(Real* registers, const Instruction& i) {
+  constexpr std::size_t n = operands(code);
+  const Real& a = registers[i.a];
+  const Real& b = n > 1 ? registers[i.b] : a;
+  const Real& c = n > 2 ? registers[i.c] : a;
+  const Real& d = n > 3 ? registers[i.d] : a;
+  registers[i.result] = operate<code, Real>(a, b, c, d);
+}
+
+/// Operands are brought side by side a piece at a time, so that the loop over them is plain.
+inline constexpr std::size_t piece = 64;
+
+template <class Real>
+const Real* side_by_side(const Operand& operand, const Real* registers, const std::uint32_t* gathered,
+                         std::size_t begin, std::size_t count, Real* buffer) {
+  switch (operand.layout) {
+    case Operand::Layout::contiguous:
+      return registers + operand.begin + begin;
+    case Operand::Layout::one:
+      if (begin == 0) std::fill_n(buffer, std::min(count, piece), registers[operand.begin]);
+      return buffer;
+    case Operand::Layout::gathered:
+      break;
+  }
+  const std::uint32_t* from = gathered + operand.begin + begin;
+  for (std::size_t k = 0; k < count; ++k) buffer[k] = registers[from[k]];
+  return buffer;
+}
+
+template <Code code, class Real>
+void many(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
+  constexpr std::size_t n = operands(code);
+  Real buffers[n][piece];
+  for (std::size_t begin = 0; begin < batch.count; begin += piece) {
+    const std::size_t count = std::min<std::size_t>(piece, batch.count - begin);
+    const Real* from[4];
+    for (std::size_t j = 0; j < 4; ++j) {
+      from[j] = j < n ? side_by_side(batch.operand[j], registers, gathered, begin, count, buffers[std::min(j, n - 1)])
+                      : from[0];
+    }
+    // No operand of a batch lies in its results.
+    Real* __restrict result = registers + batch.result + begin;
+    const Real *a = from[0], *b = from[1], *c = from[2], *d = from[3];
+    for (std::size_t k = 0; k < count; ++k) result[k] = operate<code, Real>(a[k], b[k], c[k], d[k]);
+  }
+}
+
+template <class Real>
+using Single = void (*)(Real*, const Instruction&);
+template <class Real>
+using Many = void (*)(Real*, const Batch&, const std::uint32_t*);
+
+template <class Real>
+inline constexpr auto singles = []<std::size_t... I>(std::index_sequence<I...>) {
+  return std::array<Single<Real>, operations>{&single<static_cast<Code>(I), Real>...};
+}(std::make_index_sequence<operations>());
+
+template <class Real>
+inline constexpr auto manys = []<std::size_t... I>(std::index_sequence<I...>) {
+  return std::array<Many<Real>, operations>{&many<static_cast<Code>(I), Real>...};
+}(std::make_index_sequence<operations>());
+
+/// A table at x; lanes one by one, derivatives along the piece that holds the value.
+template <class Real>
+Real look_up(const Table& table, const Real& x, bool slope) {
+  if constexpr (std::is_arithmetic_v<Real>) {
+    const auto at = static_cast<double>(x);
+    return static_cast<Real>(slope ? table.slope(at) : table.value(at));
+  } else if constexpr (requires {
+                         x.v;
+                         x.a;
+                       }) {
+    const Table::Piece& piece_at = table.at(static_cast<double>(x.a));
+    return slope ? Real(piece_at.slope) : piece_at.y + piece_at.slope * (x - piece_at.x);
+  } else {
+    Real y = x;
+    for (std::size_t lane = 0; lane < Real::size(); ++lane) {
+      const auto at = static_cast<double>(x[lane]);
+      y[lane] = static_cast<std::remove_cvref_t<decltype(y[lane])>>(slope ? table.slope(at) : table.value(at));
+    }
+    return y;
+  }
+}
+
+}  // namespace continuo::model::tape
+
+namespace continuo::model {
+
+template <class Real>
+void Tape::run(const Program& program, Real* registers) const {
+  using tape::Code, tape::single;
+  for (const tape::Instruction* i = program.instructions.data();; ++i) {
+    switch (i->code) {
+      case Code::add:
+        single<Code::add>(registers, *i);
+        break;
+      case Code::subtract:
+        single<Code::subtract>(registers, *i);
+        break;
+      case Code::multiply:
+        single<Code::multiply>(registers, *i);
+        break;
+      case Code::divide:
+        single<Code::divide>(registers, *i);
+        break;
+      case Code::multiply_add:
+        single<Code::multiply_add>(registers, *i);
+        break;
+      case Code::multiply_subtract:
+        single<Code::multiply_subtract>(registers, *i);
+        break;
+      case Code::subtract_product:
+        single<Code::subtract_product>(registers, *i);
+        break;
+      case Code::negated_product:
+        single<Code::negated_product>(registers, *i);
+        break;
+      case Code::sum_of_products:
+        single<Code::sum_of_products>(registers, *i);
+        break;
+      case Code::difference_of_products:
+        single<Code::difference_of_products>(registers, *i);
+        break;
+      case Code::sum_times:
+        single<Code::sum_times>(registers, *i);
+        break;
+      case Code::difference_times:
+        single<Code::difference_times>(registers, *i);
+        break;
+      case Code::negate:
+        single<Code::negate>(registers, *i);
+        break;
+      case Code::square_root:
+        single<Code::square_root>(registers, *i);
+        break;
+      case Code::interpolate:
+      case Code::interpolate_slope:
+        registers[i->result] = tape::look_up(tables_[i->b], registers[i->a], i->code == Code::interpolate_slope);
+        break;
+      case Code::batch: {
+        const tape::Batch& batch = program.batches[i->a];
+        tape::manys<Real>[static_cast<std::size_t>(batch.code)](registers, batch, program.gathered.data());
+        break;
+      }
+      case Code::stop:
+        return;
+      default:
+        tape::singles<Real>[static_cast<std::size_t>(i->code)](registers, *i);
+    }
+  }
+}
+
+template <class Real>
+void Tape::prepare(std::span<Real> registers) const {
+  for (const Constant& constant : constants_) registers[constant.target] = Real(constant.value);
+  run(preparation_, registers.data());
+}
+
+template <class Real>
+void Tape::evaluate(std::span<Real> registers, std::span<Real> outputs) const {
+  run(body_, registers.data());
+  for (std::size_t k = 0; k < outputs_.size(); ++k) outputs[k] = registers[outputs_[k]];
+}
+
+extern template void Tape::prepare(std::span<float>) const;
+extern template void Tape::prepare(std::span<double>) const;
+extern template void Tape::prepare(std::span<long double>) const;
+extern template void Tape::evaluate(std::span<float>, std::span<float>) const;
+extern template void Tape::evaluate(std::span<double>, std::span<double>) const;
+extern template void Tape::evaluate(std::span<long double>, std::span<long double>) const;
+
+}  // namespace continuo::model

@@ -1,0 +1,206 @@
+// continuo/model/tape_select.cpp
+#include <algorithm>
+
+#include <continuo/model/tape_select.hpp>
+
+namespace continuo::model::tape {
+
+namespace {
+
+Code code_of(Op op) {
+  switch (op) {
+    case Op::add:
+      return Code::add;
+    case Op::subtract:
+      return Code::subtract;
+    case Op::multiply:
+      return Code::multiply;
+    case Op::divide:
+      return Code::divide;
+    case Op::power:
+      return Code::power;
+    case Op::minimum:
+      return Code::minimum;
+    case Op::maximum:
+      return Code::maximum;
+    case Op::hypotenuse:
+      return Code::hypotenuse;
+    case Op::arc_tangent2:
+      return Code::arc_tangent2;
+    case Op::modulo:
+      return Code::modulo;
+    case Op::less:
+      return Code::less;
+    case Op::less_equal:
+      return Code::less_equal;
+    case Op::equal:
+      return Code::equal;
+    case Op::not_equal:
+      return Code::not_equal;
+    case Op::logical_and:
+      return Code::logical_and;
+    case Op::logical_or:
+      return Code::logical_or;
+    case Op::negate:
+      return Code::negate;
+    case Op::sine:
+      return Code::sine;
+    case Op::cosine:
+      return Code::cosine;
+    case Op::tangent:
+      return Code::tangent;
+    case Op::arc_sine:
+      return Code::arc_sine;
+    case Op::arc_cosine:
+      return Code::arc_cosine;
+    case Op::arc_tangent:
+      return Code::arc_tangent;
+    case Op::hyperbolic_sine:
+      return Code::hyperbolic_sine;
+    case Op::hyperbolic_cosine:
+      return Code::hyperbolic_cosine;
+    case Op::hyperbolic_tangent:
+      return Code::hyperbolic_tangent;
+    case Op::exponential:
+      return Code::exponential;
+    case Op::logarithm:
+      return Code::logarithm;
+    case Op::logarithm10:
+      return Code::logarithm10;
+    case Op::square_root:
+      return Code::square_root;
+    case Op::absolute:
+      return Code::absolute;
+    case Op::sign:
+      return Code::sign;
+    case Op::floor:
+      return Code::floor;
+    case Op::ceiling:
+      return Code::ceiling;
+    case Op::logical_not:
+      return Code::logical_not;
+    case Op::select:
+      return Code::select;
+    case Op::interpolate:
+      return Code::interpolate;
+    case Op::interpolate_slope:
+      return Code::interpolate_slope;
+    case Op::constant:
+    case Op::variable:
+      break;
+  }
+  return Code::stop;
+}
+
+class Selector {
+ public:
+  explicit Selector(const Prepared& prepared)
+      : graph_(prepared.graph), steady_(prepared.steady), uses_(graph_.size()), needed_(graph_.size()) {
+    for (const NodeId output : prepared.outputs) {
+      ++uses_[output.index];
+      needed_[output.index] = true;
+    }
+    for (const NodeId id : reachable(graph_, prepared.outputs)) {
+      for (const NodeId argument : arguments(graph_[id])) ++uses_[argument.index];
+    }
+  }
+
+  std::vector<Selected> select() {
+    std::vector<Selected> chosen;
+    for (std::uint32_t i = static_cast<std::uint32_t>(graph_.size()); i-- > 0;) {
+      const NodeId id{i};
+      if (!needed_[i] || arity(graph_[id].op) == 0) continue;
+      Selected s = fused(id);
+      s.result = id;
+      s.steady = steady_[i];
+      for (std::size_t k = 0; k < operands(s.code); ++k) needed_[s.operand[k].index] = true;
+      chosen.push_back(s);
+    }
+    std::ranges::reverse(chosen);
+    return chosen;
+  }
+
+ private:
+  /// The node may vanish into the one that uses it.
+  bool folds(NodeId child, NodeId parent, Op op) const {
+    return graph_[child].op == op && uses_[child.index] == 1 && steady_[child.index] == steady_[parent.index];
+  }
+
+  static Selected make(Code code, NodeId a, NodeId b = {}, NodeId c = {}, NodeId d = {}) {
+    return {.code = code, .result = {}, .operand = {a, b, c, d}};
+  }
+
+  Selected fused(NodeId id) const {
+    const Node& n = graph_[id];
+    switch (n.op) {
+      case Op::add:
+        return sum(id, n);
+      case Op::subtract:
+        return difference(id, n);
+      case Op::multiply:
+        return product(id, n);
+      case Op::negate:
+        return negation(id, n);
+      case Op::select:
+        return choice(n);
+      default:
+        break;
+    }
+    Selected s = make(code_of(n.op), n.a, n.b, n.c);
+    s.table = n.number;
+    return s;
+  }
+
+  Selected sum(NodeId id, const Node& n) const {
+    const Node &a = graph_[n.a], &b = graph_[n.b];
+    const bool product_a = folds(n.a, id, Op::multiply), product_b = folds(n.b, id, Op::multiply);
+    if (product_a && product_b) return make(Code::sum_of_products, a.a, a.b, b.a, b.b);
+    if (product_a) return make(Code::multiply_add, a.a, a.b, n.b);
+    if (product_b) return make(Code::multiply_add, b.a, b.b, n.a);
+    return make(Code::add, n.a, n.b);
+  }
+
+  Selected difference(NodeId id, const Node& n) const {
+    const Node &a = graph_[n.a], &b = graph_[n.b];
+    const bool product_a = folds(n.a, id, Op::multiply), product_b = folds(n.b, id, Op::multiply);
+    if (product_a && product_b) return make(Code::difference_of_products, a.a, a.b, b.a, b.b);
+    if (product_a) return make(Code::multiply_subtract, a.a, a.b, n.b);
+    if (product_b) return make(Code::subtract_product, b.a, b.b, n.a);
+    return make(Code::subtract, n.a, n.b);
+  }
+
+  Selected product(NodeId id, const Node& n) const {
+    for (const auto& [inner, other] : {std::pair(n.a, n.b), std::pair(n.b, n.a)}) {
+      if (folds(inner, id, Op::add)) return make(Code::sum_times, graph_[inner].a, graph_[inner].b, other);
+      if (folds(inner, id, Op::subtract)) return make(Code::difference_times, graph_[inner].a, graph_[inner].b, other);
+    }
+    return make(Code::multiply, n.a, n.b);
+  }
+
+  Selected negation(NodeId id, const Node& n) const {
+    const Node& a = graph_[n.a];
+    if (a.op == Op::subtract && steady_[n.a.index] == steady_[id.index]) return make(Code::subtract, a.b, a.a);
+    if (folds(n.a, id, Op::multiply)) return make(Code::negated_product, a.a, a.b);
+    return make(Code::negate, n.a);
+  }
+
+  Selected choice(const Node& n) const {
+    const Node& condition = graph_[n.a];
+    if (condition.op == Op::less) return make(Code::select_less, condition.a, condition.b, n.b, n.c);
+    if (condition.op == Op::less_equal) return make(Code::select_less_equal, condition.a, condition.b, n.b, n.c);
+    return make(Code::select, n.a, n.b, n.c);
+  }
+
+  const Graph& graph_;
+  const std::vector<bool>& steady_;
+  std::vector<std::uint32_t> uses_;
+  std::vector<bool> needed_;
+};
+
+}  // namespace
+
+std::vector<Selected> select_operations(const Prepared& prepared) {
+  return Selector(prepared).select();
+}
+
+}  // namespace continuo::model::tape
