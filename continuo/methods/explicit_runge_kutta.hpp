@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <utility>
 
+#include <continuo/methods/hermite.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/tableau.hpp>
 #include <continuo/methods/weighted_sum.hpp>
@@ -29,6 +30,12 @@ struct ExplicitRungeKutta {
     return in_slot >= Derived::tableau.end && Derived::tableau.first_same_as_last() ? in_slot + 1 : in_slot;
   }
   static constexpr std::size_t end_slot() { return slot(Derived::tableau.end); }
+  struct ErrorWeight {
+    constexpr Coefficient operator()(std::size_t j) const {
+      if (Derived::error_order == 0) return 0;
+      return Derived::tableau.b[j] - Derived::tableau.embedded[j];
+    }
+  };
   static constexpr std::size_t slots() { return slot(Derived::tableau.known - 1) + 1; }
 
  public:
@@ -73,19 +80,22 @@ struct ExplicitRungeKutta {
     return evaluations;
   }
 
-  /// Root mean square of error_i / scale_i; never <= 1 where a component of x_new is not finite.
+  /// Root mean square of error_i / scale_i (0 without an estimate); not a number where x_new is not finite.
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
     using Real = Scalar<X>;
-    using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
-    const auto k = detail::pointers<Error>(work.k);
+    const auto k = detail::pointers<detail::Row<ErrorWeight, Derived::tableau.stages>>(work.k);
     Real sum(0);
     detail::for_each_component(x, [&](std::size_t i) {
       const Real& end = x_new.data()[i];
-      const Real ratio = h * detail::row_sum<Error, Real>(k, i) / tolerance.scale(i, x.data()[i], end);
-      sum += ratio * ratio + (end - end);
+      sum += end - end;  // 0, if it is finite
+      if constexpr (Derived::error_order > 0) {
+        const Real ratio = h * detail::row_sum<detail::Row<ErrorWeight, Derived::tableau.stages>, Real>(k, i) /
+                           tolerance.scale(i, x.data()[i], end);
+        sum += ratio * ratio;
+      }
     });
     return sqrt(sum / Real(static_cast<double>(dimension(x))));
   }
@@ -93,8 +103,12 @@ struct ExplicitRungeKutta {
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
     using std::abs;
-    using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
-    return abs(h * detail::row_sum<Error, Scalar<X>>(detail::pointers<Error>(work.k), i));
+    if constexpr (Derived::error_order == 0) {
+      return Scalar<X>(0);
+    } else {
+      return abs(h * detail::row_sum<detail::Row<ErrorWeight, Derived::tableau.stages>, Scalar<X>>(
+                         detail::pointers<detail::Row<ErrorWeight, Derived::tableau.stages>>(work.k), i));
+    }
   }
 
   /// Between `step` and `accept`.
@@ -132,11 +146,6 @@ struct ExplicitRungeKutta {
   }
 
  private:
-  struct ErrorWeight {
-    constexpr Coefficient operator()(std::size_t j) const {
-      return Derived::tableau.b[j] - Derived::tableau.embedded[j];
-    }
-  };
   struct EndWeight {
     constexpr const Coefficient& operator()(std::size_t j) const { return Derived::tableau.b[j]; }
   };
@@ -206,21 +215,17 @@ struct ExplicitRungeKutta {
     });
   }
 
-  /// Cubic Hermite c = (x, h f0, 3 d - 2 h f0 - h f1, h f0 + h f1 - 2 d) with d = x_new - x, and to it
-  /// theta^2 (1 - 2 theta + theta^2) theta^n h sum_j dense[j][n] k_j for each n.
+  /// A cubic Hermite, and to it theta^2 (1 - 2 theta + theta^2) theta^n h sum_j dense[j][n] k_j for each n.
   template <State X, int Degree>
   static void set_coefficients(const X& x, const Scalar<X>& h, const X& x_new, const Workspace<X>& work,
                                Interpolant<X, Degree>& interpolant) {
     using Real = Scalar<X>;
     detail::for_each_component(x, [&](std::size_t i) {
+      const auto cubic = detail::cubic_hermite<Real>(x.data()[i], x_new.data()[i], h * work.k[0].data()[i],
+                                                     h * work.k[end_slot()].data()[i]);
       std::array<Real, static_cast<std::size_t>(Degree) + 1> c;
-      const Real difference = x_new.data()[i] - x.data()[i];
-      const Real first = h * work.k[0].data()[i], last = h * work.k[end_slot()].data()[i];
       c.fill(Real(0));
-      c[0] = x.data()[i];
-      c[1] = first;
-      c[2] = Real(3) * difference - Real(2) * first - last;
-      c[3] = first + last - Real(2) * difference;
+      for (std::size_t j = 0; j < cubic.size(); ++j) c[j] = cubic[j];
       [&]<std::size_t... n>(std::index_sequence<n...>) {
         (add_dense_term<n>(h, work, i, c), ...);
       }(std::make_index_sequence<Derived::tableau.dense_terms>());

@@ -6,17 +6,15 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/methods/dop853.hpp>
-#include <continuo/methods/explicit_euler.hpp>
-#include <continuo/methods/rk4.hpp>
-#include <continuo/methods/tsitouras5.hpp>
+#include <continuo/methods/all.hpp>
 
 namespace continuo {
 namespace {
 
 template <class M>
 class Stepper : public testing::Test {};
-using Methods = testing::Types<ExplicitEuler, Rk4, Tsitouras5, Dop853>;
+using Methods = testing::Types<ExplicitEuler, Midpoint, Heun, Rk4, Rk38, BogackiShampine3, DormandPrince5, Tsitouras5,
+                               Dop853, Verner7, Verner9>;
 TYPED_TEST_SUITE(Stepper, Methods);
 
 struct Oscillator {
