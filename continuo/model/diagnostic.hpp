@@ -39,6 +39,9 @@ Diagnostic warning(std::string code, Span span, std::string message, std::string
 
 bool has_errors(std::span<const Diagnostic> diagnostics);
 
+/// In order of place; those at one place stay in order.
+void sort_by_place(std::vector<Diagnostic>& diagnostics);
+
 struct RenderOptions {
   bool color = false;           // ANSI colours, for a terminal
   std::size_t most_shown = 20;  // the rest is counted in a last line
