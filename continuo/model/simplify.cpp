@@ -60,6 +60,26 @@ struct Simplifier {
     return g.intern(node);
   }
 
+  /// Sums of squares and their like: known without looking far.
+  bool is_nonnegative(NodeId id, int depth = 8) const {
+    const Node& n = g[id];
+    switch (n.op) {
+      case Op::constant:
+        return n.value >= 0;
+      case Op::absolute:
+      case Op::square_root:
+      case Op::exponential:
+      case Op::hypotenuse:
+        return true;
+      case Op::multiply:
+        return n.a == n.b || (depth > 0 && is_nonnegative(n.a, depth - 1) && is_nonnegative(n.b, depth - 1));
+      case Op::add:
+        return depth > 0 && is_nonnegative(n.b, depth - 1) && is_nonnegative(n.a, depth - 1);
+      default:
+        return false;
+    }
+  }
+
   NodeId add(NodeId a, NodeId b) const {
     if (is(a, 0)) return b;
     if (is(b, 0)) return a;
@@ -86,6 +106,7 @@ struct Simplifier {
     if (vanishes(a, b)) return g.constant(0);
     if (is(a, 1)) return b;
     if (is(a, -1)) return g.negate(b);
+    if (a == b && op(a) == Op::square_root && is_nonnegative(inner(a))) return inner(a);
     if (op(a) == Op::negate && op(b) == Op::negate) return g.multiply(inner(a), inner(b));
     if (op(a) == Op::negate) return g.negate(g.multiply(inner(a), b));
     if (op(b) == Op::negate && is_constant(a)) return g.multiply(g.constant(-*g.value(a)), inner(b));

@@ -1,6 +1,6 @@
 // continuo/model/tape.cpp
 // The evaluation for the usual numbers, compiled once. The compiler of tapes is in tape_compile.cpp.
-#include <continuo/model/tape.hpp>
+#include <continuo/model/tape_run.hpp>
 
 namespace continuo::model {
 

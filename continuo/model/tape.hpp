@@ -8,7 +8,7 @@
 //   tape.evaluate<double>(registers, rates);     // after t or the state have changed
 //
 // The registers belong to the caller: a tape is constant and serves any number of threads. Real may be float, double,
-// long double, lanes of them, or a type that carries derivatives.
+// long double, and with tape_run.hpp lanes of them or a type that carries derivatives.
 //
 // How it is fast: what hangs on parameters alone is computed by `prepare` (a division by a parameter becomes a
 // multiplication by its reciprocal); a product and the sum it goes into are one instruction; equal operations that
@@ -72,6 +72,8 @@ class Tape {
 
   template <class Real>
   void run(const Program& program, Real* registers) const;
+  template <class Real>
+  void run_batch(const Program& program, const tape::Batch& batch, Real* registers) const;
 
   std::size_t registers_ = 0;
   std::vector<Constant> constants_;
@@ -80,6 +82,11 @@ class Tape {
   std::vector<Table> tables_;
 };
 
-}  // namespace continuo::model
+extern template void Tape::prepare(std::span<float>) const;
+extern template void Tape::prepare(std::span<double>) const;
+extern template void Tape::prepare(std::span<long double>) const;
+extern template void Tape::evaluate(std::span<float>, std::span<float>) const;
+extern template void Tape::evaluate(std::span<double>, std::span<double>) const;
+extern template void Tape::evaluate(std::span<long double>, std::span<long double>) const;
 
-#include <continuo/model/tape_run.hpp>  // IWYU pragma: keep
+}  // namespace continuo::model

@@ -8,23 +8,27 @@
 
 namespace continuo::model::tape {
 
-enum class Code : std::uint32_t {
-  add,                     // a + b
-  subtract,                // a - b
-  multiply,                // a*b
-  divide,                  // a/b
-  multiply_add,            // a*b + c
-  multiply_subtract,       // a*b - c
-  subtract_product,        // c - a*b
-  negated_product,         // -(a*b)
-  sum_of_products,         // a*b + c*d
-  difference_of_products,  // a*b - c*d
-  sum_times,               // (a + b)*c
-  difference_times,        // (a - b)*c
+enum class Code : std::uint16_t {
+  add,                      // a + b
+  subtract,                 // a - b
+  multiply,                 // a*b
+  divide,                   // a/b
+  multiply_add,             // a*b + c
+  multiply_subtract,        // a*b - c
+  subtract_product,         // c - a*b
+  negated_product,          // -(a*b)
+  negated_sum,              // -(a + b)
+  negated_multiply_add,     // -(a*b + c)
+  negated_sum_of_products,  // -(a*b + c*d)
+  sum_of_products,          // a*b + c*d
+  difference_of_products,   // a*b - c*d
+  sum_times,                // (a + b)*c
+  difference_times,         // (a - b)*c
   negate,
   square_root,
   sine,
   cosine,
+  // from here on less frequent
   select_less,        // a < b ? c : d
   select_less_equal,  // a <= b ? c : d
   select,             // a != 0 ? b : c
@@ -63,10 +67,21 @@ enum class Code : std::uint32_t {
 };
 inline constexpr std::size_t operations = static_cast<std::size_t>(Code::interpolate);
 
+inline constexpr std::size_t frequent = static_cast<std::size_t>(Code::select_less);
+
+/// Where the evaluation goes for a code: a place of its own for the frequent ones, one for all others, three at last.
+constexpr std::uint16_t entry(Code code) {
+  const auto c = static_cast<std::size_t>(code);
+  return static_cast<std::uint16_t>(c < operations ? (c < frequent ? c : frequent) : c - operations + frequent + 1);
+}
+
 /// registers[result] = code(registers[a], ...): as many as the code reads.
 struct Instruction {
+  std::uint16_t entry;
   Code code;
   std::uint32_t result, a, b, c, d;
+
+  explicit Instruction(Code code_) : entry(tape::entry(code_)), code(code_), result(0), a(0), b(0), c(0), d(0) {}
 };
 
 /// Where the operands of a batch lie.
@@ -88,12 +103,14 @@ constexpr std::size_t operands(Code code) {
   switch (code) {
     case Code::sum_of_products:
     case Code::difference_of_products:
+    case Code::negated_sum_of_products:
     case Code::select_less:
     case Code::select_less_equal:
       return 4;
     case Code::multiply_add:
     case Code::multiply_subtract:
     case Code::subtract_product:
+    case Code::negated_multiply_add:
     case Code::sum_times:
     case Code::difference_times:
     case Code::select:
@@ -103,6 +120,7 @@ constexpr std::size_t operands(Code code) {
     case Code::multiply:
     case Code::divide:
     case Code::negated_product:
+    case Code::negated_sum:
     case Code::minimum:
     case Code::maximum:
     case Code::power:
@@ -180,6 +198,12 @@ Real operate(const Real& a, const Real& b, const Real& c, const Real& d) {
   constexpr bool is_logic = code >= Code::less && code <= Code::logical_not;
   if constexpr (code == Code::add)
     return a + b;
+  else if constexpr (code == Code::negated_sum)
+    return -(a + b);
+  else if constexpr (code == Code::negated_multiply_add)
+    return -(a * b + c);
+  else if constexpr (code == Code::negated_sum_of_products)
+    return -(a * b + c * d);
   else if constexpr (code == Code::subtract)
     return a - b;
   else if constexpr (code == Code::multiply)

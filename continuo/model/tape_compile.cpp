@@ -151,7 +151,7 @@ class TapeCompiler {
         emit_batch(program, operations, groups[g], g);
       }
     }
-    program.instructions.push_back({.code = Code::stop, .result = 0, .a = 0, .b = 0, .c = 0, .d = 0});
+    program.instructions.emplace_back(Code::stop);
   }
 
   std::uint32_t place(const Selected& s, std::size_t k) const {
@@ -168,7 +168,8 @@ class TapeCompiler {
   }
 
   void emit_single(Tape::Program& program, const Selected& s, std::size_t group) {
-    Instruction i{s.code, 0, place(s, 0), place(s, 1), place(s, 2), place(s, 3)};
+    Instruction i(s.code);
+    i.a = place(s, 0), i.b = place(s, 1), i.c = place(s, 2), i.d = place(s, 3);
     if (s.code == Code::interpolate || s.code == Code::interpolate_slope) i.b = s.table;
     release(s, group);  // before the result is placed: it may take an operand's register
     i.result = place_[s.result.index] = registers_.take(1);
@@ -191,7 +192,7 @@ class TapeCompiler {
     for (const std::size_t i : members) release(operations[i], group);
     const auto number = static_cast<std::uint32_t>(program.batches.size());
     program.batches.push_back(batch);
-    program.instructions.push_back({.code = Code::batch, .result = 0, .a = number, .b = 0, .c = 0, .d = 0});
+    program.instructions.emplace_back(Code::batch).a = number;
   }
 
   static Operand layout(Tape::Program& program, const std::vector<std::size_t>& members, auto&& place_of) {

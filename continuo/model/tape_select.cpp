@@ -1,5 +1,6 @@
 // continuo/model/tape_select.cpp
 #include <algorithm>
+#include <utility>
 
 #include <continuo/model/tape_select.hpp>
 
@@ -179,9 +180,35 @@ class Selector {
 
   Selected negation(NodeId id, const Node& n) const {
     const Node& a = graph_[n.a];
+    if (folds(n.a, id, Op::subtract)) return difference(id, {.op = Op::subtract, .a = a.b, .b = a.a});
+    if (folds(n.a, id, Op::add)) return negated(sum(id, a));
+    if (folds(n.a, id, Op::multiply)) {
+      const Selected s = product(id, a);
+      return s.code == Code::sum_times ? make(Code::negated_product, a.a, a.b) : negated(s);
+    }
     if (a.op == Op::subtract && steady_[n.a.index] == steady_[id.index]) return make(Code::subtract, a.b, a.a);
-    if (folds(n.a, id, Op::multiply)) return make(Code::negated_product, a.a, a.b);
     return make(Code::negate, n.a);
+  }
+
+  /// -(a - b)*c is (b - a)*c; the others have a code of their own.
+  Selected negated(Selected s) const {
+    switch (s.code) {
+      case Code::add:
+        s.code = Code::negated_sum;
+        break;
+      case Code::multiply_add:
+        s.code = Code::negated_multiply_add;
+        break;
+      case Code::sum_of_products:
+        s.code = Code::negated_sum_of_products;
+        break;
+      case Code::multiply:
+        s.code = Code::negated_product;
+        break;
+      default:
+        std::swap(s.operand[0], s.operand[1]);  // difference_times
+    }
+    return s;
   }
 
   Selected choice(const Node& n) const {

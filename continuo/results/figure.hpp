@@ -1,0 +1,43 @@
+// continuo/results/figure.hpp
+// Pictures through gnuplot: panels one below the other, each with curves over a common axis.
+//
+//   Figure figure{.title = "Ball", .panels = {{.x_label = "t [s]", .y_label = "h [m]", .curves = {{"h", t, h}}}}};
+//   if (auto failure = draw(figure, "ball.svg")) fmt::print(stderr, "{}\n", *failure);
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace continuo::results {
+
+struct Curve {
+  std::string label;
+  std::vector<double> x, y;  // of equal length; a NaN breaks the line
+  bool points_only = false;
+};
+
+struct Panel {
+  std::string x_label, y_label;
+  std::vector<Curve> curves;
+  std::vector<double> marks{};  // positions on the x axis: events
+  std::string mark_label = "event";
+  bool equal_scale = false;  // one unit is as long upwards as to the right
+  bool logarithmic_x = false, logarithmic_y = false;
+};
+
+struct Figure {
+  std::string title;
+  std::vector<Panel> panels;
+};
+
+/// The file's ending says the format: .svg or .png. Returns what went wrong, if anything: unknown ending, gnuplot not
+/// installed, folder not writable.
+std::optional<std::string> draw(const Figure& figure, const std::string& path);
+
+/// The program for gnuplot that `draw` runs.
+std::string gnuplot_script(const Figure& figure, const std::string& path);
+
+/// A curve of many points without those that no eye can tell apart on a picture `pixels` wide. Peaks stay.
+Curve thinned(const Curve& curve, std::size_t pixels);
+
+}  // namespace continuo::results

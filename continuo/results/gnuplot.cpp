@@ -1,0 +1,178 @@
+#include <cerrno>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <continuo/results/csv.hpp>
+#include <continuo/results/figure.hpp>
+#include <continuo/results/output_file.hpp>
+
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX wants it declared by its user
+
+namespace continuo::results {
+namespace {
+
+constexpr int width = 960, panel_height = 300, square_height = 720, title_height = 40;  // pixels
+constexpr std::size_t most_marks = 80;  // more lines than this hide the curves
+
+// Okabe and Ito's colours, told apart by all common kinds of colour vision. M. Okabe, K. Ito, "Color universal design"
+// (2008). Yellow is left out: too pale on white.
+constexpr std::string_view palette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+
+/// A text in gnuplot's single quotes, where nothing but the quote itself is special.
+std::string in_quotes(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c == '\n' ? ' ' : c);
+  return result + "'";
+}
+
+std::string ending_of(const std::string& path) {
+  return std::filesystem::path(path).extension().string();
+}
+
+int height_of(const Panel& panel) {
+  return panel.equal_scale ? square_height : panel_height;
+}
+
+int height_of(const Figure& figure) {
+  int height = title_height;
+  for (const Panel& panel : figure.panels) height += height_of(panel);
+  return height;
+}
+
+void append_data(std::string& script, std::size_t panel, std::size_t number, const Curve& curve) {
+  script += fmt::format("$curve{}_{} << END\n", panel, number);
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i])) {
+      append_number(script, curve.x[i]);
+      script += ' ';
+      append_number(script, curve.y[i]);
+    }
+    script += '\n';  // an empty line breaks the curve
+  }
+  script += "END\n";
+}
+
+std::string style_of(const Curve& curve, std::size_t number) {
+  const std::string_view color = palette[number % std::size(palette)];
+  const std::size_t round = number / std::size(palette);  // dashes tell the second round of colours from the first
+  return curve.points_only ? fmt::format("points pt 7 ps 0.6 lc rgb '{}'", color)
+                           : fmt::format("lines lw 1.8 dt {} lc rgb '{}'", round + 1, color);
+}
+
+void append_panel(std::string& script, const Panel& panel, std::size_t number, double bottom, double height) {
+  script += fmt::format("set origin 0,{:.5f}\nset size 1,{:.5f}\n", bottom, height);
+  script += panel.equal_scale ? "set size ratio -1\n" : "set size noratio\n";
+  script += panel.logarithmic_x ? "set logscale x\nset format x '10^{%L}'\n" : "unset logscale x\nset format x '%h'\n";
+  script += panel.logarithmic_y ? "set logscale y\nset format y '%.0e'\n" : "unset logscale y\nset format y '%h'\n";
+  if (panel.logarithmic_x) script += "set format x '%h'\n";
+  script +=
+      fmt::format("set xlabel {}\nset ylabel {}\nunset arrow\n", in_quotes(panel.x_label), in_quotes(panel.y_label));
+  const bool marked = !panel.marks.empty() && panel.marks.size() <= most_marks;
+  for (std::size_t i = 0; marked && i < panel.marks.size(); ++i) {
+    script +=
+        fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1 dt 3 lc rgb '#999999'\n",
+                    panel.marks[i]);
+  }
+  script += "plot ";
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    script += fmt::format("{}$curve{}_{} using 1:2 with {} title {}", i > 0 ? ", " : "", number, i,
+                          style_of(panel.curves[i], i), in_quotes(panel.curves[i].label));
+  }
+  if (marked)
+    script += fmt::format(", NaN with lines lw 1 dt 3 lc rgb '#999999' title {}", in_quotes(panel.mark_label));
+  script += '\n';
+}
+
+/// Removes the file when the picture is drawn or not.
+struct TemporaryFile {
+  std::string path;
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
+std::optional<std::string> run_gnuplot(const std::string& script_path) {
+  std::string program = "gnuplot";
+  std::string argument = script_path;
+  char* arguments[] = {program.data(), argument.data(), nullptr};
+  pid_t process = 0;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);  // standard output is for data
+  const int problem = posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (problem == ENOENT) return "gnuplot draws the plots and is not installed: apt-get install gnuplot-nox";
+  if (problem != 0) return fmt::format("gnuplot could not be started: {}", std::strerror(problem));
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
+    return "gnuplot draws the plots and is not installed: apt-get install gnuplot-nox";
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "gnuplot could not draw the plot; its message is above";
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string gnuplot_script(const Figure& figure, const std::string& path) {
+  const int height = height_of(figure);
+  std::string script;
+  for (std::size_t p = 0; p < figure.panels.size(); ++p) {
+    for (std::size_t c = 0; c < figure.panels[p].curves.size(); ++c) {
+      append_data(script, p, c, thinned(figure.panels[p].curves[c], 2 * width));
+    }
+  }
+  script +=
+      ending_of(path) == ".png"
+          ? fmt::format("set terminal pngcairo noenhanced size {},{} font 'sans,22' linewidth 2\n", 2 * width,
+                        2 * height)
+          : fmt::format("set terminal svg noenhanced size {},{} dynamic font 'sans-serif,13' background '#ffffff'\n",
+                        width, height);
+  script += fmt::format("set output {}\nset encoding utf8\n", in_quotes(path));
+  script +=
+      "set grid back lc rgb '#dddddd' lw 1 dt 1\nset border 3 lc rgb '#555555'\nset tics nomirror textcolor rgb "
+      "'#333333'\n";
+  script +=
+      "set key outside top center horizontal autotitle columnhead samplen 2 spacing 1.1 textcolor rgb '#333333'\n";
+  script +=
+      "set key noautotitle\nset offsets graph 0, graph 0, graph 0.04, graph 0.04\nset lmargin 13\nset rmargin 3\n";
+  script += fmt::format("set multiplot title {}\n", in_quotes(figure.title));
+  int top = title_height;
+  for (std::size_t p = 0; p < figure.panels.size(); ++p) {
+    const int own = height_of(figure.panels[p]);
+    append_panel(script, figure.panels[p], p, 1 - static_cast<double>(top + own) / height,
+                 static_cast<double>(own) / height);
+    top += own;
+  }
+  return script + "unset multiplot\nunset output\n";
+}
+
+std::optional<std::string> draw(const Figure& figure, const std::string& path) {
+  const std::string ending = ending_of(path);
+  if (ending != ".svg" && ending != ".png") {
+    return fmt::format("cannot plot to {}: the file's name ends in .svg or .png", path);
+  }
+  if (auto failure = write_file(path, "")) return failure;  // a folder that is not there is our message, not gnuplot's
+
+  std::string name = (std::filesystem::temp_directory_path() / "continuo-plot-XXXXXX").string();
+  const int descriptor = mkstemp(name.data());
+  if (descriptor < 0) return fmt::format("cannot write {}: {}", name, std::strerror(errno));
+  ::close(descriptor);
+  const TemporaryFile file{name};
+  if (auto failure = write_file(name, gnuplot_script(figure, path))) return failure;
+  return run_gnuplot(name);
+}
+
+}  // namespace continuo::results

@@ -1,0 +1,18 @@
+// continuo/results/summary.hpp
+// A run in a few lines for the terminal: how it ended, final state, events, energy drift, checks, cost.
+#pragma once
+#include <string>
+
+#include <continuo/results/record.hpp>
+
+namespace continuo::results {
+
+std::string summary(const Record& record);
+
+/// Six digits, as people read numbers: 0.451524, 1.2e-11, 60.
+std::string short_number(double value);
+
+/// "12.3 ms", "1.20 s".
+std::string duration(double seconds);
+
+}  // namespace continuo::results

@@ -1,0 +1,19 @@
+// continuo/results/tables.hpp
+// The two tables of a run as CSV files.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <continuo/results/record.hpp>
+
+namespace continuo::results {
+
+/// `t`, states, outputs: an event stands as two rows of equal t, the state before it and after it.
+/// Each returns what went wrong, if anything; "-" is standard output.
+std::optional<std::string> write_motion(const Record& record, const std::string& path, std::string_view manifest_hash);
+
+/// `event,t`, then `before h` for each state, then `after h`.
+std::optional<std::string> write_events(const Record& record, const std::string& path, std::string_view manifest_hash);
+
+}  // namespace continuo::results

@@ -1,0 +1,79 @@
+#include <clocale>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "example.hpp"
+#include <continuo/results/csv.hpp>
+#include <continuo/results/tables.hpp>
+
+namespace continuo::results {
+namespace {
+
+TEST(Csv, NumbersAreTheShortestThatReadBackTheSame) {
+  EXPECT_EQ(number(0.1), "0.1");
+  EXPECT_EQ(number(100000), "100000");
+  EXPECT_EQ(number(1.0 / 3), "0.3333333333333333");
+  EXPECT_EQ(number(-0.0), "0");
+  EXPECT_EQ(number(std::nan("")), "nan");
+  EXPECT_EQ(number(-std::numeric_limits<double>::infinity()), "-inf");
+  for (double value = 1e-300; value < 1e300; value *= -1.0e7 / 3) {
+    EXPECT_EQ(std::strtod(number(value).c_str(), nullptr), value);
+    if (std::abs(value) > 1e290) break;
+  }
+}
+
+TEST(Csv, APointStaysAPointInEveryLocale) {
+  for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"}) {
+    std::setlocale(LC_ALL, locale);  // one that is not installed changes nothing
+    EXPECT_EQ(number(1234.5), "1234.5") << locale;
+  }
+  std::setlocale(LC_ALL, "C");
+}
+
+TEST(Csv, FieldsWithCommasAndQuotesAreQuoted) {  // RFC 4180, 2.6 and 2.7
+  std::string text;
+  append_field(text, "u[1,2]");
+  append_field(text, "h'");
+  append_field(text, "say \"x\"");
+  EXPECT_EQ(text, "\"u[1,2]\"h'\"say \"\"x\"\"\"");
+}
+
+TEST(Tables, TheMotionHasTheHashTheModelsNamesAndBothSidesOfAnEvent) {
+  const Folder folder;
+  ASSERT_FALSE(write_motion(falling_ball(), folder / "ball.csv", "abc"));
+  EXPECT_EQ(content(folder / "ball.csv"),
+            "# manifest abc\n"
+            "t,h,h'\n"
+            "0,1,0\n"
+            "0.5,0.75,-1\n"
+            "1,0,-2\n"
+            "1,0,1\n");
+}
+
+TEST(Tables, TheEventListHasTheStatesBeforeAndAfter) {
+  const Folder folder;
+  ASSERT_FALSE(write_events(falling_ball(), folder / "events.csv", "abc"));
+  EXPECT_EQ(content(folder / "events.csv"),
+            "# manifest abc\n"
+            "event,t,before h,before h',after h,after h'\n"
+            "h falls through 0,1,0,-2,0,1\n");
+}
+
+TEST(Tables, AFolderThatIsNotThereIsOneMessage) {
+  const auto failure = write_motion(falling_ball(), "/no such folder/ball.csv", "abc");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(*failure, "cannot write /no such folder/ball.csv: No such file or directory");
+}
+
+TEST(Tables, AFullDiskIsTold) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  const auto failure = write_motion(falling_ball(), "/dev/full", "abc");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(*failure, "cannot write /dev/full: No space left on device");
+}
+
+}  // namespace
+}  // namespace continuo::results
