@@ -27,6 +27,7 @@
 
 #include <continuo/model/expression.hpp>
 #include <continuo/model/source.hpp>
+#include <continuo/model/table.hpp>
 #include <continuo/system/system.hpp>
 
 namespace continuo::model {
@@ -51,26 +52,26 @@ struct Range {
 struct Parameter {
   std::string name;        // "k", "m[3]"
   std::uint32_t variable;  // in the flat space
-  NodeId expression;       // of parameters before it; a constant where `independent`
+  NodeId expression;       // of other parameters; a constant where `independent`
   double value;            // of `expression` with every parameter as written
   std::string unit;
   std::optional<Range> range;
   std::string comment;  // what the author wrote beside it
   bool independent;     // no other parameter in `expression`: setting others leaves it as it is
+  bool structural;      // decides the size of a family: only CheckOptions::overrides can change it
   Span span;
 };
 
 /// A control over time: live, by its key, or from a file.
 struct Input {
-  enum class Between { linear, step };
   std::string name;
   std::uint32_t variable;
   double value;  // until somebody moves it
   std::string unit;
   std::optional<Range> range;
-  std::string key;   // "w", empty for none
-  std::string file;  // CSV: its first two columns are t and the value; empty for none
-  Between between = Between::linear;
+  std::string key;              // "w", empty for none
+  std::string file;             // where the values come from; empty for none
+  std::optional<Table> points;  // of the file: t, and the column named like the input, else the second
   std::string comment;
   Span span;
 };
@@ -284,9 +285,10 @@ struct AlgebraicEquation {
   Span span;
 };
 
-/// `table NAME from "file.csv"`: the nodes of `interp(NAME, x)` carry its index. The file is found already.
+/// `table NAME from "file.csv"`: the nodes of `interp(NAME, x)` carry its index.
 struct TableFile {
   std::string name, file;
+  std::optional<Table> points;  // there in every checked model
   Span span;
 };
 
@@ -305,7 +307,8 @@ struct Model {
   std::string time_unit;  // empty without units
 
   std::vector<TableFile> tables;
-  std::vector<Parameter> parameters;
+  std::vector<Parameter> parameters;         // in the order of the text
+  std::vector<std::size_t> parameter_order;  // in which their expressions can be evaluated
   std::vector<Input> inputs;
   std::vector<State> states;
   std::vector<Mode> modes;

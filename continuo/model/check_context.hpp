@@ -1,0 +1,371 @@
+// continuo/model/check_context.hpp
+// What the parts of the check share: the declared names with families written out, and the way from an expression of
+// the text to a node. Only check*.cpp read this.
+//
+// The order of things: declarations are collected and families written out (check_names.cpp); primes give the states
+// and with them the places of all variables (check_states.cpp); then everything else is turned into nodes.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <continuo/model/ast.hpp>
+#include <continuo/model/check.hpp>
+#include <continuo/model/check_equations.hpp>
+#include <continuo/model/table.hpp>
+#include <continuo/model/unit_check.hpp>
+
+namespace continuo::model::detail {
+
+/// `for i in ...`: what i is at the moment.
+struct Index {
+  std::string_view name;
+  long value;
+};
+
+/// Where an expression stands.
+struct Scope {
+  static constexpr int no_mode = -1;
+  std::vector<Index> indices = {};
+  int mode = no_mode;
+  bool constant = false;                   // states and inputs are no constants; parameters are their values
+  std::vector<Sample>* samples = nullptr;  // where h(1) may stand
+};
+
+/// A node with what it measures. `bad`: an error was reported, nothing more is said about it.
+struct Value {
+  NodeId node;
+  Measured measured = Measured::unknown();
+  bool condition = false;
+  bool bad = false;
+};
+
+/// A value and the text it came from, for messages.
+struct Term {
+  const ast::Expression& text;
+  Value value;
+};
+
+enum class Progress : unsigned char { untouched, busy, done };
+
+/// A param, input, let, output or energy; one for each member of a family.
+struct Definition {
+  enum class Kind : unsigned char { parameter, input, let, output, energy };
+  Kind kind;
+  std::string name;  // "m[3]"
+  const ast::Expression* value;
+  const ast::Definition* text;
+  const ast::Input* input = nullptr;
+  Scope scope;
+  Progress progress = Progress::untouched, constant_progress = Progress::untouched;
+  Value result{}, constant_result{};
+  std::vector<std::uint32_t> highest{};  // highest derivatives in `result`, as indices of bases
+  std::uint32_t variable = 0;            // of a parameter or an input
+  bool structural = false;
+};
+
+/// A variable with a derivative: its components are x, x', ... up to order - 1.
+struct Base {
+  std::string name;
+  std::string family;  // without indices
+  int order = 0;
+  std::size_t first = 0;                  // index of its first state
+  Span span;                              // where its highest derivative stands first
+  std::vector<std::size_t> conditions{};  // into Checker::conditions, those at the start
+};
+
+struct Symbol {
+  enum class Kind : unsigned char { definition, base, unknown, table };
+  Kind kind;
+  std::size_t index;
+  Span span;
+};
+
+/// What is written under a name with and without indices, for messages about indices.
+struct FamilyShape {
+  Symbol::Kind kind{};
+  std::size_t dimensions = 0;
+  std::vector<long> low{}, high{};
+};
+
+template <class T>
+struct Placed {
+  const T* text;
+  Scope scope;
+  Span span;
+};
+
+struct UnknownText {
+  const ast::Unknown* text;
+  Scope scope;
+  Span span;
+  std::string name;
+  std::uint32_t variable = 0;
+  Measured measured = Measured::unknown();
+};
+
+struct ConditionText {
+  const ast::Condition* text;
+  Scope scope;
+  Span span;
+  std::size_t base;
+  std::optional<Setting> time{};
+  Value value{};
+  Progress progress = Progress::untouched;
+};
+
+class Checker {
+ public:
+  Checker(const ast::Model& tree, const Source& source, const CheckOptions& options);
+  Checked run();
+
+ private:
+  // ---- messages (check_report.cpp) ----
+  Diagnostic* fail(const char* code, Span span, std::string message, std::string label = {}, std::string help = {});
+  void warn(const char* code, Span span, std::string message, std::string label = {}, std::string help = {});
+  std::string quote(Span span) const;  // `text`, cut off where it is long
+  std::string unit_text(const Measured& measured) const;
+  std::vector<std::string> all_names() const;
+  bool was_reported(const char* code, Span span) const;
+
+  // ---- names (check_names.cpp, check_families.cpp) ----
+  void declare_top_level();
+  void walk(const std::vector<ast::Statement>& statements, Scope& scope, bool inside);
+  void walk_statement(const ast::Statement& statement, Scope& scope, bool inside);
+  void walk_mode(const ast::Mode& mode, Scope& scope);
+  void define_all(Definition::Kind kind, const std::vector<ast::Definition>& items, Scope& scope, bool inside,
+                  const ast::Input* input = nullptr);
+  void define_member(Definition::Kind kind, const ast::Definition& item, const std::vector<long>& indices,
+                     const ast::Expression& value, const Scope& scope, const ast::Input* input);
+  void define_elements(Definition::Kind kind, const ast::Definition& item, Scope& scope, const ast::Input* input);
+  void walk_other(const ast::Table& table, Scope& scope, Span span);
+  void walk_other(const ast::Unknown& unknown, Scope& scope, Span span);
+  void walk_other(const ast::Start& start, Scope& scope, Span span);
+  void walk_other(const ast::Run& run, Scope& scope, Span span);
+  void walk_other(const ast::Guess& node, Scope& scope, Span span) { guesses_.push_back({&node, scope, span}); }
+  void walk_other(const ast::Check& node, Scope& scope, Span span) { checks_.push_back({&node, scope, span}); }
+  void walk_other(const ast::Plot& node, Scope& scope, Span span) { plots_.push_back({&node, scope, span}); }
+  void walk_other(const ast::Draw& node, Scope& scope, Span span) { draws_.push_back({&node, scope, span}); }
+  void walk_other(const ast::When& node, Scope& scope, Span) { events_.push_back({&node, scope, node.head}); }
+  void walk_other(const ast::At& node, Scope& scope, Span) { events_.push_back({&node, scope, node.head}); }
+  void walk_other(const ast::Every& node, Scope& scope, Span) { events_.push_back({&node, scope, node.head}); }
+  void walk_other(const ast::Initially& node, Scope& scope, Span span) { events_.push_back({&node, scope, span}); }
+  bool declare(const std::string& key, const std::string& name, Symbol symbol, std::string_view family,
+               const std::vector<long>& indices);
+  bool is_free_name(const std::string& name, Span span);
+  void declare_modes();
+  template <class Body>
+  void for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body);
+  template <class Body>
+  void for_each_term(const ast::Sum& sum, Scope& scope, Body&& body);
+  bool count_written_out(Span span);
+  std::optional<std::pair<long, long>> bounds(const ast::Range& range, Scope& scope);
+  std::optional<long> whole_number(const ast::Expression& expression, Scope& scope);
+  std::optional<std::vector<long>> indices_of(const ast::Name& name, Scope& scope);
+  std::optional<std::string> key_of(const ast::Name& name, Scope& scope);
+  const Symbol* find(const std::string& key, int mode) const;
+  std::optional<std::size_t> mode_named(const ast::Identifier& name);
+
+  // ---- states (check_states.cpp) ----
+  void see_equation(const ast::Equation& equation, Scope& scope);
+  void see_primes(const ast::Expression& expression, Scope& scope);
+  std::optional<std::size_t> see_base(const ast::Name& name, Scope& scope, int order);
+  void see_condition(const ast::Condition& condition, Scope& scope, Span span);
+  void lay_out();
+  void name_states();
+  Measured state_measure(std::size_t base, int primes);
+  Measured own_measure(std::size_t base, int primes);
+  Measured time_measure() const;
+  Measured per_time(const Measured& measured, int times = 1) const;
+  std::size_t base_of_state(std::size_t state) const;
+  Measured time_or_number() const;
+  void find_time_unit();
+  void stated_time_unit(const ast::Unit& text);
+
+  // ---- expressions (check_expression.cpp, check_functions.cpp, check_lookup.cpp) ----
+  Value elaborate(const ast::Expression& expression, Scope& scope);
+  Value settle(Value value, Span span);  // highest derivatives replaced by what they equal
+  Value settled(const ast::Expression& expression, Scope& scope);
+  Value number_of(const ast::Expression& expression, Scope& scope);     // settled, and no condition
+  Value condition_of(const ast::Expression& expression, Scope& scope);  // settled, and one
+  NodeId in_unit(const ast::Expression& expression, const Value& value, const Measured& wanted,
+                 std::string_view what);  // E201 where it does not fit `what`
+  Value of_number(double value);
+  Value bad();
+  bool want_number(const ast::Expression& text, Value& value);
+  bool want_condition(const ast::Expression& text, Value& value);
+  Value unary(const ast::Unary& node, Scope& scope);
+  Value binary(const ast::Binary& node, Span span, Scope& scope);
+  Value additive(Op op, const Term& a, const Term& b, Span span, Scope& scope);
+  bool align(const Term& a, Term& b, Span span, Scope& scope);
+  Value raise(const Term& base, const Term& exponent, Span span);
+  Value pure_number(const Term& argument, std::string_view function);
+  Value conditional(const ast::Conditional& node, Span span, Scope& scope);
+  Value quantity(const ast::Quantity& node, Scope& scope);
+  Value sum(const ast::Sum& node, Scope& scope);
+  Value call(const ast::Call& node, Span span, Scope& scope);
+  Value apply_function(std::string_view name, std::vector<Term>& arguments, Span span, Scope& scope);
+  Value interpolation(const ast::Call& node, Span span, Scope& scope);
+  Value sample(const ast::Call& node, Span span, Scope& scope);
+  Value lookup(const ast::Name& name, Scope& scope);
+  Value builtin(const ast::Name& name, const std::string& key, Scope& scope);
+  Value not_constant(Span span, const std::string& name);
+  Value unknown_name(const ast::Name& name, const std::string& key);
+  Value derivative(const ast::Name& name, std::size_t base);
+  Value defined(std::size_t index, const ast::Name& name);
+  void finish_definition(std::size_t index, Value value);
+  Value constant_defined(std::size_t index, const ast::Name& name);
+  Value circular(std::size_t index, Span span);
+  Value total_energy(Span span, Scope& scope);
+  std::optional<Unit> unit_of(const ast::Unit& unit);
+  std::string repair(const Term& term, const Measured& wanted, Scope& scope);
+  std::optional<double> constant(const ast::Expression& expression, Scope& scope, const Measured& wanted,
+                                 std::string_view what);
+  std::optional<Setting> setting(const ast::Expression& expression, Scope& scope, const Measured& wanted,
+                                 std::string_view what);
+  std::optional<Setting> time_setting(const ast::Expression& expression, Scope& scope, std::string_view what);
+  bool only_parameters(NodeId node, Span span, std::string_view what);
+  std::string name_of(std::uint32_t variable) const;
+
+  // ---- the parts of the model ----
+  void declare();  // check.cpp
+  void fill();
+  void nothing_to_simulate();
+
+  void make_parameters();  // check_parameters.cpp
+  void make_inputs();
+  void make_unknowns();
+  void make_quantities();
+  void mark_structural();
+  void check_overrides();
+  std::string comment_beside(Span span) const;
+  std::optional<Range> slider(const Definition& definition, double value);
+  std::string file_of(const std::string& name, Span span);
+  std::optional<Table> points_of(const std::string& file, Span span, Table::Between between, std::string_view column);
+
+  void make_conditions();  // check_initial.cpp
+  const Value& condition_value(std::size_t index);
+  void place_condition(std::size_t index, bool initial);
+  void missing_conditions();
+  void make_guesses();
+
+  void make_equations();  // check_equations.cpp, check_counts.cpp, check_reduction.cpp
+  EquationAtWork read_equation(const Placed<ast::Equation>& equation);
+  void solve_mode(std::size_t mode);
+  void sort_out_algebraic(ModeAtWork& work);
+  void solve_one_by_one(ModeAtWork& work);
+  void solve_for(ModeAtWork& work, const EquationAtWork& equation, std::uint32_t base);
+  void solve_coupled(ModeAtWork& work);
+  void solve_group(ModeAtWork& work, const std::vector<std::size_t>& members, std::vector<std::uint32_t> open);
+  NodeId with_solved(const ModeAtWork& work, NodeId node);
+  std::vector<std::string> highest_names(const std::vector<std::uint32_t>& bases) const;
+  void report_empty_equation(const EquationAtWork& equation, const std::vector<std::uint32_t>& variables,
+                             std::size_t mode);
+  void report_surplus(const ModeAtWork& work, const std::vector<std::size_t>& members,
+                      const std::vector<std::uint32_t>& open);
+  void report_missing(const ModeAtWork& work);
+  void report_without_equation(std::uint32_t base);
+  void store_derivatives(const ModeAtWork& work);
+  void pair_up();
+
+  void make_events();  // check_events.cpp, check_actions.cpp
+  void make_event(const ast::When& text, Scope& scope, Span span);
+  void make_event(const ast::At& text, Scope& scope, Span span);
+  void make_event(const ast::Every& text, Scope& scope, Span span);
+  void make_event(const ast::Initially& text, Scope& scope, Span span);
+  void make_scheduled(Scheduled event, const std::vector<ast::Action>& actions, Scope& scope);
+  Value guard(const ast::Expression& condition, Scope& scope);
+  Block block(const std::vector<ast::Action>& actions, Scope& scope);
+  Block actions_of(const std::vector<ast::Action>& actions, Scope& scope);
+  void add_action(Block& to, const ast::Action& action, Scope& scope);
+  std::optional<Assign> assignment(const ast::Assignment& assignment, Scope& scope);
+  struct Taken {
+    std::map<std::size_t, Span> states;
+    std::optional<Span> go;
+  };
+  void note_assignments(const Block& block, Taken& taken);
+
+  void make_run();  // check_run.cpp
+  void run_times(const ast::Run& run);
+  void run_output(const ast::Run& run);
+  void run_tolerances(const ast::Run& run);
+  void check_method_fits();
+
+  void make_plots();  // check_views.cpp
+  void make_drawings();
+  void make_drawing(const std::vector<ast::DrawItem>& items, Scope& scope);
+  DrawArgument draw_argument(const ast::Expression& expression, Scope& scope);
+  Series series(const ast::Expression& expression, Scope& scope);
+
+  void make_checks();  // check_checks.cpp
+  void make_check(const ast::Check& text, Scope& outer, Span span);
+  Value measure(const ast::Check& text, Scope& scope, Check& check);
+  Moment moment(const ast::Moment& text, Scope& scope, Span span);
+  void check_event_name(const std::string& begin, Span span);
+  void check_time_in_run(const Setting& time, Span span);
+
+  const ast::Model& tree_;
+  const Source& source_;
+  const CheckOptions& options_;
+  Model model_;
+  std::vector<Diagnostic> diagnostics_;
+  std::set<std::tuple<std::string, std::uint32_t, std::uint32_t>> reported_;
+  std::size_t errors_ = 0;
+
+  std::vector<Definition> definitions_;
+  std::unordered_map<std::string, Symbol> symbols_;
+  std::map<std::string, FamilyShape, std::less<>> families_;
+  std::vector<Base> bases_;
+  std::vector<Placed<ast::Equation>> equations_;
+  std::vector<ConditionText> conditions_;
+  std::vector<Placed<ast::Guess>> guesses_;
+  std::vector<UnknownText> unknowns_;
+  struct EventText {
+    std::variant<const ast::When*, const ast::At*, const ast::Every*, const ast::Initially*> text;
+    Scope scope;
+    Span span;
+  };
+  std::vector<EventText> events_;
+  std::vector<Placed<ast::Check>> checks_;
+  std::vector<Placed<ast::Plot>> plots_;
+  std::vector<Placed<ast::Draw>> draws_;
+  const ast::Run* run_ = nullptr;
+  Span run_span_{};
+  const ast::Start* start_ = nullptr;
+
+  std::optional<Unit> time_unit_;       // none: the model has no units that reach t
+  std::size_t written_out_ = 0;         // members of families and terms of sums so far
+  std::vector<std::uint32_t> highest_;  // bases whose highest derivative the expression at hand contains
+  std::vector<NodeId> solved_;          // highest derivative of each base where the model has one mode
+  std::vector<std::size_t> busy_;       // definitions being elaborated, for the cycle's names
+  std::vector<Progress> measure_progress_;
+  std::vector<Measured> measures_;
+  std::vector<std::size_t> parameter_order_;   // definitions that are parameters, in the order of the text
+  std::vector<std::size_t> evaluation_order_;  // definitions with a value, each after those it needs
+  std::vector<double> registers_;              // parameters and inputs as written, the rest 0
+  std::set<std::size_t> without_equation_;     // bases that have an initial value only
+  std::set<std::pair<std::size_t, double>> condition_seen_;  // state and time
+  std::string_view constant_what_;
+  double start_time_ = 0;
+  bool t_is_known_ = false;
+  bool silent_ = false;  // trying what may have been meant
+};
+
+/// Variables that stand for the highest derivatives while equations are solved for them.
+inline constexpr std::uint32_t highest_begin = 1u << 30;
+/// More members of families and terms of sums than this are a mistake, or a job for C++.
+inline constexpr std::size_t most_written_out = 2'000'000;
+
+std::string with_primes(std::string_view name, int primes);
+/// `a`, `b` and `c`; after five: and 7 more.
+std::string listed(const std::vector<std::string>& names);
+
+}  // namespace continuo::model::detail

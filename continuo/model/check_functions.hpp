@@ -1,0 +1,28 @@
+// continuo/model/check_functions.hpp
+// The functions a model can call. Only check*.cpp read this.
+#pragma once
+#include <cstddef>
+#include <string_view>
+
+namespace continuo::model::detail {
+
+struct Function {
+  /// What the function asks of the units of its arguments, and what it gives.
+  enum class Units {
+    pure,   // pure numbers to a pure number
+    same,   // arguments alike, result like them: abs, min, hypot
+    root,   // sqrt, cbrt
+    ratio,  // arguments alike, result a pure number: atan2
+    sign,   // anything to a pure number
+    power
+  };
+  std::string_view name;
+  std::size_t least, most;  // arguments
+  Units units;
+};
+
+/// Null where there is none of this name; `interp` is none of these.
+const Function* find_function(std::string_view name);
+bool is_function(std::string_view name);
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,226 @@
+// continuo/model/check_lookup.cpp
+// What a name stands for.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <continuo/model/check_context.hpp>
+#include <continuo/model/check_families.hpp>
+#include <continuo/model/suggest.hpp>
+
+namespace continuo::model::detail {
+
+namespace {
+
+/// Definitions that lean on each other more deeply than this, each above the next, are not followed.
+constexpr std::size_t deepest_definitions = 1000;
+
+const char* word(Definition::Kind kind) {
+  switch (kind) {
+    case Definition::Kind::parameter:
+      return "param";
+    case Definition::Kind::input:
+      return "input";
+    case Definition::Kind::let:
+      return "let";
+    case Definition::Kind::output:
+      return "output";
+    case Definition::Kind::energy:
+      return "energy";
+  }
+  return "";
+}
+
+}  // namespace
+
+Value Checker::lookup(const ast::Name& name, Scope& scope) {
+  if (name.indices.empty() && name.primes == 0) {
+    for (std::size_t i = scope.indices.size(); i-- > 0;) {
+      if (scope.indices[i].name == name.text) return of_number(static_cast<double>(scope.indices[i].value));
+    }
+  }
+  const auto key = key_of(name, scope);
+  if (!key) return bad();
+  const Symbol* symbol = find(*key, scope.mode);
+  if (!symbol) return builtin(name, *key, scope);
+  if (symbol->kind == Symbol::Kind::definition) {
+    const Definition& definition = definitions_[symbol->index];
+    if (name.primes > 0) {
+      fail("E218", name.span, fmt::format("`{}` has no derivative", *key),
+           fmt::format("it is a {}", word(definition.kind)), "only what has an equation of its own has primes");
+      return bad();
+    }
+    return scope.constant ? constant_defined(symbol->index, name) : defined(symbol->index, name);
+  }
+  if (symbol->kind == Symbol::Kind::table) {
+    fail("E271", name.span, fmt::format("`{}` is a table", name.text), {},
+         fmt::format("read it: interp({}, x)", name.text));
+    return bad();
+  }
+  if (scope.constant) return not_constant(name.span, *key);
+  if (symbol->kind == Symbol::Kind::base) return derivative(name, symbol->index);
+  if (name.primes > 0) {
+    fail("E218", name.span, fmt::format("`{}` has no derivative", *key), "it is an unknown of an algebraic equation",
+         fmt::format("give it an equation with {}' and an initial value instead of `unknown`", *key));
+    return bad();
+  }
+  const UnknownText& unknown = unknowns_[symbol->index];
+  return {model_.graph.variable(unknown.variable), unknown.measured};
+}
+
+Value Checker::not_constant(Span span, const std::string& name) {
+  fail("E222", span, fmt::format("{} must be constant", constant_what_), fmt::format("`{}` changes with time", name),
+       "use numbers and parameters only");
+  return bad();
+}
+
+/// t, pi and the sum of all energies; a model may define `energy` itself.
+Value Checker::builtin(const ast::Name& name, const std::string& key, Scope& scope) {
+  if (name.primes == 0 && name.text == "pi" && name.indices.empty()) return of_number(3.14159265358979323846);
+  if (name.primes == 0 && name.text == "t" && name.indices.empty()) {
+    if (scope.constant) return not_constant(name.span, "t");
+    return {model_.graph.variable(Layout::time), time_measure()};
+  }
+  if (key == "energy" && name.primes == 0 && !scope.constant) {
+    const Value total = total_energy(name.span, scope);
+    if (total.node.valid()) return total;
+  }
+  return unknown_name(name, key);
+}
+
+Value Checker::total_energy(Span span, Scope& scope) {
+  Value total;
+  for (std::size_t i = 0; i < definitions_.size(); ++i) {
+    if (definitions_[i].kind != Definition::Kind::energy) continue;
+    const ast::Name& name = definitions_[i].text->name;
+    Term term{*definitions_[i].value, defined(i, name)};
+    if (term.value.bad) return bad();
+    if (!total.node.valid()) {
+      total = term.value;
+    } else if (align({*definitions_[i].value, total}, term, span, scope)) {
+      total = {model_.graph.add(total.node, term.value.node), common(total.measured, term.value.measured)};
+    } else {
+      return bad();
+    }
+  }
+  return total;
+}
+
+Value Checker::unknown_name(const ast::Name& name, const std::string& key) {
+  if (was_reported("E210", name.span) || was_reported("E220", name.span) || silent_) return bad();
+  const auto family = families_.find(name.text);
+  if (family == families_.end()) {
+    const std::string near = did_you_mean(name.text, all_names());
+    fail("E210", name.span, fmt::format("there is no `{}`", key), {},
+         !near.empty() ? near : fmt::format("declare it: param {} = ..., or give it an equation", name.text));
+    return bad();
+  }
+  const FamilyShape& shape = family->second;
+  const std::string first = indexed(name.text, shape.low), last = indexed(name.text, shape.high);
+  if (name.indices.size() == shape.dimensions) {
+    fail("E220", name.span, fmt::format("`{}` is out of range", key),
+         fmt::format("`{}` goes from `{}` to `{}`", name.text, first, last));
+  } else if (shape.dimensions == 0) {
+    fail("E219", name.span, fmt::format("`{}` has no index", name.text), {}, fmt::format("write {}", name.text));
+  } else {
+    fail("E219", name.span,
+         fmt::format("`{}` needs {}", name.text,
+                     shape.dimensions == 1 ? "an index" : fmt::format("{} indices", shape.dimensions)),
+         fmt::format("`{}` goes from `{}` to `{}`", name.text, first, last), fmt::format("write {}", first));
+  }
+  return bad();
+}
+
+Value Checker::derivative(const ast::Name& name, std::size_t index) {
+  const Base& base = bases_[index];
+  if (name.primes < base.order) {
+    const std::size_t state = base.first + static_cast<std::size_t>(name.primes);
+    return {model_.graph.variable(model_.layout.states + static_cast<std::uint32_t>(state)),
+            state_measure(index, name.primes)};
+  }
+  if (name.primes == base.order) {
+    highest_.push_back(static_cast<std::uint32_t>(index));
+    return {model_.graph.variable(highest_begin + static_cast<std::uint32_t>(index)),
+            per_time(state_measure(index, base.order - 1))};
+  }
+  fail("E218", name.span, fmt::format("`{}` is not to be had", with_primes(base.name, name.primes)),
+       fmt::format("the highest derivative in the equations is `{}`", with_primes(base.name, base.order)));
+  return bad();
+}
+
+/// The names of the circle, from the first that leans on itself.
+Value Checker::circular(std::size_t index, Span span) {
+  std::string circle;
+  for (auto at = std::ranges::find(busy_, index); at != busy_.end(); ++at) circle += definitions_[*at].name + " -> ";
+  fail("E212", span, fmt::format("`{}` is defined by itself", definitions_[index].name),
+       circle + definitions_[index].name, "break the circle, or give one of them an equation with a derivative");
+  return bad();
+}
+
+Value Checker::defined(std::size_t index, const ast::Name& name) {
+  Definition& definition = definitions_[index];
+  if (definition.progress == Progress::busy) return circular(index, name.span);
+  if (definition.progress == Progress::untouched) {
+    if (busy_.size() > deepest_definitions) {
+      fail("E221", name.span, "definitions lean on each other too deeply", {}, "define names before their use");
+      return bad();
+    }
+    definition.progress = Progress::busy;
+    busy_.push_back(index);
+    const auto outer = std::exchange(highest_, {});
+    Scope scope = definition.scope;
+    Value value = elaborate(*definition.value, scope);
+    if (definition.kind != Definition::Kind::let) want_number(*definition.value, value);
+    finish_definition(index, std::move(value));
+    definition.highest = std::exchange(highest_, outer);
+    busy_.pop_back();
+    definition.progress = Progress::done;
+  }
+  highest_.insert(highest_.end(), definition.highest.begin(), definition.highest.end());
+  Value value = definition.result;
+  const bool variable = definition.kind == Definition::Kind::parameter || definition.kind == Definition::Kind::input;
+  if (variable && !value.bad) value.node = model_.graph.variable(definition.variable);
+  return value;
+}
+
+void Checker::finish_definition(std::size_t index, Value value) {
+  Definition& definition = definitions_[index];
+  const bool declared = definition.kind == Definition::Kind::parameter || definition.kind == Definition::Kind::input;
+  if (declared && value.measured.is_number()) value.measured = Measured::unknown();
+  if (declared && !value.bad) {
+    const auto set = options_.overrides.find(definition.name);
+    if (set != options_.overrides.end()) value.node = model_.graph.constant(set->second);
+    if (!only_parameters(value.node, definition.value->span, "the value of a parameter")) value = bad();
+  }
+  if (definition.kind == Definition::Kind::parameter) evaluation_order_.push_back(index);
+  definition.result = std::move(value);
+}
+
+Value Checker::constant_defined(std::size_t index, const ast::Name& name) {
+  Definition& definition = definitions_[index];
+  if (definition.kind != Definition::Kind::parameter && definition.kind != Definition::Kind::let) {
+    return not_constant(name.span, definition.name);
+  }
+  definition.structural = true;
+  if (definition.constant_progress == Progress::busy) return circular(index, name.span);
+  if (definition.constant_progress == Progress::untouched) {
+    if (busy_.size() > deepest_definitions) return circular(index, name.span);
+    definition.constant_progress = Progress::busy;
+    busy_.push_back(index);
+    Scope scope = definition.scope;
+    scope.constant = true;
+    Value value = elaborate(*definition.value, scope);
+    const auto set = options_.overrides.find(definition.name);
+    if (definition.kind == Definition::Kind::parameter && !value.bad) {
+      if (set != options_.overrides.end()) value.node = model_.graph.constant(set->second);
+      if (value.measured.is_number()) value.measured = Measured::unknown();
+    }
+    busy_.pop_back();
+    Definition& again = definitions_[index];
+    again.constant_result = std::move(value);
+    again.constant_progress = Progress::done;
+  }
+  return definitions_[index].constant_result;
+}
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,86 @@
+// continuo/model/check_views.cpp
+// Plots and drawings: expressions kept for those who show them.
+#include <fmt/format.h>
+
+#include <continuo/model/check_context.hpp>
+#include <continuo/model/check_families.hpp>
+
+namespace continuo::model::detail {
+
+namespace {
+
+Shape shape_of(ast::ShapeKind kind) {
+  switch (kind) {
+    case ast::ShapeKind::floor:
+      return Shape::floor;
+    case ast::ShapeKind::ball:
+      return Shape::ball;
+    case ast::ShapeKind::spring:
+      return Shape::spring;
+    case ast::ShapeKind::rod:
+      return Shape::rod;
+    case ast::ShapeKind::rope:
+      return Shape::rope;
+    case ast::ShapeKind::arrow:
+      return Shape::arrow;
+    case ast::ShapeKind::trail:
+      return Shape::trail;
+    case ast::ShapeKind::box:
+      return Shape::box;
+    case ast::ShapeKind::text:
+      return Shape::text;
+  }
+  return Shape::ball;
+}
+
+}  // namespace
+
+Series Checker::series(const ast::Expression& expression, Scope& scope) {
+  const Value value = number_of(expression, scope);
+  std::string label = quote(expression.span);
+  label = label.substr(1, label.size() - 2);
+  return {label, value.node, value.measured.is_known() ? to_text(value.measured.unit) : std::string()};
+}
+
+void Checker::make_plots() {
+  for (Placed<ast::Plot>& text : plots_) {
+    Plot plot{{}, {"t", model_.graph.variable(Layout::time), model_.time_unit}, text.span};
+    for (const ast::Expression& curve : text.text->curves) plot.curves.push_back(series(curve, text.scope));
+    if (text.text->against) plot.against = series(*text.text->against, text.scope);
+    model_.plots.push_back(std::move(plot));
+  }
+}
+
+DrawArgument Checker::draw_argument(const ast::Expression& expression, Scope& scope) {
+  DrawArgument argument;
+  if (const auto* text = std::get_if<ast::Text>(&expression.node)) {
+    argument.text = text->value;
+  } else if (const auto* list = std::get_if<ast::List>(&expression.node)) {
+    for (const ast::Expression& item : list->items) argument.numbers.push_back(number_of(item, scope).node);
+  } else {
+    argument.numbers.push_back(number_of(expression, scope).node);
+  }
+  return argument;
+}
+
+void Checker::make_drawings() {
+  for (Placed<ast::Draw>& draw : draws_) make_drawing(draw.text->items, draw.scope);
+}
+
+void Checker::make_drawing(const std::vector<ast::DrawItem>& items, Scope& scope) {
+  for (const ast::DrawItem& item : items) {
+    if (const auto* family = std::get_if<ast::DrawFamily>(&item.node)) {
+      for_each_index(family->index, family->range, scope, [&] { make_drawing(family->body, scope); });
+      continue;
+    }
+    const ast::Shape& text = std::get<ast::Shape>(item.node);
+    DrawItem made{shape_of(text.kind), {}, {}, item.span};
+    for (const ast::Expression& argument : text.arguments) made.arguments.push_back(draw_argument(argument, scope));
+    for (const ast::Attribute& attribute : text.attributes) {
+      made.attributes.push_back({attribute.name.text, draw_argument(attribute.value, scope)});
+    }
+    model_.drawing.push_back(std::move(made));
+  }
+}
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,69 @@
+// continuo/model/model.cpp
+#include <algorithm>
+
+#include <continuo/model/model.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+template <class List, class Name>
+std::size_t find_by(const List& list, Name member, std::string_view wanted) {
+  const auto found = std::ranges::find(list, wanted, member);
+  return found == list.end() ? npos : static_cast<std::size_t>(found - list.begin());
+}
+
+}  // namespace
+
+std::size_t find_state(const Model& model, std::string_view column) {
+  return find_by(model.states, &State::column, column);
+}
+std::size_t find_parameter(const Model& model, std::string_view name) {
+  return find_by(model.parameters, &Parameter::name, name);
+}
+std::size_t find_input(const Model& model, std::string_view name) {
+  return find_by(model.inputs, &Input::name, name);
+}
+std::size_t find_mode(const Model& model, std::string_view name) {
+  return find_by(model.modes, &Mode::name, name);
+}
+
+double evaluate(const Model& model, NodeId node, std::span<const double> variables) {
+  return evaluate(model.graph, node, variables, [&](std::uint32_t table, double x, bool slope) {
+    const Table& points = *model.tables[table].points;
+    return slope ? points.slope(x) : points.value(x);
+  });
+}
+
+std::vector<double> start_values(const Model& model, const Overrides& overrides, std::optional<double> from) {
+  std::vector<double> variables(model.layout.size, 0.0);
+  for (const std::size_t i : model.parameter_order) {
+    const Parameter& parameter = model.parameters[i];
+    const auto set = overrides.find(parameter.name);
+    variables[parameter.variable] =
+        set != overrides.end() ? set->second : evaluate(model, parameter.expression, variables);
+  }
+  for (const Input& input : model.inputs) variables[input.variable] = input.value;
+  for (const Unknown& unknown : model.unknowns) variables[unknown.variable] = evaluate(model, unknown.guess, variables);
+  variables[Layout::time] = from ? *from : model.run.from ? evaluate(model, model.run.from->node, variables) : 0.0;
+  for (const State& state : model.states) variables[state.variable] = evaluate(model, state.initial, variables);
+  return variables;
+}
+
+std::string variable_name(const Model& model, std::uint32_t variable) {
+  const Layout& layout = model.layout;
+  if (variable == Layout::time) return "t";
+  if (variable - layout.states < model.states.size()) return model.states[variable - layout.states].column;
+  for (const Parameter& parameter : model.parameters) {
+    if (parameter.variable == variable) return parameter.name;
+  }
+  for (const Input& input : model.inputs) {
+    if (input.variable == variable) return input.name;
+  }
+  for (const Unknown& unknown : model.unknowns) {
+    if (unknown.variable == variable) return unknown.name;
+  }
+  return "sample " + std::to_string(variable - layout.samples);
+}
+
+}  // namespace continuo::model
