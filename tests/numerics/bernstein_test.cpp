@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <continuo/numerics/bernstein.hpp>
+#include <continuo/numerics/root_bracketing.hpp>
+
+namespace continuo {
+namespace {
+
+template <class F>
+bernstein::Coefficients coefficients_of(F&& f) {
+  std::array<double, bernstein::count> value{};
+  for (std::size_t k = 0; k < bernstein::count; ++k) value[k] = f(bernstein::nodes[k]);
+  return bernstein::from_values(value);
+}
+
+std::vector<std::pair<double, double>> pieces(const bernstein::Coefficients& b) {
+  std::vector<std::pair<double, double>> found;
+  bernstein::isolate_sign_changes(b, [&](double left, double right) {
+    found.emplace_back(left, right);
+    return false;
+  });
+  return found;
+}
+
+TEST(Bernstein, CoefficientsOfAPolynomialOfDegreeEightGiveItBack) {
+  const auto b = coefficients_of([](double x) { return std::pow(x, 8); });
+  for (std::size_t j = 0; j < bernstein::degree; ++j) EXPECT_NEAR(b[j], 0, 1e-13);  // condition number about 500
+  EXPECT_EQ(b[8], 1);
+}
+
+TEST(Bernstein, EveryRootOfRandomPolynomialsHasAPieceOfItsOwn) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::vector<double> roots(1 + trial % 6);
+    for (double& root : roots) root = unit(random);
+    std::sort(roots.begin(), roots.end());
+    bool apart = true;
+    for (std::size_t i = 1; i < roots.size(); ++i) apart = apart && roots[i] - roots[i - 1] > 1e-3;
+    if (!apart) continue;
+    const auto found = pieces(coefficients_of([&](double x) {
+      double product = 1;
+      for (const double root : roots) product *= x - root;
+      return product;
+    }));
+    ASSERT_EQ(found.size(), roots.size());
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      EXPECT_LE(found[i].first, roots[i] + 1e-9);
+      EXPECT_GE(found[i].second, roots[i] - 1e-9);
+    }
+  }
+}
+
+TEST(Bernstein, ATouchIsNoChangeOfSign) {
+  EXPECT_TRUE(pieces(coefficients_of([](double x) { return (x - 0.4) * (x - 0.4) + 1e-13; })).empty());
+}
+
+TEST(Bernstein, TheInterpolationErrorSeesWhatNinePointsDoNotResolve) {
+  std::array<double, bernstein::count> rough{}, smooth{};
+  for (std::size_t k = 0; k < bernstein::count; ++k) {
+    rough[k] = std::sin(40 * bernstein::nodes[k]);
+    smooth[k] = std::pow(bernstein::nodes[k], 6);
+  }
+  EXPECT_GT(bernstein::interpolation_error(rough), 0.1);
+  EXPECT_LT(bernstein::interpolation_error(smooth), 1e-15);
+}
+
+TEST(RootBracketing, EndsWithNeighbouringNumbersOnBothSidesOfTheRoot) {
+  int evaluations = 0;
+  const auto root = enclose_root(
+      [&](double x) {
+        ++evaluations;
+        return x * x - 2;
+      },
+      1.0, 2.0, -1.0, 2.0);
+  EXPECT_EQ(root.far, std::nextafter(root.near, 2.0));
+  EXPECT_LE(root.near * root.near, 2);
+  EXPECT_GT(root.far * root.far, 2);
+  EXPECT_LT(evaluations, 20);
+}
+
+TEST(RootBracketing, AStepOfHeavisideTakesNoMoreThanThreeTimesTheBits) {
+  int evaluations = 0;
+  const auto root = enclose_root(
+      [&](double x) {
+        ++evaluations;
+        return x > 0.7 ? 1.0 : -1.0;
+      },
+      0.0, 1.0, -1.0, 1.0);
+  EXPECT_EQ(root.near, 0.7);
+  EXPECT_LT(evaluations, 3 * std::numeric_limits<double>::digits);
+}
+
+TEST(RootBracketing, ZeroBelongsToTheNearSideAndTimeMayRunBackwards) {
+  const auto root = enclose_root([](double x) { return 0.5 - x; }, 1.0, 0.0, -0.5, 0.5);
+  EXPECT_EQ(root.near, 0.5);
+  EXPECT_EQ(root.far, std::nextafter(0.5, 0.0));
+}
+
+}  // namespace
+}  // namespace continuo
