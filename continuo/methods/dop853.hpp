@@ -116,38 +116,6 @@ struct Dop853 : ExplicitRungeKutta<Dop853> {
   static constexpr int order = 8, error_order = 7, dense_order = 7, dense_degree = 7;
   static constexpr Tableau<12, 3, 7> tableau = dop853::with_dense();
 
-  /// Hairer's combination h |err5|^2 / sqrt(n (|err5|^2 + 0.01 |err3|^2)) of the two estimates (II.10, eq. 10.17): of
-  /// the size of h^8, and safe where one of the two vanishes by chance.
-  template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
-    using std::abs;
-    using std::sqrt;
-    using Real = Scalar<X>;
-    using Fifth = detail::Row<FifthOrderError, 12>;
-    using Third = detail::Row<ThirdOrderError, 12>;
-    const auto fifth = detail::pointers<Fifth>(work.k), third = detail::pointers<Third>(work.k);
-    Real sum5(0), sum3(0);
-    detail::for_each_component(x, [&](std::size_t i) {
-      const Real& end = x_new.data()[i];
-      const Real inverse = Real(1) / tolerance.scale(i, x.data()[i], end);
-      const Real ratio5 = inverse * detail::row_sum<Fifth, Real>(fifth, i);
-      const Real ratio3 = inverse * detail::row_sum<Third, Real>(third, i);
-      sum5 += ratio5 * ratio5 + (end - end);  // not a number where x_new is not finite
-      sum3 += ratio3 * ratio3;
-    });
-    // Both sums are zero at rest; the smallest positive number keeps 0 / 0 out and changes nothing else.
-    const Real both = sum5 + Real(0.01) * sum3 + Real(1e-37);
-    return abs(h) * sum5 / sqrt(both * Real(static_cast<double>(dimension(x))));
-  }
-
-  template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
-    using std::abs;
-    using Fifth = detail::Row<FifthOrderError, 12>;
-    return abs(h * detail::row_sum<Fifth, Scalar<X>>(detail::pointers<Fifth>(work.k), i));
-  }
-
  private:
   struct FifthOrderError {
     constexpr const Coefficient& operator()(std::size_t j) const { return dop853::error5[j]; }
@@ -155,6 +123,38 @@ struct Dop853 : ExplicitRungeKutta<Dop853> {
   struct ThirdOrderError {
     constexpr Coefficient operator()(std::size_t j) const { return tableau.b[j] - dop853::third_order[j]; }
   };
+  using Fifth = detail::Row<FifthOrderError, 12>;
+  using Third = detail::Row<ThirdOrderError, 12>;
+
+ public:
+  /// Hairer's combination h |err5|^2 / sqrt(n (|err5|^2 + 0.01 |err3|^2)) of the two estimates (II.10, eq. 10.17): of
+  /// the size of h^8, and safe where one of the two vanishes by chance.
+  template <State X>
+  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                              const Tolerance<Scalar<X>>& tolerance) {
+    using std::abs;
+    using std::sqrt;
+    using Unit = detail::Unit<X>;
+    const auto fifth = detail::stages_of<Fifth, X>(work.k);
+    const auto third = detail::stages_of<Third, X>(work.k);
+    Unit sum5{}, sum3{};
+    detail::for_each_unit(x, [&](std::size_t i) __attribute__((always_inline)) {
+      const Unit end = detail::load<X>(x_new.data(), i), scale = detail::error_scale<X>(tolerance, i, x, x_new);
+      const Unit ratio5 = detail::row_sum<Fifth, X>(fifth, i) / scale;
+      const Unit ratio3 = detail::row_sum<Third, X>(third, i) / scale;
+      sum5 += ratio5 * ratio5 + (end - end);  // not a number where x_new is not finite
+      sum3 += ratio3 * ratio3;
+    });
+    // Both sums are zero at rest: the 1e-37 keeps 0 / 0 out, and is too small to be seen beside an error that matters.
+    const Scalar<X> square5 = detail::total<X>(sum5), square3 = detail::total<X>(sum3);
+    const Scalar<X> both = square5 + Scalar<X>(0.01) * square3 + Scalar<X>(1e-37);
+    return abs(h) * square5 / sqrt(both * Scalar<X>(static_cast<double>(dimension(x))));
+  }
+
+  template <State X>
+  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
+    return detail::size_of_sum<Fifth, X>(work.k, h, i);
+  }
 };
 
 }  // namespace continuo

@@ -46,8 +46,8 @@ struct ExplicitRungeKutta {
   /// f at the stages, at the end of the step (the last stage where that is the same) and at the extra stages.
   template <State X>
   struct Workspace {
-    std::array<X, ExplicitRungeKutta::slots()> k;
-    X argument;                // of f, where X is not kept in registers
+    std::array<detail::Kept<X>, ExplicitRungeKutta::slots()> k;
+    X argument;                // of f, where X has no fixed size
     bool start_fresh = false;  // k[0] is f at the start of the next step
     bool end_fresh = false;    // k[end_slot()] is f at the end of the last step
   };
@@ -55,7 +55,7 @@ struct ExplicitRungeKutta {
   template <State X>
   static Workspace<X> workspace(const X& x) {
     return [&]<std::size_t... j>(std::index_sequence<j...>) {
-      return Workspace<X>{{((void)j, x)...}, x};
+      return Workspace<X>{{((void)j, detail::keep(x))...}, x};
     }(std::make_index_sequence<slots()>());
   }
 
@@ -67,15 +67,15 @@ struct ExplicitRungeKutta {
     constexpr std::size_t inner = tableau.stages - (ends_with_f ? 1 : 0);
     int evaluations = static_cast<int>(tableau.stages) - 1;
     if (made_jump || !work.start_fresh) {
-      evaluate(system, t, x, work.k[0]);
+      detail::evaluate_kept<X>(system, t, x, work.k[0]);
       work.start_fresh = true;
       ++evaluations;
     }
-    [&]<std::size_t... s>(std::index_sequence<s...>) {
+    [&]<std::size_t... s>(std::index_sequence<s...>) __attribute__((always_inline)) {
       (stage<s + 1>(system, t, x, h, work), ...);
     }(std::make_index_sequence<inner - 1>());
     finish(x, h, work, x_new);
-    if constexpr (ends_with_f) evaluate(system, t + h, x_new, work.k[end_slot()]);
+    if constexpr (ends_with_f) detail::evaluate_kept<X>(system, t + h, x_new, work.k[end_slot()]);
     work.end_fresh = ends_with_f;
     return evaluations;
   }
@@ -85,30 +85,25 @@ struct ExplicitRungeKutta {
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
-    using Real = Scalar<X>;
-    const auto k = detail::pointers<detail::Row<ErrorWeight, Derived::tableau.stages>>(work.k);
-    Real sum(0);
-    detail::for_each_component(x, [&](std::size_t i) {
-      const Real& end = x_new.data()[i];
+    using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
+    const auto k = detail::stages_of<Error, X>(work.k);
+    detail::Unit<X> sum{};
+    detail::for_each_unit(x, [&](std::size_t i) __attribute__((always_inline)) {
+      const detail::Unit<X> end = detail::load<X>(x_new.data(), i);
       sum += end - end;  // 0, if it is finite
       if constexpr (Derived::error_order > 0) {
-        const Real ratio = h * detail::row_sum<detail::Row<ErrorWeight, Derived::tableau.stages>, Real>(k, i) /
-                           tolerance.scale(i, x.data()[i], end);
+        const detail::Unit<X> ratio =
+            h * detail::row_sum<Error, X>(k, i) / detail::error_scale<X>(tolerance, i, x, x_new);
         sum += ratio * ratio;
       }
     });
-    return sqrt(sum / Real(static_cast<double>(dimension(x))));
+    return sqrt(detail::total<X>(sum) / Scalar<X>(static_cast<double>(dimension(x))));
   }
 
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
-    using std::abs;
-    if constexpr (Derived::error_order == 0) {
-      return Scalar<X>(0);
-    } else {
-      return abs(h * detail::row_sum<detail::Row<ErrorWeight, Derived::tableau.stages>, Scalar<X>>(
-                         detail::pointers<detail::Row<ErrorWeight, Derived::tableau.stages>>(work.k), i));
-    }
+    using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
+    return detail::size_of_sum<Error, X>(work.k, h, i);
   }
 
   /// Between `step` and `accept`.
@@ -119,7 +114,7 @@ struct ExplicitRungeKutta {
     static_assert(Degree == Derived::dense_degree && Degree == static_cast<int>(tableau.degree));
     int evaluations = static_cast<int>(tableau.extra);
     if (!work.end_fresh) {
-      evaluate(system, t + h, x_new, work.k[end_slot()]);
+      detail::evaluate_kept<X>(system, t + h, x_new, work.k[end_slot()]);
       work.end_fresh = true;
       ++evaluations;
     }
@@ -141,8 +136,8 @@ struct ExplicitRungeKutta {
 
   /// f at the start of the last step: after `step`, before `accept`.
   template <State X>
-  static const X& derivative(const Workspace<X>& work) {
-    return work.k[0];
+  static decltype(auto) derivative(const Workspace<X>& work) {
+    return detail::unpack<X>(work.k[0]);
   }
 
  private:
@@ -183,35 +178,37 @@ struct ExplicitRungeKutta {
   }
 
   template <std::size_t s, class System, State X>
-  static void stage(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+  [[gnu::always_inline]] static void stage(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                           Workspace<X>& work) {
     using Weights = detail::Row<StageWeight<s>, s>;
     evaluate_at<Weights>(system, node<StageNode<s>>(t, h), x, h, work, work.k[s]);
   }
   template <std::size_t e, class System, State X>
-  static void extra_stage(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+  [[gnu::always_inline]] static void extra_stage(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                                 Workspace<X>& work) {
     using Weights = detail::Row<ExtraWeight<e>, slot(Derived::tableau.end + 1) + e>;
     evaluate_at<Weights>(system, node<ExtraNode<e>>(t, h), x, h, work, work.k[slot(Derived::tableau.end + 1) + e]);
   }
   template <class Weights, class System, State X>
-  static void evaluate_at(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
-                          X& derivative) {
+  [[gnu::always_inline]] static void evaluate_at(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                                 Workspace<X>& work, detail::Kept<X>& derivative) {
     if constexpr (detail::FixedSize<X>) {
-      X argument;
+      X argument{};
       detail::advance<Weights>(x, h, work.k, argument);
-      evaluate(system, t, argument, derivative);
+      detail::evaluate_kept<X>(system, t, argument, derivative);
     } else {
       detail::advance<Weights>(x, h, work.k, work.argument);
-      evaluate(system, t, work.argument, derivative);
+      detail::evaluate_kept<X>(system, t, work.argument, derivative);
     }
   }
 
   /// x_new, where the sum is complete before it meets x: one rounding at the size of x.
   template <State X>
-  static void finish(const X& x, const Scalar<X>& h, const Workspace<X>& work, X& x_new) {
+  [[gnu::always_inline]] static void finish(const X& x, const Scalar<X>& h, const Workspace<X>& work, X& x_new) {
     using Weights = detail::Row<EndWeight, Derived::tableau.stages>;
-    const auto k = detail::pointers<Weights>(work.k);
-    detail::for_each_component(x, [&, from = x.data(), to = x_new.data()](std::size_t i) {
-      to[i] = from[i] + h * detail::row_sum<Weights, Scalar<X>>(k, i);
+    const auto k = detail::stages_of<Weights, X>(work.k);
+    detail::for_each_unit(x, [&, from = x.data(), to = x_new.data()](std::size_t i) __attribute__((always_inline)) {
+      detail::store<X>(detail::load<X>(from, i) + h * detail::row_sum<Weights, X>(k, i), i, to);
     });
   }
 
@@ -219,23 +216,23 @@ struct ExplicitRungeKutta {
   template <State X, int Degree>
   static void set_coefficients(const X& x, const Scalar<X>& h, const X& x_new, const Workspace<X>& work,
                                Interpolant<X, Degree>& interpolant) {
-    using Real = Scalar<X>;
-    detail::for_each_component(x, [&](std::size_t i) {
-      const auto cubic = detail::cubic_hermite<Real>(x.data()[i], x_new.data()[i], h * work.k[0].data()[i],
-                                                     h * work.k[end_slot()].data()[i]);
-      std::array<Real, static_cast<std::size_t>(Degree) + 1> c;
-      c.fill(Real(0));
-      for (std::size_t j = 0; j < cubic.size(); ++j) c[j] = cubic[j];
+    using Unit = detail::Unit<X>;
+    const Unit* const first = detail::units_of<X>(work.k[0]);
+    const Unit* const last = detail::units_of<X>(work.k[end_slot()]);
+    detail::for_each_unit(x, [&](std::size_t i) __attribute__((always_inline)) {
+      std::array<Unit, static_cast<std::size_t>(Degree) + 1> c{};
+      detail::set_cubic_hermite<Scalar<X>>(detail::load<X>(x.data(), i), detail::load<X>(x_new.data(), i),
+                                           Unit(h * first[i]), Unit(h * last[i]), c);
       [&]<std::size_t... n>(std::index_sequence<n...>) {
-        (add_dense_term<n>(h, work, i, c), ...);
+        (add_dense_term<n, X>(h, work, i, c), ...);
       }(std::make_index_sequence<Derived::tableau.dense_terms>());
-      for (std::size_t j = 0; j < c.size(); ++j) interpolant.c[j].data()[i] = c[j];
+      for (std::size_t j = 0; j < c.size(); ++j) detail::store<X>(c[j], i, interpolant.c[j].data());
     });
   }
   template <std::size_t n, State X, class Powers>
   static void add_dense_term(const Scalar<X>& h, const Workspace<X>& work, std::size_t i, Powers& c) {
     using Weights = detail::Row<DenseWeight<n>, slots()>;
-    const Scalar<X> term = h * detail::row_sum<Weights, Scalar<X>>(detail::pointers<Weights>(work.k), i);
+    const detail::Unit<X> term = h * detail::row_sum<Weights, X>(detail::stages_of<Weights, X>(work.k), i);
     c[n + 2] += term;
     c[n + 3] -= term + term;
     c[n + 4] += term;

@@ -2,12 +2,12 @@
 // What the methods for q'' = a(t, q, v) share: f at both ends of the step, a cubic Hermite between, no error estimate.
 // They read the pairs of position q and velocity v from the system; a component in no pair is a first-order one.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <utility>
 
 #include <continuo/methods/hermite.hpp>
 #include <continuo/methods/method.hpp>
-#include <continuo/methods/weighted_sum.hpp>
 #include <continuo/system/second_order.hpp>
 
 namespace continuo {
@@ -60,11 +60,12 @@ struct SecondOrderMethod {
     const int evaluations = work.end_fresh ? 0 : 1;
     if (!work.end_fresh) evaluate(system, t + h, x_new, work.end);
     work.end_fresh = true;
-    detail::for_each_component(x, [&](std::size_t i) {
-      const auto c = detail::cubic_hermite<Scalar<X>>(x.data()[i], x_new.data()[i], h * work.start.data()[i],
-                                                      h * work.end.data()[i]);
+    for (std::size_t i = 0; i < dimension(x); ++i) {
+      std::array<Scalar<X>, 4> c;
+      detail::set_cubic_hermite<Scalar<X>>(x.data()[i], x_new.data()[i], Scalar<X>(h * work.start.data()[i]),
+                                           Scalar<X>(h * work.end.data()[i]), c);
       for (std::size_t j = 0; j < c.size(); ++j) interpolant.c[j].data()[i] = c[j];
-    });
+    }
     return evaluations;
   }
 
@@ -85,7 +86,7 @@ struct SecondOrderMethod {
   /// x_new = x + h slope, component by component.
   template <State X>
   static void euler(const X& x, const Scalar<X>& h, const X& slope, X& x_new) {
-    detail::for_each_component(x, [&](std::size_t i) { x_new.data()[i] = x.data()[i] + h * slope.data()[i]; });
+    for (std::size_t i = 0; i < dimension(x); ++i) x_new.data()[i] = x.data()[i] + h * slope.data()[i];
   }
   /// body(position, velocity) for each pair of the system.
   template <class System, State X, class Body>
@@ -104,8 +105,8 @@ struct SecondOrderMethod {
   static void correct(const System& system, const X& x, const Scalar<X>& half, EndDerivatives<X>& work, X& x_new) {
     for_each_pair(system, x,
                   [&](std::size_t position, std::size_t) { work.end.data()[position] = work.start.data()[position]; });
-    detail::for_each_component(
-        x, [&](std::size_t i) { x_new.data()[i] += half * (work.end.data()[i] - work.start.data()[i]); });
+    for (std::size_t i = 0; i < dimension(x); ++i)
+      x_new.data()[i] += half * (work.end.data()[i] - work.start.data()[i]);
     for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
       work.end.data()[position] = x_new.data()[velocity];
     });

@@ -1,37 +1,17 @@
 // continuo/methods/weighted_sum.hpp
-// Sums of stages with weights known at compile time: zeros are skipped, the terms are written out by the compiler, and
-// the loop over the components is unrolled for small fixed sizes and left to the vectoriser for the others.
+// Sums of stages with weights known at compile time: zeros are skipped and the terms are written out by the compiler.
 #pragma once
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
-#include <tuple>
 #include <utility>
 
+#include <continuo/methods/packs.hpp>
 #include <continuo/numerics/coefficient.hpp>
 #include <continuo/numerics/state.hpp>
 
 namespace continuo::detail {
-
-/// The number of components is part of the type.
-template <class X>
-concept FixedSize = State<X> && requires { std::tuple_size<X>::value; };
-
-/// body(i) for every component. The states that body reads and writes must not overlap.
-template <State X, class Body>
-inline void for_each_component(const X& x, Body&& body) {
-  if constexpr (FixedSize<X> && requires { requires std::tuple_size<X>::value <= 8; }) {
-    [&]<std::size_t... i>(std::index_sequence<i...>) {
-      (body(i), ...);
-    }(std::make_index_sequence<std::tuple_size<X>::value>());
-  } else {
-    const std::size_t size = dimension(x);
-#if !defined(__clang__)  // which checks for overlap once, before the loop, and has no such word
-#pragma GCC ivdep
-#endif
-    for (std::size_t i = 0; i < size; ++i) body(i);
-  }
-}
 
 /// A row of coefficients: `Source` is a captureless function object, j -> Coefficient, for j < Size.
 template <class Source, std::size_t Size>
@@ -65,45 +45,54 @@ struct Row {
   }
 };
 
-/// Pointers to the stages of a row, taken once before the loop over the components.
-template <class R, class Stages>
-inline auto pointers(const Stages& k) {
-  using Real = typename Stages::value_type::value_type;
-  return [&]<std::size_t... n>(std::index_sequence<n...>) {
-    return std::array<const Real*, R::count>{k[R::place[n]].data()...};
+/// Pointers to the units of the stages of a row, taken once before the loop over the units.
+template <class R, State X>
+using StagePointers = std::array<const Unit<X>*, R::count>;
+template <class R, State X, std::size_t Slots>
+[[gnu::always_inline]] inline StagePointers<R, X> stages_of(const std::array<Kept<X>, Slots>& k) {
+  return [&]<std::size_t... n>(std::index_sequence<n...>) __attribute__((always_inline)) {
+    return StagePointers<R, X>{units_of<X>(k[R::place[n]])...};
   }(std::make_index_sequence<R::count>());
 }
 
-/// Component i of the sum of the terms First..Last-1 of row R.
-template <class R, std::size_t First, std::size_t Last, class Real>
-inline Real partial_sum(const std::array<const Real*, R::count>& k, std::size_t i) {
-  return [&]<std::size_t... n>(std::index_sequence<n...>) {
-    return (... + (R::template weight<Real, First + n>() * k[First + n][i]));
-  }(std::make_index_sequence<Last - First>());
+/// Unit i of the sum of the first Count terms of row R.
+template <class R, State X, std::size_t Count = R::count>
+[[gnu::always_inline]] inline Unit<X> row_sum(const StagePointers<R, X>& k, std::size_t i) {
+  if constexpr (Count == 0) {
+    return Unit<X>{};
+  } else {
+    return [&]<std::size_t... n>(std::index_sequence<n...>) __attribute__((always_inline)) {
+      return (... + (R::template weight<Scalar<X>, n>() * k[n][i]));
+    }(std::make_index_sequence<Count>());
+  }
 }
 
-/// Component i of the sum of row R.
-template <class R, class Real>
-inline Real row_sum(const std::array<const Real*, R::count>& k, std::size_t i) {
-  if constexpr (R::count == 0) {
-    return Real(0);
-  } else {
-    return partial_sum<R, 0, R::count, Real>(k, i);
-  }
+/// |h sum_j row_j k_j| of one component.
+template <class R, State X, std::size_t Slots>
+inline Scalar<X> size_of_sum(const std::array<Kept<X>, Slots>& k, const Scalar<X>& h, std::size_t i) {
+  using std::abs;
+  const Unit<X> sum = row_sum<R, X>(stages_of<R, X>(k), i / unit_width<X>);
+  return abs(h * component<X>(sum, i % unit_width<X>));
 }
 
 /// y = x + h sum_j row_j k_j. The newest stage is added last and by itself: the rest of the sum does not have to wait
 /// for it, so the way from one stage to the next is a product and a sum.
-template <class R, State X, class Stages>
-inline void advance(const X& x, const Scalar<X>& h, const Stages& k, X& y) {
-  using Real = Scalar<X>;
-  const auto stage = pointers<R>(k);
-  const Real newest = h * R::template weight<Real, R::count - 1>();
-  for_each_component(x, [&, from = x.data(), to = y.data()](std::size_t i) {
+template <class R, State X, std::size_t Slots>
+[[gnu::always_inline]] inline void advance(const X& x, const Scalar<X>& h, const std::array<Kept<X>, Slots>& k, X& y) {
+  const auto stage = stages_of<R, X>(k);
+  const Scalar<X> newest = h * R::template weight<Scalar<X>, R::count - 1>();
+  for_each_unit(x, [&, from = x.data(), to = y.data()](std::size_t i) __attribute__((always_inline)) {
+    const Unit<X> start = load<X>(from, i), last = newest * stage[R::count - 1][i];
+    Unit<X> sum;
     if constexpr (R::count == 1) {
-      to[i] = from[i] + newest * stage[0][i];
+      sum = start + last;
     } else {
-      to[i] = (from[i] + h * partial_sum<R, 0, R::count - 1, Real>(stage, i)) + newest * stage[R::count - 1][i];
+      sum = (start + h * row_sum<R, X, R::count - 1>(stage, i)) + last;
+    }
+    if constexpr (Packed<X>) {
+      scatter<X>(sum, i, to);
+    } else {
+      to[i] = sum;
     }
   });
 }

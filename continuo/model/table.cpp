@@ -12,7 +12,7 @@
 
 namespace continuo::model {
 
-Table::Table(std::vector<double> x, std::vector<double> y, Between between) : x_(std::move(x)) {
+Table::Table(std::vector<double> x, std::vector<double> y, Between between) : between_(between), x_(std::move(x)) {
   pieces_.reserve(x_.size() + 1);
   pieces_.push_back({x_.front(), y.front(), 0});
   for (std::size_t i = 0; i < x_.size(); ++i) {

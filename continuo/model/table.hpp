@@ -39,8 +39,10 @@ class Table {
   const Piece& at(double x) const;
 
   std::span<const double> x() const { return x_; }
+  Between between() const { return between_; }
 
  private:
+  Between between_;
   std::vector<double> x_;
   std::vector<Piece> pieces_;  // before the first point, then from each point on
 };

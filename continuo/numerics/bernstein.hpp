@@ -19,8 +19,8 @@ using Coefficients = std::array<double, count>;
 namespace detail {
 
 // cos(k pi / 8)
-inline constexpr std::array<double, 5> cosine{1, 0.92387953251128675613, 0.70710678118654752440,
-                                              0.38268343236508977173, 0};
+inline constexpr std::array<double, 5> cosine{1, 0.92387953251128675613, 0.70710678118654752440, 0.38268343236508977173,
+                                              0};
 
 constexpr double lobatto(std::size_t k) {
   return k == 0 ? 0.0 : k == degree ? 1.0 : k <= 4 ? (1 - cosine[k]) / 2 : (1 + cosine[degree - k]) / 2;
@@ -114,13 +114,13 @@ inline int sign_changes(const Coefficients& b) {
   return changes;
 }
 
-/// The coefficients on the left half and on the right half.
-inline std::array<Coefficients, 2> split(Coefficients b) {
+/// The coefficients on the two parts of the interval, cut at `part`.
+inline std::array<Coefficients, 2> split(Coefficients b, double part) {
   Coefficients left{}, right{};
   for (std::size_t level = 0; level < count; ++level) {
     left[level] = b.front();
     right[degree - level] = b[degree - level];
-    for (std::size_t i = 0; i + level < degree; ++i) b[i] = (b[i] + b[i + 1]) / 2;
+    for (std::size_t i = 0; i + level < degree; ++i) b[i] += part * (b[i + 1] - b[i]);
   }
   return {left, right};
 }
@@ -131,15 +131,17 @@ template <class Visit>
 bool isolate_sign_changes(const Coefficients& b, Visit&& visit, double from = 0, double width = 1) {
   const int changes = sign_changes(b);
   if (changes == 0) return false;
-  const bool ends_differ = b.front() * b.back() < 0;
+  const bool ends_differ = (b.front() > 0 && b.back() < 0) || (b.front() < 0 && b.back() > 0);
   if (changes == 1 && ends_differ) return visit(from, from + width);
   constexpr double closest = 1.0 / (1LL << 40);
   if (width < closest) return ends_differ && visit(from, from + width);
-  const auto [left, right] = split(b);
-  // A root that lies exactly on the cut has no piece of its own: take both halves for one.
-  if (right.front() == 0 && sign_changes(left) == 0 && sign_changes(right) == 0) return visit(from, from + width);
-  return isolate_sign_changes(left, visit, from, width / 2) ||
-         isolate_sign_changes(right, visit, from + width / 2, width / 2);
+  // Roots like to lie at round parts of a step; a cut there would belong to neither side.
+  double part = 0.4871;
+  auto pieces = split(b, part);
+  if (pieces[1].front() == 0) pieces = split(b, part = 0.5193);
+  const double middle = from + part * width;
+  return isolate_sign_changes(pieces[0], visit, from, part * width) ||
+         isolate_sign_changes(pieces[1], visit, middle, from + width - middle);
 }
 
 }  // namespace continuo::bernstein

@@ -6,7 +6,8 @@
 
 namespace continuo {
 
-/// The enclosure of a change of sign: f has its first sign at `near` and the other at `far`; far >= near or far <= near.
+/// The enclosure of a change of sign: f has its first sign at `near` and the other at `far`; far >= near or far <=
+/// near.
 template <class Real>
 struct Bracket {
   Real near, far;

@@ -46,18 +46,20 @@ struct Event {
   Guard<X> guard{};  // empty: the event is scheduled
   Direction direction = Direction::crosses;
   Action<X> action{};
-  std::vector<Scalar<X>> times{};     // scheduled, in ascending order
-  Scalar<X> period{}, from{};         // scheduled at from, from + period, ... where period > 0
-  std::size_t stop_after = 0;         // the run stops at this many firings; 0: never
+  std::vector<Scalar<X>> times{};  // scheduled, in ascending order
+  Scalar<X> period{}, from{};      // scheduled at from, from + period, ... where period > 0
+  std::size_t stop_after = 0;      // the run stops at this many firings; 0: never
 };
 
 template <State X>
 Event<X> falls(std::string name, Guard<X> guard, Action<X> action = {}) {
-  return {.name = std::move(name), .guard = std::move(guard), .direction = Direction::falls, .action = std::move(action)};
+  return {
+      .name = std::move(name), .guard = std::move(guard), .direction = Direction::falls, .action = std::move(action)};
 }
 template <State X>
 Event<X> rises(std::string name, Guard<X> guard, Action<X> action = {}) {
-  return {.name = std::move(name), .guard = std::move(guard), .direction = Direction::rises, .action = std::move(action)};
+  return {
+      .name = std::move(name), .guard = std::move(guard), .direction = Direction::rises, .action = std::move(action)};
 }
 template <State X>
 Event<X> crosses(std::string name, Guard<X> guard, Action<X> action = {}) {

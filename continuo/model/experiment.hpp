@@ -1,0 +1,62 @@
+// continuo/model/experiment.hpp
+// What is asked of a run: the model's `run` statement, item by item overridden by a caller.
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/model/diagnostic.hpp>
+#include <continuo/model/model.hpp>
+
+namespace continuo::model {
+
+/// What stands here replaces what the model says. Numbers are in the model's units.
+struct Experiment {
+  std::optional<std::string> method{};
+  std::optional<double> rtol{};  // takes the place of a fixed step
+  std::optional<double> step{};  // takes the place of a tolerance
+  std::vector<double> atol{};    // empty, one, or one per state
+  std::optional<double> from{}, to{};
+  std::optional<double> output{};  // a row every so much time
+  bool output_steps = false;       // a row at every step
+  Overrides parameters{};
+  double max_step = std::numeric_limits<double>::infinity();
+  std::size_t max_steps = 10'000'000;
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double t)> progress{};
+  bool keep_rows = true;  // false: only the first and the last state, for sweeps
+};
+
+/// The experiment as it will run: nothing is left open.
+struct Plan {
+  std::string method;
+  double rtol = 0;
+  std::vector<double> atol;
+  double step = 0;  // > 0: fixed, and rtol says nothing
+  double from = 0, to = 0;
+  OutputPlan::Kind output = OutputPlan::Kind::steps;
+  double interval = 0;            // of Kind::every
+  int per_decade = 0;             // of Kind::logarithmic,
+  double first = 0;               // and its first time
+  std::vector<double> variables;  // the register file at the start
+};
+
+/// The plan, or why there is none: E33x.
+std::optional<Plan> plan(const Model& model, const Experiment& experiment, std::vector<Diagnostic>& problems);
+
+/// The times at which rows are wanted, one after the other; infinity when there are no more.
+class OutputTimes {
+ public:
+  explicit OutputTimes(const Plan& plan) : plan_(plan) {}
+  double operator[](std::size_t k) const;
+
+ private:
+  Plan plan_;
+};
+
+}  // namespace continuo::model

@@ -1,0 +1,78 @@
+// continuo/model/model_events.hpp
+// A model's `when`, `at`, `every` and `initially`, and the steps of its inputs, as the source of events that solve/
+// asks for. Actions read the state from before the event and take effect together, a change of mode too.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <continuo/model/model_system.hpp>
+#include <continuo/solve/event.hpp>
+
+namespace continuo::model {
+
+/// A `mark "text"` that was reached, or the text of the `stop` that ended the run.
+struct Marked {
+  double t;
+  std::string text;
+};
+
+class ModelEvents {
+ public:
+  using X = ModelSystem::X;
+
+  /// Times are those of a run that begins at `from` with these variables.
+  ModelEvents(const ModelProgram& program, std::span<const double> variables, double from);
+
+  std::size_t size() const { return events_.size(); }
+  std::string_view name(std::size_t i) const { return events_[i].name; }
+  continuo::Direction direction(std::size_t i) const { return events_[i].direction; }
+  bool is_guard(std::size_t i) const { return events_[i].kind == Kind::guard; }
+  bool active(const ModelSystem& system, std::size_t i) const {
+    return !events_[i].in_one_mode || events_[i].mode == system.mode();
+  }
+  double next_time(std::size_t i, double t, bool inclusive) const;
+  void guards(ModelSystem& system, double t, const X& x, std::span<double> values);
+  EventResponse fire(ModelSystem& system, std::span<const std::size_t> fired, double t, const X& before, X& x);
+
+  /// The author knows of it; steps of inputs are nobody's event.
+  bool is_declared(std::size_t i) const { return events_[i].kind != Kind::input; }
+  std::span<const Marked> marks() const { return marks_; }
+  const std::string& stop_text() const { return stop_text_; }
+
+ private:
+  enum class Kind { guard, scheduled, input };
+  struct Entry {
+    Kind kind;
+    std::size_t index;  // into Model::events, Model::schedule, or the step inputs
+    std::string name;
+    continuo::Direction direction = continuo::Direction::crosses;
+    bool in_one_mode = false;
+    std::size_t mode = 0;
+    std::vector<double> times{};         // of scheduled ones, ascending
+    double period = 0, period_from = 0;  // `every`
+  };
+  struct Effect {
+    bool stop = false;
+    std::size_t mode;
+  };
+
+  Entry entry_of(const When& when, std::size_t index) const;
+  Entry entry_of(const ModelProgram& program, const Scheduled& scheduled, std::size_t index,
+                 std::span<const double> variables, double from) const;
+  void perform(const std::vector<ProgramAction>& actions, std::span<const double> values, double t, X& x,
+               Effect& effect);
+
+  std::vector<Entry> events_;
+  std::vector<double> guard_values_;      // by Model::events
+  std::vector<std::size_t> guard_place_;  // where in events_ each of Model::events stands
+  std::vector<std::size_t> stop_counts_;
+  std::vector<Marked> marks_;
+  std::string stop_text_;
+};
+
+static_assert(EventSource<ModelEvents, ModelSystem, ModelSystem::X>);
+
+}  // namespace continuo::model

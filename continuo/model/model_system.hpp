@@ -1,0 +1,78 @@
+// continuo/model/model_system.hpp
+// A model as a System for states of run-time size: what `solve` integrates. It knows its mode and the present values
+// of parameters and inputs; a copy is a checkpoint.
+//
+//   ModelSystem system(program, start_values(model));
+//   system(t, x, dxdt);
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <continuo/model/evaluation.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/system/system.hpp>
+
+namespace continuo::model {
+
+class ModelSystem {
+ public:
+  using X = std::vector<double>;
+
+  /// `variables` is a whole register file as `start_values` gives it; the run begins in the model's start mode.
+  ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<const double> variables);
+
+  void operator()(double t, const X& x, X& dxdt) { derivatives_[mode_](t, x, dxdt); }
+
+  std::size_t mode() const { return mode_; }
+  void go(std::size_t mode) { mode_ = mode; }
+  /// A parameter or an input.
+  void set(std::uint32_t variable, double value);
+
+  /// The guards that are active in the present mode; values[i] for Model::events[i], the others are left alone.
+  void guards(double t, const X& x, std::span<double> values);
+  /// The expressions of the block of Model::events[i] or Model::schedule[i].
+  std::vector<double> event_expressions(std::size_t i, double t, const X& x) { return event_blocks_[i](t, x); }
+  std::vector<double> schedule_expressions(std::size_t i, double t, const X& x) { return schedule_blocks_[i](t, x); }
+
+  const ModelProgram& program() const { return *program_; }
+  const Model& model() const { return program_->model; }
+
+  // What solve and the methods ask of a System.
+  std::string_view component_name(std::size_t i) const { return model().states[i].column; }
+  std::size_t pair_count(std::size_t) const { return model().pairs.size(); }
+  PositionVelocity pair(std::size_t i, std::size_t) const { return model().pairs[i]; }
+  bool ignores_velocity(const X&) const { return !model().accelerations_depend_on_velocities; }
+
+ private:
+  template <class Visit>
+  void for_each(Visit&& visit);
+
+  std::shared_ptr<const ModelProgram> program_;
+  std::size_t mode_;
+  std::vector<Evaluation> derivatives_, guards_, event_blocks_, schedule_blocks_;
+  std::vector<double> guard_values_;
+};
+
+/// df/dx of one mode, exact, with its sparsity: the seat of the implicit methods.
+class ModelJacobian {
+ public:
+  ModelJacobian(const ModelProgram& program, std::size_t mode, std::span<const double> variables);
+
+  /// d f_i / d x_j, row by row.
+  void operator()(double t, std::span<const double> x, std::span<double> rows);
+  /// The entries that are not zero everywhere.
+  struct Place {
+    std::uint32_t row, column;
+  };
+  std::span<const Place> pattern() const { return pattern_; }
+
+ private:
+  std::vector<Place> pattern_;
+  Evaluation entries_;
+  std::vector<double> values_;
+};
+
+}  // namespace continuo::model

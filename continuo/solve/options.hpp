@@ -1,0 +1,58 @@
+// continuo/solve/options.hpp
+// What a run may be told, each with a good default: solve(f, x0, {0, 10}, Tsitouras5{}, {.rtol = 1e-9}).
+#pragma once
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/solve/controller.hpp>
+#include <continuo/solve/event.hpp>
+
+namespace continuo {
+
+/// From `from` to `to`, which may be the smaller one: then time runs backwards.
+template <class Real>
+struct Interval {
+  Real from, to;
+};
+
+/// What to keep.
+template <State X>
+struct Save {
+  using Real = Scalar<X>;
+  enum class Kind { steps, times, grid, dense, end };
+  Kind kind = Kind::steps;
+  std::vector<Real> times{};                       // Kind::times, in the direction of time
+  Real spacing{};                                  // Kind::grid: from, from + spacing, ...
+  std::function<void(Real, const X&)> callback{};  // sees every saved state; with it nothing is stored
+
+  static Save every_step() { return {}; }
+  static Save at(std::vector<Real> times) { return {.kind = Kind::times, .times = std::move(times)}; }
+  static Save every(Real spacing) { return {.kind = Kind::grid, .spacing = spacing}; }
+  static Save dense() { return {.kind = Kind::dense}; }
+  static Save only_end() { return {.kind = Kind::end}; }
+};
+
+template <State X>
+struct Options {
+  using Real = Scalar<X>;
+  Real rtol = Real(1e-6), atol = Real(1e-9);
+  std::vector<Real> rtol_each{}, atol_each{};  // one per component, instead of the above
+  Real step = 0;                               // > 0: fixed steps of this size, no error control
+  Real first_step = 0;                         // 0: Hairer's estimate
+  Real max_step = std::numeric_limits<Real>::infinity();
+  Controller controller = PI;
+  std::size_t max_steps = 10'000'000;  // accepted and rejected together
+  std::size_t max_rejects_in_a_row = 60;
+  std::vector<Event<X>> events{};
+  Save<X> save{};
+  const std::atomic<bool>* interrupt = nullptr;  // the run ends as `interrupted` once it is true
+  std::function<void(Real)> progress{};          // called with t now and then (about every thousand steps)
+};
+
+}  // namespace continuo

@@ -1,0 +1,66 @@
+// continuo/solve/solution.hpp
+// What a run leaves: states, dense output, events, statistics, outcome.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/numerics/state.hpp>
+#include <continuo/solve/outcome.hpp>
+
+namespace continuo {
+
+/// One event as it happened, with the state on both sides of it.
+template <State X>
+struct EventRecord {
+  std::size_t event;  // its number; Solution::event_names has the name
+  Scalar<X> t;
+  X before, after;
+};
+
+/// One step's polynomial: x(t) = sum_j coefficients[j] theta^j, theta = (t - begin) / h, valid from begin to end.
+template <State X>
+struct DenseSegment {
+  Scalar<X> begin, end, h;
+  std::vector<X> coefficients;
+
+  void operator()(Scalar<X> t, X& x) const {
+    const Scalar<X> theta = (t - begin) / h;
+    x = coefficients.back();
+    for (std::size_t j = coefficients.size() - 1; j-- > 0;)
+      for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] = x.data()[i] * theta + coefficients[j].data()[i];
+  }
+};
+
+template <State X>
+struct Solution {
+  using Real = Scalar<X>;
+  std::vector<Real> t;  // where states were kept; an event that changes the state stands twice, before and after
+  std::vector<X> x;
+  std::vector<EventRecord<X>> events;
+  std::vector<std::string> event_names;
+  std::vector<DenseSegment<X>> segments;  // with Save::dense()
+  Statistics statistics;
+  Outcome<Real> outcome;
+
+  /// The last state that stands.
+  const X& final_state() const { return x.back(); }
+
+  /// x(t) anywhere in the run; needs Save::dense(). At an event: the state after it.
+  X operator()(Real time) const {
+    if (segments.empty()) throw std::logic_error("x(t) needs a solution saved with Save::dense()");
+    const bool forward = segments.back().end >= segments.front().begin;
+    const auto after = std::upper_bound(segments.begin(), segments.end(), time, [&](Real value, const auto& segment) {
+      return forward ? value < segment.begin : value > segment.begin;
+    });
+    X result = x.front();
+    (after == segments.begin() ? *after : *std::prev(after))(time, result);
+    return result;
+  }
+};
+
+}  // namespace continuo

@@ -1,0 +1,261 @@
+// continuo/solve/step_control.hpp
+// Takes accepted steps: tries, measures the error, rejects, shrinks, grows. Knows nothing of events.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <continuo/methods/method.hpp>
+#include <continuo/solve/first_step.hpp>
+#include <continuo/solve/options.hpp>
+#include <continuo/solve/outcome.hpp>
+
+namespace continuo {
+
+/// The last accepted step and what the next one needs. Steps run from begin() to end(); the state at end() is where
+/// the next begins unless jump() says otherwise.
+template <class System, State X, class M>
+class StepControl {
+ public:
+  using Real = Scalar<X>;
+
+  StepControl(System system, X x0, Real t0, Real forward, const Options<X>& options)
+      : system_(std::move(system)),
+        forward_(forward),
+        begin_(t0),
+        end_(t0),
+        grid_(t0),
+        x_begin_(x0),
+        x_end_(x0),
+        scratch_(x0),
+        slope_(x0),
+        work_(M::workspace(x0)),
+        interpolant_(x0) {
+    jump(t0, x0, options);
+  }
+
+  System& system() { return system_; }
+  const System& system() const { return system_; }
+  Real begin() const { return begin_; }
+  Real end() const { return end_; }
+  Real size() const { return h_; }
+  const X& x_begin() const { return x_begin_; }
+  const X& x_end() const { return x_end_; }
+  const Statistics& statistics() const { return statistics_; }
+  Statistics& statistics() { return statistics_; }
+
+  /// The trajectory goes on from another state (or with another f): step size and history begin anew.
+  void jump(Real t, const X& x, const Options<X>& options) {
+    begin_ = end_ = grid_ = t;
+    grid_steps_ = 0;
+    x_end_ = x;
+    jumped_ = true;
+    errors_ = {};
+    next_ = fixed(options) ? forward_ * options.step : Real(0);  // 0: to be estimated
+  }
+
+  /// f(t, x) by an evaluation of its own.
+  const X& slope(Real t, const X& x) {
+    ++statistics_.evaluations;
+    evaluate(system_, t, x, slope_);
+    return slope_;
+  }
+
+  /// One accepted step from end(), not beyond limit. False: failed, and outcome says how.
+  bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+    advance_to_end();
+    if constexpr (M::error_order > 0) {
+      if (!fixed(options)) {
+        if (next_ == 0 && !estimate_first(limit, options, outcome)) return false;
+        return take_adaptive(limit, options, outcome);
+      }
+    }
+    return take_fixed(limit, options, outcome);
+  }
+
+  /// x at a time of the last step, on the dense output.
+  void at(Real t, X& x) {
+    if (t == end_) {
+      x = x_end_;
+    } else {
+      interpolant()((t - begin_) / h_, x);
+    }
+  }
+
+  const Interpolant<X, M::dense_degree>& interpolant() {
+    if (!interpolated_) {
+      statistics_.evaluations +=
+          static_cast<std::size_t>(M::interpolate(system_, begin_, x_begin_, h_, x_end_, work_, interpolant_));
+      interpolated_ = true;
+    }
+    return interpolant_;
+  }
+
+ private:
+  static bool fixed(const Options<X>& options) { return options.step > 0; }
+
+  static Tolerance<Real> tolerance(const Options<X>& options) {
+    return {options.rtol, options.atol, options.rtol_each.empty() ? nullptr : options.rtol_each.data(),
+            options.atol_each.empty() ? nullptr : options.atol_each.data()};
+  }
+
+  void advance_to_end() {
+    if (!jumped_) M::accept(work_);
+    begin_ = end_;
+    std::swap(x_begin_, x_end_);
+    interpolated_ = false;
+  }
+
+  // x_begin_ is the start of the step from here on; after a failure the start is all that stands.
+  bool fail(Ending ending, Real error, std::string component, std::string hint, Outcome<Real>& outcome) {
+    outcome = {ending, begin_, h_, error, std::move(component), {}, {}, std::move(hint)};
+    end_ = begin_;
+    x_end_ = x_begin_;
+    jumped_ = true;
+    return false;
+  }
+
+  void attempt(Real h) {
+    h_ = h;
+    statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
+  }
+
+  bool finite_end() const {
+    using std::isfinite;
+    Real sum = 0;  // one NaN or infinity makes 0 * sum NaN
+    for (std::size_t i = 0; i < dimension(x_end_); ++i) sum += Real(0) * x_end_.data()[i];
+    return sum == Real(0);
+  }
+
+  std::string first_not_finite(const X& x) const {
+    using std::isfinite;
+    for (std::size_t i = 0; i < dimension(x); ++i)
+      if (!(Real(0) * x.data()[i] == Real(0))) return component_name(system_, i);
+    return {};
+  }
+
+  bool take_fixed(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+    // The grid is computed afresh at each step, so a million steps do not drift.
+    const Real nominal = forward_ * options.step;
+    const Real on_grid = grid_ + Real(grid_steps_ + 1) * nominal;
+    using std::abs;
+    const bool last = forward_ * (on_grid - limit) > Real(-1e-9) * options.step;
+    const bool short_step = last && abs(on_grid - limit) > Real(1e-9) * options.step;
+    if (!last && on_grid == begin_) {
+      h_ = nominal;
+      return fail(Ending::step_too_small, 0, {}, "the step is below the spacing of numbers at t: take a longer one",
+                  outcome);
+    }
+    attempt(short_step ? limit - begin_ : nominal);
+    if (!finite_end()) {
+      return fail(Ending::not_finite, 0, first_not_finite(x_end_),
+                  "f or the state overflows: take a smaller step, or a method with error control", outcome);
+    }
+    end_ = last ? limit : on_grid;
+    ++grid_steps_;
+    if (short_step) grid_ = limit, grid_steps_ = 0;
+    return accepted();
+  }
+
+  bool accepted() {
+    jumped_ = false;
+    ++statistics_.steps;
+    return true;
+  }
+
+  bool estimate_first(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+    using std::abs, std::min;
+    const Real longest = min(abs(limit - begin_), options.max_step);
+    if (options.first_step > 0) {
+      next_ = forward_ * min(options.first_step, longest);
+      return true;
+    }
+    slope(begin_, x_begin_);
+    if (const std::string component = first_not_finite(slope_); !component.empty())
+      return fail(Ending::not_finite, 0, component,
+                  "f is not finite at this state: look for a division by zero, a root "
+                  "or logarithm of a negative number",
+                  outcome);
+    next_ = forward_ * first_step(system_, begin_, x_begin_, slope_, M::order, forward_, longest, tolerance(options),
+                                  scratch_, x_end_);
+    ++statistics_.evaluations;
+    return true;
+  }
+
+  bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+    using std::abs, std::max, std::min;
+    constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+    const Tolerance<Real> weights = tolerance(options);
+    const Real room = limit - begin_;
+    bool was_rejected = false, last_not_finite = false;
+    Real error = 0, h = forward_ * min(abs(next_), options.max_step);
+    for (std::size_t rejects = 0;; ++rejects) {
+      // A step that would leave a crumb before the limit takes it along.
+      const bool last = forward_ * (Real(1.01) * h - room) >= 0;
+      attempt(last ? room : h);
+      error = M::error_norm(work_, h_, x_begin_, x_end_, weights);
+      const bool finite = error < std::numeric_limits<Real>::infinity() && finite_end();
+      if (finite && error <= 1) {
+        float factor = errors_.accept(options.controller, M::error_order, static_cast<float>(error));
+        if (was_rejected) factor = min(factor, 1.0F);
+        // A step cut short by the limit says little about the next: never below what was planned.
+        next_ = last ? forward_ * max(abs(h), abs(h_) * Real(factor)) : h_ * Real(factor);
+        end_ = last ? limit : begin_ + h_;
+        return accepted();
+      }
+      ++statistics_.rejected;
+      was_rejected = true;
+      last_not_finite = !finite;
+      h = h_ * (finite ? Real(ErrorHistory::reject(options.controller, M::error_order, static_cast<float>(error)))
+                       : Real(0.2));
+      if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
+          (options.interrupt && options.interrupt->load(std::memory_order_relaxed)))
+        return give_up(rejects >= options.max_rejects_in_a_row, last_not_finite, error, weights, options, outcome);
+    }
+  }
+
+  bool give_up(bool too_many, bool not_finite, Real error, const Tolerance<Real>& weights, const Options<X>& options,
+               Outcome<Real>& outcome) {
+    if (options.interrupt && options.interrupt->load(std::memory_order_relaxed))
+      return fail(Ending::interrupted, error, {}, {}, outcome);
+    if (not_finite) {
+      std::string component = first_not_finite(x_end_);
+      if (component.empty()) component = first_not_finite(slope(begin_, x_begin_));
+      return fail(Ending::not_finite, 0, component,
+                  "f is not finite just beyond this state: look for a division by zero, a root or logarithm of a "
+                  "negative number, or a solution that grows without bound",
+                  outcome);
+    }
+    std::string hint =
+        "the solution may be singular here, or f jumps: declare an event at the jump, or loosen the tolerance";
+    return fail(too_many ? Ending::too_many_rejects : Ending::step_too_small, error, worst_component(weights),
+                std::move(hint), outcome);
+  }
+
+  std::string worst_component(const Tolerance<Real>& weights) const {
+    using std::abs;
+    std::size_t worst = 0;
+    Real greatest = -1;
+    for (std::size_t i = 0; i < dimension(x_begin_); ++i) {
+      const Real part = abs(M::error_of(work_, h_, i)) / weights.scale(i, x_begin_.data()[i], x_end_.data()[i]);
+      if (part > greatest) greatest = part, worst = i;
+    }
+    return dimension(x_begin_) == 0 ? std::string{} : component_name(system_, worst);
+  }
+
+  System system_;
+  Real forward_, begin_, end_, h_{}, next_{};
+  Real grid_;  // fixed steps are counted from here
+  std::size_t grid_steps_ = 0;
+  bool jumped_ = true, interpolated_ = false;
+  ErrorHistory errors_;
+  X x_begin_, x_end_, scratch_, slope_;
+  typename M::template Workspace<X> work_;
+  Interpolant<X, M::dense_degree> interpolant_;
+  Statistics statistics_;
+};
+
+}  // namespace continuo
