@@ -1,0 +1,101 @@
+// continuo/numerics/lane_mask.hpp
+// What a comparison of Lanes gives: a yes or no per lane.
+#pragma once
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+
+#include <xsimd/xsimd.hpp>
+
+namespace continuo {
+
+namespace detail {
+
+/// How W numbers are cut into registers: one register of W, or several of the machine's own width, or plain numbers.
+template <class Real, std::size_t W>
+struct LaneParts {
+  using Part = Real;
+  using MaskPart = bool;
+  static constexpr std::size_t count = W;
+  static Part select(bool mask, const Part& yes, const Part& no) { return mask ? yes : no; }
+};
+template <class Batch, std::size_t W>
+struct BatchParts {
+  using Part = Batch;
+  using MaskPart = typename Batch::batch_bool_type;
+  static constexpr std::size_t count = W / Batch::size;
+  static Part select(const MaskPart& mask, const Part& yes, const Part& no) { return xsimd::select(mask, yes, no); }
+};
+template <class Real>
+concept HasRegisters = std::same_as<Real, float> || std::same_as<Real, double>;
+template <HasRegisters Real, std::size_t W>
+  requires(!std::is_void_v<xsimd::make_sized_batch_t<Real, W>>)
+struct LaneParts<Real, W> : BatchParts<xsimd::make_sized_batch_t<Real, W>, W> {};
+template <HasRegisters Real, std::size_t W>
+  requires(std::is_void_v<xsimd::make_sized_batch_t<Real, W>> && W % xsimd::batch<Real>::size == 0)
+struct LaneParts<Real, W> : BatchParts<xsimd::batch<Real>, W> {};
+
+}  // namespace detail
+
+template <std::floating_point Real, std::size_t W>
+class LaneMask {
+ public:
+  LaneMask() : LaneMask(false) {}
+  /// The same answer for every lane.
+  LaneMask(bool value) {
+    for (Part& part : part_) part = Part(value);
+  }
+
+  bool operator[](std::size_t lane) const {
+    if constexpr (std::same_as<Part, bool>) {
+      return part_[lane];
+    } else {
+      return part_[lane / Part::size].get(lane % Part::size);
+    }
+  }
+
+  friend LaneMask operator&(const LaneMask& a, const LaneMask& b) {
+    return map([](const Part& x, const Part& y) { return Part(x & y); }, a, b);
+  }
+  friend LaneMask operator|(const LaneMask& a, const LaneMask& b) {
+    return map([](const Part& x, const Part& y) { return Part(x | y); }, a, b);
+  }
+  friend LaneMask operator!(const LaneMask& a) {
+    return map([](const Part& x) { return Part(!x); }, a);
+  }
+
+  friend bool any(const LaneMask& mask) {
+    for (const Part& part : mask.part_) {
+      if (any_in(part)) return true;
+    }
+    return false;
+  }
+  friend bool all(const LaneMask& mask) { return !any(!mask); }
+  friend bool none(const LaneMask& mask) { return !any(mask); }
+
+  // For Lanes, which are cut the same way.
+  using Part = typename detail::LaneParts<Real, W>::MaskPart;
+  Part& part(std::size_t i) { return part_[i]; }
+  const Part& part(std::size_t i) const { return part_[i]; }
+
+ private:
+  static constexpr std::size_t parts = detail::LaneParts<Real, W>::count;
+  std::array<Part, parts> part_;
+
+  static bool any_in(const Part& part) {
+    if constexpr (std::same_as<Part, bool>) {
+      return part;
+    } else {
+      return xsimd::any(part);
+    }
+  }
+  template <class F, class... A>
+  static LaneMask map(F f, const A&... a) {
+    LaneMask result;
+    for (std::size_t i = 0; i < parts; ++i) result.part_[i] = f(a.part_[i]...);
+    return result;
+  }
+};
+
+}  // namespace continuo
