@@ -23,7 +23,7 @@ struct CentralDifference : SecondOrderMethod {
   struct Workspace : EndDerivatives<X> {
     X half;                     // w, at the velocities' places
     X half_new;                 // w of the step not yet accepted
-    Scalar<X> h_last, h_taken;  // of the last accepted step and of the last one tried
+    Scalar<X> h_last, h_taken;  // of the last accepted step (0: none since a jump) and of the last one tried
     bool has_history = false;
   };
 
@@ -36,13 +36,15 @@ struct CentralDifference : SecondOrderMethod {
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
                   Workspace<X>& work, X& x_new) {
     const int evaluations = work.evaluate_start(system, t, x, made_jump);
-    if (made_jump) work.has_history = false;
-    const Scalar<X> half = h * Scalar<X>(0.5);
-    const X& w = work.has_history ? work.half : x;
-    const Scalar<X> kick = work.has_history ? half + work.h_last * Scalar<X>(0.5) : half;
+    if (made_jump || !work.has_history) {
+      work.half = x;
+      work.h_last = Scalar<X>(0);
+      work.has_history = true;
+    }
+    const Scalar<X> half = h * Scalar<X>(0.5), kick = half + work.h_last * Scalar<X>(0.5);
     euler(x, h, work.start, x_new);
     for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
-      const Scalar<X> a = work.start.data()[velocity], w_new = w.data()[velocity] + kick * a;
+      const Scalar<X> a = work.start.data()[velocity], w_new = work.half.data()[velocity] + kick * a;
       work.half_new.data()[velocity] = w_new;
       x_new.data()[position] = x.data()[position] + h * w_new;
       x_new.data()[velocity] = w_new + half * a;
@@ -59,7 +61,12 @@ struct CentralDifference : SecondOrderMethod {
     SecondOrderMethod::accept<X>(work);
     swap(work.half, work.half_new);
     work.h_last = work.h_taken;
-    work.has_history = true;
+  }
+  template <State X, class Mask>
+  static void accept(Workspace<X>& work, const Mask& accepted) {
+    SecondOrderMethod::accept<X>(work, accepted);
+    choose(accepted, work.half_new, work.half);
+    work.h_last = select(accepted, work.h_taken, work.h_last);
   }
 };
 

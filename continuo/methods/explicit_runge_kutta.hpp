@@ -134,6 +134,19 @@ struct ExplicitRungeKutta {
     work.end_fresh = false;
   }
 
+  /// The same where each lane of the state is a run of its own: only the lanes in `accepted` go on.
+  template <State X, class Mask>
+  static void accept(Workspace<X>& work, const Mask& accepted) {
+    if (work.end_fresh) {
+      for (std::size_t i = 0; i < dimension(work.argument); ++i) {
+        auto& start = work.k[0].data()[i];
+        start = select(accepted, work.k[end_slot()].data()[i], start);
+      }
+    }
+    work.start_fresh = work.start_fresh && (work.end_fresh || none(accepted));
+    work.end_fresh = false;
+  }
+
   /// f at the start of the last step: after `step`, before `accept`.
   template <State X>
   static decltype(auto) derivative(const Workspace<X>& work) {

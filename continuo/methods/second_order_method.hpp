@@ -77,12 +77,24 @@ struct SecondOrderMethod {
     work.end_fresh = false;
   }
 
+  /// The same where each lane of the state is a run of its own: only the lanes in `accepted` go on.
+  template <State X, class Mask>
+  static void accept(EndDerivatives<X>& work, const Mask& accepted) {
+    if (work.end_fresh) choose(accepted, work.end, work.start);
+    work.start_fresh = work.start_fresh && (work.end_fresh || none(accepted));
+    work.end_fresh = false;
+  }
+
   template <State X>
   static const X& derivative(const EndDerivatives<X>& work) {
     return work.start;
   }
 
  protected:
+  template <State X, class Mask>
+  static void choose(const Mask& accepted, const X& from, X& to) {
+    for (std::size_t i = 0; i < dimension(to); ++i) to.data()[i] = select(accepted, from.data()[i], to.data()[i]);
+  }
   /// x_new = x + h slope, component by component.
   template <State X>
   static void euler(const X& x, const Scalar<X>& h, const X& slope, X& x_new) {

@@ -307,8 +307,8 @@ inline constexpr Coefficient interpolation[26][9] = {
 
 /// Verner's "most efficient" 9(8) pair: sixteen stages, and nine more (with f at the end) for an interpolant of order
 /// 9. For tolerances below some 1e-10 and for quad precision.
-/// J. H. Verner, "Numerically optimal Runge-Kutta pairs with interpolants", Numer. Algorithms 53 (2010) 383-396;
-/// coefficients from the author's pages by way of OrdinaryDiffEq.jl's Vern9.
+/// J. H. Verner, "Numerically optimal Runge-Kutta pairs with interpolants", Numer. Algorithms 53 (2010) 383-396. The
+/// coefficients are J. H. Verner's, https://www.sfu.ca/~jverner/ (RKV98.IIa.Efficient), by way of OrdinaryDiffEq.jl.
 struct Verner9 : ExplicitRungeKutta<Verner9> {
   static constexpr std::string_view name = "verner9";
   static constexpr int order = 9, error_order = 8, dense_order = 9, dense_degree = 9;
