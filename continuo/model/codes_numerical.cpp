@@ -1,10 +1,107 @@
-// E3xx: the model is right, but the numbers failed.
+// E3xx: the model is right, but the numbers failed, or the run was asked for something it cannot do.
+#include <array>
+
 #include <continuo/model/codes.hpp>
 
 namespace continuo::model {
 
+namespace {
+
+constexpr std::array entries = {
+    Code{"E300", "the run ended early",
+         R"(The run stopped before its end for a reason that has no code of its own. What was computed is kept.)"},
+    Code{"E301", "the equations give no finite number",
+         R"(A right-hand side was infinite or not a number, and smaller steps did not help: a division by zero, the root
+or logarithm of a negative number, or an exponential beyond 1e308.
+
+  x' = sqrt(-x)          with x(0) = 1
+
+Fix: look at the state named and at the time given; guard the expression (max(x, 0)), stop before the place with
+`when ... { stop }`, or mend the equation.)"},
+    Code{"E302", "the step shrinks to nothing",
+         R"(To keep the tolerance the step became so small that t + h is t. The solution escapes to infinity in finite
+time (x' = x^2), jumps where the text has no event, or the tolerance is below rounding.
+
+Fix: a jump in a right-hand side wants an event (`when`, `at`); a true singularity wants `when ... { stop }` before it;
+a tolerance below 1e-14 wants to be larger.)"},
+    Code{"E303", "too many steps",
+         R"(The run needs more steps than it may take. If the steps stay far below the time scale of the motion the
+equations are stiff: a fast part has died out, but still bounds the steps of an explicit method.
+
+Fix: loosen the tolerance, shorten the run, or take the stiff part out of the model.)"},
+    Code{"E304", "every step is rejected",
+         R"(Many smaller and smaller steps were tried at one place and none met the tolerance: the right-hand side jumps
+there, or is noisy at the level of the tolerance.
+
+Fix: describe a jump as an event, or loosen the tolerance.)"},
+    Code{"E305", "the implicit equations find no solution",
+         R"(An implicit method solves equations in each step, and their solver did not converge even with small steps.
+
+Fix: loosen the tolerance, or take another method.)"},
+    Code{"E306", "the run cannot begin",
+         R"(Something it begins with is no number: an initial value that divides by zero, a time that is infinite.
+
+Fix: look at the initial values with the parameters of this run; `continuo info` prints them.)"},
+    Code{"E307", "interrupted",
+         R"(The run was interrupted (Ctrl-C). What was computed until then is kept and written.)"},
+    Code{"E310", "events accumulate",
+         R"(An event happens again and again, ever faster, and its times tend to a limit: a ball that loses part of its
+speed at each bounce bounces infinitely often in finite time (Zeno). Or two events switch back and forth at one instant
+(chattering). No simulator can go beyond; going on would let the ball fall through the floor.
+
+Fix: say what happens then. A ball comes to rest in a mode of its own:
+
+  mode flight { h'' = -g }
+  mode rest   { h'' = 0 }
+  when h falls through 0 in flight {
+    h := 0
+    if -e*h' > 0.01 { h' := -e*h' } else { h' := 0; go rest }
+  }
+
+A thermostat that clicks for ever needs a gap between `on` and `off`. `stop` and `stop after 10` end the run before.)"},
+    Code{"E320", "algebraic equations cannot be solved yet",
+         R"(The model has equations `0 = ...` with unknowns. They are read and checked; the solver for them is not there
+yet.
+
+Fix: where the unknown can be written as an expression, use `let`.)"},
+    Code{"E321", "boundary-value problems cannot be solved yet",
+         R"(The model gives values of its states at different times (x(0) = 1; x(7) = 4). It is read and checked; the
+solver for such problems is not there yet.
+
+Fix: give all values at the start, and try different ones until the end fits.)"},
+    Code{"E330", "there is no such method", R"(`continuo methods` lists the methods with their order and use.)"},
+    Code{
+        "E331", "the method needs a step",
+        R"(Methods with an error estimate choose their step by the tolerance. This one has none: it takes equal steps, and you
+say how long they are.
+
+Fix: --step 0.01, or in the model:  run 0..10 method rk4, step 0.01)"},
+    Code{"E332", "the method does not fit the equations",
+         R"(Methods such as velocity_verlet and semi_implicit_euler move positions by velocities. They need equations of
+the form x'' = a(t, x): every state is a position or the velocity of one.
+
+Fix: take a method for first-order equations, such as rk4 or tsitouras5.)"},
+    Code{
+        "E333", "the experiment cannot be run",
+        R"(The run statement, or what replaced parts of it, makes no sense: an end before the start, a step or an interval
+that is not positive, a number of tolerances that is not that of the states.)"},
+    Code{"E340", "there is no such parameter",
+         R"(--set takes the names of parameters, with their index where they have one: --set k=5 --set m[2]=3.
+`continuo info FILE` lists them. Initial values are set through the parameter they use.)"},
+    Code{"E341", "the value cannot be set",
+         R"(--set NAME=VALUE takes what may stand behind `param NAME =`: a number, an expression of numbers, with a unit
+where wanted (--set "k=30 [N/cm]"). Without a unit the parameter's own is meant; one that measures something else is
+refused.)"},
+    Code{
+        "E342", "the value is outside the declared range",
+        R"(The model declares a range for the parameter (in 0..1). The run goes on with your value; the range is what the
+slider of the live view offers and what the author thought of.)"},
+};
+
+}  // namespace
+
 std::span<const Code> numerical_codes() {
-  return {};
+  return entries;
 }
 
 }  // namespace continuo::model

@@ -17,6 +17,7 @@ namespace continuo::model {
 struct Marked {
   double t;
   std::string text;
+  std::size_t event;  // which of the source's events
 };
 
 class ModelEvents {
@@ -55,6 +56,7 @@ class ModelEvents {
     double period = 0, period_from = 0;  // `every`
   };
   struct Effect {
+    std::size_t event = 0;
     bool stop = false;
     std::size_t mode;
   };

@@ -55,6 +55,7 @@ struct ModelProgram {
   std::vector<ProgramBlock> event_blocks;                // by Model::events
   std::vector<ProgramBlock> schedule_blocks;             // by Model::schedule
   std::vector<NodeId> always;  // what `check always` watches: each side minus the other, in the order of the checks
+  NodeId energy_scale;         // the sum of the energies' absolute values; not valid without any
   std::size_t stops = 0;       // number of `stop` actions
 
   TapeVariables tape_variables() const {

@@ -32,11 +32,13 @@ struct Motion {
 /// An event of the model as it happened.
 struct Happened {
   std::string name;
+  std::string mark;  // the text of a `mark` among its actions; empty for none
   double t;
   std::vector<double> before, after;
 };
 
-/// The sum of the energies; `drift` is the largest |E - first| of the run, relative to |first| where that is not 0.
+/// The sum of the energies; `drift` is the largest |E - first| of the run, relative to |first| where that is
+/// more than rounding of its parts.
 struct EnergyBalance {
   double first, last, drift;
   std::string unit;
@@ -55,7 +57,6 @@ struct Run {
   Motion motion;
   std::vector<double> total_energy;  // at each row, if the model declares energies
   std::vector<Happened> events;
-  std::vector<Marked> marks;
   std::string stop_text;  // of the `stop` that ended the run
   Outcome<double> outcome;
   Statistics statistics;

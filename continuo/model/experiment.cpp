@@ -1,0 +1,156 @@
+// continuo/model/experiment.cpp
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/suggest.hpp>
+#include <continuo/solve/catalogue.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+constexpr double default_rtol = 1e-6;
+constexpr double atol_part = 1e-3;        // of rtol, where nothing is said
+constexpr double high_order_from = 1e-8;  // below this tolerance an eighth-order method is the cheaper one
+
+class Planner {
+ public:
+  Planner(const Model& model, const Experiment& experiment, std::vector<Diagnostic>& problems)
+      : model_(model), experiment_(experiment), run_(model.run), problems_(problems) {}
+
+  std::optional<Plan> plan() {
+    const std::size_t before = problems_.size();
+    plan_.variables = start_values(model_, experiment_.parameters, experiment_.from);
+    set_interval();
+    set_accuracy();
+    set_method();
+    set_output();
+    if (problems_.size() > before) return std::nullopt;
+    return std::move(plan_);
+  }
+
+ private:
+  double value(const Setting& setting) const { return evaluate(model_, setting.node, plan_.variables); }
+  std::optional<double> value(const std::optional<Setting>& setting) const {
+    return setting ? std::optional(value(*setting)) : std::nullopt;
+  }
+  void fail(const char* code, std::string message, std::string help) {
+    problems_.push_back(error(code, run_.span, std::move(message), {}, std::move(help)));
+  }
+
+  void set_interval() {
+    plan_.from = plan_.variables[Layout::time];
+    const auto to = experiment_.to ? experiment_.to : value(run_.to);
+    if (!to) return fail("E333", "nothing says how long to run", "add `run 0..10` to the model, or give --until");
+    plan_.to = *to;
+    if (!std::isfinite(plan_.from) || !std::isfinite(plan_.to) || plan_.to < plan_.from) {
+      fail("E333", fmt::format("a run cannot go from {} to {}", plan_.from, plan_.to), "the end comes after the start");
+    }
+  }
+
+  void set_accuracy() {
+    const auto step = experiment_.step ? experiment_.step : experiment_.rtol ? std::nullopt : value(run_.step);
+    plan_.step = step.value_or(0);
+    if (step && !(*step > 0)) fail("E333", fmt::format("a step of {} leads nowhere", *step), "give a positive step");
+    plan_.rtol = experiment_.rtol.value_or(run_.rtol.value_or(default_rtol));
+    if (!(plan_.rtol >= 0)) fail("E333", "the tolerance is negative", "give a positive one, such as --tol 1e-6");
+    plan_.atol = !experiment_.atol.empty() ? experiment_.atol : run_.atol;
+    if (plan_.atol.empty()) plan_.atol = {plan_.rtol * atol_part};
+    if (plan_.atol.size() != 1 && plan_.atol.size() != model_.states.size()) {
+      fail("E333", fmt::format("{} absolute tolerances for {} states", plan_.atol.size(), model_.states.size()),
+           "give one for all, or one for each");
+    }
+  }
+
+  void set_method() {
+    std::string name = experiment_.method.value_or(run_.method.value_or(""));
+    if (name.empty()) name = plan_.step == 0 && plan_.rtol < high_order_from ? "dop853" : "tsitouras5";
+    plan_.method = canonical_name(name);
+    std::vector<std::string> names;
+    for (const MethodInfo& info : method_catalogue()) {
+      names.emplace_back(info.name);
+      if (info.name == plan_.method) return accept(info);
+    }
+    const std::string near = did_you_mean(name, names);
+    fail("E330", fmt::format("there is no method `{}`", name), near.empty() ? "`continuo methods` lists them" : near);
+  }
+
+  void accept(const MethodInfo& method) {
+    if (method.error_order == 0 && plan_.step == 0) {
+      fail("E331", fmt::format("`{}` does not estimate its error, so it cannot choose its step", method.name),
+           "give a step: --step 0.01, or `step 0.01` in the run statement");
+    }
+    if (method.second_order && !model_.all_paired) {
+      fail("E332", fmt::format("`{}` is for equations of the form x'' = a(t, x) only", method.name),
+           fmt::format("{} is no position or velocity; take another method", unpaired()));
+    }
+  }
+
+  std::string unpaired() const {
+    for (std::size_t i = 0; i < model_.states.size(); ++i) {
+      bool found = false;
+      for (const PositionVelocity& pair : model_.pairs) found = found || pair.position == i || pair.velocity == i;
+      if (!found) return "`" + model_.states[i].column + "`";
+    }
+    return "a state";
+  }
+
+  void set_output() {
+    using Kind = OutputPlan::Kind;
+    if (experiment_.output_steps) return;
+    if (experiment_.output) {
+      plan_.output = Kind::every;
+      plan_.interval = *experiment_.output;
+    } else if (run_.output) {
+      plan_.output = run_.output->kind;
+      plan_.interval = value(run_.output->interval).value_or(0);
+      plan_.per_decade = run_.output->per_decade;
+      plan_.first = value(run_.output->first).value_or(0);
+    }
+    if (plan_.output == Kind::every && !(plan_.interval > 0)) {
+      fail("E333", fmt::format("rows every {} are no rows", plan_.interval), "give a positive interval");
+    }
+    if (plan_.output == Kind::every && (plan_.to - plan_.from) / plan_.interval > 1e9) {
+      fail("E333", "that would be more than 1e9 rows", "give a longer interval");
+    }
+    if (plan_.output == Kind::logarithmic && (!(plan_.first > 0) || plan_.per_decade < 1)) {
+      fail("E333", "rows per decade need a positive first time", "`output log 5 per decade from 1e-3`");
+    }
+  }
+
+  const Model& model_;
+  const Experiment& experiment_;
+  const RunSettings& run_;
+  std::vector<Diagnostic>& problems_;
+  Plan plan_;
+};
+
+}  // namespace
+
+std::optional<Plan> plan(const Model& model, const Experiment& experiment, std::vector<Diagnostic>& problems) {
+  return Planner(model, experiment, problems).plan();
+}
+
+double OutputTimes::operator[](std::size_t k) const {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  // One part in a million of an interval is rounding, not another row.
+  constexpr double slack = 1e-6;
+  const auto within = [this](double t, double room) {
+    return t <= plan_.to ? t : t <= plan_.to + slack * room ? plan_.to : none;
+  };
+  if (plan_.output == OutputPlan::Kind::every) {
+    return within(plan_.from + static_cast<double>(k) * plan_.interval, plan_.interval);
+  }
+  if (plan_.output == OutputPlan::Kind::logarithmic) {
+    if (k == 0) return plan_.from;
+    const double decades = static_cast<double>(k - 1) / plan_.per_decade;
+    const double elapsed = plan_.first * std::pow(10, decades);
+    return within(plan_.from + elapsed, elapsed);
+  }
+  return none;
+}
+
+}  // namespace continuo::model

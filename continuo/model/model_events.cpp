@@ -1,0 +1,143 @@
+// continuo/model/model_events.cpp
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <continuo/model/model_events.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+continuo::Direction direction_of(Direction direction) {
+  switch (direction) {
+    case Direction::falls:
+      return continuo::Direction::falls;
+    case Direction::rises:
+      return continuo::Direction::rises;
+    case Direction::crosses:
+      break;
+  }
+  return continuo::Direction::crosses;
+}
+
+}  // namespace
+
+ModelEvents::Entry ModelEvents::entry_of(const When& when, std::size_t index) const {
+  Entry entry{.kind = Kind::guard, .index = index, .name = when.name};
+  entry.direction = direction_of(when.direction);
+  entry.in_one_mode = when.mode.has_value();
+  entry.mode = when.mode.value_or(0);
+  return entry;
+}
+
+ModelEvents::Entry ModelEvents::entry_of(const ModelProgram& program, const Scheduled& scheduled, std::size_t index,
+                                         std::span<const double> variables, double from) const {
+  Entry entry{.kind = Kind::scheduled, .index = index, .name = scheduled.name};
+  const auto value = [&](const Setting& setting) { return evaluate(program.model, setting.node, variables); };
+  switch (scheduled.kind) {
+    case Scheduled::Kind::initially:
+      entry.times = {from};
+      break;
+    case Scheduled::Kind::at:
+      entry.times = {value(*scheduled.time)};
+      break;
+    case Scheduled::Kind::every:
+      entry.period = value(*scheduled.time);
+      entry.period_from = scheduled.first ? value(*scheduled.first) : from + entry.period;
+      break;
+  }
+  return entry;
+}
+
+ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> variables, double from) {
+  const Model& model = program.model;
+  // Inputs step first, so that the actions of the same instant see their new values.
+  for (std::size_t i = 0; i < program.step_inputs.size(); ++i) {
+    const TableInput& input = program.step_inputs[i];
+    Entry entry{.kind = Kind::input, .index = i, .name = "step of " + input.name};
+    entry.times.assign(input.table.x().begin(), input.table.x().end());
+    events_.push_back(std::move(entry));
+  }
+  guard_place_.resize(model.events.size());
+  for (const EventOrder& place : model.event_order) {
+    if (!place.scheduled) guard_place_[place.index] = events_.size();
+    events_.push_back(place.scheduled ? entry_of(program, model.schedule[place.index], place.index, variables, from)
+                                      : entry_of(model.events[place.index], place.index));
+  }
+  guard_values_.resize(model.events.size());
+  stop_counts_.resize(program.stops);
+}
+
+double ModelEvents::next_time(std::size_t i, double t, bool inclusive) const {
+  const Entry& entry = events_[i];
+  const auto past = [&](double time) { return inclusive ? time >= t : time > t; };
+  double next = std::numeric_limits<double>::infinity();
+  const auto found = inclusive ? std::ranges::lower_bound(entry.times, t) : std::ranges::upper_bound(entry.times, t);
+  if (found != entry.times.end()) next = *found;
+  if (entry.period > 0) {
+    // k * period afresh each time: a million periods do not drift.
+    double k = std::max(0.0, std::floor((t - entry.period_from) / entry.period));
+    while (!past(entry.period_from + k * entry.period)) k += 1;
+    next = std::min(next, entry.period_from + k * entry.period);
+  }
+  return next;
+}
+
+void ModelEvents::guards(ModelSystem& system, double t, const X& x, std::span<double> values) {
+  system.guards(t, x, guard_values_);
+  for (std::size_t k = 0; k < guard_place_.size(); ++k) values[guard_place_[k]] = guard_values_[k];
+}
+
+void ModelEvents::perform(const std::vector<ProgramAction>& actions, std::span<const double> values, double t, X& x,
+                          Effect& effect) {
+  for (const ProgramAction& action : actions) {
+    switch (action.kind) {
+      case ProgramAction::Kind::assign:
+        x[action.target] = values[action.expression];
+        break;
+      case ProgramAction::Kind::branch:
+        perform(values[action.expression] != 0 ? action.then : action.otherwise, values, t, x, effect);
+        break;
+      case ProgramAction::Kind::go:
+        effect.mode = action.target;
+        break;
+      case ProgramAction::Kind::mark:
+        marks_.push_back({t, action.text, effect.event});
+        break;
+      case ProgramAction::Kind::stop:
+        if (++stop_counts_[action.target] != action.after) break;
+        effect.stop = true;
+        stop_text_ = action.text;
+        break;
+    }
+  }
+}
+
+EventResponse ModelEvents::fire(ModelSystem& system, std::span<const std::size_t> fired, double t, const X& before,
+                                X& x) {
+  Effect effect{.mode = system.mode()};
+  bool changed = false;
+  for (const std::size_t i : fired) {
+    const Entry& entry = events_[i];
+    if (entry.kind == Kind::input) {
+      const TableInput& input = system.program().step_inputs[entry.index];
+      system.set(input.variable, input.table.value(t));
+      changed = true;
+      continue;
+    }
+    effect.event = i;
+    const bool guard = entry.kind == Kind::guard;
+    const ProgramBlock& block =
+        guard ? system.program().event_blocks[entry.index] : system.program().schedule_blocks[entry.index];
+    const std::vector<double> values =
+        guard ? system.event_expressions(entry.index, t, before) : system.schedule_expressions(entry.index, t, before);
+    perform(block.actions, values, t, x, effect);
+  }
+  changed = changed || effect.mode != system.mode() || x != before;
+  system.go(effect.mode);
+  return {effect.stop, changed};
+}
+
+}  // namespace continuo::model

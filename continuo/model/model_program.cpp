@@ -1,0 +1,169 @@
+// continuo/model/model_program.cpp
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include <continuo/model/model_program.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+/// Interpolated inputs become functions of time in the model's own graph, wherever they stand.
+class InputsInPlace {
+ public:
+  explicit InputsInPlace(const ModelProgram& program) : program_(program) {}
+
+  NodeId operator()(Graph& graph, NodeId node) const {
+    if (program_.linear_inputs.empty()) return node;
+    return substitute(graph, node, [&](std::uint32_t variable) -> std::optional<NodeId> {
+      for (std::size_t i = 0; i < program_.linear_inputs.size(); ++i) {
+        if (program_.linear_inputs[i].variable != variable) continue;
+        const auto table = static_cast<std::uint32_t>(program_.model.tables.size() + i);
+        return graph.interpolate(table, graph.variable(Layout::time));
+      }
+      return std::nullopt;
+    });
+  }
+
+ private:
+  const ModelProgram& program_;
+};
+
+/// Collects the expressions of a block and lays out its actions.
+class BlockCompiler {
+ public:
+  explicit BlockCompiler(std::size_t& stops) : stops_(stops) {}
+
+  std::vector<ProgramAction> actions(const Block& block) {
+    std::vector<ProgramAction> compiled;
+    for (const Action& action : block) {
+      compiled.push_back(std::visit([this](const auto& what) { return compile(what); }, action.what));
+    }
+    return compiled;
+  }
+  const std::vector<NodeId>& expressions() const { return expressions_; }
+
+ private:
+  using Kind = ProgramAction::Kind;
+
+  std::size_t expression(NodeId node) {
+    expressions_.push_back(node);
+    return expressions_.size() - 1;
+  }
+  static ProgramAction make(Kind kind) {
+    ProgramAction action{};
+    action.kind = kind;
+    return action;
+  }
+
+  ProgramAction compile(const Assign& assign) {
+    ProgramAction action = make(Kind::assign);
+    action.expression = expression(assign.value);
+    action.target = assign.state;
+    return action;
+  }
+  ProgramAction compile(const If& branch) {
+    ProgramAction action = make(Kind::branch);
+    action.expression = expression(branch.condition);
+    action.then = actions(branch.then);
+    action.otherwise = actions(branch.otherwise);
+    return action;
+  }
+  ProgramAction compile(const Go& go) {
+    ProgramAction action = make(Kind::go);
+    action.target = go.mode;
+    return action;
+  }
+  ProgramAction compile(const Mark& mark) {
+    ProgramAction action = make(Kind::mark);
+    action.text = mark.text;
+    return action;
+  }
+  ProgramAction compile(const Stop& stop) {
+    ProgramAction action = make(Kind::stop);
+    action.text = stop.text;
+    action.after = stop.after;
+    action.target = stops_++;
+    return action;
+  }
+
+  std::size_t& stops_;
+  std::vector<NodeId> expressions_;
+};
+
+ProgramBlock block_of(ModelProgram& program, const Block& block) {
+  BlockCompiler compiler(program.stops);
+  ProgramBlock compiled;
+  compiled.actions = compiler.actions(block);
+  compiled.tape = program.tape_of(compiler.expressions());
+  return compiled;
+}
+
+void compile_equations(ModelProgram& program) {
+  const Model& model = program.model;
+  for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
+    program.derivatives.push_back(program.tape_of(model.modes[mode].derivatives));
+    ProgramGuards guards;
+    std::vector<NodeId> nodes;
+    for (std::size_t i = 0; i < model.events.size(); ++i) {
+      if (model.events[i].mode.value_or(mode) != mode) continue;
+      guards.events.push_back(i);
+      nodes.push_back(model.events[i].guard);
+    }
+    guards.tape = program.tape_of(nodes);
+    program.guards.push_back(std::move(guards));
+  }
+}
+
+void compile_blocks(ModelProgram& program) {
+  for (std::size_t i = 0; i < program.model.events.size(); ++i) {
+    program.event_blocks.push_back(block_of(program, program.model.events[i].actions));
+  }
+  for (std::size_t i = 0; i < program.model.schedule.size(); ++i) {
+    program.schedule_blocks.push_back(block_of(program, program.model.schedule[i].actions));
+  }
+}
+
+void place_watched(ModelProgram& program) {
+  Graph& graph = program.model.graph;
+  for (const Quantity& energy : program.model.energies) {
+    const NodeId size = graph.apply(Op::absolute, energy.node);
+    program.energy_scale = program.energy_scale.valid() ? graph.add(program.energy_scale, size) : size;
+  }
+  for (const Check& check : program.model.checks) {
+    if (check.measure != Measure::always) continue;
+    program.always.push_back(graph.subtract(check.node, check.value));
+  }
+}
+
+void place_tables(ModelProgram& program) {
+  for (const TableFile& file : program.model.tables) program.tables.push_back(*file.points);
+  for (const Input& input : program.model.inputs) {
+    if (!input.points) continue;
+    const bool step = input.points->between() == Table::Between::step;
+    (step ? program.step_inputs : program.linear_inputs).push_back({input.variable, input.name, *input.points});
+  }
+  for (const TableInput& input : program.linear_inputs) program.tables.push_back(input.table);
+}
+
+}  // namespace
+
+std::shared_ptr<const Tape> ModelProgram::tape_of(std::span<const NodeId> nodes) const {
+  if (linear_inputs.empty()) return std::make_shared<const Tape>(model.graph, nodes, tape_variables(), tables);
+  Graph graph = model.graph;
+  std::vector<NodeId> replaced;
+  for (const NodeId node : nodes) replaced.push_back(InputsInPlace(*this)(graph, node));
+  return std::make_shared<const Tape>(graph, replaced, tape_variables(), tables);
+}
+
+std::shared_ptr<const ModelProgram> compile(Model model) {
+  auto program = std::make_shared<ModelProgram>(std::move(model));
+  place_tables(*program);
+  place_watched(*program);
+  compile_equations(*program);
+  compile_blocks(*program);
+  return program;
+}
+
+}  // namespace continuo::model

@@ -1,0 +1,89 @@
+// continuo/model/setting.cpp
+// Parameters given by name on the command line. The value is read by the language itself, so everything that may
+// stand behind `param k =` may stand here.
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/model/load.hpp>
+#include <continuo/model/simulate.hpp>
+#include <continuo/model/suggest.hpp>
+#include <continuo/model/units.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
+  return begin == std::string_view::npos ? std::string_view() : text.substr(begin, end - begin + 1);
+}
+
+/// The value and unit of `param value = TEXT` in a model of its own.
+std::optional<Parameter> read_value(std::string_view text, std::string& problem) {
+  if (text.find_first_of("\n;#,") != std::string_view::npos) {
+    problem = "one value is expected";
+    return std::nullopt;
+  }
+  // The state is there because a model without one is none.
+  Loaded loaded = load(Source("--set", fmt::format("param value = {}\nx' = 0\nx(0) = 0\n", text)));
+  if (loaded.model && !loaded.model->parameters.empty()) return loaded.model->parameters.front();
+  problem = "it cannot be read";
+  for (const Diagnostic& diagnostic : loaded.diagnostics) {
+    if (diagnostic.severity != Severity::error) continue;
+    problem = diagnostic.message;
+    break;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> in_unit_of(const Parameter& parameter, const Parameter& given, std::string& problem) {
+  if (given.unit.empty() || given.unit == parameter.unit) return given.value;
+  const auto from = parse_unit(given.unit).unit, to = parse_unit(parameter.unit.empty() ? "1" : parameter.unit).unit;
+  const auto factor = from && to ? conversion_factor(*from, *to) : std::nullopt;
+  if (factor) return given.value * *factor;
+  problem = fmt::format("[{}] is no [{}]", given.unit, parameter.unit.empty() ? "1" : parameter.unit);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ParameterSetting> parse_setting(const Model& model, std::string_view text,
+                                              std::vector<Diagnostic>& problems) {
+  const std::size_t equals = text.find('=');
+  const std::string name(trimmed(text.substr(0, equals)));
+  if (equals == std::string_view::npos || name.empty()) {
+    problems.push_back(error("E341", {}, fmt::format("`{}` sets nothing", text), {}, "write NAME=VALUE, such as k=5"));
+    return std::nullopt;
+  }
+  const std::size_t index = find_parameter(model, name);
+  if (index == npos) {
+    std::vector<std::string> names;
+    for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
+    std::string help = did_you_mean(name, names);
+    if (help.empty() && !names.empty() && names.size() <= 20) {
+      help = fmt::format("its parameters are {}", fmt::join(names, ", "));
+    }
+    problems.push_back(error("E340", {}, fmt::format("the model has no parameter `{}`", name), {}, std::move(help)));
+    return std::nullopt;
+  }
+  const Parameter& parameter = model.parameters[index];
+  std::string problem;
+  const auto given = read_value(trimmed(text.substr(equals + 1)), problem);
+  const auto value = given ? in_unit_of(parameter, *given, problem) : std::nullopt;
+  if (!value) {
+    problems.push_back(
+        error("E341", parameter.span,
+              fmt::format("`{}` cannot be set to `{}`: {}", name, trimmed(text.substr(equals + 1)), problem)));
+    return std::nullopt;
+  }
+  if (parameter.range && (*value < parameter.range->low || *value > parameter.range->high)) {
+    problems.push_back(warning("E342", parameter.span,
+                               fmt::format("{} = {} is outside the range {}..{} the model declares", name, *value,
+                                           parameter.range->low, parameter.range->high)));
+  }
+  return ParameterSetting{name, *value};
+}
+
+}  // namespace continuo::model

@@ -1,0 +1,107 @@
+// continuo/model/simulate.cpp
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/model/integrate.hpp>
+#include <continuo/model/run_checks.hpp>
+#include <continuo/model/run_recorder.hpp>
+#include <continuo/model/simulate.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+/// Models that are read and checked but cannot be run yet.
+std::optional<Diagnostic> not_there_yet(const Model& model) {
+  if (model.needs_dae_solver()) {
+    return error("E320", model.algebraic.front().span, "equations `0 = ...` cannot be solved yet",
+                 "this needs a solver for algebraic equations", "solve it for a derivative where that is possible");
+  }
+  if (model.needs_boundary_solver()) {
+    return error("E321", model.boundary.front().span, "conditions at different times cannot be solved yet",
+                 "this makes it a boundary-value problem", "give all conditions at the start");
+  }
+  return std::nullopt;
+}
+
+Options<ModelSystem::X> options_of(const Plan& plan, const Experiment& experiment) {
+  Options<ModelSystem::X> options{.rtol = plan.rtol, .atol = plan.atol.front()};
+  if (plan.atol.size() > 1) {
+    options.atol_each = plan.atol;
+    options.rtol_each.assign(plan.atol.size(), plan.rtol);
+  }
+  options.step = plan.step;
+  options.max_step = experiment.max_step;
+  options.max_steps = experiment.max_steps;
+  options.interrupt = experiment.interrupt;
+  options.progress = experiment.progress;
+  return options;
+}
+
+void place_step_inputs(const ModelProgram& program, Plan& plan) {
+  for (const TableInput& input : program.step_inputs) plan.variables[input.variable] = input.table.value(plan.from);
+}
+
+bool is_positive_period(const Model& model, const Plan& plan, std::vector<Diagnostic>& problems) {
+  for (const Scheduled& scheduled : model.schedule) {
+    if (scheduled.kind != Scheduled::Kind::every) continue;
+    const double period = evaluate(model, scheduled.time->node, plan.variables);
+    if (period > 0) continue;
+    problems.push_back(error("E333", scheduled.span, fmt::format("`every` needs a positive interval, not {}", period)));
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {
+  Simulated simulated;
+  const Model& model = program->model;
+  if (auto problem = not_there_yet(model)) {
+    simulated.diagnostics.push_back(std::move(*problem));
+    return simulated;
+  }
+  auto planned = plan(model, experiment, simulated.diagnostics);
+  if (!planned || !is_positive_period(model, *planned, simulated.diagnostics)) return simulated;
+  place_step_inputs(*program, *planned);
+
+  Run run;
+  run.plan = std::move(*planned);
+  RunRecorder recorder(*program, run.plan, experiment.keep_rows, sample_times(model, run.plan), program->always);
+  ModelSystem system(program, run.plan.variables);
+  const auto first = run.plan.variables.begin() + model.layout.states;
+  ModelSystem::X x0(first, first + static_cast<std::ptrdiff_t>(model.states.size()));
+  ModelEvents events(*program, run.plan.variables, run.plan.from);
+  const std::string method = run.plan.method;
+  integrate(method, {std::move(system), std::move(x0), options_of(run.plan, experiment), std::move(events)}, recorder,
+            run);
+  recorder.give(run);
+  run.checks = judge(model, run, recorder);
+  if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(model, run));
+  simulated.run = std::move(run);
+  return simulated;
+}
+
+Simulated simulate(const Model& model, const Experiment& experiment) {
+  if (auto problem = not_there_yet(model)) return {std::nullopt, {std::move(*problem)}};
+  return simulate(compile(model), experiment);
+}
+
+std::vector<std::vector<double>> values_along(const ModelProgram& program, const Run& run,
+                                              std::span<const NodeId> nodes) {
+  std::vector<std::vector<double>> columns(nodes.size());
+  if (nodes.empty()) return columns;
+  Evaluation evaluation(program.tape_of(nodes), program.model.layout, run.plan.variables);
+  for (std::size_t row = 0; row < run.motion.rows(); ++row) {
+    const double t = run.motion.time(row);
+    for (const TableInput& input : program.step_inputs) evaluation.set(input.variable, input.table.value(t));
+    const std::vector<double> values = evaluation(t, run.motion.state(row));
+    for (std::size_t k = 0; k < nodes.size(); ++k) columns[k].push_back(values[k]);
+  }
+  return columns;
+}
+
+}  // namespace continuo::model
