@@ -2,6 +2,7 @@
 // The order of the checks; each step needs what those before it found.
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -27,10 +28,10 @@ Checked Checker::run() {
   declare();
   if (bases_.empty()) {
     if (errors_ == 0) nothing_to_simulate();
-  } else {
+  } else if (written_out_ <= most_written_out) {  // else it is too large to go on
     fill();
   }
-  std::ranges::stable_sort(diagnostics_, {}, [](const Diagnostic& d) { return d.span.begin; });
+  std::ranges::sort(diagnostics_, {}, [](const Diagnostic& d) { return std::tie(d.span.begin, d.span.end, d.code); });
   Checked result;
   if (errors_ == 0) result.model = std::move(model_);
   result.diagnostics = std::move(diagnostics_);

@@ -6,6 +6,7 @@
 
 #include <continuo/model/check_context.hpp>
 #include <continuo/model/check_families.hpp>
+#include <continuo/model/check_functions.hpp>
 #include <continuo/model/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -74,6 +75,25 @@ void Checker::make_checks() {
   for (Placed<ast::Check>& check : checks_) make_check(*check.text, check.scope, check.span);
 }
 
+/// `h(1)` alone is h at 1.
+Value Checker::value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check) {
+  check.measure = Measure::value;
+  const auto* call = std::get_if<ast::Call>(&text.expression.node);
+  const bool plain = call && call->arguments.size() == 1 && !is_function(call->callee.text) &&
+                     std::holds_alternative<ast::AtEnd>(text.moment);
+  Value value;
+  if (plain) {
+    ast::Expression name{call->callee, call->callee.span};
+    check.moment = moment(ast::AtTime{call->arguments[0]}, scope, span);
+    value = number_of(name, scope);
+  } else {
+    check.moment = moment(text.moment, scope, span);
+    value = number_of(text.expression, scope);
+  }
+  check.node = value.node;
+  return value;
+}
+
 /// The left side: what is measured, and in which unit.
 Value Checker::measure(const ast::Check& text, Scope& scope, Check& check) {
   const Span span = text.measure_span;
@@ -84,11 +104,7 @@ Value Checker::measure(const ast::Check& text, Scope& scope, Check& check) {
   };
   const Value time{.node = model_.graph.constant(0), .measured = time_measure()};
   const Value pure{.node = model_.graph.constant(0), .measured = Measured::known(Unit())};
-  if (const auto* of = std::get_if<ast::ValueOf>(&text.measure)) {
-    check.measure = Measure::value;
-    check.moment = moment(of->moment, scope, span);
-    return value(of->expression);
-  }
+  if (const auto* of = std::get_if<ast::ValueOf>(&text.measure)) return value_at(*of, scope, span, check);
   if (const auto* always = std::get_if<ast::AlwaysValueOf>(&text.measure)) {
     check.measure = Measure::always;
     return value(always->expression);

@@ -201,9 +201,10 @@ class Checker {
   Value of_number(double value);
   Value bad();
   bool want_number(const ast::Expression& text, Value& value);
+  bool want_numbers(Term& a, Term& b);
   bool want_condition(const ast::Expression& text, Value& value);
   Value unary(const ast::Unary& node, Scope& scope);
-  Value binary(const ast::Binary& node, Span span, Scope& scope);
+  Value binary(const ast::Binary& node, Scope& scope);
   Value additive(Op op, const Term& a, const Term& b, Span span, Scope& scope);
   bool align(const Term& a, Term& b, Span span, Scope& scope);
   Value raise(const Term& base, const Term& exponent, Span span);
@@ -267,8 +268,7 @@ class Checker {
   void solve_group(ModeAtWork& work, const std::vector<std::size_t>& members, std::vector<std::uint32_t> open);
   NodeId with_solved(const ModeAtWork& work, NodeId node);
   std::vector<std::string> highest_names(const std::vector<std::uint32_t>& bases) const;
-  void report_empty_equation(const EquationAtWork& equation, const std::vector<std::uint32_t>& variables,
-                             std::size_t mode);
+  void report_empty_equation(ModeAtWork& work, std::size_t index, const std::vector<std::uint32_t>& variables);
   void report_surplus(const ModeAtWork& work, const std::vector<std::size_t>& members,
                       const std::vector<std::uint32_t>& open);
   void report_missing(const ModeAtWork& work);
@@ -311,6 +311,7 @@ class Checker {
   Moment moment(const ast::Moment& text, Scope& scope, Span span);
   void check_event_name(const std::string& begin, Span span);
   void check_time_in_run(const Setting& time, Span span);
+  Value value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check);
 
   const ast::Model& tree_;
   const Source& source_;
@@ -362,7 +363,7 @@ class Checker {
 /// Variables that stand for the highest derivatives while equations are solved for them.
 inline constexpr std::uint32_t highest_begin = 1u << 30;
 /// More members of families and terms of sums than this are a mistake, or a job for C++.
-inline constexpr std::size_t most_written_out = 2'000'000;
+inline constexpr std::size_t most_written_out = 500'000;
 
 std::string with_primes(std::string_view name, int primes);
 /// `a`, `b` and `c`; after five: and 7 more.

@@ -15,13 +15,16 @@ std::vector<std::string> Checker::highest_names(const std::vector<std::uint32_t>
   return names;
 }
 
-void Checker::report_empty_equation(const EquationAtWork& equation, const std::vector<std::uint32_t>& variables,
-                                    std::size_t mode) {
+void Checker::report_empty_equation(ModeAtWork& work, std::size_t index, const std::vector<std::uint32_t>& variables) {
+  const EquationAtWork& equation = work.equations[index];
+  const std::size_t mode = work.mode;
   for (const std::uint32_t variable : variables) {
     const std::size_t state = variable - model_.layout.states;
     if (variable < model_.layout.states || state >= model_.states.size()) continue;
-    const Base& base = bases_[base_of_state(state)];
+    const std::size_t of = base_of_state(state);
+    const Base& base = bases_[of];
     if (model_.modes.size() > 1 && model_.states[state].primes > 0) {
+      work.by[of] = index;  // said here: the mode lacks it
       fail("E234", equation.span,
            fmt::format("mode `{}` must define `{}` as the other modes do", model_.modes[mode].name,
                        with_primes(base.name, base.order)),

@@ -35,8 +35,7 @@ EquationAtWork Checker::read_equation(const Placed<ast::Equation>& equation) {
   std::ranges::sort(held);
   held.erase(std::unique(held.begin(), held.end()), held.end());
   work.holds = std::move(held);
-  const bool good = want_number(left.text, left.value) & want_number(right.text, right.value);
-  if (!good || !align(left, right, equation.span, scope)) {
+  if (!want_numbers(left, right) || !align(left, right, equation.span, scope)) {
     work.bad = true;
     return work;
   }
@@ -68,7 +67,8 @@ void Checker::solve_mode(std::size_t mode) {
 void Checker::sort_out_algebraic(ModeAtWork& work) {
   std::size_t algebraic = 0;
   const Layout& layout = model_.layout;
-  for (EquationAtWork& equation : work.equations) {
+  for (std::size_t e = 0; e < work.equations.size(); ++e) {
+    EquationAtWork& equation = work.equations[e];
     if (!equation.holds.empty() || equation.bad) continue;
     equation.used = true;
     const auto variables = variables_of(model_.graph, equation.residual);
@@ -79,7 +79,7 @@ void Checker::sort_out_algebraic(ModeAtWork& work) {
       model_.algebraic.push_back({equation.residual, work.mode, equation.span});
       continue;
     }
-    report_empty_equation(equation, variables, work.mode);
+    report_empty_equation(work, e, variables);
   }
   if (algebraic == unknowns_.size() || errors_ > 0) return;
   std::vector<std::string> names;

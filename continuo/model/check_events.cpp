@@ -82,7 +82,7 @@ void Checker::make_event(const ast::When& text, Scope& scope, Span span) {
   }
   event.actions = actions_of(text.actions, scope);
   if (event.guard.valid() && model_.graph.value(event.guard)) {
-    warn("W202", text.subject.span, "this event never happens", "its condition does not change");
+    warn("E291", text.subject.span, "this event never happens", "its condition does not change");
   }
   model_.event_order.push_back({false, model_.events.size()});
   model_.events.push_back(std::move(event));

@@ -64,6 +64,12 @@ bool Checker::want_number(const ast::Expression& text, Value& value) {
   return !value.bad;
 }
 
+/// Both are looked at: two mistakes are two messages.
+bool Checker::want_numbers(Term& a, Term& b) {
+  const bool first = want_number(a.text, a.value);
+  return want_number(b.text, b.value) && first;
+}
+
 bool Checker::want_condition(const ast::Expression& text, Value& value) {
   if (!value.condition && !value.bad) {
     fail("E217", text.span, "a condition is wanted here", fmt::format("{} is a number", quote(text.span)),
@@ -84,7 +90,7 @@ Value Checker::elaborate(const ast::Expression& expression, Scope& scope) {
         } else if constexpr (std::is_same_v<T, ast::Unary>) {
           return unary(node, scope);
         } else if constexpr (std::is_same_v<T, ast::Binary>) {
-          return binary(node, expression.span, scope);
+          return binary(node, scope);
         } else if constexpr (std::is_same_v<T, ast::Call>) {
           return call(node, expression.span, scope);
         } else if constexpr (std::is_same_v<T, ast::Conditional>) {
@@ -114,26 +120,27 @@ Value Checker::unary(const ast::Unary& node, Scope& scope) {
   return value;
 }
 
-Value Checker::binary(const ast::Binary& node, Span span, Scope& scope) {
+Value Checker::binary(const ast::Binary& node, Scope& scope) {
   Term a{*node.left, elaborate(*node.left, scope)}, b{*node.right, elaborate(*node.right, scope)};
+  const Span sides = cover(a.text.span, b.text.span);  // without the brackets round them
   const Op op = operation(node.op);
   Graph& g = model_.graph;
   if (op == Op::logical_and || op == Op::logical_or) {
-    const bool good = want_condition(a.text, a.value) & want_condition(b.text, b.value);
-    return good ? Value{.node = g.apply(op, a.value.node, b.value.node), .condition = true} : bad();
+    const bool left = want_condition(a.text, a.value), right = want_condition(b.text, b.value);
+    return left && right ? Value{.node = g.apply(op, a.value.node, b.value.node), .condition = true} : bad();
   }
-  if (!(want_number(a.text, a.value) & want_number(b.text, b.value))) return bad();
+  if (!want_numbers(a, b)) return bad();
   switch (op) {
     case Op::multiply:
       return {g.multiply(a.value.node, b.value.node), product(a.value.measured, b.value.measured)};
     case Op::divide:
       return {g.divide(a.value.node, b.value.node), quotient(a.value.measured, b.value.measured)};
     case Op::power:
-      return raise(a, b, span);
+      return raise(a, b, sides);
     default:
       break;
   }
-  if (!align(a, b, span, scope)) return bad();
+  if (!align(a, b, sides, scope)) return bad();
   if (op == Op::add || op == Op::subtract) {
     return {g.apply(op, a.value.node, b.value.node), common(a.value.measured, b.value.measured)};
   }
@@ -193,7 +200,7 @@ Value Checker::conditional(const ast::Conditional& node, Span span, Scope& scope
   if (!want_condition(*node.condition, condition)) return bad();
   if (yes.value.bad || no.value.bad) return bad();
   const bool conditions = yes.value.condition && no.value.condition;
-  if (!conditions && !(want_number(yes.text, yes.value) & want_number(no.text, no.value))) return bad();
+  if (!conditions && !want_numbers(yes, no)) return bad();
   if (!align(yes, no, span, scope)) return bad();
   return {.node = model_.graph.select(condition.node, yes.value.node, no.value.node),
           .measured = common(yes.value.measured, no.value.measured),

@@ -83,6 +83,7 @@ std::optional<std::string> Checker::key_of(const ast::Name& name, Scope& scope) 
 
 bool Checker::count_written_out(Span span) {
   if (++written_out_ <= most_written_out) return true;
+  if (written_out_ > most_written_out + 1) return false;  // said already
   fail("E221", span, "the model is too large",
        fmt::format("more than {} members of families and terms of sums", most_written_out),
        "take fewer points, or write this system in C++");

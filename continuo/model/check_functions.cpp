@@ -207,6 +207,7 @@ Value Checker::sample(const ast::Call& node, Span span, Scope& scope) {
   Value value = lookup(node.callee, scope);
   const auto when = time_setting(node.arguments[0], scope, "a time");
   if (value.bad || !when) return bad();
+  check_time_in_run(*when, node.arguments[0].span);
   const std::uint32_t variable = model_.layout.size++;
   scope.samples->push_back({variable, value.node, *when});
   value.node = model_.graph.variable(variable);

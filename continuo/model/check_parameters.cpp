@@ -57,7 +57,7 @@ std::optional<Range> Checker::slider(const Definition& definition, double value)
   if (!(result.low < result.high)) {
     fail("E221", range.span, "the range is empty", fmt::format("{:g} is not below {:g}", result.low, result.high));
   } else if (value < result.low || value > result.high) {
-    warn("W201", range.span, fmt::format("`{}` lies outside its range", definition.name),
+    warn("E290", range.span, fmt::format("`{}` lies outside its range", definition.name),
          fmt::format("its value is {:g}", value));
   }
   return result;

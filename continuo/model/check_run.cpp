@@ -140,7 +140,7 @@ void Checker::check_method_fits() {
     fail("E264", span, fmt::format("`{}` is for equations x'' = a(t, x)", *model_.run.method),
          "this model is not made of pairs of position and velocity", "take a general method such as tsitouras5");
   } else if (model_.accelerations_depend_on_velocities) {
-    warn("W203", span, fmt::format("`{}` loses its order here", *model_.run.method),
+    warn("E292", span, fmt::format("`{}` loses its order here", *model_.run.method),
          "an acceleration depends on a velocity", "a general method such as tsitouras5 keeps its order");
   }
 }

@@ -141,7 +141,8 @@ void Checker::lay_out() {
     if (definitions_[i].kind == Definition::Kind::parameter) parameter_order_.push_back(i);
   }
   std::uint32_t next = layout.parameters = layout.states + static_cast<std::uint32_t>(states);
-  std::ranges::stable_sort(parameter_order_, {}, [&](std::size_t i) { return definitions_[i].text->span.begin; });
+  std::ranges::sort(parameter_order_, {},
+                    [&](std::size_t i) { return std::pair(definitions_[i].text->span.begin, i); });
   for (const std::size_t i : parameter_order_) definitions_[i].variable = next++;
   layout.inputs = next;
   for (Definition& definition : definitions_) {

@@ -28,6 +28,7 @@
 #include <continuo/model/expression.hpp>
 #include <continuo/model/source.hpp>
 #include <continuo/model/table.hpp>
+#include <continuo/solve/event.hpp>
 #include <continuo/system/system.hpp>
 
 namespace continuo::model {
@@ -133,7 +134,7 @@ struct Action {
   Span span;
 };
 
-enum class Direction { rises, falls, crosses };
+using continuo::Direction;  // rises, falls, crosses
 
 /// `when lhs falls through rhs in MODE { ... }`: a root of guard = lhs - rhs. `when a < b { ... }`: the condition
 /// becomes true where guard = b - a rises through zero; `and`, `or`, `not` are min, max and the sign of guards.

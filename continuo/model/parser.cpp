@@ -348,6 +348,7 @@ void Parser::explain_left_side(const Expression& left) {
     fail(error("E134", left.span, "a derivative is written with a prime", "", fmt::format("write {}' = ...", name)));
   const auto* call = std::get_if<ast::Call>(&left.node);
   if (!call || call->arguments.empty() || !is_derivative_call(call->callee.text)) return;
+  if (!std::holds_alternative<ast::Name>(call->arguments.front().node)) return;  // d(0) = 3: the start of a state d
   fail(error("E134", left.span, "a derivative is written with a prime", "",
              fmt::format("write {}' = ...", source_.slice(call->arguments.front().span))));
 }

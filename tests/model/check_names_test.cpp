@@ -1,0 +1,104 @@
+// Names, definitions and types.
+#include <cmath>
+
+#include "check_helpers.hpp"
+
+namespace continuo::model {
+namespace {
+
+const std::string decay = "x' = -x\nx(0) = 1\nrun 0..1\n";
+
+TEST(CheckNames, AnUnknownNameIsCorrected) {
+  const Said message = said("param stiffness = 2\nx' = -stifness*x\nx(0) = 1\nrun 0..1\n", "E210");
+  EXPECT_EQ(place(message), "2:7");
+  EXPECT_EQ(message.message, "there is no `stifness`");
+  EXPECT_EQ(message.help, "did you mean `stiffness`?");
+}
+
+TEST(CheckNames, ANameIsDefinedOnce) {
+  EXPECT_EQ(place(said("param k = 1, k = 2\n" + decay, "E211")), "1:14");
+  EXPECT_EQ(place(said("param x = 1\n" + decay, "E213")), "2:1");
+  EXPECT_EQ(place(said("mode a { x' = 1 }\nmode a { x' = 2 }\nx(0) = 1\n", "E211")), "2:6");
+}
+
+TEST(CheckNames, CirclesAreShown) {
+  const Said message = said("let a = b + 1, b = c, c = 2*a\n" + decay, "E212");
+  EXPECT_EQ(place(message), "1:29");
+  EXPECT_EQ(message.label, "a -> b -> c -> a");
+  EXPECT_EQ(place(said("param p = q, q = p\n" + decay, "E212")), "1:18");
+}
+
+TEST(CheckNames, ParametersMayDependOnOthersInAnyOrder) {
+  const Model model = good("param a = 2*b, b = 3\n" + decay);
+  EXPECT_EQ(model.parameters[0].value, 6);
+  EXPECT_FALSE(model.parameters[0].independent);
+  EXPECT_EQ(start_values(model, {{"b", 5.0}})[model.parameters[0].variable], 10);
+}
+
+TEST(CheckNames, NamesWithAMeaningAreNotTaken) {
+  EXPECT_EQ(place(said("param t = 1\n" + decay, "E214")), "1:7");
+  EXPECT_EQ(place(said("let max = 1\n" + decay, "E214")), "1:5");
+}
+
+TEST(CheckNames, FunctionsAndTheirArguments) {
+  EXPECT_EQ(place(said("output a = sine(x)\n" + decay, "E215")), "1:12");
+  EXPECT_EQ(place(said("output a = sin(x, 1)\n" + decay, "E216")), "1:12");
+  EXPECT_EQ(place(said("output a = atan2(x)\n" + decay, "E216")), "1:12");
+  EXPECT_EQ(place(said("param k = 2\noutput a = k(x + 1)\n" + decay, "E282")), "2:12");
+}
+
+TEST(CheckNames, FunctionsAreWhatTheyAreCalled) {
+  const Model model = good(
+      "output a = asinh(2), b = acosh(2), c = atanh(0.5), d = log2(8), e = cbrt(-27), f = round(2.5)\n"
+      "output g = mod(-1, 3), h = hypot(2, 3, 6), i = max(1, 5, 3), j = pow(2, 10), k = ln(exp(3))\n" +
+      decay);
+  EXPECT_NEAR(value_of(model, "a"), std::asinh(2), 1e-15);
+  EXPECT_NEAR(value_of(model, "b"), std::acosh(2), 1e-15);
+  EXPECT_NEAR(value_of(model, "c"), std::atanh(0.5), 1e-15);
+  EXPECT_DOUBLE_EQ(value_of(model, "d"), 3);
+  EXPECT_DOUBLE_EQ(value_of(model, "e"), -3);
+  EXPECT_EQ(value_of(model, "f"), 3);
+  EXPECT_EQ(value_of(model, "g"), 2);
+  EXPECT_DOUBLE_EQ(value_of(model, "h"), 7);
+  EXPECT_EQ(value_of(model, "i"), 5);
+  EXPECT_EQ(value_of(model, "j"), 1024);
+  EXPECT_DOUBLE_EQ(value_of(model, "k"), 3);
+}
+
+TEST(CheckNames, NumbersAndConditionsAreTwoThings) {
+  EXPECT_EQ(place(said("output a = (x > 1) + 2\n" + decay, "E217")), "1:12");
+  EXPECT_EQ(place(said("output a = if x then 1 else 2\n" + decay, "E217")), "1:15");
+  EXPECT_EQ(place(said("output a = x > 1\n" + decay, "E217")), "1:12");
+  EXPECT_EQ(place(said("output a = if x and x > 1 then 1 else 2\n" + decay, "E217")), "1:15");
+  good("let on = x > 1\noutput a = if not on then 1 else 2\n" + decay);
+}
+
+TEST(CheckNames, DerivativesAreThereUpToTheOrder) {
+  EXPECT_EQ(value_of(good("output a = x'\n" + decay), "a"), -1);  // what the equation says
+  EXPECT_EQ(place(said("output a = x''\n" + decay, "E218")), "1:12");
+  EXPECT_EQ(place(said("param k = 1\noutput a = k'\n" + decay, "E218")), "2:12");
+}
+
+TEST(CheckNames, EnergyIsTheSumOfAllEnergies) {
+  const Model model = good("energy kinetic = 2*x, potential = 3\noutput e = energy\n" + decay);
+  EXPECT_EQ(value_of(model, "e"), 5);
+  EXPECT_EQ(evaluate(model, model.total_energy, start_values(model)), 5);
+}
+
+TEST(CheckNames, CommentsBesideParametersAreKept) {
+  const Model model = good("param k = 2   # stiffness of the spring\n" + decay);
+  EXPECT_EQ(model.parameters[0].comment, "stiffness of the spring");
+}
+
+TEST(CheckNames, FilesAreLookedFor) {
+  EXPECT_EQ(place(said("table drag from \"nowhere.csv\"\n" + decay, "E270")), "1:17");
+  EXPECT_EQ(place(said("output a = interp(x, 3)\n" + decay, "E271")), "1:19");
+  EXPECT_FALSE(load("nowhere.sim"));
+}
+
+TEST(CheckNames, AMistakeInAFamilyIsSaidOnce) {
+  EXPECT_EQ(count_said("for i in 1..100 { x[i]' = -kk*x[i]\nx[i](0) = 1 }\nrun 0..1\n"), 1U);
+}
+
+}  // namespace
+}  // namespace continuo::model
