@@ -1,0 +1,217 @@
+// continuo/model/describe.cpp
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <continuo/model/describe.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+class Writer {
+ public:
+  Writer(const Model& model, const DescribeOptions& options) : model_(model), options_(options) {}
+
+  std::string text() && {
+    title();
+    equations();
+    states();
+    parameters();
+    inputs();
+    quantities("Lets", model_.lets);
+    quantities("Outputs", model_.outputs);
+    quantities("Energies", model_.energies);
+    events();
+    experiment();
+    remarks();
+    return std::move(text_);
+  }
+
+ private:
+  using Row = std::vector<std::string>;
+
+  template <class... Arguments>
+  void line(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
+    text_ += '\n';
+  }
+
+  /// Columns side by side, each as wide as its widest entry.
+  void table(const std::vector<Row>& rows, std::size_t more = 0) {
+    std::vector<std::size_t> width;
+    for (const Row& row : rows) {
+      width.resize(std::max(width.size(), row.size()));
+      for (std::size_t i = 0; i + 1 < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
+    }
+    for (const Row& row : rows) {
+      std::string text = " ";
+      for (std::size_t i = 0; i < row.size(); ++i) text += fmt::format(" {:<{}}", row[i], width[i]);
+      text.erase(text.find_last_not_of(' ') + 1);
+      line("{}", text);
+    }
+    if (more > 0) line("  ... and {} more", more);
+  }
+
+  /// Under a heading, a row for each of the first items.
+  template <class List, class MakeRow>
+  void section(std::string_view heading, const List& list, MakeRow&& make_row) {
+    if (list.empty()) return;
+    line("\n{}", heading);
+    const std::size_t shown = std::min(list.size(), options_.most_listed);
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < shown; ++i) rows.push_back(make_row(list[i]));
+    table(rows, list.size() - shown);
+  }
+
+  std::string expression(NodeId node) const {
+    if (!node.valid()) return "?";
+    return to_text(
+        model_.graph, node, [&](std::uint32_t v) { return variable_name(model_, v); }, options_.longest_expression);
+  }
+  static std::string in_brackets(const std::string& unit) { return unit.empty() ? "" : "[" + unit + "]"; }
+  static std::string range(const std::optional<Range>& range) {
+    return range ? fmt::format("in {:g}..{:g}", range->low, range->high) : "";
+  }
+  static std::string beside(const std::string& comment) { return comment.empty() ? "" : "# " + comment; }
+  /// `2*pi*sqrt(m/k) = 6.28`, and a plain number once.
+  std::string with_value(NodeId node, double value) const {
+    const std::string number = fmt::format("{:.6g}", value);
+    return model_.graph.value(node) ? number : expression(node) + " = " + number;
+  }
+
+  void title() {
+    line("{}", model_.name);
+    const std::string first = model_.heading.substr(0, model_.heading.find('\n'));
+    if (!first.empty()) line("{}", first);
+  }
+
+  void equations() {
+    line("\nEquations, of first order");
+    const std::size_t count = model_.states.size(), shown = std::min(count, options_.most_listed);
+    for (std::size_t m = 0; m < model_.modes.size(); ++m) {
+      const Mode& mode = model_.modes[m];
+      const bool starts = m == model_.start_mode;
+      if (model_.modes.size() > 1) line("  mode {}{}", mode.name, starts ? ", where the run starts" : "");
+      std::vector<Row> rows;
+      for (std::size_t i = 0; i < shown; ++i) {
+        rows.push_back({"(" + model_.states[i].column + ")'", "= " + expression(mode.derivatives[i])});
+      }
+      table(rows, count - shown);
+    }
+    for (const AlgebraicEquation& equation : model_.algebraic) line("  0 = {}", expression(equation.residual));
+  }
+
+  void states() {
+    const std::vector<double> start = start_values(model_);
+    section(fmt::format("States ({})", model_.states.size()), model_.states, [&](const State& s) -> Row {
+      return {s.column, in_brackets(s.unit), "starts at " + with_value(s.initial, start[s.variable])};
+    });
+  }
+
+  void parameters() {
+    section("Parameters", model_.parameters, [&](const Parameter& p) -> Row {
+      return {p.name,         "= " + with_value(p.expression, p.value), in_brackets(p.unit),
+              range(p.range), p.structural ? "decides the size" : "",   beside(p.comment)};
+    });
+  }
+
+  void inputs() {
+    section("Inputs", model_.inputs, [&](const Input& i) -> Row {
+      return {i.name,           fmt::format("= {:g}", i.value),      in_brackets(i.unit),
+              range(i.range),   i.key.empty() ? "" : "key " + i.key, i.file.empty() ? "" : "from " + i.file,
+              beside(i.comment)};
+    });
+    section("Unknowns", model_.unknowns,
+            [&](const Unknown& u) -> Row { return {u.name, in_brackets(u.unit), "guess " + expression(u.guess)}; });
+  }
+
+  void quantities(std::string_view heading, const std::vector<Quantity>& list) {
+    section(heading, list,
+            [&](const Quantity& q) -> Row { return {q.name, in_brackets(q.unit), "= " + expression(q.node)}; });
+  }
+
+  std::string actions(const Block& block) const {
+    std::string text;
+    for (const Action& action : block)
+      text += (text.empty() ? "" : "; ") + std::visit([&](const auto& what) { return one_action(what); }, action.what);
+    return text;
+  }
+  std::string one_action(const Assign& assign) const {
+    return model_.states[assign.state].column + " := " + expression(assign.value);
+  }
+  std::string one_action(const If& choice) const {
+    std::string text = "if " + expression(choice.condition) + " { " + actions(choice.then) + " }";
+    if (!choice.otherwise.empty()) text += " else { " + actions(choice.otherwise) + " }";
+    return text;
+  }
+  std::string one_action(const Go& go) const { return "go " + model_.modes[go.mode].name; }
+  std::string one_action(const Mark& mark) const { return "mark \"" + mark.text + "\""; }
+  std::string one_action(const Stop& stop) const {
+    std::string text = stop.text.empty() ? "stop" : "stop \"" + stop.text + "\"";
+    return stop.after > 1 ? text + fmt::format(" after {}", stop.after) : text;
+  }
+
+  void events() {
+    section("Events", model_.event_order, [&](const EventOrder& order) -> Row {
+      if (order.scheduled) {
+        const Scheduled& event = model_.schedule[order.index];
+        return {event.name, "{ " + actions(event.actions) + " }"};
+      }
+      const When& event = model_.events[order.index];
+      return {"when " + event.name, "{ " + actions(event.actions) + " }"};
+    });
+  }
+
+  void experiment() {
+    const RunSettings& run = model_.run;
+    if (!run.from || !run.to) return;
+    const std::string unit = model_.time_unit.empty() ? "" : " " + model_.time_unit;
+    std::string text = fmt::format("  t = {:g}..{:g}{}", run.from->value, run.to->value, unit);
+    if (run.output && run.output->interval)
+      text += fmt::format(", output every {:g}{}", run.output->interval->value, unit);
+    if (run.output && run.output->kind == OutputPlan::Kind::steps) text += ", output at every step";
+    if (run.output && run.output->first) {
+      text +=
+          fmt::format(", {} outputs per decade from {:g}{}", run.output->per_decade, run.output->first->value, unit);
+    }
+    if (run.method) text += ", method " + *run.method;
+    if (run.step) text += fmt::format(", step {:g}{}", run.step->value, unit);
+    if (run.rtol) text += fmt::format(", tol {:g}", *run.rtol);
+    if (!run.atol.empty()) text += fmt::format(", abs {:g}", fmt::join(run.atol, ", "));
+    if (run.realtime) text += ", in real time";
+    line("\nRun\n{}", text);
+    if (!model_.checks.empty()) {
+      line("  {} {} the result", model_.checks.size(), model_.checks.size() == 1 ? "check judges" : "checks judge");
+    }
+  }
+
+  void remarks() {
+    std::vector<std::string> remarks;
+    if (model_.needs_boundary_solver()) remarks.emplace_back("conditions at several times: a boundary-value problem");
+    if (model_.needs_dae_solver()) remarks.emplace_back("algebraic equations: a DAE of index 1");
+    if (model_.all_paired && !model_.accelerations_depend_on_velocities) {
+      remarks.emplace_back("x'' = a(t, x): velocity_verlet and central_difference fit, too");
+    }
+    if (!model_.has_units) remarks.emplace_back("no units");
+    if (remarks.empty()) return;
+    line("\nRemarks");
+    for (const std::string& remark : remarks) line("  {}", remark);
+  }
+
+  const Model& model_;
+  const DescribeOptions& options_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string describe(const Model& model, const DescribeOptions& options) {
+  return Writer(model, options).text();
+}
+
+}  // namespace continuo::model
