@@ -26,7 +26,8 @@ void single(Real* registers, const Instruction& i) {
 }
 
 /// Operands are brought side by side a piece at a time, so that the loop over them is plain.
-inline constexpr std::size_t piece = 64;
+template <class Real>
+inline constexpr std::size_t piece = std::max<std::size_t>(4, 64 * sizeof(double) / sizeof(Real));
 
 template <class Real>
 const Real* side_by_side(const Operand& operand, const Real* registers, const std::uint32_t* gathered,
@@ -35,7 +36,7 @@ const Real* side_by_side(const Operand& operand, const Real* registers, const st
     case Operand::Layout::contiguous:
       return registers + operand.begin + begin;
     case Operand::Layout::one:
-      if (begin == 0) std::fill_n(buffer, std::min(count, piece), registers[operand.begin]);
+      if (begin == 0) std::fill_n(buffer, std::min(count, piece<Real>), registers[operand.begin]);
       return buffer;
     case Operand::Layout::gathered:
       break;
@@ -48,9 +49,9 @@ const Real* side_by_side(const Operand& operand, const Real* registers, const st
 template <Code code, class Real>
 void many(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
   constexpr std::size_t n = operands(code);
-  Real buffers[n][piece];
-  for (std::size_t begin = 0; begin < batch.count; begin += piece) {
-    const std::size_t count = std::min<std::size_t>(piece, batch.count - begin);
+  Real buffers[n][piece<Real>];
+  for (std::size_t begin = 0; begin < batch.count; begin += piece<Real>) {
+    const std::size_t count = std::min<std::size_t>(piece<Real>, batch.count - begin);
     const Real* from[4];
     for (std::size_t j = 0; j < 4; ++j) {
       from[j] = j < n ? side_by_side(batch.operand[j], registers, gathered, begin, count, buffers[std::min(j, n - 1)])
@@ -92,10 +93,7 @@ Real look_up(const Table& table, const Real& x, bool slope) {
     return slope ? Real(piece_at.slope) : piece_at.y + piece_at.slope * (x - piece_at.x);
   } else {
     Real y = x;
-    for (std::size_t lane = 0; lane < Real::size(); ++lane) {
-      const auto at = static_cast<double>(x[lane]);
-      y[lane] = static_cast<std::remove_cvref_t<decltype(y[lane])>>(slope ? table.slope(at) : table.value(at));
-    }
+    for (std::size_t lane = 0; lane < Real::width; ++lane) y.set(lane, look_up(table, x[lane], slope));
     return y;
   }
 }

@@ -6,7 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/model/tape.hpp>
+#include <continuo/model/tape_run.hpp>
+#include <continuo/numerics/lanes.hpp>
 
 namespace continuo::model {
 namespace {
@@ -198,6 +199,62 @@ TEST(Tape, ReadsTables) {
   EXPECT_EQ(run<double>(tape, values), (std::vector<double>{0.5, 2}));
   values[0] = 5;
   EXPECT_EQ(run<double>(tape, values), (std::vector<double>{2, 0}));
+}
+
+TEST(Tape, LanesGiveWhatSingleNumbersGive) {
+  using Four = Lanes<double, 4>;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RandomExpressions e(seed);
+    for (int i = 0; i < 60; ++i) e.grow();
+    const std::vector<NodeId> outputs(e.nodes.end() - 10, e.nodes.end());
+    const Tape tape(e.g, outputs, layout);
+    std::vector<Four> registers(tape.register_count()), together(outputs.size());
+    std::vector<std::vector<double>> alone;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      std::vector<double> values;
+      for (std::uint32_t i = 0; i < variables; ++i) values.push_back(std::sin(3.0 * i + static_cast<double>(lane)));
+      for (std::uint32_t i = 0; i < variables; ++i) registers[i].set(lane, values[i]);
+      alone.push_back(run<double>(tape, values));
+    }
+    tape.prepare<Four>(registers);
+    tape.evaluate<Four>(registers, together);
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        // The elementary functions of lanes differ from those of <cmath> by a few units in the last place.
+        EXPECT_NEAR(together[i][lane], alone[lane][i], 1e-12 * (1 + std::abs(alone[lane][i])));
+      }
+    }
+  }
+}
+
+TEST(Tape, LanesReadTablesOneByOne) {
+  Graph g;
+  const std::vector<Table> tables = {Table({0, 1}, {0, 2}, Table::Between::linear)};
+  const Tape tape(g, std::vector{g.interpolate(0, g.variable(0))}, {.variables = 1}, tables);
+  std::vector<Lanes<double, 4>> registers(tape.register_count()), out(1);
+  for (std::size_t lane = 0; lane < 4; ++lane) registers[0].set(lane, 0.25 * static_cast<double>(lane));
+  tape.prepare<Lanes<double, 4>>(registers);
+  tape.evaluate<Lanes<double, 4>>(registers, out);
+  for (std::size_t lane = 0; lane < 4; ++lane) EXPECT_EQ(out[0][lane], 0.5 * static_cast<double>(lane));
+}
+
+/// A number and its derivative: what a type for automatic differentiation has to bring to be evaluated with.
+struct Dual {
+  double value = 0, slope = 0;
+  Dual() = default;
+  explicit Dual(double v, double s = 0) : value(v), slope(s) {}
+  friend Dual operator+(Dual a, Dual b) { return Dual(a.value + b.value, a.slope + b.slope); }
+  friend Dual operator-(Dual a, Dual b) { return Dual(a.value - b.value, a.slope - b.slope); }
+  friend Dual operator-(Dual a) { return Dual(-a.value, -a.slope); }
+  friend Dual operator*(Dual a, Dual b) { return Dual(a.value * b.value, a.value * b.slope + a.slope * b.value); }
+};
+
+TEST(Tape, OperationsAreGenericOverTypesThatCarryDerivatives) {
+  using tape::Code;
+  // d(x*y + z)/dx = y
+  const Dual d = tape::operate<Code::multiply_add>(Dual(2, 1), Dual(5), Dual(1), Dual());
+  EXPECT_EQ(d.value, 11);
+  EXPECT_EQ(d.slope, 5);
 }
 
 TEST(Tape, OutputsMayBeVariablesAndConstants) {
