@@ -96,6 +96,12 @@ refused.)"},
         "E342", "the value is outside the declared range",
         R"(The model declares a range for the parameter (in 0..1). The run goes on with your value; the range is what the
 slider of the live view offers and what the author thought of.)"},
+    Code{
+        "E343", "the parameter decides how many equations there are",
+        R"(A parameter that stands in the bounds of a `for` or `sum` (for i in 1..N) makes the equations; a model that has
+been read cannot change it any more. The command line reads the model anew; in C++ give it to `load`:
+
+  load("heat.sim", {.overrides = {{"N", 200}}}))"},
 };
 
 }  // namespace

@@ -23,6 +23,7 @@ class Planner {
 
   std::optional<Plan> plan() {
     const std::size_t before = problems_.size();
+    check_parameters();
     plan_.variables = start_values(model_, experiment_.parameters, experiment_.from);
     set_interval();
     set_accuracy();
@@ -39,6 +40,19 @@ class Planner {
   }
   void fail(const char* code, std::string message, std::string help) {
     problems_.push_back(error(code, run_.span, std::move(message), {}, std::move(help)));
+  }
+
+  void check_parameters() {
+    for (const auto& [name, given] : experiment_.parameters) {
+      const std::size_t i = find_parameter(model_, name);
+      if (i == npos) {
+        problems_.push_back(no_parameter(model_, name, run_.span));
+      } else if (model_.parameters[i].structural && given != model_.parameters[i].value) {
+        problems_.push_back(error("E343", model_.parameters[i].span,
+                                  fmt::format("`{}` decides how many equations there are", name), {},
+                                  "read the model anew with this value (CheckOptions::overrides)"));
+      }
+    }
   }
 
   void set_interval() {

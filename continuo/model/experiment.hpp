@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <continuo/model/diagnostic.hpp>
@@ -46,8 +47,11 @@ struct Plan {
   std::vector<double> variables;  // the register file at the start
 };
 
-/// The plan, or why there is none: E33x.
+/// The plan, or why there is none: E33x, E34x.
 std::optional<Plan> plan(const Model& model, const Experiment& experiment, std::vector<Diagnostic>& problems);
+
+/// E340 with the names that may have been meant.
+Diagnostic no_parameter(const Model& model, std::string_view name, Span span);
 
 /// The times at which rows are wanted, one after the other; infinity when there are no more.
 class OutputTimes {

@@ -9,7 +9,10 @@
 namespace continuo::model {
 
 ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<const double> variables)
-    : program_(std::move(program)), mode_(program_->model.start_mode) {
+    : program_(std::move(program)),
+      mode_(program_->model.start_mode),
+      variables_(variables.begin(), variables.end()),
+      jacobians_(program_->model.modes.size()) {
   const Layout& layout = program_->model.layout;
   for (const auto& tape : program_->derivatives) derivatives_.emplace_back(tape, layout, variables);
   for (const ProgramGuards& guards : program_->guards) guards_.emplace_back(guards.tape, layout, variables);
@@ -26,6 +29,10 @@ void ModelSystem::for_each(Visit&& visit) {
 }
 
 void ModelSystem::set(std::uint32_t variable, double value) {
+  variables_[variable] = value;
+  for (auto& jacobian : jacobians_) {
+    if (jacobian) jacobian->set(variable, value);
+  }
   for_each([&](Evaluation& evaluation) { evaluation.set(variable, value); });
 }
 
@@ -34,6 +41,12 @@ void ModelSystem::guards(double t, const X& x, std::span<double> values) {
   if (events.empty()) return;
   guards_[mode_](t, x, std::span(guard_values_).first(events.size()));
   for (std::size_t k = 0; k < events.size(); ++k) values[events[k]] = guard_values_[k];
+}
+
+void ModelSystem::jacobian(double t, const X& x, std::span<double> rows) {
+  auto& mine = jacobians_[mode_];
+  if (!mine) mine.emplace(*program_, mode_, variables_);
+  (*mine)(t, x, rows);
 }
 
 ModelJacobian::ModelJacobian(const ModelProgram& program, std::size_t mode, std::span<const double> variables) {

@@ -6,7 +6,9 @@
 //   system(t, x, dxdt);
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -16,6 +18,26 @@
 #include <continuo/system/system.hpp>
 
 namespace continuo::model {
+
+/// df/dx of one mode, exact, with its sparsity: the seat of the implicit methods.
+class ModelJacobian {
+ public:
+  ModelJacobian(const ModelProgram& program, std::size_t mode, std::span<const double> variables);
+
+  /// d f_i / d x_j, row by row.
+  void operator()(double t, std::span<const double> x, std::span<double> rows);
+  /// The entries that are not zero everywhere.
+  struct Place {
+    std::uint32_t row, column;
+  };
+  std::span<const Place> pattern() const { return pattern_; }
+  void set(std::uint32_t variable, double value) { entries_.set(variable, value); }
+
+ private:
+  std::vector<Place> pattern_;
+  Evaluation entries_;
+  std::vector<double> values_;
+};
 
 class ModelSystem {
  public:
@@ -44,6 +66,8 @@ class ModelSystem {
   std::string_view component_name(std::size_t i) const { return model().states[i].column; }
   std::size_t pair_count(std::size_t) const { return model().pairs.size(); }
   PositionVelocity pair(std::size_t i, std::size_t) const { return model().pairs[i]; }
+  /// df/dx, n*n row by row. The first call in each mode differentiates and compiles.
+  void jacobian(double t, const X& x, std::span<double> rows);
   bool ignores_velocity(const X&) const { return !model().accelerations_depend_on_velocities; }
 
  private:
@@ -52,27 +76,10 @@ class ModelSystem {
 
   std::shared_ptr<const ModelProgram> program_;
   std::size_t mode_;
+  std::vector<double> variables_;                        // parameters and inputs as they are now
+  std::vector<std::optional<ModelJacobian>> jacobians_;  // by mode
   std::vector<Evaluation> derivatives_, guards_, event_blocks_, schedule_blocks_;
   std::vector<double> guard_values_;
-};
-
-/// df/dx of one mode, exact, with its sparsity: the seat of the implicit methods.
-class ModelJacobian {
- public:
-  ModelJacobian(const ModelProgram& program, std::size_t mode, std::span<const double> variables);
-
-  /// d f_i / d x_j, row by row.
-  void operator()(double t, std::span<const double> x, std::span<double> rows);
-  /// The entries that are not zero everywhere.
-  struct Place {
-    std::uint32_t row, column;
-  };
-  std::span<const Place> pattern() const { return pattern_; }
-
- private:
-  std::vector<Place> pattern_;
-  Evaluation entries_;
-  std::vector<double> values_;
 };
 
 }  // namespace continuo::model

@@ -1,8 +1,10 @@
 // continuo/model/setting.cpp
 // Parameters given by name on the command line. The value is read by the language itself, so everything that may
 // stand behind `param k =` may stand here.
+#include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -47,43 +49,56 @@ std::optional<double> in_unit_of(const Parameter& parameter, const Parameter& gi
   return std::nullopt;
 }
 
+/// The place of a part within the whole setting.
+Span place(std::string_view whole, std::string_view part) {
+  const auto begin = static_cast<std::uint32_t>(part.data() - whole.data());
+  return {begin, begin + static_cast<std::uint32_t>(part.size())};
+}
+
+std::string known_names(const Model& model, std::string_view name) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
+  std::string help = did_you_mean(name, names);
+  if (!help.empty() || names.size() > 20) return help;
+  return names.empty() ? "it has none" : fmt::format("its parameters are {}", fmt::join(names, ", "));
+}
+
 }  // namespace
+
+Diagnostic no_parameter(const Model& model, std::string_view name, Span span) {
+  return error("E340", span, fmt::format("the model has no parameter `{}`", name), {}, known_names(model, name));
+}
 
 std::optional<ParameterSetting> parse_setting(const Model& model, std::string_view text,
                                               std::vector<Diagnostic>& problems) {
   const std::size_t equals = text.find('=');
-  const std::string name(trimmed(text.substr(0, equals)));
+  const std::string_view name = trimmed(text.substr(0, equals));
   if (equals == std::string_view::npos || name.empty()) {
-    problems.push_back(error("E341", {}, fmt::format("`{}` sets nothing", text), {}, "write NAME=VALUE, such as k=5"));
+    problems.push_back(
+        error("E341", place(text, text), fmt::format("`{}` sets nothing", text), {}, "write NAME=VALUE, such as k=5"));
     return std::nullopt;
   }
   const std::size_t index = find_parameter(model, name);
   if (index == npos) {
-    std::vector<std::string> names;
-    for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
-    std::string help = did_you_mean(name, names);
-    if (help.empty() && !names.empty() && names.size() <= 20) {
-      help = fmt::format("its parameters are {}", fmt::join(names, ", "));
-    }
-    problems.push_back(error("E340", {}, fmt::format("the model has no parameter `{}`", name), {}, std::move(help)));
+    problems.push_back(no_parameter(model, name, place(text, name)));
     return std::nullopt;
   }
   const Parameter& parameter = model.parameters[index];
+  const std::string_view given_text = trimmed(text.substr(equals + 1));
+  const Span span = given_text.empty() ? place(text, text) : place(text, given_text);
   std::string problem;
-  const auto given = read_value(trimmed(text.substr(equals + 1)), problem);
+  const auto given = read_value(given_text, problem);
   const auto value = given ? in_unit_of(parameter, *given, problem) : std::nullopt;
   if (!value) {
-    problems.push_back(
-        error("E341", parameter.span,
-              fmt::format("`{}` cannot be set to `{}`: {}", name, trimmed(text.substr(equals + 1)), problem)));
+    problems.push_back(error("E341", span, fmt::format("`{}` cannot be set to `{}`", name, given_text), problem));
     return std::nullopt;
   }
   if (parameter.range && (*value < parameter.range->low || *value > parameter.range->high)) {
-    problems.push_back(warning("E342", parameter.span,
-                               fmt::format("{} = {} is outside the range {}..{} the model declares", name, *value,
+    problems.push_back(warning("E342", span,
+                               fmt::format("{} = {} is outside the range {}..{} that the model declares", name, *value,
                                            parameter.range->low, parameter.range->high)));
   }
-  return ParameterSetting{name, *value};
+  return ParameterSetting{std::string(name), *value};
 }
 
 }  // namespace continuo::model

@@ -99,6 +99,9 @@ class Gatherer {
     if (is_table) {
       made = node.op == Op::interpolate ? to_.interpolate(node.number, whole(node.a))
                                         : to_.interpolate_slope(node.number, whole(node.a));
+    } else if (node.op == Op::hypotenuse) {  // its squares may be needed elsewhere, its own square is their sum
+      const NodeId a = whole(node.a), b = whole(node.b);
+      made = to_.apply(Op::square_root, to_.add(to_.multiply(a, a), to_.multiply(b, b)));
     } else if (arity(node.op) == 3) {
       made = to_.select(whole(node.a), whole(node.b), whole(node.c));
     } else if (arity(node.op) == 2) {

@@ -58,6 +58,24 @@ TEST(Simulate, ImpactsOfABouncingBallAreExactToTwelveDigits) {
   EXPECT_NEAR(run.events[0].after[1], 0.7 * 9.81 * first, 1e-11);
 }
 
+TEST(Simulate, ABallWithoutLossMissesNoBounceInAThousandSeconds) {
+  // The action leaves h where the event found it, a rounding of t below the floor: setting it to 0 would lift the ball
+  // by that much each time.
+  const auto run = run_of(R"(
+param g = 9.81
+h'' = -g
+h(0) = 1; h'(0) = 0
+when h falls through 0 { h' := -h' }
+energy kinetic = 1/2*h'^2, potential = g*h
+run 0..1000 method dop853 tol 1e-10
+)");
+  // Impacts at (2 n - 1) sqrt(2 h0/g).
+  const double first = std::sqrt(2 / 9.81);
+  EXPECT_EQ(run.outcome.ending, Ending::reached_end);
+  EXPECT_EQ(run.events.size(), static_cast<std::size_t>(std::floor((1000 / first + 1) / 2)));
+  EXPECT_LT(run.energy->drift, 1e-10);
+}
+
 TEST(Simulate, BouncesThatPileUpAreE310WithTheirLimit) {
   const Simulated simulated = simulate(model_of(bouncing), {.to = 5});
   ASSERT_TRUE(simulated.run);
@@ -119,6 +137,65 @@ run 0..4
   // At 3 both actions read n = 14, a = 1; the later assignment to n stands.
   EXPECT_EQ(run.final_state()[0], 17);
   EXPECT_EQ(run.final_state()[1], 14);
+}
+
+TEST(Simulate, EventsOfOneInstantReadTheSameState) {
+  // Both guards pass zero at t = 1: the states are exchanged, not copied over one another.
+  const auto run = run_of(R"(
+x' = 1
+y' = 2
+x(0) = 0; y(0) = 0
+when x rises through 1 { x := y }
+when y rises through 2 { y := x }
+run 0..1.25
+)");
+  ASSERT_EQ(run.events.size(), 2u);
+  EXPECT_NEAR(run.final_state()[0], 2.25, 1e-12);
+  EXPECT_NEAR(run.final_state()[1], 1.5, 1e-12);
+}
+
+TEST(Simulate, AnEventMayFireAnother) {
+  const auto run = run_of(R"(
+x' = 1
+n' = 0
+x(0) = 0; n(0) = 0
+when x rises through 1 { n := 5 }
+when n rises through 3 { x := 10 }
+run 0..2
+)");
+  ASSERT_EQ(run.events.size(), 2u);
+  EXPECT_EQ(run.events[0].t, run.events[1].t);
+  EXPECT_NEAR(run.final_state()[0], 11, 1e-12);
+}
+
+TEST(Simulate, ModesChangedTogetherWithTheStateTakeEffectAtOnce) {
+  const auto run = run_of(R"(
+mode up { x' = 1 }
+mode down { x' = -1 }
+x(0) = 0
+when x rises through 1 in up { go down }
+when x falls through 0 in down { go up }
+run 0..10.5
+)");
+  ASSERT_EQ(run.events.size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(run.events[i].t, static_cast<double>(i + 1), 1e-12);
+}
+
+TEST(Simulate, ARelayThatClicksForEverIsNamed) {
+  // x' = (x > 0.5 ? -1 : 1) as two modes without a gap between them.
+  const std::string relay = R"(
+mode on { x' = 1 }
+mode off { x' = -1 }
+x(0) = 0
+when x rises through 0.5 in on { go off }
+when x falls through 0.5 in off { go on }
+run 0..2
+)";
+  const Simulated simulated = simulate(model_of(relay));
+  ASSERT_TRUE(simulated.run);
+  EXPECT_EQ(simulated.run->outcome.ending, Ending::events_accumulate);
+  EXPECT_EQ(simulated.diagnostics.front().code, "E310");
+  EXPECT_NEAR(simulated.run->outcome.limit_time, 0.5, 1e-9);
 }
 
 TEST(Simulate, StopAndMarkAreTold) {
@@ -216,6 +293,11 @@ TEST(Simulate, WhatCannotBeRunIsSaid) {
   EXPECT_EQ(code_of(decay, {.to = -1}), "E333");
   EXPECT_EQ(code_of("x' = -x\nx(0) = 1\n"), "E333");
   EXPECT_EQ(code_of(decay, {.output = -1}), "E333");
+  EXPECT_EQ(code_of(decay, {.parameters = {{"k", 1.0}}}), "E340");
+  const std::string family = "param N = 3\nfor i in 1..N { u[i]' = -u[i]\nu[i](0) = 1 }\nrun 0..1\n";
+  EXPECT_EQ(code_of(family, {.parameters = {{"N", 5.0}}}), "E343");
+  EXPECT_EQ(code_of("x'' = -x\nx(0) = 1\nx(1) = 2\nrun 0..1\n"), "E321");
+  EXPECT_EQ(code_of("unknown z = 1\nx' = z\n0 = z - x\nx(0) = 1\nrun 0..1\n"), "E320");
 }
 
 TEST(Simulate, FailuresKeepWhatWasComputed) {
@@ -249,6 +331,7 @@ TEST(Simulate, SettingsAreReadAsTheLanguageReadsThem) {
 
 TEST(Simulate, JacobianIsExact) {
   const auto program = compile(model_of("param m = 3\nx'' = m*(1 - x^2)*x' - x\nx(0) = 2; x'(0) = 1\nrun 0..1\n"));
+  static_assert(HasJacobian<ModelSystem, ModelSystem::X>);
   ModelJacobian jacobian(*program, 0, start_values(program->model));
   std::vector<double> rows(4);
   jacobian(0, std::vector<double>{2, 1}, rows);
