@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -45,6 +46,19 @@ std::vector<Block> blocks_of(const std::filesystem::path& file) {
   }
   if (inside) throw std::runtime_error(blocks.back().place() + ": this block is never closed");
   return blocks;
+}
+
+std::string prose_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string prose;
+  bool inside = false;
+  for (std::string line; std::getline(in, line);) {
+    const bool is_fence = line.starts_with(fence);
+    if (!is_fence && !inside) prose += line + "\n";
+    if (is_fence) inside = !inside;
+  }
+  static const std::regex code("`[^`\n]*`");
+  return std::regex_replace(prose, code, "");
 }
 
 std::vector<std::filesystem::path> documentation() {

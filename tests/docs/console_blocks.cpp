@@ -1,14 +1,13 @@
 // Every ```console block shows commands after `$ ` and what they print. The commands are run, in one folder per
-// document and in order, and must print just that; `...` on a line of its own stands for any lines, `…` within a line
-// for any text (times, hashes). `exit=2` on the fence states the exit code of the block's last command.
+// document and in order, and must print what is shown. `exit=2` on the fence states the exit code of the block's last
+// command.
 #include <cstdlib>
-#include <regex>
-#include <span>
 #include <sstream>
 
 #include <gtest/gtest.h>
 #include <tests/docs/blocks.hpp>
 #include <tests/docs/process.hpp>
+#include <tests/docs/shown_text.hpp>
 
 namespace continuo::docs {
 namespace {
@@ -32,37 +31,6 @@ std::vector<Example> examples_of(const Block& block) {
   return examples;
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) {
-    line.erase(line.find_last_not_of(" \t") + 1);
-    lines.push_back(line);
-  }
-  return lines;
-}
-
-bool line_matches(const std::string& pattern, const std::string& line) {
-  if (pattern.find("…") == std::string::npos) return pattern == line;
-  static const std::regex special(R"([.^$|()\[\]{}*+?\\])");
-  std::string expression = std::regex_replace(pattern, special, R"(\$&)");
-  expression = std::regex_replace(expression, std::regex("…"), ".*");
-  return std::regex_match(line, std::regex(expression));
-}
-
-/// `...` matches any number of lines, none included.
-bool matches(std::span<const std::string> pattern, std::span<const std::string> printed) {
-  if (pattern.empty()) return printed.empty();
-  if (pattern.front() == "...") {
-    for (std::size_t skip = 0; skip <= printed.size(); ++skip) {
-      if (matches(pattern.subspan(1), printed.subspan(skip))) return true;
-    }
-    return false;
-  }
-  return !printed.empty() && line_matches(pattern.front(), printed.front()) &&
-         matches(pattern.subspan(1), printed.subspan(1));
-}
-
 class Document : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(Document, ShowsWhatTheCommandsPrint) {
@@ -84,7 +52,7 @@ TEST_P(Document, ShowsWhatTheCommandsPrint) {
       const bool last = i + 1 == examples.size();
       const int expected_code = last && block.tags.contains("exit") ? std::atoi(block.tags.at("exit").c_str()) : 0;
       EXPECT_EQ(finished.exit_code, expected_code) << "$ " << examples[i].command << "\n" << finished.printed;
-      EXPECT_TRUE(matches(lines_of(examples[i].expected), lines_of(finished.printed)))
+      EXPECT_TRUE(shows(examples[i].expected, finished.printed))
           << "$ " << examples[i].command << "\nthe document shows\n"
           << examples[i].expected << "and the command printed\n"
           << finished.printed;

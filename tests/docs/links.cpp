@@ -1,6 +1,4 @@
 // A link or picture of the documentation that names a file of this repository names one that is there.
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <string>
 
@@ -13,8 +11,7 @@ namespace {
 TEST(Documentation, LinksToFilesThatExist) {
   static const std::regex link(R"(\]\(([^)#: ]+)[^):]*\))");
   for (const auto& file : documentation()) {
-    std::ifstream in(file);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string text = prose_of(file);
     for (std::sregex_iterator match(text.begin(), text.end(), link), end; match != end; ++match) {
       const auto target = file.parent_path() / (*match)[1].str();
       EXPECT_TRUE(std::filesystem::exists(target)) << file << " links to " << (*match)[1].str();
