@@ -182,6 +182,7 @@ class Checker {
   void lay_out();
   void name_states();
   Measured state_measure(std::size_t base, int primes);
+  void hold_to_chain(std::size_t base, int primes);
   Measured own_measure(std::size_t base, int primes);
   Measured time_measure() const;
   Measured per_time(const Measured& measured, int times = 1) const;

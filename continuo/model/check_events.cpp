@@ -78,7 +78,8 @@ void Checker::make_event(const ast::When& text, Scope& scope, Span span) {
     }
     event.direction = direction_of(*text.direction);
   } else {
-    event.guard = guard(text.subject, scope).node;
+    const Value condition = guard(text.subject, scope);
+    if (!condition.bad) event.guard = condition.node;
   }
   event.actions = actions_of(text.actions, scope);
   if (event.guard.valid() && model_.graph.value(event.guard)) {

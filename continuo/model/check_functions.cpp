@@ -29,7 +29,11 @@ constexpr std::array<Function, 33> functions = {{
     {"interp", 2, 2, pure},
 }};
 
-NodeId plus_sign_times_root(Graph& g, NodeId x, double shift) {  // log(x + sqrt(x^2 + shift))
+std::string here(std::size_t count) {
+  return fmt::format("here {} {}", count == 1 ? "is" : "are", count);
+}
+
+NodeId logarithm_with_root(Graph& g, NodeId x, double shift) {  // log(x + sqrt(x^2 + shift))
   const NodeId root = g.apply(Op::square_root, g.add(g.multiply(x, x), g.constant(shift)));
   return g.apply(Op::logarithm, g.add(x, root));
 }
@@ -63,9 +67,9 @@ NodeId one_argument(Graph& g, std::string_view name, NodeId x) {
   if (name == "log2") return g.divide(g.apply(Op::logarithm, x), g.constant(std::numbers::ln2));
   if (name == "asinh") {  // odd: taken from the positive side, where nothing cancels
     const NodeId size = g.apply(Op::absolute, x);
-    return g.multiply(g.apply(Op::sign, x), plus_sign_times_root(g, size, 1));
+    return g.multiply(g.apply(Op::sign, x), logarithm_with_root(g, size, 1));
   }
-  if (name == "acosh") return plus_sign_times_root(g, x, -1);
+  if (name == "acosh") return logarithm_with_root(g, x, -1);
   if (name == "atanh") return g.multiply(half, g.apply(Op::logarithm, g.divide(g.add(one, x), g.subtract(one, x))));
   const NodeId root = g.power(g.apply(Op::absolute, x), g.constant(1.0 / 3));  // cbrt
   return g.multiply(g.apply(Op::sign, x), root);
@@ -156,7 +160,7 @@ Value Checker::call(const ast::Call& node, Span span, Scope& scope) {
     const std::string wanted = function->most == many ? fmt::format("at least {} arguments", function->least)
                                : function->least == 1 ? std::string("one argument")
                                                       : fmt::format("{} arguments", function->least);
-    fail("E216", span, fmt::format("`{}` takes {}", name, wanted), fmt::format("here are {}", count));
+    fail("E216", span, fmt::format("`{}` takes {}", name, wanted), here(count));
     return bad();
   }
   std::vector<Term> arguments;
@@ -170,7 +174,7 @@ Value Checker::call(const ast::Call& node, Span span, Scope& scope) {
 
 Value Checker::interpolation(const ast::Call& node, Span span, Scope& scope) {
   if (node.arguments.size() != 2) {
-    fail("E216", span, "`interp` takes a table and a number", fmt::format("here are {}", node.arguments.size()));
+    fail("E216", span, "`interp` takes a table and a number", here(node.arguments.size()));
     return bad();
   }
   const auto* name = std::get_if<ast::Name>(&node.arguments[0].node);
@@ -201,7 +205,7 @@ Value Checker::sample(const ast::Call& node, Span span, Scope& scope) {
   }
   if (!scope.samples || node.arguments.size() != 1) {
     fail("E282", span, "a value at a time can only stand in a check", {},
-         fmt::format("to multiply, write {}*(...)", quote(node.callee.span)));
+         fmt::format("to multiply, write {}*(...)", source_.slice(node.callee.span)));
     return bad();
   }
   Value value = lookup(node.callee, scope);

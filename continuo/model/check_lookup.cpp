@@ -125,7 +125,7 @@ Value Checker::unknown_name(const ast::Name& name, const std::string& key) {
   } else {
     fail("E219", name.span,
          fmt::format("`{}` needs {}", name.text,
-                     shape.dimensions == 1 ? "an index" : fmt::format("{} indices", shape.dimensions)),
+                     shape.dimensions == 1 ? "one index" : fmt::format("{} indices", shape.dimensions)),
          fmt::format("`{}` goes from `{}` to `{}`", name.text, first, last), fmt::format("write {}", first));
   }
   return bad();

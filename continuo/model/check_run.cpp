@@ -203,7 +203,8 @@ void Checker::run_tolerances(const ast::Run& run) {
   const auto& each = run.absolute_tolerance;
   if (each.size() > 1 && each.size() != model_.states.size()) {
     fail("E263", cover(each.front().span, each.back().span), "one absolute tolerance is wanted, or one per state",
-         fmt::format("here are {}, the model has {} states", each.size(), model_.states.size()));
+         fmt::format("here are {}, the model has {} state{}", each.size(), model_.states.size(),
+                     model_.states.size() == 1 ? "" : "s"));
     return;
   }
   for (std::size_t i = 0; i < each.size(); ++i) {

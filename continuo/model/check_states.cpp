@@ -161,11 +161,28 @@ void Checker::name_states() {
     const Base& base = bases_[b];
     for (int k = 0; k < base.order; ++k) {
       const auto variable = model_.layout.states + static_cast<std::uint32_t>(model_.states.size());
+      if (k > 0) hold_to_chain(b, k);
       const Measured measured = state_measure(b, k);
       model_.states.push_back({base.name, k, with_primes(base.name, k), variable,
                                measured.is_known() ? to_text(measured.unit) : std::string(), NodeId{}, base.span});
     }
   }
+}
+
+/// The unit written beside x'(0) must be that of x by that of t, up to a factor.
+void Checker::hold_to_chain(std::size_t index, int primes) {
+  const Base& base = bases_[index];
+  const Measured below = state_measure(index, primes - 1), own = state_measure(index, primes), rate = per_time(below);
+  if (factor_between(own, rate)) return;
+  const std::string name = with_primes(base.name, primes);
+  for (const std::size_t i : base.conditions) {
+    if (conditions_[i].text->name.primes != primes) continue;
+    fail("E201", conditions_[i].span, "units do not match",
+         fmt::format("`{}` is {}, so `{}` is {}, not {}", with_primes(base.name, primes - 1), unit_text(below), name,
+                     unit_text(rate), unit_text(own)));
+    conditions_[i].value.bad = true;
+  }
+  measures_[base.first + static_cast<std::size_t>(primes)] = rate;
 }
 
 // ---- units ----------------------------------------------------------------------------------------------------------
