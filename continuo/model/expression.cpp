@@ -80,11 +80,6 @@ bool Graph::is(NodeId id, double value) const {
   return node.op == Op::constant && node.value == value;
 }
 
-std::span<const NodeId> arguments(const Node& node) {
-  static_assert(offsetof(Node, c) == offsetof(Node, a) + 2 * sizeof(NodeId));
-  return {&node.a, arity(node.op)};
-}
-
 std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots) {
   std::uint32_t top = 0;
   for (const NodeId root : roots) top = std::max(top, root.index + 1);

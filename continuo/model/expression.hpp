@@ -10,6 +10,7 @@
 // A node's arguments always have smaller indices than the node: a walk in the order of the indices meets every
 // argument before its use, and nothing here recurses.
 #pragma once
+#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -81,8 +82,16 @@ class Graph {
   std::vector<std::uint32_t> slots_;  // open addressing over nodes_, a power of two in size
 };
 
-/// The arguments of a node, arity(op) of them.
-std::span<const NodeId> arguments(const Node& node);
+/// The arguments of a node, arity(op) of them: `for (const NodeId a : arguments(node))`.
+struct Arguments {
+  std::array<NodeId, 3> ids;
+  std::size_t count;
+  const NodeId* begin() const { return ids.data(); }
+  const NodeId* end() const { return ids.data() + count; }
+};
+inline Arguments arguments(const Node& node) {
+  return {{node.a, node.b, node.c}, arity(node.op)};
+}
 
 /// The nodes the roots are made of, each once, arguments before their use.
 std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots);

@@ -71,12 +71,11 @@ struct Printer {
     text += brackets ? ")" : "";
   }
 
-  void call(std::string_view function, std::span<const NodeId> of, int depth) {
+  void call(std::string_view function, const Arguments& of, int depth) {
     text += function;
-    text += '(';
-    for (std::size_t i = 0; i < of.size(); ++i) {
-      text += i == 0 ? "" : ", ";
-      print(of[i], binds_select, depth);
+    for (std::size_t i = 0; i < of.count; ++i) {
+      text += i == 0 ? "(" : ", ";
+      print(of.ids[i], binds_select, depth);
     }
     text += ')';
   }

@@ -48,7 +48,9 @@ struct Simplifier {
   Graph& g;
 
   Op op(NodeId id) const { return g[id].op; }
+  // By value: a reference to a node does not outlive the making of another.
   NodeId inner(NodeId id) const { return g[id].a; }
+  NodeId second(NodeId id) const { return g[id].b; }
   bool is(NodeId id, double value) const { return g.is(id, value); }
   bool is_constant(NodeId id) const { return op(id) == Op::constant; }
   bool vanishes(NodeId factor, NodeId other) const { return is(factor, 0) && g[other].finite; }
@@ -112,7 +114,7 @@ struct Simplifier {
     if (op(b) == Op::negate && is_constant(a)) return g.multiply(g.constant(-*g.value(a)), inner(b));
     if (op(b) == Op::negate) return g.negate(g.multiply(a, inner(b)));
     if (is_constant(a) && op(b) == Op::multiply && is_constant(inner(b))) {
-      return g.multiply(g.constant(*g.value(a) * *g.value(inner(b))), g[b].b);
+      return g.multiply(g.constant(*g.value(a) * *g.value(inner(b))), second(b));
     }
     return {};
   }
@@ -189,7 +191,7 @@ struct Simplifier {
     const Op argument = op(a);
     if (what == Op::negate && argument == Op::negate) return inner(a);
     if (what == Op::negate && argument == Op::multiply && is_constant(inner(a))) {
-      return g.multiply(g.constant(-*g.value(inner(a))), g[a].b);
+      return g.multiply(g.constant(-*g.value(inner(a))), second(a));
     }
     if (what == Op::absolute && (argument == Op::absolute || argument == Op::square_root)) return a;
     if (what == Op::absolute && argument == Op::negate) return g.apply(Op::absolute, inner(a));

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 #include <udunits2.h>
 
+#include <continuo/model/suggest.hpp>
 #include <continuo/model/units_database.hpp>
 
 namespace continuo::model::detail {
@@ -196,19 +196,6 @@ std::optional<Unit> database_unit(const std::string& name, std::string& problem)
 }
 
 std::string nearest_usual_name(std::string_view name) {
-  const auto distance = [&](std::string_view other) {
-    std::vector<std::size_t> row(other.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < name.size(); ++i) {
-      std::size_t diagonal = row[0]++;
-      for (std::size_t j = 0; j < other.size(); ++j) {
-        const std::size_t replaced = diagonal + (name[i] == other[j] ? 0 : 1);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-      }
-    }
-    return row.back();
-  };
   // Words people write in full, and the symbol that is meant.
   constexpr std::pair<std::string_view, std::string_view> words[] = {
       {"sec", "s"},  {"secs", "s"},       {"seconds", "s"}, {"msec", "ms"}, {"Newton", "N"}, {"Joule", "J"},
@@ -217,16 +204,11 @@ std::string nearest_usual_name(std::string_view name) {
   for (const auto& [word, symbol] : words) {
     if (word == name) return std::string(symbol);
   }
-  std::string best;
-  std::size_t least = name.size() < 4 ? 1 : 2;
+  std::vector<std::string_view> names;
   for (const UsualUnit& usual : usual_units) {
-    if (usual.name.size() < 2) continue;
-    if (const std::size_t d = distance(usual.name); d <= least && (best.empty() || d < least)) {
-      least = d;
-      best = usual.name;
-    }
+    if (usual.name.size() > 1) names.push_back(usual.name);  // every short word is near to a letter
   }
-  return best;
+  return suggest(name, names).value_or("");
 }
 
 }  // namespace continuo::model::detail
