@@ -13,7 +13,7 @@ namespace continuo::results {
 struct Curve {
   std::string label;
   std::vector<double> x, y;  // of equal length; a NaN breaks the line
-  bool points_only = false;
+  std::string color{};       // "#rrggbb"; empty: the next of the palette
 };
 
 struct Panel {
@@ -22,7 +22,7 @@ struct Panel {
   std::vector<double> marks{};  // positions on the x axis: events
   std::string mark_label = "event";
   bool equal_scale = false;  // one unit is as long upwards as to the right
-  bool logarithmic_x = false, logarithmic_y = false;
+  bool logarithmic_y = false;
 };
 
 struct Figure {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
@@ -22,11 +23,11 @@ namespace continuo::results {
 namespace {
 
 constexpr int width = 960, panel_height = 300, square_height = 720, title_height = 40;  // pixels
-constexpr std::size_t most_marks = 80;  // more lines than this hide the curves
+constexpr double closest_marks = 4;  // pixels; nearer ones would join to a grey block
 
 // Okabe and Ito's colours, told apart by all common kinds of colour vision. M. Okabe, K. Ito, "Color universal design"
-// (2008). Yellow is left out: too pale on white.
-constexpr std::string_view palette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+// (2008). Yellow is left out, too pale on white, and black, which marks what others are compared with.
+constexpr std::string_view palette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
 
 /// A text in gnuplot's single quotes, where nothing but the quote itself is special.
 std::string in_quotes(std::string_view text) {
@@ -63,32 +64,57 @@ void append_data(std::string& script, std::size_t panel, std::size_t number, con
 }
 
 std::string style_of(const Curve& curve, std::size_t number) {
-  const std::string_view color = palette[number % std::size(palette)];
+  const std::string_view color = curve.color.empty() ? palette[number % std::size(palette)] : curve.color;
   const std::size_t round = number / std::size(palette);  // dashes tell the second round of colours from the first
-  return curve.points_only ? fmt::format("points pt 7 ps 0.6 lc rgb '{}'", color)
-                           : fmt::format("lines lw 1.8 dt {} lc rgb '{}'", round + 1, color);
+  return fmt::format("lines lw 1.8 dt {} lc rgb '{}'", round + 1, color);
+}
+
+/// The range of one axis: all values and a little air, so that no curve lies on the frame.
+std::string range_of(const Panel& panel, std::vector<double> Curve::* values, double air) {
+  double low = INFINITY, high = -INFINITY;
+  for (const Curve& curve : panel.curves) {
+    for (const double v : curve.*values) {
+      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    }
+  }
+  // Nothing to show, or a constant with its round-off, which is no curve: gnuplot's own choice.
+  if (!(low < high) || high - low < 1e-14 * std::max(std::abs(low), std::abs(high))) return "[*:*]";
+  const double margin = air * (high - low);
+  return fmt::format("[{}:{}]", low - margin, high + margin);
+}
+
+/// The marks that can be told apart.
+std::vector<double> distinct_marks(const Panel& panel) {
+  double low = INFINITY, high = -INFINITY;
+  for (const Curve& curve : panel.curves) {
+    for (const double x : curve.x) low = std::min(low, x), high = std::max(high, x);
+  }
+  std::vector<double> marks;
+  for (const double mark : panel.marks) {
+    if (marks.empty() || mark - marks.back() >= closest_marks * (high - low) / width) marks.push_back(mark);
+  }
+  return marks;
 }
 
 void append_panel(std::string& script, const Panel& panel, std::size_t number, double bottom, double height) {
   script += fmt::format("set origin 0,{:.5f}\nset size 1,{:.5f}\n", bottom, height);
   script += panel.equal_scale ? "set size ratio -1\n" : "set size noratio\n";
-  script += panel.logarithmic_x ? "set logscale x\nset format x '10^{%L}'\n" : "unset logscale x\nset format x '%h'\n";
   script += panel.logarithmic_y ? "set logscale y\nset format y '%.0e'\n" : "unset logscale y\nset format y '%h'\n";
-  if (panel.logarithmic_x) script += "set format x '%h'\n";
   script +=
       fmt::format("set xlabel {}\nset ylabel {}\nunset arrow\n", in_quotes(panel.x_label), in_quotes(panel.y_label));
-  const bool marked = !panel.marks.empty() && panel.marks.size() <= most_marks;
-  for (std::size_t i = 0; marked && i < panel.marks.size(); ++i) {
-    script +=
-        fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1 dt 3 lc rgb '#999999'\n",
-                    panel.marks[i]);
+  script += fmt::format("set xrange {}\nset yrange {}\n", range_of(panel, &Curve::x, panel.equal_scale ? 0.05 : 0),
+                        panel.logarithmic_y ? "[*:*]" : range_of(panel, &Curve::y, 0.05));
+  const auto marks = distinct_marks(panel);
+  for (const double mark : marks) {
+    script += fmt::format(
+        "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1 dt 3 lc rgb '#999999'\n", mark);
   }
   script += "plot ";
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     script += fmt::format("{}$curve{}_{} using 1:2 with {} title {}", i > 0 ? ", " : "", number, i,
                           style_of(panel.curves[i], i), in_quotes(panel.curves[i].label));
   }
-  if (marked)
+  if (!marks.empty())
     script += fmt::format(", NaN with lines lw 1 dt 3 lc rgb '#999999' title {}", in_quotes(panel.mark_label));
   script += '\n';
 }
@@ -146,8 +172,7 @@ std::string gnuplot_script(const Figure& figure, const std::string& path) {
       "'#333333'\n";
   script +=
       "set key outside top center horizontal autotitle columnhead samplen 2 spacing 1.1 textcolor rgb '#333333'\n";
-  script +=
-      "set key noautotitle\nset offsets graph 0, graph 0, graph 0.04, graph 0.04\nset lmargin 13\nset rmargin 3\n";
+  script += "set key noautotitle\nset lmargin 13\nset rmargin 3\n";
   script += fmt::format("set multiplot title {}\n", in_quotes(figure.title));
   int top = title_height;
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {

@@ -37,31 +37,35 @@ Json outcome_of(const Outcome<double>& outcome) {
   return json;
 }
 
-Json manifest_object(const Record& record, std::string_view version) {
-  const Setup& setup = record.setup;
+Json manifest_object(const model::Model& model, const model::Run& run, std::string_view version) {
+  const model::Plan& plan = run.plan;
+  Json parameters = Json::object();
+  for (const model::Parameter& parameter : model.parameters)
+    parameters[parameter.name] = plan.variables[parameter.variable];
+  const model::Text& text = model.text;
   Json json{
       {"continuo", version},
-      {"model", {{"name", setup.model}, {"path", setup.path}, {"sha256", sha256(setup.text)}, {"text", setup.text}}},
-      {"parameters", setup.parameters},
-      {"from", setup.from},
-      {"to", setup.to},
-      {"time_unit", setup.time_unit},
-      {"method", setup.method}};
-  if (setup.step > 0) {
-    json["step"] = setup.step;
+      {"model", {{"name", model.name}, {"path", text.path}, {"sha256", sha256(text.content)}, {"text", text.content}}},
+      {"parameters", std::move(parameters)},
+      {"from", plan.from},
+      {"to", plan.to},
+      {"time_unit", model.time_unit},
+      {"method", plan.method}};
+  if (plan.step > 0) {
+    json["step"] = plan.step;
   } else {
-    json["rtol"] = setup.rtol;
-    json["atol"] = setup.atol;
+    json["rtol"] = plan.rtol;
+    json["atol"] = plan.atol;
   }
-  json["seed"] = setup.seed ? Json(*setup.seed) : Json();
-  json["outcome"] = outcome_of(record.outcome);
-  json["statistics"] = statistics_of(record.statistics);
+  json["seed"] = nullptr;
+  json["outcome"] = outcome_of(run.outcome);
+  json["statistics"] = statistics_of(run.statistics);
   return json;
 }
 
-Json checks_of(const Record& record) {
+Json checks_of(const model::Run& run) {
   Json checks = Json::array();
-  for (const CheckRow& check : record.checks) {
+  for (const model::CheckResult& check : run.checks) {
     Json json{{"check", check.text}, {"passed", check.passed}};
     if (check.message.empty()) {
       json["value"] = check.value;
@@ -77,34 +81,33 @@ Json checks_of(const Record& record) {
 
 }  // namespace
 
-std::string manifest(const Record& record, std::string_view version) {
-  Json json = manifest_object(record, version);
-  json["hash"] = manifest_hash(record, version);
+std::string manifest(const model::Model& model, const model::Run& run, std::string_view version) {
+  Json json = manifest_object(model, run, version);
+  json["hash"] = manifest_hash(model, run, version);
   return text_of(json);
 }
 
-std::string manifest_hash(const Record& record, std::string_view version) {
-  Json json = manifest_object(record, version);
+std::string manifest_hash(const model::Model& model, const model::Run& run, std::string_view version) {
+  Json json = manifest_object(model, run, version);
   json["model"].erase("path");
   json["statistics"].erase("seconds");
   return sha256(text_of(json));
 }
 
-std::string run_json(const Record& record) {
-  Json json{{"outcome", to_string(record.outcome.ending)}, {"t", record.final_time()}};
-  if (!succeeded(record.outcome.ending)) json["failure"] = outcome_of(record.outcome);
+std::string run_json(const model::Run& run) {
+  Json json{{"outcome", to_string(run.outcome.ending)}, {"t", run.final_time()}};
+  if (!succeeded(run.outcome.ending)) json["failure"] = outcome_of(run.outcome);
   Json state = Json::object(), events = Json::array();
-  const auto values = record.final_state();
-  for (std::size_t i = 0; i < values.size(); ++i) state[record.state_columns()[i].name] = values[i];
-  for (const EventRow& event : record.events) events.push_back({{"name", event.name}, {"t", event.t}});
+  const auto values = run.final_state();
+  for (std::size_t i = 0; i < values.size(); ++i) state[run.motion.columns[1 + i].name] = values[i];
+  for (const model::Happened& event : run.events) events.push_back({{"name", event.name}, {"t", event.t}});
   json["state"] = std::move(state);
   json["events"] = std::move(events);
-  json["statistics"] = statistics_of(record.statistics);
-  json["energy"] =
-      record.energy
-          ? Json{{"first", record.energy->first}, {"last", record.energy->last}, {"drift", record.energy->drift}}
-          : Json();
-  json["checks"] = checks_of(record);
+  json["statistics"] = statistics_of(run.statistics);
+  json["energy"] = run.energy
+                       ? Json{{"first", run.energy->first}, {"last", run.energy->last}, {"drift", run.energy->drift}}
+                       : Json();
+  json["checks"] = checks_of(run);
   return text_of(json);
 }
 

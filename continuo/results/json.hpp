@@ -6,18 +6,20 @@
 #include <string>
 #include <string_view>
 
-#include <continuo/results/record.hpp>
+#include <continuo/model/model.hpp>
+#include <continuo/model/run.hpp>
 
 namespace continuo::results {
 
-/// What was run and how it ended: version, model text and hash, parameters, method, tolerances, seed, statistics.
-std::string manifest(const Record& record, std::string_view version);
+/// What was run and how it ended: version, model text and hash, parameters, method, tolerances, statistics.
+/// `seed` is null: nothing in a run is drawn by chance.
+std::string manifest(const model::Model& model, const model::Run& run, std::string_view version);
 
 /// The hash of a manifest without what differs from run to run of the same thing (wall time): equal hashes, equal
 /// results.
-std::string manifest_hash(const Record& record, std::string_view version);
+std::string manifest_hash(const model::Model& model, const model::Run& run, std::string_view version);
 
 /// One object: outcome, t, state by name, events, statistics, energy, checks. Ends with a line end.
-std::string run_json(const Record& record);
+std::string run_json(const model::Run& run);
 
 }  // namespace continuo::results

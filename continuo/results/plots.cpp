@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
+#include <continuo/model/simulate.hpp>
 #include <continuo/results/plots.hpp>
 
 namespace continuo::results {
@@ -9,9 +11,9 @@ namespace {
 
 constexpr std::size_t most_default_curves = 8;
 
-std::vector<double> column_of(const Table& table, std::size_t column) {
-  std::vector<double> values(table.rows());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = table.at(i, column);
+std::vector<double> column_of(const model::Motion& motion, std::size_t column) {
+  std::vector<double> values(motion.rows());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = motion.row(i)[column];
   return values;
 }
 
@@ -21,15 +23,15 @@ double extent(const std::vector<double>& values) {
 }
 
 /// Both axes measure the same thing over comparable ranges: an orbit should look like one.
-bool deserves_equal_scale(const PlotRequest& plot, const Panel& panel) {
+bool deserves_equal_scale(const PlotData& plot, const Panel& panel) {
   if (plot.against_time || plot.curves.front().unit != plot.against.unit) return false;
   const double ratio = extent(panel.curves.front().y) / extent(plot.x);
   return ratio > 0.25 && ratio < 4;
 }
 
-std::vector<double> event_times(const Record& record) {
+std::vector<double> event_times(const model::Run& run) {
   std::vector<double> times;
-  for (const EventRow& event : record.events) {
+  for (const model::Happened& event : run.events) {
     if (times.empty() || times.back() != event.t) times.push_back(event.t);
   }
   return times;
@@ -43,9 +45,9 @@ std::string y_label(const Panel& panel, const std::string& unit) {
   return unit.empty() ? names : names.empty() ? "[" + unit + "]" : names + " [" + unit + "]";
 }
 
-void append_panels(const PlotRequest& plot, const std::vector<double>& marks, std::vector<Panel>& panels) {
+void append_panels(const PlotData& plot, const std::vector<double>& marks, std::vector<Panel>& panels) {
   std::vector<std::string> units;
-  for (const Column& curve : plot.curves) {
+  for (const model::Column& curve : plot.curves) {
     if (std::ranges::find(units, curve.unit) == units.end()) units.push_back(curve.unit);
   }
   for (const std::string& unit : units) {
@@ -60,39 +62,58 @@ void append_panels(const PlotRequest& plot, const std::vector<double>& marks, st
   }
 }
 
-Panel drift_panel(const Record& record, const std::vector<double>& energies, const std::vector<double>& marks) {
-  const double first = energies.front();
+Panel drift_panel(const model::Run& run, const std::vector<double>& marks) {
+  const double first = run.total_energy.front();
   const bool relative = first != 0;
-  std::vector<double> drift(energies.size());
-  std::ranges::transform(energies, drift.begin(),
+  std::vector<double> drift(run.total_energy.size());
+  std::ranges::transform(run.total_energy, drift.begin(),
                          [&](double e) { return (e - first) / (relative ? std::abs(first) : 1); });
-  const std::string unit = record.energy && !record.energy->unit.empty() ? " [" + record.energy->unit + "]" : "";
-  return {.x_label = label_of(record.motion.columns.front()),
+  const std::string unit = run.energy && !run.energy->unit.empty() ? " [" + run.energy->unit + "]" : "";
+  return {.x_label = label_of(run.motion.columns.front()),
           .y_label = relative ? "energy drift, relative" : "energy drift" + unit,
-          .curves = {{relative ? "(E(t) - E(0)) / |E(0)|" : "E(t) - E(0)", column_of(record.motion, 0), drift}},
+          .curves = {{relative ? "(E(t) - E(0)) / |E(0)|" : "E(t) - E(0)", column_of(run.motion, 0), drift}},
           .marks = marks};
+}
+
+PlotData states_plot(const model::Run& run) {
+  PlotData plot{.against = run.motion.columns.front(), .x = column_of(run.motion, 0), .curves = {}, .y = {}};
+  for (std::size_t i = 0; i < std::min(run.motion.states, most_default_curves); ++i) {
+    plot.curves.push_back(run.motion.columns[1 + i]);
+    plot.y.push_back(column_of(run.motion, 1 + i));
+  }
+  return plot;
 }
 
 }  // namespace
 
-std::string label_of(const Column& column) {
+std::string label_of(const model::Column& column) {
   return column.unit.empty() ? column.name : column.name + " [" + column.unit + "]";
 }
 
-std::vector<PlotRequest> default_plots(const Record& record) {
-  PlotRequest plot{.against = record.motion.columns.front(), .x = column_of(record.motion, 0), .curves = {}, .y = {}};
-  for (std::size_t i = 0; i < std::min(record.states, most_default_curves); ++i) {
-    plot.curves.push_back(record.motion.columns[1 + i]);
-    plot.y.push_back(column_of(record.motion, 1 + i));
+std::vector<PlotData> plots_of(const model::ModelProgram& program, const model::Run& run) {
+  if (program.model.plots.empty()) return {states_plot(run)};
+  std::vector<PlotData> plots;
+  for (const model::Plot& plot : program.model.plots) {
+    std::vector<model::NodeId> nodes{plot.against.node};
+    for (const model::Series& series : plot.curves) nodes.push_back(series.node);
+    auto values = values_along(program, run, nodes);
+    PlotData data{
+        .against = {plot.against.label, plot.against.unit}, .x = std::move(values.front()), .curves = {}, .y = {}};
+    data.against_time = plot.against.label == "t";
+    for (std::size_t i = 0; i < plot.curves.size(); ++i) {
+      data.curves.push_back({plot.curves[i].label, plot.curves[i].unit});
+      data.y.push_back(std::move(values[i + 1]));
+    }
+    plots.push_back(std::move(data));
   }
-  return {plot};
+  return plots;
 }
 
-Figure figure_of(const Record& record, const std::vector<PlotRequest>& plots, const std::vector<double>& energies) {
-  Figure figure{.title = record.setup.model, .panels = {}};
-  const auto marks = event_times(record);
-  for (const PlotRequest& plot : plots) append_panels(plot, marks, figure.panels);
-  if (!energies.empty()) figure.panels.push_back(drift_panel(record, energies, marks));
+Figure figure_of(std::string title, const model::Run& run, std::span<const PlotData> plots) {
+  Figure figure{.title = std::move(title), .panels = {}};
+  const auto marks = event_times(run);
+  for (const PlotData& plot : plots) append_panels(plot, marks, figure.panels);
+  if (!run.total_energy.empty()) figure.panels.push_back(drift_panel(run, marks));
   return figure;
 }
 

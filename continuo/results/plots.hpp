@@ -2,30 +2,32 @@
 // From a run to its picture: the curves of the model's `plot` statements, the events marked, and the energy drift in a
 // panel of its own where energies are declared.
 #pragma once
+#include <span>
+#include <string>
 #include <vector>
 
+#include <continuo/model/model_program.hpp>
+#include <continuo/model/run.hpp>
 #include <continuo/results/figure.hpp>
-#include <continuo/results/record.hpp>
 
 namespace continuo::results {
 
-/// One `plot` statement, evaluated at every row of the motion.
-struct PlotRequest {
-  Column against;
+/// One `plot` statement with its values at every row of the run.
+struct PlotData {
+  model::Column against;
   std::vector<double> x;
-  std::vector<Column> curves;
+  std::vector<model::Column> curves;
   std::vector<std::vector<double>> y;  // one per curve
   bool against_time = true;
 };
 
-/// Curves of one unit share a panel; curves of different units get panels of their own below one another.
-/// `energies` holds the total energy at every row, or nothing.
-Figure figure_of(const Record& record, const std::vector<PlotRequest>& plots, const std::vector<double>& energies);
+/// The model's `plot` statements; where it has none, its states against time, up to eight.
+std::vector<PlotData> plots_of(const model::ModelProgram& program, const model::Run& run);
 
-/// What is plotted where the model does not say: every state against time, up to eight.
-std::vector<PlotRequest> default_plots(const Record& record);
+/// Curves of one unit share a panel; curves of different units get panels of their own, one below the other.
+Figure figure_of(std::string title, const model::Run& run, std::span<const PlotData> plots);
 
 /// "h [m/s]", "h" without a unit.
-std::string label_of(const Column& column);
+std::string label_of(const model::Column& column);
 
 }  // namespace continuo::results

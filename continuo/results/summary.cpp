@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -19,22 +20,20 @@ std::string with_unit(std::string text, std::string_view unit) {
   return text;
 }
 
-void append_ending(const Record& record, std::string& text) {
-  const Outcome<double>& outcome = record.outcome;
-  text += record.setup.model + ": ";
-  if (!succeeded(outcome.ending)) {
-    text += describe(outcome);
-  } else {
-    text += fmt::format("{} at t = {}", to_string(outcome.ending),
-                        with_unit(number(record.final_time()), record.setup.time_unit));
-    if (!outcome.event.empty()) text += fmt::format(" ({})", outcome.event);
+void append_ending(const model::Model& model, const model::Run& run, std::string& text) {
+  text += fmt::format("{}: {} at t = {}", model.name, to_string(run.outcome.ending),
+                      with_unit(number(run.final_time()), model.time_unit));
+  if (!run.stop_text.empty()) {
+    text += fmt::format(" ({})", run.stop_text);
+  } else if (!run.outcome.event.empty()) {
+    text += fmt::format(" ({})", run.outcome.event);
   }
-  if (text.back() != '\n') text += '\n';
+  text += '\n';
 }
 
-void append_states(const Record& record, std::string& text) {
-  const auto columns = record.state_columns();
-  const auto values = record.final_state();
+void append_states(const model::Run& run, std::string& text) {
+  const std::span columns = std::span(run.motion.columns).subspan(1, run.motion.states);
+  const auto values = run.final_state();
   std::size_t widest = 0;
   const std::size_t shown = values.size() <= most_states ? values.size() : most_states - 1;
   for (std::size_t i = 0; i < shown; ++i) widest = std::max(widest, columns[i].name.size());
@@ -54,9 +53,9 @@ struct EventCount {
 };
 
 /// In the order of their first firing.
-std::vector<EventCount> count_events(const Record& record) {
+std::vector<EventCount> count_events(const model::Run& run) {
   std::vector<EventCount> counts;
-  for (const EventRow& event : record.events) {
+  for (const model::Happened& event : run.events) {
     const auto found = std::ranges::find(counts, std::string_view(event.name), &EventCount::name);
     if (found == counts.end()) {
       counts.push_back({event.name, 1, event.t, event.t});
@@ -68,13 +67,13 @@ std::vector<EventCount> count_events(const Record& record) {
   return counts;
 }
 
-void append_events(const Record& record, std::string& text) {
-  const auto counts = count_events(record);
+void append_events(const model::Model& model, const model::Run& run, std::string& text) {
+  const auto counts = count_events(run);
   for (std::size_t i = 0; i < std::min(counts.size(), most_events); ++i) {
     const EventCount& event = counts[i];
     const std::string_view head = i == 0 ? "events" : "";
     auto out = std::back_inserter(text);
-    const std::string last = with_unit(short_number(event.last), record.setup.time_unit);
+    const std::string last = with_unit(short_number(event.last), model.time_unit);
     if (event.count == 1) {
       fmt::format_to(out, "{:<8}{}: at t = {}\n", head, event.name, last);
     } else {
@@ -86,26 +85,26 @@ void append_events(const Record& record, std::string& text) {
     fmt::format_to(std::back_inserter(text), "        and {} more kinds\n", counts.size() - most_events);
 }
 
-void append_energy(const Record& record, std::string& text) {
-  if (!record.energy) return;
-  const EnergyBalance& energy = *record.energy;
+void append_energy(const model::Run& run, std::string& text) {
+  if (!run.energy) return;
+  const model::EnergyBalance& energy = *run.energy;
   fmt::format_to(std::back_inserter(text), "energy  {} at first, {} at last; largest drift {}{}\n",
                  with_unit(short_number(energy.first), energy.unit), with_unit(short_number(energy.last), energy.unit),
                  fmt::format("{:.2g}", energy.drift), energy.first != 0 ? ", relative" : "");
 }
 
-void append_checks(const Record& record, std::string& text) {
-  if (record.checks.empty()) return;
-  const auto passed = std::ranges::count_if(record.checks, &CheckRow::passed);
-  fmt::format_to(std::back_inserter(text), "checks  {} of {} hold\n", passed, record.checks.size());
+void append_checks(const model::Run& run, std::string& text) {
+  if (run.checks.empty()) return;
+  const auto passed = std::ranges::count_if(run.checks, &model::CheckResult::passed);
+  fmt::format_to(std::back_inserter(text), "checks  {} of {} hold\n", passed, run.checks.size());
 }
 
-void append_cost(const Record& record, std::string& text) {
-  const Statistics& s = record.statistics;
-  const std::string control = record.setup.step > 0 ? fmt::format("step {}", short_number(record.setup.step))
-                                                    : fmt::format("tol {}", short_number(record.setup.rtol));
+void append_cost(const model::Run& run, std::string& text) {
+  const Statistics& s = run.statistics;
+  const std::string control = run.plan.step > 0 ? fmt::format("step {}", short_number(run.plan.step))
+                                                : fmt::format("tol {}", short_number(run.plan.rtol));
   fmt::format_to(std::back_inserter(text), "cost    {} steps, {} rejected, {} evaluations, {} by {}, {}\n", s.steps,
-                 s.rejected, s.evaluations, duration(s.seconds), record.setup.method, control);
+                 s.rejected, s.evaluations, duration(s.seconds), run.plan.method, control);
 }
 
 }  // namespace
@@ -120,14 +119,14 @@ std::string duration(double seconds) {
   return fmt::format("{:.3g} s", seconds);
 }
 
-std::string summary(const Record& record) {
+std::string summary(const model::Model& model, const model::Run& run) {
   std::string text;
-  append_ending(record, text);
-  append_states(record, text);
-  append_events(record, text);
-  append_energy(record, text);
-  append_checks(record, text);
-  append_cost(record, text);
+  append_ending(model, run, text);
+  append_states(run, text);
+  append_events(model, run, text);
+  append_energy(run, text);
+  append_checks(run, text);
+  append_cost(run, text);
   return text;
 }
 

@@ -3,11 +3,12 @@
 #pragma once
 #include <string>
 
-#include <continuo/results/record.hpp>
+#include <continuo/model/model.hpp>
+#include <continuo/model/run.hpp>
 
 namespace continuo::results {
 
-std::string summary(const Record& record);
+std::string summary(const model::Model& model, const model::Run& run);
 
 /// Six digits, as people read numbers: 0.451524, 1.2e-11, 60.
 std::string short_number(double value);

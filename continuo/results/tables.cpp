@@ -7,24 +7,26 @@
 
 namespace continuo::results {
 
-std::optional<std::string> write_motion(const Record& record, const std::string& path, std::string_view manifest_hash) {
+std::optional<std::string> write_motion(const model::Run& run, const std::string& path,
+                                        std::string_view manifest_hash) {
   std::vector<std::string> names;
-  for (const Column& column : record.motion.columns) names.push_back(column.name);
+  for (const model::Column& column : run.motion.columns) names.push_back(column.name);
   OutputFile out(path);
   CsvWriter csv(out, manifest_hash, names);
-  for (std::size_t i = 0; i < record.motion.rows() && !out.failure(); ++i) csv.row(record.motion.row(i));
+  for (std::size_t i = 0; i < run.motion.rows() && !out.failure(); ++i) csv.row(run.motion.row(i));
   return out.close();
 }
 
-std::optional<std::string> write_events(const Record& record, const std::string& path, std::string_view manifest_hash) {
+std::optional<std::string> write_events(const model::Run& run, const std::string& path,
+                                        std::string_view manifest_hash) {
   std::vector<std::string> names{"event", "t"};
   for (const char* side : {"before ", "after "}) {
-    for (const Column& column : record.state_columns()) names.push_back(side + column.name);
+    for (std::size_t i = 1; i <= run.motion.states; ++i) names.push_back(side + run.motion.columns[i].name);
   }
   OutputFile out(path);
   CsvWriter csv(out, manifest_hash, names);
   std::vector<double> values;
-  for (const EventRow& event : record.events) {
+  for (const model::Happened& event : run.events) {
     values.assign(1, event.t);
     values.insert(values.end(), event.before.begin(), event.before.end());
     values.insert(values.end(), event.after.begin(), event.after.end());

@@ -5,15 +5,15 @@
 #include <string>
 #include <string_view>
 
-#include <continuo/results/record.hpp>
+#include <continuo/model/run.hpp>
 
 namespace continuo::results {
 
 /// `t`, states, outputs: an event stands as two rows of equal t, the state before it and after it.
 /// Each returns what went wrong, if anything; "-" is standard output.
-std::optional<std::string> write_motion(const Record& record, const std::string& path, std::string_view manifest_hash);
+std::optional<std::string> write_motion(const model::Run& run, const std::string& path, std::string_view manifest_hash);
 
 /// `event,t`, then `before h` for each state, then `after h`.
-std::optional<std::string> write_events(const Record& record, const std::string& path, std::string_view manifest_hash);
+std::optional<std::string> write_events(const model::Run& run, const std::string& path, std::string_view manifest_hash);
 
 }  // namespace continuo::results

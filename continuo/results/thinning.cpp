@@ -50,7 +50,9 @@ Curve thinned(const Curve& curve, std::size_t pixels) {
   if (size <= 4 * pixels || !all_finite) return curve;
   const auto [x_low, x_high] = bounds_of(curve.x);
   const auto [y_low, y_high] = bounds_of(curve.y);
-  Curve result{.label = curve.label, .x = {}, .y = {}, .points_only = curve.points_only};
+  Curve result = curve;
+  result.x.clear();
+  result.y.clear();
   const auto width = static_cast<double>(pixels);
 
   if (std::ranges::is_sorted(curve.x)) {

@@ -8,32 +8,43 @@
 
 #include <unistd.h>
 
-#include <continuo/results/record.hpp>
+#include <continuo/model/model.hpp>
+#include <continuo/model/run.hpp>
 
 namespace continuo::results {
 
-inline Record falling_ball() {
-  Record record;
-  record.setup = {.model = "Ball",
-                  .path = "ball.sim",
-                  .text = "model Ball\nh'' = -2\n",
-                  .parameters = {{"g", 2}},
-                  .method = "dop853",
-                  .rtol = 1e-10,
-                  .atol = {1e-12},
-                  .from = 0,
-                  .to = 1,
-                  .time_unit = "s",
-                  .seed = {}};
-  record.motion.columns = {{"t", "s"}, {"h", "m"}, {"h'", "m/s"}};
-  record.motion.values = {0, 1, 0, 0.5, 0.75, -1, 1, 0, -2, 1, 0, 1};
-  record.states = 2;
-  record.events = {{"h falls through 0", 1, {0, -2}, {0, 1}}};
-  record.outcome.t = 1;
-  record.statistics = {.steps = 3, .rejected = 1, .evaluations = 48, .events = 1, .seconds = 0.25};
-  record.energy = EnergyBalance{2, 0.5, 0.75, "J"};
-  record.checks = {{"h(1) = 0 within 1e-9", true, 0, 0, 1e-9, "m", ""}};
-  return record;
+struct Example {
+  model::Model model;
+  model::Run run;
+};
+
+inline Example falling_ball() {
+  Example example;
+  auto& [model, run] = example;
+  model.name = "Ball";
+  model.text = {"ball.sim", "model Ball\nh'' = -2\n"};
+  model.time_unit = "s";
+  model.parameters = {{.name = "g",
+                       .variable = 3,
+                       .expression = {},
+                       .value = 2,
+                       .unit = "m/s^2",
+                       .range = {},
+                       .comment = "",
+                       .independent = true,
+                       .structural = false,
+                       .span = {}}};
+  run.plan = {.method = "dop853", .rtol = 1e-10, .atol = {1e-12}, .from = 0, .to = 1, .variables = {0, 1, 0, 2}};
+  run.motion.columns = {{"t", "s"}, {"h", "m"}, {"h'", "m/s"}};
+  run.motion.values = {0, 1, 0, 0.5, 0.75, -1, 1, 0, -2, 1, 0, 1};
+  run.motion.states = 2;
+  run.total_energy = {2, 2, 2, 0.5};
+  run.events = {{"h falls through 0", "", 1, {0, -2}, {0, 1}}};
+  run.outcome.t = 1;
+  run.statistics = {.steps = 3, .rejected = 1, .evaluations = 48, .events = 1, .seconds = 0.25};
+  run.energy = model::EnergyBalance{2, 0.5, 0.75, "J"};
+  run.checks = {{"h(1) = 0 within 1e-9", true, 0, 0, 1e-9, "m", ""}};
+  return example;
 }
 
 /// A folder of one's own, gone at the end.

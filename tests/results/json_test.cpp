@@ -22,7 +22,7 @@ TEST(Sha256, GivesThePublishedDigests) {  // FIPS 180-2, B.1 and B.2; NIST's vec
 }
 
 TEST(Manifest, SaysWhatWasRunAndHow) {
-  const json object = json::parse(manifest(falling_ball(), "0.1.0"));
+  const json object = json::parse(manifest(falling_ball().model, falling_ball().run, "0.1.0"));
   EXPECT_EQ(object["continuo"], "0.1.0");
   EXPECT_EQ(object["model"]["text"], "model Ball\nh'' = -2\n");
   EXPECT_EQ(object["model"]["sha256"], sha256("model Ball\nh'' = -2\n"));
@@ -32,29 +32,31 @@ TEST(Manifest, SaysWhatWasRunAndHow) {
   EXPECT_EQ(object["atol"], json::array({1e-12}));
   EXPECT_EQ(object["statistics"]["evaluations"], 48);
   EXPECT_EQ(object["outcome"]["ending"], "reached end");
-  EXPECT_EQ(object["hash"], manifest_hash(falling_ball(), "0.1.0"));
+  EXPECT_EQ(object["hash"], manifest_hash(falling_ball().model, falling_ball().run, "0.1.0"));
 }
 
 TEST(Manifest, TheHashForgetsTheClockAndThePlaceButNotAParameter) {
-  const Record first = falling_ball();
-  Record slower = first, elsewhere = first, heavier = first;
-  slower.statistics.seconds = 9;
-  elsewhere.setup.path = "other/ball.sim";
-  heavier.setup.parameters["g"] = 3;
-  EXPECT_EQ(manifest_hash(first, "0.1.0"), manifest_hash(slower, "0.1.0"));
-  EXPECT_EQ(manifest_hash(first, "0.1.0"), manifest_hash(elsewhere, "0.1.0"));
-  EXPECT_NE(manifest_hash(first, "0.1.0"), manifest_hash(heavier, "0.1.0"));
-  EXPECT_NE(manifest_hash(first, "0.1.0"), manifest_hash(first, "0.2.0"));
+  const auto hash = [](const Example& example, std::string_view version = "0.1.0") {
+    return manifest_hash(example.model, example.run, version);
+  };
+  Example first = falling_ball(), slower = falling_ball(), elsewhere = falling_ball(), heavier = falling_ball();
+  slower.run.statistics.seconds = 9;
+  elsewhere.model.text.path = "other/ball.sim";
+  heavier.run.plan.variables[3] = 3;
+  EXPECT_EQ(hash(first), hash(slower));
+  EXPECT_EQ(hash(first), hash(elsewhere));
+  EXPECT_NE(hash(first), hash(heavier));
+  EXPECT_NE(hash(first), hash(first, "0.2.0"));
 }
 
 TEST(Manifest, TakesTextsThatAreNotUtf8) {
-  Record record = falling_ball();
-  record.setup.text = "model \xff\n";
-  EXPECT_EQ(json::parse(manifest(record, "0.1.0"))["model"]["text"], "model \xEF\xBF\xBD\n");
+  auto [model, run] = falling_ball();
+  model.text.content = "model \xff\n";
+  EXPECT_EQ(json::parse(manifest(model, run, "0.1.0"))["model"]["text"], "model \xEF\xBF\xBD\n");
 }
 
 TEST(RunJson, HasExactlyTheKeysThatProgramsReadFromIt) {
-  const json object = json::parse(run_json(falling_ball()));
+  const json object = json::parse(run_json(falling_ball().run));
   EXPECT_EQ(object.size(), 7u);
   EXPECT_EQ(object["outcome"], "reached end");
   EXPECT_EQ(object["t"], 1.0);
@@ -67,18 +69,18 @@ TEST(RunJson, HasExactlyTheKeysThatProgramsReadFromIt) {
 }
 
 TEST(RunJson, AFailureSaysWhereAndWhy) {
-  Record record = falling_ball();
-  record.outcome = {.ending = Ending::step_too_small, .t = 0.75, .h = 1e-17, .error = 3, .component = "h'"};
-  const json object = json::parse(run_json(record));
+  model::Run run = falling_ball().run;
+  run.outcome = {.ending = Ending::step_too_small, .t = 0.75, .h = 1e-17, .error = 3, .component = "h'"};
+  const json object = json::parse(run_json(run));
   EXPECT_EQ(object["outcome"], "step too small");
   EXPECT_EQ(object["failure"]["t"], 0.75);
   EXPECT_EQ(object["failure"]["component"], "h'");
 }
 
 TEST(RunJson, WhatIsNotFiniteIsNull) {
-  Record record = falling_ball();
-  record.motion.values.back() = std::nan("");
-  EXPECT_TRUE(json::parse(run_json(record))["state"]["h'"].is_null());
+  model::Run run = falling_ball().run;
+  run.motion.values.back() = std::nan("");
+  EXPECT_TRUE(json::parse(run_json(run))["state"]["h'"].is_null());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,52 +16,66 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-PlotRequest both_states(const Record& record) {
-  return default_plots(record).front();
+PlotData both_states(const model::Run& run) {
+  PlotData plot{.against = run.motion.columns[0],
+                .x = {},
+                .curves = {run.motion.columns[1], run.motion.columns[2]},
+                .y = {{}, {}}};
+  for (std::size_t i = 0; i < run.motion.rows(); ++i) {
+    plot.x.push_back(run.motion.row(i)[0]);
+    for (std::size_t c = 0; c < 2; ++c) plot.y[c].push_back(run.motion.row(i)[1 + c]);
+  }
+  return plot;
+}
+
+/// Both states of the falling ball, without the panel of the energy.
+Figure states_figure(model::Run run, const std::string& title = "Ball") {
+  run.total_energy.clear();
+  const PlotData plot = both_states(run);
+  return figure_of(title, run, std::span(&plot, 1));
 }
 
 TEST(Plots, CurvesOfOneUnitShareAPanelOthersDoNot) {
-  Record record = falling_ball();
-  EXPECT_THAT(figure_of(record, {both_states(record)}, {}).panels, SizeIs(2));
-  record.motion.columns[2].unit = "m";
-  EXPECT_THAT(figure_of(record, {both_states(record)}, {}).panels, SizeIs(1));
+  model::Run run = falling_ball().run;
+  EXPECT_THAT(states_figure(run).panels, SizeIs(2));
+  run.motion.columns[2].unit = "m";
+  EXPECT_THAT(states_figure(run).panels, SizeIs(1));
 }
 
 TEST(Plots, LabelsNameCurvesAndUnits) {
-  const Record record = falling_ball();
-  const Figure figure = figure_of(record, {both_states(record)}, {});
+  const Figure figure = states_figure(falling_ball().run);
   EXPECT_EQ(figure.panels[0].y_label, "h [m]");
   EXPECT_EQ(figure.panels[1].y_label, "h' [m/s]");
   EXPECT_EQ(figure.panels[0].x_label, "t [s]");
 }
 
 TEST(Plots, TheEnergyDriftHasAPanelOfItsOwn) {
-  const Record record = falling_ball();
-  const Figure figure = figure_of(record, {both_states(record)}, {2, 2, 2, 0.5});
+  const model::Run run = falling_ball().run;
+  const PlotData plot = both_states(run);
+  const Figure figure = figure_of("Ball", run, std::span(&plot, 1));
   ASSERT_THAT(figure.panels, SizeIs(3));
   EXPECT_EQ(figure.panels[2].curves[0].y, (std::vector<double>{0, 0, 0, -0.75}));
 }
 
 TEST(Plots, EventsAreMarkedOnceEach) {
-  const Record record = falling_ball();
-  const Figure figure = figure_of(record, {both_states(record)}, {});
+  const Figure figure = states_figure(falling_ball().run);
   EXPECT_EQ(figure.panels[0].marks, std::vector<double>{1});
   EXPECT_THAT(gnuplot_script(figure, "x.svg"), HasSubstr("set arrow from first 1,"));
 }
 
 TEST(Plots, AnOrbitKeepsItsShape) {
-  const Record record = falling_ball();
-  PlotRequest orbit{.against = {"x", "m"}, .x = {0, 1, 0, -1}, .curves = {{"y", "m"}}, .y = {{1, 0, -1, 0}}};
+  model::Run run = falling_ball().run;
+  run.total_energy.clear();
+  PlotData orbit{.against = {"x", "m"}, .x = {0, 1, 0, -1}, .curves = {{"y", "m"}}, .y = {{1, 0, -1, 0}}};
   orbit.against_time = false;
-  EXPECT_TRUE(figure_of(record, {orbit}, {}).panels[0].equal_scale);
+  EXPECT_TRUE(figure_of("Orbit", run, std::span(&orbit, 1)).panels[0].equal_scale);
   orbit.against.unit = "rad";
-  EXPECT_FALSE(figure_of(record, {orbit}, {}).panels[0].equal_scale);
+  EXPECT_FALSE(figure_of("Orbit", run, std::span(&orbit, 1)).panels[0].equal_scale);
 }
 
 TEST(Plots, NamesAreTextNeverMarkupOrCommands) {
-  Record record = falling_ball();
-  record.setup.model = "it's_a ^ball'; system 'false";
-  const std::string script = gnuplot_script(figure_of(record, {both_states(record)}, {}), "it's.svg");
+  const Figure figure = states_figure(falling_ball().run, "it's_a ^ball'; system 'false");
+  const std::string script = gnuplot_script(figure, "it's.svg");
   EXPECT_THAT(script, HasSubstr("noenhanced"));
   EXPECT_THAT(script, HasSubstr("'it''s_a ^ball''; system ''false'"));
   EXPECT_THAT(script, HasSubstr("set output 'it''s.svg'"));
@@ -80,18 +95,16 @@ TEST(Plots, AMillionPointsAreDrawnFromAFewThousandAndEveryPeakStays) {
 }
 
 TEST(Plots, AnUnknownEndingAndAMissingFolderAreMessages) {
-  const Record record = falling_ball();
-  const Figure figure = figure_of(record, {both_states(record)}, {});
+  const Figure figure = states_figure(falling_ball().run);
   EXPECT_THAT(draw(figure, "ball.pdf").value_or(""), HasSubstr("ends in .svg or .png"));
   EXPECT_THAT(draw(figure, "/no such folder/ball.svg").value_or(""), HasSubstr("No such file or directory"));
 }
 
 TEST(Plots, WithoutGnuplotTheMessageSaysWhatToInstall) {
   const Folder folder;
-  const Record record = falling_ball();
   const std::string path = std::getenv("PATH");
   setenv("PATH", folder.path.c_str(), 1);
-  const auto failure = draw(figure_of(record, {both_states(record)}, {}), folder / "ball.svg");
+  const auto failure = draw(states_figure(falling_ball().run), folder / "ball.svg");
   setenv("PATH", path.c_str(), 1);
   EXPECT_THAT(failure.value_or(""), HasSubstr("apt-get install gnuplot-nox"));
 }
@@ -99,8 +112,9 @@ TEST(Plots, WithoutGnuplotTheMessageSaysWhatToInstall) {
 TEST(Plots, BothFormatsAreDrawn) {
   if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
   const Folder folder;
-  const Record record = falling_ball();
-  const Figure figure = figure_of(record, {both_states(record)}, {2, 2, 2, 0.5});
+  const model::Run run = falling_ball().run;
+  const PlotData plot = both_states(run);
+  const Figure figure = figure_of("Ball", run, std::span(&plot, 1));
   ASSERT_EQ(draw(figure, folder / "ball.svg").value_or(""), "");
   ASSERT_EQ(draw(figure, folder / "ball.png").value_or(""), "");
   EXPECT_THAT(content(folder / "ball.svg"), HasSubstr("</svg>"));

@@ -10,7 +10,7 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(Summary, SaysHowItEndedWhereAndWhatItCost) {
-  EXPECT_EQ(summary(falling_ball()),
+  EXPECT_EQ(summary(falling_ball().model, falling_ball().run),
             "Ball: reached end at t = 1 s\n"
             "  h  = 0 m\n"
             "  h' = 1 m/s\n"
@@ -21,13 +21,13 @@ TEST(Summary, SaysHowItEndedWhereAndWhatItCost) {
 }
 
 TEST(Summary, ManyStatesAndEventsStayAScreenful) {
-  Record record = falling_ball();
-  record.states = 100;
-  record.motion.columns = {{"t", "s"}};
-  for (int i = 1; i <= 100; ++i) record.motion.columns.push_back({"u[" + std::to_string(i) + "]", "K"});
-  record.motion.values.assign(101, 0);
-  record.events.assign(1000, {"tick", 1, {}, {}});
-  const std::string text = summary(record);
+  auto [model, run] = falling_ball();
+  run.motion.states = 100;
+  run.motion.columns = {{"t", "s"}};
+  for (int i = 1; i <= 100; ++i) run.motion.columns.push_back({"u[" + std::to_string(i) + "]", "K"});
+  run.motion.values.assign(101, 0);
+  run.events.assign(1000, {"tick", "", 1, {}, {}});
+  const std::string text = summary(model, run);
   EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 24);
   EXPECT_THAT(text, HasSubstr("and 85 more states (-o FILE writes them all)"));
   EXPECT_THAT(text, HasSubstr("tick: 1000 times"));

@@ -43,7 +43,7 @@ TEST(Csv, FieldsWithCommasAndQuotesAreQuoted) {  // RFC 4180, 2.6 and 2.7
 
 TEST(Tables, TheMotionHasTheHashTheModelsNamesAndBothSidesOfAnEvent) {
   const Folder folder;
-  ASSERT_FALSE(write_motion(falling_ball(), folder / "ball.csv", "abc"));
+  ASSERT_FALSE(write_motion(falling_ball().run, folder / "ball.csv", "abc"));
   EXPECT_EQ(content(folder / "ball.csv"),
             "# manifest abc\n"
             "t,h,h'\n"
@@ -55,7 +55,7 @@ TEST(Tables, TheMotionHasTheHashTheModelsNamesAndBothSidesOfAnEvent) {
 
 TEST(Tables, TheEventListHasTheStatesBeforeAndAfter) {
   const Folder folder;
-  ASSERT_FALSE(write_events(falling_ball(), folder / "events.csv", "abc"));
+  ASSERT_FALSE(write_events(falling_ball().run, folder / "events.csv", "abc"));
   EXPECT_EQ(content(folder / "events.csv"),
             "# manifest abc\n"
             "event,t,before h,before h',after h,after h'\n"
@@ -63,14 +63,14 @@ TEST(Tables, TheEventListHasTheStatesBeforeAndAfter) {
 }
 
 TEST(Tables, AFolderThatIsNotThereIsOneMessage) {
-  const auto failure = write_motion(falling_ball(), "/no such folder/ball.csv", "abc");
+  const auto failure = write_motion(falling_ball().run, "/no such folder/ball.csv", "abc");
   ASSERT_TRUE(failure);
   EXPECT_EQ(*failure, "cannot write /no such folder/ball.csv: No such file or directory");
 }
 
 TEST(Tables, AFullDiskIsTold) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
-  const auto failure = write_motion(falling_ball(), "/dev/full", "abc");
+  const auto failure = write_motion(falling_ball().run, "/dev/full", "abc");
   ASSERT_TRUE(failure);
   EXPECT_EQ(*failure, "cannot write /dev/full: No space left on device");
 }
