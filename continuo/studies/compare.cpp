@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/studies/compare.hpp>
+
+namespace continuo::studies {
+namespace {
+
+constexpr double grid_intervals = 500;  // rows where the model asks for steps: the same times for all
+
+/// Rows must stand at the same times for all.
+model::Experiment with_common_rows(const model::ModelProgram& program, model::Experiment experiment) {
+  std::vector<model::Diagnostic> problems;
+  const auto plan = model::plan(program.model, experiment, problems);
+  if (plan && plan->output == model::OutputPlan::Kind::steps) {
+    experiment.output = std::abs(plan->to - plan->from) / grid_intervals;
+  }
+  return experiment;
+}
+
+/// Absolute tolerances as small against each state as the relative one; a model's own are kept where tighter.
+model::Experiment for_reference(model::Experiment experiment) {
+  experiment.method = reference_method;
+  experiment.rtol = reference_rtol;
+  experiment.step.reset();
+  experiment.atol = {reference_rtol};
+  return experiment;
+}
+
+/// The largest absolute value of each state.
+std::vector<double> sizes_of(const model::Motion& motion) {
+  std::vector<double> sizes(motion.states, 0.0);
+  for (std::size_t row = 0; row < motion.rows(); ++row) {
+    const auto state = motion.state(row);
+    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = std::max(sizes[i], std::abs(state[i]));
+  }
+  return sizes;
+}
+
+double error_between(std::span<const double> x, std::span<const double> exact, std::span<const double> sizes) {
+  double worst = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double size = sizes[i] > 0 ? sizes[i] : 1;
+    const double error = std::abs(x[i] - exact[i]) / size;
+    worst = error > worst || std::isnan(error) ? error : worst;
+  }
+  return worst;
+}
+
+/// Errors at the times that stand in both runs. Output times are the same numbers in both; those of events differ by
+/// their error and are passed over. Of equal times, the last row: the state after an event.
+void judge(const model::Motion& reference, Contender& contender) {
+  const auto sizes = sizes_of(reference);
+  const model::Motion& motion = contender.simulated.run->motion;
+  for (std::size_t i = 0, j = 0; i < motion.rows(); ++i) {
+    const double t = motion.time(i);
+    if (i + 1 < motion.rows() && motion.time(i + 1) == t) continue;
+    while (j < reference.rows() && reference.time(j) < t) ++j;
+    while (j + 1 < reference.rows() && reference.time(j + 1) == t) ++j;
+    if (j == reference.rows() || reference.time(j) != t) continue;
+    contender.times.push_back(t);
+    contender.errors.push_back(error_between(motion.state(i), reference.state(j), sizes));
+  }
+  contender.final_error = contender.errors.empty() ? std::nan("") : contender.errors.back();
+  contender.largest_error = contender.errors.empty() ? std::nan("") : std::ranges::max(contender.errors);
+}
+
+Contender contend(const std::shared_ptr<const model::ModelProgram>& program, const model::Motion& reference,
+                  model::Experiment experiment) {
+  Contender contender{.method = *experiment.method,
+                      .step = experiment.step,
+                      .tolerance = experiment.rtol,
+                      .simulated = model::simulate(program, experiment),
+                      .final_error = std::nan(""),
+                      .largest_error = std::nan(""),
+                      .times = {},
+                      .errors = {}};
+  if (contender.simulated.run) judge(reference, contender);
+  return contender;
+}
+
+}  // namespace
+
+std::string Contender::label() const {
+  if (step) return fmt::format("{}, h = {}", method, *step);
+  return tolerance ? fmt::format("{}, tol = {}", method, *tolerance) : method;
+}
+
+Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, const CompareRequest& request) {
+  const model::Experiment common = with_common_rows(*program, request.experiment);
+  Comparison comparison{.reference = model::simulate(program, for_reference(common)), .contenders = {}};
+  if (!comparison.reference.run || !succeeded(comparison.reference.run->outcome.ending)) return comparison;
+
+  const model::Motion& motion = comparison.reference.run->motion;
+  for (const std::string& method : request.methods) {
+    model::Experiment experiment = common;
+    experiment.method = method;
+    if (request.steps.empty() && request.tolerances.empty()) {
+      comparison.contenders.push_back(contend(program, motion, experiment));
+    }
+    for (const double step : request.steps) {
+      experiment.step = step;
+      experiment.rtol.reset();
+      comparison.contenders.push_back(contend(program, motion, experiment));
+    }
+    for (const double tolerance : request.tolerances) {
+      experiment.rtol = tolerance;
+      experiment.step.reset();
+      comparison.contenders.push_back(contend(program, motion, experiment));
+    }
+    if (common.interrupt != nullptr && common.interrupt->load()) break;
+  }
+  return comparison;
+}
+
+}  // namespace continuo::studies
