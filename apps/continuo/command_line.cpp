@@ -1,0 +1,79 @@
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <apps/continuo/command_line.hpp>
+#include <fmt/format.h>
+
+#include <continuo/model/suggest.hpp>
+
+namespace continuo::app {
+namespace {
+
+/// CLI11 prints examples (its footer) last; here they come first, where they are seen.
+class ExamplesFirst : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    if (mode == CLI::AppFormatMode::Sub) return CLI::Formatter::make_help(app, std::move(name), mode);
+    return make_footer(app) + "\n" + CLI::Formatter::make_help(app, std::move(name), mode);
+  }
+  std::string make_footer(const CLI::App* app) const override { return app->get_footer(); }
+};
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> verb_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(verb->get_name());
+  return names;
+}
+
+std::string with_hint(std::string message, const std::string& hint) {
+  return hint.empty() ? message : message + "; " + hint;
+}
+
+}  // namespace
+
+CLI::App* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples) {
+  CLI::App* verb = app.add_subcommand(std::move(name), std::move(description));
+  examples_first(*verb, examples);
+  return verb;
+}
+
+void examples_first(CLI::App& app, std::string_view examples) {
+  app.formatter(std::make_shared<ExamplesFirst>());
+  app.footer(fmt::format("Examples:\n{}", examples));
+  app.get_formatter()->column_width(34);
+}
+
+std::string unexpected(const CLI::App& app, int argc, char** argv) {
+  const auto chosen = app.get_subcommands();
+  if (chosen.empty()) {
+    for (const char* word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
+      if (*word == '-') continue;
+      return with_hint(fmt::format("there is no verb `{}`", word), model::did_you_mean(word, verb_names(app)));
+    }
+  }
+  const CLI::App& verb = chosen.empty() ? app : *chosen.front();
+  for (const std::string& word : app.remaining(true)) {
+    if (word.starts_with("-")) {
+      const std::string name = word.substr(0, word.find('='));
+      return with_hint(fmt::format("`{}` has no option {}", verb.get_name(), name),
+                       model::did_you_mean(name, option_names(verb)));
+    }
+    return fmt::format("`{}` has no use for `{}`", verb.get_name(), word);
+  }
+  return "these arguments do not fit together";
+}
+
+}  // namespace continuo::app

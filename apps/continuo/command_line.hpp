@@ -1,0 +1,20 @@
+// apps/continuo/command_line.hpp
+// What CLI11 leaves to us: help that begins with examples, and "did you mean".
+#pragma once
+#include <string>
+#include <string_view>
+
+#include <CLI/App.hpp>
+
+namespace continuo::app {
+
+/// A verb whose help begins with `examples` (lines of `continuo VERB ...`).
+CLI::App* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples);
+
+/// Help of every verb begins with its examples.
+void examples_first(CLI::App& app, std::string_view examples);
+
+/// What to say of words that no verb or option takes.
+std::string unexpected(const CLI::App& app, int argc, char** argv);
+
+}  // namespace continuo::app

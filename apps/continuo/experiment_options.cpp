@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include <apps/continuo/experiment_options.hpp>
+#include <apps/continuo/interrupt.hpp>
+#include <apps/continuo/models.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <fmt/format.h>
+
+#include <continuo/model/diagnostic.hpp>
+#include <continuo/model/simulate.hpp>
+
+namespace continuo::app {
+namespace {
+
+/// The settings as values; what is wrong with them stands in a text of its own, not in the model's.
+std::optional<model::Overrides> read_settings(const model::Model& model, const std::vector<std::string>& settings) {
+  model::Overrides values;
+  bool fine = true;
+  for (const std::string& text : settings) {
+    std::vector<model::Diagnostic> problems;
+    const auto setting = model::parse_setting(model, text, problems);
+    show(problems, model::Source("--set", text));
+    if (setting) values[setting->name] = setting->value;
+    fine = fine && setting.has_value();
+  }
+  return fine ? std::optional(std::move(values)) : std::nullopt;
+}
+
+bool decides_a_size(const model::Model& model, const model::Overrides& values) {
+  return std::ranges::any_of(values, [&](const auto& value) {
+    const std::size_t i = model::find_parameter(model, value.first);
+    return i != model::npos && model.parameters[i].structural;
+  });
+}
+
+}  // namespace
+
+void add_experiment(CLI::App& verb, ExperimentOptions& options) {
+  verb.add_option("file", options.file, "The model")->required()->type_name("");
+  verb.add_option("--set", options.settings, "Another value of a parameter: --set k=5 --set \"c=0.2 [N*s/m]\"")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option("--until", options.until, "The time at which the run ends")->type_name("T");
+  verb.add_option("--output", options.output, "A row every DT")->type_name("DT");
+}
+
+void add_method(CLI::App& verb, ExperimentOptions& options) {
+  verb.add_option("--method", options.method, "The integration method (continuo methods)")->type_name("NAME");
+  auto* tolerance = verb.add_option("--tol", options.tolerance, "The relative tolerance")->type_name("RTOL");
+  verb.add_option("--step", options.step, "A fixed step")->type_name("H")->excludes(tolerance);
+}
+
+void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source) {
+  if (!diagnostics.empty()) fmt::print(stderr, "{}", model::render(diagnostics, source, {.color = colors_wanted()}));
+}
+
+Prepared prepare(const ExperimentOptions& options) {
+  if (!readable(options.file))
+    return {.exit = usage, .loaded = {model::Source("", ""), {}, {}}, .program = {}, .experiment = {}};
+  Prepared prepared{.exit = done, .loaded = load_model(options.file), .program = {}, .experiment = {}};
+  if (!prepared.loaded) {
+    prepared.exit = wrong_model;
+    return prepared;
+  }
+  auto values = read_settings(*prepared.loaded.model, options.settings);
+  if (!values) {
+    prepared.exit = usage;
+    return prepared;
+  }
+  if (decides_a_size(*prepared.loaded.model, *values)) {
+    prepared.loaded = load_model(options.file, {.overrides = *values});
+    if (!prepared.loaded) {
+      prepared.exit = wrong_model;
+      return prepared;
+    }
+  }
+  prepared.program = model::compile(*prepared.loaded.model);
+  prepared.experiment = {.method = options.method,
+                         .rtol = options.tolerance,
+                         .step = options.step,
+                         .to = options.until,
+                         .output = options.output,
+                         .parameters = std::move(*values),
+                         .interrupt = &interrupt_flag()};
+  return prepared;
+}
+
+}  // namespace continuo::app

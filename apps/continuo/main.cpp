@@ -1,0 +1,70 @@
+// The command continuo. Each verb has a file of its own.
+#include <exception>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <apps/continuo/command_line.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+namespace continuo::app {
+namespace {
+
+constexpr std::string_view examples =
+    "  continuo run models/bouncing_ball.sim                     the motion in a few lines\n"
+    "  continuo run models/kepler.sim -o orbit.csv --plot orbit.svg\n"
+    "  continuo compare models/mass_spring.sim --methods euler,rk4 --step 0.1,0.05\n"
+    "  continuo new spring                                       a commented model to start from\n"
+    "  continuo verify models/                                   every check of every model\n"
+    "  continuo explain E201                                     more about a message\n";
+
+int command(int argc, char** argv) {
+  CLI::App app("Simulates continuous systems: the equations in, a motion out that can be trusted.", "continuo");
+  examples_first(app, examples);
+  app.set_version_flag("--version", "continuo " CONTINUO_VERSION);
+  app.require_subcommand(1);
+  ExitCode exit = done;
+  add_run(app, exit);
+  add_check(app, exit);
+  add_info(app, exit);
+  add_verify(app, exit);
+  add_compare(app, exit);
+  add_methods(app, exit);
+  add_explain(app, exit);
+  add_new(app, exit);
+
+  if (argc == 1) {
+    print(app.help());
+    return usage;
+  }
+  const auto advice = [&] {
+    const auto chosen = app.get_subcommands();
+    return fmt::format("continuo {}--help shows how", chosen.empty() ? "" : chosen.front()->get_name() + " ");
+  };
+  try {
+    app.parse(argc, argv);
+    return exit;
+  } catch (const CLI::Success& success) {  // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ExtrasError&) {
+    say(fmt::format("{} ({})", unexpected(app, argc, argv), advice()));
+  } catch (const CLI::ParseError& error) {
+    const bool no_verb = app.get_subcommands().empty();
+    say(fmt::format("{} ({})", no_verb ? unexpected(app, argc, argv) : error.what(), advice()));
+  }
+  return usage;
+}
+
+}  // namespace
+}  // namespace continuo::app
+
+int main(int argc, char** argv) {
+  try {
+    return continuo::app::command(argc, argv);
+  } catch (const std::exception& error) {
+    continuo::app::say(fmt::format("internal error: {}", error.what()));
+    return continuo::app::numerical_failure;
+  }
+}

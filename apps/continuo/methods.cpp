@@ -1,0 +1,65 @@
+// continuo methods: what can integrate, with order, kind and source.
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
+#include <apps/continuo/command_line.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/solve/catalogue.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct Citation {
+  std::string_view method, source;
+};
+constexpr std::array citations{
+    Citation{"explicit_euler", "Euler, Institutiones calculi integralis I (1768); also `euler`"},
+    Citation{"semi_implicit_euler", "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2"},
+    Citation{"central_difference", "Hairer, Lubich, Wanner, Acta Numerica 12 (2003), leapfrog"},
+    Citation{"velocity_verlet", "Swope, Andersen, Berens, Wilson, J. Chem. Phys. 76 (1982)"},
+    Citation{"midpoint", "Runge, Math. Ann. 46 (1895)"},
+    Citation{"heun", "Heun, Z. Math. Phys. 45 (1900)"},
+    Citation{"rk4", "Kutta, Z. Math. Phys. 46 (1901)"},
+    Citation{"rk38", "Kutta, Z. Math. Phys. 46 (1901), the 3/8 rule"},
+    Citation{"bogacki_shampine3", "Bogacki, Shampine, Appl. Math. Lett. 2 (1989)"},
+    Citation{"dormand_prince5", "Dormand, Prince, J. Comp. Appl. Math. 6 (1980)"},
+    Citation{"tsitouras5", "Tsitouras, Comput. Math. Appl. 62 (2011); the default"},
+    Citation{"dop853", "Hairer, Norsett, Wanner, Solving ODEs I, II.5 and II.10"},
+    Citation{"verner7", "Verner, Numer. Algorithms 53 (2010), most efficient 7(6)"},
+    Citation{"verner9", "Verner, Numer. Algorithms 53 (2010), most efficient 9(8)"},
+};
+
+std::string_view source_of(std::string_view method) {
+  const auto found = std::ranges::find(citations, method, &Citation::method);
+  return found == citations.end() ? "" : found->source;
+}
+
+std::string_view kind_of(const MethodInfo& method) {
+  if (method.second_order) return "fixed step, x'' = a(t, x)";
+  return method.error_order > 0 ? "adaptive" : "fixed step";
+}
+
+ExitCode methods() {
+  std::string text = fmt::format("{:<20} {:>5}  {:<26} {}\n", "method", "order", "kind", "source");
+  for (const MethodInfo& method : method_catalogue()) {
+    text +=
+        fmt::format("{:<20} {:>5}  {:<26} {}\n", method.name, method.order, kind_of(method), source_of(method.name));
+  }
+  print(text);
+  return done;
+}
+
+}  // namespace
+
+void add_methods(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples = "  continuo methods\n  continuo run models/kepler.sim --method dop853\n";
+  CLI::App* verb = add_verb(app, "methods", "Lists the integration methods", examples);
+  verb->callback([&exit] { exit = methods(); });
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include <apps/continuo/models.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <fmt/format.h>
+
+#include <continuo/model/suggest.hpp>
+
+namespace continuo::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The models beside a file that is not there, for "did you mean".
+std::vector<std::string> neighbours(const fs::path& path) {
+  std::vector<std::string> names;
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".sim") {
+      names.push_back(path.has_parent_path() ? entry.path().string() : entry.path().filename().string());
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+}  // namespace
+
+bool readable(const std::string& path) {
+  std::error_code error;
+  std::string reason;
+  if (fs::is_directory(path, error)) {
+    reason = "it is a folder";
+  } else {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    if (file) return true;
+    reason = std::strerror(errno);
+  }
+  const std::string hint = fs::exists(path, error) ? "" : model::did_you_mean(path, neighbours(path));
+  say(fmt::format("cannot read {}: {}{}{}", path, reason, hint.empty() ? "" : "; ", hint));
+  return false;
+}
+
+model::Loaded load_model(const std::string& path, const model::CheckOptions& options) {
+  model::Loaded loaded = model::load(path, options);
+  if (!loaded.diagnostics.empty()) fmt::print(stderr, "{}", loaded.text({.color = colors_wanted()}));
+  return loaded;
+}
+
+ModelFiles find_models(const std::vector<std::string>& files_and_folders) {
+  ModelFiles found;
+  for (const std::string& place : files_and_folders) {
+    std::error_code error;
+    if (!fs::is_directory(place, error)) {
+      if (readable(place)) {
+        found.paths.push_back(place);
+      } else {
+        found.complete = false;
+      }
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (const auto& entry : fs::recursive_directory_iterator(place, error)) {
+      if (entry.path().extension() == ".sim") inside.push_back(entry.path().string());
+    }
+    if (inside.empty()) say(fmt::format("there is no .sim file in {}", place));
+    if (inside.empty()) found.complete = false;
+    std::ranges::sort(inside);
+    found.paths.insert(found.paths.end(), inside.begin(), inside.end());
+  }
+  return found;
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,28 @@
+#include <cstdio>
+#include <cstdlib>
+
+#include <apps/continuo/terminal.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace continuo::app {
+
+void say(std::string_view message) {
+  fmt::print(stderr, "continuo: {}\n", message);
+}
+
+void print(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);  // in order with the messages
+}
+
+bool colors_wanted() {
+  const char* no_color = std::getenv("NO_COLOR");
+  return watched() && (no_color == nullptr || *no_color == '\0');
+}
+
+bool watched() {
+  return isatty(STDERR_FILENO) == 1;
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,20 @@
+// apps/continuo/terminal.hpp
+// What people read: messages on standard error, colours only on a terminal and never against NO_COLOR.
+#pragma once
+#include <string_view>
+
+namespace continuo::app {
+
+/// "continuo: MESSAGE" on standard error.
+void say(std::string_view message);
+
+/// Text that is data: standard output.
+void print(std::string_view text);
+
+/// Whether messages may have colours: standard error is a terminal and NO_COLOR is not set (no-color.org).
+bool colors_wanted();
+
+/// Whether somebody watches: standard error is a terminal.
+bool watched();
+
+}  // namespace continuo::app

@@ -1,0 +1,18 @@
+// apps/continuo/verbs.hpp
+// Every verb adds itself with its options to the command line; when it is chosen it leaves its exit code in `exit`.
+#pragma once
+#include <CLI/App.hpp>
+#include <apps/continuo/exit_codes.hpp>
+
+namespace continuo::app {
+
+void add_run(CLI::App& app, ExitCode& exit);
+void add_check(CLI::App& app, ExitCode& exit);
+void add_info(CLI::App& app, ExitCode& exit);
+void add_verify(CLI::App& app, ExitCode& exit);
+void add_compare(CLI::App& app, ExitCode& exit);
+void add_methods(CLI::App& app, ExitCode& exit);
+void add_explain(CLI::App& app, ExitCode& exit);
+void add_new(CLI::App& app, ExitCode& exit);
+
+}  // namespace continuo::app

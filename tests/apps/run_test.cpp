@@ -1,0 +1,187 @@
+// What `run`, `compare` and `verify` leave behind.
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "shell.hpp"
+
+namespace continuo::app {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Run, TheSummarySaysHowItEndedAndWhatItCost) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const Result result = shell.run("run spring.sim");
+  EXPECT_EQ(result.exit, 0);
+  EXPECT_THAT(result.err, IsEmpty());
+  EXPECT_THAT(result.out, StartsWith("Spring: reached end at t = 2\n"));
+  for (const char* part : {"x' =", "events", "energy", "cost"}) EXPECT_THAT(result.out, HasSubstr(part));
+}
+
+TEST(Run, RowsGoToAFileWithTheirManifestBeside) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  ASSERT_EQ(shell.run("run spring.sim -o out.csv --events events.csv").exit, 0);
+  const auto rows = lines_of(shell.read("out.csv"));
+  const json manifest = json::parse(shell.read("out.csv.manifest.json"));
+  EXPECT_EQ(rows[0], "# manifest " + manifest["hash"].get<std::string>());
+  EXPECT_THAT(rows[1], StartsWith("t,x,x'"));
+  EXPECT_THAT(rows[2], StartsWith("0,1,0"));
+  EXPECT_EQ(manifest["parameters"]["k"], 4.0);
+  EXPECT_EQ(manifest["model"]["text"], spring);
+  const auto events = lines_of(shell.read("events.csv"));
+  EXPECT_EQ(events[0], rows[0]);
+  EXPECT_EQ(events[1], "event,t,before x,before x',after x,after x'");
+  ASSERT_THAT(events, SizeIs(3));  // cos(2 t) falls through 0 at t = pi/4 alone before t = 2
+}
+
+TEST(Run, StandardOutputCarriesDataAlone) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const Result result = shell.run("run spring.sim -o -");
+  EXPECT_EQ(result.exit, 0);
+  EXPECT_THAT(lines_of(result.out)[1], StartsWith("t,x,x'"));
+  EXPECT_THAT(result.out, Not(HasSubstr("reached end")));
+}
+
+TEST(Run, JsonIsOneObjectWithTheClosedFormInIt) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const json result = json::parse(shell.run("run spring.sim --json").out);
+  EXPECT_EQ(result["outcome"], "reached end");
+  EXPECT_EQ(result["t"], 2.0);
+  EXPECT_NEAR(result["state"]["x"], std::cos(4.0), 1e-8);  // x = cos(sqrt(k) t), tolerance 1e-10 over 2 units
+  EXPECT_NEAR(result["state"]["x'"], -2 * std::sin(4.0), 2e-8);
+  ASSERT_THAT(result["events"], SizeIs(1));
+  EXPECT_NEAR(result["events"][0]["t"], std::numbers::pi / 4, 1e-9);
+  EXPECT_LT(result["energy"]["drift"], 1e-8);
+  EXPECT_GT(result["statistics"]["evaluations"], 0);
+}
+
+TEST(Run, OptionsOverrideTheModelItemByItem) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const json result = json::parse(shell.run("run spring.sim --json --set k=1 --until 3 --method rk4 --step 0.001").out);
+  EXPECT_NEAR(result["state"]["x"], std::cos(3.0), 1e-12);
+  EXPECT_EQ(result["statistics"]["rejected"], 0);
+  ASSERT_EQ(shell.run("run spring.sim --output 0.25 -o out.csv").exit, 0);
+  EXPECT_GE(lines_of(shell.read("out.csv")).size(), 2u + 9u);
+}
+
+TEST(Run, TheSameRunHasTheSameBytes) {
+  const Shell shell;
+  for (const char* file : {"a.csv", "b.csv"}) {
+    ASSERT_EQ(shell.run("run " + gallery("bouncing_ball") + " -o " + file).exit, 0);
+  }
+  EXPECT_EQ(shell.read("a.csv"), shell.read("b.csv"));
+}
+
+TEST(Run, APictureIsDrawnInBothFormats) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
+  const Shell shell;
+  ASSERT_EQ(shell.run("run " + gallery("bouncing_ball") + " --plot ball.svg").exit, 0);
+  ASSERT_EQ(shell.run("run " + gallery("kepler") + " --plot orbit.png").exit, 0);
+  EXPECT_THAT(shell.read("ball.svg"), HasSubstr("h [m]"));
+  EXPECT_EQ(shell.read("orbit.png").substr(1, 3), "PNG");
+}
+
+TEST(Run, WithoutGnuplotTheRowsAreKeptAndTheMessageSaysWhatToInstall) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const Result result = shell.run("run spring.sim -o out.csv --plot out.svg", "PATH=/nowhere");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.err, HasSubstr("gnuplot-nox"));
+  EXPECT_THAT(shell.read("out.csv"), HasSubstr("t,x,x'"));
+}
+
+TEST(Run, AFolderThatIsNotThereAndAFullDiskAreMessages) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const Result result = shell.run("run spring.sim -o no/out.csv --plot no/out.svg");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.err, HasSubstr("cannot write no/out.csv: No such file or directory"));
+  EXPECT_THAT(result.out, HasSubstr("reached end"));
+  EXPECT_EQ(shell.run("run spring.sim -o /dev/full --manifest m.json").exit, 1);
+}
+
+TEST(Run, ABlowUpKeepsWhatWasComputed) {  // x' = x^2 from 1: x = 1/(1 - t)
+  const Shell shell;
+  shell.write("blow.sim", "model Blow\nx' = x^2\nx(0) = 1\nrun 0..2 output 0.1\n");
+  const Result result = shell.run("run blow.sim -o out.csv");
+  EXPECT_EQ(result.exit, 3);
+  EXPECT_THAT(result.err, HasSubstr("error[E30"));
+  EXPECT_GE(lines_of(shell.read("out.csv")).size(), 2u + 10u);
+  const json object = json::parse(shell.run("run blow.sim --json").out);
+  EXPECT_NEAR(object["t"], 1.0, 1e-3);
+  EXPECT_TRUE(object["failure"].contains("message"));
+}
+
+TEST(Run, CtrlCKeepsWhatWasComputed) {
+  const Shell shell;
+  const Result result = shell.run("run " + gallery("lorenz") + " --until 1e9 --output 1 -o out.csv",
+                                  "timeout --preserve-status --signal INT 1");
+  EXPECT_EQ(result.exit, 130);
+  EXPECT_GT(lines_of(shell.read("out.csv")).size(), 10u);
+}
+
+TEST(Run, ABoundaryValueProblemSaysPlainlyThatItCannotBeSolvedYet) {
+  const Shell shell;
+  shell.write("beam.sim", "model Beam\nx'' = -x\nx(0) = 1\nx(1) = 2\nrun 0..1\n");
+  const Result result = shell.run("run beam.sim");
+  EXPECT_EQ(result.exit, 3);
+  EXPECT_THAT(result.err, HasSubstr("E321"));
+}
+
+TEST(Run, AFailedCheckIsExitCodeFourForTheModelAsWritten) {
+  const Shell shell;
+  shell.write("wrong.sim", std::string(spring) + "check x(2) = 0 within 1e-9\n");
+  const Result result = shell.run("run wrong.sim");
+  EXPECT_EQ(result.exit, 4);
+  EXPECT_THAT(result.err, HasSubstr("check x(2) = 0 within 1e-9 does not hold: it is -0.65"));
+  EXPECT_EQ(shell.run("run wrong.sim --set k=5").exit, 0);  // the check was not meant for it
+}
+
+TEST(Verify, ListsEveryModelAndWhatDoesNotHold) {
+  const Shell shell;
+  shell.write("good.sim", std::string(spring) + "check x(2) = cos(4) within 1e-8\n");
+  shell.write("wrong.sim", std::string(spring) + "check x(2) = 0 within 1e-9\n");
+  EXPECT_EQ(shell.run("verify good.sim").exit, 0);
+  const Result result = shell.run("verify .");
+  EXPECT_EQ(result.exit, 4);
+  EXPECT_THAT(result.out, HasSubstr("1 of 2 models hold, 1 of 2 checks"));
+  EXPECT_THAT(result.out, HasSubstr("FAILED"));
+  EXPECT_EQ(shell.run("verify nothing.sim").exit, 1);
+}
+
+TEST(Compare, EveryPairHasItsLine) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const Result result = shell.run("compare spring.sim --methods euler,rk4,dop853 --step 0.1,0.05");
+  EXPECT_EQ(result.exit, 0);
+  EXPECT_THAT(lines_of(result.out), SizeIs(1u + 6u + 1u));  // heading, pairs, what the errors are
+  EXPECT_THAT(result.out, HasSubstr("energy drift"));
+  EXPECT_EQ(shell.run("compare spring.sim --methods euler,rk5 --step 0.1").exit, 1);
+}
+
+}  // namespace
+}  // namespace continuo::app

@@ -1,0 +1,67 @@
+// tests/apps/shell.hpp
+// The command run in a folder of its own.
+//
+//   Shell shell;
+//   shell.write("ball.sim", "...");
+//   const Result result = shell.run("run ball.sim");    // result.exit, result.out, result.err
+#pragma once
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace continuo::app {
+
+struct Result {
+  int exit;
+  std::string out, err;
+};
+
+class Shell {
+ public:
+  Shell() {
+    std::string name = (std::filesystem::temp_directory_path() / "continuo-apps-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  Shell(const Shell&) = delete;
+  Shell& operator=(const Shell&) = delete;
+  ~Shell() { std::filesystem::remove_all(folder_); }
+
+  /// `before` stands before the command: variables, `timeout`.
+  Result run(const std::string& arguments, const std::string& before = "") const {
+    const std::string line = "cd '" + folder_.string() + "' && " + before + " '" CONTINUO_COMMAND "' " + arguments +
+                             " >.out 2>.err </dev/null";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(".out"), read(".err")};
+  }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  std::string read(const std::string& name) const {
+    std::ifstream in(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  bool has(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// A model of the gallery.
+inline std::string gallery(const std::string& name) {
+  return "'" CONTINUO_SOURCE_DIR "/models/" + name + ".sim'";
+}
+
+inline constexpr const char* spring =
+    "model Spring\n"
+    "param k = 4 in 0..10\n"
+    "x'' = -k*x\n"
+    "x(0) = 1; x'(0) = 0\n"
+    "energy all = x'^2/2 + k*x^2/2\n"
+    "when x falls through 0 { mark \"half way\" }\n"
+    "run 0..2 output 0.5 tol 1e-10\n";
+
+}  // namespace continuo::app

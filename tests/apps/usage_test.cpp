@@ -1,0 +1,140 @@
+// Wrong words, help, and verbs that compute nothing.
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shell.hpp"
+
+namespace continuo::app {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+TEST(Usage, HelpBeginsWithExamples) {
+  const Shell shell;
+  EXPECT_THAT(shell.run("--help").out, StartsWith("Examples:\n  continuo run"));
+  for (const std::string verb : {"run", "check", "info", "verify", "compare", "methods", "explain", "new"}) {
+    const Result help = shell.run(verb + " --help");
+    EXPECT_EQ(help.exit, 0) << verb;
+    EXPECT_THAT(help.out, StartsWith("Examples:\n  continuo ")) << verb;
+    EXPECT_THAT(help.err, IsEmpty()) << verb;
+  }
+}
+
+TEST(Usage, NothingAskedShowsTheHelpAndFails) {
+  const Result result = Shell().run("");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.out, HasSubstr("verify"));
+}
+
+TEST(Usage, TheVersionIsOneLine) {
+  EXPECT_THAT(Shell().run("--version").out, StartsWith("continuo 0."));
+}
+
+TEST(Usage, AWrongVerbIsToldTheNearest) {
+  const Result result = Shell().run("verfy x.sim");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.err, HasSubstr("did you mean `verify`?"));
+  EXPECT_THAT(result.out, IsEmpty());
+}
+
+TEST(Usage, AWrongOptionIsToldTheNearest) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const Result result = shell.run("run spring.sim --metod rk4");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.err, HasSubstr("did you mean `--method`?"));
+}
+
+TEST(Usage, AWrongMethodOrParameterIsToldTheNearest) {
+  const Shell shell;
+  shell.write("spring.sim", "model Spring\nparam stiffness = 4\nx' = -stiffness*x\nx(0) = 1\nrun 0..1\n");
+  const Result method = shell.run("run spring.sim --method dop85");
+  EXPECT_EQ(method.exit, 1);
+  EXPECT_THAT(method.err, HasSubstr("`dop853`"));
+  const Result parameter = shell.run("run spring.sim --set stifness=5");
+  EXPECT_EQ(parameter.exit, 1);
+  EXPECT_THAT(parameter.err, HasSubstr("`stiffness`"));
+}
+
+TEST(Usage, NumbersThatAreNoneAreRefused) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  for (const char* wrong : {"--tol fast", "--step", "--until x", "--set k", "--set k=", "--tol 1e-6 --step 0.1"}) {
+    const Result result = shell.run(std::string("run spring.sim ") + wrong);
+    EXPECT_EQ(result.exit, 1) << wrong;
+    EXPECT_THAT(result.err, Not(IsEmpty())) << wrong;
+    EXPECT_THAT(result.out, IsEmpty()) << wrong;
+  }
+}
+
+TEST(Usage, AFileThatIsNotThereIsToldTheNearest) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const Result result = shell.run("run sprong.sim");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.err, HasSubstr("cannot read sprong.sim: No such file or directory; did you mean `spring.sim`?"));
+  EXPECT_EQ(shell.run("run .").exit, 1);
+  EXPECT_EQ(shell.run("check .").exit, 0);
+}
+
+TEST(Usage, MessagesHaveNoColoursOutsideATerminal) {
+  const Shell shell;
+  shell.write("wrong.sim", "model Wrong\nx' = -y\nx(0) = 1\nrun 0..1\n");
+  EXPECT_THAT(shell.run("run wrong.sim").err, Not(HasSubstr("\033")));
+}
+
+TEST(Check, AWrongModelIsShownWithItsPlace) {
+  const Shell shell;
+  shell.write("wrong.sim", "model Wrong\nx' = -y\nx(0) = 1\nrun 0..1\n");
+  const Result result = shell.run("check wrong.sim");
+  EXPECT_EQ(result.exit, 2);
+  EXPECT_THAT(result.err, HasSubstr("wrong.sim:2:7"));
+  EXPECT_EQ(shell.run("run wrong.sim").exit, 2);
+  EXPECT_EQ(shell.run("verify wrong.sim").exit, 2);
+  EXPECT_THAT(shell.run("check wrong.sim --json").out, HasSubstr("\"line\":"));
+}
+
+TEST(Info, NamesStatesParametersAndEvents) {
+  const Shell shell;
+  const Result result = shell.run("info " + gallery("bouncing_ball"));
+  EXPECT_EQ(result.exit, 0);
+  for (const char* part : {"h'", "v_rest", "m/s^2", "flight", "h falls through 0", "kinetic", "dop853"}) {
+    EXPECT_THAT(result.out, HasSubstr(part));
+  }
+}
+
+TEST(Methods, EveryMethodHasItsSource) {
+  const std::string table = Shell().run("methods").out;
+  std::istringstream lines(table);
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_GT(line.size(), 60u) << line;
+  EXPECT_EQ(count, 1u + 14u);  // the heading, and the fourteen of the language
+}
+
+TEST(Explain, SaysMoreAboutACodeAndListsThem) {
+  const Shell shell;
+  EXPECT_THAT(shell.run("explain E201").out, StartsWith("E201: "));
+  EXPECT_THAT(shell.run("explain e310").out, StartsWith("E310: "));
+  EXPECT_EQ(shell.run("explain E999").exit, 1);
+  EXPECT_THAT(shell.run("explain").out, HasSubstr("E310"));
+}
+
+TEST(New, TheStarterRunsAndIsNeverOverwritten) {
+  const Shell shell;
+  EXPECT_EQ(shell.run("new my-spring").exit, 0);
+  EXPECT_THAT(shell.read("my-spring.sim"), HasSubstr("model MySpring\n"));
+  EXPECT_EQ(shell.run("run my-spring.sim").exit, 0);
+  EXPECT_EQ(shell.run("verify my-spring.sim").exit, 0);
+  shell.write("my-spring.sim", "mine");
+  EXPECT_EQ(shell.run("new my-spring").exit, 1);
+  EXPECT_EQ(shell.read("my-spring.sim"), "mine");
+}
+
+}  // namespace
+}  // namespace continuo::app
