@@ -139,7 +139,7 @@ TEST(Run, ABlowUpKeepsWhatWasComputed) {  // x' = x^2 from 1: x = 1/(1 - t)
 TEST(Run, CtrlCKeepsWhatWasComputed) {
   const Shell shell;
   const Result result = shell.run("run " + gallery("lorenz") + " --until 1e9 --output 1 -o out.csv",
-                                  "timeout --preserve-status --signal INT 1");
+                                  "timeout --foreground --preserve-status --signal INT 1");
   EXPECT_EQ(result.exit, 130);
   EXPECT_GT(lines_of(shell.read("out.csv")).size(), 10u);
 }
