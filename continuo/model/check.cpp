@@ -55,6 +55,7 @@ void Checker::fill() {
   for (std::size_t i = 0; i < conditions_.size(); ++i) condition_value(i);
   name_states();
   make_unknowns();
+  for (std::size_t i = 0; i < definitions_.size(); ++i) defined(i, definitions_[i].text->name);
   make_run();
   make_conditions();
   make_equations();

@@ -193,6 +193,7 @@ class Checker {
 
   // ---- expressions (check_expression.cpp, check_functions.cpp, check_lookup.cpp) ----
   Value elaborate(const ast::Expression& expression, Scope& scope);
+  Value elaborate_node(const ast::Expression& expression, Scope& scope);
   Value settle(Value value, Span span);  // highest derivatives replaced by what they equal
   Value settled(const ast::Expression& expression, Scope& scope);
   Value number_of(const ast::Expression& expression, Scope& scope);     // settled, and no condition
@@ -356,6 +357,7 @@ class Checker {
   std::set<std::size_t> without_equation_;     // bases that have an initial value only
   std::set<std::pair<std::size_t, double>> condition_seen_;  // state and time
   std::string_view constant_what_;
+  std::size_t depth_ = 0;  // of elaborate
   double start_time_ = 0;
   bool t_is_known_ = false;
   bool silent_ = false;  // trying what may have been meant

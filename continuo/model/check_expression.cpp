@@ -11,6 +11,9 @@ namespace continuo::model::detail {
 
 namespace {
 
+/// The parser allows expressions 500 operations tall; the stack holds a few of these on top of each other.
+constexpr std::size_t deepest = 1200;
+
 Op operation(ast::BinaryOperator op) {
   switch (op) {
     case ast::BinaryOperator::add:
@@ -80,6 +83,17 @@ bool Checker::want_condition(const ast::Expression& text, Value& value) {
 }
 
 Value Checker::elaborate(const ast::Expression& expression, Scope& scope) {
+  if (depth_ >= deepest) {
+    fail("E221", expression.span, "definitions lean on each other too deeply", {}, "define names above their use");
+    return bad();
+  }
+  ++depth_;
+  Value value = elaborate_node(expression, scope);
+  --depth_;
+  return value;
+}
+
+Value Checker::elaborate_node(const ast::Expression& expression, Scope& scope) {
   return std::visit(
       [&](const auto& node) -> Value {
         using T = std::decay_t<decltype(node)>;

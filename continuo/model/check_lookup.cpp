@@ -12,9 +12,6 @@ namespace continuo::model::detail {
 
 namespace {
 
-/// Definitions that lean on each other more deeply than this, each above the next, are not followed.
-constexpr std::size_t deepest_definitions = 1000;
-
 const char* word(Definition::Kind kind) {
   switch (kind) {
     case Definition::Kind::parameter:
@@ -161,10 +158,6 @@ Value Checker::defined(std::size_t index, const ast::Name& name) {
   Definition& definition = definitions_[index];
   if (definition.progress == Progress::busy) return circular(index, name.span);
   if (definition.progress == Progress::untouched) {
-    if (busy_.size() > deepest_definitions) {
-      fail("E221", name.span, "definitions lean on each other too deeply", {}, "define names before their use");
-      return bad();
-    }
     definition.progress = Progress::busy;
     busy_.push_back(index);
     const auto outer = std::exchange(highest_, {});
@@ -204,7 +197,6 @@ Value Checker::constant_defined(std::size_t index, const ast::Name& name) {
   definition.structural = true;
   if (definition.constant_progress == Progress::busy) return circular(index, name.span);
   if (definition.constant_progress == Progress::untouched) {
-    if (busy_.size() > deepest_definitions) return circular(index, name.span);
     definition.constant_progress = Progress::busy;
     busy_.push_back(index);
     Scope scope = definition.scope;

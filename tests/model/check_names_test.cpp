@@ -85,6 +85,15 @@ TEST(CheckNames, EnergyIsTheSumOfAllEnergies) {
   EXPECT_EQ(evaluate(model, model.total_energy, start_values(model)), 5);
 }
 
+TEST(CheckNames, LongChainsOfDefinitionsAreFollowedInTheOrderOfTheText) {
+  std::string text = "let a0 = x\n";
+  for (int i = 1; i <= 5000; ++i) text += "let a" + std::to_string(i) + " = a" + std::to_string(i - 1) + " + 1\n";
+  EXPECT_EQ(value_of(good(text + "x' = a5000\nx(0) = 1\n"), "a5000"), 5001);
+  std::string backwards;
+  for (int i = 5000; i > 0; --i) backwards += "let a" + std::to_string(i) + " = a" + std::to_string(i - 1) + " + 1\n";
+  EXPECT_EQ(said(backwards + "let a0 = 1\n" + decay, "E221").message, "definitions lean on each other too deeply");
+}
+
 TEST(CheckNames, CommentsBesideParametersAreKept) {
   const Model model = good("param k = 2   # stiffness of the spring\n" + decay);
   EXPECT_EQ(model.parameters[0].comment, "stiffness of the spring");
