@@ -62,22 +62,11 @@ struct ExplicitRungeKutta {
   template <class System, State X>
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
                   Workspace<X>& work, X& x_new) {
-    constexpr auto& tableau = Derived::tableau;
-    constexpr bool ends_with_f = tableau.first_same_as_last();
-    constexpr std::size_t inner = tableau.stages - (ends_with_f ? 1 : 0);
-    int evaluations = static_cast<int>(tableau.stages) - 1;
-    if (made_jump || !work.start_fresh) {
-      detail::evaluate_kept<X>(system, t, x, work.k[0]);
-      work.start_fresh = true;
-      ++evaluations;
+    if constexpr (detail::Packed<X>) {
+      return flat_step(system, t, x, h, made_jump, work, x_new);
+    } else {
+      return take_step(system, t, x, h, made_jump, work, x_new);
     }
-    [&]<std::size_t... s>(std::index_sequence<s...>) __attribute__((always_inline)) {
-      (stage<s + 1>(system, t, x, h, work), ...);
-    }(std::make_index_sequence<inner - 1>());
-    finish(x, h, work, x_new);
-    if constexpr (ends_with_f) detail::evaluate_kept<X>(system, t + h, x_new, work.k[end_slot()]);
-    work.end_fresh = ends_with_f;
-    return evaluations;
   }
 
   /// Root mean square of error_i / scale_i (0 without an estimate); not a number where x_new is not finite.
@@ -154,6 +143,34 @@ struct ExplicitRungeKutta {
   }
 
  private:
+  template <class System, State X>
+  [[gnu::always_inline]] static int take_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                              bool made_jump, Workspace<X>& work, X& x_new) {
+    constexpr auto& tableau = Derived::tableau;
+    constexpr bool ends_with_f = tableau.first_same_as_last();
+    constexpr std::size_t inner = tableau.stages - (ends_with_f ? 1 : 0);
+    int evaluations = static_cast<int>(tableau.stages) - 1;
+    if (made_jump || !work.start_fresh) {
+      detail::evaluate_kept<X>(system, t, x, work.k[0]);
+      work.start_fresh = true;
+      ++evaluations;
+    }
+    [&]<std::size_t... s>(std::index_sequence<s...>) __attribute__((always_inline)) {
+      (stage<s + 1>(system, t, x, h, work), ...);
+    }(std::make_index_sequence<inner - 1>());
+    finish(x, h, work, x_new);
+    if constexpr (ends_with_f) detail::evaluate_kept<X>(system, t + h, x_new, work.k[end_slot()]);
+    work.end_fresh = ends_with_f;
+    return evaluations;
+  }
+  /// With f compiled into it, however often it occurs: a call would cost more than the f of a small state, and would
+  /// send what is kept in registers through memory.
+  template <class System, State X>
+  [[gnu::flatten]] static int flat_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                        bool made_jump, Workspace<X>& work, X& x_new) {
+    return take_step(system, t, x, h, made_jump, work, x_new);
+  }
+
   struct EndWeight {
     constexpr const Coefficient& operator()(std::size_t j) const { return Derived::tableau.b[j]; }
   };
