@@ -1,10 +1,19 @@
 #include <array>
-#include <cstdio>
+#include <cmath>
 
-#include <continuo/numerics/state.hpp>
+#include <continuo/model/load.hpp>
+#include <continuo/model/simulate.hpp>
+#include <continuo/solve/solve.hpp>
 
 int main() {
-  std::array<double, 3> x{};
-  std::printf("%zu components\n", continuo::dimension(x));
-  return continuo::dimension(x) == 3 ? 0 : 1;
+  const auto decay = [](double, const std::array<double, 1>& x) { return std::array{-x[0]}; };
+  const auto solution = continuo::solve(decay, std::array{1.0}, {0.0, 1.0}, continuo::Tsitouras5{}, {.rtol = 1e-9});
+  const auto loaded = continuo::model::load(
+      continuo::model::Source("decay.sim", "model Decay\nx' = -x/T\nparam T = 1000 [ms]\nx(0) = 1\nrun 0..1 [s]\n"));
+  if (!loaded) return 1;
+  const auto simulated = continuo::model::simulate(*loaded.model, {.rtol = 1e-9});
+  const double exact = std::exp(-1.0);
+  const bool same =
+      std::abs(solution.final_state()[0] - exact) < 1e-8 && std::abs(simulated.run->final_state()[0] - exact) < 1e-8;
+  return same ? 0 : 2;
 }
