@@ -44,9 +44,10 @@ Fix: choose units in which your numbers are nearer to 1; the equations are solve
   run 0..5
 
 `continuo new NAME` writes one to begin with.)"},
-    Code{"E107", "an expression or block is nested too deeply",
-         R"(Brackets and blocks may be nested 200 deep, and an expression may be 500 operations tall; a sum of 500 terms
-is that tall, since a + b + c is (a + b) + c.
+    Code{
+        "E107", "an expression or block is nested too deeply",
+        R"(Brackets and blocks may be nested 200 deep (an operator before a bracket counts as one more), and an expression
+may be 500 operations tall; a sum of 500 terms is that tall, since a + b + c is (a + b) + c.
 
 Fix: give parts a name with `let`, or write a sum of alike terms as
 
@@ -59,10 +60,6 @@ Fix: give parts a name with `let`, or write a sum of alike terms as
 and repeated equations into a family,
 
   for i in 1..1000 { u[i]' = D*(u[i-1] - 2*u[i] + u[i+1])/dx^2 })"},
-    Code{
-        "E109", "the file cannot be read",
-        R"(There is no file of this name, it may not be read, or it is larger than 1 GB. Names are relative to the folder
-in which the command is started; the files a model names (`from "file.csv"`) to the folder of the model.)"},
     Code{"E110", "something else was expected",
          R"(The statement begins as one Continuo knows, but then something is missing or in the wrong place. The message
 says what was expected there and what was found.
@@ -190,6 +187,8 @@ A point of a drawing has two or three coordinates: (0, h).)"},
          R"(dx/dt, der(x) and diff(x, t) are written x', the second derivative x'':
 
   x'' = -k/m*x)"},
+    Code{"E136", "a name is too long",
+         R"(Names have at most 200 bytes; they are the columns of the result and stand in messages.)"},
 };
 
 }  // namespace

@@ -34,21 +34,11 @@ std::string_view word(Severity severity) {
   return "note";
 }
 
-/// A line cut into characters that can be shown one per column: tabs as a blank, anything unprintable as U+FFFD.
-std::vector<std::string> columns_of(std::string_view line) {
-  std::vector<std::string> columns;
-  for (std::size_t i = 0; i < line.size();) {
-    const CodePoint c = decode(line, i);
-    if (c.value == '\t') {
-      columns.emplace_back(" ");
-    } else if (c.size == 0 || c.value < 0x20 || (c.value >= 0x7F && c.value < 0xA0)) {
-      columns.emplace_back("\xEF\xBF\xBD");
-    } else {
-      columns.emplace_back(line.substr(i, c.size));
-    }
-    i += std::max<std::size_t>(c.size, 1);
-  }
-  return columns;
+/// The character as it is shown in one column: a tab as a blank, anything unprintable as U+FFFD.
+std::string shown_as(std::string_view line, std::size_t at, CodePoint c) {
+  if (c.value == '\t') return " ";
+  if (c.size == 0 || c.value < 0x20 || (c.value >= 0x7F && c.value < 0xA0)) return "\xEF\xBF\xBD";
+  return std::string(line.substr(at, c.size));
 }
 
 struct Excerpt {
@@ -57,25 +47,29 @@ struct Excerpt {
   std::size_t carets = 1;
 };
 
-/// The part of the line round columns [first, last) (from 0) that fits into a terminal.
+/// The part of the line round columns [first, last) (from 0) that fits into a terminal. A line may be megabytes long.
 Excerpt cut(std::string_view line, std::size_t first, std::size_t last) {
   constexpr std::size_t widest = 100, before = 40;
-  constexpr std::size_t most_bytes = 4096;  // of a line of megabytes, only the part before the caret is measured
-  const std::size_t shown = std::min(line.size(), (first + widest) * 4 + most_bytes);
-  const std::vector<std::string> columns = columns_of(line.substr(0, shown));
-  first = std::min(first, columns.size());
-  last = std::max(std::min(last, columns.size()), first + 1);
-  std::size_t begin = 0, end = columns.size();
-  if (end > widest) {
-    begin = first > before ? first - before : 0;
-    end = std::min(end, begin + widest);
+  std::size_t begin = 0;  // the column at which the excerpt begins
+  if (first > before) {
+    std::size_t columns = 0;
+    for (std::size_t at = 0; at < line.size() && columns <= first + widest; ++columns)
+      at += std::max<std::size_t>(decode(line, at).size, 1);
+    if (columns > widest) begin = first - before;
   }
+  std::size_t at = 0;
+  for (std::size_t column = 0; column < begin; ++column) at += std::max<std::size_t>(decode(line, at).size, 1);
   Excerpt excerpt;
   if (begin > 0) excerpt.line = "...";
+  std::size_t end = begin;
   excerpt.indent = first - begin + excerpt.line.size();
-  excerpt.carets = std::min(last, std::max(end, first + 1)) - first;
-  for (std::size_t i = begin; i < end; ++i) excerpt.line += columns[i];
-  if (end < columns.size() || shown < line.size()) excerpt.line += "...";
+  for (; at < line.size() && end < begin + widest; ++end) {
+    const CodePoint c = decode(line, at);
+    excerpt.line += shown_as(line, at, c);
+    at += std::max<std::size_t>(c.size, 1);
+  }
+  if (at < line.size()) excerpt.line += "...";
+  excerpt.carets = std::max(std::min(last, end), first + 1) - first;
   return excerpt;
 }
 
@@ -86,7 +80,8 @@ void append_line(std::string& out, const Source& source, Span span, std::string_
   const std::size_t first = static_cast<std::size_t>(begin.column - 1);
   const std::size_t last = begin.line == stop.line ? static_cast<std::size_t>(stop.column - 1) : line.size();
   const Excerpt excerpt = cut(line, first, last);
-  out += fmt::format("{}{:>{}} |{} {}\n", frame, begin.line, gutter, end, excerpt.line);
+  out +=
+      fmt::format("{}{:>{}} |{}{}{}\n", frame, begin.line, gutter, end, excerpt.line.empty() ? "" : " ", excerpt.line);
   out += fmt::format("{}{:>{}} |{} {:>{}}{}{}", frame, "", gutter, end, "", excerpt.indent, accent,
                      std::string(excerpt.carets, mark));
   if (!label.empty()) out += fmt::format(" {}", label);

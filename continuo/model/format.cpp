@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <continuo/model/format.hpp>
@@ -118,9 +120,11 @@ Spelled spell_node(const ast::Binary& binary) {
     return {base + "^" + exponent, strength};
   }
   const bool chains = strength != comparison_strength;
-  return {operand(*binary.left, chains ? strength : strength + 1) + std::string(sign) +
-              operand(*binary.right, strength + 1),
-          strength};
+  const std::string left = operand(*binary.left, chains ? strength : strength + 1);
+  // After numbers alone a quantity keeps its unit to itself by a bracket: 1/(2 [m]).
+  const bool keeps = std::holds_alternative<ast::Quantity>(binary.right->node) && is_plain_number(*binary.left);
+  const std::string right = operand(*binary.right, keeps ? primary_strength : strength + 1);
+  return {left + std::string(sign) + right, strength};
 }
 
 Spelled spell_node(const ast::Call& call) {
@@ -133,7 +137,12 @@ Spelled spell_node(const ast::Conditional& choice) {
           choice_strength};
 }
 
+// Numbers alone need no bracket: 1/2 [m] is read as (1/2) [m].
 Spelled spell_node(const ast::Quantity& quantity) {
+  const bool plain = is_plain_number(*quantity.value);
+  const Spelled value = spell(*quantity.value);
+  if (plain)
+    return {fmt::format("{} [{}]", value.text, quantity.unit.text), std::min(value.strength, quantity_strength)};
   return {fmt::format("{} [{}]", operand(*quantity.value, primary_strength), quantity.unit.text), quantity_strength};
 }
 
@@ -160,6 +169,17 @@ std::string_view word(ast::Direction direction) {
 }
 
 }  // namespace
+
+bool is_plain_number(const ast::Expression& expression) {
+  const auto& node = expression.node;
+  if (std::holds_alternative<ast::Number>(node)) return true;
+  if (const auto* name = std::get_if<ast::Name>(&node)) return name->text == "pi" && name->primes == 0;
+  if (const auto* unary = std::get_if<ast::Unary>(&node)) return is_plain_number(*unary->operand);
+  if (const auto* binary = std::get_if<ast::Binary>(&node))
+    return is_plain_number(*binary->left) && is_plain_number(*binary->right);
+  const auto* call = std::get_if<ast::Call>(&node);
+  return call && std::all_of(call->arguments.begin(), call->arguments.end(), is_plain_number);
+}
 
 std::string to_text(const ast::Expression& expression) {
   return spell(expression).text;

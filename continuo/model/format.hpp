@@ -15,6 +15,9 @@ std::string to_text(const ast::Name& name);
 std::string to_text(const ast::Range& range);
 std::string to_text(const ast::Equation& equation);
 
+/// Made of numbers, `pi` and functions of these, and no unit.
+bool is_plain_number(const ast::Expression& expression);
+
 std::string event_name(const ast::When& event);
 std::string event_name(const ast::At& event);
 std::string event_name(const ast::Every& event);

@@ -12,6 +12,8 @@ namespace continuo::model {
 
 namespace {
 
+constexpr std::size_t longest_name = 200;  // names are shown in messages and as columns
+
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
@@ -176,7 +178,12 @@ Token Lexer::scan() {
     const bool indexable = before_ == TokenKind::name || before_ == TokenKind::prime;
     return touches && indexable ? make(TokenKind::open_index, 1) : scan_unit();
   }
-  if (const std::size_t size = name_size(text_, at_); size > 0) return make(TokenKind::name, size);
+  if (const std::size_t size = name_size(text_, at_); size > longest_name) {
+    return bad(size, "E136", "this name is too long", fmt::format("it has {} bytes", size),
+               fmt::format("names have at most {} bytes", longest_name));
+  } else if (size > 0) {
+    return make(TokenKind::name, size);
+  }
   return scan_sign();
 }
 
@@ -224,27 +231,33 @@ Token Lexer::scan_text() {
     return bad(1, "E129", "a double quote is not two primes", "one character, `\"`",
                "write two single quotes, as in x''");
   }
-  const std::size_t line_end = std::min(text_.find('\n', at_), text_.size());
-  for (std::size_t i = at_ + 1; i < line_end; ++i) {
-    if (text_[i] == '"') return make(TokenKind::text, i + 1 - at_);
-    if (text_[i] != '\\') continue;
-    const char escaped = i + 1 < line_end ? text_[i + 1] : '\0';
-    if (escaped != '"' && escaped != '\\' && escaped != 'n' && escaped != 't') {
-      const Span wrong{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 1)};
-      Token token = bad(line_end - at_, "E133", "a backslash in a text means one of \\\" \\\\ \\n \\t", "",
+  // Without a search for the line's end first: many short texts in one long line would each look to its end.
+  std::optional<Span> wrong;
+  std::size_t i = at_ + 1;
+  for (; i < text_.size() && text_[i] != '\n'; ++i) {
+    if (text_[i] == '"') {
+      if (!wrong) return make(TokenKind::text, i + 1 - at_);
+      Token token = bad(i + 1 - at_, "E133", "a backslash in a text means one of \\\" \\\\ \\n \\t", "",
                         "write \\\\ for a backslash, or / between folders");
-      token.problem->span = wrong;
+      token.problem->span = *wrong;
       return token;
     }
+    if (text_[i] != '\\') continue;
+    const char escaped = i + 1 < text_.size() ? text_[i + 1] : '\0';
+    if (escaped == '\n') break;
+    const bool known = escaped == '"' || escaped == '\\' || escaped == 'n' || escaped == 't';
+    if (!known && !wrong) wrong = Span{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 2)};
     ++i;
   }
-  return bad(line_end - at_, "E103", "this text has no end", "begins here", "close it with `\"` on the same line");
+  return bad(std::min(i, text_.size()) - at_, "E103", "this text has no end", "begins here",
+             "close it with `\"` on the same line");
 }
 
 Token Lexer::scan_unit() {
-  const std::size_t line_end = std::min(text_.find('\n', at_), text_.size());
-  const std::size_t close = std::min(text_.find(']', at_), text_.size());
-  if (close < line_end) return make(TokenKind::unit, close + 1 - at_);
+  constexpr std::size_t longest = 256;  // bounds the search: many brackets in one long line would each look to its end
+  const std::string_view rest = text_.substr(at_, longest);
+  const std::size_t close = rest.find(']');
+  if (close < rest.find('\n')) return make(TokenKind::unit, close + 1);
   return bad(1, "E104", "this unit bracket has no end", "", "close it with `]` on the same line, as in 9.8 [m/s^2]");
 }
 

@@ -69,9 +69,10 @@ ParseResult Parser::parse_model() {
   try {
     if (const auto invalid = first_invalid_byte(text)) {
       const auto offset = static_cast<std::uint32_t>(*invalid);
+      const bool utf16 = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
       report(error("E101", {offset, offset + 1}, "this file is not UTF-8 text",
                    fmt::format("byte {} is 0x{:02X}", offset, static_cast<unsigned char>(text[offset])),
-                   "save the file as UTF-8 in the editor"));
+                   utf16 ? "it is UTF-16: save the file as UTF-8" : "save the file as UTF-8 in the editor"));
       return std::move(result_);
     }
     result_.model.heading = heading_of(text);
@@ -135,16 +136,23 @@ Statement Parser::parse_statement(Context context) {
   if (token.kind == TokenKind::name) {
     const std::string word(spelled(token));
     const auto words = statement_words();
-    const bool defines = look(1).kind == TokenKind::define;
-    if (std::find(words.begin(), words.end(), word) != words.end() && !defines) {
+    const TokenKind next = look(1).kind;
+    const bool as_name = next == TokenKind::define || next == TokenKind::prime || next == TokenKind::open_index ||
+                         (next == TokenKind::open_round && !look(1).after_space && word != "check");
+    if (is_reserved(word) && word != "if" && word != "not" && word != "sum" && as_name) {
+      parse_identifier("a name");  // says what is wrong
+    } else if (std::find(words.begin(), words.end(), word) != words.end()) {
       require_allowed(word, context);
       node = parse_worded(word, context);
-    } else if (is_reserved(word) && word != "if" && word != "not" && word != "sum" && !defines) {
-      fail(error("E123", token.span, fmt::format("`{}` cannot stand here", word), "",
-                 word == "go" || word == "mark" || word == "stop"
-                     ? "it is an action: write it in an event, when ... { " + word + " ... }"
-                     : ""));
-    } else if (look(1).kind == TokenKind::name && !look(1).goes_on && !operator_at(look(1))) {
+    } else if (is_reserved(word) && word != "not" && word != "sum") {
+      std::string help;
+      if (word == "go" || word == "mark" || word == "stop")
+        help = "it is an action: write it in an event, when ... { " + word + " ... }";
+      if (word == "if")
+        help = "in an equation write x' = if c then a else b; actions stand in an event: when c { ... }";
+      fail(error("E123", token.span, fmt::format("`{}` cannot stand here", word), "", help));
+    } else if ((next == TokenKind::name && !operator_at(look(1))) || next == TokenKind::number ||
+               next == TokenKind::text) {
       unknown_statement();
     }
   }
@@ -212,113 +220,6 @@ Statement::Node Parser::parse_defining(std::string_view word) {
   return start;
 }
 
-std::vector<ast::Definition> Parser::parse_definitions(bool with_range) {
-  std::vector<ast::Definition> items;
-  do {
-    if (!items.empty() && at(TokenKind::number)) {
-      fail(error("E110", current().span, "expected a name after the comma, found " + describe(current(), source_), "",
-                 "the decimal sign is a point: 9.8, not 9,8"));
-    }
-    items.push_back(parse_definition(with_range));
-  } while (accept(TokenKind::comma));
-  if (with_range)
-    expect_statement_end({"in"});
-  else
-    expect_statement_end();
-  return items;
-}
-
-ast::Definition Parser::parse_definition(bool with_range) {
-  const std::uint32_t begin = current().span.begin;
-  ast::Definition definition;
-  if (at(TokenKind::name) && is_reserved(spelled(current()))) parse_identifier("a name");  // says what is wrong
-  if (!at(TokenKind::name)) unexpected("a name");
-  if (look(1).kind == TokenKind::open_index) {
-    parse_element_range(definition);
-  } else {
-    definition.name = parse_name("a name");
-  }
-  if (definition.name.primes > 0) {
-    fail(error(
-        "E129", definition.name.span, "a derivative cannot be defined here", "",
-        fmt::format("write the equation without a word before it: {} = ...", source_.slice(definition.name.span))));
-  }
-  if (at(TokenKind::assign)) {
-    fail(error("E118", current().span, "`:=` assigns in an event", "", "write `=` to define"));
-  }
-  expect(TokenKind::define, fmt::format("`=` and the value of `{}`", definition.name.text));
-  definition.value = parse_value_or_list();
-  if (!definition.elements) require_single(definition.value);
-  if (with_range && accept_word("in")) definition.range = parse_range();
-  definition.span = since(begin);
-  return definition;
-}
-
-/// `m[i]` of a family, or the elements `m[1..7]` of a list.
-void Parser::parse_element_range(ast::Definition& definition) {
-  const Token name = advance();
-  const Token open = advance();
-  definition.name.text = spelled(name);
-  Expression first = parse_sum_of_terms();
-  if (at(TokenKind::dots)) {
-    definition.elements = parse_range_from(std::move(first));
-  } else {
-    definition.name.indices.push_back(std::move(first));
-    while (accept(TokenKind::comma)) definition.name.indices.push_back(parse_sum_of_terms());
-  }
-  if (at_statement_end())
-    fail(error("E113", open.span, "this index bracket is not closed", "opened here", "close it with `]`"));
-  expect(TokenKind::close_index, "`]` after the index");
-  definition.name.span = since(name.span.begin);
-}
-
-ast::Input Parser::parse_input() {
-  ast::Input input;
-  input.definition = parse_definition(true);
-  while (at(TokenKind::name)) {
-    if (accept_word("key")) {
-      input.key = parse_text("the key, as in key \"w\"");
-    } else if (accept_word("from")) {
-      input.file_span = current().span;
-      input.file = parse_text("the name of a file, as in from \"force.csv\"");
-      if (accept_word("step")) input.interpolation = ast::Interpolation::step;
-      accept_word("linear");
-    } else {
-      break;
-    }
-  }
-  expect_statement_end({"in", "key", "from", "step", "linear"});
-  return input;
-}
-
-ast::Table Parser::parse_table() {
-  ast::Table table;
-  table.name = parse_identifier("the name of the table");
-  expect_word("from", "`from` and a file, as in table drag from \"drag.csv\"");
-  table.file_span = current().span;
-  table.file = parse_text("the name of a file, as in \"drag.csv\"");
-  expect_statement_end();
-  return table;
-}
-
-ast::Unknown Parser::parse_unknown() {
-  ast::Unknown unknown;
-  unknown.name = parse_name("the name of the unknown");
-  expect(TokenKind::define, "`=` and a guess of its value");
-  unknown.guess = parse_value();
-  expect_statement_end();
-  return unknown;
-}
-
-ast::Guess Parser::parse_guess() {
-  ast::Guess guess;
-  guess.name = parse_name("the name of a state");
-  expect(TokenKind::define, "`=` and a function of t");
-  guess.value = parse_value();
-  expect_statement_end();
-  return guess;
-}
-
 std::vector<Statement> Parser::parse_statements(std::string_view wanted, Context context) {
   std::vector<Statement> statements;
   read_block(wanted, [&] { statements.push_back(parse_statement(context)); });
@@ -377,7 +278,7 @@ Statement::Node Parser::parse_equation() {
 ast::Condition Parser::as_condition(Expression left, Expression value) {
   auto& call = std::get<ast::Call>(left.node);
   if (call.arguments.size() != 1) {
-    fail(error("E132", left.span, fmt::format("a value at {} times", call.arguments.size()), "",
+    fail(error("E132", left.span, fmt::format("an initial value has one time, not {}", call.arguments.size()), "",
                fmt::format("an initial value is written {}(0) = ...", source_.slice(call.callee.span))));
   }
   return {std::move(call.callee), std::move(call.arguments.front()), std::move(value)};

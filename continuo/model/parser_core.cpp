@@ -57,7 +57,8 @@ const Token& Parser::look_past_line_ends() {
 Token Parser::advance() {
   Token token = current();
   ahead_.pop_front();
-  if (token.goes_on) continuation_ = Span{token.goes_on_from, token.goes_on_from + 1};
+  if (token.goes_on && token.span.begin != item_begin_)
+    continuation_ = Span{token.goes_on_from, token.goes_on_from + 1};
   if (token.kind != TokenKind::line_end) {
     last_end_ = token.span.end;
     last_span_ = token.span;
@@ -148,23 +149,34 @@ void Parser::left_over(std::initializer_list<std::string_view> words) {
     fail(error("E128", token.span, "a unit cannot stand here", "",
                "one unit follows a number or a bracket; write an index without a space before it, as in u[i]"));
   }
-  if (ends_value(last_kind_) && begins_value(token.kind) && !token.goes_on) {
-    const std::string_view left = source_.slice(last_span_), right = spelled(token);
-    const bool known = token.kind == TokenKind::name && is_reserved(right);
-    if (!known && left.size() + right.size() < 60) {
-      fail(error("E116", token.span, fmt::format("an operator is missing before {}", found), "",
-                 last_kind_ == TokenKind::unit || last_kind_ == TokenKind::prime
-                     ? "write `*` for a product"
-                     : fmt::format("write {}*{}{} for a product", left, right,
-                                   token.kind == TokenKind::open_round ? "...)" : "")));
-    }
+  if (token.kind == TokenKind::prime)
+    fail(error("E129", token.span, "a prime follows its name without a space", "", "write it as in x'"));
+  const bool word = token.kind == TokenKind::name && is_reserved(spelled(token));
+  if (ends_value(last_kind_) && begins_value(token.kind) && !token.goes_on && !word) {
+    fail(error("E116", token.span, fmt::format("an operator is missing before {}", found), "", product_help()));
   }
+  if (token.kind == TokenKind::comma) unexpected("the end of the statement", "separate statements with `;`");
   if (token.kind == TokenKind::define || token.kind == TokenKind::assign) {
     std::string help = continuation_help();
     if (help.empty()) help = "a statement ends with its line or with `;`";
     fail(error("E110", token.span, fmt::format("a second {} in one statement", found), "", help));
   }
   unexpected("the end of the statement", "a statement ends with its line or with `;`");
+}
+
+/// For two values side by side, of which the second is the current token: most often a product is meant.
+std::string Parser::product_help() {
+  const std::string_view left = source_.slice(last_span_), right = spelled(current());
+  const TokenKind kind = current().kind;
+  if (kind == TokenKind::name && look(1).kind == TokenKind::define)
+    return "separate definitions with a comma, statements with `;`";
+  if (kind == TokenKind::number && last_kind_ == TokenKind::number)
+    return fmt::format("a number has no blanks and one point, as in {}", left);
+  const bool short_name = last_kind_ == TokenKind::name || last_kind_ == TokenKind::number;
+  if (!short_name || left.size() + right.size() > 60) return "write `*` for a product";
+  const std::string product = fmt::format("write {}*{}", left, kind == TokenKind::open_round ? "(...)" : right);
+  if (last_kind_ != TokenKind::number || kind != TokenKind::name) return product + " for a product";
+  return fmt::format("{}, or {} [{}] if it is a unit", product, left, right);
 }
 
 void Parser::expect_statement_end(std::initializer_list<std::string_view> words) {
@@ -181,6 +193,8 @@ bool Parser::at_unclosed_block() {
 }
 
 void Parser::recover() {
+  // What a line that goes on lacks was found missing at the next one: that is a statement of its own.
+  if (current().goes_on && at(TokenKind::name)) return;
   int depth = 0;
   for (;; advance()) {
     const Token& token = current();

@@ -1,7 +1,8 @@
 // continuo/model/parser_core.hpp
-// The recursive descent behind parser.hpp, one class over four sources: statements (parser.cpp), expressions
-// (parser_expressions.cpp), events and their actions (parser_events.cpp), run, plot, draw and check
-// (parser_settings.cpp). The reading of tokens and what happens after an error is parser_core.cpp.
+// The recursive descent behind parser.hpp, one class over several sources: statements (parser.cpp), definitions
+// (parser_definitions.cpp), expressions (parser_expressions.cpp, parser_values.cpp), events and their actions
+// (parser_events.cpp), run, plot, draw and check (parser_settings.cpp). The reading of tokens and what happens after an
+// error is parser_core.cpp.
 #pragma once
 #include <cstddef>
 #include <deque>
@@ -84,6 +85,7 @@ class Parser {
   [[noreturn]] void left_over(std::initializer_list<std::string_view> words);
   void expect_statement_end(std::initializer_list<std::string_view> words = {});
   std::string continuation_help();
+  std::string product_help();
   void recover();
   void recover_to_block();
   bool at_unclosed_block();
@@ -130,6 +132,7 @@ class Parser {
   ast::Expression parse_condition(std::string_view where);
   ast::Name parse_name(std::string_view wanted, int* height = nullptr);
   ast::Name parse_indices_and_primes(const Token& token, int* height);
+  void close_index(const Token& open);
   ast::Identifier parse_identifier(std::string_view wanted);
   ast::Range parse_range(int* height = nullptr);
   ast::Range parse_range_from(ast::Expression first, int* height = nullptr);
@@ -194,6 +197,7 @@ class Parser {
   TokenKind last_kind_ = TokenKind::line_end;
   Span last_span_;
   std::optional<Span> continuation_;  // what made the current statement go on over a line end, the latest
+  std::uint32_t item_begin_ = 0;      // where the current statement, action or shape begins
   int nesting_ = 0;
   int round_brackets_ = 0;  // open round brackets, inside which a line may end before an operator
   std::size_t errors_ = 0;
@@ -206,6 +210,7 @@ void Parser::read_item(Read read) {
   const std::uint32_t begin = current().span.begin;
   const std::size_t indices = indices_.size();
   continuation_.reset();
+  item_begin_ = begin;
   round_brackets_ = 0;
   try {
     read();

@@ -87,7 +87,8 @@ void Parser::parse_direction(ast::When& event) {
                  "write `through`"));
   }
   if (at(TokenKind::open_brace) || at_word("in") || at(TokenKind::line_end)) {
-    unexpected("the value that is crossed", fmt::format("write {} through 0", word));
+    unexpected("the value that is crossed",
+               fmt::format("write: when {} {} through 0", source_.slice(event.subject.span), word));
   }
   event.level = parse_sum_of_terms();
 }
@@ -149,7 +150,9 @@ ast::Action Parser::parse_action() {
   if (at_word("else")) {
     fail(error("E123", current().span, "this `else` has no `if`", "", "`else` follows the `}` of an `if`"));
   }
-  if (at(TokenKind::name) && look(1).kind == TokenKind::name && !is_reserved(spelled(current()))) {
+  const TokenKind second = look(1).kind;
+  const bool two_values = second == TokenKind::name || second == TokenKind::text || second == TokenKind::number;
+  if (at(TokenKind::name) && two_values && !is_reserved(spelled(current()))) {
     const std::string_view word = spelled(current());
     std::string help = did_you_mean(word, action_words());
     if (help.empty()) help = "actions are: x := value, if, go, mark, stop, for";
@@ -208,7 +211,11 @@ ast::If Parser::parse_if() {
 ast::Stop Parser::parse_stop() {
   ast::Stop stop;
   if (at(TokenKind::text)) stop.text = parse_text("a text");
-  if (accept_word("after")) stop.after = parse_sum_of_terms();
+  if (accept_word("after")) {
+    stop.after = parse_sum_of_terms();
+  } else if (at(TokenKind::name) && !at_word("else")) {
+    unexpected("`after`, a text or the end of the action", fmt::format("write stop \"{}\"", spelled(current())));
+  }
   return stop;
 }
 

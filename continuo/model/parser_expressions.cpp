@@ -121,7 +121,6 @@ Tree Parser::parse_chain(Level lowest) {
 }
 
 Tree Parser::parse_prefix() {
-  const Nesting nesting(*this);
   const Token& token = current();
   const std::uint32_t begin = token.span.begin;
   if (token.kind == TokenKind::name && spelled(token) == "not") {
@@ -133,6 +132,7 @@ Tree Parser::parse_prefix() {
                 operand.height);
   }
   if (token.kind == TokenKind::minus || token.kind == TokenKind::plus) {
+    const Nesting nesting(*this);
     const bool negates = advance().kind == TokenKind::minus;
     Tree operand = parse_prefix();
     require_single(operand.expression);
@@ -144,11 +144,11 @@ Tree Parser::parse_prefix() {
 }
 
 Tree Parser::parse_power(bool with_unit) {
-  const Nesting nesting(*this);
   Tree base = parse_primary(with_unit);
   go_on_inside_brackets();
   if (!at(TokenKind::caret)) return base;
   require_single(base.expression);
+  const Nesting nesting(*this);
   advance();
   // An exponent has no unit: in 2*pi^2 [m] the unit follows the power.
   const std::uint32_t begin = current().span.begin;

@@ -55,6 +55,11 @@ ast::Run Parser::parse_run() {
   while (true) {
     const bool comma = accept(TokenKind::comma);
     if (parse_run_part(run)) continue;
+    if (comma && current().goes_on) {
+      const Span sign{current().goes_on_from, current().goes_on_from + 1};
+      fail(error("E110", sign, "a part of the run is missing after `,`", "",
+                 "parts are output, method, step, tol, abs and realtime"));
+    }
     if (comma && !at_statement_end() && at(TokenKind::name))
       left_over({"output", "method", "step", "tol", "abs", "realtime"});
     if (comma) unexpected("a part of the run after the comma: output, method, step, tol, abs or realtime");
@@ -198,8 +203,7 @@ void Parser::parse_attributes(ast::Shape& shape, Words known) {
     attribute.name = {word, advance().span};
     if (word == "color" || word == "label") {
       const Span span = current().span;
-      attribute.value = {
-          ast::Text{parse_text(fmt::format("a text, as in {} \"{}\"", word, word == "color" ? "red" : "m"))}, span};
+      attribute.value = {ast::Text{parse_text("a text in quotes")}, span};
     } else if (shape.kind == ast::ShapeKind::box && word == "size") {
       attribute.value = parse_point();
     } else {
@@ -214,6 +218,8 @@ ast::AtEvent Parser::parse_event_reference(bool after) {
   ast::AtEvent event;
   event.after = after;
   expect_word("event", "`event` and its number, as in `event 3`");
+  if (at(TokenKind::define) || at_statement_end())
+    unexpected("the number of the event", "events are counted from 1, as in `event 1`");
   event.number = parse_sum_of_terms();
   if (accept_word("of")) event.event = parse_text("an event, as in of \"h falls\"");
   return event;
@@ -278,7 +284,7 @@ ast::Check Parser::parse_check() {
     case TokenKind::equal:
       fail(error("E126", sign.span, "a check is written with `=`", "", "write check h(1) = 5.1 within 1e-9"));
     default:
-      if (!sign.problem && (at_statement_end() || sign.kind == TokenKind::name))
+      if (sign.kind != TokenKind::close_round && sign.kind != TokenKind::unit)
         unexpected("`=`, `<`, `<=`, `>` or `>=` and the value expected",
                    "write check h(1) = 5.1 within 1e-9, or check energy drift < 1e-8");
       left_over({"at", "before", "after"});
@@ -296,7 +302,7 @@ ast::Check Parser::parse_check() {
     check.tolerance = parse_sum_of_terms();
   } else if (equality && !exact && at_statement_end()) {
     fail(error("E126", since(begin), "this check needs a tolerance", "",
-               fmt::format("write {} within 1e-9", source_.slice(since(begin)))));
+               fmt::format("write check {} within 1e-9", source_.slice(since(begin)))));
   }
   expect_statement_end({"within"});
   if (always && equality && !check.tolerance) unexpected("`within`");

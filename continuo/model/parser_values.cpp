@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/model/format.hpp>
 #include <continuo/model/parser_core.hpp>
 #include <continuo/model/words.hpp>
 
@@ -11,23 +12,11 @@ namespace {
 
 using ast::Expression;
 
-/// Made of numbers, `pi` and functions of these, and no unit.
-bool is_plain_number(const Expression& expression) {
-  const auto& node = expression.node;
-  if (std::holds_alternative<ast::Number>(node)) return true;
-  if (const auto* name = std::get_if<ast::Name>(&node)) return name->text == "pi" && name->primes == 0;
-  if (const auto* unary = std::get_if<ast::Unary>(&node)) return is_plain_number(*unary->operand);
-  if (const auto* binary = std::get_if<ast::Binary>(&node))
-    return is_plain_number(*binary->left) && is_plain_number(*binary->right);
-  const auto* call = std::get_if<ast::Call>(&node);
-  return call && std::all_of(call->arguments.begin(), call->arguments.end(), is_plain_number);
-}
-
 /// The quantity the expression ends with, unless a bracket closes after it. On the way to it only numbers may stand.
 Expression* last_quantity(Expression& expression, std::uint32_t end) {
   if (expression.span.end != end) return nullptr;
   if (auto* quantity = std::get_if<ast::Quantity>(&expression.node))
-    return is_plain_number(*quantity->value) ? &expression : nullptr;
+    return quantity->unit.span.end == end && is_plain_number(*quantity->value) ? &expression : nullptr;
   if (auto* unary = std::get_if<ast::Unary>(&expression.node)) return last_quantity(*unary->operand, end);
   auto* binary = std::get_if<ast::Binary>(&expression.node);
   if (!binary) return nullptr;
@@ -116,10 +105,7 @@ ast::Name Parser::parse_indices_and_primes(const Token& token, int* height) {
     do {
       name.indices.push_back(parse_expression(height));
     } while (accept(TokenKind::comma));
-    if (at_statement_end()) {
-      fail(error("E113", open.span, "this index bracket is not closed", "opened here", "close it with `]`"));
-    }
-    expect(TokenKind::close_index, "`]` after the index");
+    close_index(open);
   }
   while (at(TokenKind::prime) && !current().after_space) {
     const Token prime = advance();
@@ -134,6 +120,14 @@ ast::Name Parser::parse_indices_and_primes(const Token& token, int* height) {
                            std::string(static_cast<std::size_t>(name.primes), '\''))));
   }
   return name;
+}
+
+void Parser::close_index(const Token& open) {
+  if (accept(TokenKind::close_index)) return;
+  if (current().problem) fail(*current().problem);
+  if (current().kind == TokenKind::name || current().kind == TokenKind::number) left_over({});
+  fail(error("E113", open.span, "this index bracket is not closed", "opened here",
+             fmt::format("close it with `]` before {}", describe(current(), source_))));
 }
 
 ast::Range Parser::parse_range(int* height) {
@@ -160,8 +154,10 @@ ast::Range Parser::parse_range_from(Expression first, int* height) {
 
 std::string Parser::parse_text(std::string_view wanted) {
   if (!at(TokenKind::text)) {
-    const bool other = at(TokenKind::prime) || at(TokenKind::name);
-    unexpected(wanted, other ? "a text stands in double quotes, as in \"apex\"" : "");
+    std::string help;
+    if (at(TokenKind::prime)) help = "a text stands in double quotes";
+    if (at(TokenKind::name)) help = fmt::format("write \"{}\"", spelled(current()));
+    unexpected(wanted, std::move(help));
   }
   return unescape(spelled(advance()));
 }
