@@ -1,0 +1,241 @@
+// continuo/methods/runge_kutta_nystrom.hpp
+// Runge-Kutta-Nystrom methods: made for q'' = a(t, q), where they need far fewer evaluations than methods for x' = f(t,
+// x). E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", II.14, eq. 14.9:
+//
+//   k_i = a(t + c_i h, q + c_i h v + h^2 sum_j a_ij k_j),
+//   q_new = q + h v + h^2 sum_i b_i k_i,   v_new = v + h sum_i bv_i k_i.
+//
+// The system says which components are q and which v (SecondOrder), and that a ignores v: the function of two arguments
+// in `second_order` does. Where a does look at v these methods have no order at all, so the step then ends in "not a
+// number", which the driver reports.
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include <continuo/methods/method.hpp>
+#include <continuo/methods/weighted_sum.hpp>
+#include <continuo/system/second_order.hpp>
+
+namespace continuo {
+
+/// The numbers of such a method; the embedded weights give positions and velocities of lower order.
+template <std::size_t Stages>
+struct NystromTableau {
+  static constexpr std::size_t stages = Stages;
+  Coefficient c[Stages] = {};
+  Coefficient a[Stages][Stages] = {};
+  Coefficient b[Stages] = {}, bv[Stages] = {};
+  Coefficient embedded[Stages] = {}, embedded_v[Stages] = {};
+
+  /// The last stage is a at the end of the step.
+  constexpr bool first_same_as_last() const {
+    for (std::size_t j = 0; j < Stages; ++j) {
+      if (!(a[Stages - 1][j] == b[j])) return false;
+    }
+    return Stages > 1 && c[Stages - 1] == Coefficient(1);
+  }
+};
+
+template <class Derived>
+struct RungeKuttaNystrom {
+  static constexpr bool second_order = true;
+  /// Between the ends: positions by the quintic that meets position, velocity and acceleration at both ends, velocities
+  /// by its derivative. The step of a method of order 12 is long; where the way between matters, bound it by
+  /// `max_step`.
+  static constexpr int dense_degree = 5, dense_order = 4;
+
+  /// f at the stages (where it is first the same as last, the last is the next first), and at the end of the step.
+  template <State X>
+  struct Workspace {
+    std::array<X, Derived::tableau.stages> k;
+    X end, argument;
+    bool start_fresh = false, end_fresh = false;
+  };
+
+  template <State X>
+  static Workspace<X> workspace(const X& x) {
+    return [&]<std::size_t... j>(std::index_sequence<j...>) {
+      return Workspace<X>{{((void)j, x)...}, x, x};
+    }(std::make_index_sequence<Derived::tableau.stages>());
+  }
+
+  template <class System, State X>
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+                  Workspace<X>& work, X& x_new) {
+    static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
+    constexpr std::size_t stages = Derived::tableau.stages;
+    int evaluations = static_cast<int>(stages) - 1;
+    work.end_fresh = false;
+    if (made_jump || !work.start_fresh) {
+      evaluate(system, t, x, work.k[0]);
+      work.start_fresh = true;
+      ++evaluations;
+    }
+    work.argument = x;
+    [&]<std::size_t... s>(std::index_sequence<s...>) {
+      (stage<s + 1>(system, t, x, h, work), ...);
+    }(std::make_index_sequence<stages - 1>());
+    finish(system, x, h, work, x_new);
+    return evaluations;
+  }
+
+  /// Root mean square of error_i / scale_i over positions and velocities; not a number where x_new is not finite.
+  template <State X>
+  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                              const Tolerance<Scalar<X>>& tolerance) {
+    using std::sqrt;
+    using Real = Scalar<X>;
+    // `finish` left the errors in work.argument.
+    Real sum(0);
+    for (std::size_t i = 0; i < dimension(x); ++i) {
+      const Real end = x_new.data()[i];
+      const Real ratio = work.argument.data()[i] / tolerance.scale(i, x.data()[i], end);
+      sum += ratio * ratio + (end - end);
+    }
+    return sqrt(sum / Real(static_cast<double>(dimension(x))));
+  }
+  template <State X>
+  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+    using std::abs;
+    return abs(work.argument.data()[i]);
+  }
+
+  template <class System, State X>
+  static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, const X& x_new,
+                         Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {
+    const int evaluations = work.end_fresh ? 0 : 1;
+    if (!work.end_fresh) evaluate(system, t + h, x_new, work.end);
+    work.end_fresh = true;
+    const std::size_t size = dimension(x);
+    for (std::size_t n = 0; n < system.pair_count(size); ++n) {
+      const PositionVelocity pair = system.pair(n, size);
+      set_quintic(x, h, x_new, work, pair, interpolant);
+    }
+    return evaluations;
+  }
+
+  template <State X>
+  static void accept(Workspace<X>& work) {
+    using std::swap;
+    if constexpr (Derived::tableau.first_same_as_last()) {
+      swap(work.k[0], work.k[Derived::tableau.stages - 1]);
+      work.start_fresh = true;
+    } else {
+      if (work.end_fresh) swap(work.k[0], work.end);
+      work.start_fresh = work.end_fresh;
+    }
+    work.end_fresh = false;
+  }
+
+  template <State X>
+  static const X& derivative(const Workspace<X>& work) {
+    return work.k[0];
+  }
+
+ private:
+  template <std::size_t s>
+  struct StageWeight {
+    constexpr const Coefficient& operator()(std::size_t j) const { return Derived::tableau.a[s][j]; }
+  };
+  template <std::size_t s>
+  struct StageNode {
+    constexpr const Coefficient& operator()(std::size_t) const { return Derived::tableau.c[s]; }
+  };
+  struct PositionWeight {
+    constexpr const Coefficient& operator()(std::size_t j) const { return Derived::tableau.b[j]; }
+  };
+  struct VelocityWeight {
+    constexpr const Coefficient& operator()(std::size_t j) const { return Derived::tableau.bv[j]; }
+  };
+  struct PositionError {
+    constexpr Coefficient operator()(std::size_t j) const {
+      return Derived::tableau.b[j] - Derived::tableau.embedded[j];
+    }
+  };
+  struct VelocityError {
+    constexpr Coefficient operator()(std::size_t j) const {
+      return Derived::tableau.bv[j] - Derived::tableau.embedded_v[j];
+    }
+  };
+
+  /// Component i of the weighted sum of the stages.
+  template <class R, State X>
+  static Scalar<X> sum(const std::array<const Scalar<X>*, R::count>& k, std::size_t i) {
+    return [&]<std::size_t... n>(std::index_sequence<n...>) {
+      return (... + (R::template weight<Scalar<X>, n>() * k[n][i]));
+    }(std::make_index_sequence<R::count>());
+  }
+  template <class R, State X>
+  static auto stages_of(const Workspace<X>& work) {
+    return [&]<std::size_t... n>(std::index_sequence<n...>) {
+      return std::array<const Scalar<X>*, R::count>{work.k[R::place[n]].data()...};
+    }(std::make_index_sequence<R::count>());
+  }
+
+  template <std::size_t s, class System, State X>
+  static void stage(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+    using Real = Scalar<X>;
+    using Weights = detail::Row<StageWeight<s>, s>;
+    const Real node = h * detail::Row<StageNode<s>, 1>::template weight<Real, 0>(), square = h * h;
+    const auto k = stages_of<Weights, X>(work);
+    const std::size_t size = dimension(x), pairs = system.pair_count(size);
+    for (std::size_t n = 0; n < pairs; ++n) {
+      const auto [q, v] = system.pair(n, size);
+      work.argument.data()[q] = x.data()[q] + (node * x.data()[v] + square * sum<Weights, X>(k, v));
+    }
+    evaluate(system, t + node, work.argument, work.k[s]);
+  }
+
+  /// x_new, and the estimated errors into work.argument.
+  template <class System, State X>
+  static void finish(const System& system, const X& x, const Scalar<X>& h, Workspace<X>& work, X& x_new) {
+    using Real = Scalar<X>;
+    using Position = detail::Row<PositionWeight, Derived::tableau.stages>;
+    using Velocity = detail::Row<VelocityWeight, Derived::tableau.stages>;
+    using PositionOff = detail::Row<PositionError, Derived::tableau.stages>;
+    using VelocityOff = detail::Row<VelocityError, Derived::tableau.stages>;
+    const auto kq = stages_of<Position, X>(work), kv = stages_of<Velocity, X>(work);
+    const auto eq = stages_of<PositionOff, X>(work), ev = stages_of<VelocityOff, X>(work);
+    const std::size_t size = dimension(x), pairs = system.pair_count(size);
+    const bool made_for_it = 2 * pairs == size && ignores_velocity(system, x);
+    const Real nothing = made_for_it ? Real(0) : std::numeric_limits<Real>::quiet_NaN();
+    for (std::size_t i = 0; i < size; ++i) x_new.data()[i] = x.data()[i] + nothing;
+    for (std::size_t n = 0; n < pairs; ++n) {
+      const auto [q, v] = system.pair(n, size);
+      x_new.data()[q] += h * (x.data()[v] + h * sum<Position, X>(kq, v));
+      x_new.data()[v] += h * sum<Velocity, X>(kv, v);
+      work.argument.data()[q] = h * (h * sum<PositionOff, X>(eq, v));
+      work.argument.data()[v] = h * sum<VelocityOff, X>(ev, v);
+    }
+  }
+
+  /// q(theta) = q0 + h v0 theta + h^2 a0 theta^2 / 2 + A theta^3 + B theta^4 + C theta^5, where A, B, C are what the
+  /// other end asks for: with Q, V, W the position, h times the velocity and h^2 times the acceleration still missing
+  /// there, A = 10 Q - 4 V + W/2, B = -15 Q + 7 V - W, C = 6 Q - 3 V + W/2.
+  template <State X>
+  static void set_quintic(const X& x, const Scalar<X>& h, const X& x_new, const Workspace<X>& work,
+                          PositionVelocity pair, Interpolant<X, dense_degree>& interpolant) {
+    using Real = Scalar<X>;
+    const auto [q, v] = pair;
+    const Real v0 = x.data()[v], a0 = work.k[0].data()[v], half = Real(0.5);
+    const Real w0 = h * h * a0;
+    const Real position = (x_new.data()[q] - x.data()[q]) - h * (v0 + half * h * a0);
+    const Real velocity = h * ((x_new.data()[v] - v0) - h * a0);
+    const Real curvature = h * h * work.end.data()[v] - w0;
+    const std::array<Real, 6> c{x.data()[q],
+                                h * v0,
+                                half * w0,
+                                Real(10) * position - Real(4) * velocity + half * curvature,
+                                Real(-15) * position + Real(7) * velocity - curvature,
+                                Real(6) * position - Real(3) * velocity + half * curvature};
+    for (std::size_t j = 0; j < 6; ++j) interpolant.c[j].data()[q] = c[j];
+    for (std::size_t j = 0; j < 5; ++j)
+      interpolant.c[j].data()[v] = j == 0 ? v0 : Real(static_cast<double>(j + 1)) * c[j + 1] / h;
+    interpolant.c[5].data()[v] = Real(0);
+  }
+};
+
+}  // namespace continuo
