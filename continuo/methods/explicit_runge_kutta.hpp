@@ -86,7 +86,7 @@ struct ExplicitRungeKutta {
         sum += ratio * ratio;
       }
     });
-    return sqrt(detail::total<X>(sum) / Scalar<X>(static_cast<double>(dimension(x))));
+    return sqrt(detail::total<X>(sum) * detail::one_over_dimension(x));
   }
 
   template <State X>

@@ -6,6 +6,7 @@
 // f writes components one by one; a register loaded from where they were just written would have to wait for the
 // stores. Therefore f writes to a local state, and what is kept is put together from registers.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -180,6 +181,17 @@ Scalar<X> component(const Unit<X>& unit, std::size_t i) {
     return unit[i];
   } else {
     return unit;
+  }
+}
+
+/// 1 / n, a constant where the size is: the mean of squares stands between one step and the next.
+template <State X>
+Scalar<X> one_over_dimension(const X& x) {
+  if constexpr (FixedSize<X>) {
+    static_cast<void>(x);
+    return Scalar<X>(1.0 / static_cast<double>(std::max<std::size_t>(std::tuple_size<X>::value, 1)));
+  } else {
+    return Scalar<X>(1.0 / static_cast<double>(std::max<std::size_t>(dimension(x), 1)));
   }
 }
 
