@@ -54,7 +54,8 @@ struct Tolerance {
 ///   M::workspace(x)   allocates once
 ///   M::step(system, t, x, h, made_jump, work, x_new) -> number of evaluations of f;
 ///       made_jump: x is not where the last step ended, drop what was kept of it (FSAL stage, history)
-///   M::error_norm(work, h, x, x_new, tolerance) -> the step is good where it is <= 1 (root mean square)
+///   M::error_norm(work, h, x, x_new, tolerance) -> the step is good where it is <= 1 (root mean square); not a number
+///       where a component of x_new is not finite
 ///   M::error_of(work, h, i) -> estimated local error of component i, to name the worst one
 ///   M::interpolate(system, t, x, h, x_new, work, interpolant) -> number of evaluations; once, after a step
 ///   M::accept(work)   the step stands: its end becomes the start of the next

@@ -45,19 +45,19 @@ class Integrator {
 
   /// Begins at interval.from. Input that cannot be run (not finite, wrong sizes, no step for a method without error
   /// estimate) shows as the outcome of the first advance().
-  Integrator(System system, X x0, Interval<std::type_identity_t<Real>> interval, M method,
+  Integrator(System f, X x0, Interval<std::type_identity_t<Real>> interval, M method,
              std::type_identity_t<Options<X>> options = {})
     requires std::same_as<Events, EventList<X>>
-      : Integrator(std::move(system), std::move(x0), interval, method, options, EventList<X>(options.events)) {}
+      : Integrator(std::move(f), std::move(x0), interval, method, options, EventList<X>(options.events)) {}
 
-  Integrator(System system, X x0, Interval<std::type_identity_t<Real>> interval, M,
+  Integrator(System f, X x0, Interval<std::type_identity_t<Real>> interval, M,
              std::type_identity_t<Options<X>> options, Events events)
       : options_(std::move(options)),
         interval_(interval),
         t_(interval.from),
         x_(x0),
         before_(x0),
-        steps_(std::move(system), x0, interval.from, forward(), options_),
+        steps_(std::move(f), x0, interval.from, forward(), options_),
         events_(std::move(events)),
         watch_(events_.size()),
         accumulation_(events_.size()),

@@ -22,8 +22,8 @@ class StepControl {
  public:
   using Real = Scalar<X>;
 
-  StepControl(System system, X x0, Real t0, Real forward, const Options<X>& options)
-      : system_(std::move(system)),
+  StepControl(System f, X x0, Real t0, Real forward, const Options<X>& options)
+      : system_(std::move(f)),
         forward_(forward),
         begin_(t0),
         end_(t0),
@@ -197,7 +197,8 @@ class StepControl {
       const bool last = forward_ * (Real(1.01) * h - room) >= 0;
       attempt(last ? room : h);
       error = M::error_norm(work_, h_, x_begin_, x_end_, weights);
-      const bool finite = error < std::numeric_limits<Real>::infinity() && finite_end();
+      // Neither true nor false of a number that is none: error_norm gives one where x_end_ is not finite.
+      const bool finite = error < std::numeric_limits<Real>::infinity();
       if (finite && error <= 1) {
         float factor = errors_.accept(options.controller, M::error_order, static_cast<float>(error));
         if (was_rejected) factor = min(factor, 1.0F);
