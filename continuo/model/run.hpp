@@ -42,6 +42,7 @@ struct Happened {
 struct EnergyBalance {
   double first, last, drift;
   std::string unit;
+  bool relative = true;  // whether `drift` is; else it is in `unit`
 };
 
 struct CheckResult {

@@ -137,8 +137,8 @@ void RunRecorder::give(Run& run) {
     const Extremes& e = extremes_.front();
     const double largest = std::max(e.high - energy_->first, energy_->first - e.low);
     // Kinetic and potential energy that cancel at the start leave rounding, which is no measure.
-    const bool measures = std::abs(energy_->first) > 1e-12 * extremes_[1].high;
-    energy_->drift = measures ? largest / std::abs(energy_->first) : largest;
+    energy_->relative = std::abs(energy_->first) > 1e-12 * extremes_[1].high;
+    energy_->drift = energy_->relative ? largest / std::abs(energy_->first) : largest;
     extremes_.erase(extremes_.begin(), extremes_.begin() + 2);
   }
   run.motion = std::move(motion_);
