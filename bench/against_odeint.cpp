@@ -77,6 +77,13 @@ void print_ratios(const std::vector<Measured>& all, const std::string& folder) {
       const Best ours = best(measured, error, true), theirs = best(measured, error, false);
       const double evaluations = ours.cost.evaluations / theirs.cost.evaluations;
       const double time = ours.cost.seconds / theirs.cost.seconds;
+      if (std::isinf(theirs.cost.seconds)) {
+        // Round-off stops every one of the peer's solvers before: there is no ratio.
+        std::printf("%-34s %6.0e  %-16s not reached\n", std::string(measured.title).c_str(), error,
+                    ours.curve->solver.c_str());
+        table << "| " << measured.title << " | " << error << " | " << ours.curve->solver << " | not reached | | |\n";
+        continue;
+      }
       std::printf("%-34s %6.0e  %-16s %-24s %12.2f %10.2f\n", std::string(measured.title).c_str(), error,
                   ours.curve->solver.c_str(), theirs.curve->solver.c_str(), evaluations, time);
       char line[400];

@@ -50,8 +50,8 @@ class Integrator {
     requires std::same_as<Events, EventList<X>>
       : Integrator(std::move(f), std::move(x0), interval, method, options, EventList<X>(options.events)) {}
 
-  Integrator(System f, X x0, Interval<std::type_identity_t<Real>> interval, M,
-             std::type_identity_t<Options<X>> options, Events events)
+  Integrator(System f, X x0, Interval<std::type_identity_t<Real>> interval, M, std::type_identity_t<Options<X>> options,
+             Events events)
       : options_(std::move(options)),
         interval_(interval),
         t_(interval.from),
