@@ -144,6 +144,7 @@ void RunRecorder::give(Run& run) {
   run.motion = std::move(motion_);
   run.total_energy = std::move(total_energy_);
   run.events = std::move(events_);
+  run.statistics.events = run.events.size();  // without the steps of inputs
   run.energy = energy_;
 }
 
