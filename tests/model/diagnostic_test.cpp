@@ -56,8 +56,8 @@ TEST(Diagnostics, OfALongLineThePartAroundTheCaretIsShown) {
   const std::string text = std::string(5000, 'a') + "?" + std::string(5000, 'b');
   const std::string shown = render(error("E102", {5000, 5001}, "no"), Source("a.sim", text));
   const std::string before(40, 'a'), after(59, 'b');  // 100 columns, 40 of them before the caret
-  EXPECT_THAT(
-      shown, testing::HasSubstr("  1 | ..." + before + "?" + after + "...\n    |    " + std::string(40, ' ') + "^\n"));
+  EXPECT_THAT(shown,
+              testing::HasSubstr("  1 | ..." + before + "?" + after + "...\n    |    " + std::string(40, ' ') + "^\n"));
 }
 
 TEST(Diagnostics, ASpanOverSeveralLinesIsMarkedToTheEndOfItsFirst) {
