@@ -174,9 +174,10 @@ bool is_plain_number(const ast::Expression& expression) {
   const auto& node = expression.node;
   if (std::holds_alternative<ast::Number>(node)) return true;
   if (const auto* name = std::get_if<ast::Name>(&node)) return name->text == "pi" && name->primes == 0;
-  if (const auto* unary = std::get_if<ast::Unary>(&node)) return is_plain_number(*unary->operand);
+  if (const auto* unary = std::get_if<ast::Unary>(&node))
+    return unary->op == ast::UnaryOperator::negate && is_plain_number(*unary->operand);
   if (const auto* binary = std::get_if<ast::Binary>(&node))
-    return is_plain_number(*binary->left) && is_plain_number(*binary->right);
+    return binary->op <= BinaryOperator::power && is_plain_number(*binary->left) && is_plain_number(*binary->right);
   const auto* call = std::get_if<ast::Call>(&node);
   return call && std::all_of(call->arguments.begin(), call->arguments.end(), is_plain_number);
 }

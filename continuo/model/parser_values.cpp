@@ -19,7 +19,7 @@ Expression* last_quantity(Expression& expression, std::uint32_t end) {
     return quantity->unit.span.end == end && is_plain_number(*quantity->value) ? &expression : nullptr;
   if (auto* unary = std::get_if<ast::Unary>(&expression.node)) return last_quantity(*unary->operand, end);
   auto* binary = std::get_if<ast::Binary>(&expression.node);
-  if (!binary) return nullptr;
+  if (!binary || binary->op > ast::BinaryOperator::power) return nullptr;  // a comparison has no unit
   Expression* found = last_quantity(*binary->right, end);
   return found && is_plain_number(*binary->left) ? found : nullptr;
 }
