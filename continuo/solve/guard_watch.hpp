@@ -43,11 +43,13 @@ struct GuardState {
 /// Where the first crossing of a stretch lies and which guards take part.
 template <class Real>
 struct Crossing {
-  Real t;                           // on the far side of all of them
+  Real offset;                      // on the far side of all of them
   std::vector<std::size_t> guards;  // in order of declaration
 };
 
-/// The guards of one run. `evaluate(t, span)` gives all guards at a time of the current stretch.
+/// The guards of one run. Places are offsets s from the start of the step: there the numbers lie denser than at t, and
+/// a ball at t = 1000 is found on the floor, not a hundred thousand roundings of h below it. `evaluate(s, span)` gives
+/// all guards at a place of the current stretch.
 template <class Real>
 class GuardWatch {
  public:
@@ -62,10 +64,10 @@ class GuardWatch {
 
   std::vector<GuardState<Real>>& states() { return states_; }
 
-  /// The first crossing on from..to (to may lie before from when time runs backwards), or null. `direction(i)` says
-  /// which crossings of guard i count; the others only move its side.
+  /// The first crossing on from..to (negative when time runs backwards), or null. `direction(i)` says which crossings
+  /// of guard i count; the others only move its side. Crossings less than `instant` apart are one.
   template <class Evaluate, class DirectionOf>
-  const Crossing<Real>* first_crossing(Real from, Real to, Evaluate&& evaluate, DirectionOf&& direction) {
+  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, Evaluate&& evaluate, DirectionOf&& direction) {
     sample(from, to, evaluate);
     bool found = false;
     for (std::size_t i = 0; i < states_.size(); ++i) {
@@ -80,7 +82,7 @@ class GuardWatch {
       found = found || !std::isnan(static_cast<double>(scan.crossing));
       if (resampled_) sample(from, to, evaluate);
     }
-    return found ? gather(from, to) : nullptr;
+    return found ? gather(from, to, instant) : nullptr;
   }
 
   /// After a stretch without an event: the guards as they stand at its end.
@@ -223,22 +225,19 @@ class GuardWatch {
     return true;
   }
 
-  // Crossings within four units in the last place of the first are the same instant.
-  const Crossing<Real>* gather(Real from, Real to) {
-    using std::abs;
+  const Crossing<Real>* gather(Real from, Real to, Real instant) {
     const Real forward = to >= from ? Real(1) : Real(-1);
     Real first = std::numeric_limits<Real>::quiet_NaN();
     for (const Real t : first_)
       if (!std::isnan(static_cast<double>(t)) && !(forward * t >= forward * first)) first = t;
-    const Real instant = 4 * std::numeric_limits<Real>::epsilon() * abs(first);
-    crossing_.t = first;
+    crossing_.offset = first;
     crossing_.guards.clear();
     for (std::size_t i = 0; i < first_.size(); ++i) {
       if (!(forward * (first_[i] - first) <= instant)) continue;
       crossing_.guards.push_back(i);
       states_[i].far_side = scanned_[i].side;
       states_[i].slides = scanned_[i].slides;
-      if (forward * first_[i] > forward * crossing_.t) crossing_.t = first_[i];
+      if (forward * first_[i] > forward * crossing_.offset) crossing_.offset = first_[i];
     }
     return &crossing_;
   }

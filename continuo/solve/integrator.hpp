@@ -206,17 +206,21 @@ class Integrator {
   // The events of the step that was just taken, in the order of time.
   template <class Observer>
   void pass_events(Observer& observer) {
-    const auto evaluate_guards = [this](Real t, std::span<Real> values) {
-      steps_.at(t, before_);
-      events_.guards(steps_.system(), t, before_, values);
+    using std::abs;
+    const Real begin = steps_.begin(), length = steps_.end() - begin;
+    const Real instant = 4 * std::numeric_limits<Real>::epsilon() * abs(steps_.end());
+    const auto evaluate_guards = [&](Real offset, std::span<Real> values) {
+      state_at(offset, length, before_);
+      events_.guards(steps_.system(), offset == length ? steps_.end() : begin + offset, before_, values);
     };
-    Real from = t_;
+    Real from = t_, offset = t_ - begin;
     while (any_guard_) {
-      const Crossing<Real>* crossing = watch_.first_crossing(from, steps_.end(), evaluate_guards,
+      const Crossing<Real>* crossing = watch_.first_crossing(offset, length, instant, evaluate_guards,
                                                              [this](std::size_t i) { return events_.direction(i); });
       if (!crossing) break;
-      t_ = crossing->t;
-      steps_.at(t_, x_);
+      offset = crossing->offset;
+      t_ = offset == length ? steps_.end() : begin + offset;
+      state_at(offset, length, x_);
       observer.stretch(*this, from, t_);
       fired_ = crossing->guards;
       add_scheduled();
@@ -235,6 +239,15 @@ class Integrator {
     fired_.clear();
     add_scheduled();
     if (!fired_.empty()) fire(observer);
+  }
+
+  // x at an offset into the last step: by theta, which keeps what is lost in begin + offset.
+  void state_at(Real offset, Real length, X& x) {
+    if (offset == length) {
+      x = steps_.x_end();
+    } else {
+      steps_.interpolant()(offset / steps_.size(), x);
+    }
   }
 
   void add_scheduled() {

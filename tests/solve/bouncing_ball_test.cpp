@@ -63,7 +63,8 @@ TEST(BouncingBall, WithoutLossNoBounceIsMissedAndEnergyStays) {
   ASSERT_EQ(solution.outcome.ending, Ending::reached_end);
   const double first = std::sqrt(2 / 9.81);
   EXPECT_EQ(solution.events.size(), static_cast<std::size_t>((1000 / first + 1) / 2));
-  for (const X& x : solution.x) EXPECT_NEAR((x[1] * x[1] / 2 + 9.81 * x[0]) / 9.81, 1, 1e-10);
+  // Rounding alone: some 1108 impacts, each good to an ulp of h and h'.
+  for (const X& x : solution.x) EXPECT_NEAR((x[1] * x[1] / 2 + 9.81 * x[0]) / 9.81, 1, 2e-12);
   EXPECT_GE(lowest(solution), -1e-12);
 }
 
