@@ -7,6 +7,7 @@
 
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/experiment_options.hpp>
+#include <apps/continuo/models.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -87,6 +88,7 @@ ExitCode exit_of(const Comparison& comparison) {
 }
 
 ExitCode compare(const CompareOptions& options) {
+  if (!drawable(options.plot)) return usage;
   Prepared prepared = prepare(options.experiment);
   if (prepared.exit != done) return prepared.exit;
   const Comparison comparison = studies::compare(prepared.program, {.methods = options.methods,

@@ -8,6 +8,7 @@
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <continuo/model/suggest.hpp>
 
@@ -44,6 +45,24 @@ bool readable(const std::string& path) {
   }
   const std::string hint = fs::exists(path, error) ? "" : model::did_you_mean(path, neighbours(path));
   say(fmt::format("cannot read {}: {}{}{}", path, reason, hint.empty() ? "" : "; ", hint));
+  return false;
+}
+
+bool writable(const std::string& path) {
+  if (path.empty() || path == "-") return true;
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  std::error_code error;
+  const std::string place = fs::exists(path, error) ? path : folder.string();
+  if (access(place.c_str(), W_OK) == 0) return true;
+  say(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
+  return false;
+}
+
+bool drawable(const std::string& path) {
+  if (path.empty()) return true;
+  const std::string ending = fs::path(path).extension().string();
+  if (ending == ".svg" || ending == ".png") return writable(path);
+  say(fmt::format("cannot plot to {}: the file's name ends in .svg or .png", path));
   return false;
 }
 

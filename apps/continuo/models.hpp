@@ -22,4 +22,8 @@ ModelFiles find_models(const std::vector<std::string>& files_and_folders);
 /// Whether the path can be read; says so where not.
 bool readable(const std::string& path);
 
+/// Whether a file can be written there, and a picture drawn: told before a long run, not after it.
+bool writable(const std::string& path);
+bool drawable(const std::string& path);
+
 }  // namespace continuo::app

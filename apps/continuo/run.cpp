@@ -8,6 +8,7 @@
 
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/experiment_options.hpp>
+#include <apps/continuo/models.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -95,7 +96,12 @@ void print_no_run(std::span<const model::Diagnostic> diagnostics, const model::S
   print(fmt::format("{{\n  \"outcome\": \"not run\",\n  \"messages\": {}\n}}\n", model::to_json(diagnostics, source)));
 }
 
+bool all_can_be_written(const RunRequest& request) {
+  return writable(request.motion) && writable(request.events) && writable(request.manifest) && drawable(request.plot);
+}
+
 ExitCode run(const RunRequest& request) {
+  if (!all_can_be_written(request)) return usage;
   Prepared prepared = prepare(request.experiment);
   const model::Source& source = prepared.loaded.source;
   if (prepared.exit != done) {

@@ -1,0 +1,64 @@
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include <continuo/model/load.hpp>
+#include <continuo/studies/compare.hpp>
+
+namespace continuo::studies {
+namespace {
+
+std::shared_ptr<const model::ModelProgram> program_of(const char* text) {
+  const model::Loaded loaded = model::load(model::Source("test.sim", text));
+  EXPECT_TRUE(loaded) << loaded.text();
+  return model::compile(*loaded.model);
+}
+
+constexpr const char* decay = "x' = -x\nx(0) = 1\nrun 0..1 output 0.1\n";
+
+TEST(Compare, ErrorsAreThoseOfTheClosedForm) {  // Euler: x_n = (1 - h)^n; exact: exp(-1); the largest x is 1
+  const Comparison comparison = compare(program_of(decay), {.methods = {"euler"}, .steps = {0.1, 0.05}});
+  ASSERT_EQ(comparison.contenders.size(), 2u);
+  EXPECT_NEAR(comparison.contenders[0].final_error, std::exp(-1) - std::pow(0.9, 10), 1e-11);
+  EXPECT_NEAR(comparison.contenders[1].final_error, std::exp(-1) - std::pow(0.95, 20), 1e-11);
+  EXPECT_GE(comparison.contenders[0].largest_error, comparison.contenders[0].final_error);
+  EXPECT_EQ(comparison.contenders[0].errors.size(), 11u);
+}
+
+TEST(Compare, HalfTheStepShowsTheOrder) {  // global error C h^4: a ratio of 16, less terms of the next order
+  const Comparison comparison = compare(program_of(decay), {.methods = {"rk4"}, .steps = {0.1, 0.05}});
+  EXPECT_NEAR(comparison.contenders[0].final_error / comparison.contenders[1].final_error, 16, 1.5);
+}
+
+TEST(Compare, TolerancesAndTheModelsOwnSettingsCompareToo) {
+  const auto program = program_of(decay);
+  const Comparison loose = compare(program, {.methods = {"dop853", "tsitouras5"}, .tolerances = {1e-4, 1e-8}});
+  ASSERT_EQ(loose.contenders.size(), 4u);
+  EXPECT_EQ(loose.contenders[1].label(), "dop853, tol = 1e-08");
+  EXPECT_EQ(compare(program, {.methods = {"dop853"}}).contenders.size(), 1u);
+}
+
+TEST(Compare, RowsWithoutAnOutputStandAtTheSameTimesForAll) {
+  const Comparison comparison =
+      compare(program_of("x' = -x\nx(0) = 1\nrun 0..1\n"), {.methods = {"rk4"}, .steps = {0.03}});
+  EXPECT_GT(comparison.contenders[0].errors.size(), 400u);
+}
+
+TEST(Compare, AMethodThatIsNoneIsToldAndTheOthersStand) {
+  const Comparison comparison = compare(program_of(decay), {.methods = {"rk5", "rk4"}, .steps = {0.1}});
+  ASSERT_EQ(comparison.contenders.size(), 2u);
+  EXPECT_FALSE(comparison.contenders[0].simulated.run);
+  EXPECT_TRUE(std::isnan(comparison.contenders[0].final_error));
+  EXPECT_TRUE(comparison.contenders[1].simulated.run);
+}
+
+TEST(Compare, WithoutAReferenceThereAreNoContenders) {  // x = 1/(1 - t) does not reach t = 2
+  const Comparison comparison =
+      compare(program_of("x' = x^2\nx(0) = 1\nrun 0..2\n"), {.methods = {"rk4"}, .steps = {0.1}});
+  EXPECT_TRUE(comparison.contenders.empty());
+  EXPECT_FALSE(comparison.reference.diagnostics.empty());
+}
+
+}  // namespace
+}  // namespace continuo::studies
