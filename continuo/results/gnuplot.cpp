@@ -29,11 +29,18 @@ constexpr double closest_marks = 4;  // pixels; nearer ones would join to a grey
 // (2008). Yellow is left out, too pale on white, and black, which marks what others are compared with.
 constexpr std::string_view palette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
 
-/// A text in gnuplot's single quotes, where nothing but the quote itself is special.
+/// A text in gnuplot's double quotes, what is special there by its octal number: a backquote would run a command.
+/// Not in single quotes, where gnuplot stumbles over two quotes in a row, as in x''.
 std::string in_quotes(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c == '\n' ? ' ' : c);
-  return result + "'";
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\' || c == '`') {
+      result += fmt::format("\\{:03o}", static_cast<unsigned>(c));
+    } else {
+      result += c == '\n' ? ' ' : c;
+    }
+  }
+  return result + "\"";
 }
 
 std::string ending_of(const std::string& path) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include <continuo/model/simulate.hpp>
@@ -37,12 +38,17 @@ std::vector<double> event_times(const model::Run& run) {
   return times;
 }
 
+/// Written beside a number, this unit says nothing.
+bool is_number(std::string_view unit) {
+  return unit.empty() || unit == "1";
+}
+
 /// "h, h' [m]", or only the unit where the names would not fit.
 std::string y_label(const Panel& panel, const std::string& unit) {
   std::string names;
   for (const Curve& curve : panel.curves) names += (names.empty() ? "" : ", ") + curve.label;
   if (names.size() > 24) names.clear();
-  return unit.empty() ? names : names.empty() ? "[" + unit + "]" : names + " [" + unit + "]";
+  return is_number(unit) ? names : names.empty() ? "[" + unit + "]" : names + " [" + unit + "]";
 }
 
 void append_panels(const PlotData& plot, const std::vector<double>& marks, std::vector<Panel>& panels) {
@@ -64,7 +70,7 @@ void append_panels(const PlotData& plot, const std::vector<double>& marks, std::
 
 Panel drift_panel(const model::Run& run, const std::vector<double>& marks) {
   const double first = run.total_energy.front();
-  const bool relative = first != 0;
+  const bool relative = run.energy && run.energy->relative;
   std::vector<double> drift(run.total_energy.size());
   std::ranges::transform(run.total_energy, drift.begin(),
                          [&](double e) { return (e - first) / (relative ? std::abs(first) : 1); });
@@ -87,7 +93,7 @@ PlotData states_plot(const model::Run& run) {
 }  // namespace
 
 std::string label_of(const model::Column& column) {
-  return column.unit.empty() ? column.name : column.name + " [" + column.unit + "]";
+  return is_number(column.unit) ? column.name : column.name + " [" + column.unit + "]";
 }
 
 std::vector<PlotData> plots_of(const model::ModelProgram& program, const model::Run& run) {

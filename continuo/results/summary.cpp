@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_states = 16, most_events = 8;
 
 std::string with_unit(std::string text, std::string_view unit) {
-  if (!unit.empty()) text.append(" ").append(unit);
+  if (!unit.empty() && unit != "1") text.append(" ").append(unit);
   return text;
 }
 
@@ -88,9 +88,10 @@ void append_events(const model::Model& model, const model::Run& run, std::string
 void append_energy(const model::Run& run, std::string& text) {
   if (!run.energy) return;
   const model::EnergyBalance& energy = *run.energy;
-  fmt::format_to(std::back_inserter(text), "energy  {} at first, {} at last; largest drift {}{}\n",
+  const std::string drift = fmt::format("{:.2g}", energy.drift);
+  fmt::format_to(std::back_inserter(text), "energy  {} at first, {} at last; largest drift {}\n",
                  with_unit(short_number(energy.first), energy.unit), with_unit(short_number(energy.last), energy.unit),
-                 fmt::format("{:.2g}", energy.drift), energy.first != 0 ? ", relative" : "");
+                 energy.relative ? drift + ", relative" : with_unit(drift, energy.unit));
 }
 
 void append_checks(const model::Run& run, std::string& text) {

@@ -74,11 +74,11 @@ TEST(Plots, AnOrbitKeepsItsShape) {
 }
 
 TEST(Plots, NamesAreTextNeverMarkupOrCommands) {
-  const Figure figure = states_figure(falling_ball().run, "it's_a ^ball'; system 'false");
+  const Figure figure = states_figure(falling_ball().run, "it's_a ^ball\"; system \"false\"; `false`");
   const std::string script = gnuplot_script(figure, "it's.svg");
   EXPECT_THAT(script, HasSubstr("noenhanced"));
-  EXPECT_THAT(script, HasSubstr("'it''s_a ^ball''; system ''false'"));
-  EXPECT_THAT(script, HasSubstr("set output 'it''s.svg'"));
+  EXPECT_THAT(script, HasSubstr(R"("it's_a ^ball\042; system \042false\042; \140false\140")"));
+  EXPECT_THAT(script, HasSubstr("set output \"it's.svg\""));
 }
 
 TEST(Plots, AMillionPointsAreDrawnFromAFewThousandAndEveryPeakStays) {
