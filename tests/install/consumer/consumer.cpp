@@ -9,7 +9,7 @@ int main() {
   const auto decay = [](double, const std::array<double, 1>& x) { return std::array{-x[0]}; };
   const auto solution = continuo::solve(decay, std::array{1.0}, {0.0, 1.0}, continuo::Tsitouras5{}, {.rtol = 1e-9});
   const auto loaded = continuo::model::load(
-      continuo::model::Source("decay.sim", "model Decay\nx' = -x/T\nparam T = 1000 [ms]\nx(0) = 1\nrun 0..1 [s]\n"));
+      continuo::model::Source("decay.sim", "model Decay\nparam T = 1 [s]\nx' = -x/T\nx(0) = 1\nrun 0..1 [s]\n"));
   if (!loaded) return 1;
   const auto simulated = continuo::model::simulate(*loaded.model, {.rtol = 1e-9});
   const double exact = std::exp(-1.0);
