@@ -18,9 +18,9 @@ class ExamplesFirst : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     if (mode == CLI::AppFormatMode::Sub) return CLI::Formatter::make_help(app, std::move(name), mode);
-    return make_footer(app) + "\n" + CLI::Formatter::make_help(app, std::move(name), mode);
+    return app->get_footer() + "\n" + CLI::Formatter::make_help(app, std::move(name), mode);
   }
-  std::string make_footer(const CLI::App* app) const override { return app->get_footer(); }
+  std::string make_footer(const CLI::App*) const override { return {}; }
 };
 
 std::vector<std::string> option_names(const CLI::App& app) {
