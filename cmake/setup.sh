@@ -16,7 +16,7 @@ packages_to_build=(
 packages_to_test=(
   "libgtest-dev           -            unit tests"
   "libgmock-dev           -            unit tests"
-  "librapidcheck-dev      -            property tests"
+  "libboost-dev           -            numbers of 113 bits, and the peer in bench/"
   "clang-19               clang++-19   the second compiler, with sanitizers"
   "libclang-rt-19-dev     -            sanitizers and the fuzzer"
   "clang-format-19        clang-format-19 the layout of the code"
