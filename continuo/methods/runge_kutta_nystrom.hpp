@@ -16,6 +16,7 @@
 #include <utility>
 
 #include <continuo/methods/method.hpp>
+#include <continuo/methods/packs.hpp>
 #include <continuo/methods/weighted_sum.hpp>
 #include <continuo/system/second_order.hpp>
 
@@ -66,20 +67,11 @@ struct RungeKuttaNystrom {
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
                   Workspace<X>& work, X& x_new) {
     static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
-    constexpr std::size_t stages = Derived::tableau.stages;
-    int evaluations = static_cast<int>(stages) - 1;
-    work.end_fresh = false;
-    if (made_jump || !work.start_fresh) {
-      evaluate(system, t, x, work.k[0]);
-      work.start_fresh = true;
-      ++evaluations;
+    if constexpr (detail::Packed<X>) {
+      return flat_step(system, t, x, h, made_jump, work, x_new);
+    } else {
+      return take_step(system, t, x, h, made_jump, work, x_new);
     }
-    work.argument = x;
-    [&]<std::size_t... s>(std::index_sequence<s...>) {
-      (stage<s + 1>(system, t, x, h, work), ...);
-    }(std::make_index_sequence<stages - 1>());
-    finish(system, x, h, work, x_new);
-    return evaluations;
   }
 
   /// Root mean square of error_i / scale_i over positions and velocities; not a number where x_new is not finite.
@@ -136,6 +128,32 @@ struct RungeKuttaNystrom {
   }
 
  private:
+  template <class System, State X>
+  static int take_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+                       Workspace<X>& work, X& x_new) {
+    constexpr std::size_t stages = Derived::tableau.stages;
+    int evaluations = static_cast<int>(stages) - 1;
+    work.end_fresh = false;
+    if (made_jump || !work.start_fresh) {
+      evaluate(system, t, x, work.k[0]);
+      work.start_fresh = true;
+      ++evaluations;
+    }
+    work.argument = x;
+    [&]<std::size_t... s>(std::index_sequence<s...>) {
+      (stage<s + 1>(system, t, x, h, work), ...);
+    }(std::make_index_sequence<stages - 1>());
+    finish(system, x, h, work, x_new);
+    return evaluations;
+  }
+
+  /// With f compiled into it, as in ExplicitRungeKutta.
+  template <class System, State X>
+  [[gnu::flatten]] static int flat_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                        bool made_jump, Workspace<X>& work, X& x_new) {
+    return take_step(system, t, x, h, made_jump, work, x_new);
+  }
+
   template <std::size_t s>
   struct StageWeight {
     constexpr const Coefficient& operator()(std::size_t j) const { return Derived::tableau.a[s][j]; }

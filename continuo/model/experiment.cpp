@@ -38,7 +38,9 @@ class Planner {
   std::optional<double> value(const std::optional<Setting>& setting) const {
     return setting ? std::optional(value(*setting)) : std::nullopt;
   }
-  void fail(const char* code, std::string message, std::string help) {
+  void fail(const char* code, std::string message, std::string help, bool overridden = false) {
+    // The line that is shown is the model's, and innocent where a caller replaced what it says.
+    if (overridden) message += ", asked for in place of what the model says";
     problems_.push_back(error(code, run_.span, std::move(message), {}, std::move(help)));
   }
 
@@ -61,16 +63,23 @@ class Planner {
     if (!to) return fail("E333", "nothing says how long to run", "add `run 0..10` to the model, or give --until");
     plan_.to = *to;
     if (!std::isfinite(plan_.from) || !std::isfinite(plan_.to) || plan_.to < plan_.from) {
-      fail("E333", fmt::format("a run cannot go from {} to {}", plan_.from, plan_.to), "the end comes after the start");
+      fail("E333", fmt::format("a run cannot go from {} to {}", plan_.from, plan_.to), "the end comes after the start",
+           experiment_.from || experiment_.to);
     }
   }
 
   void set_accuracy() {
     const auto step = experiment_.step ? experiment_.step : experiment_.rtol ? std::nullopt : value(run_.step);
     plan_.step = step.value_or(0);
-    if (step && !(*step > 0)) fail("E333", fmt::format("a step of {} leads nowhere", *step), "give a positive step");
+    if (step && !(*step > 0)) {
+      fail("E333", fmt::format("a step of {} leads nowhere", *step), "give a positive step",
+           experiment_.step.has_value());
+    }
     plan_.rtol = experiment_.rtol.value_or(run_.rtol.value_or(default_rtol));
-    if (!(plan_.rtol >= 0)) fail("E333", "the tolerance is negative", "give a positive one, such as --tol 1e-6");
+    if (!(plan_.rtol >= 0)) {
+      fail("E333", "the tolerance is negative", "give a positive one, such as --tol 1e-6",
+           experiment_.rtol.has_value());
+    }
     plan_.atol = !experiment_.atol.empty() ? experiment_.atol : run_.atol;
     if (plan_.atol.empty()) plan_.atol = {plan_.rtol * atol_part};
     if (plan_.atol.size() != 1 && plan_.atol.size() != model_.states.size()) {
@@ -89,17 +98,19 @@ class Planner {
       if (info.name == plan_.method) return accept(info);
     }
     const std::string near = did_you_mean(name, names);
-    fail("E330", fmt::format("there is no method `{}`", name), near.empty() ? "`continuo methods` lists them" : near);
+    fail("E330", fmt::format("there is no method `{}`", name), near.empty() ? "`continuo methods` lists them" : near,
+         experiment_.method.has_value());
   }
 
   void accept(const MethodInfo& method) {
     if (method.error_order == 0 && plan_.step == 0) {
       fail("E331", fmt::format("`{}` does not estimate its error, so it cannot choose its step", method.name),
-           "give a step: --step 0.01, or `step 0.01` in the run statement");
+           "give a step: --step 0.01, or `step 0.01` in the run statement", experiment_.method.has_value());
     }
     if (method.second_order && !model_.all_paired) {
       fail("E332", fmt::format("`{}` is for equations of the form x'' = a(t, x) only", method.name),
-           fmt::format("{} is no position or velocity; take another method", unpaired()));
+           fmt::format("{} is no position or velocity; take another method", unpaired()),
+           experiment_.method.has_value());
     }
   }
 
@@ -125,7 +136,8 @@ class Planner {
       plan_.first = value(run_.output->first).value_or(0);
     }
     if (plan_.output == Kind::every && !(plan_.interval > 0)) {
-      fail("E333", fmt::format("rows every {} are no rows", plan_.interval), "give a positive interval");
+      fail("E333", fmt::format("rows every {} are no rows", plan_.interval), "give a positive interval",
+           experiment_.output.has_value());
     }
     if (plan_.output == Kind::every && (plan_.to - plan_.from) / plan_.interval > 1e9) {
       fail("E333", "that would be more than 1e9 rows", "give a longer interval");
