@@ -24,7 +24,7 @@ concept WritesDerivative = State<X> && std::invocable<F&, Scalar<X>, const X&, X
 /// f returns its result: dxdt = f(t, x).
 template <class F, class X>
 concept ReturnsDerivative = State<X> && std::invocable<F&, Scalar<X>, const X&> &&
-    std::convertible_to<std::invoke_result_t<F&, Scalar<X>, const X&>, X>;
+                            std::convertible_to<std::invoke_result_t<F&, Scalar<X>, const X&>, X>;
 
 /// A right-hand side for states of type X.
 template <class F, class X>

@@ -7,7 +7,7 @@ prefix=$(mktemp -d)
 trap 'rm -rf "$prefix"' EXIT
 
 "$cmake" --install "$build" --prefix "$prefix" >/dev/null
-"$cmake" -S "$here/consumer" -B "$prefix/consumer" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+"$cmake" -S "$here/consumer" -B "$prefix/consumer" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 "$cmake" --build "$prefix/consumer"
 "$prefix/consumer/consumer"
 if [[ -x $prefix/bin/continuo ]]; then "$prefix/bin/continuo" --version; fi

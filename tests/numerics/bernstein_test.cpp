@@ -38,7 +38,7 @@ TEST(Bernstein, EveryRootOfRandomPolynomialsHasAPieceOfItsOwn) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int trial = 0; trial < 1000; ++trial) {
-    std::vector<double> roots(1 + trial % 6);
+    std::vector<double> roots(1 + static_cast<std::size_t>(trial % 6));
     for (double& root : roots) root = unit(random);
     std::sort(roots.begin(), roots.end());
     bool apart = true;
