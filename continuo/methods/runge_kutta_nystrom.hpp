@@ -215,8 +215,10 @@ struct RungeKuttaNystrom {
     using Velocity = detail::Row<VelocityWeight, Derived::tableau.stages>;
     using PositionOff = detail::Row<PositionError, Derived::tableau.stages>;
     using VelocityOff = detail::Row<VelocityError, Derived::tableau.stages>;
-    const auto kq = stages_of<Position, X>(work), kv = stages_of<Velocity, X>(work);
-    const auto eq = stages_of<PositionOff, X>(work), ev = stages_of<VelocityOff, X>(work);
+    const auto kq = stages_of<Position, X>(work);
+    const auto kv = stages_of<Velocity, X>(work);
+    const auto eq = stages_of<PositionOff, X>(work);
+    const auto ev = stages_of<VelocityOff, X>(work);
     const std::size_t size = dimension(x), pairs = system.pair_count(size);
     const bool made_for_it = 2 * pairs == size && ignores_velocity(system, x);
     const Real nothing = made_for_it ? Real(0) : std::numeric_limits<Real>::quiet_NaN();

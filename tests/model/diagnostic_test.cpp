@@ -92,7 +92,7 @@ TEST(Diagnostics, TheSameObjectIsJson) {
 
 TEST(Diagnostics, JsonHoldsForAnyBytesInAName) {
   const Source source("a\xFF\"\n.sim", "x");
-  EXPECT_NO_THROW(nlohmann::json::parse(to_json(error("E110", {0, 1}, "quote \" and \x01"), source)));
+  EXPECT_TRUE(nlohmann::json::accept(to_json(error("E110", {0, 1}, "quote \" and \x01"), source)));
 }
 
 TEST(Diagnostics, OnlyErrorsCountAsErrors) {

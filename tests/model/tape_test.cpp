@@ -244,8 +244,8 @@ struct Dual {
   Dual() = default;
   explicit Dual(double v, double s = 0) : value(v), slope(s) {}
   friend Dual operator+(Dual a, Dual b) { return Dual(a.value + b.value, a.slope + b.slope); }
-  friend Dual operator-(Dual a, Dual b) { return Dual(a.value - b.value, a.slope - b.slope); }
-  friend Dual operator-(Dual a) { return Dual(-a.value, -a.slope); }
+  [[maybe_unused]] friend Dual operator-(Dual a, Dual b) { return Dual(a.value - b.value, a.slope - b.slope); }
+  [[maybe_unused]] friend Dual operator-(Dual a) { return Dual(-a.value, -a.slope); }
   friend Dual operator*(Dual a, Dual b) { return Dual(a.value * b.value, a.value * b.slope + a.slope * b.value); }
 };
 
