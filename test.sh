@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds everything and runs every test; the last lines are ctest's own summary. Arguments go to ctest:
 #
-#   ./test.sh                 all of it: unit tests, models, sanitizers, fuzzing, both compilers, format, tidy, install
+#   ./test.sh                 all of it: unit tests, models, sanitizers, fuzzing, both compilers, format, install
 #   ./test.sh -R architecture only the tests whose name matches
 set -euo pipefail
 cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")"

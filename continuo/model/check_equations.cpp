@@ -49,6 +49,7 @@ void Checker::solve_mode(std::size_t mode) {
   work.mode = mode;
   work.solved.assign(bases_.size(), NodeId{});
   work.by.assign(bases_.size(), npos);
+  work.equations.reserve(equations_.size());
   for (const Placed<ast::Equation>& equation : equations_) {
     if (equation.scope.mode != Scope::no_mode && equation.scope.mode != static_cast<int>(mode)) continue;
     work.equations.push_back(read_equation(equation));
@@ -83,6 +84,7 @@ void Checker::sort_out_algebraic(ModeAtWork& work) {
   }
   if (algebraic == unknowns_.size() || errors_ > 0) return;
   std::vector<std::string> names;
+  names.reserve(unknowns_.size());
   for (const UnknownText& unknown : unknowns_) names.push_back(unknown.name);
   const Span span = unknowns_.front().span;
   fail("E235", span, "as many algebraic equations as unknowns are needed",
@@ -185,6 +187,7 @@ void Checker::solve_group(ModeAtWork& work, const std::vector<std::size_t>& memb
     if (work.equations[e].bad) return;
     residuals.push_back(with_solved(work, work.equations[e].residual));
   }
+  unknowns.reserve(open.size());
   for (const std::uint32_t base : open) unknowns.push_back(highest_begin + base);
   const Span span = work.equations[members.front()].span;
   if (open.size() > most_coupled) {

@@ -57,6 +57,7 @@ Span place(std::string_view whole, std::string_view part) {
 
 std::string known_names(const Model& model, std::string_view name) {
   std::vector<std::string> names;
+  names.reserve(model.parameters.size());
   for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
   std::string help = did_you_mean(name, names);
   if (!help.empty() || names.size() > 20) return help;
