@@ -7,7 +7,7 @@ found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
 mapfile -t seeds < <(cd "$folder" && for seed in models "tests/fuzz/$(basename "${target#*fuzz_}")" tests/model/wrong; do
   [[ -d $seed ]] && realpath "$seed"; done; true)
-"$target" -max_total_time="$seconds" -timeout=10 -max_len=4096 -rss_limit_mb=4096 -print_final_stats=1 \
+"$target" -max_total_time="$seconds" -timeout=60 -max_len=4096 -rss_limit_mb=4096 -print_final_stats=1 \
   -artifact_prefix="$found/" "$found" "${seeds[@]}" >"$found.log" 2>&1 || {
   tail -n 60 "$found.log"
   for input in "$found"/{crash,timeout,oom,leak}-*; do [[ -f $input ]] && base64 "$input"; done
