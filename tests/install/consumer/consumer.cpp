@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include <continuo/methods/tsitouras5.hpp>
 #include <continuo/model/load.hpp>
 #include <continuo/model/simulate.hpp>
 #include <continuo/solve/solve.hpp>
