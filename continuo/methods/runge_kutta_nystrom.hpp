@@ -17,6 +17,7 @@
 
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/packs.hpp>
+#include <continuo/methods/pairs.hpp>
 #include <continuo/methods/weighted_sum.hpp>
 #include <continuo/system/second_order.hpp>
 
@@ -48,18 +49,21 @@ struct RungeKuttaNystrom {
   /// `max_step`.
   static constexpr int dense_degree = 5, dense_order = 4;
 
-  /// f at the stages (where it is first the same as last, the last is the next first), and at the end of the step.
+  /// The accelerations of the stages (where it is first the same as last, the last is the next first) and at the end of
+  /// the step.
   template <State X>
   struct Workspace {
-    std::array<X, Derived::tableau.stages> k;
-    X end, argument;
+    std::array<detail::Accelerations<X>, Derived::tableau.stages> k;
+    detail::Accelerations<X> end;
+    X slope, argument;  // f at the start; the argument of f, then the errors
     bool start_fresh = false, end_fresh = false;
   };
 
   template <State X>
   static Workspace<X> workspace(const X& x) {
+    const detail::Accelerations<X> none = detail::no_accelerations(x);
     return [&]<std::size_t... j>(std::index_sequence<j...>) {
-      return Workspace<X>{{((void)j, x)...}, x, x};
+      return Workspace<X>{{((void)j, none)...}, none, x, x};
     }(std::make_index_sequence<Derived::tableau.stages>());
   }
 
@@ -99,12 +103,13 @@ struct RungeKuttaNystrom {
   static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, const X& x_new,
                          Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {
     const int evaluations = work.end_fresh ? 0 : 1;
-    if (!work.end_fresh) evaluate(system, t + h, x_new, work.end);
+    if (!work.end_fresh) detail::evaluate_accelerations(system, t + h, x_new, work.end);
     work.end_fresh = true;
     const std::size_t size = dimension(x);
     for (std::size_t n = 0; n < system.pair_count(size); ++n) {
       const PositionVelocity pair = system.pair(n, size);
-      set_quintic(x, h, x_new, work, pair, interpolant);
+      const Scalar<X> end = detail::acceleration<X>(work.end, n, pair);
+      set_quintic(x, h, x_new, work.slope.data()[pair.velocity], end, pair, interpolant);
     }
     return evaluations;
   }
@@ -124,26 +129,36 @@ struct RungeKuttaNystrom {
 
   template <State X>
   static const X& derivative(const Workspace<X>& work) {
-    return work.k[0];
+    return work.slope;
   }
 
  private:
   template <class System, State X>
-  static int take_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
-                       Workspace<X>& work, X& x_new) {
+  [[gnu::always_inline]] static int take_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                              bool made_jump, Workspace<X>& work, X& x_new) {
     constexpr std::size_t stages = Derived::tableau.stages;
     int evaluations = static_cast<int>(stages) - 1;
     work.end_fresh = false;
     if (made_jump || !work.start_fresh) {
-      evaluate(system, t, x, work.k[0]);
+      detail::evaluate_accelerations(system, t, x, work.k[0]);
       work.start_fresh = true;
       ++evaluations;
     }
-    work.argument = x;
-    [&]<std::size_t... s>(std::index_sequence<s...>) {
-      (stage<s + 1>(system, t, x, h, work), ...);
-    }(std::make_index_sequence<stages - 1>());
-    finish(system, x, h, work, x_new);
+    set_slope(system, x, work);
+    const auto start = detail::start_of_pairs(system, x);
+    const auto take_stages = [&](X& argument) __attribute__((always_inline)) {
+      argument = x;
+      [&]<std::size_t... s>(std::index_sequence<s...>) __attribute__((always_inline)) {
+        (stage<s + 1>(system, t, start, h, work, argument), ...);
+      }(std::make_index_sequence<stages - 1>());
+    };
+    if constexpr (detail::Packed<X>) {
+      X argument{};
+      take_stages(argument);
+    } else {
+      take_stages(work.argument);
+    }
+    finish(system, x, start, h, work, x_new);
     return evaluations;
   }
 
@@ -152,6 +167,16 @@ struct RungeKuttaNystrom {
   [[gnu::flatten]] static int flat_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
                                         bool made_jump, Workspace<X>& work, X& x_new) {
     return take_step(system, t, x, h, made_jump, work, x_new);
+  }
+
+  template <class System, State X>
+  [[gnu::always_inline]] static void set_slope(const System& system, const X& x, Workspace<X>& work) {
+    const std::size_t size = dimension(x), pairs = system.pair_count(size);
+    for (std::size_t n = 0; n < pairs; ++n) {
+      const PositionVelocity pair = system.pair(n, size);
+      work.slope.data()[pair.position] = x.data()[pair.velocity];
+      work.slope.data()[pair.velocity] = detail::acceleration<X>(work.k[0], n, pair);
+    }
   }
 
   template <std::size_t s>
@@ -179,72 +204,77 @@ struct RungeKuttaNystrom {
     }
   };
 
-  /// Component i of the weighted sum of the stages.
-  template <class R, State X>
-  static Scalar<X> sum(const std::array<const Scalar<X>*, R::count>& k, std::size_t i) {
-    return [&]<std::size_t... n>(std::index_sequence<n...>) {
-      return (... + (R::template weight<Scalar<X>, n>() * k[n][i]));
-    }(std::make_index_sequence<R::count>());
-  }
-  template <class R, State X>
-  static auto stages_of(const Workspace<X>& work) {
-    return [&]<std::size_t... n>(std::index_sequence<n...>) {
-      return std::array<const Scalar<X>*, R::count>{work.k[R::place[n]].data()...};
-    }(std::make_index_sequence<R::count>());
-  }
-
   template <std::size_t s, class System, State X>
-  static void stage(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+  [[gnu::always_inline]] static void stage(System& system, const Scalar<X>& t, const detail::StartOfPairs<X>& start,
+                                           const Scalar<X>& h, Workspace<X>& work, X& argument) {
     using Real = Scalar<X>;
+    using P = detail::PerPair<X>;
     using Weights = detail::Row<StageWeight<s>, s>;
     const Real node = h * detail::Row<StageNode<s>, 1>::template weight<Real, 0>(), square = h * h;
-    const auto k = stages_of<Weights, X>(work);
-    const std::size_t size = dimension(x), pairs = system.pair_count(size);
-    for (std::size_t n = 0; n < pairs; ++n) {
-      const auto [q, v] = system.pair(n, size);
-      work.argument.data()[q] = x.data()[q] + (node * x.data()[v] + square * sum<Weights, X>(k, v));
-    }
-    evaluate(system, t + node, work.argument, work.k[s]);
+    const Real newest = square * Weights::template weight<Real, Weights::count - 1>();
+    const auto k = detail::stages_of<Weights, P>(work.k);
+    // As in detail::advance, the sum of the older stages does not wait for the newest.
+    detail::set_pairs(system, start, argument, &PositionVelocity::position,
+                      [&](const auto& q, const auto& v, std::size_t i) __attribute__((always_inline)) {
+                        const detail::Unit<P> last = newest * k[Weights::count - 1][i];
+                        if constexpr (Weights::count == 1) {
+                          return detail::Unit<P>((q + node * v) + last);
+                        } else {
+                          const detail::Unit<P> sum = detail::row_sum<Weights, P, Weights::count - 1>(k, i);
+                          return detail::Unit<P>((q + (node * v + square * sum)) + last);
+                        }
+                      });
+    detail::evaluate_accelerations(system, t + node, argument, work.k[s]);
   }
 
   /// x_new, and the estimated errors into work.argument.
   template <class System, State X>
-  static void finish(const System& system, const X& x, const Scalar<X>& h, Workspace<X>& work, X& x_new) {
+  [[gnu::always_inline]] static void finish(const System& system, const X& x, const detail::StartOfPairs<X>& start,
+                                            const Scalar<X>& h, Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
+    using P = detail::PerPair<X>;
     using Position = detail::Row<PositionWeight, Derived::tableau.stages>;
     using Velocity = detail::Row<VelocityWeight, Derived::tableau.stages>;
     using PositionOff = detail::Row<PositionError, Derived::tableau.stages>;
     using VelocityOff = detail::Row<VelocityError, Derived::tableau.stages>;
-    const auto kq = stages_of<Position, X>(work);
-    const auto kv = stages_of<Velocity, X>(work);
-    const auto eq = stages_of<PositionOff, X>(work);
-    const auto ev = stages_of<VelocityOff, X>(work);
+    constexpr auto positions = &PositionVelocity::position, velocities = &PositionVelocity::velocity;
+    const auto kq = detail::stages_of<Position, P>(work.k);
+    const auto kv = detail::stages_of<Velocity, P>(work.k);
+    const auto eq = detail::stages_of<PositionOff, P>(work.k);
+    const auto ev = detail::stages_of<VelocityOff, P>(work.k);
     const std::size_t size = dimension(x), pairs = system.pair_count(size);
     const bool made_for_it = 2 * pairs == size && ignores_velocity(system, x);
-    const Real nothing = made_for_it ? Real(0) : std::numeric_limits<Real>::quiet_NaN();
-    for (std::size_t i = 0; i < size; ++i) x_new.data()[i] = x.data()[i] + nothing;
-    for (std::size_t n = 0; n < pairs; ++n) {
-      const auto [q, v] = system.pair(n, size);
-      x_new.data()[q] += h * (x.data()[v] + h * sum<Position, X>(kq, v));
-      x_new.data()[v] += h * sum<Velocity, X>(kv, v);
-      work.argument.data()[q] = h * (h * sum<PositionOff, X>(eq, v));
-      work.argument.data()[v] = h * sum<VelocityOff, X>(ev, v);
+    if (!made_for_it) {
+      for (std::size_t i = 0; i < size; ++i) x_new.data()[i] = Real(std::numeric_limits<double>::quiet_NaN());
+      return;
     }
+    using U = detail::Unit<P>;
+    detail::set_pairs(system, start, x_new, positions, [&](const U& q, const U& v, std::size_t i) {
+      return U(q + h * (v + h * detail::row_sum<Position, P>(kq, i)));
+    });
+    detail::set_pairs(system, start, x_new, velocities, [&](const U&, const U& v, std::size_t i) {
+      return U(v + h * detail::row_sum<Velocity, P>(kv, i));
+    });
+    detail::set_pairs(system, start, work.argument, positions, [&](const U&, const U&, std::size_t i) {
+      return U(h * (h * detail::row_sum<PositionOff, P>(eq, i)));
+    });
+    detail::set_pairs(system, start, work.argument, velocities,
+                      [&](const U&, const U&, std::size_t i) { return U(h * detail::row_sum<VelocityOff, P>(ev, i)); });
   }
 
   /// q(theta) = q0 + h v0 theta + h^2 a0 theta^2 / 2 + A theta^3 + B theta^4 + C theta^5, where A, B, C are what the
   /// other end asks for: with Q, V, W the position, h times the velocity and h^2 times the acceleration still missing
   /// there, A = 10 Q - 4 V + W/2, B = -15 Q + 7 V - W, C = 6 Q - 3 V + W/2.
   template <State X>
-  static void set_quintic(const X& x, const Scalar<X>& h, const X& x_new, const Workspace<X>& work,
+  static void set_quintic(const X& x, const Scalar<X>& h, const X& x_new, const Scalar<X>& a0, const Scalar<X>& a1,
                           PositionVelocity pair, Interpolant<X, dense_degree>& interpolant) {
     using Real = Scalar<X>;
     const auto [q, v] = pair;
-    const Real v0 = x.data()[v], a0 = work.k[0].data()[v], half = Real(0.5);
+    const Real v0 = x.data()[v], half = Real(0.5);
     const Real w0 = h * h * a0;
     const Real position = (x_new.data()[q] - x.data()[q]) - h * (v0 + half * h * a0);
     const Real velocity = h * ((x_new.data()[v] - v0) - h * a0);
-    const Real curvature = h * h * work.end.data()[v] - w0;
+    const Real curvature = h * h * a1 - w0;
     const std::array<Real, 6> c{x.data()[q],
                                 h * v0,
                                 half * w0,
