@@ -28,6 +28,23 @@ struct Kepler : Accelerations {
     dxdt[2] = -x[0] * inverse_cube;
     dxdt[3] = -x[1] * inverse_cube;
   }
+
+  /// The state at any time, by Kepler's equation M = E - e sin E; half axis and eccentricity are those of `start()` as
+  /// rounded. The nearest point is where the mean anomaly M begins.
+  template <class Real>
+  static std::array<Real, size> exact(const Real& t) {
+    using std::cos, std::sin, std::sqrt;
+    const Real r0(start()[0]), v0(start()[3]);
+    const Real half_axis = Real(1) / (Real(2) / r0 - v0 * v0), e = Real(1) - r0 / half_axis;
+    const Real per_time = Real(1) / (half_axis * sqrt(half_axis)), mean_anomaly = per_time * t;
+    Real anomaly = mean_anomaly;
+    for (int i = 0; i < 30; ++i) {  // Newton, from everywhere as e is small
+      anomaly -= (anomaly - e * sin(anomaly) - mean_anomaly) / (Real(1) - e * cos(anomaly));
+    }
+    const Real c = cos(anomaly), s = sin(anomaly), oblate = sqrt(Real(1) - e * e);
+    const Real speed = half_axis * per_time / (Real(1) - e * c);
+    return {half_axis * (c - e), half_axis * oblate * s, -speed * s, speed * oblate * c};
+  }
 };
 
 }  // namespace continuo::bench

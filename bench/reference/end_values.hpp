@@ -9,11 +9,13 @@
 #include <bench/problems/lorenz.hpp>
 #include <bench/problems/outer_planets.hpp>
 #include <bench/problems/pleiades.hpp>
+#include <bench/problems/problem.hpp>
 
 namespace continuo::bench {
 
+/// Problems that know their exact states themselves need no more; the others follow.
 template <class Problem>
-inline constexpr std::array<double, Problem::size> end_value{};
+inline const std::array<double, Problem::size> end_value = end_of<Problem>();
 
 template <>
 inline constexpr std::array<double, Lorenz::size> end_value<Lorenz>{

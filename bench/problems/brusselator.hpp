@@ -1,0 +1,44 @@
+// bench/problems/brusselator.hpp
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <bench/problems/problem.hpp>
+
+#include <continuo/numerics/state.hpp>
+
+namespace continuo::bench {
+
+/// I. Prigogine and R. Lefever's oscillating reaction (1968): E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
+/// Differential Equations I", I.16 and II.4.
+template <class Real = double>
+struct Brusselator {
+  static constexpr std::string_view name = "brusselator", title = "Brusselator to t = 20";
+  static constexpr std::size_t size = 2;
+  static constexpr double duration = 20;
+  using State = std::array<Real, size>;
+
+  static State start() { return {Real(1.5), Real(3)}; }
+
+  template <class X>
+  void operator()(const auto&, const X& x, X& dxdt) const {
+    const Scalar<X> meet = x[0] * x[0] * x[1];
+    dxdt[0] = Real(1) + meet - Real(4) * x[0];
+    dxdt[1] = Real(3) * x[0] - meet;
+  }
+
+  template <class X>
+  void jacobian(const auto&, const X& x, std::span<Scalar<X>> rows) const {
+    const Scalar<X> by0 = Real(2) * x[0] * x[1], by1 = x[0] * x[0];
+    write<Scalar<X>>(rows, {by0 - Real(4), by1, Real(3) - by0, -by1});
+  }
+
+  static std::vector<Reference<State>> reference() {
+    return {{20, in<Real>({0.498637071268347849_c, 4.59678034945201118_c})}};
+  }
+};
+
+}  // namespace continuo::bench
