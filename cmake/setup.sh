@@ -11,10 +11,12 @@ packages_to_build=(
   "libcli11-dev           -            the command line"
   "libudunits2-dev        -            physical units"
   "libxsimd-dev           -            vector instructions"
+  "libsuitesparse-dev     -            sparse linear systems"
   "gnuplot-nox            gnuplot      plots"
 )
 packages_to_test=(
   "libgtest-dev           -            unit tests"
+  "libceres-dev           -            dual numbers: exact derivatives in C++"
   "libgmock-dev           -            unit tests"
   "libboost-dev           -            numbers of 113 bits, and the peer in bench/"
   "clang-19               clang++-19   the second compiler, with sanitizers"

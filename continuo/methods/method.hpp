@@ -46,6 +46,14 @@ struct Tolerance {
   }
 };
 
+/// How a step ended, of the methods that solve equations in it.
+enum class StepStatus { done, newton_diverged, singular_matrix };
+
+/// What the solving of equations cost since the workspace was made.
+struct EquationCosts {
+  std::size_t jacobians = 0, decompositions = 0, solutions = 0;
+};
+
 /// A method is a type with these static members. M::Workspace<X> holds the stages; it lives as long as the run.
 ///   M::name           its name in models and on the command line
 ///   M::order          order of x_new; M::error_order: order of the embedded solution, 0 where there is no estimate
@@ -59,7 +67,17 @@ struct Tolerance {
 ///   M::error_of(work, h, i) -> estimated local error of component i, to name the worst one
 ///   M::interpolate(system, t, x, h, x_new, work, interpolant) -> number of evaluations; once, after a step
 ///   M::accept(work)   the step stands: its end becomes the start of the next
-///   M::derivative(work) -> f(t, x) at the start of the last step
+///   M::derivative(work) -> x' at the start of the last step
+/// Methods that need more of the driver have, each found by its name and missing elsewhere:
+///   M::implicit       true where M x' = f(t, x) with a mass matrix (singular, of index 1) can be integrated
+///   M::aim(work, tolerance)  before every step: how close the equations of the step must be solved
+///   M::status(work)   -> StepStatus of the last step; what is not `done` is rejected and tried with a smaller h
+///   M::costs(work)    -> EquationCosts
+///   M::error_order_of(work) -> error_order where the order varies (then M::order and M::error_order are the greatest)
+///   M::next_factor(work, factor, h, x, x_new, tolerance) -> after a step whose error passed and before `accept`: the
+///       factor for the next h, where `factor` is what the controller wants. A method of variable order chooses its
+///       next order here; one that keeps a decomposition may answer 1.
+///   M::rejected(work, h_next) the last step was not accepted and will be tried again
 template <class M, class X>
 concept Method = State<X> && requires(const X& x) {
   typename M::template Workspace<X>;
@@ -70,5 +88,34 @@ concept Method = State<X> && requires(const X& x) {
   { M::second_order } -> std::convertible_to<bool>;
   { M::workspace(x) } -> std::same_as<typename M::template Workspace<X>>;
 };
+
+namespace detail {
+
+template <class M>
+constexpr bool is_implicit() {
+  if constexpr (requires { M::implicit; }) {
+    return M::implicit;
+  } else {
+    return false;
+  }
+}
+template <class M, class Work>
+StepStatus status_of(const Work& work) {
+  if constexpr (requires { M::status(work); }) {
+    return M::status(work);
+  } else {
+    return StepStatus::done;
+  }
+}
+template <class M, class Work>
+int error_order_of(const Work& work) {
+  if constexpr (requires { M::error_order_of(work); }) {
+    return M::error_order_of(work);
+  } else {
+    return M::error_order;
+  }
+}
+
+}  // namespace detail
 
 }  // namespace continuo

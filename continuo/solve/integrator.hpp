@@ -166,6 +166,8 @@ class Integrator {
     for (std::size_t i = 0; i < dimension(x_); ++i)
       if (!(Real(0) * x_.data()[i] == Real(0))) return component_name(system(), i) + " is not finite at the start";
     if (!(Real(0) * (interval_.to - interval_.from) == Real(0))) return "the interval of time is not finite";
+    if (has_mass<System, X>() && !detail::is_implicit<M>())
+      return std::string(M::name) + " cannot integrate M x' = f(t, x): take an implicit method, such as rodas5p";
     if (M::error_order == 0 && !(options_.step > 0))
       return std::string(M::name) + " has no error estimate: give it a step";
     for (const auto* each : {&options_.rtol_each, &options_.atol_each})

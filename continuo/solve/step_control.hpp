@@ -12,6 +12,7 @@
 #include <continuo/solve/first_step.hpp>
 #include <continuo/solve/options.hpp>
 #include <continuo/solve/outcome.hpp>
+#include <continuo/system/mass.hpp>
 
 namespace continuo {
 
@@ -57,10 +58,11 @@ class StepControl {
     next_ = fixed(options) ? forward_ * options.step : Real(0);  // 0: to be estimated
   }
 
-  /// f(t, x) by an evaluation of its own.
+  /// x' at (t, x) by an evaluation of its own; 0 for the unknown of an algebraic equation.
   const X& slope(Real t, const X& x) {
     ++statistics_.evaluations;
     evaluate(system_, t, x, slope_);
+    divide_by_mass(system_, slope_);
     return slope_;
   }
 
@@ -118,9 +120,27 @@ class StepControl {
     return false;
   }
 
-  void attempt(Real h) {
+  void attempt(Real h, const Options<X>& options) {
     h_ = h;
+    if constexpr (requires { M::aim(work_, tolerance(options)); }) M::aim(work_, tolerance(options));
     statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
+    if constexpr (requires { M::costs(work_); }) {
+      const EquationCosts costs = M::costs(work_);
+      statistics_.jacobians = costs.jacobians;
+      statistics_.decompositions = costs.decompositions;
+      statistics_.solutions = costs.solutions;
+    }
+  }
+
+  // A step whose equations were not solved.
+  bool fail_to_solve(StepStatus status, Outcome<Real>& outcome) {
+    return fail(Ending::nonlinear_solve_failed, 0, {},
+                status == StepStatus::singular_matrix
+                    ? "the matrix of the step's equations is singular: a system with algebraic equations may be of an "
+                      "index above 1, or an unknown appears in no equation"
+                    : "Newton's iteration does not converge: take a smaller step, or look for a jump in f and declare "
+                      "an event there",
+                outcome);
   }
 
   bool finite_end() const {
@@ -149,7 +169,9 @@ class StepControl {
       return fail(Ending::step_too_small, 0, {}, "the step is below the spacing of numbers at t: take a longer one",
                   outcome);
     }
-    attempt(short_step ? limit - begin_ : nominal);
+    attempt(short_step ? limit - begin_ : nominal, options);
+    if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done)
+      return fail_to_solve(status, outcome);
     if (!finite_end()) {
       return fail(Ending::not_finite, 0, first_not_finite(x_end_),
                   "f or the state overflows: take a smaller step, or a method with error control", outcome);
@@ -195,33 +217,55 @@ class StepControl {
     for (std::size_t rejects = 0;; ++rejects) {
       // A step that would leave a crumb before the limit takes it along.
       const bool last = forward_ * (Real(1.01) * h - room) >= 0;
-      attempt(last ? room : h);
-      error = M::error_norm(work_, h_, x_begin_, x_end_, weights);
+      attempt(last ? room : h, options);
+      const bool solved = detail::status_of<M>(work_) == StepStatus::done;
+      error = solved ? M::error_norm(work_, h_, x_begin_, x_end_, weights) : std::numeric_limits<Real>::infinity();
       // Neither true nor false of a number that is none: error_norm gives one where x_end_ is not finite.
       const bool finite = error < std::numeric_limits<Real>::infinity();
       if (finite && error <= 1) {
-        float factor = errors_.accept(options.controller, M::error_order, static_cast<float>(error));
-        if (was_rejected) factor = min(factor, 1.0F);
+        const Real factor = factor_after(static_cast<float>(error), was_rejected, weights, options);
         // A step cut short by the limit says little about the next: never below what was planned.
-        next_ = last ? forward_ * max(abs(h), abs(h_) * Real(factor)) : h_ * Real(factor);
+        next_ = last ? forward_ * max(abs(h), abs(h_) * factor) : h_ * factor;
         end_ = last ? limit : begin_ + h_;
         return accepted();
       }
       ++statistics_.rejected;
       was_rejected = true;
-      last_not_finite = !finite;
-      h = h_ * (finite ? Real(ErrorHistory::reject(options.controller, M::error_order, static_cast<float>(error)))
-                       : Real(0.2));
+      last_not_finite = solved && !finite;
+      h = h_ * factor_of_rejected(solved, finite, static_cast<float>(error), options);
+      if constexpr (requires { M::rejected(work_, h); }) M::rejected(work_, h);
       if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
           (options.interrupt && options.interrupt->load(std::memory_order_relaxed)))
         return give_up(rejects >= options.max_rejects_in_a_row, last_not_finite, error, weights, options, outcome);
     }
   }
 
+  Real factor_after(float error, bool was_rejected, const Tolerance<Real>& weights, const Options<X>& options) {
+    using std::min;
+    float factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error);
+    if (was_rejected) factor = min(factor, 1.0F);
+    if constexpr (requires { M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights); }) {
+      const Real wanted = M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights);
+      return was_rejected ? min(wanted, Real(1)) : wanted;
+    } else {
+      return Real(factor);
+    }
+  }
+
+  Real factor_of_rejected(bool solved, bool finite, float error, const Options<X>& options) const {
+    if (!solved) return Real(0.25);
+    if (!finite) return Real(0.2);
+    return Real(ErrorHistory::reject(options.controller, detail::error_order_of<M>(work_), error));
+  }
+
   bool give_up(bool too_many, bool not_finite, Real error, const Tolerance<Real>& weights, const Options<X>& options,
                Outcome<Real>& outcome) {
     if (options.interrupt && options.interrupt->load(std::memory_order_relaxed))
       return fail(Ending::interrupted, error, {}, {}, outcome);
+    if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done) {
+      if (!first_not_finite(slope(begin_, x_begin_)).empty()) not_finite = true;
+      if (!not_finite) return fail_to_solve(status, outcome);
+    }
     if (not_finite) {
       std::string component = first_not_finite(x_end_);
       if (component.empty()) component = first_not_finite(slope(begin_, x_begin_));

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include <continuo/numerics/sparse_pattern.hpp>
 #include <continuo/numerics/state.hpp>
 
 namespace continuo {
@@ -61,9 +62,36 @@ concept SecondOrder = requires(const F& f, std::size_t size) {
 template <class F, class X>
 concept HasJacobian = requires(F& f, Scalar<X> t, const X& x, std::span<Scalar<X>> rows) { f.jacobian(t, x, rows); };
 
-/// The system reads M x' = f(t, x): f.mass_matrix(span of n*n, row by row).
+/// The system knows where df/dx may differ from zero. The pattern must hold the run long.
+template <class F>
+concept HasJacobianPattern = requires(F& f) {
+  { f.jacobian_pattern() } -> std::convertible_to<const SparsePattern&>;
+};
+/// The system gives the entries of df/dx in the order of its pattern: f.jacobian_values(t, x, span).
+template <class F, class X>
+concept HasSparseJacobian =
+    HasJacobianPattern<F> &&
+    requires(F& f, Scalar<X> t, const X& x, std::span<Scalar<X>> values) { f.jacobian_values(t, x, values); };
+/// The system gives df/dt: f.time_derivative(t, x, dfdt).
+template <class F, class X>
+concept HasTimeDerivative = requires(F& f, Scalar<X> t, const X& x, X& dfdt) { f.time_derivative(t, x, dfdt); };
+
+/// The system reads M x' = f(t, x) with a constant M: f.mass_matrix(span of n*n, row by row). M may be singular: the
+/// system is then one of differential and algebraic equations.
 template <class F, class X>
 concept HasMassMatrix = requires(const F& f, std::span<Scalar<X>> rows) { f.mass_matrix(rows); };
+/// The same for a diagonal M: f.mass(i), 0 for an algebraic equation.
+template <class F, class X>
+concept HasMassDiagonal = requires(const F& f, std::size_t i) {
+  { f.mass(i) } -> std::convertible_to<Scalar<X>>;
+};
+/// The system is a sum of a stiff and a nonstiff part: f.stiff(t, x, dxdt), f.nonstiff(t, x, dxdt); f itself is the
+/// sum.
+template <class F, class X>
+concept IsSplit = requires(F& f, Scalar<X> t, const X& x, X& dxdt) {
+  f.stiff(t, x, dxdt);
+  f.nonstiff(t, x, dxdt);
+};
 
 /// The name of component i, `x[i]` where the system has none.
 template <class F>

@@ -1,0 +1,198 @@
+// continuo/methods/linearization.hpp
+// What an implicit method needs of a system M x' = f(t, x): J = df/dx at one point, the constant M, and the solution of
+// (c M - J) y = b for numbers c, real or complex, that the method chooses. M is the identity where the system has none.
+//
+//   work.linear.prepare(system, x);                       // once; the only place that allocates
+//   evaluations += work.linear.evaluate(system, t, x, fx, least);
+//   if (!work.lu.factor(work.linear, 1 / (gamma * h))) ...;  // singular
+//   work.lu.solve(b);
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <continuo/methods/method.hpp>
+#include <continuo/numerics/dense_lu.hpp>
+#include <continuo/numerics/sparse_lu.hpp>
+#include <continuo/system/jacobian.hpp>
+
+namespace continuo {
+
+/// The number of components where the type of state fixes it.
+template <State X>
+constexpr std::size_t fixed_size() {
+  if constexpr (requires { std::tuple_size<X>::value; }) {
+    return std::tuple_size<X>::value;
+  } else {
+    return run_time_size;
+  }
+}
+
+/// Systems of run-time size with at least this many components and a pattern with at most this part of all entries are
+/// solved by a sparse solver, if their scalar is double.
+inline constexpr std::size_t least_sparse_size = 20;
+inline constexpr double greatest_sparse_part = 0.3;
+
+template <State X>
+class Linearization {
+ public:
+  using Real = Scalar<X>;
+  static constexpr std::size_t N = fixed_size<X>();
+
+  explicit Linearization(const X& x) : size_(dimension(x)), moved_(x), slope_(x) {
+    if constexpr (N == run_time_size) rows_.resize(size_ * size_);
+  }
+
+  std::size_t size() const { return size_; }
+  bool prepared() const { return prepared_; }
+  bool sparse() const { return sparse_; }
+
+  /// Learns the structure of the system: pattern and mass. To be called before anything else.
+  template <class F>
+  void prepare(F& f, const X&) {
+    prepared_ = true;
+    if constexpr (HasMassMatrix<F, X>) {
+      mass_ = Mass::matrix;
+      if constexpr (N == run_time_size) mass_rows_.resize(size_ * size_);
+      f.mass_matrix(std::span<Real>(mass_rows_));
+    } else if constexpr (HasMassDiagonal<F, X>) {
+      mass_ = Mass::diagonal;
+      if constexpr (N == run_time_size) mass_rows_.resize(size_);
+      for (std::size_t i = 0; i < size_; ++i) mass_rows_[i] = f.mass(i);
+    }
+    if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
+      pattern_ = f.jacobian_pattern();
+      sparse_ = mass_ != Mass::matrix && size_ >= least_sparse_size &&
+                static_cast<double>(pattern_.entries()) <=
+                    greatest_sparse_part * static_cast<double>(size_) * static_cast<double>(size_);
+      if (sparse_) {
+        rows_.assign(pattern_.entries(), 0);
+        if constexpr (!HasSparseJacobian<F, X>) groups_ = ColumnGroups(pattern_);
+      }
+    }
+  }
+
+  /// J at (t, x); fx = f(t, x), least(j) the least increment for a difference. Returns the number of evaluations of f.
+  template <class F, class Least>
+  int evaluate(F& f, const Real& t, const X& x, const X& fx, const Least& least) {
+    if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
+      if (sparse_)
+        return evaluate_jacobian(f, t, x, fx, moved_, slope_, least, pattern_, groups_, std::span<Real>(rows_));
+    }
+    return evaluate_jacobian(f, t, x, fx, moved_, slope_, least, std::span<Real>(rows_));
+  }
+
+  bool is_finite() const {
+    Real sum(0);
+    for (const Real& entry : rows_) sum += Real(0) * entry;
+    return sum == Real(0);
+  }
+
+  bool has_mass() const { return mass_ != Mass::identity; }
+  /// Mv = M v.
+  void multiply_mass(const X& v, X& product) const {
+    if (mass_ == Mass::identity) {
+      product = v;
+    } else if (mass_ == Mass::diagonal) {
+      for (std::size_t i = 0; i < size_; ++i) product.data()[i] = mass_rows_[i] * v.data()[i];
+    } else {
+      for (std::size_t i = 0; i < size_; ++i) {
+        Real sum(0);
+        for (std::size_t j = 0; j < size_; ++j) sum += mass_rows_[i * size_ + j] * v.data()[j];
+        product.data()[i] = sum;
+      }
+    }
+  }
+  /// Jv = J v.
+  void multiply_jacobian(const X& v, X& product) const {
+    for (std::size_t i = 0; i < size_; ++i) product.data()[i] = Real(0);
+    if (sparse_) {
+      for (std::size_t j = 0; j < size_; ++j)
+        for (std::size_t p = pattern_.begin(j); p < pattern_.end(j); ++p)
+          product.data()[pattern_.row(p)] += rows_[p] * v.data()[j];
+      return;
+    }
+    for (std::size_t i = 0; i < size_; ++i)
+      for (std::size_t j = 0; j < size_; ++j) product.data()[i] += rows_[i * size_ + j] * v.data()[j];
+  }
+
+  /// c M - J, row by row; dense only.
+  template <class Number>
+  void shifted(const Number& c, Number* matrix) const {
+    for (std::size_t i = 0; i < size_ * size_; ++i) matrix[i] = Number(-rows_[i]);
+    if (mass_ == Mass::matrix) {
+      for (std::size_t i = 0; i < size_ * size_; ++i) matrix[i] += c * Number(mass_rows_[i]);
+    } else {
+      for (std::size_t i = 0; i < size_; ++i)
+        matrix[i * size_ + i] += mass_ == Mass::identity ? c : c * Number(mass_rows_[i]);
+    }
+  }
+  /// The entries of c M - J in the order of the pattern; sparse only.
+  template <class Number>
+  void shifted(const Number& c, std::span<Number> values) const {
+    for (std::size_t p = 0; p < values.size(); ++p) values[p] = Number(-rows_[p]);
+    for (std::size_t j = 0; j < size_; ++j)
+      values[pattern_.find(j, j)] += mass_ == Mass::identity ? c : c * Number(mass_rows_[j]);
+  }
+  const SparsePattern& pattern() const { return pattern_; }
+
+ private:
+  enum class Mass { identity, diagonal, matrix };
+
+  std::size_t size_;
+  X moved_, slope_;
+  BlockOf<Real, N, N * N> rows_{};       // of J, or the entries of its pattern
+  BlockOf<Real, N, N * N> mass_rows_{};  // of M, or its diagonal
+  SparsePattern pattern_;
+  ColumnGroups groups_;
+  Mass mass_ = Mass::identity;
+  bool sparse_ = false, prepared_ = false;
+};
+
+/// c M - J, decomposed. Number is the scalar of the state or a ComplexNumber of it.
+template <State X, class Number = Scalar<X>>
+class Decomposition {
+ public:
+  static constexpr std::size_t N = fixed_size<X>();
+
+  explicit Decomposition(const X& x) : dense_(N == run_time_size ? 0 : dimension(x)) {}
+
+  /// False where the matrix is singular or not finite.
+  bool factor(const Linearization<X>& linear, const Number& c) {
+    if constexpr (has_sparse) {
+      if (linear.sparse()) {
+        if (!sparse_) sparse_.emplace(linear.pattern());
+        linear.shifted(c, sparse_->values());
+        return sparse_->factor();
+      }
+    }
+    if constexpr (N == run_time_size) {
+      if (dense_.size() != linear.size()) dense_ = DenseLU<Number, N>(linear.size());
+    }
+    linear.shifted(c, dense_.matrix().data());
+    return dense_.factor();
+  }
+
+  /// b becomes the solution.
+  void solve(Number* b) {
+    if constexpr (has_sparse) {
+      if (sparse_) return sparse_->solve(b);
+    }
+    dense_.solve(b);
+  }
+
+ private:
+  static constexpr bool has_sparse =
+      N == run_time_size && (std::same_as<Number, double> || std::same_as<Number, ComplexNumber<double>>);
+  struct None {};
+  using Sparse = std::conditional_t<has_sparse, SparseLU<std::conditional_t<has_sparse, Number, double>>, None>;
+
+  DenseLU<Number, N> dense_;
+  std::optional<Sparse> sparse_;
+};
+
+}  // namespace continuo

@@ -1,0 +1,70 @@
+// continuo/methods/newton.hpp
+// The simplified Newton iteration of implicit methods: one matrix for all iterations, given up as soon as its rate of
+// convergence says that it will not arrive. E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", IV.8.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <continuo/methods/method.hpp>
+
+namespace continuo {
+
+/// What one iteration leaves to the next one, of the following step.
+template <class Real>
+struct NewtonMemory {
+  Real remainder = 1;  // theta / (1 - theta) of the last iteration: how much of a correction is still to come
+  Real rate = 0;       // theta: the last correction against the one before; near 1 the Jacobian has grown old
+  int iterations = 0;  // of the last call
+};
+
+/// Iterates until what is still to come is below `target` (of a norm in which the tolerance is 1). `correct` makes one
+/// correction and returns its norm. False where it diverges, or would need more than `most` iterations.
+template <class Real, class Correct>
+bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& correct) {
+  using std::max, std::pow;
+  constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+  // eq. 8.10': an estimate before the second correction is there.
+  Real remainder = pow(max(memory.remainder, epsilon), Real(0.8));
+  Real last = 0;
+  for (int k = 0; k < most; ++k) {
+    memory.iterations = k + 1;
+    const Real size = correct();
+    if (!(size < std::numeric_limits<Real>::infinity())) return false;
+    if (k > 0) {
+      const Real rate = size / last;
+      memory.rate = rate;
+      if (rate >= Real(0.99)) return size <= target;  // no longer shrinking: diverging, or down to rounding
+      remainder = rate / (1 - rate);
+      if (remainder * size * pow(rate, most - 2 - k) > target && k + 1 < most) return false;  // eq. 8.11
+    }
+    if (remainder * size <= target || size == 0) {
+      memory.remainder = remainder;
+      if (k == 0) memory.rate = 0;
+      return true;
+    }
+    last = size;
+  }
+  return false;
+}
+
+/// The least increments for a Jacobian by differences: the error of rounding in f, weighted, stays below a thousandth
+/// of 1/h in each column (A. Hindmarsh et al., "SUNDIALS", ACM TOMS 31 (2005), section 2.1, for CVODE).
+template <State X>
+auto least_increments(const Tolerance<Scalar<X>>& tolerance, const Scalar<X>& h, const X& x, const X& fx) {
+  using Real = Scalar<X>;
+  using std::abs, std::sqrt;
+  const std::size_t n = dimension(x);
+  Real sum(0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Real part = fx.data()[i] / tolerance.scale(i, x.data()[i], x.data()[i]);
+    sum += part * part;
+  }
+  const Real size = 1000 * abs(h) * std::numeric_limits<Real>::epsilon() * sqrt(Real(n) * sum);
+  return [&tolerance, &x, size = size > 0 ? size : Real(1)](std::size_t j) {
+    return size * tolerance.scale(j, x.data()[j], x.data()[j]);
+  };
+}
+
+}  // namespace continuo

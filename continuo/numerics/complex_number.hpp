@@ -1,0 +1,58 @@
+// continuo/numerics/complex_number.hpp
+// Complex arithmetic over any real scalar. std::complex is unspecified for scalars that are not built in, and its
+// product looks for infinities at every turn.
+#pragma once
+#include <cmath>
+
+namespace continuo {
+
+template <class Real>
+struct ComplexNumber {
+  Real re{}, im{};
+
+  ComplexNumber() = default;
+  ComplexNumber(const Real& re_) : re(re_), im(Real(0)) {}
+  ComplexNumber(const Real& re_, const Real& im_) : re(re_), im(im_) {}
+
+  ComplexNumber& operator+=(const ComplexNumber& b) { return re += b.re, im += b.im, *this; }
+  ComplexNumber& operator-=(const ComplexNumber& b) { return re -= b.re, im -= b.im, *this; }
+  ComplexNumber& operator*=(const ComplexNumber& b) { return *this = *this * b; }
+
+  friend ComplexNumber operator+(ComplexNumber a, const ComplexNumber& b) { return a += b; }
+  friend ComplexNumber operator-(ComplexNumber a, const ComplexNumber& b) { return a -= b; }
+  friend ComplexNumber operator-(const ComplexNumber& a) { return {-a.re, -a.im}; }
+  friend ComplexNumber operator*(const ComplexNumber& a, const ComplexNumber& b) {
+    return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+  }
+  friend bool operator==(const ComplexNumber&, const ComplexNumber&) = default;
+};
+
+/// What a pivot is chosen by: |re| + |im|.
+template <class Real>
+Real magnitude(const ComplexNumber<Real>& z) {
+  using std::abs;
+  return abs(z.re) + abs(z.im);
+}
+template <class Real>
+Real magnitude(const Real& x) {
+  using std::abs;
+  return abs(x);
+}
+
+/// 1/z, scaled so that neither square overflows (R. L. Smith, "Algorithm 116", CACM 5 (1962)).
+template <class Real>
+ComplexNumber<Real> reciprocal(const ComplexNumber<Real>& z) {
+  using std::abs;
+  if (abs(z.re) >= abs(z.im)) {
+    const Real ratio = z.im / z.re, denominator = z.re + z.im * ratio;
+    return {Real(1) / denominator, -ratio / denominator};
+  }
+  const Real ratio = z.re / z.im, denominator = z.re * ratio + z.im;
+  return {ratio / denominator, Real(-1) / denominator};
+}
+template <class Real>
+Real reciprocal(const Real& x) {
+  return Real(1) / x;
+}
+
+}  // namespace continuo

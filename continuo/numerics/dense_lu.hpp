@@ -1,0 +1,104 @@
+// continuo/numerics/dense_lu.hpp
+// LU decomposition with partial pivoting of a matrix stored row by row. For sizes known when compiling the loops are
+// unrolled and the matrix stays on the stack; the numbers may be real or complex, of any scalar.
+//
+//   DenseLU<double, 3> lu(3);
+//   lu.matrix() = {...};
+//   if (lu.factor()) lu.solve(b);
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <continuo/numerics/complex_number.hpp>
+
+namespace continuo {
+
+/// The size of a matrix that is known only at run time.
+inline constexpr std::size_t run_time_size = static_cast<std::size_t>(-1);
+
+/// Numbers or rows for a state of N components: an array, or a vector where N is known at run time only.
+template <class T, std::size_t N, std::size_t Count>
+using BlockOf = std::conditional_t<N == run_time_size, std::vector<T>, std::array<T, N == run_time_size ? 1 : Count>>;
+
+template <class Number, std::size_t N = run_time_size>
+class DenseLU {
+ public:
+  explicit DenseLU(std::size_t size) : size_(size) {
+    if constexpr (N == run_time_size) {
+      entries_.resize(size * size);
+      pivots_.resize(size);
+    }
+  }
+
+  std::size_t size() const {
+    if constexpr (N == run_time_size) {
+      return size_;
+    } else {
+      return N;
+    }
+  }
+  /// To be filled before `factor`, which overwrites it.
+  auto& matrix() { return entries_; }
+
+  /// False where a pivot is zero or not a number: the matrix is singular, or was not finite.
+  bool factor() {
+    const std::size_t n = size();
+    Number* const a = entries_.data();
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t pivot = greatest_in_column(k);
+      pivots_[k] = static_cast<std::uint32_t>(pivot);
+      if (pivot != k) {
+        for (std::size_t j = 0; j < n; ++j) std::swap(a[k * n + j], a[pivot * n + j]);
+      }
+      const auto size_of_pivot = magnitude(a[k * n + k]);
+      if (!(size_of_pivot > 0) || !(size_of_pivot - size_of_pivot == 0)) return false;
+      const Number inverse = reciprocal(a[k * n + k]);
+      a[k * n + k] = inverse;
+      for (std::size_t i = k + 1; i < n; ++i) {
+        if (a[i * n + k] == Number{}) continue;
+        const Number factor = a[i * n + k] = a[i * n + k] * inverse;
+        for (std::size_t j = k + 1; j < n; ++j) a[i * n + j] -= factor * a[k * n + j];
+      }
+    }
+    return true;
+  }
+
+  /// b becomes the solution.
+  void solve(Number* b) const {
+    const std::size_t n = size();
+    const Number* const a = entries_.data();
+    for (std::size_t k = 0; k < n; ++k) std::swap(b[k], b[pivots_[k]]);
+    for (std::size_t i = 1; i < n; ++i) {
+      Number sum = b[i];
+      for (std::size_t j = 0; j < i; ++j) sum -= a[i * n + j] * b[j];
+      b[i] = sum;
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      Number sum = b[i];
+      for (std::size_t j = i + 1; j < n; ++j) sum -= a[i * n + j] * b[j];
+      b[i] = sum * a[i * n + i];
+    }
+  }
+
+ private:
+  std::size_t greatest_in_column(std::size_t k) const {
+    const std::size_t n = size();
+    std::size_t pivot = k;
+    auto greatest = magnitude(entries_[k * n + k]);
+    for (std::size_t i = k + 1; i < n; ++i) {
+      if (const auto here = magnitude(entries_[i * n + k]); here > greatest) greatest = here, pivot = i;
+    }
+    return pivot;
+  }
+
+  std::size_t size_;
+  BlockOf<Number, N, N * N> entries_{};
+  BlockOf<std::uint32_t, N, N> pivots_{};
+};
+
+}  // namespace continuo
