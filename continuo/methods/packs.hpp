@@ -172,7 +172,13 @@ template <State X, class System>
 }
 
 template <State X>
-inline constexpr std::size_t unit_width = sizeof(Unit<X>) / sizeof(Scalar<X>);
+inline constexpr std::size_t unit_width = [] {
+  if constexpr (Packed<X>) {
+    return Packs<X>::width;
+  } else {
+    return std::size_t{1};
+  }
+}();
 
 /// Component i of a unit.
 template <State X>

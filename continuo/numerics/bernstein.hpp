@@ -99,7 +99,7 @@ inline double interpolation_error(const std::array<double, count>& value) {
                                           : detail::cosine[16 - k];
     before_last += angle_cosine * value[j];
   }
-  return 2 * (std::abs(last) / degree + std::abs(before_last) / (degree / 2));
+  return 2 * (std::abs(last) / degree + 2 * std::abs(before_last) / degree);
 }
 
 /// Changes of sign along the coefficients, zeros passed over.
