@@ -8,11 +8,13 @@
 //   work.lu.solve(b);
 #pragma once
 #include <array>
+#include <concepts>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <tuple>
+#include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <continuo/methods/method.hpp>

@@ -1,0 +1,389 @@
+// continuo/methods/bdf.hpp
+// Backward differentiation of variable order 1 to 5 and variable step, as numerical differentiation formulas (NDF).
+// L. F. Shampine, M. W. Reichelt, "The MATLAB ODE suite", SIAM J. Sci. Comput. 18 (1997); E. Hairer, G. Wanner,
+// "Solving Ordinary Differential Equations II", V.
+//
+// The past is kept as backward differences D_j of the last x at equal spacing h: x(t_n + s h) is the polynomial
+// sum_j D_j s (s+1) ... (s+j-1) / j!. A new h moves the same polynomial to another spacing. With the predicted
+// p = sum_{j<=k} D_j and the correction d = x_new - p, the formula of order k reads
+//
+//   M (alpha d + sum_{j=1..k} gamma_j D_j) = h f(t + h, p + d),   gamma_j = 1 + 1/2 + ... + 1/j,
+//   alpha = (1 - kappa) gamma_k,   error = (kappa gamma_k + 1/(k+1)) d.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+
+#include <continuo/methods/linearization.hpp>
+#include <continuo/methods/newton.hpp>
+#include <continuo/system/mass.hpp>
+
+namespace continuo {
+
+/// The numbers of the formulas, by order.
+namespace ndf {
+
+template <class Real>
+Real gamma(std::size_t k) {
+  Real sum(0);
+  for (std::size_t j = 1; j <= k; ++j) sum += Real(1) / Real(static_cast<double>(j));
+  return sum;
+}
+// Shampine & Reichelt, table 1; order 5 keeps the formula of Gear.
+template <class Real>
+Real kappa(std::size_t k) {
+  constexpr std::array<double, 7> parts{0, -1850, 0, -823, -415, 0, 0};
+  return k == 2 ? Real(-1) / Real(9) : Real(parts[k]) / Real(10000);
+}
+template <class Real>
+Real alpha(std::size_t k) {
+  return (Real(1) - kappa<Real>(k)) * gamma<Real>(k);
+}
+template <class Real>
+Real error_constant(std::size_t k) {
+  return kappa<Real>(k) * gamma<Real>(k) + Real(1) / Real(static_cast<double>(k) + 1);
+}
+
+}  // namespace ndf
+
+/// The method for large stiff systems: one real matrix per step, and orders that follow the smoothness of the solution.
+struct Bdf {
+  static constexpr std::string_view name = "bdf";
+  static constexpr int order = 5, error_order = 5, dense_order = 5, dense_degree = 5;
+  static constexpr bool second_order = false, implicit = true;
+  static constexpr std::size_t greatest_order = 5;
+
+  template <State X>
+  struct Workspace {
+    using Real = Scalar<X>;
+    std::array<X, greatest_order + 3> D;
+    X d, end, f, correction;  // of the last step: x_new - predicted, x_new; f and a scratch
+    Linearization<X> linear;
+    Decomposition<X> lu;
+    NewtonMemory<Real> memory{};
+    Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
+    EquationCosts costs{};
+    StepStatus status = StepStatus::done;
+    Real h{}, decomposed_for{};  // the spacing of D; the c of lu, 0 for none
+    std::size_t order = 1, next_order = 1;
+    std::size_t equal_steps = 0;                    // accepted ones of this h and order
+    std::size_t rejections = 0;                     // since the last accepted
+    std::size_t jacobian_age = 0;                   // steps
+    bool has_jacobian = false, is_current = false;  // current: evaluated in this step
+  };
+
+  template <State X>
+  static Workspace<X> workspace(const X& x) {
+    return {{x, x, x, x, x, x, x, x}, x, x, x, x, Linearization<X>(x), Decomposition<X>(x)};
+  }
+
+  template <State X>
+  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+    work.tolerance = tolerance;
+  }
+  template <State X>
+  static StepStatus status(const Workspace<X>& work) {
+    return work.status;
+  }
+  template <State X>
+  static EquationCosts costs(const Workspace<X>& work) {
+    return work.costs;
+  }
+  template <State X>
+  static int error_order_of(const Workspace<X>& work) {
+    return static_cast<int>(work.order);
+  }
+
+  template <class System, State X>
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+                  Workspace<X>& work, X& x_new) {
+    if (!work.linear.prepared()) work.linear.prepare(system, x);
+    int evaluations = 0;
+    if (made_jump) {
+      evaluations += begin(system, t, x, h, work);
+    } else if (h != work.h) {
+      respace(work, h / work.h);
+      work.equal_steps = 0;
+    }
+    work.h = h;
+    work.is_current = false;
+    for (;;) {
+      predict(work, x_new);
+      if (!work.has_jacobian || work.jacobian_age >= oldest_jacobian) {
+        evaluations += linearize(system, t + h, x_new, work);
+      }
+      const Scalar<X> c = Scalar<X>(ndf::alpha<Scalar<X>>(work.order)) / h;
+      if (c != work.decomposed_for && !decompose(work, c)) {
+        if (work.is_current) break;
+        work.has_jacobian = false;
+        continue;
+      }
+      const bool converged = solve(system, t + h, c, work, x_new, evaluations);
+      work.status = converged ? StepStatus::done : StepStatus::newton_diverged;
+      if (converged || work.is_current) break;
+      work.has_jacobian = false;  // once more, with the matrix of here
+    }
+    work.end = x_new;
+    return evaluations;
+  }
+
+  template <State X>
+  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                              const Tolerance<Scalar<X>>& tolerance) {
+    return strictness * ndf::error_constant<Scalar<X>>(work.order) * norm(work.d, x, x_new, tolerance) +
+           not_finite(x_new);
+  }
+  template <State X>
+  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+    return ndf::error_constant<Scalar<X>>(work.order) * work.d.data()[i];
+  }
+
+  /// The order whose error estimate allows the longest step, looked for when order + 1 steps were equal.
+  template <State X>
+  static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>&, const Scalar<X>&, const X& x, const X& x_new,
+                               const Tolerance<Scalar<X>>& tolerance) {
+    using Real = Scalar<X>;
+    using std::max, std::min, std::pow;
+    const std::size_t k = work.order;
+    work.next_order = k;
+    if (++work.equal_steps < k + 1) return Real(1);
+    const auto factor_of = [&](std::size_t order, const Real& error) {
+      return pow(max(error, Real(1e-10)), Real(-1) / Real(static_cast<double>(order) + 1));
+    };
+    const auto norm_of = [&](std::size_t order, auto&& component) {
+      for (std::size_t i = 0; i < dimension(x); ++i) work.correction.data()[i] = component(i);
+      return strictness * ndf::error_constant<Real>(order) * norm(work.correction, x, x_new, tolerance);
+    };
+    Real best = factor_of(k, strictness * ndf::error_constant<Real>(k) * norm(work.d, x, x_new, tolerance));
+    if (k > 1) {  // the difference of order k after this step
+      const Real lower =
+          factor_of(k - 1, norm_of(k - 1, [&](std::size_t i) { return work.D[k].data()[i] + work.d.data()[i]; }));
+      if (lower > best) best = lower, work.next_order = k - 1;
+    }
+    if (k < greatest_order) {
+      const Real higher =
+          factor_of(k + 1, norm_of(k + 1, [&](std::size_t i) { return work.d.data()[i] - work.D[k + 1].data()[i]; }));
+      if (higher > best) best = higher, work.next_order = k + 1;
+    }
+    // Slow convergence makes a longer step less worth wishing for (Hairer & Wanner II, IV.8).
+    const Real patience = Real(2 * most_iterations + 1) / Real(2 * most_iterations + work.memory.iterations);
+    const Real factor = min(Real(10), Real(0.9) * patience * best);
+    if (work.next_order == k && factor >= Real(1) && factor < least_worthwhile) return Real(1);
+    work.equal_steps = 0;
+    return max(factor, Real(0.2));
+  }
+
+  template <State X>
+  static void rejected(Workspace<X>& work, const Scalar<X>&) {
+    work.equal_steps = 0;
+    // The higher differences are the first to be spoilt where the solution is not smooth.
+    if (++work.rejections >= 2 && work.order > 1) --work.order;
+  }
+
+  template <class System, State X>
+  static int interpolate(System&, const Scalar<X>&, const X& x, const Scalar<X>&, const X&, Workspace<X>& work,
+                         Interpolant<X, dense_degree>& interpolant) {
+    using Real = Scalar<X>;
+    const std::size_t k = work.order;
+    for (std::size_t i = 0; i < dimension(x); ++i) {
+      std::array<Real, greatest_order + 1> powers{};
+      Real difference = work.d.data()[i];
+      for (std::size_t j = k; j >= 1; --j) {
+        difference += work.D[j].data()[i];
+        for (std::size_t power = 0; power <= j; ++power) powers[power] += difference * basis<Real>(j, power);
+      }
+      powers[0] = x.data()[i];  // which is x_new - D_1: the only other basis without a zero at theta = 0
+      for (std::size_t power = 0; power <= greatest_order; ++power) interpolant.c[power].data()[i] = powers[power];
+    }
+    return 0;
+  }
+
+  template <State X>
+  static void accept(Workspace<X>& work) {
+    const std::size_t k = work.order;
+    for (std::size_t i = 0; i < dimension(work.d); ++i) {
+      work.D[k + 2].data()[i] = work.d.data()[i] - work.D[k + 1].data()[i];
+      work.D[k + 1].data()[i] = work.d.data()[i];
+      for (std::size_t j = k; j >= 1; --j) work.D[j].data()[i] += work.D[j + 1].data()[i];
+      work.D[0].data()[i] = work.end.data()[i];
+    }
+    work.order = work.next_order;
+    work.rejections = 0;
+    ++work.jacobian_age;
+  }
+
+  template <State X>
+  static X derivative(const Workspace<X>& work) {
+    X slope = work.D[1];
+    for (std::size_t i = 0; i < dimension(slope); ++i) {
+      slope.data()[i] = Scalar<X>(0);
+      for (std::size_t j = 1; j <= work.order; ++j)
+        slope.data()[i] += work.D[j].data()[i] / Scalar<X>(static_cast<double>(j));
+      slope.data()[i] /= work.h;
+    }
+    return slope;
+  }
+
+ private:
+  static constexpr int most_iterations = 4;
+  static constexpr std::size_t oldest_jacobian = 50;
+  static constexpr double least_worthwhile = 1.2;
+  // The error of a step is held below a third of what is asked: the many steps of a low order add up to more than those
+  // of a one-step method, some fifty tolerances on Robertson's problem otherwise.
+  static constexpr int strictness = 3;
+
+  // The power of theta in (theta - 1) theta ... (theta + j - 2) / j!, which multiplies D_j of the end of the step.
+  template <class Real>
+  static Real basis(std::size_t j, std::size_t power) {
+    static constexpr auto table = [] {
+      std::array<std::array<double, greatest_order + 1>, greatest_order + 1> result{};
+      result[0][0] = 1;
+      for (std::size_t m = 1; m <= greatest_order; ++m) {
+        const double shift = static_cast<double>(m) - 2;
+        for (std::size_t p = 0; p <= m; ++p)
+          result[m][p] = (p > 0 ? result[m - 1][p - 1] : 0) + shift * result[m - 1][p];
+      }
+      return result;
+    }();
+    Real factorial(1);
+    for (std::size_t m = 2; m <= j; ++m) factorial *= Real(static_cast<double>(m));
+    return Real(table[j][power]) / factorial;
+  }
+
+  template <class System, State X>
+  static int begin(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+    evaluate(system, t, x, work.f);
+    divide_by_mass(system, work.f);
+    work.D[0] = x;
+    for (std::size_t i = 0; i < dimension(x); ++i) work.D[1].data()[i] = h * work.f.data()[i];
+    for (std::size_t j = 2; j < work.D.size(); ++j)
+      for (std::size_t i = 0; i < dimension(x); ++i) work.D[j].data()[i] = Scalar<X>(0);
+    work.order = work.next_order = 1;
+    work.equal_steps = work.rejections = 0;
+    work.has_jacobian = false;
+    work.memory = {};
+    return 1;
+  }
+
+  // The same polynomial at `ratio` times the spacing: D_new = (R(ratio) U)^T D with U = R(1), R_ij = product over
+  // m = 1..i of (m - 1 - ratio j) / m (Shampine & Reichelt, section 2.2).
+  template <State X>
+  static void respace(Workspace<X>& work, const Scalar<X>& ratio) {
+    using Real = Scalar<X>;
+    const std::size_t k = work.order;
+    using Matrix = std::array<std::array<Real, greatest_order + 1>, greatest_order + 1>;
+    const auto matrix = [k](const Real& factor) {
+      Matrix r{};
+      for (std::size_t j = 0; j <= k; ++j) {
+        r[0][j] = Real(1);
+        for (std::size_t i = 1; i <= k; ++i)
+          r[i][j] = r[i - 1][j] * (Real(static_cast<double>(i) - 1) - factor * Real(static_cast<double>(j))) /
+                    Real(static_cast<double>(i));
+      }
+      return r;
+    };
+    const Matrix r = matrix(ratio), u = matrix(Real(1));
+    Matrix product{};
+    for (std::size_t i = 1; i <= k; ++i)
+      for (std::size_t j = 1; j <= k; ++j)
+        for (std::size_t m = 1; m <= k; ++m) product[i][j] += r[i][m] * u[m][j];
+    for (std::size_t c = 0; c < dimension(work.d); ++c) {
+      std::array<Real, greatest_order + 1> moved{};
+      for (std::size_t j = 1; j <= k; ++j)
+        for (std::size_t i = 1; i <= k; ++i) moved[j] += product[i][j] * work.D[i].data()[c];
+      for (std::size_t j = 1; j <= k; ++j) work.D[j].data()[c] = moved[j];
+    }
+  }
+
+  template <State X>
+  static void predict(Workspace<X>& work, X& predicted) {
+    for (std::size_t i = 0; i < dimension(predicted); ++i) {
+      Scalar<X> sum(0);
+      for (std::size_t j = work.order; j >= 1; --j) sum += work.D[j].data()[i];
+      predicted.data()[i] = work.D[0].data()[i] + sum;
+    }
+  }
+
+  template <class System, State X>
+  static int linearize(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
+    evaluate(system, t, x, work.f);
+    const int evaluations =
+        work.linear.evaluate(system, t, x, work.f, least_increments(work.tolerance, work.h, x, work.f));
+    ++work.costs.jacobians;
+    work.has_jacobian = work.is_current = true;
+    work.jacobian_age = 0;
+    work.decomposed_for = Scalar<X>(0);
+    return evaluations + 1;
+  }
+
+  template <State X>
+  static bool decompose(Workspace<X>& work, const Scalar<X>& c) {
+    ++work.costs.decompositions;
+    const bool done = work.lu.factor(work.linear, c);
+    work.decomposed_for = done ? c : Scalar<X>(0);
+    work.status = done ? StepStatus::done : StepStatus::singular_matrix;
+    return done;
+  }
+
+  // x comes in as the prediction and leaves as the solution; c = alpha / h, M c (d + sum_j gamma_j D_j / alpha) = f.
+  template <class System, State X>
+  static bool solve(System& system, const Scalar<X>& t, const Scalar<X>& c, Workspace<X>& work, X& x,
+                    int& evaluations) {
+    using Real = Scalar<X>;
+    using std::max, std::min, std::sqrt;
+    const std::size_t n = dimension(x), k = work.order;
+    const Real one_over_alpha = Real(1) / ndf::alpha<Real>(k);
+    X& past = work.D[greatest_order + 2];  // free until the step is accepted
+    for (std::size_t i = 0; i < n; ++i) {
+      Real sum(0);
+      for (std::size_t j = 1; j <= k; ++j) sum += ndf::gamma<Real>(j) * work.D[j].data()[i];
+      past.data()[i] = sum * one_over_alpha;
+      work.d.data()[i] = Real(0);
+    }
+    const Real rtol = work.tolerance.rtol_each ? work.tolerance.rtol_each[0] : work.tolerance.rtol;
+    const Real target =
+        max(Real(10) * std::numeric_limits<Real>::epsilon() / max(rtol, std::numeric_limits<Real>::epsilon()),
+            min(Real(0.03), sqrt(rtol)));
+    return newton(work.memory, target, most_iterations, [&] {
+      evaluate(system, t, x, work.f);
+      ++evaluations;
+      for (std::size_t i = 0; i < n; ++i) work.correction.data()[i] = c * (past.data()[i] + work.d.data()[i]);
+      if (work.linear.has_mass()) {
+        work.linear.multiply_mass(work.correction, work.end);
+      } else {
+        work.end = work.correction;
+      }
+      for (std::size_t i = 0; i < n; ++i) work.correction.data()[i] = work.f.data()[i] - work.end.data()[i];
+      work.lu.solve(work.correction.data());
+      ++work.costs.solutions;
+      const Real size = norm(work.correction, x, x, work.tolerance);
+      for (std::size_t i = 0; i < n; ++i) {
+        work.d.data()[i] += work.correction.data()[i];
+        x.data()[i] += work.correction.data()[i];
+      }
+      return size;
+    });
+  }
+
+  template <State X>
+  static Scalar<X> norm(const X& v, const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
+    using std::sqrt;
+    Scalar<X> sum(0);
+    for (std::size_t i = 0; i < dimension(v); ++i) {
+      const Scalar<X> part = v.data()[i] / tolerance.scale(i, x.data()[i], x_new.data()[i]);
+      sum += part * part;
+    }
+    return dimension(v) == 0 ? sum : sqrt(sum / Scalar<X>(static_cast<double>(dimension(v))));
+  }
+  template <State X>
+  static Scalar<X> not_finite(const X& x) {
+    Scalar<X> sum(0);
+    for (std::size_t i = 0; i < dimension(x); ++i) sum += x.data()[i] - x.data()[i];
+    return sum;
+  }
+};
+
+}  // namespace continuo
