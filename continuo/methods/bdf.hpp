@@ -122,7 +122,9 @@ struct Bdf {
         continue;
       }
       const bool converged = solve(system, t + h, c, work, x_new, evaluations);
-      work.status = converged ? StepStatus::done : StepStatus::newton_diverged;
+      work.status = converged            ? StepStatus::done
+                    : work.memory.finite ? StepStatus::newton_diverged
+                                         : StepStatus::not_finite;
       if (converged || work.is_current) break;
       work.has_jacobian = false;  // once more, with the matrix of here
     }
@@ -133,7 +135,7 @@ struct Bdf {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    return strictness * ndf::error_constant<Scalar<X>>(work.order) * norm(work.d, x, x_new, tolerance) +
+    return strictness(tolerance) * ndf::error_constant<Scalar<X>>(work.order) * norm(work.d, x, x_new, tolerance) +
            not_finite(x_new);
   }
   template <State X>
@@ -155,9 +157,9 @@ struct Bdf {
     };
     const auto norm_of = [&](std::size_t order, auto&& component) {
       for (std::size_t i = 0; i < dimension(x); ++i) work.correction.data()[i] = component(i);
-      return strictness * ndf::error_constant<Real>(order) * norm(work.correction, x, x_new, tolerance);
+      return strictness(tolerance) * ndf::error_constant<Real>(order) * norm(work.correction, x, x_new, tolerance);
     };
-    Real best = factor_of(k, strictness * ndf::error_constant<Real>(k) * norm(work.d, x, x_new, tolerance));
+    Real best = factor_of(k, strictness(tolerance) * ndf::error_constant<Real>(k) * norm(work.d, x, x_new, tolerance));
     if (k > 1) {  // the difference of order k after this step
       const Real lower =
           factor_of(k - 1, norm_of(k - 1, [&](std::size_t i) { return work.D[k].data()[i] + work.d.data()[i]; }));
@@ -231,9 +233,6 @@ struct Bdf {
   static constexpr int most_iterations = 4;
   static constexpr std::size_t oldest_jacobian = 50;
   static constexpr double least_worthwhile = 1.2;
-  // The error of a step is held below a third of what is asked: the many steps of a low order add up to more than those
-  // of a one-step method, some fifty tolerances on Robertson's problem otherwise.
-  static constexpr int strictness = 3;
 
   // The power of theta in (theta - 1) theta ... (theta + j - 2) / j!, which multiplies D_j of the end of the step.
   template <class Real>
@@ -251,6 +250,20 @@ struct Bdf {
     Real factorial(1);
     for (std::size_t m = 2; m <= j; ++m) factorial *= Real(static_cast<double>(m));
     return Real(table[j][power]) / factorial;
+  }
+
+  template <class Real>
+  static Real relative(const Tolerance<Real>& tolerance) {
+    using std::max;
+    return max(tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol, std::numeric_limits<Real>::epsilon());
+  }
+  // By how much the error of a step is held below the tolerance. The number of steps grows like tolerance^(-1/(k+1)),
+  // and so does what their errors add up to: with this factor the error at the end stays in proportion to the
+  // tolerance.
+  template <class Real>
+  static Real strictness(const Tolerance<Real>& tolerance) {
+    using std::pow;
+    return pow(relative(tolerance), Real(-1) / Real(static_cast<double>(greatest_order) + 1));
   }
 
   template <class System, State X>
@@ -324,7 +337,9 @@ struct Bdf {
     ++work.costs.decompositions;
     const bool done = work.lu.factor(work.linear, c);
     work.decomposed_for = done ? c : Scalar<X>(0);
-    work.status = done ? StepStatus::done : StepStatus::singular_matrix;
+    work.status = done                      ? StepStatus::done
+                  : work.linear.is_finite() ? StepStatus::singular_matrix
+                                            : StepStatus::not_finite;
     return done;
   }
 
@@ -343,10 +358,8 @@ struct Bdf {
       past.data()[i] = sum * one_over_alpha;
       work.d.data()[i] = Real(0);
     }
-    const Real rtol = work.tolerance.rtol_each ? work.tolerance.rtol_each[0] : work.tolerance.rtol;
-    const Real target =
-        max(Real(10) * std::numeric_limits<Real>::epsilon() / max(rtol, std::numeric_limits<Real>::epsilon()),
-            min(Real(0.03), sqrt(rtol)));
+    const Real rtol = relative(work.tolerance);
+    const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / rtol, min(Real(0.03), sqrt(rtol)));
     return newton(work.memory, target, most_iterations, [&] {
       evaluate(system, t, x, work.f);
       ++evaluations;

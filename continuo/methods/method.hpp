@@ -47,7 +47,7 @@ struct Tolerance {
 };
 
 /// How a step ended, of the methods that solve equations in it.
-enum class StepStatus { done, newton_diverged, singular_matrix };
+enum class StepStatus { done, newton_diverged, singular_matrix, not_finite };
 
 /// What the solving of equations cost since the workspace was made.
 struct EquationCosts {

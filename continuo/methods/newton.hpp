@@ -17,6 +17,7 @@ struct NewtonMemory {
   Real remainder = 1;  // theta / (1 - theta) of the last iteration: how much of a correction is still to come
   Real rate = 0;       // theta: the last correction against the one before; near 1 the Jacobian has grown old
   int iterations = 0;  // of the last call
+  bool finite = true;  // whether the corrections of the last call were
 };
 
 /// Iterates until what is still to come is below `target` (of a norm in which the tolerance is 1). `correct` makes one
@@ -31,7 +32,8 @@ bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& 
   for (int k = 0; k < most; ++k) {
     memory.iterations = k + 1;
     const Real size = correct();
-    if (!(size < std::numeric_limits<Real>::infinity())) return false;
+    memory.finite = size < std::numeric_limits<Real>::infinity();
+    if (!memory.finite) return false;
     if (k > 0) {
       const Real rate = size / last;
       memory.rate = rate;

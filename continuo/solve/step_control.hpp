@@ -170,9 +170,10 @@ class StepControl {
                   outcome);
     }
     attempt(short_step ? limit - begin_ : nominal, options);
-    if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done)
+    const StepStatus status = detail::status_of<M>(work_);
+    if (status == StepStatus::newton_diverged || status == StepStatus::singular_matrix)
       return fail_to_solve(status, outcome);
-    if (!finite_end()) {
+    if (status == StepStatus::not_finite || !finite_end()) {
       return fail(Ending::not_finite, 0, first_not_finite(x_end_),
                   "f or the state overflows: take a smaller step, or a method with error control", outcome);
     }
@@ -231,7 +232,7 @@ class StepControl {
       }
       ++statistics_.rejected;
       was_rejected = true;
-      last_not_finite = solved && !finite;
+      last_not_finite = detail::status_of<M>(work_) == StepStatus::not_finite || (solved && !finite);
       h = h_ * factor_of_rejected(solved, finite, static_cast<float>(error), options);
       if constexpr (requires { M::rejected(work_, h); }) M::rejected(work_, h);
       if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
@@ -262,10 +263,8 @@ class StepControl {
                Outcome<Real>& outcome) {
     if (options.interrupt && options.interrupt->load(std::memory_order_relaxed))
       return fail(Ending::interrupted, error, {}, {}, outcome);
-    if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done) {
-      if (!first_not_finite(slope(begin_, x_begin_)).empty()) not_finite = true;
-      if (!not_finite) return fail_to_solve(status, outcome);
-    }
+    if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done && !not_finite)
+      return fail_to_solve(status, outcome);
     if (not_finite) {
       std::string component = first_not_finite(x_end_);
       if (component.empty()) component = first_not_finite(slope(begin_, x_begin_));

@@ -1,0 +1,108 @@
+// What every adaptive stiff method promises, written once for all of them.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <bench/problems/problem.hpp>
+#include <gtest/gtest.h>
+
+#include <continuo/solve/solve.hpp>
+
+namespace continuo::promises {
+
+/// The greatest error of a component at the end of the problem, relative to the component, in units of rtol.
+template <class M, class Problem>
+double error_in_tolerances(const Problem& problem, double rtol, double atol) {
+  const auto solution = solve(problem, Problem::start(), {0.0, Problem::duration}, M{}, {.rtol = rtol, .atol = atol});
+  EXPECT_TRUE(solution.outcome) << describe(solution.outcome);
+  const auto expected = bench::end_of<Problem>();
+  double worst = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    worst = std::max(worst, std::abs(solution.final_state()[i] - expected[i]) / (atol + rtol * std::abs(expected[i])));
+  return worst;
+}
+
+/// x' = -y, 0 = x - y: x = y = exp(-t).
+struct Decay {
+  static constexpr std::array<double, 2> start{1, 1};
+  template <class X>
+  void operator()(double, const X& x, X& out) const {
+    out[0] = -x[1];
+    out[1] = x[0] - x[1];
+  }
+  double mass(std::size_t i) const { return i == 0 ? 1 : 0; }
+};
+
+/// The greatest error of either component at t = 1 in units of the tolerance.
+template <class M>
+double error_of_algebraic_decay(double tolerance) {
+  const auto solution = solve(Decay{}, Decay::start, {0.0, 1.0}, M{}, {.rtol = tolerance, .atol = tolerance});
+  EXPECT_TRUE(solution.outcome) << describe(solution.outcome);
+  const double exact = std::exp(-1.0);
+  return std::max(std::abs(solution.final_state()[0] - exact), std::abs(solution.final_state()[1] - exact)) / tolerance;
+}
+
+/// A copy of the integrator in the middle of the run goes on to the same bits as the original.
+template <class M, class System, class X>
+void expect_copy_goes_on_to_the_same_bits(const System& system, const X& start, double end) {
+  Integrator original(system, start, {0.0, end}, M{}, {.rtol = 1e-6, .atol = 1e-10});
+  for (int i = 0; i < 25 && original.advance(); ++i) {
+  }
+  Integrator copy = original;
+  while (original.advance()) {
+  }
+  while (copy.advance()) {
+  }
+  ASSERT_TRUE(original.outcome()) << describe(original.outcome());
+  EXPECT_EQ(original.statistics().steps, copy.statistics().steps);
+  EXPECT_GT(original.statistics().steps, 30U);
+  for (std::size_t i = 0; i < dimension(start); ++i) EXPECT_EQ(original.x()[i], copy.x()[i]);
+}
+
+/// The greatest distance of the dense output from `exact`, within the steps, in units of the tolerance.
+template <class M, class System, class Exact>
+double dense_error_in_tolerances(const System& system, double end, double tolerance, const Exact& exact) {
+  using X = std::array<double, 1>;
+  Integrator integrator(system, X{exact(0)}, {0.0, end}, M{}, {.rtol = tolerance, .atol = tolerance});
+  double worst = 0;
+  X x{};
+  while (integrator.advance()) {
+    for (const double theta : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+      integrator.interpolant()(theta, x);
+      worst = std::max(worst, std::abs(x[0] - exact(integrator.step_begin() + theta * integrator.step_size())));
+    }
+  }
+  EXPECT_TRUE(integrator.outcome()) << describe(integrator.outcome());
+  return worst / tolerance;
+}
+
+/// f is not a number beyond t = 1: the run ends there, by name, and keeps what it had.
+template <class M>
+void expect_not_finite_ends_by_name() {
+  const auto broken = [](double t, const std::array<double, 2>& x) {
+    return std::array{-x[0], t < 1 ? -1000 * x[1] : std::numeric_limits<double>::quiet_NaN()};
+  };
+  const auto solution = solve(broken, std::array{1.0, 1.0}, {0.0, 2.0}, M{}, {.rtol = 1e-6, .atol = 1e-9});
+  EXPECT_EQ(solution.outcome.ending, Ending::not_finite) << describe(solution.outcome);
+  EXPECT_NEAR(solution.outcome.t, 1, 1e-9);
+  // The tolerance adds up over the steps; 30 is what this suite allows everywhere.
+  EXPECT_NEAR(solution.final_state()[0], std::exp(-solution.outcome.t), 30e-6);
+}
+
+/// An algebraic equation that does not contain its unknown: index 2, the matrix of the step is singular.
+template <class M>
+void expect_singular_ends_by_name() {
+  struct HigherIndex {
+    void operator()(double t, const std::array<double, 2>& x, std::array<double, 2>& out) const {
+      out = {x[1] * 0 - x[0], t - x[0]};
+    }
+    double mass(std::size_t i) const { return i == 0 ? 1 : 0; }
+  };
+  const auto solution = solve(HigherIndex{}, std::array{0.0, 1.0}, {0.0, 1.0}, M{}, {.rtol = 1e-6, .atol = 1e-6});
+  EXPECT_EQ(solution.outcome.ending, Ending::nonlinear_solve_failed) << describe(solution.outcome);
+}
+
+}  // namespace continuo::promises
