@@ -127,13 +127,11 @@ struct Dop853 : ExplicitRungeKutta<Dop853> {
   using Third = detail::Row<ThirdOrderError, 12>;
 
  public:
-  /// Hairer's combination h |err5|^2 / sqrt(n (|err5|^2 + 0.01 |err3|^2)) of the two estimates (II.10, eq. 10.17): of
-  /// the size of h^8, and safe where one of the two vanishes by chance.
+  /// The square of Hairer's combination h |err5|^2 / sqrt(n (|err5|^2 + 0.01 |err3|^2)) of the two estimates (II.10,
+  /// eq. 10.17): of the size of h^8, and safe where one of the two vanishes by chance.
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
-    using std::abs;
-    using std::sqrt;
+  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                const Tolerance<Scalar<X>>& tolerance) {
     using Unit = detail::Unit<X>;
     const auto fifth = detail::stages_of<Fifth, X>(work.k);
     const auto third = detail::stages_of<Third, X>(work.k);
@@ -148,7 +146,7 @@ struct Dop853 : ExplicitRungeKutta<Dop853> {
     // Both sums are zero at rest: the 1e-37 keeps 0 / 0 out, and is too small to be seen beside an error that matters.
     const Scalar<X> square5 = detail::total<X>(sum5), square3 = detail::total<X>(sum3);
     const Scalar<X> both = square5 + Scalar<X>(0.01) * square3 + Scalar<X>(1e-37);
-    return abs(h) * square5 / sqrt(both * Scalar<X>(static_cast<double>(dimension(x))));
+    return (h * square5) * (h * square5) / both * detail::one_over_dimension(x);
   }
 
   template <State X>

@@ -74,19 +74,28 @@ struct ExplicitRungeKutta {
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
+    return sqrt(Derived::template error_square<X>(work, h, x, x_new, tolerance));
+  }
+  /// Its square, for who can do without the root: the next step waits for it.
+  template <State X>
+  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                const Tolerance<Scalar<X>>& tolerance) {
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
     const auto k = detail::stages_of<Error, X>(work.k);
     detail::Unit<X> sum{};
     detail::for_each_unit(x, [&](std::size_t i) __attribute__((always_inline)) {
       const detail::Unit<X> end = detail::load<X>(x_new.data(), i);
-      sum += end - end;  // 0, if it is finite
+      const detail::Unit<X> nothing = end - end;  // 0, if it is finite
       if constexpr (Derived::error_order > 0) {
-        const detail::Unit<X> ratio =
-            h * detail::row_sum<Error, X>(k, i) / detail::error_scale<X>(tolerance, i, x, x_new);
-        sum += ratio * ratio;
+        // The scale is known before the error where the last stage is not part of x_new: the division is done by then.
+        const detail::Unit<X> weight = h / detail::error_scale<X>(tolerance, i, x, x_new);
+        const detail::Unit<X> ratio = detail::row_sum<Error, X>(k, i) * weight;
+        sum += ratio * ratio + nothing;
+      } else {
+        sum += nothing;
       }
     });
-    return sqrt(detail::total<X>(sum) * detail::one_over_dimension(x));
+    return detail::total<X>(sum) * detail::one_over_dimension(x);
   }
 
   template <State X>
@@ -166,8 +175,8 @@ struct ExplicitRungeKutta {
   /// With f compiled into it, however often it occurs: a call would cost more than the f of a small state, and would
   /// send what is kept in registers through memory.
   template <class System, State X>
-  [[gnu::flatten]] static int flat_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                                        bool made_jump, Workspace<X>& work, X& x_new) {
+  [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h, bool made_jump,
+                                        Workspace<X>& work, X& x_new) {
     return take_step(system, t, x, h, made_jump, work, x_new);
   }
 

@@ -80,9 +80,15 @@ struct RungeKuttaNystrom {
 
   /// Root mean square of error_i / scale_i over positions and velocities; not a number where x_new is not finite.
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
+    return sqrt(error_square(work, h, x, x_new, tolerance));
+  }
+  /// Its square, as in ExplicitRungeKutta.
+  template <State X>
+  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                const Tolerance<Scalar<X>>& tolerance) {
     using Real = Scalar<X>;
     // `finish` left the errors in work.argument.
     Real sum(0);
@@ -91,7 +97,7 @@ struct RungeKuttaNystrom {
       const Real ratio = work.argument.data()[i] / tolerance.scale(i, x.data()[i], end);
       sum += ratio * ratio + (end - end);
     }
-    return sqrt(sum / Real(static_cast<double>(dimension(x))));
+    return sum * detail::one_over_dimension(x);
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
@@ -164,8 +170,8 @@ struct RungeKuttaNystrom {
 
   /// With f compiled into it, as in ExplicitRungeKutta.
   template <class System, State X>
-  [[gnu::flatten]] static int flat_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                                        bool made_jump, Workspace<X>& work, X& x_new) {
+  [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h, bool made_jump,
+                                        Workspace<X>& work, X& x_new) {
     return take_step(system, t, x, h, made_jump, work, x_new);
   }
 

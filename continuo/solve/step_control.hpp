@@ -143,6 +143,16 @@ class StepControl {
                 outcome);
   }
 
+  /// The square of M::error_norm, without its root where the method has it so.
+  Real error_square(const Tolerance<Real>& weights) const {
+    if constexpr (requires { M::error_square(work_, h_, x_begin_, x_end_, weights); }) {
+      return M::error_square(work_, h_, x_begin_, x_end_, weights);
+    } else {
+      const Real norm = M::error_norm(work_, h_, x_begin_, x_end_, weights);
+      return norm * norm;
+    }
+  }
+
   bool finite_end() const {
     using std::isfinite;
     Real sum = 0;  // one NaN or infinity makes 0 * sum NaN
@@ -209,31 +219,43 @@ class StepControl {
   }
 
   bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
-    using std::abs, std::max, std::min;
+    using std::abs, std::max, std::min, std::sqrt;
     constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
     const Tolerance<Real> weights = tolerance(options);
     const Real room = limit - begin_;
     bool was_rejected = false, last_not_finite = false;
-    Real error = 0, h = forward_ * min(abs(next_), options.max_step);
+    Real error = 0, h = next_;
+    if (abs(h) > options.max_step) [[unlikely]]
+      h = forward_ * options.max_step;
     for (std::size_t rejects = 0;; ++rejects) {
       // A step that would leave a crumb before the limit takes it along.
       const bool last = forward_ * (Real(1.01) * h - room) >= 0;
-      attempt(last ? room : h, options);
+      if (last) [[unlikely]] {
+        attempt(room, options);
+      } else {
+        attempt(h, options);
+      }
       const bool solved = detail::status_of<M>(work_) == StepStatus::done;
-      error = solved ? M::error_norm(work_, h_, x_begin_, x_end_, weights) : std::numeric_limits<Real>::infinity();
-      // Neither true nor false of a number that is none: error_norm gives one where x_end_ is not finite.
-      const bool finite = error < std::numeric_limits<Real>::infinity();
-      if (finite && error <= 1) {
-        const Real factor = factor_after(static_cast<float>(error), was_rejected, weights, options);
-        // A step cut short by the limit says little about the next: never below what was planned.
-        next_ = last ? forward_ * max(abs(h), abs(h_) * factor) : h_ * factor;
-        end_ = last ? limit : begin_ + h_;
+      const Real square = solved ? error_square(weights) : std::numeric_limits<Real>::infinity();
+      // Neither true nor false of a number that is none: it is one where x_end_ is not finite.
+      const bool finite = square < std::numeric_limits<Real>::infinity();
+      if (finite && square <= 1) {
+        const Real factor = factor_after(static_cast<float>(square), was_rejected, weights, options);
+        if (last) [[unlikely]] {
+          // A step cut short by the limit says little about the next: never below what was planned.
+          next_ = forward_ * max(abs(h), abs(h_) * factor);
+          end_ = limit;
+        } else {
+          next_ = h_ * factor;
+          end_ = begin_ + h_;
+        }
         return accepted();
       }
       ++statistics_.rejected;
       was_rejected = true;
       last_not_finite = detail::status_of<M>(work_) == StepStatus::not_finite || (solved && !finite);
-      h = h_ * factor_of_rejected(solved, finite, static_cast<float>(error), options);
+      error = sqrt(square);
+      h = h_ * factor_of_rejected(solved, finite, static_cast<float>(min(square, Real(1e30))), options);
       if constexpr (requires { M::rejected(work_, h); }) M::rejected(work_, h);
       if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
           (options.interrupt && options.interrupt->load(std::memory_order_relaxed)))
@@ -241,9 +263,9 @@ class StepControl {
     }
   }
 
-  Real factor_after(float error, bool was_rejected, const Tolerance<Real>& weights, const Options<X>& options) {
+  Real factor_after(float error_square, bool was_rejected, const Tolerance<Real>& weights, const Options<X>& options) {
     using std::min;
-    float factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error);
+    float factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error_square);
     if (was_rejected) factor = min(factor, 1.0F);
     if constexpr (requires { M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights); }) {
       const Real wanted = M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights);
@@ -253,10 +275,10 @@ class StepControl {
     }
   }
 
-  Real factor_of_rejected(bool solved, bool finite, float error, const Options<X>& options) const {
+  Real factor_of_rejected(bool solved, bool finite, float error_square, const Options<X>& options) const {
     if (!solved) return Real(0.25);
     if (!finite) return Real(0.2);
-    return Real(ErrorHistory::reject(options.controller, detail::error_order_of<M>(work_), error));
+    return Real(ErrorHistory::reject(options.controller, detail::error_order_of<M>(work_), error_square));
   }
 
   bool give_up(bool too_many, bool not_finite, Real error, const Tolerance<Real>& weights, const Options<X>& options,
