@@ -161,11 +161,14 @@ NodeId substitute(Graph& graph, NodeId node, std::uint32_t variable, NodeId repl
   });
 }
 
-double evaluate(const Graph& graph, NodeId node, std::span<const double> variables, const TableLookup& table) {
-  std::vector<double> value(node.index + 1);
-  for (const NodeId id : reachable(graph, {&node, 1})) {
+std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> nodes, std::span<const double> variables,
+                             const TableLookup& table) {
+  std::uint32_t top = 0;
+  for (const NodeId node : nodes) top = std::max(top, node.index + 1);
+  std::vector<double> value(top);
+  const auto of = [&](NodeId id) { return id.valid() ? value[id.index] : 0.0; };
+  for (const NodeId id : reachable(graph, nodes)) {
     const Node& n = graph[id];
-    const auto of = [&](NodeId argument) { return argument.valid() ? value[argument.index] : 0.0; };
     if (n.op == Op::constant) {
       value[id.index] = n.value;
     } else if (n.op == Op::variable) {
@@ -176,7 +179,14 @@ double evaluate(const Graph& graph, NodeId node, std::span<const double> variabl
       value[id.index] = compute(n.op, of(n.a), of(n.b), of(n.c));
     }
   }
-  return value[node.index];
+  std::vector<double> results;
+  results.reserve(nodes.size());
+  for (const NodeId node : nodes) results.push_back(of(node));
+  return results;
+}
+
+double evaluate(const Graph& graph, NodeId node, std::span<const double> variables, const TableLookup& table) {
+  return evaluate(graph, {&node, 1}, variables, table).front();
 }
 
 }  // namespace continuo::model

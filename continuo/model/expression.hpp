@@ -126,6 +126,9 @@ std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const No
 /// `table` computes interp and its slope; without it they are NaN.
 using TableLookup = std::function<double(std::uint32_t table, double x, bool slope)>;
 double evaluate(const Graph& graph, NodeId node, std::span<const double> variables, const TableLookup& table = {});
+/// Of many at once: what they share is computed once.
+std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> nodes, std::span<const double> variables,
+                             const TableLookup& table = {});
 
 /// The expression as a model would write it, cut off after about `longest` characters.
 using VariableName = std::function<std::string(std::uint32_t variable)>;

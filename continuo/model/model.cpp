@@ -13,6 +13,17 @@ std::size_t find_by(const List& list, Name member, std::string_view wanted) {
   return found == list.end() ? npos : static_cast<std::size_t>(found - list.begin());
 }
 
+/// In one pass: thousands of cells of a grid share most of what they start from.
+template <class Item>
+void set_all(const Model& model, const std::vector<Item>& items, NodeId Item::* expression,
+             std::vector<double>& variables) {
+  std::vector<NodeId> nodes;
+  nodes.reserve(items.size());
+  for (const Item& item : items) nodes.push_back(item.*expression);
+  const std::vector<double> values = evaluate(model, nodes, variables);
+  for (std::size_t i = 0; i < items.size(); ++i) variables[items[i].variable] = values[i];
+}
+
 }  // namespace
 
 std::size_t find_state(const Model& model, std::string_view column) {
@@ -29,7 +40,10 @@ std::size_t find_mode(const Model& model, std::string_view name) {
 }
 
 double evaluate(const Model& model, NodeId node, std::span<const double> variables) {
-  return evaluate(model.graph, node, variables, [&](std::uint32_t table, double x, bool slope) {
+  return evaluate(model, {&node, 1}, variables).front();
+}
+std::vector<double> evaluate(const Model& model, std::span<const NodeId> nodes, std::span<const double> variables) {
+  return evaluate(model.graph, nodes, variables, [&](std::uint32_t table, double x, bool slope) {
     const Table& points = *model.tables[table].points;
     return slope ? points.slope(x) : points.value(x);
   });
@@ -44,9 +58,9 @@ std::vector<double> start_values(const Model& model, const Overrides& overrides,
         set != overrides.end() ? set->second : evaluate(model, parameter.expression, variables);
   }
   for (const Input& input : model.inputs) variables[input.variable] = input.value;
-  for (const Unknown& unknown : model.unknowns) variables[unknown.variable] = evaluate(model, unknown.guess, variables);
+  set_all(model, model.unknowns, &Unknown::guess, variables);
   variables[Layout::time] = from ? *from : model.run.from ? evaluate(model, model.run.from->node, variables) : 0.0;
-  for (const State& state : model.states) variables[state.variable] = evaluate(model, state.initial, variables);
+  set_all(model, model.states, &State::initial, variables);
   return variables;
 }
 

@@ -357,6 +357,7 @@ std::vector<double> start_values(const Model& model, const Overrides& overrides 
 
 /// The value of an expression of the model for a register file as above.
 double evaluate(const Model& model, NodeId node, std::span<const double> variables);
+std::vector<double> evaluate(const Model& model, std::span<const NodeId> nodes, std::span<const double> variables);
 
 /// The column, parameter or input that lies at this place of the flat space: for printing expressions.
 std::string variable_name(const Model& model, std::uint32_t variable);

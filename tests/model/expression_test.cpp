@@ -120,5 +120,16 @@ TEST_F(Expression, ModuloHasTheSignOfTheDivisor) {
   EXPECT_TRUE(g.is(g.apply(Op::modulo, number(7), number(3)), 1));
 }
 
+TEST_F(Expression, ManyAreEvaluatedTogetherAsEachAlone) {
+  const NodeId shared = g.apply(Op::sine, g.multiply(x, y));
+  const std::vector<NodeId> all{g.add(shared, k), shared, number(3), g.divide(t, g.add(shared, number(2))), t};
+  const std::vector<double> values{0.5, 1.25, -2, 7};
+  const std::vector<double> together = evaluate(g, all, values);
+  ASSERT_EQ(together.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(together[i], evaluate(g, all[i], values)) << i;
+  EXPECT_EQ(together[0], std::sin(1.25 * -2) + 7);
+  EXPECT_THAT(evaluate(g, std::vector<NodeId>{}, values), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace continuo::model
