@@ -2,6 +2,7 @@
 // From an expression of the text to a node, with its unit checked on the way.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -42,6 +43,20 @@ Op operation(ast::BinaryOperator op) {
       return Op::logical_or;
   }
   return Op::add;
+}
+
+/// The dimension, had degC and degF the zero of K.
+Dimension with_one_zero(const Measured& measured) {
+  constexpr std::size_t kelvin = 4;
+  Dimension dimension = measured.unit.dimension();
+  for (std::size_t scale = Dimension::count - 2; scale < Dimension::count; ++scale) {
+    dimension.exponent[kelvin] += std::exchange(dimension.exponent[scale], 0);
+  }
+  return dimension;
+}
+
+bool differ_in_zero(const Measured& a, const Measured& b) {
+  return a.is_known() && b.is_known() && with_one_zero(a) == with_one_zero(b);
 }
 
 bool swaps(ast::BinaryOperator op) {
@@ -175,6 +190,9 @@ bool Checker::align(const Term& a, Term& b, Span span, Scope& scope) {
   }
   std::string help = repair(b, a.value.measured, scope);
   if (help.empty()) help = repair(a, b.value.measured, scope);
+  if (help.empty() && differ_in_zero(a.value.measured, b.value.measured)) {
+    help = "degC and degF count from another zero than K: use K throughout";
+  }
   fail("E201", span, "units do not match",
        fmt::format("{} is {}, {} is {}", quote(a.text.span), unit_text(a.value.measured), quote(b.text.span),
                    unit_text(b.value.measured)),

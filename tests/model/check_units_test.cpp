@@ -137,7 +137,10 @@ TEST(CheckUnits, WrongUnitsAreNamed) {
 }
 
 TEST(CheckUnits, DegreesCelsiusDoNotMixWithKelvins) {
-  EXPECT_EQ(place(said("param T0 = 20 [degC]\nT' = (T0 - T)/(1 [s])\nT(0) = 300 [K]\nrun 0..1 [s]\n", "E201")), "2:7");
+  const Said message = said("param T0 = 20 [degC]\nT' = (T0 - T)/(1 [s])\nT(0) = 300 [K]\nrun 0..1 [s]\n", "E201");
+  EXPECT_EQ(place(message), "2:7");
+  EXPECT_EQ(message.help, "degC and degF count from another zero than K: use K throughout");
+  EXPECT_EQ(said("param T0 = 20 [degC]\nT' = (T0 - T)/(1 [s])\nT(0) = 300 [m]\nrun 0..1 [s]\n", "E201").help, "");
 }
 
 TEST(CheckUnits, ChecksAndRangesAreHeldToTheirUnits) {
