@@ -6,6 +6,7 @@
 
 #include <continuo/model/check_context.hpp>
 #include <continuo/model/check_families.hpp>
+#include <continuo/model/check_functions.hpp>
 
 namespace continuo::model::detail {
 
@@ -37,7 +38,7 @@ void Checker::add_action(Block& to, const ast::Action& action, Scope& scope) {
         } else if constexpr (std::is_same_v<T, ast::Mark>) {
           to.push_back({Mark{node.text}, action.span});
         } else if constexpr (std::is_same_v<T, ast::Stop>) {
-          const auto after = node.after ? whole_number(*node.after, scope) : 1;
+          const auto after = node.after ? whole_number(*node.after, scope, "the count of `stop after`") : 1;
           if (after && *after < 1) fail("E221", node.after->span, "`stop after` counts from 1");
           to.push_back({Stop{node.text, static_cast<std::size_t>(std::max(after.value_or(1), 1L))}, action.span});
         } else {
@@ -55,7 +56,14 @@ std::optional<Assign> Checker::assignment(const ast::Assignment& text, Scope& sc
   if (!key) return std::nullopt;
   const Symbol* symbol = find(*key, scope.mode);
   if (!symbol) {
-    unknown_name(target, *key);
+    const std::string_view meaning = meaning_of_its_own(target.text);
+    if (!meaning.empty() || is_function(target.text)) {
+      fail("E252", target.span, fmt::format("`{}` cannot be assigned", with_primes(*key, target.primes)),
+           meaning.empty() ? "this is a function" : std::string(meaning),
+           target.text == "t" ? "time cannot be set; for a clock that can, write clock' = 1 and clock(0) = 0" : "");
+    } else {
+      unknown_name(target, *key, fmt::format("make it a state: {0}' = 0 and {0}(0) = ...", *key));
+    }
     return std::nullopt;
   }
   if (symbol->kind != Symbol::Kind::base) {

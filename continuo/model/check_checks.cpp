@@ -61,7 +61,7 @@ Moment Checker::moment(const ast::Moment& text, Scope& scope, Span span) {
     if (result.time) check_time_in_run(*result.time, at->time.span);
   } else if (const auto* event = std::get_if<ast::AtEvent>(&text)) {
     result.kind = Moment::Kind::event;
-    const auto number = whole_number(event->number, scope);
+    const auto number = whole_number(event->number, scope, "the number of an event");
     if (number && *number < 1) fail("E281", event->number.span, "events count from 1");
     result.number = static_cast<std::size_t>(std::max(number.value_or(1), 1L));
     result.event = event->event;

@@ -162,13 +162,14 @@ class Checker {
                const std::vector<long>& indices);
   bool is_free_name(const std::string& name, Span span);
   void declare_modes();
+  void lose(const std::vector<ast::Statement>& body);
   template <class Body>
-  void for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body);
+  bool for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body);
   template <class Body>
   void for_each_term(const ast::Sum& sum, Scope& scope, Body&& body);
   bool count_written_out(Span span);
   std::optional<std::pair<long, long>> bounds(const ast::Range& range, Scope& scope);
-  std::optional<long> whole_number(const ast::Expression& expression, Scope& scope);
+  std::optional<long> whole_number(const ast::Expression& expression, Scope& scope, std::string_view what);
   std::optional<std::vector<long>> indices_of(const ast::Name& name, Scope& scope);
   std::optional<std::string> key_of(const ast::Name& name, Scope& scope);
   const Symbol* find(const std::string& key, int mode) const;
@@ -221,7 +222,8 @@ class Checker {
   Value lookup(const ast::Name& name, Scope& scope);
   Value builtin(const ast::Name& name, const std::string& key, Scope& scope);
   Value not_constant(Span span, const std::string& name);
-  Value unknown_name(const ast::Name& name, const std::string& key);
+  Value unknown_name(const ast::Name& name, const std::string& key, std::string undeclared = {});
+  Value not_a_value(const ast::Name& name);
   Value derivative(const ast::Name& name, std::size_t base);
   Value defined(std::size_t index, const ast::Name& name);
   void finish_definition(std::size_t index, Value value);
@@ -235,7 +237,7 @@ class Checker {
   std::optional<Setting> setting(const ast::Expression& expression, Scope& scope, const Measured& wanted,
                                  std::string_view what);
   std::optional<Setting> time_setting(const ast::Expression& expression, Scope& scope, std::string_view what);
-  bool only_parameters(NodeId node, Span span, std::string_view what);
+  bool only_parameters(NodeId node, Span span, std::string_view what, std::string help = {});
   std::string name_of(std::uint32_t variable) const;
 
   // ---- the parts of the model ----
@@ -355,10 +357,11 @@ class Checker {
   std::vector<std::size_t> evaluation_order_;  // definitions with a value, each after those it needs
   std::vector<double> registers_;              // parameters and inputs as written, the rest 0
   std::set<std::size_t> without_equation_;     // bases that have an initial value only
-  std::set<std::pair<std::size_t, double>> condition_seen_;  // state and time
+  std::map<std::pair<std::size_t, double>, Span> condition_seen_;  // by state and time
   std::string_view constant_what_;
   std::size_t depth_ = 0;  // of elaborate
   double start_time_ = 0;
+  std::set<std::string, std::less<>> lost_;  // families that could not be written out: nobody misses their members
   bool t_is_known_ = false;
   bool silent_ = false;  // trying what may have been meant
 };
@@ -371,5 +374,7 @@ inline constexpr std::size_t most_written_out = 500'000;
 std::string with_primes(std::string_view name, int primes);
 /// `a`, `b` and `c`; after five: and 7 more.
 std::string listed(const std::vector<std::string>& names);
+/// "this is inf".
+std::string not_finite(double value);
 
 }  // namespace continuo::model::detail

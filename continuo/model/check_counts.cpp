@@ -82,6 +82,7 @@ void Checker::report_missing(const ModeAtWork& work) {
 /// A name with an initial value only: often a slip of the pen.
 void Checker::report_without_equation(std::uint32_t index) {
   const Base& base = bases_[index];
+  if (lost_.contains(base.family)) return;
   const std::string name = with_primes(base.name, base.order);
   if (!without_equation_.contains(index)) {
     fail("E230", base.span, fmt::format("there is no equation for `{}`", name), {}, fmt::format("add {} = ...", name));

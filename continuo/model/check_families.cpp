@@ -36,20 +36,21 @@ std::optional<long> quick_index(const ast::Expression& expression, const Scope& 
 
 }  // namespace
 
-std::optional<long> Checker::whole_number(const ast::Expression& expression, Scope& scope) {
+std::optional<long> Checker::whole_number(const ast::Expression& expression, Scope& scope, std::string_view what) {
   if (const auto quick = quick_index(expression, scope)) return quick;
-  const auto value = constant(expression, scope, Measured::unknown(), "an index");
+  const auto value = constant(expression, scope, Measured::unknown(), what);
   if (!value) return std::nullopt;
   const double rounded = std::round(*value);
   if (!(std::abs(*value - rounded) < 1e-9) || std::abs(rounded) > 1e9) {
-    fail("E219", expression.span, "an index is a whole number", fmt::format("this is {:g}", *value));
+    fail("E219", expression.span, fmt::format("{} is a whole number", what), fmt::format("this is {:g}", *value));
     return std::nullopt;
   }
   return static_cast<long>(rounded);
 }
 
 std::optional<std::pair<long, long>> Checker::bounds(const ast::Range& range, Scope& scope) {
-  const auto first = whole_number(*range.first, scope), last = whole_number(*range.last, scope);
+  constexpr std::string_view what = "the end of a range";
+  const auto first = whole_number(*range.first, scope, what), last = whole_number(*range.last, scope, what);
   if (!first || !last) return std::nullopt;
   return std::pair{*first, *last};
 }
@@ -57,7 +58,7 @@ std::optional<std::pair<long, long>> Checker::bounds(const ast::Range& range, Sc
 std::optional<std::vector<long>> Checker::indices_of(const ast::Name& name, Scope& scope) {
   std::vector<long> indices;
   for (const ast::Expression& index : name.indices) {
-    const auto value = whole_number(index, scope);
+    const auto value = whole_number(index, scope, "an index");
     if (!value) return std::nullopt;
     indices.push_back(*value);
   }

@@ -13,11 +13,15 @@ namespace continuo::model::detail {
 /// "u[3]", "a[1,2]".
 std::string indexed(std::string_view name, const std::vector<long>& indices);
 
+/// "this is time" of t, "3.14159..." of pi, else nothing.
+std::string_view meaning_of_its_own(std::string_view name);
+
 /// Calls body() with the index in the scope, for each of its values; stops where the model becomes too large.
+/// False where the ends of the range are wrong.
 template <class Body>
-void Checker::for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) {
+bool Checker::for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) {
   const auto ends = bounds(range, scope);
-  if (!ends) return;
+  if (!ends) return false;
   scope.indices.push_back({index.text, 0});
   const std::size_t place = scope.indices.size() - 1;
   for (long i = ends->first; i <= ends->second && count_written_out(range.span); ++i) {
@@ -25,6 +29,7 @@ void Checker::for_each_index(const ast::Identifier& index, const ast::Range& ran
     body();
   }
   scope.indices.pop_back();
+  return true;
 }
 
 /// The terms of a sum that its condition lets through.

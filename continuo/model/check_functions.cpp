@@ -95,6 +95,17 @@ bool is_function(std::string_view name) {
   return name == "interp" || find_function(name) != nullptr;
 }
 
+std::string arguments_of(const Function& function) {
+  if (function.most == many) return fmt::format("at least {} arguments", function.least);
+  return function.least == 1 ? "one argument" : fmt::format("{} arguments", function.least);
+}
+
+std::string example_of_call(std::string_view name) {
+  if (name == "interp") return "interp(TABLE, x)";
+  const Function* function = find_function(name);
+  return fmt::format("{}({})", name, function && function->least > 1 ? "..., ..." : "...");
+}
+
 /// A pure number for a function that takes nothing else: degrees become radians, per cent fractions.
 Value Checker::pure_number(const Term& argument, std::string_view function) {
   Value value = argument.value;
@@ -157,10 +168,7 @@ Value Checker::call(const ast::Call& node, Span span, Scope& scope) {
   if (!function) return sample(node, span, scope);
   const std::size_t count = node.arguments.size();
   if (count < function->least || count > function->most) {
-    const std::string wanted = function->most == many ? fmt::format("at least {} arguments", function->least)
-                               : function->least == 1 ? std::string("one argument")
-                                                      : fmt::format("{} arguments", function->least);
-    fail("E216", span, fmt::format("`{}` takes {}", name, wanted), here(count));
+    fail("E216", span, fmt::format("`{}` takes {}", name, arguments_of(*function)), here(count));
     return bad();
   }
   std::vector<Term> arguments;

@@ -2,6 +2,7 @@
 // The functions a model can call. Only check*.cpp read this.
 #pragma once
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace continuo::model::detail {
@@ -24,5 +25,9 @@ struct Function {
 /// Null where there is none of this name; `interp` is none of these.
 const Function* find_function(std::string_view name);
 bool is_function(std::string_view name);
+/// "one argument", "at least 2 arguments".
+std::string arguments_of(const Function& function);
+/// How a call of it looks: "sin(...)", "atan2(..., ...)".
+std::string example_of_call(std::string_view function);
 
 }  // namespace continuo::model::detail

@@ -55,12 +55,14 @@ void Checker::place_condition(std::size_t index, bool initial) {
   const std::size_t state = base.first + static_cast<std::size_t>(primes);
   const Value& value = condition_value(index);
   if (value.bad || !condition.time || !only_parameters(value.node, condition.text->value.span, "an initial value")) {
-    condition_seen_.insert({state, 0.0});
+    condition_seen_.try_emplace({state, 0.0}, condition.span);
     return;
   }
-  if (!condition_seen_.insert({state, condition.time->value}).second) {
-    fail("E241", condition.span,
-         fmt::format("`{}({:g})` is given twice", with_primes(base.name, primes), condition.time->value));
+  const auto [first, is_new] = condition_seen_.try_emplace({state, condition.time->value}, condition.span);
+  if (!is_new) {
+    auto* said = fail("E241", condition.span,
+                      fmt::format("`{}({:g})` is given twice", with_primes(base.name, primes), condition.time->value));
+    if (said && first->second != condition.span) said->related.push_back({first->second, "first here"});
     return;
   }
   const NodeId node =
@@ -77,7 +79,7 @@ void Checker::missing_conditions() {
   std::set<std::string> said;
   for (std::size_t b = 0; b < bases_.size(); ++b) {
     const Base& base = bases_[b];
-    if (without_equation_.contains(b)) continue;
+    if (without_equation_.contains(b) || lost_.contains(base.family)) continue;
     std::vector<std::string> missing, needed;
     for (int k = 0; k < base.order; ++k) {
       const std::size_t state = base.first + static_cast<std::size_t>(k);

@@ -6,6 +6,7 @@
 
 #include <continuo/model/check_context.hpp>
 #include <continuo/model/check_families.hpp>
+#include <continuo/model/check_functions.hpp>
 #include <continuo/model/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -29,6 +30,10 @@ const char* word(Definition::Kind kind) {
 }
 
 }  // namespace
+
+std::string_view meaning_of_its_own(std::string_view name) {
+  return name == "t" ? "this is time" : name == "pi" ? "3.14159..." : "";
+}
 
 Value Checker::lookup(const ast::Name& name, Scope& scope) {
   if (name.indices.empty() && name.primes == 0) {
@@ -103,13 +108,36 @@ Value Checker::total_energy(Span span, Scope& scope) {
   return total;
 }
 
-Value Checker::unknown_name(const ast::Name& name, const std::string& key) {
+/// t and pi with a prime or an index, sin without its argument.
+Value Checker::not_a_value(const ast::Name& name) {
+  if (was_reported("E214", name.span)) return bad();
+  if (is_function(name.text)) {
+    const Function* function = find_function(name.text);
+    fail("E216", name.span,
+         fmt::format("`{}` takes {}", name.text, function ? arguments_of(*function) : "a table and a number"),
+         "here is none", "write " + example_of_call(name.text));
+    return bad();
+  }
+  const std::string meaning(meaning_of_its_own(name.text));
+  if (name.primes > 0) {
+    fail("E218", name.span, fmt::format("`{}` has no derivative", name.text), meaning,
+         "only what has an equation of its own has primes");
+  } else {
+    fail("E219", name.span, fmt::format("`{}` has no index", name.text), meaning, fmt::format("write {}", name.text));
+  }
+  return bad();
+}
+
+/// `undeclared`: what to do about it where the name is not like any other.
+Value Checker::unknown_name(const ast::Name& name, const std::string& key, std::string undeclared) {
   if (was_reported("E210", name.span) || was_reported("E220", name.span) || silent_) return bad();
+  if (!name.indices.empty() && lost_.contains(name.text)) return bad();
+  if (!meaning_of_its_own(name.text).empty() || is_function(name.text)) return not_a_value(name);
   const auto family = families_.find(name.text);
   if (family == families_.end()) {
     const std::string near = did_you_mean(name.text, all_names());
-    fail("E210", name.span, fmt::format("there is no `{}`", key), {},
-         !near.empty() ? near : fmt::format("declare it: param {} = ..., or give it an equation", name.text));
+    if (undeclared.empty()) undeclared = fmt::format("declare it: param {} = ..., or give it an equation", name.text);
+    fail("E210", name.span, fmt::format("there is no `{}`", key), {}, near.empty() ? std::move(undeclared) : near);
     return bad();
   }
   const FamilyShape& shape = family->second;
@@ -183,7 +211,12 @@ void Checker::finish_definition(std::size_t index, Value value) {
   if (declared && !value.bad) {
     const auto set = options_.overrides.find(definition.name);
     if (set != options_.overrides.end()) value.node = model_.graph.constant(set->second);
-    if (!only_parameters(value.node, definition.value->span, "the value of a parameter")) value = bad();
+    const bool parameter = definition.kind == Definition::Kind::parameter;
+    if (!only_parameters(value.node, definition.value->span,
+                         parameter ? "the value of a parameter" : "the value of an input",
+                         fmt::format("to name what changes, write let {} = ...", definition.name))) {
+      value = bad();
+    }
   }
   if (definition.kind == Definition::Kind::parameter) evaluation_order_.push_back(index);
   definition.result = std::move(value);

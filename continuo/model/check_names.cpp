@@ -56,9 +56,8 @@ void Checker::declare_top_level() {
 }
 
 bool Checker::is_free_name(const std::string& name, Span span) {
-  if (name == "t" || name == "pi") {
-    fail("E214", span, fmt::format("`{}` has a meaning of its own", name), name == "t" ? "this is time" : "3.14159...",
-         "take another name");
+  if (const std::string_view meaning = meaning_of_its_own(name); !meaning.empty()) {
+    fail("E214", span, fmt::format("`{}` has a meaning of its own", name), std::string(meaning), "take another name");
     return false;
   }
   if (!is_function(name)) return true;
@@ -120,12 +119,14 @@ void Checker::define_all(Definition::Kind kind, const std::vector<ast::Definitio
 void Checker::define_elements(Definition::Kind kind, const ast::Definition& item, Scope& scope,
                               const ast::Input* input) {
   const auto ends = bounds(*item.elements, scope);
+  if (!ends) lost_.insert(item.name.text);
   if (!ends) return;
   const auto* list = std::get_if<ast::List>(&item.value.node);
   const long count = ends->second - ends->first + 1;
   if (list && static_cast<long>(list->items.size()) != count) {
     fail("E220", item.value.span, fmt::format("`{}` needs {} values", item.name.text, std::max(count, 0L)),
          fmt::format("here {} {}", list->items.size() == 1 ? "is" : "are", list->items.size()));
+    lost_.insert(item.name.text);
     return;
   }
   for (long i = ends->first; i <= ends->second && count_written_out(item.elements->span); ++i) {
@@ -172,6 +173,25 @@ void Checker::walk_mode(const ast::Mode& mode, Scope& scope) {
   scope.mode = Scope::no_mode;
 }
 
+/// The names that a family would have declared.
+void Checker::lose(const std::vector<ast::Statement>& body) {
+  for (const ast::Statement& statement : body) {
+    std::visit(
+        [&](const auto& node) {
+          if constexpr (requires { node.items.front().name.text; }) {
+            for (const auto& item : node.items) lost_.insert(item.name.text);
+          } else if constexpr (requires { node.name.text; }) {
+            lost_.insert(node.name.text);
+          } else if constexpr (requires { node.left.node; }) {
+            if (const auto* name = std::get_if<ast::Name>(&node.left.node)) lost_.insert(name->text);
+          } else if constexpr (requires { node.range; }) {
+            lose(node.body);
+          }
+        },
+        statement.node);
+  }
+}
+
 void Checker::walk_statement(const ast::Statement& statement, Scope& scope, bool inside) {
   const Span span = statement.span;
   std::visit(
@@ -195,7 +215,8 @@ void Checker::walk_statement(const ast::Statement& statement, Scope& scope, bool
         } else if constexpr (std::is_same_v<T, ast::Condition>) {
           see_condition(node, scope, span);
         } else if constexpr (std::is_same_v<T, ast::Family>) {
-          for_each_index(node.index, node.range, scope, [&] { walk(node.body, scope, true); });
+          const auto member = [&] { walk(node.body, scope, true); };
+          if (!for_each_index(node.index, node.range, scope, member)) lose(node.body);
         } else if constexpr (std::is_same_v<T, ast::Mode>) {
           walk_mode(node, scope);
         } else {
@@ -222,7 +243,11 @@ void Checker::walk_other(const ast::Unknown& unknown, Scope& scope, Span span) {
 }
 
 void Checker::walk_other(const ast::Start& start, Scope&, Span span) {
-  if (start_) fail("E262", span, "the start mode is said twice", "only one `start in` can stand");
+  if (start_) {
+    auto* said = fail("E262", span, "the start mode is said twice", "only one `start in` can stand");
+    if (said) said->related.push_back({start_->mode.span, "first here"});
+    return;
+  }
   start_ = &start;
 }
 

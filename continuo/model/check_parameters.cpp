@@ -73,7 +73,7 @@ void Checker::make_parameters() {
     double& value = registers_[definition.variable];
     value = evaluate(model_.graph, definition.result.node, registers_);
     if (!definition.result.bad && !std::isfinite(value)) {
-      fail("E222", definition.value->span, "a parameter must be a finite number", fmt::format("this is {}", value));
+      fail("E222", definition.value->span, "a parameter must be a finite number", not_finite(value));
     }
   }
   for (const std::size_t i : parameter_order_) {

@@ -1,6 +1,7 @@
 // continuo/model/check_report.cpp
 // How the checks speak.
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,10 @@ std::string listed(const std::vector<std::string>& names) {
   }
   if (shown < names.size()) text += fmt::format(" and {} more", names.size() - shown);
   return text;
+}
+
+std::string not_finite(double value) {
+  return std::isnan(value) ? "this is not a number" : fmt::format("this is {}", value);
 }
 
 /// One message per place and code: the members of a family share their text. Null where it was said already.

@@ -178,7 +178,7 @@ void Checker::run_output(const ast::Run& run) {
     model_.run.output =
         OutputPlan{OutputPlan::Kind::every, positive_time(every->interval, "the output interval"), 0, {}};
   } else if (const auto* log = std::get_if<ast::OutputLogarithmic>(&*run.output)) {
-    const auto count = whole_number(log->per_decade, scope);
+    const auto count = whole_number(log->per_decade, scope, "the number of outputs per decade");
     if (count && (*count < 1 || *count > 1'000'000)) {
       fail("E261", log->per_decade.span, "at least one output per decade is wanted");
     }

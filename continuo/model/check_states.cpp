@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <continuo/model/check_families.hpp>
+#include <continuo/model/check_functions.hpp>
 #include <continuo/model/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -83,6 +84,7 @@ void Checker::see_primes(const ast::Expression& expression, Scope& scope) {
         if constexpr (std::is_same_v<T, ast::Name>) {
           const auto key = key_of(node, scope);
           const Symbol* known = key ? find(*key, scope.mode) : nullptr;
+          if (!known && (!meaning_of_its_own(node.text).empty() || is_function(node.text))) return;  // said on lookup
           if (!known || known->kind == Symbol::Kind::base) see_base(node, scope, node.primes);
         } else if constexpr (std::is_same_v<T, ast::Unary>) {
           see_primes(*node.operand, scope);

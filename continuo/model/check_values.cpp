@@ -78,7 +78,7 @@ std::optional<Setting> Checker::setting(const ast::Expression& expression, Scope
   const NodeId node = in_unit(expression, value, wanted, what);
   const double number = evaluate(model_.graph, node, registers_);
   if (std::isfinite(number)) return Setting{node, number};
-  fail("E222", expression.span, fmt::format("{} must be a finite number", what), fmt::format("this is {}", number));
+  fail("E222", expression.span, fmt::format("{} must be a finite number", what), not_finite(number));
   return std::nullopt;
 }
 
@@ -95,12 +95,12 @@ std::optional<Setting> Checker::time_setting(const ast::Expression& expression, 
   return std::nullopt;
 }
 
-bool Checker::only_parameters(NodeId node, Span span, std::string_view what) {
+bool Checker::only_parameters(NodeId node, Span span, std::string_view what, std::string help) {
   const Layout& layout = model_.layout;
   for (const std::uint32_t variable : variables_of(model_.graph, node)) {
     if (variable >= layout.parameters && variable < layout.inputs) continue;
     fail("E222", span, fmt::format("{} may depend on parameters only", what),
-         fmt::format("`{}` changes with time", name_of(variable)));
+         fmt::format("`{}` changes with time", name_of(variable)), std::move(help));
     return false;
   }
   return true;
@@ -110,6 +110,11 @@ std::string Checker::name_of(std::uint32_t variable) const {
   if (variable >= highest_begin) {
     const Base& base = bases_[variable - highest_begin];
     return with_primes(base.name, base.order);
+  }
+  if (variable >= model_.layout.states && variable < model_.layout.parameters) {  // also before they are named
+    const std::size_t state = variable - model_.layout.states;
+    const Base& base = bases_[base_of_state(state)];
+    return with_primes(base.name, static_cast<int>(state - base.first));
   }
   if (variable >= model_.layout.parameters) {
     for (const Definition& definition : definitions_) {
