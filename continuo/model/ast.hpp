@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <continuo/model/ast_expression.hpp>
+#include <continuo/solve/direction.hpp>
 
 namespace continuo::model::ast {
 
@@ -148,8 +149,6 @@ struct Mode {
 struct Start {
   Identifier mode;
 };
-
-enum class Direction { falls, rises, crosses };
 
 /// `when h falls through 0 in flight { ... }`, or `when h < 0 { ... }`: without direction and level, `subject` is a
 /// condition and the event is that it becomes true.

@@ -13,18 +13,6 @@ namespace continuo::model::detail {
 
 namespace {
 
-Direction direction_of(ast::Direction direction) {
-  switch (direction) {
-    case ast::Direction::rises:
-      return Direction::rises;
-    case ast::Direction::falls:
-      return Direction::falls;
-    case ast::Direction::crosses:
-      return Direction::crosses;
-  }
-  return Direction::crosses;
-}
-
 /// `x[i]` with i known: the name of an event says which member of the family it is of.
 void write_out(ast::Expression& expression, const std::vector<Index>& indices) {
   const auto inside = [&](ast::Expression& part) { write_out(part, indices); };
@@ -76,7 +64,7 @@ void Checker::make_event(const ast::When& text, Scope& scope, Span span) {
     if (!subject.value.bad && !level.value.bad && align(subject, level, both, scope)) {
       event.guard = model_.graph.subtract(subject.value.node, level.value.node);
     }
-    event.direction = direction_of(*text.direction);
+    event.direction = *text.direction;
   } else {
     const Value condition = guard(text.subject, scope);
     if (!condition.bad) event.guard = condition.node;

@@ -156,13 +156,13 @@ Spelled spell(const Expression& expression) {
   return std::visit([](const auto& node) { return spell_node(node); }, expression.node);
 }
 
-std::string_view word(ast::Direction direction) {
+std::string_view word(Direction direction) {
   switch (direction) {
-    case ast::Direction::falls:
+    case Direction::falls:
       return "falls";
-    case ast::Direction::rises:
+    case Direction::rises:
       return "rises";
-    case ast::Direction::crosses:
+    case Direction::crosses:
       break;
   }
   return "crosses";

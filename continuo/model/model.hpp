@@ -134,8 +134,6 @@ struct Action {
   Span span;
 };
 
-using continuo::Direction;  // rises, falls, crosses
-
 /// `when lhs falls through rhs in MODE { ... }`: a root of guard = lhs - rhs. `when a < b { ... }`: the condition
 /// becomes true where guard = b - a rises through zero; `and`, `or`, `not` are min, max and the sign of guards.
 struct When {

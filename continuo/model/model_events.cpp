@@ -8,25 +8,9 @@
 
 namespace continuo::model {
 
-namespace {
-
-continuo::Direction direction_of(Direction direction) {
-  switch (direction) {
-    case Direction::falls:
-      return continuo::Direction::falls;
-    case Direction::rises:
-      return continuo::Direction::rises;
-    case Direction::crosses:
-      break;
-  }
-  return continuo::Direction::crosses;
-}
-
-}  // namespace
-
 ModelEvents::Entry ModelEvents::entry_of(const When& when, std::size_t index) const {
   Entry entry{.kind = Kind::guard, .index = index, .name = when.name};
-  entry.direction = direction_of(when.direction);
+  entry.direction = when.direction;
   entry.in_one_mode = when.mode.has_value();
   entry.mode = when.mode.value_or(0);
   return entry;

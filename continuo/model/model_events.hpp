@@ -29,7 +29,7 @@ class ModelEvents {
 
   std::size_t size() const { return events_.size(); }
   std::string_view name(std::size_t i) const { return events_[i].name; }
-  continuo::Direction direction(std::size_t i) const { return events_[i].direction; }
+  Direction direction(std::size_t i) const { return events_[i].direction; }
   bool is_guard(std::size_t i) const { return events_[i].kind == Kind::guard; }
   bool active(const ModelSystem& system, std::size_t i) const {
     return !events_[i].in_one_mode || events_[i].mode == system.mode();
@@ -49,7 +49,7 @@ class ModelEvents {
     Kind kind;
     std::size_t index;  // into Model::events, Model::schedule, or the step inputs
     std::string name;
-    continuo::Direction direction = continuo::Direction::crosses;
+    Direction direction = Direction::crosses;
     bool in_one_mode = false;
     std::size_t mode = 0;
     std::vector<double> times{};         // of scheduled ones, ascending

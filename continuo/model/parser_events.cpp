@@ -61,11 +61,11 @@ void Parser::parse_direction(ast::When& event) {
   }
   const std::string_view word = spelled(current());
   if (word == "falls") {
-    event.direction = ast::Direction::falls;
+    event.direction = Direction::falls;
   } else if (word == "rises") {
-    event.direction = ast::Direction::rises;
+    event.direction = Direction::rises;
   } else if (word == "crosses") {
-    event.direction = ast::Direction::crosses;
+    event.direction = Direction::crosses;
   } else {
     std::string help = did_you_mean(word, direction_words);
     if (help.empty()) help = "write falls, rises or crosses: when h falls through 0 { ... }";

@@ -18,11 +18,9 @@
 #include <vector>
 
 #include <continuo/numerics/state.hpp>
+#include <continuo/solve/direction.hpp>
 
 namespace continuo {
-
-/// The sign change of the guard that counts: from above zero to below, from below to above, either.
-enum class Direction { falls, rises, crosses };
 
 /// What an action sees and may change.
 template <State X>

@@ -120,13 +120,13 @@ TEST(Parsing, ModesHoldEquations) {
 
 TEST(Parsing, EventsHaveADirectionAndALevel) {
   const auto falls = only<ast::When>("when h falls through 0 in flight { h' := -e*h' }");
-  EXPECT_EQ(falls.direction, ast::Direction::falls);
+  EXPECT_EQ(falls.direction, Direction::falls);
   EXPECT_EQ(text_of(falls.level), "0");
   ASSERT_TRUE(falls.mode);
   EXPECT_EQ(falls.mode->text, "flight");
   EXPECT_EQ(event_name(falls), "h falls through 0 in flight");
   EXPECT_EQ(event_name(only<ast::When>("when x - y rises 2*a { stop }")), "x - y rises through 2*a");
-  EXPECT_EQ(only<ast::When>("when x crosses through 1 { stop }").direction, ast::Direction::crosses);
+  EXPECT_EQ(only<ast::When>("when x crosses through 1 { stop }").direction, Direction::crosses);
 }
 
 TEST(Parsing, AConditionIsAnEventWhenItBecomesTrue) {
