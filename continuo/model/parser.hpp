@@ -7,6 +7,7 @@
 // Never throws on any bytes; goes on after an error at the next statement, so the tree of a wrong text is what could
 // be read of it.
 #pragma once
+#include <cstddef>
 #include <string_view>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace continuo::model {
 struct ParseResult {
   ast::Model model;
   std::vector<Diagnostic> diagnostics;  // in order of place
+  std::size_t tokens = 0, looks = 0;    // the work: tokens read, and how often the parser looked at one
 };
 
 ParseResult parse(const Source& source);

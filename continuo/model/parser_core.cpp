@@ -35,8 +35,9 @@ Parser::Nesting::Nesting(Parser& parser) : parser_(parser) {
 }
 
 const Token& Parser::look(std::size_t ahead) {
+  ++result_.looks;
   while (ahead_.size() <= ahead) {
-    if (++tokens_ > most_tokens) {
+    if (result_.tokens == most_tokens) {
       const auto end = static_cast<std::uint32_t>(source_.text().size());
       report(error("E108", ahead_.empty() ? Span{end, end} : ahead_.front().span, "the model is too long",
                    fmt::format("reading stops here, after {} words and signs", most_tokens),
@@ -44,6 +45,7 @@ const Token& Parser::look(std::size_t ahead) {
       throw ReadingStopped{};
     }
     ahead_.push_back(lexer_.next());
+    ++result_.tokens;
   }
   return ahead_[ahead];
 }

@@ -192,7 +192,6 @@ class Parser {
   const Source& source_;
   Lexer lexer_;
   std::deque<Token> ahead_;
-  std::size_t tokens_ = 0;
   std::uint32_t last_end_ = 0;  // end of the token read last
   TokenKind last_kind_ = TokenKind::line_end;
   Span last_span_;
