@@ -174,7 +174,7 @@ class Writer {
     std::string text = fmt::format("  t = {:g}..{:g}{}", run.from->value, run.to->value, unit);
     if (run.output && run.output->interval)
       text += fmt::format(", output every {:g}{}", run.output->interval->value, unit);
-    if (run.output && run.output->kind == OutputPlan::Kind::steps) text += ", output at every step";
+    if (!run.output || run.output->kind == OutputPlan::Kind::steps) text += ", output at every step";
     if (run.output && run.output->first) {
       text +=
           fmt::format(", {} outputs per decade from {:g}{}", run.output->per_decade, run.output->first->value, unit);

@@ -49,5 +49,10 @@ TEST(Describe, LongFamiliesAreCounted) {
   EXPECT_THAT(text, Not(HasSubstr("u[6]")));
 }
 
+TEST(Describe, TheOutputIsToldAlsoWhereTheModelDoesNotSayIt) {
+  EXPECT_THAT(describe(good("x' = 1\nx(0) = 0\nrun 0..3\n")), HasSubstr("t = 0..3, output at every step\n"));
+  EXPECT_THAT(describe(good("x' = 1\nx(0) = 0\nrun 0..3 output 0.5\n")), HasSubstr("t = 0..3, output every 0.5\n"));
+}
+
 }  // namespace
 }  // namespace continuo::model
