@@ -30,8 +30,8 @@ constexpr std::array citations{
     Citation{"dormand_prince5", "Dormand, Prince, J. Comp. Appl. Math. 6 (1980)"},
     Citation{"tsitouras5", "Tsitouras, Comput. Math. Appl. 62 (2011); the default"},
     Citation{"dop853", "Hairer, Norsett, Wanner, Solving ODEs I, II.5 and II.10"},
-    Citation{"verner7", "Verner, Numer. Algorithms 53 (2010), most efficient 7(6)"},
-    Citation{"verner9", "Verner, Numer. Algorithms 53 (2010), most efficient 9(8)"},
+    Citation{"verner7", "Verner, Numer. Algorithms 53 (2010), most efficient 7(6), https://www.sfu.ca/~jverner/"},
+    Citation{"verner9", "Verner, Numer. Algorithms 53 (2010), most efficient 9(8), https://www.sfu.ca/~jverner/"},
 };
 
 std::string_view source_of(std::string_view method) {
