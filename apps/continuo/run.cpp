@@ -69,10 +69,7 @@ bool write_files(const RunRequest& request, const model::ModelProgram& program, 
 
 void show_failed_checks(const model::Run& run, bool as_written) {
   for (const model::CheckResult& check : run.checks) {
-    if (check.passed || !as_written) continue;
-    const std::string unit = check.unit.empty() ? "" : " " + check.unit;
-    say(check.message.empty() ? fmt::format("{} does not hold: it is {}{}", check.text, check.value, unit)
-                              : fmt::format("{} cannot be judged: {}", check.text, check.message));
+    if (!check.passed && as_written) say(results::failed_check(check));
   }
 }
 
@@ -124,7 +121,7 @@ ExitCode run(const RunRequest& request) {
   if (request.json) {
     print(results::run_json(run));
   } else if (!request.data_to_standard_output()) {
-    print(results::summary(prepared.program->model, run));
+    print(results::summary(prepared.program->model, run, as_written));
   }
   show_failed_checks(run, as_written);
   const ExitCode exit = exit_of(run, as_written);

@@ -1,5 +1,6 @@
 // continuo verify FILES: every model is run and every check of it judged.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,9 +28,9 @@ struct Verdict {
 };
 
 std::string failed_line(const model::CheckResult& check) {
-  if (!check.message.empty()) return fmt::format("{}: {}", check.text, check.message);
-  const std::string unit = check.unit.empty() ? "" : " " + check.unit;
-  return fmt::format("{}: it is {}{}, off by {:.2g}", check.text, check.value, unit, check.value - check.expected);
+  const std::string line = results::failed_check(check);
+  if (!check.message.empty() || std::isnan(check.value)) return line;
+  return line + fmt::format(", off by {:.2g}", check.value - check.expected);
 }
 
 Verdict verify(const std::string& path) {

@@ -71,8 +71,13 @@ class Judge {
     const bool lower = check.relation == Relation::greater || check.relation == Relation::greater_equal;
     const double worst = upper || (!lower && std::abs(e.high) > std::abs(e.low)) ? e.high : e.low;
     r.value = r.expected + worst;
-    r.passed = holds(check.relation, worst, 0, r.tolerance) && succeeded(run_.outcome.ending);
-    if (!r.passed) r.message = fmt::format("worst at t = {}", worst == e.high ? e.t_high : e.t_low);
+    const bool kept = holds(check.relation, worst, 0, r.tolerance);
+    r.passed = kept && succeeded(run_.outcome.ending);
+    if (!kept) {
+      r.message = fmt::format("worst at t = {}", worst == e.high ? e.t_high : e.t_low);
+    } else if (!r.passed) {
+      r.message = "the run failed";
+    }
     return r;
   }
 

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <iterator>
 
 #include <fmt/compile.h>
@@ -8,7 +9,8 @@
 namespace continuo::results {
 
 void append_number(std::string& text, double value) {
-  if (value == 0) value = 0;  // -0 is a distinction nobody reads
+  if (value == 0) value = 0;                       // -0 is a distinction nobody reads
+  if (std::isnan(value)) value = std::abs(value);  // and so is -nan
   fmt::format_to(std::back_inserter(text), FMT_COMPILE("{}"), value);
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <span>
@@ -13,7 +14,7 @@
 namespace continuo::results {
 namespace {
 
-constexpr std::size_t most_states = 16, most_events = 8;
+constexpr std::size_t most_states = 16, most_events = 8, most_checks = 8;
 
 std::string with_unit(std::string text, std::string_view unit) {
   if (!unit.empty() && unit != "1") text.append(" ").append(unit);
@@ -88,16 +89,26 @@ void append_events(const model::Model& model, const model::Run& run, std::string
 void append_energy(const model::Run& run, std::string& text) {
   if (!run.energy) return;
   const model::EnergyBalance& energy = *run.energy;
-  const std::string drift = fmt::format("{:.2g}", energy.drift);
+  const std::string drift = fmt::format("{:.2g}", std::abs(energy.drift));  // no sign on a nan
   fmt::format_to(std::back_inserter(text), "energy  {} at first, {} at last; largest drift {}\n",
                  with_unit(short_number(energy.first), energy.unit), with_unit(short_number(energy.last), energy.unit),
                  energy.relative ? drift + ", relative" : with_unit(drift, energy.unit));
 }
 
-void append_checks(const model::Run& run, std::string& text) {
+void append_checks(const model::Run& run, bool as_written, std::string& text) {
   if (run.checks.empty()) return;
-  const auto passed = std::ranges::count_if(run.checks, &model::CheckResult::passed);
-  fmt::format_to(std::back_inserter(text), "checks  {} of {} hold\n", passed, run.checks.size());
+  std::vector<const model::CheckResult*> failed;
+  for (const model::CheckResult& check : run.checks) {
+    if (!check.passed) failed.push_back(&check);
+  }
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "checks  {} of {} hold", run.checks.size() - failed.size(), run.checks.size());
+  text += as_written ? "\n" : "; they judge the model as written in its file, and this run differs from it\n";
+  if (as_written) return;  // then a failure is an error, and reported as one
+  for (std::size_t i = 0; i < std::min(failed.size(), most_checks); ++i) {
+    fmt::format_to(out, "        {}\n", failed_check(*failed[i]));
+  }
+  if (failed.size() > most_checks) fmt::format_to(out, "        and {} more\n", failed.size() - most_checks);
 }
 
 void append_cost(const model::Run& run, std::string& text) {
@@ -111,6 +122,7 @@ void append_cost(const model::Run& run, std::string& text) {
 }  // namespace
 
 std::string short_number(double value) {
+  if (std::isnan(value)) return "nan";
   return fmt::format("{:.6g}", value == 0 ? 0.0 : value);
 }
 
@@ -120,13 +132,20 @@ std::string duration(double seconds) {
   return fmt::format("{:.3g} s", seconds);
 }
 
-std::string summary(const model::Model& model, const model::Run& run) {
+std::string failed_check(const model::CheckResult& check) {
+  const std::string why = !check.message.empty()    ? check.message
+                          : std::isnan(check.value) ? "its value is not a number"
+                                                    : "it is " + with_unit(number(check.value), check.unit);
+  return fmt::format("{} does not hold: {}", check.text, why);
+}
+
+std::string summary(const model::Model& model, const model::Run& run, bool as_written) {
   std::string text;
   append_ending(model, run, text);
   append_states(run, text);
   append_events(model, run, text);
   append_energy(run, text);
-  append_checks(run, text);
+  append_checks(run, as_written, text);
   append_cost(run, text);
   return text;
 }

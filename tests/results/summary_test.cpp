@@ -1,7 +1,12 @@
+#include <algorithm>
+#include <limits>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "example.hpp"
+#include <continuo/results/csv.hpp>
 #include <continuo/results/summary.hpp>
 
 namespace continuo::results {
@@ -31,6 +36,38 @@ TEST(Summary, ManyStatesAndEventsStayAScreenful) {
   EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 24);
   EXPECT_THAT(text, HasSubstr("and 85 more states (-o FILE writes them all)"));
   EXPECT_THAT(text, HasSubstr("tick: 1000 times"));
+}
+
+TEST(Summary, ARunOfAnotherModelSaysWhoseChecksTheseAreAndWhichFail) {
+  auto [model, run] = falling_ball();
+  EXPECT_THAT(summary(model, run, false),
+              HasSubstr("checks  1 of 1 hold; they judge the model as written in its file, and this run differs from "
+                        "it\ncost"));
+  run.checks.push_back({"check h(1) = 2 within 1e-9", false, 0.5, 2, 1e-9, "m", ""});
+  run.checks.push_back({"check h at event 7 of x = 0", false, 0, 0, 1e-9, "m", "there were only 1 such events"});
+  EXPECT_THAT(summary(model, run, false),
+              HasSubstr("differs from it\n"
+                        "        check h(1) = 2 within 1e-9 does not hold: it is 0.5 m\n"
+                        "        check h at event 7 of x = 0 does not hold: there were only 1 such events\ncost"));
+  EXPECT_THAT(summary(model, run), HasSubstr("checks  1 of 3 hold\ncost"));
+  run.checks.resize(100, run.checks[1]);
+  const std::string text = summary(model, run, false);
+  EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 24);
+  EXPECT_THAT(text, HasSubstr("        and 91 more\n"));
+}
+
+TEST(Summary, WhatIsNoNumberHasNoSign) {
+  auto [model, run] = falling_ball();
+  const double nan = -std::numeric_limits<double>::quiet_NaN();
+  run.energy = model::EnergyBalance{2, nan, nan, "J"};
+  run.motion.values.back() = nan;
+  run.checks = {{"check x(1) = 2 within 1e-9", false, nan, 2, 1e-9, "m", ""}};
+  const std::string text = summary(model, run, false);
+  EXPECT_THAT(text, HasSubstr("h' = nan m/s"));
+  EXPECT_THAT(text, HasSubstr("nan J at last; largest drift nan"));
+  EXPECT_THAT(text, HasSubstr("does not hold: its value is not a number\n"));
+  EXPECT_EQ(text.find("-nan"), std::string::npos);
+  EXPECT_EQ(number(nan), "nan");
 }
 
 }  // namespace
