@@ -21,6 +21,7 @@
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/sparse_lu.hpp>
 #include <continuo/system/jacobian.hpp>
+#include <continuo/system/mass.hpp>
 
 namespace continuo {
 
@@ -57,7 +58,9 @@ class Linearization {
   template <class F>
   void prepare(F& f, const X&) {
     prepared_ = true;
-    if constexpr (HasMassMatrix<F, X>) {
+    if (!continuo::has_mass<X>(f)) {
+      mass_ = Mass::identity;
+    } else if constexpr (HasMassMatrix<F, X>) {
       mass_ = Mass::matrix;
       if constexpr (N == run_time_size) mass_rows_.resize(size_ * size_);
       f.mass_matrix(std::span<Real>(mass_rows_));

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <continuo/solve/accumulation.hpp>
+#include <continuo/solve/consistent.hpp>
 #include <continuo/solve/guard_watch.hpp>
 #include <continuo/solve/step_control.hpp>
 
@@ -64,6 +65,7 @@ class Integrator {
         guard_values_(events_.size()) {
     fired_.reserve(events_.size());
     next_fired_.reserve(events_.size());
+    if (settle_algebraic()) steps_.jump(t_, x_, options_);
     for (std::size_t i = 0; i < events_.size(); ++i) {
       any_guard_ = any_guard_ || events_.is_guard(i);
       any_scheduled_ = any_scheduled_ || !events_.is_guard(i);
@@ -75,6 +77,7 @@ class Integrator {
   bool advance(Observer&& observer = {}) {
     if (!started_) start(observer);
     if (ended_) return false;
+    if (!consistent_) return end_inconsistent();
     if (t_ == interval_.to) return end(Ending::reached_end);
     if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) return end(Ending::interrupted);
     if (statistics().steps + statistics().rejected >= options_.max_steps)
@@ -153,6 +156,10 @@ class Integrator {
       end(Ending::invalid_input, why);
       return;
     }
+    if (!consistent_) {
+      end_inconsistent();
+      return;
+    }
     arm_all();
     if (!any_scheduled_) return;
     fired_.clear();
@@ -166,7 +173,7 @@ class Integrator {
     for (std::size_t i = 0; i < dimension(x_); ++i)
       if (!(Real(0) * x_.data()[i] == Real(0))) return component_name(system(), i) + " is not finite at the start";
     if (!(Real(0) * (interval_.to - interval_.from) == Real(0))) return "the interval of time is not finite";
-    if (has_mass<System, X>() && !detail::is_implicit<M>())
+    if (has_mass<X>(system()) && !detail::is_implicit<M>())
       return std::string(M::name) + " cannot integrate M x' = f(t, x): take an implicit method, such as rodas5p";
     if (M::error_order == 0 && !(options_.step > 0))
       return std::string(M::name) + " has no error estimate: give it a step";
@@ -178,8 +185,30 @@ class Integrator {
   }
 
   void restart() {
+    settle_algebraic();
     steps_.jump(t_, x_, options_);
     arm_all();
+  }
+
+  // Unknowns of algebraic equations follow the rest of the state wherever a run begins anew. True where there are any.
+  bool settle_algebraic() {
+    if constexpr (HasMassDiagonal<System, X>) {
+      if (!has_mass<X>(system())) return false;
+      consistent_ = make_consistent(steps_.system(), t_, x_, steps_.tolerance(options_));
+      steps_.statistics().evaluations += static_cast<std::size_t>(consistent_.evaluations);
+      return true;
+    }
+    return false;
+  }
+  bool end_inconsistent() {
+    end(Ending::nonlinear_solve_failed,
+        consistent_.result == Consistency::Result::singular
+            ? "the algebraic equations do not determine their unknowns here: an unknown appears in no equation, two "
+              "equations say the same, or the index is above 1"
+            : "no values of the unknowns satisfy the algebraic equations: begin nearer to them, or look for a "
+              "contradiction in the equations");
+    outcome_.component = component_name(system(), consistent_.equation);
+    return false;
   }
 
   // A guard that is zero now is no event until it has left zero.
@@ -269,8 +298,10 @@ class Integrator {
       before_ = x_;
       const EventResponse response = events_.fire(steps_.system(), fired_, t_, before_, x_);
       steps_.statistics().events += fired_.size();
+      if (response.restart) settle_algebraic();
       observer.happening(*this, Happening<X>{t_, fired_, before_, x_});
       restarted = restarted || response.restart;
+      if (!consistent_) return !end_inconsistent();
       if (response.stop) {
         end(Ending::stopped_by_event);
         outcome_.event = events_.name(fired_.front());
@@ -368,6 +399,7 @@ class Integrator {
   AccumulationWatch<Real> accumulation_;
   std::vector<Real> guard_values_, rate_values_;
   std::vector<std::size_t> fired_, next_fired_;
+  Consistency consistent_;
   bool started_ = false, ended_ = false, any_guard_ = false, any_scheduled_ = false;
   Outcome<Real> outcome_;
 };

@@ -96,13 +96,13 @@ class StepControl {
     return interpolant_;
   }
 
- private:
-  static bool fixed(const Options<X>& options) { return options.step > 0; }
-
   static Tolerance<Real> tolerance(const Options<X>& options) {
     return {options.rtol, options.atol, options.rtol_each.empty() ? nullptr : options.rtol_each.data(),
             options.atol_each.empty() ? nullptr : options.atol_each.data()};
   }
+
+ private:
+  static bool fixed(const Options<X>& options) { return options.step > 0; }
 
   void advance_to_end() {
     if (!jumped_) M::accept(work_);

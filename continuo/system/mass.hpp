@@ -11,9 +11,28 @@
 
 namespace continuo {
 
-template <class F, State X>
-constexpr bool has_mass() {
-  return HasMassMatrix<F, X> || HasMassDiagonal<F, X>;
+/// Whether M is not the identity. A type whose values differ in this (a model that may have algebraic equations) says
+/// so by a member has_mass().
+template <State X, class F>
+bool has_mass(const F& system) {
+  if constexpr (requires {
+                  { system.has_mass() } -> std::convertible_to<bool>;
+                }) {
+    return system.has_mass();
+  } else {
+    return HasMassMatrix<F, X> || HasMassDiagonal<F, X>;
+  }
+}
+
+/// Whether component i is the unknown of an algebraic equation: row and column i of M are zero. Only a diagonal says
+/// so.
+template <State X, class F>
+bool is_algebraic(const F& system, std::size_t i) {
+  if constexpr (HasMassDiagonal<F, X>) {
+    return has_mass<X>(system) && system.mass(i) == Scalar<X>(0);
+  } else {
+    return false;
+  }
 }
 
 /// f becomes M^-1 f. A component whose equation is algebraic becomes 0; of a full matrix that is singular, all do: its
@@ -31,8 +50,9 @@ void divide_by_mass(const F& system, X& f) {
       for (std::size_t i = 0; i < n; ++i) f.data()[i] = Real(0);
     }
   } else if constexpr (HasMassDiagonal<F, X>) {
+    if (!has_mass<X>(system)) return;
     for (std::size_t i = 0; i < n; ++i)
-      f.data()[i] = system.mass(i) == Real(0) ? Real(0) : f.data()[i] / system.mass(i);
+      f.data()[i] = is_algebraic<X>(system, i) ? Real(0) : f.data()[i] / system.mass(i);
   }
 }
 

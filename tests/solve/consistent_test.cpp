@@ -1,0 +1,74 @@
+// Systems with algebraic equations begin and go on at consistent values, or say which equation does not hold.
+#include <array>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <continuo/methods/bdf.hpp>
+#include <continuo/methods/tsitouras5.hpp>
+#include <continuo/solve/solve.hpp>
+
+namespace continuo {
+namespace {
+
+using X = std::array<double, 2>;
+
+/// x' = -z, 0 = z^3 + z - 2 x: at x = 1, z = 1; at x = 5, z = 2.
+struct Cubic {
+  void operator()(double, const X& x, X& out) const { out = {-x[1], x[1] * x[1] * x[1] + x[1] - 2 * x[0]}; }
+  double mass(std::size_t i) const { return i == 0 ? 1 : 0; }
+  std::string_view component_name(std::size_t i) const { return i == 0 ? "x" : "z"; }
+};
+
+TEST(Consistency, UnknownsAreFoundFromAPoorGuess) {
+  for (const double guess : {0.0, 1.0, 50.0, -50.0}) {
+    Integrator integrator(Cubic{}, X{5, guess}, {0.0, 1.0}, Bdf{}, {.rtol = 1e-10, .atol = 1e-10});
+    // A hundredth of the tolerance is what is asked of Newton's last correction, which converges quadratically.
+    EXPECT_NEAR(integrator.x()[1], 2, 1e-11) << guess;
+    EXPECT_EQ(integrator.x()[0], 5);
+  }
+}
+
+TEST(Consistency, IsKeptAlongTheRunAndAfterAnEvent) {
+  Options<X> options{.rtol = 1e-8, .atol = 1e-8};
+  options.events.push_back(
+      rises<X>("refill", [](double t, const X&) { return t - 0.5; }, [](EventAction<X>& action) { action.x[0] = 5; }));
+  const auto solution = solve(Cubic{}, X{1, 1}, {0.0, 1.0}, Bdf{}, options);
+  ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
+  bool refilled = false;
+  for (std::size_t i = 0; i < solution.t.size(); ++i) {
+    const X& x = solution.x[i];
+    EXPECT_NEAR(x[1] * x[1] * x[1] + x[1] - 2 * x[0], 0, 30e-8 * (1 + 3 * x[1] * x[1] + 2 * x[0]));
+    refilled = refilled || (x[0] == 5 && std::abs(x[1] - 2) < 1e-7);
+  }
+  EXPECT_TRUE(refilled);
+}
+
+TEST(Consistency, AContradictionIsNamed) {
+  // 0 = z^2 + x has no real solution at x = 1.
+  struct None : Cubic {
+    void operator()(double, const X& x, X& out) const { out = {-x[1], x[1] * x[1] + x[0]}; }
+  };
+  const auto solution = solve(None{}, X{1, 3}, {0.0, 1.0}, Bdf{}, {});
+  EXPECT_EQ(solution.outcome.ending, Ending::nonlinear_solve_failed);
+  EXPECT_EQ(solution.outcome.component, "z");
+  EXPECT_NE(solution.outcome.hint.find("no values of the unknowns"), std::string::npos) << solution.outcome.hint;
+}
+
+TEST(Consistency, AnUnknownInNoEquationIsNamed) {
+  struct Missing : Cubic {
+    void operator()(double, const X& x, X& out) const { out = {-x[1], x[0] - 1 + 0 * x[1]}; }
+  };
+  const auto solution = solve(Missing{}, X{1, 3}, {0.0, 1.0}, Bdf{}, {});
+  EXPECT_EQ(solution.outcome.ending, Ending::nonlinear_solve_failed);
+  EXPECT_NE(solution.outcome.hint.find("index is above 1"), std::string::npos) << solution.outcome.hint;
+}
+
+TEST(Consistency, ExplicitMethodsDeclineAMass) {
+  const auto solution = solve(Cubic{}, X{1, 1}, {0.0, 1.0}, Tsitouras5{}, {});
+  EXPECT_EQ(solution.outcome.ending, Ending::invalid_input);
+  EXPECT_NE(solution.outcome.hint.find("implicit"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace continuo
