@@ -152,22 +152,24 @@ class Selector {
     return s;
   }
 
+  /// The code of a sum or difference where both of its terms, only one, or none is a product computed with it.
+  struct TermCodes {
+    Code both, first, second, none;
+  };
   Selected sum(NodeId id, const Node& n) const {
-    const Node &a = graph_[n.a], &b = graph_[n.b];
-    const bool product_a = folds(n.a, id, Op::multiply), product_b = folds(n.b, id, Op::multiply);
-    if (product_a && product_b) return make(Code::sum_of_products, a.a, a.b, b.a, b.b);
-    if (product_a) return make(Code::multiply_add, a.a, a.b, n.b);
-    if (product_b) return make(Code::multiply_add, b.a, b.b, n.a);
-    return make(Code::add, n.a, n.b);
+    return terms(id, n, {Code::sum_of_products, Code::multiply_add, Code::multiply_add, Code::add});
   }
-
   Selected difference(NodeId id, const Node& n) const {
+    return terms(id, n,
+                 {Code::difference_of_products, Code::multiply_subtract, Code::subtract_product, Code::subtract});
+  }
+  Selected terms(NodeId id, const Node& n, const TermCodes& code) const {
     const Node &a = graph_[n.a], &b = graph_[n.b];
     const bool product_a = folds(n.a, id, Op::multiply), product_b = folds(n.b, id, Op::multiply);
-    if (product_a && product_b) return make(Code::difference_of_products, a.a, a.b, b.a, b.b);
-    if (product_a) return make(Code::multiply_subtract, a.a, a.b, n.b);
-    if (product_b) return make(Code::subtract_product, b.a, b.b, n.a);
-    return make(Code::subtract, n.a, n.b);
+    if (product_a && product_b) return make(code.both, a.a, a.b, b.a, b.b);
+    if (product_a) return make(code.first, a.a, a.b, n.b);
+    if (product_b) return make(code.second, b.a, b.b, n.a);
+    return make(code.none, n.a, n.b);
   }
 
   Selected product(NodeId id, const Node& n) const {
