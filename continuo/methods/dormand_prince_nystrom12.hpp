@@ -11,7 +11,7 @@ namespace continuo {
 /// J. R. Dormand, M. E. A. El-Mikkawy, P. J. Prince, "High-order embedded Runge-Kutta-Nystrom formulae", IMA J. Numer.
 /// Anal. 7 (1987) 423-430; published as fractions, the long ones here to 45 digits after the point.
 struct DormandPrinceNystrom12 : RungeKuttaNystrom<DormandPrinceNystrom12> {
-  static constexpr std::string_view name = "dormand_prince_nystrom12";
+  static constexpr std::string_view name = "dprkn12";
   static constexpr int order = 12, error_order = 10;
   static constexpr NystromTableau<17> tableau{
       .c = {0, 1_c / 50, 1_c / 25, 1_c / 10, 2_c / 15, 4_c / 25, 1_c / 20, 1_c / 5, 1_c / 4, 1_c / 3, 1_c / 2, 5_c / 9,

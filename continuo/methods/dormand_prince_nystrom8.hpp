@@ -10,7 +10,7 @@ namespace continuo {
 /// J. R. Dormand, M. E. A. El-Mikkawy, P. J. Prince, "High-order embedded Runge-Kutta-Nystrom formulae", IMA J. Numer.
 /// Anal. 7 (1987) 423-430.
 struct DormandPrinceNystrom8 : RungeKuttaNystrom<DormandPrinceNystrom8> {
-  static constexpr std::string_view name = "dormand_prince_nystrom8";
+  static constexpr std::string_view name = "dprkn8";
   static constexpr int order = 8, error_order = 6;
   static constexpr NystromTableau<9> tableau{
       .c = {0, 1_c / 20, 1_c / 10, 3_c / 10, 1_c / 2, 7_c / 10, 9_c / 10, 1, 1},

@@ -41,12 +41,20 @@ struct NystromTableau {
   }
 };
 
+/// A dense output of its own: q(theta) = q + theta h v + h^2 sum_i b_i(theta) k_i with b_i = theta^2 (r[i][0] + r[i][1]
+/// theta + ...), and v(theta) its derivative.
+template <std::size_t Stages, std::size_t Powers>
+struct NystromDense {
+  static constexpr std::size_t powers = Powers;
+  Coefficient r[Stages][Powers] = {};
+};
+
 template <class Derived>
 struct RungeKuttaNystrom {
   static constexpr bool second_order = true;
-  /// Between the ends: positions by the quintic that meets position, velocity and acceleration at both ends, velocities
-  /// by its derivative. The step of a method of order 12 is long; where the way between matters, bound it by
-  /// `max_step`.
+  /// Between the ends, where `Derived` has no `dense` of its own: positions by the quintic that meets position,
+  /// velocity and acceleration at both ends, velocities by its derivative. The step of a method of order 12 is long;
+  /// where the way between matters, bound it by `max_step`.
   static constexpr int dense_degree = 5, dense_order = 4;
 
   /// The accelerations of the stages (where it is first the same as last, the last is the next first) and at the end of
@@ -105,19 +113,27 @@ struct RungeKuttaNystrom {
     return abs(work.argument.data()[i]);
   }
 
-  template <class System, State X>
+  template <class System, State X, int Degree>
   static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, const X& x_new,
-                         Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {
-    const int evaluations = work.end_fresh ? 0 : 1;
-    if (!work.end_fresh) detail::evaluate_accelerations(system, t + h, x_new, work.end);
-    work.end_fresh = true;
+                         Workspace<X>& work, Interpolant<X, Degree>& interpolant) {
     const std::size_t size = dimension(x);
-    for (std::size_t n = 0; n < system.pair_count(size); ++n) {
-      const PositionVelocity pair = system.pair(n, size);
-      const Scalar<X> end = detail::acceleration<X>(work.end, n, pair);
-      set_quintic(x, h, x_new, work.slope.data()[pair.velocity], end, pair, interpolant);
+    if constexpr (requires { Derived::dense; }) {
+      for (std::size_t n = 0; n < system.pair_count(size); ++n) {
+        set_own_dense(x, h, work, n, system.pair(n, size), interpolant);
+      }
+      return 0;
+    } else {
+      const bool end_known = Derived::tableau.first_same_as_last() || work.end_fresh;
+      if (!end_known) detail::evaluate_accelerations(system, t + h, x_new, work.end);
+      work.end_fresh = work.end_fresh || !end_known;
+      const auto& last = Derived::tableau.first_same_as_last() ? work.k[Derived::tableau.stages - 1] : work.end;
+      for (std::size_t n = 0; n < system.pair_count(size); ++n) {
+        const PositionVelocity pair = system.pair(n, size);
+        const Scalar<X> end = detail::acceleration<X>(last, n, pair);
+        set_quintic(x, h, x_new, work.slope.data()[pair.velocity], end, pair, interpolant);
+      }
+      return end_known ? 0 : 1;
     }
-    return evaluations;
   }
 
   template <State X>
@@ -266,6 +282,29 @@ struct RungeKuttaNystrom {
     });
     detail::set_pairs(system, start, work.argument, velocities,
                       [&](const U&, const U&, std::size_t i) { return U(h * detail::row_sum<VelocityOff, P>(ev, i)); });
+  }
+
+  template <State X, int Degree>
+  static void set_own_dense(const X& x, const Scalar<X>& h, const Workspace<X>& work, std::size_t n,
+                            PositionVelocity pair, Interpolant<X, Degree>& interpolant) {
+    using Real = Scalar<X>;
+    constexpr std::size_t powers = Derived::dense.powers;
+    static_assert(Degree == powers + 1);
+    const auto [q, v] = pair;
+    interpolant.c[0].data()[q] = x.data()[q];
+    interpolant.c[1].data()[q] = h * x.data()[v];
+    interpolant.c[0].data()[v] = x.data()[v];
+    interpolant.c[Degree].data()[v] = Real(0);
+    for (std::size_t power = 0; power < powers; ++power) {
+      Real sum(0);
+      for (std::size_t i = 0; i < Derived::tableau.stages; ++i) {
+        if (Derived::dense.r[i][power].is_zero()) continue;
+        sum +=
+            Derived::dense.r[i][power].template as<CoefficientOf<Real>>() * detail::acceleration<X>(work.k[i], n, pair);
+      }
+      interpolant.c[power + 2].data()[q] = h * (h * sum);
+      interpolant.c[power + 1].data()[v] = Real(static_cast<double>(power + 2)) * (h * sum);
+    }
   }
 
   /// q(theta) = q0 + h v0 theta + h^2 a0 theta^2 / 2 + A theta^3 + B theta^4 + C theta^5, where A, B, C are what the
