@@ -1,6 +1,6 @@
 // bench/reference/collocation.hpp
 // Reference states of stiff problems x' = f(x) from a code that shares nothing with the library: collocation at the
-// right Radau points of any number of stages, order 2 * stages - 1. R. Axelsson, "A class of A-stable methods", BIT 9
+// right Radau points of any number of stages, order 2 * stages - 1. O. Axelsson, "A class of A-stable methods", BIT 9
 // (1969); E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", IV.5.
 //
 // The polynomial of a step goes through x at 0 and through the stages Y_i at c_i. Its derivatives there are D Y, with
