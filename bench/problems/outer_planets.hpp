@@ -35,4 +35,10 @@ struct OuterPlanets : Accelerations {
   }
 };
 
+/// The same for a thousand years of 365.25 days.
+struct OuterPlanetsMillennium : OuterPlanets {
+  static constexpr std::string_view name = "outer_planets_millennium", title = "Outer solar system, 1000 years";
+  static constexpr double duration = 365'250;
+};
+
 }  // namespace continuo::bench

@@ -44,4 +44,5 @@ int main() {
   print<Kepler>();
   print<Pleiades>();
   print<OuterPlanets>();
+  print<OuterPlanetsMillennium>();
 }
