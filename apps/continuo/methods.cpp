@@ -31,6 +31,7 @@ constexpr std::array citations{
     Citation{"tsitouras5", "Tsitouras, Comput. Math. Appl. 62 (2011); the default"},
     Citation{"dop853", "Hairer, Norsett, Wanner, Solving ODEs I, II.5 and II.10"},
     Citation{"verner7", "Verner, Numer. Algorithms 53 (2010), most efficient 7(6), https://www.sfu.ca/~jverner/"},
+    Citation{"bdf", "Shampine, Reichelt, SIAM J. Sci. Comput. 18 (1997), NDF of orders 1 to 5"},
     Citation{"verner9", "Verner, Numer. Algorithms 53 (2010), most efficient 9(8), https://www.sfu.ca/~jverner/"},
 };
 
@@ -41,6 +42,7 @@ std::string_view source_of(std::string_view method) {
 
 std::string_view kind_of(const MethodInfo& method) {
   if (method.second_order) return "fixed step, x'' = a(t, x)";
+  if (method.implicit) return method.error_order > 0 ? "adaptive, stiff, algebraic" : "fixed step, stiff, algebraic";
   return method.error_order > 0 ? "adaptive" : "fixed step";
 }
 

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include <continuo/methods/bdf.hpp>
 #include <continuo/methods/bogacki_shampine3.hpp>
 #include <continuo/methods/central_difference.hpp>
 #include <continuo/methods/dop853.hpp>
@@ -25,15 +26,17 @@
 namespace continuo {
 
 /// By family, then by order.
-using AllMethods = std::tuple<ExplicitEuler, SemiImplicitEuler, CentralDifference, VelocityVerlet, Midpoint, Heun, Rk4,
-                              Rk38, BogackiShampine3, DormandPrince5, Tsitouras5, Dop853, Verner7, Verner9>;
+using ExplicitMethods = std::tuple<ExplicitEuler, SemiImplicitEuler, CentralDifference, VelocityVerlet, Midpoint, Heun,
+                                   Rk4, Rk38, BogackiShampine3, DormandPrince5, Tsitouras5, Dop853, Verner7, Verner9>;
+using StiffMethods = std::tuple<Bdf>;
+using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, StiffMethods{}));
 
-/// Calls visit.template operator()<M>() for every method M.
-template <class Visit>
+/// Calls visit.template operator()<M>() for every method M of the list.
+template <class Methods = AllMethods, class Visit>
 void for_each_method(Visit&& visit) {
   [&]<std::size_t... i>(std::index_sequence<i...>) {
-    (visit.template operator()<std::tuple_element_t<i, AllMethods>>(), ...);
-  }(std::make_index_sequence<std::tuple_size_v<AllMethods>>());
+    (visit.template operator()<std::tuple_element_t<i, Methods>>(), ...);
+  }(std::make_index_sequence<std::tuple_size_v<Methods>>());
 }
 
 }  // namespace continuo

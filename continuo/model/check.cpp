@@ -66,6 +66,7 @@ void Checker::fill() {
   make_plots();
   make_drawings();
   make_checks();
+  append_unknowns();
   check_method_fits();
   mark_structural();
 }

@@ -248,6 +248,8 @@ class Checker {
   void make_parameters();  // check_parameters.cpp
   void make_inputs();
   void make_unknowns();
+  void append_unknowns();
+  void check_index(std::size_t mode);
   void make_quantities();
   void mark_structural();
   void check_overrides();

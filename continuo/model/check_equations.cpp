@@ -74,7 +74,7 @@ void Checker::sort_out_algebraic(ModeAtWork& work) {
     equation.used = true;
     const auto variables = variables_of(model_.graph, equation.residual);
     const bool has_unknown =
-        std::ranges::any_of(variables, [&](std::uint32_t v) { return v >= layout.unknowns && v < layout.samples; });
+        std::ranges::any_of(variables, [&](std::uint32_t v) { return v >= layout.unknowns && v < layout.parameters; });
     if (has_unknown || !unknowns_.empty()) {
       ++algebraic;
       model_.algebraic.push_back({equation.residual, work.mode, equation.span});

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <continuo/methods/all.hpp>
 #include <continuo/model/check_context.hpp>
 #include <continuo/model/suggest.hpp>
+#include <continuo/solve/catalogue.hpp>
 
 namespace continuo::model::detail {
 
@@ -16,14 +16,13 @@ namespace {
 
 std::vector<std::string> method_names() {
   std::vector<std::string> names{"euler"};
-  for_each_method([&]<class M>() { names.emplace_back(M::name); });
+  for (const MethodInfo& method : method_catalogue()) names.emplace_back(method.name);
   return names;
 }
 
 bool is_second_order(std::string_view name) {
-  bool second = false;
-  for_each_method([&]<class M>() { second = second || (M::name == name && M::second_order); });
-  return second;
+  const MethodInfo* method = find_method(name);
+  return method && method->second_order;
 }
 
 bool has_units_inside(const ast::Expression& expression) {

@@ -142,7 +142,10 @@ void Checker::lay_out() {
   for (std::size_t i = 0; i < definitions_.size(); ++i) {
     if (definitions_[i].kind == Definition::Kind::parameter) parameter_order_.push_back(i);
   }
-  std::uint32_t next = layout.parameters = layout.states + static_cast<std::uint32_t>(states);
+  // Unknowns lie behind the states: together they are what a solver solves for.
+  std::uint32_t next = layout.unknowns = layout.states + static_cast<std::uint32_t>(states);
+  for (UnknownText& unknown : unknowns_) unknown.variable = next++;
+  layout.parameters = next;
   std::ranges::sort(parameter_order_, {},
                     [&](std::size_t i) { return std::pair(definitions_[i].text->span.begin, i); });
   for (const std::size_t i : parameter_order_) definitions_[i].variable = next++;
@@ -150,8 +153,6 @@ void Checker::lay_out() {
   for (Definition& definition : definitions_) {
     if (definition.kind == Definition::Kind::input) definition.variable = next++;
   }
-  layout.unknowns = next;
-  for (UnknownText& unknown : unknowns_) unknown.variable = next++;
   layout.samples = layout.size = next;
   registers_.assign(next, 0.0);
   measures_.resize(states);

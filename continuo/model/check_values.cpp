@@ -111,12 +111,12 @@ std::string Checker::name_of(std::uint32_t variable) const {
     const Base& base = bases_[variable - highest_begin];
     return with_primes(base.name, base.order);
   }
-  if (variable >= model_.layout.states && variable < model_.layout.parameters) {  // also before they are named
+  if (variable >= model_.layout.states && variable < model_.layout.unknowns) {  // also before they are named
     const std::size_t state = variable - model_.layout.states;
     const Base& base = bases_[base_of_state(state)];
     return with_primes(base.name, static_cast<int>(state - base.first));
   }
-  if (variable >= model_.layout.parameters) {
+  if (variable >= model_.layout.unknowns) {
     for (const Definition& definition : definitions_) {
       if (definition.variable == variable) return definition.name;
     }

@@ -105,6 +105,15 @@ write let.)"},
   mode rest   { h'' = 0 }          not h' = 0: set h' := 0 in the event that leads here)"},
     Code{"E235", "unknowns and algebraic equations differ in number",
          R"(Each unknown z = guess needs one equation without derivatives, 0 = ...)"},
+    Code{
+        "E236", "the index of the algebraic equations is above 1",
+        R"(The equations 0 = ... must be able to determine the unknowns while the states are given: then the index is 1. A
+pendulum written as x'' = -T*x, y'' = -T*y - g with 0 = x^2 + y^2 - L^2 cannot: T is not in the last equation, which
+says something of the states alone. Its second derivative by time holds T:
+
+  0 = x'^2 + y'^2 - T*(x^2 + y^2) - g*y
+
+and the states begin on the circle, with a velocity along it.)"},
     Code{"E240", "an initial value is missing",
          R"(A variable of order n needs n values at the start: h'' needs h(0) and h'(0).)"},
     Code{"E241", "an initial value is given twice",

@@ -59,11 +59,13 @@ Fix: say what happens then. A ball comes to rest in a mode of its own:
   }
 
 A thermostat that clicks for ever needs a gap between `on` and `off`. `stop` and `stop after 10` end the run before.)"},
-    Code{"E320", "algebraic equations cannot be solved yet",
-         R"(The model has equations `0 = ...` with unknowns. They are read and checked; the solver for them is not there
-yet.
+    Code{
+        "E320", "the method cannot solve algebraic equations",
+        R"(The model has equations `0 = ...` with unknowns. Explicit methods compute derivatives only; they have no way to
+satisfy an equation.
 
-Fix: where the unknown can be written as an expression, use `let`.)"},
+Fix: take an implicit method for stiff systems, such as rodas5p, radau or bdf, or leave the choice to Continuo. Where
+the unknown can be written as an expression, `let` does without an equation.)"},
     Code{"E321", "boundary-value problems cannot be solved yet",
          R"(The model gives values of its states at different times (x(0) = 1; x(7) = 4). It is read and checked; the
 solver for such problems is not there yet.

@@ -92,7 +92,8 @@ class Writer {
 
   void equations() {
     line("\nEquations, of first order");
-    const std::size_t count = model_.states.size(), shown = std::min(count, options_.most_listed);
+    const std::size_t count = model_.states.size() - model_.unknowns.size(),
+                      shown = std::min(count, options_.most_listed);
     for (std::size_t m = 0; m < model_.modes.size(); ++m) {
       const Mode& mode = model_.modes[m];
       const bool starts = m == model_.start_mode;
@@ -108,7 +109,8 @@ class Writer {
 
   void states() {
     const std::vector<double> start = start_values(model_);
-    section(fmt::format("States ({})", model_.states.size()), model_.states, [&](const State& s) -> Row {
+    const std::span differential(model_.states.data(), model_.states.size() - model_.unknowns.size());
+    section(fmt::format("States ({})", differential.size()), differential, [&](const State& s) -> Row {
       return {s.column, in_brackets(s.unit), "starts at " + with_value(s.initial, start[s.variable])};
     });
   }

@@ -90,6 +90,7 @@ class Planner {
 
   void set_method() {
     std::string name = experiment_.method.value_or(run_.method.value_or(""));
+    if (name.empty() && model_.needs_dae_solver()) name = "bdf";
     if (name.empty()) name = plan_.step == 0 && plan_.rtol < high_order_from ? "dop853" : "tsitouras5";
     plan_.method = canonical_name(name);
     std::vector<std::string> names;
@@ -106,6 +107,10 @@ class Planner {
     if (method.error_order == 0 && plan_.step == 0) {
       fail("E331", fmt::format("`{}` does not estimate its error, so it cannot choose its step", method.name),
            "give a step: --step 0.01, or `step 0.01` in the run statement", experiment_.method.has_value());
+    }
+    if (!method.implicit && model_.needs_dae_solver()) {
+      fail("E320", fmt::format("`{}` cannot solve the equations `0 = ...` of this model", method.name),
+           "take an implicit method, such as rodas5p or bdf, or name none", experiment_.method.has_value());
     }
     if (method.second_order && !model_.all_paired) {
       fail("E332", fmt::format("`{}` is for equations of the form x'' = a(t, x) only", method.name),

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include <continuo/model/integrate.hpp>
-#include <continuo/solve/catalogue.hpp>
+#include <continuo/solve/with_method.hpp>
 
 namespace continuo::model {
 

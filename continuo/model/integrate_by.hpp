@@ -42,10 +42,10 @@ struct RecordingObserver {
 template <class Method>
 void integrate_by(Integration integration, RunRecorder& recorder, Run& run) {
   const auto begin = std::chrono::steady_clock::now();
-  recorder.begin(run.plan.from, integration.x0);
   Integrator<ModelSystem, ModelSystem::X, Method, ModelEvents> integrator(
       std::move(integration.system), std::move(integration.x0), {run.plan.from, run.plan.to}, Method{},
       std::move(integration.options), std::move(integration.events));
+  recorder.begin(run.plan.from, integrator.x());  // where unknowns of algebraic equations have been found
   RecordingObserver observer{recorder};
   for (std::size_t count = 1; integrator.advance(observer); ++count) {
     if (count % 1024 == 0 && integrator.options().progress) integrator.options().progress(integrator.t());

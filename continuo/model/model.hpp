@@ -41,7 +41,7 @@ struct Setting {
 
 /// Where the variables of each kind begin in the flat space. `size` is the number of all, samples included.
 struct Layout {
-  std::uint32_t states = 1, parameters = 1, inputs = 1, unknowns = 1, samples = 1, size = 1;
+  std::uint32_t states = 1, unknowns = 1, parameters = 1, inputs = 1, samples = 1, size = 1;
   static constexpr std::uint32_t time = 0;
 };
 
@@ -84,11 +84,13 @@ struct State {
   std::string column;  // "h'"
   std::uint32_t variable;
   std::string unit;
-  NodeId initial;  // of parameters; re-evaluated when one changes
-  Span span;       // of its initial condition
+  NodeId initial;          // of parameters; re-evaluated when one changes
+  Span span;               // of its initial condition
+  bool algebraic = false;  // the unknown of an equation `0 = ...`: `initial` is a guess, it stands after the others
 };
 
-/// One right-hand side per state, in the states' order and in their units per unit of time.
+/// One right-hand side per state, in the states' order and in their units per unit of time; for an algebraic state what
+/// is to be zero.
 /// A model without modes has one mode named "".
 struct Mode {
   std::string name;

@@ -1,18 +1,15 @@
 // continuo/model/model_system.cpp
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <limits>
 #include <utility>
 
-#include <continuo/model/derivative.hpp>
 #include <continuo/model/model_system.hpp>
 
 namespace continuo::model {
 
 ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<const double> variables)
-    : program_(std::move(program)),
-      mode_(program_->model.start_mode),
-      variables_(variables.begin(), variables.end()),
-      jacobians_(program_->model.modes.size()) {
+    : program_(std::move(program)), mode_(program_->model.start_mode), variables_(variables.begin(), variables.end()) {
   const Layout& layout = program_->model.layout;
   for (const auto& tape : program_->derivatives) derivatives_.emplace_back(tape, layout, variables);
   for (const ProgramGuards& guards : program_->guards) guards_.emplace_back(guards.tape, layout, variables);
@@ -30,9 +27,7 @@ void ModelSystem::for_each(Visit&& visit) {
 
 void ModelSystem::set(std::uint32_t variable, double value) {
   variables_[variable] = value;
-  for (auto& jacobian : jacobians_) {
-    if (jacobian) jacobian->set(variable, value);
-  }
+  if (derivatives_of_f_) derivatives_of_f_->set(variable, value);
   for_each([&](Evaluation& evaluation) { evaluation.set(variable, value); });
 }
 
@@ -43,33 +38,22 @@ void ModelSystem::guards(double t, const X& x, std::span<double> values) {
   for (std::size_t k = 0; k < events.size(); ++k) values[events[k]] = guard_values_[k];
 }
 
-void ModelSystem::jacobian(double t, const X& x, std::span<double> rows) {
-  auto& mine = jacobians_[mode_];
-  if (!mine) mine.emplace(*program_, mode_, variables_);
-  (*mine)(t, x, rows);
+ModelDerivatives& ModelSystem::derivatives_of_f() {
+  if (!derivatives_of_f_) derivatives_of_f_.emplace(*program_, variables_);
+  return *derivatives_of_f_;
 }
 
-ModelJacobian::ModelJacobian(const ModelProgram& program, std::size_t mode, std::span<const double> variables) {
-  const Model& model = program.model;
-  std::vector<std::uint32_t> columns(model.states.size());
-  std::iota(columns.begin(), columns.end(), model.layout.states);
-  // The derivatives are new nodes, so they need a graph of their own; inputs stay as they are: none is a state.
-  ModelProgram own(model);
-  own.tables = program.tables;
-  own.linear_inputs = program.linear_inputs;
-  std::vector<NodeId> nodes;
-  for (const JacobianEntry& entry : jacobian(own.model.graph, own.model.modes[mode].derivatives, columns)) {
-    pattern_.push_back({entry.row, entry.column});
-    nodes.push_back(entry.value);
+// An input that follows a table over time is a variable to the graph, so its change is measured: by a difference.
+void ModelSystem::time_derivative(double t, const X& x, X& dfdt) {
+  if (program_->linear_inputs.empty()) {
+    derivatives_of_f().time_derivative(mode_, t, x, dfdt);
+    return;
   }
-  entries_ = Evaluation(own.tape_of(nodes), model.layout, variables);
-  values_.resize(nodes.size());
-}
-
-void ModelJacobian::operator()(double t, std::span<const double> x, std::span<double> rows) {
-  std::ranges::fill(rows, 0.0);
-  entries_(t, x, values_);
-  for (std::size_t k = 0; k < pattern_.size(); ++k) rows[pattern_[k].row * x.size() + pattern_[k].column] = values_[k];
+  const double moved = t + std::sqrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));
+  X now(x.size());
+  (*this)(t, x, now);
+  (*this)(moved, x, dfdt);
+  for (std::size_t i = 0; i < x.size(); ++i) dfdt[i] = (dfdt[i] - now[i]) / (moved - t);
 }
 
 }  // namespace continuo::model

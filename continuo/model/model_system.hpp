@@ -14,30 +14,11 @@
 #include <vector>
 
 #include <continuo/model/evaluation.hpp>
+#include <continuo/model/model_derivatives.hpp>
 #include <continuo/model/model_program.hpp>
 #include <continuo/system/system.hpp>
 
 namespace continuo::model {
-
-/// df/dx of one mode, exact, with its sparsity: the seat of the implicit methods.
-class ModelJacobian {
- public:
-  ModelJacobian(const ModelProgram& program, std::size_t mode, std::span<const double> variables);
-
-  /// d f_i / d x_j, row by row.
-  void operator()(double t, std::span<const double> x, std::span<double> rows);
-  /// The entries that are not zero everywhere.
-  struct Place {
-    std::uint32_t row, column;
-  };
-  std::span<const Place> pattern() const { return pattern_; }
-  void set(std::uint32_t variable, double value) { entries_.set(variable, value); }
-
- private:
-  std::vector<Place> pattern_;
-  Evaluation entries_;
-  std::vector<double> values_;
-};
 
 class ModelSystem {
  public:
@@ -66,18 +47,26 @@ class ModelSystem {
   std::string_view component_name(std::size_t i) const { return model().states[i].column; }
   std::size_t pair_count(std::size_t) const { return model().pairs.size(); }
   PositionVelocity pair(std::size_t i, std::size_t) const { return model().pairs[i]; }
-  /// df/dx, n*n row by row. The first call in each mode differentiates and compiles.
-  void jacobian(double t, const X& x, std::span<double> rows);
+  /// df/dx, n*n row by row, and where it may differ from zero in any mode. The first call differentiates and compiles.
+  void jacobian(double t, const X& x, std::span<double> rows) { derivatives_of_f().jacobian(mode_, t, x, rows); }
+  const SparsePattern& jacobian_pattern() { return derivatives_of_f().pattern(); }
+  void jacobian_values(double t, const X& x, std::span<double> values) {
+    derivatives_of_f().jacobian_values(mode_, t, x, values);
+  }
+  void time_derivative(double t, const X& x, X& dfdt);
+  bool has_mass() const { return model().needs_dae_solver(); }
+  double mass(std::size_t i) const { return model().states[i].algebraic ? 0 : 1; }
   bool ignores_velocity(const X&) const { return !model().accelerations_depend_on_velocities; }
 
  private:
   template <class Visit>
   void for_each(Visit&& visit);
+  ModelDerivatives& derivatives_of_f();
 
   std::shared_ptr<const ModelProgram> program_;
   std::size_t mode_;
-  std::vector<double> variables_;                        // parameters and inputs as they are now
-  std::vector<std::optional<ModelJacobian>> jacobians_;  // by mode
+  std::vector<double> variables_;  // parameters and inputs as they are now
+  std::optional<ModelDerivatives> derivatives_of_f_;
   std::vector<Evaluation> derivatives_, guards_, event_blocks_, schedule_blocks_;
   std::vector<double> guard_values_;
 };

@@ -15,10 +15,6 @@ namespace {
 
 /// Models that are read and checked but cannot be run yet.
 std::optional<Diagnostic> not_there_yet(const Model& model) {
-  if (model.needs_dae_solver()) {
-    return error("E320", model.algebraic.front().span, "equations `0 = ...` cannot be solved yet",
-                 "this needs a solver for algebraic equations", "solve it for a derivative where that is possible");
-  }
   if (model.needs_boundary_solver()) {
     return error("E321", model.boundary.front().span, "conditions at different times cannot be solved yet",
                  "this makes it a boundary-value problem", "give all conditions at the start");

@@ -119,7 +119,7 @@ template <class... M>
 struct Types<std::tuple<M...>> {
   using type = ::testing::Types<M...>;
 };
-TYPED_TEST_SUITE(OrderOf, Types<AllMethods>::type, NameOfMethod);
+TYPED_TEST_SUITE(OrderOf, Types<ExplicitMethods>::type, NameOfMethod);
 
 TYPED_TEST(OrderOf, IsTheNominalOneOnThreeProblems) {
   using Real = RealFor<TypeParam>;

@@ -51,7 +51,7 @@ Count count(double end, const Options<X>& options) {
 }
 
 TEST(Allocation, StepsOfFixedSizeStatesAllocateNothing) {
-  for_each_method([]<class M>() {
+  for_each_method<ExplicitMethods>([]<class M>() {
     if constexpr (!M::second_order) {
       Options<X> options{.rtol = 1e-8, .atol = 1e-8};
       if (M::error_order == 0) options.step = 0.01;

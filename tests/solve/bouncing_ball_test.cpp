@@ -96,7 +96,7 @@ TEST(BouncingBall, DroppedFromRestOnTheFloorItStays) {
 
 // Every method, adaptive or with a fixed step, finds the impacts; those exact for parabolas find them exactly.
 TEST(BouncingBall, EveryMethodBounces) {
-  for_each_method([]<class M>() {
+  for_each_method<ExplicitMethods>([]<class M>() {
     if constexpr (!M::second_order) {
       const auto solution = solve(Ball{9.81}, X{10, 0}, {0, 8}, M{}, {.step = 0.01, .events = {floor_event(0.8)}});
       EXPECT_EQ(solution.outcome.ending, Ending::reached_end) << M::name;

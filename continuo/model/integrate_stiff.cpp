@@ -1,0 +1,9 @@
+// continuo/model/integrate_stiff.cpp
+#include <continuo/methods/bdf.hpp>
+#include <continuo/model/integrate_by.hpp>
+
+namespace continuo::model {
+
+template void integrate_by<Bdf>(Integration, RunRecorder&, Run&);
+
+}  // namespace continuo::model

@@ -1,0 +1,46 @@
+// continuo/model/model_derivatives.hpp
+// df/dx and df/dt of a model, exact, in every mode, with the places where df/dx may differ from zero.
+//
+//   ModelDerivatives derivatives(*program, start_values(model));
+//   derivatives.jacobian(mode, t, x, rows);
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <continuo/model/evaluation.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/numerics/sparse_pattern.hpp>
+
+namespace continuo::model {
+
+class ModelDerivatives {
+ public:
+  ModelDerivatives(const ModelProgram& program, std::span<const double> variables);
+
+  /// Of all modes together.
+  const SparsePattern& pattern() const { return pattern_; }
+  /// The entries in the order of the pattern.
+  void jacobian_values(std::size_t mode, double t, std::span<const double> x, std::span<double> values);
+  /// All n * n, row by row.
+  void jacobian(std::size_t mode, double t, std::span<const double> x, std::span<double> rows);
+  void time_derivative(std::size_t mode, double t, std::span<const double> x, std::span<double> dfdt);
+
+  /// A parameter or an input.
+  void set(std::uint32_t variable, double value);
+
+ private:
+  struct OfMode {
+    std::vector<MatrixPlace> places;    // of the outputs of `entries`
+    std::vector<std::size_t> entry;     // which entry of the pattern each is
+    std::vector<std::uint32_t> moving;  // the components whose derivative by time is not zero: outputs of `by_time`
+    Evaluation entries, by_time;
+  };
+
+  SparsePattern pattern_;
+  std::vector<OfMode> modes_;
+  std::vector<double> values_;
+};
+
+}  // namespace continuo::model

@@ -1,0 +1,31 @@
+// continuo/solve/catalogue.cpp
+#include <algorithm>
+
+#include <continuo/methods/all.hpp>
+#include <continuo/solve/catalogue.hpp>
+
+namespace continuo {
+
+std::string_view canonical_name(std::string_view name) {
+  if (name == "euler") return "explicit_euler";
+  if (name == "crank_nicolson") return "trapezoidal";
+  return name;
+}
+
+const std::vector<MethodInfo>& method_catalogue() {
+  static const std::vector<MethodInfo> all = [] {
+    std::vector<MethodInfo> list;
+    for_each_method([&]<class M>() {
+      list.push_back({M::name, M::order, M::error_order, M::dense_order, M::second_order, detail::is_implicit<M>()});
+    });
+    return list;
+  }();
+  return all;
+}
+
+const MethodInfo* find_method(std::string_view name) {
+  const auto found = std::ranges::find(method_catalogue(), canonical_name(name), &MethodInfo::name);
+  return found == method_catalogue().end() ? nullptr : &*found;
+}
+
+}  // namespace continuo

@@ -1,0 +1,25 @@
+// continuo/solve/with_method.hpp
+// A method by name, where the program does not know it when compiled. Brings every method with it.
+//
+//   with_method("dop853", [&](auto method) { solution = solve(f, x0, {0, 1}, method, options); });
+#pragma once
+#include <string_view>
+
+#include <continuo/methods/all.hpp>
+#include <continuo/solve/catalogue.hpp>
+
+namespace continuo {
+
+/// Calls use(method) with the method of that name. False where there is none.
+template <class Use>
+bool with_method(std::string_view name, Use&& use) {
+  bool found = false;
+  for_each_method([&]<class M>() {
+    if (M::name != canonical_name(name)) return;
+    found = true;
+    use(M{});
+  });
+  return found;
+}
+
+}  // namespace continuo
