@@ -69,6 +69,8 @@ struct EquationCosts {
 ///   M::accept(work)   the step stands: its end becomes the start of the next
 ///   M::derivative(work) -> x' at the start of the last step
 /// Methods that need more of the driver have, each found by its name and missing elsewhere:
+///   M::why_not(system, x)  what the method has against this system, to be read after its name; empty where nothing. A
+///       run of what it refuses does not begin
 ///   M::implicit       true where M x' = f(t, x) with a mass matrix (singular, of index 1) can be integrated
 ///   M::aim(work, tolerance)  before every step: how close the equations of the step must be solved
 ///   M::status(work)   -> StepStatus of the last step; what is not `done` is rejected and tried with a smaller h

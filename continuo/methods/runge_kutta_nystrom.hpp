@@ -6,18 +6,21 @@
 //   q_new = q + h v + h^2 sum_i b_i k_i,   v_new = v + h sum_i bv_i k_i.
 //
 // The system says which components are q and which v (SecondOrder), and that a ignores v: the function of two arguments
-// in `second_order` does. Where a does look at v these methods have no order at all, so the step then ends in "not a
-// number", which the driver reports.
+// in `second_order` does. Where a does look at v these methods have no order at all: the driver does not begin such a
+// run, and a step ends in "not a number".
 #pragma once
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string_view>
 #include <utility>
 
+#include <continuo/methods/hermite.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/packs.hpp>
 #include <continuo/methods/pairs.hpp>
+#include <continuo/methods/second_order_method.hpp>
 #include <continuo/methods/weighted_sum.hpp>
 #include <continuo/system/second_order.hpp>
 
@@ -76,6 +79,11 @@ struct RungeKuttaNystrom {
   }
 
   template <class System, State X>
+  static std::string_view why_not(const System& system, const X& x) {
+    return why_not_positions_only(system, x);
+  }
+
+  template <class System, State X>
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
                   Workspace<X>& work, X& x_new) {
     static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
@@ -130,7 +138,7 @@ struct RungeKuttaNystrom {
       for (std::size_t n = 0; n < system.pair_count(size); ++n) {
         const PositionVelocity pair = system.pair(n, size);
         const Scalar<X> end = detail::acceleration<X>(last, n, pair);
-        set_quintic(x, h, x_new, work.slope.data()[pair.velocity], end, pair, interpolant);
+        detail::set_quintic_hermite(x, h, x_new, work.slope.data()[pair.velocity], end, pair, interpolant);
       }
       return end_known ? 0 : 1;
     }
@@ -264,10 +272,8 @@ struct RungeKuttaNystrom {
     const auto kv = detail::stages_of<Velocity, P>(work.k);
     const auto eq = detail::stages_of<PositionOff, P>(work.k);
     const auto ev = detail::stages_of<VelocityOff, P>(work.k);
-    const std::size_t size = dimension(x), pairs = system.pair_count(size);
-    const bool made_for_it = 2 * pairs == size && ignores_velocity(system, x);
-    if (!made_for_it) {
-      for (std::size_t i = 0; i < size; ++i) x_new.data()[i] = Real(std::numeric_limits<double>::quiet_NaN());
+    if (!why_not(system, x).empty()) {
+      for (std::size_t i = 0; i < dimension(x); ++i) x_new.data()[i] = Real(std::numeric_limits<double>::quiet_NaN());
       return;
     }
     using U = detail::Unit<P>;
@@ -305,31 +311,6 @@ struct RungeKuttaNystrom {
       interpolant.c[power + 2].data()[q] = h * (h * sum);
       interpolant.c[power + 1].data()[v] = Real(static_cast<double>(power + 2)) * (h * sum);
     }
-  }
-
-  /// q(theta) = q0 + h v0 theta + h^2 a0 theta^2 / 2 + A theta^3 + B theta^4 + C theta^5, where A, B, C are what the
-  /// other end asks for: with Q, V, W the position, h times the velocity and h^2 times the acceleration still missing
-  /// there, A = 10 Q - 4 V + W/2, B = -15 Q + 7 V - W, C = 6 Q - 3 V + W/2.
-  template <State X>
-  static void set_quintic(const X& x, const Scalar<X>& h, const X& x_new, const Scalar<X>& a0, const Scalar<X>& a1,
-                          PositionVelocity pair, Interpolant<X, dense_degree>& interpolant) {
-    using Real = Scalar<X>;
-    const auto [q, v] = pair;
-    const Real v0 = x.data()[v], half = Real(0.5);
-    const Real w0 = h * h * a0;
-    const Real position = (x_new.data()[q] - x.data()[q]) - h * (v0 + half * h * a0);
-    const Real velocity = h * ((x_new.data()[v] - v0) - h * a0);
-    const Real curvature = h * h * a1 - w0;
-    const std::array<Real, 6> c{x.data()[q],
-                                h * v0,
-                                half * w0,
-                                Real(10) * position - Real(4) * velocity + half * curvature,
-                                Real(-15) * position + Real(7) * velocity - curvature,
-                                Real(6) * position - Real(3) * velocity + half * curvature};
-    for (std::size_t j = 0; j < 6; ++j) interpolant.c[j].data()[q] = c[j];
-    for (std::size_t j = 0; j < 5; ++j)
-      interpolant.c[j].data()[v] = j == 0 ? v0 : Real(static_cast<double>(j + 1)) * c[j + 1] / h;
-    interpolant.c[5].data()[v] = Real(0);
   }
 };
 

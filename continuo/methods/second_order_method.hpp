@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include <continuo/methods/hermite.hpp>
@@ -28,6 +29,17 @@ struct EndDerivatives {
     return 1;
   }
 };
+
+/// What a method for q'' = a(t, q) has against a system of another form; empty where it has nothing.
+template <class System, State X>
+std::string_view why_not_positions_only(const System& system, const X& x) {
+  static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
+  if (2 * system.pair_count(dimension(x)) != dimension(x))
+    return "needs q'' = a(t, q): here a component is neither a position nor a velocity; take velocity_verlet or dop853";
+  if (!ignores_velocity(system, x))
+    return "needs q'' = a(t, q): here the accelerations read velocities; take velocity_verlet or dop853";
+  return {};
+}
 
 struct SecondOrderMethod {
   static constexpr int error_order = 0, dense_degree = 3;

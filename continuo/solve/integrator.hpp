@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -175,6 +176,10 @@ class Integrator {
     if (!(Real(0) * (interval_.to - interval_.from) == Real(0))) return "the interval of time is not finite";
     if (has_mass<X>(system()) && !detail::is_implicit<M>())
       return std::string(M::name) + " cannot integrate M x' = f(t, x): take an implicit method, such as rodas5p";
+    if constexpr (requires { M::why_not(system(), x_); }) {
+      if (const std::string_view why = M::why_not(system(), x_); !why.empty())
+        return std::string(M::name) + ' ' + std::string(why);
+    }
     if (M::error_order == 0 && !(options_.step > 0))
       return std::string(M::name) + " has no error estimate: give it a step";
     for (const auto* each : {&options_.rtol_each, &options_.atol_each})
