@@ -79,19 +79,17 @@ class Integrator {
     if (!started_) start(observer);
     if (ended_) return false;
     if (!consistent_) return end_inconsistent();
-    if (t_ == interval_.to) return end(Ending::reached_end);
+    if (t_ == interval_.to) return end(Ending::reached_end, steps_.stiff() ? stiff_hint : "");
     if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) return end(Ending::interrupted);
     if (statistics().steps + statistics().rejected >= options_.max_steps)
-      return end(Ending::too_many_steps,
-                 "raise max_steps, loosen the tolerance, or take a stiff method if the steps "
-                 "stay far below the time scale of the solution");
+      return end(Ending::too_many_steps, steps_.stiff() ? stiff_hint : "raise max_steps or loosen the tolerance");
     const Real limit = any_scheduled_ ? next_scheduled(t_, false) : interval_.to;
     if (!steps_.take(limit, options_, outcome_)) {
       ended_ = true;
       return false;
     }
     pass_events(observer);
-    if (!ended_ && t_ == interval_.to) return end(Ending::reached_end);
+    if (!ended_ && t_ == interval_.to) return end(Ending::reached_end, steps_.stiff() ? stiff_hint : "");
     return !ended_;
   }
 
@@ -137,6 +135,8 @@ class Integrator {
 
  private:
   static constexpr int most_rounds = 20, most_slides = 100;
+  static constexpr const char* stiff_hint =
+      "the system is stiff: stability, not accuracy, holds the steps of this method; take rodas5p, radau or bdf";
 
   Real forward() const { return interval_.to < interval_.from ? Real(-1) : Real(1); }
 

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <continuo/methods/method.hpp>
+#include <continuo/methods/stiffness_watch.hpp>
 #include <continuo/solve/first_step.hpp>
 #include <continuo/solve/options.hpp>
 #include <continuo/solve/outcome.hpp>
@@ -77,6 +79,9 @@ class StepControl {
     }
     return take_fixed(limit, options, outcome);
   }
+
+  /// Whether stability held most of the steps of an explicit method (of a run of some length).
+  bool stiff() const { return probes_ >= least_probes && 2 * stiff_probes_ > probes_; }
 
   /// x at a time of the last step, on the dense output.
   void at(Real t, X& x) {
@@ -199,6 +204,19 @@ class StepControl {
     return true;
   }
 
+  // Kept out of line: the loop of short steps has no room for it.
+  [[gnu::noinline]] void probe_stiffness(const Tolerance<Real>& weights) {
+    const X& slope_begin = M::derivative(work_);
+    if (!stiffness_) stiffness_.emplace(x_begin_);
+    stiffness_->probe(system_, begin_, x_begin_, slope_begin, weights);
+    ++statistics_.evaluations;
+    ++probes_;
+    if (stiffness_->bounds(h_)) ++stiff_probes_;
+  }
+
+  static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0 && !M::second_order;
+  static constexpr std::size_t first_probe = 1000, probe_every = 50, least_probes = 10;
+
   bool estimate_first(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
     using std::abs, std::min;
     const Real longest = min(abs(limit - begin_), options.max_step);
@@ -248,6 +266,10 @@ class StepControl {
         } else {
           next_ = h_ * factor;
           end_ = begin_ + h_;
+        }
+        if constexpr (watches_stiffness) {
+          if (statistics_.steps % probe_every == 0 && statistics_.steps >= first_probe) [[unlikely]]
+            probe_stiffness(weights);
         }
         return accepted();
       }
@@ -322,6 +344,8 @@ class StepControl {
   typename M::template Workspace<X> work_;
   Interpolant<X, M::dense_degree> interpolant_;
   Statistics statistics_;
+  std::optional<StiffnessWatch<X>> stiffness_;
+  std::size_t probes_ = 0, stiff_probes_ = 0;
 };
 
 }  // namespace continuo

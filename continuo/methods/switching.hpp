@@ -1,0 +1,176 @@
+// continuo/methods/switching.hpp
+// Two methods in one: an explicit one as long as accuracy bounds the steps, a stiff one where stability would. The
+// system is watched by one evaluation of f every few steps (stiffness_watch.hpp); the step size goes over from one to
+// the other. L. Petzold, "Automatic selection of methods for solving stiff and nonstiff systems of ordinary
+// differential equations", SIAM J. Sci. Stat. Comput. 4 (1983).
+//
+//   struct Mine : Switching<Tsitouras5, Bdf> {
+//     static constexpr std::string_view name = "mine";
+//   };
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+#include <type_traits>
+
+#include <continuo/methods/method.hpp>
+#include <continuo/methods/stiffness_watch.hpp>
+#include <continuo/system/mass.hpp>
+
+namespace continuo {
+
+template <class NonStiff, class Stiff>
+struct Switching {
+  static constexpr int order = NonStiff::order, error_order = NonStiff::error_order;
+  static constexpr int dense_order = std::min(NonStiff::dense_order, Stiff::dense_order);
+  static constexpr int dense_degree = std::max(NonStiff::dense_degree, Stiff::dense_degree);
+  static constexpr bool second_order = false, implicit = true;
+  static_assert(!NonStiff::second_order && Stiff::implicit && NonStiff::error_order > 0 && Stiff::error_order > 0);
+
+  template <State X>
+  struct Workspace {
+    typename NonStiff::template Workspace<X> nonstiff;
+    typename Stiff::template Workspace<X> stiff;
+    Interpolant<X, NonStiff::dense_degree> nonstiff_interpolant;
+    Interpolant<X, Stiff::dense_degree> stiff_interpolant;
+    StiffnessWatch<X> watch;
+    Tolerance<Scalar<X>> tolerance{Scalar<X>(1e-6), Scalar<X>(1e-9)};
+    bool is_stiff = false, fresh = false;  // fresh: the method in use has not made a step here yet
+    bool begun = false, has_mass = false;
+    std::size_t steps = 0;      // accepted, since the last change of method
+    std::size_t in_favour = 0;  // probes in a row that speak for a change
+    std::size_t patience = least_patience;
+  };
+
+  template <State X>
+  static Workspace<X> workspace(const X& x) {
+    return {NonStiff::workspace(x), Stiff::workspace(x), Interpolant<X, NonStiff::dense_degree>(x),
+            Interpolant<X, Stiff::dense_degree>(x), StiffnessWatch<X>(x)};
+  }
+
+  template <State X>
+  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+    work.tolerance = tolerance;
+    if constexpr (requires { Stiff::aim(work.stiff, tolerance); }) Stiff::aim(work.stiff, tolerance);
+  }
+
+  template <class System, State X>
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+                  Workspace<X>& work, X& x_new) {
+    if (!work.begun) {
+      work.begun = true;
+      work.has_mass = work.is_stiff = continuo::has_mass<X>(system);
+    }
+    if (made_jump) work.in_favour = 0;
+    const bool anew = made_jump || work.fresh;
+    int evaluations = work.is_stiff ? Stiff::step(system, t, x, h, anew, work.stiff, x_new)
+                                    : NonStiff::step(system, t, x, h, anew, work.nonstiff, x_new);
+    if (!work.has_mass && work.steps % probe_every == probe_every - 1) {
+      if (work.is_stiff) {
+        work.watch.probe(system, t, x, Stiff::derivative(work.stiff), work.tolerance);
+      } else {
+        work.watch.probe(system, t, x, NonStiff::derivative(work.nonstiff), work.tolerance);
+      }
+      ++evaluations;
+      work.in_favour = speaks_for_change(work, h) ? work.in_favour + 1 : 0;
+    }
+    return evaluations;
+  }
+
+  template <State X>
+  static StepStatus status(const Workspace<X>& work) {
+    return work.is_stiff ? detail::status_of<Stiff>(work.stiff) : detail::status_of<NonStiff>(work.nonstiff);
+  }
+  template <State X>
+  static EquationCosts costs(const Workspace<X>& work) {
+    return Stiff::costs(work.stiff);
+  }
+  template <State X>
+  static int error_order_of(const Workspace<X>& work) {
+    return work.is_stiff ? detail::error_order_of<Stiff>(work.stiff) : detail::error_order_of<NonStiff>(work.nonstiff);
+  }
+  template <State X>
+  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                              const Tolerance<Scalar<X>>& tolerance) {
+    return work.is_stiff ? Stiff::error_norm(work.stiff, h, x, x_new, tolerance)
+                         : NonStiff::error_norm(work.nonstiff, h, x, x_new, tolerance);
+  }
+  template <State X>
+  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
+    return work.is_stiff ? Stiff::error_of(work.stiff, h, i) : NonStiff::error_of(work.nonstiff, h, i);
+  }
+  template <State X>
+  static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h, const X& x,
+                               const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
+    if constexpr (requires { Stiff::next_factor(work.stiff, factor, h, x, x_new, tolerance); }) {
+      if (work.is_stiff) return Stiff::next_factor(work.stiff, factor, h, x, x_new, tolerance);
+    }
+    return factor;
+  }
+  template <State X>
+  static void rejected(Workspace<X>& work, const Scalar<X>& h_next) {
+    if constexpr (requires { Stiff::rejected(work.stiff, h_next); }) {
+      if (work.is_stiff) Stiff::rejected(work.stiff, h_next);
+    }
+  }
+
+  template <class System, State X>
+  static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, const X& x_new,
+                         Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {
+    if (work.is_stiff) {
+      const int evaluations = Stiff::interpolate(system, t, x, h, x_new, work.stiff, work.stiff_interpolant);
+      widen(work.stiff_interpolant, interpolant);
+      return evaluations;
+    }
+    const int evaluations = NonStiff::interpolate(system, t, x, h, x_new, work.nonstiff, work.nonstiff_interpolant);
+    widen(work.nonstiff_interpolant, interpolant);
+    return evaluations;
+  }
+
+  template <State X>
+  static void accept(Workspace<X>& work) {
+    work.fresh = false;
+    ++work.steps;
+    if (work.in_favour >= work.patience) {
+      // Each return to the explicit method doubles the patience: a system at the border is not tossed to and fro.
+      if (work.is_stiff) work.patience *= 2;
+      work.is_stiff = !work.is_stiff;
+      work.fresh = true;
+      work.steps = work.in_favour = 0;
+    } else if (work.is_stiff) {
+      Stiff::accept(work.stiff);
+    } else {
+      NonStiff::accept(work.nonstiff);
+    }
+  }
+
+  template <State X>
+  static X derivative(const Workspace<X>& work) {
+    if (work.is_stiff) return Stiff::derivative(work.stiff);
+    return NonStiff::derivative(work.nonstiff);
+  }
+
+ private:
+  static constexpr std::size_t probe_every = 8, least_patience = 3;
+
+  // An explicit method at the boundary of its stability, or a stiff one whose step any explicit method could make.
+  template <State X>
+  static bool speaks_for_change(const Workspace<X>& work, const Scalar<X>& h) {
+    using std::abs;
+    if (!work.is_stiff) return work.watch.bounds(h);
+    return work.watch.radius() * abs(h) < Scalar<X>(1);
+  }
+
+  template <State X, int Degree>
+  static void widen(const Interpolant<X, Degree>& from, Interpolant<X, dense_degree>& to) {
+    for (std::size_t power = 0; power <= static_cast<std::size_t>(dense_degree); ++power) {
+      if (power <= static_cast<std::size_t>(Degree)) {
+        to.c[power] = from.c[power];
+      } else {
+        for (std::size_t i = 0; i < dimension(to.c[power]); ++i) to.c[power].data()[i] = Scalar<X>(0);
+      }
+    }
+  }
+};
+
+}  // namespace continuo
