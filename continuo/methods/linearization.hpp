@@ -182,8 +182,8 @@ class Decomposition {
     return dense_.factor();
   }
 
-  /// b becomes the solution.
-  void solve(Number* b) {
+  /// b becomes the solution. Compiled into the caller, as b of a small system is in registers there.
+  [[gnu::always_inline]] void solve(Number* b) {
     if constexpr (has_sparse) {
       if (sparse_) return sparse_->solve(b);
     }

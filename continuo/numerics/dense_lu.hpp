@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <continuo/numerics/complex_number.hpp>
+#include <continuo/numerics/small_lu.hpp>
 
 namespace continuo {
 
@@ -26,6 +27,17 @@ template <class T, std::size_t N, std::size_t Count>
 using BlockOf = std::conditional_t<N == run_time_size, std::vector<T>, std::array<T, N == run_time_size ? 1 : Count>>;
 
 template <class Number, std::size_t N = run_time_size>
+class DenseLU;
+
+template <class Number, std::size_t N>
+  requires(N <= greatest_small_size)
+class DenseLU<Number, N> : public detail::SmallLU<Number, N> {
+ public:
+  explicit DenseLU(std::size_t) {}
+  static constexpr std::size_t size() { return N; }
+};
+
+template <class Number, std::size_t N>
 class DenseLU {
  public:
   explicit DenseLU(std::size_t size) : size_(size) {

@@ -76,6 +76,21 @@ concept HasSparseJacobian =
 template <class F, class X>
 concept HasTimeDerivative = requires(F& f, Scalar<X> t, const X& x, X& dfdt) { f.time_derivative(t, x, dfdt); };
 
+/// The system says that f does not depend on t: f.autonomous, true or false, when compiling or at run time. Methods
+/// that need df/dt then do without; of a system that says nothing they take it by a difference, one evaluation a step.
+template <class F>
+concept KnowsAutonomous = requires(const F& f) {
+  { f.autonomous } -> std::convertible_to<bool>;
+};
+template <class F>
+constexpr bool is_autonomous(const F& f) {
+  if constexpr (KnowsAutonomous<F>) {
+    return f.autonomous;
+  } else {
+    return false;
+  }
+}
+
 /// The system reads M x' = f(t, x) with a constant M: f.mass_matrix(span of n*n, row by row). M may be singular: the
 /// system is then one of differential and algebraic equations.
 template <class F, class X>
