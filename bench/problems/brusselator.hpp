@@ -19,6 +19,7 @@ struct Brusselator {
   static constexpr std::string_view name = "brusselator", title = "Brusselator to t = 20";
   static constexpr std::size_t size = 2;
   static constexpr double duration = 20;
+  static constexpr bool autonomous = true;
   using State = std::array<Real, size>;
 
   static State start() { return {Real(1.5), Real(3)}; }

@@ -22,6 +22,7 @@ struct BrusselatorLine {
   static constexpr std::string_view name = "brusselator_line",
                                     title = "Brusselator in one dimension, N = 500, to t = 10";
   static constexpr double duration = 10;
+  static constexpr bool autonomous = true;
   static constexpr std::size_t bands = 2;
   using State = std::vector<Real>;
 

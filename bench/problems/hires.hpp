@@ -20,6 +20,7 @@ struct Hires {
   static constexpr std::string_view name = "hires", title = "HIRES to t = 321.8122";
   static constexpr std::size_t size = 8;
   static constexpr double duration = 321.8122;
+  static constexpr bool autonomous = true;
   using State = std::array<Real, size>;
 
   // Rates of the reactions, and of all that leave one substance.

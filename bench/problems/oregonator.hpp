@@ -20,6 +20,7 @@ struct Oregonator {
   static constexpr std::string_view name = "oregonator", title = "Oregonator to t = 360";
   static constexpr std::size_t size = 3;
   static constexpr double duration = 360;
+  static constexpr bool autonomous = true;
   using State = std::array<Real, size>;
 
   Real s = in<Real>(77.27_c), w = in<Real>(0.161_c), q = in<Real>(0.000008375_c), inverse_s = in<Real>(100_c / 7727_c);

@@ -20,6 +20,7 @@ struct Pollution {
   static constexpr std::string_view name = "pollution", title = "Pollution to t = 60";
   static constexpr std::size_t size = 20;
   static constexpr double duration = 60;
+  static constexpr bool autonomous = true;
   using State = std::array<Real, size>;
 
   /// Rates, in the order of the paper.

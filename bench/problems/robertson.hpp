@@ -20,6 +20,7 @@ struct Robertson {
   static constexpr std::string_view name = "robertson", title = "Robertson to t = 1e11";
   static constexpr std::size_t size = 3;
   static constexpr double duration = 1e11;
+  static constexpr bool autonomous = true;
   using State = std::array<Real, size>;
 
   Real slow = in<Real>(0.04_c), fast = Real(3e7), back = Real(1e4);

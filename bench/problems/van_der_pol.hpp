@@ -19,6 +19,7 @@ struct VanDerPol {
   static constexpr std::string_view name = "van_der_pol", title = "van der Pol, mu = 1000, to t = 2000";
   static constexpr std::size_t size = 2;
   static constexpr double duration = 2000;
+  static constexpr bool autonomous = true;
   using State = std::array<Real, size>;
 
   Real mu = Real(1000);
@@ -53,6 +54,7 @@ struct VanDerPolScaled {
   static constexpr std::string_view name = "van_der_pol_scaled", title = "van der Pol, 1 / epsilon = 1e6, to t = 11";
   static constexpr std::size_t size = 2;
   static constexpr double duration = 11;
+  static constexpr bool autonomous = true;
   using State = std::array<Real, size>;
 
   Real stiffness = Real(1000000);

@@ -15,7 +15,6 @@
 #include <continuo/methods/newton.hpp>
 #include <continuo/methods/rosenbrock_tableau.hpp>
 #include <continuo/methods/weighted_sum.hpp>
-#include <continuo/system/mass.hpp>
 
 namespace continuo {
 
@@ -260,17 +259,19 @@ struct RosenbrockMethod {
                                                 X& product) {
     using Weights = detail::Row<SolvedWeight<s>, s>;
     const auto u = detail::stages_of<Weights, X>(work.u);
-    if constexpr (has_mass<System, X>()) {
-      detail::for_each_unit(right, [&, to = sum.data()](std::size_t i) __attribute__((always_inline)) {
-        set_unit<X>(inverse_h * detail::row_sum<Weights, X>(u, i), i, to);
-      });
-      work.linear.multiply_mass(sum, product);
-      for (std::size_t i = 0; i < dimension(right); ++i) right.data()[i] += product.data()[i];
-    } else {
-      detail::for_each_unit(right, [&, to = right.data()](std::size_t i) __attribute__((always_inline)) {
-        set_unit<X>(unit<X>(to, i) + inverse_h * detail::row_sum<Weights, X>(u, i), i, to);
-      });
+    if constexpr (HasMassMatrix<System, X> || HasMassDiagonal<System, X>) {
+      if (work.linear.has_mass()) {
+        detail::for_each_unit(right, [&, to = sum.data()](std::size_t i) __attribute__((always_inline)) {
+          set_unit<X>(inverse_h * detail::row_sum<Weights, X>(u, i), i, to);
+        });
+        work.linear.multiply_mass(sum, product);
+        for (std::size_t i = 0; i < dimension(right); ++i) right.data()[i] += product.data()[i];
+        return;
+      }
     }
+    detail::for_each_unit(right, [&, to = right.data()](std::size_t i) __attribute__((always_inline)) {
+      set_unit<X>(unit<X>(to, i) + inverse_h * detail::row_sum<Weights, X>(u, i), i, to);
+    });
   }
 
   /// A unit of a local state, which stays in registers that way.
