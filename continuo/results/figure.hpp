@@ -21,7 +21,8 @@ struct Panel {
   std::vector<Curve> curves;
   std::vector<double> marks{};  // positions on the x axis: events
   std::string mark_label = "event";
-  bool equal_scale = false;  // one unit is as long upwards as to the right
+  bool equal_scale = false;    // one unit is as long upwards as to the right
+  bool logarithmic_x = false;  // what is not positive has no place there
   bool logarithmic_y = false;
 };
 

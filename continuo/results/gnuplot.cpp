@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
@@ -90,26 +91,51 @@ std::string range_of(const Panel& panel, std::vector<double> Curve::* values, do
   return fmt::format("[{}:{}]", low - margin, high + margin);
 }
 
-/// The marks that can be told apart.
-std::vector<double> distinct_marks(const Panel& panel) {
+/// Where x stands on the panel's axis, in any scale; what has no place is no number.
+double place_of(const Panel& panel, double x) {
+  if (!panel.logarithmic_x) return x;
+  return x > 0 ? std::log10(x) : NAN;
+}
+
+/// The least and the greatest place with a point.
+std::array<double, 2> places_of(const Panel& panel) {
   double low = INFINITY, high = -INFINITY;
   for (const Curve& curve : panel.curves) {
-    for (const double x : curve.x) low = std::min(low, x), high = std::max(high, x);
+    for (const double x : curve.x) {
+      const double place = place_of(panel, x);
+      if (std::isfinite(place)) low = std::min(low, place), high = std::max(high, place);
+    }
   }
+  return {low, high};
+}
+
+/// The marks that can be told apart.
+std::vector<double> distinct_marks(const Panel& panel) {
+  const auto [low, high] = places_of(panel);
   std::vector<double> marks;
   for (const double mark : panel.marks) {
-    if (marks.empty() || mark - marks.back() >= closest_marks * (high - low) / width) marks.push_back(mark);
+    const double place = place_of(panel, mark);
+    if (!std::isfinite(place)) continue;
+    const double before = marks.empty() ? -INFINITY : place_of(panel, marks.back());
+    if (place - before >= closest_marks * (high - low) / width) marks.push_back(mark);
   }
   return marks;
+}
+
+std::string range_of_x(const Panel& panel) {
+  if (!panel.logarithmic_x) return range_of(panel, &Curve::x, panel.equal_scale ? 0.05 : 0);
+  const auto [low, high] = places_of(panel);
+  return low < high ? fmt::format("[{}:{}]", std::pow(10, low), std::pow(10, high)) : "[*:*]";
 }
 
 void append_panel(std::string& script, const Panel& panel, std::size_t number, double bottom, double height) {
   script += fmt::format("set origin 0,{:.5f}\nset size 1,{:.5f}\n", bottom, height);
   script += panel.equal_scale ? "set size ratio -1\n" : "set size noratio\n";
+  script += panel.logarithmic_x ? "set logscale x\nset format x '%.0e'\n" : "unset logscale x\nset format x '%h'\n";
   script += panel.logarithmic_y ? "set logscale y\nset format y '%.0e'\n" : "unset logscale y\nset format y '%h'\n";
   script +=
       fmt::format("set xlabel {}\nset ylabel {}\nunset arrow\n", in_quotes(panel.x_label), in_quotes(panel.y_label));
-  script += fmt::format("set xrange {}\nset yrange {}\n", range_of(panel, &Curve::x, panel.equal_scale ? 0.05 : 0),
+  script += fmt::format("set xrange {}\nset yrange {}\n", range_of_x(panel),
                         panel.logarithmic_y ? "[*:*]" : range_of(panel, &Curve::y, 0.05));
   const auto marks = distinct_marks(panel);
   for (const double mark : marks) {
@@ -164,7 +190,8 @@ std::string gnuplot_script(const Figure& figure, const std::string& path) {
   std::string script;
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     for (std::size_t c = 0; c < figure.panels[p].curves.size(); ++c) {
-      append_data(script, p, c, thinned(figure.panels[p].curves[c], 2 * width));
+      const Panel& panel = figure.panels[p];
+      append_data(script, p, c, panel.logarithmic_x ? panel.curves[c] : thinned(panel.curves[c], 2 * width));
     }
   }
   script +=

@@ -51,7 +51,13 @@ std::string y_label(const Panel& panel, const std::string& unit) {
   return is_number(unit) ? names : names.empty() ? "[" + unit + "]" : names + " [" + unit + "]";
 }
 
-void append_panels(const PlotData& plot, const std::vector<double>& marks, std::vector<Panel>& panels) {
+/// Rows at 1, 10, 100 s ask for an axis that gives each decade the same room.
+bool has_logarithmic_time(const model::Run& run) {
+  return run.plan.output == model::OutputPlan::Kind::logarithmic;
+}
+
+void append_panels(const PlotData& plot, const model::Run& run, const std::vector<double>& marks,
+                   std::vector<Panel>& panels) {
   std::vector<std::string> units;
   for (const model::Column& curve : plot.curves) {
     if (std::ranges::find(units, curve.unit) == units.end()) units.push_back(curve.unit);
@@ -63,6 +69,7 @@ void append_panels(const PlotData& plot, const std::vector<double>& marks, std::
     }
     panel.y_label = y_label(panel, unit);
     if (plot.against_time) panel.marks = marks;
+    panel.logarithmic_x = plot.against_time && has_logarithmic_time(run);
     panel.equal_scale = deserves_equal_scale(plot, panel);
     panels.push_back(std::move(panel));
   }
@@ -78,7 +85,8 @@ Panel drift_panel(const model::Run& run, const std::vector<double>& marks) {
   return {.x_label = label_of(run.motion.columns.front()),
           .y_label = relative ? "energy drift, relative" : "energy drift" + unit,
           .curves = {{relative ? "(E(t) - E(0)) / |E(0)|" : "E(t) - E(0)", column_of(run.motion, 0), drift}},
-          .marks = marks};
+          .marks = marks,
+          .logarithmic_x = has_logarithmic_time(run)};
 }
 
 PlotData states_plot(const model::Run& run) {
@@ -118,7 +126,7 @@ std::vector<PlotData> plots_of(const model::ModelProgram& program, const model::
 Figure figure_of(std::string title, const model::Run& run, std::span<const PlotData> plots) {
   Figure figure{.title = std::move(title), .panels = {}};
   const auto marks = event_times(run);
-  for (const PlotData& plot : plots) append_panels(plot, marks, figure.panels);
+  for (const PlotData& plot : plots) append_panels(plot, run, marks, figure.panels);
   if (!run.total_energy.empty()) figure.panels.push_back(drift_panel(run, marks));
   return figure;
 }

@@ -63,6 +63,25 @@ TEST(Plots, EventsAreMarkedOnceEach) {
   EXPECT_THAT(gnuplot_script(figure, "x.svg"), HasSubstr("set arrow from first 1,"));
 }
 
+TEST(Plots, RowsByDecadesGetALogarithmicTime) {
+  model::Run run = falling_ball().run;
+  run.plan.output = model::OutputPlan::Kind::logarithmic;
+  const PlotData plot = both_states(run);
+  Figure figure = figure_of("Ball", run, std::span(&plot, 1));
+  for (const Panel& panel : figure.panels) EXPECT_TRUE(panel.logarithmic_x);
+  // The first row, at t = 0, has no place; nor has a mark there.
+  figure.panels.front().curves.front().x = {0, 0.01, 1, 100};
+  figure.panels.front().marks = {0, 0.5};
+  figure.panels.resize(1);
+  const std::string script = gnuplot_script(figure, "x.svg");
+  EXPECT_THAT(script, HasSubstr("\nset logscale x"));
+  EXPECT_THAT(script, HasSubstr("set xrange [0.01:100]"));
+  EXPECT_THAT(script, HasSubstr("set arrow from first 0.5,"));
+  EXPECT_THAT(script, Not(HasSubstr("set arrow from first 0,")));
+  run.plan.output = model::OutputPlan::Kind::every;
+  EXPECT_THAT(gnuplot_script(figure_of("Ball", run, std::span(&plot, 1)), "x.svg"), Not(HasSubstr("\nset logscale x")));
+}
+
 TEST(Plots, AnOrbitKeepsItsShape) {
   model::Run run = falling_ball().run;
   run.total_energy.clear();
