@@ -55,7 +55,7 @@ struct RosenbrockMethod {
     int evaluations = linearize(system, t, x, h, made_jump, work);
     ++work.costs.decompositions;
     if (!work.lu.factor(work.linear, 1 / (h * constant<GammaValue, Scalar<X>>()))) {
-      work.status = StepStatus::singular_matrix;
+      work.status = work.linear.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
       return evaluations;
     }
     work.status = StepStatus::done;
@@ -70,19 +70,23 @@ struct RosenbrockMethod {
 
   /// Root mean square of error_i / scale_i; not a number where x_new is not finite.
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
+    return sqrt(error_square(work, h, x, x_new, tolerance));
+  }
+  template <State X>
+  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                const Tolerance<Scalar<X>>& tolerance) {
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
     const auto u = detail::stages_of<Error, X>(work.u);
     detail::Unit<X> sum{};
     detail::for_each_unit(x, [&](std::size_t i) __attribute__((always_inline)) {
       const detail::Unit<X> end = detail::load<X>(x_new.data(), i);
-      const detail::Unit<X> ratio =
-          detail::row_sum<Error, X>(u, i) / detail::error_scale<X>(tolerance, i, x, x_new) + (end - end);
-      sum += ratio * ratio;
+      const detail::Unit<X> ratio = detail::row_sum<Error, X>(u, i) / detail::error_scale<X>(tolerance, i, x, x_new);
+      sum += ratio * ratio + (end - end);  // which is 0, if it is finite
     });
-    return sqrt(detail::total<X>(sum) * detail::one_over_dimension(x));
+    return detail::total<X>(sum) * detail::one_over_dimension(x);
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
@@ -238,7 +242,11 @@ struct RosenbrockMethod {
       }
     }
     work.lu.solve(right.data());
-    work.u[s] = detail::keep(right);
+    if constexpr (detail::Packed<X>) {
+      work.u[s] = detail::keep(right);
+    } else {
+      work.u[s] = right;
+    }
   }
 
   /// y = x + sum_j row_j u_j. The newest term is added last and by itself: see advance().

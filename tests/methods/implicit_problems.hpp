@@ -94,7 +94,7 @@ struct ProtheroRobinson {
 
 /// x[1] appears in no equation: the matrix of any implicit step is singular.
 struct LostUnknown {
-  static double mass(std::size_t i) { return i == 0 ? 1 : 0; }
+  static void mass_matrix(std::span<double> rows) { rows[0] = 1, rows[1] = rows[2] = rows[3] = 0; }
   template <class X>
   void operator()(const Scalar<X>&, const X& x, X& dxdt) const {
     dxdt[0] = -x[0];

@@ -235,16 +235,16 @@ TYPED_TEST(Rosenbrock, FailuresHaveTheirOutcome) {
   EXPECT_EQ(wall.outcome.ending, Ending::not_finite);
   EXPECT_NEAR(wall.outcome.t, 0.5, 1e-8);  // df/dt by a difference looks sqrt(epsilon) t ahead
   const auto bad = solve(testing::NotANumberInJacobian{}, x0, {0.0, 1.0}, TypeParam{});
-  EXPECT_EQ(bad.outcome.ending, Ending::nonlinear_solve_failed);
+  EXPECT_EQ(bad.outcome.ending, Ending::not_finite);
 }
 
-struct Still : bench::Robertson<double> {
-  static constexpr bool autonomous = true;
+struct Silent : bench::Robertson<double> {
+  static constexpr bool autonomous = false;
 };
 TEST(RosenbrockMethod, ASystemThatSaysSoIsSpentNoEvaluationForTime) {
   const Options<std::array<double, 3>> options{.step = 1e-3};
-  const auto known = solve(Still{}, Still::start(), {0.0, 0.01}, Rodas4{}, options);
-  const auto unknown = solve(bench::Robertson<double>{}, Still::start(), {0.0, 0.01}, Rodas4{}, options);
+  const auto known = solve(bench::Robertson<double>{}, Silent::start(), {0.0, 0.01}, Rodas4{}, options);
+  const auto unknown = solve(Silent{}, Silent::start(), {0.0, 0.01}, Rodas4{}, options);
   EXPECT_EQ(known.statistics.evaluations, 60U);
   EXPECT_EQ(unknown.statistics.evaluations, 70U);
   EXPECT_EQ(known.final_state(), unknown.final_state());
