@@ -91,6 +91,13 @@ constexpr bool is_autonomous(const F& f) {
   }
 }
 
+/// The system knows how large the eigenvalues of df/dx become: f.spectral_radius(t, x), not below the greatest of
+/// their sizes. Stabilised explicit methods choose their stages by it.
+template <class F, class X>
+concept HasSpectralRadius = requires(F& f, Scalar<X> t, const X& x) {
+  { f.spectral_radius(t, x) } -> std::convertible_to<Scalar<X>>;
+};
+
 /// The system reads M x' = f(t, x) with a constant M: f.mass_matrix(span of n*n, row by row). M may be singular: the
 /// system is then one of differential and algebraic equations.
 template <class F, class X>
