@@ -144,6 +144,13 @@ class Linearization {
       values[pattern_.find(j, j)] += mass_ == Mass::identity ? c : c * Number(mass_rows_[j]);
   }
   const SparsePattern& pattern() const { return pattern_; }
+  /// Of J: row by row, or of its pattern.
+  std::span<const Real> entries() const { return rows_; }
+  Real mass(std::size_t i, std::size_t j) const {
+    if (mass_ == Mass::matrix) return mass_rows_[i * size_ + j];
+    if (i != j) return Real(0);
+    return mass_ == Mass::identity ? Real(1) : mass_rows_[i];
+  }
 
  private:
   enum class Mass { identity, diagonal, matrix };
