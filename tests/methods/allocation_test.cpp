@@ -7,6 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <continuo/methods/all.hpp>
+#include <continuo/methods/dormand_prince_nystrom6.hpp>
+#include <continuo/methods/dormand_prince_nystrom8.hpp>
+#include <continuo/methods/generalized_alpha.hpp>
+#include <continuo/methods/kahan_li8.hpp>
+#include <continuo/methods/mclachlan_atela4.hpp>
+#include <continuo/methods/newmark.hpp>
 #include <continuo/methods/rodas4.hpp>
 #include <continuo/methods/rodas5p.hpp>
 #include <continuo/methods/rosenbrock23.hpp>
@@ -30,12 +36,20 @@ void operator delete(void* memory, std::size_t) noexcept {
 namespace continuo {
 namespace {
 
-/// The allocations of ten steps with error and interpolant.
-template <class M, class X>
-std::size_t allocations_in_steps(X x) {
-  auto f = second_order([](double, const auto& q, const auto& v, auto& a) {
+auto damped() {
+  return second_order([](double, const auto& q, const auto& v, auto& a) {
     for (std::size_t i = 0; i < q.size(); ++i) a[i] = -q[i] - v[i];
   });
+}
+auto planar() {
+  return second_order([](double, const auto& q, auto& a) {
+    for (std::size_t i = 0; i < q.size(); ++i) a[i] = -q[i] * q[i];
+  });
+}
+
+/// The allocations of ten steps with error and interpolant.
+template <class M, class X, class System>
+std::size_t allocations_in_steps(X x, System f) {
   X x_new = x;
   auto work = M::workspace(x);
   Interpolant<X, M::dense_degree> interpolant(x);
@@ -55,17 +69,25 @@ TEST(Allocation, NoStepAllocates) {
   const std::vector<int> seen(3);
   ASSERT_GT(allocations, before) << "the count works";
   for_each_method<ExplicitMethods>([]<class M>() {
-    EXPECT_EQ((allocations_in_steps<M>(std::array<double, 4>{1, 2, 3, 4})), 0U) << M::name;
-    EXPECT_EQ((allocations_in_steps<M>(std::vector<double>{1, 2, 3, 4})), 0U) << M::name;
+    EXPECT_EQ((allocations_in_steps<M>(std::array<double, 4>{1, 2, 3, 4}, damped())), 0U) << M::name;
+    EXPECT_EQ((allocations_in_steps<M>(std::vector<double>{1, 2, 3, 4}, damped())), 0U) << M::name;
   });
 }
 
-/// Of an implicit method, whose first step learns the structure of the system.
-template <class M, class X>
-std::size_t allocations_in_implicit_steps(X x) {
-  const auto f = [](double t, const X& at, X& slope) {
-    for (std::size_t i = 0; i < at.size(); ++i) slope[i] = t - 100 * at[i] * at[i];
+TEST(Allocation, NoStepOfAccelerationsAllocates) {
+  const auto expect_none = []<class M>(M) {
+    EXPECT_EQ((allocations_in_steps<M>(std::array<double, 4>{1, 2, 3, 4}, planar())), 0U) << M::name;
+    EXPECT_EQ((allocations_in_steps<M>(std::vector<double>{1, 2, 3, 4}, planar())), 0U) << M::name;
   };
+  expect_none(DormandPrinceNystrom6{});
+  expect_none(DormandPrinceNystrom8{});
+  expect_none(McLachlanAtela4{});
+  expect_none(KahanLi8{});
+}
+
+/// Of an implicit method, whose first step learns the structure of the system.
+template <class M, class X, class System>
+std::size_t allocations_in_implicit_steps(X x, System f) {
   X x_new = x;
   auto work = M::workspace(x);
   Interpolant<X, M::dense_degree> interpolant(x);
@@ -83,12 +105,24 @@ std::size_t allocations_in_implicit_steps(X x) {
 
 TEST(Allocation, NoImplicitStepAllocatesAfterTheFirst) {
   const auto expect_none = []<class M>(M) {
-    EXPECT_EQ((allocations_in_implicit_steps<M>(std::array<double, 4>{1, 2, 3, 4})), 0U) << M::name;
-    EXPECT_EQ((allocations_in_implicit_steps<M>(std::vector<double>{1, 2, 3, 4})), 0U) << M::name;
+    const auto f = [](double t, const auto& x, auto& slope) {
+      for (std::size_t i = 0; i < x.size(); ++i) slope[i] = t - 100 * x[i] * x[i];
+    };
+    EXPECT_EQ((allocations_in_implicit_steps<M>(std::array<double, 4>{1, 2, 3, 4}, f)), 0U) << M::name;
+    EXPECT_EQ((allocations_in_implicit_steps<M>(std::vector<double>{1, 2, 3, 4}, f)), 0U) << M::name;
   };
   expect_none(Rosenbrock23{});
   expect_none(Rodas4{});
   expect_none(Rodas5P{});
+}
+
+TEST(Allocation, NoStructuralStepAllocatesAfterTheFirst) {
+  const auto expect_none = []<class M>(M) {
+    EXPECT_EQ((allocations_in_implicit_steps<M>(std::array<double, 4>{1, 2, 3, 4}, damped())), 0U) << M::name;
+    EXPECT_EQ((allocations_in_implicit_steps<M>(std::vector<double>{1, 2, 3, 4}, damped())), 0U) << M::name;
+  };
+  expect_none(Newmark{});
+  expect_none(GeneralizedAlpha{});
 }
 
 }  // namespace
