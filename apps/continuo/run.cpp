@@ -28,7 +28,7 @@ namespace {
 struct RunRequest {
   ExperimentOptions experiment;
   std::string motion, events, plot, manifest;  // files; empty: not wanted
-  bool json = false;
+  bool json = false, estimate_error = false;
 
   bool data_to_standard_output() const { return json || motion == "-" || events == "-" || manifest == "-"; }
 };
@@ -108,6 +108,7 @@ ExitCode run(const RunRequest& request) {
   const model::Simulated simulated = [&] {
     Progress progress;
     prepared.experiment.progress = progress.watcher();
+    prepared.experiment.estimate_error = request.estimate_error;
     return model::simulate(prepared.program, prepared.experiment);
   }();
   show(simulated.diagnostics, source);
@@ -147,6 +148,8 @@ void add_run(CLI::App& app, ExitCode& exit) {
       ->type_name("FILE");
   verb->add_option("--plot", request->plot, "A picture, .svg or .png")->type_name("FILE");
   verb->add_option("--manifest", request->manifest, "What was run and how (else beside the CSV)")->type_name("FILE");
+  verb->add_flag("--estimate-error", request->estimate_error,
+                 "The true error, by a second run a hundred times as strict");
   verb->add_flag("--json", request->json, "The result as one JSON object on standard output");
   verb->callback([&exit, request] { exit = run(*request); });
 }

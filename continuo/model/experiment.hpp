@@ -30,6 +30,7 @@ struct Experiment {
   std::size_t max_steps = 10'000'000;
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
+  bool estimate_error = false;  // by a second run, a hundred times as strict
   bool keep_rows = true;  // false: only the first and the last state, for sweeps
 };
 

@@ -53,6 +53,13 @@ struct CheckResult {
   std::string message;  // why there is no value; else empty
 };
 
+/// The true error of a run, as a second, stricter one shows it: |difference| per state.
+struct ErrorEstimate {
+  std::vector<double> at_end;
+  std::vector<double> largest;  // of all rows; empty where the two runs have no rows in common
+  std::string message;          // why there is no estimate; else empty
+};
+
 struct Run {
   Plan plan;
   Motion motion;
@@ -63,6 +70,7 @@ struct Run {
   Statistics statistics;
   std::optional<EnergyBalance> energy;
   std::vector<CheckResult> checks;
+  std::optional<ErrorEstimate> error;
 
   double final_time() const { return motion.time(motion.rows() - 1); }
   std::span<const double> final_state() const { return motion.state(motion.rows() - 1); }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/model/error_estimate.hpp>
 #include <continuo/model/integrate.hpp>
 #include <continuo/model/run_checks.hpp>
 #include <continuo/model/run_recorder.hpp>
@@ -77,6 +78,7 @@ Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Exp
   recorder.give(run);
   run.checks = judge(model, run, recorder);
   if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(model, run));
+  if (experiment.estimate_error && succeeded(run.outcome.ending)) run.error = estimate_error(program, experiment, run);
   simulated.run = std::move(run);
   return simulated;
 }

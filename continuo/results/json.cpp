@@ -16,11 +16,17 @@ std::string text_of(const Json& json) {
 }
 
 Json statistics_of(const Statistics& statistics) {
-  return {{"steps", statistics.steps},
-          {"rejected", statistics.rejected},
-          {"evaluations", statistics.evaluations},
-          {"events", statistics.events},
-          {"seconds", statistics.seconds}};
+  Json json{{"steps", statistics.steps},
+            {"rejected", statistics.rejected},
+            {"evaluations", statistics.evaluations},
+            {"events", statistics.events},
+            {"seconds", statistics.seconds}};
+  if (statistics.decompositions > 0) {
+    json["jacobians"] = statistics.jacobians;
+    json["decompositions"] = statistics.decompositions;
+    json["solutions"] = statistics.solutions;
+  }
+  return json;
 }
 
 Json outcome_of(const Outcome<double>& outcome) {
@@ -60,6 +66,18 @@ Json manifest_object(const model::Model& model, const model::Run& run, std::stri
   json["seed"] = nullptr;
   json["outcome"] = outcome_of(run.outcome);
   json["statistics"] = statistics_of(run.statistics);
+  return json;
+}
+
+Json error_of(const model::Run& run) {
+  Json json = Json::object();
+  const model::ErrorEstimate& error = *run.error;
+  if (!error.message.empty()) json["message"] = error.message;
+  for (std::size_t i = 0; i < error.at_end.size(); ++i) {
+    Json& state = json[run.motion.columns[i + 1].name];
+    state["at_end"] = error.at_end[i];
+    if (!error.largest.empty()) state["largest"] = error.largest[i];
+  }
   return json;
 }
 
@@ -108,6 +126,8 @@ std::string run_json(const model::Run& run) {
                        ? Json{{"first", run.energy->first}, {"last", run.energy->last}, {"drift", run.energy->drift}}
                        : Json();
   json["checks"] = checks_of(run);
+  if (run.error) json["error"] = error_of(run);
+  if (!run.outcome.hint.empty()) json["hint"] = run.outcome.hint;
   return text_of(json);
 }
 

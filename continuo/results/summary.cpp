@@ -39,8 +39,10 @@ void append_states(const model::Run& run, std::string& text) {
   const std::size_t shown = values.size() <= most_states ? values.size() : most_states - 1;
   for (std::size_t i = 0; i < shown; ++i) widest = std::max(widest, columns[i].name.size());
   for (std::size_t i = 0; i < shown; ++i) {
+    std::string value = short_number(values[i]);
+    if (run.error && i < run.error->at_end.size()) value += fmt::format(" +- {:.1g}", run.error->at_end[i]);
     fmt::format_to(std::back_inserter(text), "  {:<{}} = {}\n", columns[i].name, widest,
-                   with_unit(short_number(values[i]), columns[i].unit));
+                   with_unit(std::move(value), columns[i].unit));
   }
   if (shown < values.size()) {
     fmt::format_to(std::back_inserter(text), "  and {} more states (-o FILE writes them all)\n", values.size() - shown);
@@ -111,6 +113,28 @@ void append_checks(const model::Run& run, bool as_written, std::string& text) {
   if (failed.size() > most_checks) fmt::format_to(out, "        and {} more\n", failed.size() - most_checks);
 }
 
+void append_error(const model::Run& run, std::string& text) {
+  if (!run.error) return;
+  const model::ErrorEstimate& error = *run.error;
+  auto out = std::back_inserter(text);
+  if (error.at_end.empty()) {
+    fmt::format_to(out, "error   no estimate: {}\n", error.message);
+    return;
+  }
+  if (error.largest.empty()) {
+    text += "error   at the end, against a run a hundred times as strict\n";
+    return;
+  }
+  const auto worst = std::ranges::max_element(error.largest);
+  const model::Column& column = run.motion.columns[static_cast<std::size_t>(worst - error.largest.begin()) + 1];
+  fmt::format_to(out, "error   at most {} in {}, against a run a hundred times as strict\n",
+                 with_unit(fmt::format("{:.1g}", *worst), column.unit), column.name);
+}
+
+void append_note(const model::Run& run, std::string& text) {
+  if (succeeded(run.outcome.ending) && !run.outcome.hint.empty()) text += fmt::format("note    {}\n", run.outcome.hint);
+}
+
 void append_cost(const model::Run& run, std::string& text) {
   const Statistics& s = run.statistics;
   const std::string control = run.plan.step > 0 ? fmt::format("step {}", short_number(run.plan.step))
@@ -146,7 +170,9 @@ std::string summary(const model::Model& model, const model::Run& run, bool as_wr
   append_events(model, run, text);
   append_energy(run, text);
   append_checks(run, as_written, text);
+  append_error(run, text);
   append_cost(run, text);
+  append_note(run, text);
   return text;
 }
 

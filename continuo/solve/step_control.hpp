@@ -53,6 +53,7 @@ class StepControl {
   /// The trajectory goes on from another state (or with another f): step size and history begin anew.
   void jump(Real t, const X& x, const Options<X>& options) {
     begin_ = end_ = grid_ = t;
+    carried_ = 0;
     grid_steps_ = 0;
     x_end_ = x;
     jumped_ = true;
@@ -263,9 +264,13 @@ class StepControl {
           // A step cut short by the limit says little about the next: never below what was planned.
           next_ = forward_ * max(abs(h), abs(h_) * factor);
           end_ = limit;
+          carried_ = 0;
         } else {
           next_ = h_ * factor;
-          end_ = begin_ + h_;
+          // What the sum loses is carried to the next (W. Kahan): a million steps do not drift.
+          const Real wanted = h_ + carried_;
+          end_ = begin_ + wanted;
+          carried_ = wanted - (end_ - begin_);
         }
         if constexpr (watches_stiffness) {
           if (statistics_.steps % probe_every == 0 && statistics_.steps >= first_probe) [[unlikely]]
@@ -336,7 +341,8 @@ class StepControl {
 
   System system_;
   Real forward_, begin_, end_, h_{}, next_{};
-  Real grid_;  // fixed steps are counted from here
+  Real carried_{};  // of adaptive steps: what end_ lacks
+  Real grid_;       // fixed steps are counted from here
   std::size_t grid_steps_ = 0;
   bool jumped_ = true, interpolated_ = false;
   ErrorHistory errors_;

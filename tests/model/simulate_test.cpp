@@ -329,6 +329,22 @@ TEST(Simulate, SettingsAreReadAsTheLanguageReadsThem) {
   EXPECT_FALSE(parse_setting(model, "k=", problems));
 }
 
+TEST(Simulate, TheTrueErrorIsEstimated) {
+  // x = exp(-t). The second run's own error is about a hundredth of the first's for an adaptive run; for half the step
+  // of a method of order 4 Richardson's factor leaves an error of the next order, h times smaller.
+  for (const Experiment& experiment : {Experiment{.rtol = 1e-5, .estimate_error = true},
+                                       Experiment{.method = "rk4", .step = 0.1, .estimate_error = true}}) {
+    const Simulated simulated = simulate(model_of("x' = -x\nx(0) = 1\nrun 0..1 output 0.1\n"), experiment);
+    ASSERT_TRUE(simulated.run && simulated.run->error);
+    const ErrorEstimate& estimate = *simulated.run->error;
+    const double truth = std::abs(simulated.run->final_state()[0] - std::exp(-1.0));
+    EXPECT_GT(truth, 1e-9);
+    EXPECT_NEAR(estimate.at_end[0], truth, 0.2 * truth);
+    ASSERT_FALSE(estimate.largest.empty());
+    EXPECT_GE(estimate.largest[0], estimate.at_end[0]);
+  }
+}
+
 // The rod of a pendulum as an unknown, index 1: T follows from the second derivative of x^2 + y^2 = L^2. Its tension is
 // known in closed form from the energy: T L^2 = v^2 - g y with v^2 = -2 g y, so T = -3 g y / L^2.
 TEST(Simulate, AlgebraicEquationsAreSolved) {

@@ -1,0 +1,70 @@
+// continuo/model/error_estimate.cpp
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <continuo/model/error_estimate.hpp>
+#include <continuo/model/simulate.hpp>
+#include <continuo/solve/catalogue.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+constexpr double stricter = 100;
+constexpr double least_rtol = 1e-14;  // below, rounding is larger than what is asked
+
+bool same_times(const Motion& a, const Motion& b) {
+  if (a.rows() != b.rows()) return false;
+  for (std::size_t row = 0; row < a.rows(); ++row) {
+    // Events move by what is to be measured.
+    if (std::abs(a.time(row) - b.time(row)) > 1e-6 * std::abs(a.time(row))) return false;
+  }
+  return true;
+}
+
+std::vector<double> differences(std::span<const double> a, std::span<const double> b, double factor) {
+  std::vector<double> result(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] = factor * std::abs(a[i] - b[i]);
+  return result;
+}
+
+}  // namespace
+
+ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                             const Run& run) {
+  ErrorEstimate estimate;
+  Experiment strict = experiment;
+  strict.estimate_error = false;
+  strict.method = run.plan.method;
+  double factor = 1;
+  if (run.plan.step > 0) {
+    strict.step = run.plan.step / 2;
+    const double power = std::exp2(find_method(run.plan.method)->order);
+    factor = power / (power - 1);
+  } else {
+    strict.rtol = std::max(run.plan.rtol / stricter, least_rtol);
+    strict.atol.clear();
+    for (const double atol : run.plan.atol) strict.atol.push_back(atol / stricter);
+  }
+  const Simulated second = simulate(program, strict);
+  if (!second.run || second.run->outcome.ending != run.outcome.ending) {
+    estimate.message = second.run ? describe(second.run->outcome) : "the second run could not begin";
+    return estimate;
+  }
+  if (std::abs(second.run->final_time() - run.final_time()) > 1e-6 * std::abs(run.final_time())) {
+    estimate.message = fmt::format("the second run ended at t = {}", second.run->final_time());
+    return estimate;
+  }
+  estimate.at_end = differences(run.final_state(), second.run->final_state(), factor);
+  if (!same_times(run.motion, second.run->motion)) return estimate;
+  estimate.largest = estimate.at_end;
+  for (std::size_t row = 0; row < run.motion.rows(); ++row) {
+    const auto here = differences(run.motion.state(row), second.run->motion.state(row), factor);
+    for (std::size_t i = 0; i < here.size(); ++i) estimate.largest[i] = std::max(estimate.largest[i], here[i]);
+  }
+  return estimate;
+}
+
+}  // namespace continuo::model

@@ -1,0 +1,22 @@
+// continuo/model/error_estimate.hpp
+// How far a run is from the true motion: not the local error that the tolerance bounds, but what it has added up to,
+// measured against a second run that is a hundred times as strict.
+//
+//   const ErrorEstimate estimate = estimate_error(program, experiment, run);
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/model/run.hpp>
+
+namespace continuo::model {
+
+/// One more run, a hundred times as strict; by a fixed step, with half the step and Richardson's factor 2^p / (2^p -
+/// 1). The method and everything else stay as they were.
+ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                             const Run& run);
+
+}  // namespace continuo::model
