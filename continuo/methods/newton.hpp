@@ -25,7 +25,7 @@ struct NewtonMemory {
 template <class Real, class Correct>
 bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& correct) {
   using std::max, std::pow;
-  constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+  const Real epsilon = std::numeric_limits<Real>::epsilon();
   // eq. 8.10': an estimate before the second correction is there.
   Real remainder = pow(max(memory.remainder, epsilon), Real(0.8));
   Real last = 0;

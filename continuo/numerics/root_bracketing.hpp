@@ -1,6 +1,7 @@
 // continuo/numerics/root_bracketing.hpp
 // A root between two points of opposite sign, enclosed until the two are neighbours in the number format.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -21,6 +22,7 @@ struct Bracket {
 /// M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11 (1971); the safeguard is T. J. Dekker's (1969).
 template <class Real, class F>
 Bracket<Real> enclose_root(F&& beyond, Real near, Real far, Real value_near, Real value_far) {
+  using std::abs, std::max, std::min, std::nextafter;
   int slow = 0, last_side = 0;
   Real width = far - near;
   while (true) {
@@ -30,8 +32,9 @@ Bracket<Real> enclose_root(F&& beyond, Real near, Real far, Real value_near, Rea
     if (slow < 3 && value_far != value_near) {
       t = far - value_far * ((far - near) / (value_far - value_near));
       // A guess that falls on an end is moved to that end's neighbour: this is what closes the enclosure in one go.
-      if (!(t > std::fmin(near, far))) t = std::nextafter(std::fmin(near, far), std::fmax(near, far));
-      if (!(t < std::fmax(near, far))) t = std::nextafter(std::fmax(near, far), std::fmin(near, far));
+      const Real least = min(near, far), greatest = max(near, far);
+      if (!(t > least)) t = nextafter(least, greatest);
+      if (!(t < greatest)) t = nextafter(greatest, least);
     } else {
       slow = 0;
     }
@@ -45,7 +48,6 @@ Bracket<Real> enclose_root(F&& beyond, Real near, Real far, Real value_near, Rea
       if (last_side < 0) value_far /= 2;
       last_side = -1;
     }
-    using std::abs;
     slow = abs(far - near) > abs(width) / 2 ? slow + 1 : 0;
     if (slow == 0) width = far - near;
   }

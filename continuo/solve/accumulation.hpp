@@ -2,6 +2,7 @@
 // Events that accumulate: a ball whose bounces shrink to nothing (Zeno), a relay that flips at every instant
 // (chattering, sliding). Both would keep a simulator busy for ever at one time; here they are found and named.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -17,7 +18,7 @@ class AccumulationWatch {
 
   /// Event i fired at t. Gives the limit time where its firings accumulate.
   std::optional<Real> fired(std::size_t i, Real t) {
-    using std::abs;
+    using std::abs, std::max;
     if (const auto limit = chattering(t)) return limit;
     Track& track = tracks_[i];
     const Real gap = abs(t - track.t), forward = t >= track.t ? Real(1) : Real(-1);
@@ -32,7 +33,7 @@ class AccumulationWatch {
     ++track.count;
     if (track.shrinking < 8) return std::nullopt;
     const Real rest = gap * ratio / (1 - ratio);
-    const Real scale = std::fmax(abs(t), abs(t - track.start));
+    const Real scale = max(abs(t), abs(t - track.start));
     if (rest > Real(1e4) * std::numeric_limits<Real>::epsilon() * scale) return std::nullopt;
     return t + forward * rest;
   }

@@ -125,7 +125,7 @@ class EventList {
     const Event<X>& event = events_[i];
     const auto past = [&](Real time) { return inclusive ? time >= t : time > t; };
     Real next = std::numeric_limits<Real>::infinity();
-    for (const Real time : event.times)
+    for (const Real& time : event.times)
       if (past(time) && time < next) next = time;
     if (event.period > 0) {
       using std::floor;

@@ -9,6 +9,7 @@
 // far side, or is zero), leaving the band by the far side is the event again. Bounces too small for the number format
 // therefore accumulate and are named; they never pass.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -199,7 +200,7 @@ class GuardWatch {
 
   template <class Evaluate>
   bool pass(Scan& scan, Real from, Real t, Real g, Evaluate& evaluate) {
-    using std::abs;
+    using std::abs, std::min;
     const Real band = scan.state.band;
     if (!(abs(g) > band)) return false;
     scan.state.side = sign_of(g);
@@ -208,12 +209,13 @@ class GuardWatch {
     scan.state.slides = slides + 1;
     const Real side = Real(scan.state.side);
     const auto beyond = [&](Real s) { return side * guard_at(scan.guard, s, evaluate) - band; };
-    scan.crossing = enclose_root(beyond, from, t, std::fmin(beyond(from), Real(0)), side * g - band).far;
+    scan.crossing = enclose_root(beyond, from, t, min(Real(0), beyond(from)), side * g - band).far;
     return true;
   }
 
   template <class Evaluate>
   bool cross(Scan& scan, Real near, Real far, Evaluate& evaluate) {
+    using std::min;
     if (scan.state.side == 0) return false;
     const Real g_far = guard_at(scan.guard, far, evaluate);
     const int side = sign_of(g_far);
@@ -221,14 +223,14 @@ class GuardWatch {
     scan.state.side = side;
     if (!scan.counts(side)) return false;
     const auto beyond = [&](Real s) { return Real(side) * guard_at(scan.guard, s, evaluate); };
-    scan.crossing = enclose_root(beyond, near, far, std::fmin(beyond(near), Real(0)), Real(side) * g_far).far;
+    scan.crossing = enclose_root(beyond, near, far, min(Real(0), beyond(near)), Real(side) * g_far).far;
     return true;
   }
 
   const Crossing<Real>* gather(Real from, Real to, Real instant) {
     const Real forward = to >= from ? Real(1) : Real(-1);
     Real first = std::numeric_limits<Real>::quiet_NaN();
-    for (const Real t : first_)
+    for (const Real& t : first_)
       if (!std::isnan(static_cast<double>(t)) && !(forward * t >= forward * first)) first = t;
     crossing_.offset = first;
     crossing_.guards.clear();

@@ -239,7 +239,7 @@ class StepControl {
 
   bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
     using std::abs, std::max, std::min, std::sqrt;
-    constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+    const Real epsilon = std::numeric_limits<Real>::epsilon();
     const Tolerance<Real> weights = tolerance(options);
     const Real room = limit - begin_;
     bool was_rejected = false, last_not_finite = false;
