@@ -71,6 +71,9 @@ class Coefficient {
     return distil({first, second, third}, 3);
   }
 
+  constexpr Coefficient& operator+=(const Coefficient& b) { return *this = *this + b; }
+  constexpr Coefficient& operator-=(const Coefficient& b) { return *this = *this - b; }
+
   friend constexpr bool operator==(const Coefficient&, const Coefficient&) = default;
   constexpr bool is_zero() const { return part_[0] == 0; }
 

@@ -10,21 +10,21 @@ template <class Real>
 struct ComplexNumber {
   Real re{}, im{};
 
-  ComplexNumber() = default;
-  ComplexNumber(const Real& re_) : re(re_), im(Real(0)) {}
-  ComplexNumber(const Real& re_, const Real& im_) : re(re_), im(im_) {}
+  constexpr ComplexNumber() = default;
+  constexpr ComplexNumber(const Real& re_) : re(re_), im(Real(0)) {}
+  constexpr ComplexNumber(const Real& re_, const Real& im_) : re(re_), im(im_) {}
 
-  ComplexNumber& operator+=(const ComplexNumber& b) { return re += b.re, im += b.im, *this; }
-  ComplexNumber& operator-=(const ComplexNumber& b) { return re -= b.re, im -= b.im, *this; }
-  ComplexNumber& operator*=(const ComplexNumber& b) { return *this = *this * b; }
+  constexpr ComplexNumber& operator+=(const ComplexNumber& b) { return re += b.re, im += b.im, *this; }
+  constexpr ComplexNumber& operator-=(const ComplexNumber& b) { return re -= b.re, im -= b.im, *this; }
+  constexpr ComplexNumber& operator*=(const ComplexNumber& b) { return *this = *this * b; }
 
-  friend ComplexNumber operator+(ComplexNumber a, const ComplexNumber& b) { return a += b; }
-  friend ComplexNumber operator-(ComplexNumber a, const ComplexNumber& b) { return a -= b; }
-  friend ComplexNumber operator-(const ComplexNumber& a) { return {-a.re, -a.im}; }
-  friend ComplexNumber operator*(const ComplexNumber& a, const ComplexNumber& b) {
+  friend constexpr ComplexNumber operator+(ComplexNumber a, const ComplexNumber& b) { return a += b; }
+  friend constexpr ComplexNumber operator-(ComplexNumber a, const ComplexNumber& b) { return a -= b; }
+  friend constexpr ComplexNumber operator-(const ComplexNumber& a) { return {-a.re, -a.im}; }
+  friend constexpr ComplexNumber operator*(const ComplexNumber& a, const ComplexNumber& b) {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
   }
-  friend bool operator==(const ComplexNumber&, const ComplexNumber&) = default;
+  friend constexpr bool operator==(const ComplexNumber&, const ComplexNumber&) = default;
 };
 
 /// What a pivot is chosen by: |re| + |im|.
