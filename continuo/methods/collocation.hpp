@@ -215,9 +215,12 @@ struct CollocationMethod {
     Scalar<X> sum(0), dense_sum(0);
     for (std::size_t i = 0; i < dimension(x); ++i) {
       const Scalar<X> unit = Scalar<X>(1) / tolerance.scale(i, x.data()[i], x_new.data()[i]);
-      const Scalar<X> part = work.error.data()[i] * unit, dense = work.dense_error.data()[i] * unit;
+      const Scalar<X> part = work.error.data()[i] * unit;
       sum += part * part;
-      dense_sum += dense * dense;
+      if constexpr (radau) {
+        const Scalar<X> dense = work.dense_error.data()[i] * unit;
+        dense_sum += dense * dense;
+      }
     }
     const Scalar<X> dense_part = max(Scalar<X>(1), work.looseness / Scalar<X>(dense_looseness));
     dense_sum *= dense_part * dense_part;
