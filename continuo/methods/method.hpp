@@ -76,6 +76,7 @@ struct EquationCosts {
 ///   M::status(work)   -> StepStatus of the last step; what is not `done` is rejected and tried with a smaller h
 ///   M::costs(work)    -> EquationCosts
 ///   M::error_order_of(work) -> error_order where the order varies (then M::order and M::error_order are the greatest)
+///   M::starting_order order of the first step of a run and after a jump, where the order varies
 ///   M::next_factor(work, factor, h, x, x_new, tolerance) -> after a step whose error passed and before `accept`: the
 ///       factor for the next h, where `factor` is what the controller wants. A method of variable order chooses its
 ///       next order here; one that keeps a decomposition may answer 1.
@@ -107,6 +108,14 @@ StepStatus status_of(const Work& work) {
     return M::status(work);
   } else {
     return StepStatus::done;
+  }
+}
+template <class M>
+constexpr int starting_order() {
+  if constexpr (requires { M::starting_order; }) {
+    return M::starting_order;
+  } else {
+    return M::order;
   }
 }
 template <class M, class Work>

@@ -231,8 +231,8 @@ class StepControl {
                   "f is not finite at this state: look for a division by zero, a root "
                   "or logarithm of a negative number",
                   outcome);
-    next_ = forward_ * first_step(system_, begin_, x_begin_, slope_, M::order, forward_, longest, tolerance(options),
-                                  scratch_, x_end_);
+    next_ = forward_ * first_step(system_, begin_, x_begin_, slope_, detail::starting_order<M>(), forward_, longest,
+                                  tolerance(options), scratch_, x_end_);
     ++statistics_.evaluations;
     return true;
   }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <continuo/methods/adams.hpp>
 #include <continuo/methods/all.hpp>
 #include <continuo/methods/dormand_prince_nystrom6.hpp>
 #include <continuo/methods/dormand_prince_nystrom8.hpp>
@@ -79,6 +80,7 @@ TEST(Allocation, NoStepOfAccelerationsAllocates) {
     EXPECT_EQ((allocations_in_steps<M>(std::array<double, 4>{1, 2, 3, 4}, planar())), 0U) << M::name;
     EXPECT_EQ((allocations_in_steps<M>(std::vector<double>{1, 2, 3, 4}, planar())), 0U) << M::name;
   };
+  expect_none(Adams{});
   expect_none(DormandPrinceNystrom6{});
   expect_none(DormandPrinceNystrom8{});
   expect_none(McLachlanAtela4{});
