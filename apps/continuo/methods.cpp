@@ -31,6 +31,18 @@ constexpr std::array citations{
     Citation{"tsitouras5", "Tsitouras, Comput. Math. Appl. 62 (2011); the default"},
     Citation{"dop853", "Hairer, Norsett, Wanner, Solving ODEs I, II.5 and II.10"},
     Citation{"verner7", "Verner, Numer. Algorithms 53 (2010), most efficient 7(6), https://www.sfu.ca/~jverner/"},
+    Citation{"mclachlan_atela4", "McLachlan, Atela, Nonlinearity 5 (1992); symplectic"},
+    Citation{"yoshida6", "Yoshida, Phys. Lett. A 150 (1990); symplectic"},
+    Citation{"kahan_li8", "Kahan, Li, Math. Comp. 66 (1997); symplectic"},
+    Citation{"dprkn6", "Dormand, Prince, Comput. Math. Appl. 13 (1987), Nystrom 6(4)"},
+    Citation{"dprkn8", "Dormand, El-Mikkawy, Prince, IMA J. Numer. Anal. 7 (1987), Nystrom 8(6)"},
+    Citation{"dprkn12", "Dormand, El-Mikkawy, Prince, IMA J. Numer. Anal. 7 (1987), Nystrom 12(10)"},
+    Citation{"newmark", "Newmark, J. Eng. Mech. Div. ASCE 85 (1959), average acceleration"},
+    Citation{"generalized_alpha", "Chung, Hulbert, J. Appl. Mech. 60 (1993), spectral radius 0.8"},
+    Citation{"rkc2", "Sommeijer, Shampine, Verwer, J. Comput. Appl. Math. 88 (1998); for diffusion"},
+    Citation{"rosenbrock23", "Shampine, Reichelt, SIAM J. Sci. Comput. 18 (1997)"},
+    Citation{"rodas4", "Hairer, Wanner, Solving ODEs II, IV.7"},
+    Citation{"rodas5p", "Steinebach, BIT 63 (2023); the first choice for stiff systems"},
     Citation{"bdf", "Shampine, Reichelt, SIAM J. Sci. Comput. 18 (1997), NDF of orders 1 to 5"},
     Citation{"verner9", "Verner, Numer. Algorithms 53 (2010), most efficient 9(8), https://www.sfu.ca/~jverner/"},
 };
@@ -41,7 +53,8 @@ std::string_view source_of(std::string_view method) {
 }
 
 std::string_view kind_of(const MethodInfo& method) {
-  if (method.second_order) return "fixed step, x'' = a(t, x)";
+  if (method.second_order && method.implicit) return "structures, x'' = a(t, x, x')";
+  if (method.second_order) return method.error_order > 0 ? "adaptive, x'' = a(t, x)" : "fixed step, x'' = a(t, x)";
   if (method.implicit) return method.error_order > 0 ? "adaptive, stiff, algebraic" : "fixed step, stiff, algebraic";
   return method.error_order > 0 ? "adaptive" : "fixed step";
 }

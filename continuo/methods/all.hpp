@@ -12,24 +12,42 @@
 #include <continuo/methods/central_difference.hpp>
 #include <continuo/methods/dop853.hpp>
 #include <continuo/methods/dormand_prince5.hpp>
+#include <continuo/methods/dormand_prince_nystrom12.hpp>
+#include <continuo/methods/dormand_prince_nystrom6.hpp>
+#include <continuo/methods/dormand_prince_nystrom8.hpp>
 #include <continuo/methods/explicit_euler.hpp>
+#include <continuo/methods/generalized_alpha.hpp>
 #include <continuo/methods/heun.hpp>
+#include <continuo/methods/kahan_li8.hpp>
+#include <continuo/methods/mclachlan_atela4.hpp>
 #include <continuo/methods/midpoint.hpp>
+#include <continuo/methods/newmark.hpp>
 #include <continuo/methods/rk38.hpp>
 #include <continuo/methods/rk4.hpp>
+#include <continuo/methods/rkc2.hpp>
+#include <continuo/methods/rodas4.hpp>
+#include <continuo/methods/rodas5p.hpp>
+#include <continuo/methods/rosenbrock23.hpp>
 #include <continuo/methods/semi_implicit_euler.hpp>
 #include <continuo/methods/tsitouras5.hpp>
 #include <continuo/methods/velocity_verlet.hpp>
 #include <continuo/methods/verner7.hpp>
 #include <continuo/methods/verner9.hpp>
+#include <continuo/methods/yoshida6.hpp>
 
 namespace continuo {
 
 /// By family, then by order.
 using ExplicitMethods = std::tuple<ExplicitEuler, SemiImplicitEuler, CentralDifference, VelocityVerlet, Midpoint, Heun,
                                    Rk4, Rk38, BogackiShampine3, DormandPrince5, Tsitouras5, Dop853, Verner7, Verner9>;
-using StiffMethods = std::tuple<Bdf>;
-using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, StiffMethods{}));
+/// For x'' = a(t, x).
+using AccelerationMethods = std::tuple<McLachlanAtela4, Yoshida6, KahanLi8, DormandPrinceNystrom6,
+                                       DormandPrinceNystrom8, DormandPrinceNystrom12>;
+/// For structures, M x'' + C x' + K x = f.
+using StructuralMethods = std::tuple<Newmark, GeneralizedAlpha>;
+using StiffMethods = std::tuple<Rkc2, Rosenbrock23, Rodas4, Rodas5P, Bdf>;
+using AllMethods =
+    decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{}, StiffMethods{}));
 
 /// Calls visit.template operator()<M>() for every method M of the list.
 template <class Methods = AllMethods, class Visit>

@@ -127,7 +127,7 @@ void Checker::make_run() {
          near.empty() ? "the methods are " + all : near);
     return;
   }
-  if (name == "euler") name = "explicit_euler";
+  name = canonical_name(name);
   model_.run.method = name;
 }
 
@@ -138,7 +138,7 @@ void Checker::check_method_fits() {
   if (!model_.all_paired) {
     fail("E264", span, fmt::format("`{}` is for equations x'' = a(t, x)", *model_.run.method),
          "this model is not made of pairs of position and velocity", "take a general method such as tsitouras5");
-  } else if (model_.accelerations_depend_on_velocities) {
+  } else if (model_.accelerations_depend_on_velocities && !find_method(*model_.run.method)->implicit) {
     warn("E292", span, fmt::format("`{}` loses its order here", *model_.run.method),
          "an acceleration depends on a velocity", "a general method such as tsitouras5 keeps its order");
   }

@@ -1,9 +1,11 @@
 // continuo/model/integrate_stiff.cpp
 #include <continuo/methods/bdf.hpp>
+#include <continuo/methods/rkc2.hpp>
 #include <continuo/model/integrate_by.hpp>
 
 namespace continuo::model {
 
 template void integrate_by<Bdf>(Integration, RunRecorder&, Run&);
+template void integrate_by<Rkc2>(Integration, RunRecorder&, Run&);
 
 }  // namespace continuo::model
