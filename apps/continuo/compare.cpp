@@ -56,7 +56,7 @@ std::string table_of(const Comparison& comparison) {
                                  "largest", "energy drift", "evaluations", "time");
   for (const Contender& contender : comparison.contenders) text += line_of(contender);
   return text + fmt::format("errors against {} at tol {}, relative to each state's largest value\n",
-                            studies::reference_method, studies::reference_rtol);
+                            comparison.reference.run->plan.method, studies::reference_rtol);
 }
 
 /// The first curve of the model's plot, as every contender sees it, and how the error grows below it.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/compare.hpp>
 
 namespace continuo::studies {
@@ -23,9 +24,19 @@ model::Experiment with_common_rows(const model::ModelProgram& program, model::Ex
   return experiment;
 }
 
+std::string_view reference_method(const model::ModelProgram& program, const CompareRequest& request) {
+  const auto is_implicit = [](std::string_view name) {
+    const MethodInfo* info = find_method(name);
+    return info != nullptr && info->implicit;
+  };
+  const bool stiff = program.model.needs_dae_solver() || std::ranges::any_of(request.methods, is_implicit);
+  if (!stiff) return "verner9";
+  return find_method("radau") != nullptr ? "radau" : "bdf";
+}
+
 /// Absolute tolerances as small against each state as the relative one; a model's own are kept where tighter.
-model::Experiment for_reference(model::Experiment experiment) {
-  experiment.method = reference_method;
+model::Experiment for_reference(model::Experiment experiment, std::string_view method) {
+  experiment.method = method;
   experiment.rtol = reference_rtol;
   experiment.step.reset();
   experiment.atol = {reference_rtol};
@@ -93,7 +104,9 @@ std::string Contender::label() const {
 
 Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, const CompareRequest& request) {
   const model::Experiment common = with_common_rows(*program, request.experiment);
-  Comparison comparison{.reference = model::simulate(program, for_reference(common)), .contenders = {}};
+  Comparison comparison{
+      .reference = model::simulate(program, for_reference(common, reference_method(*program, request))),
+      .contenders = {}};
   if (!comparison.reference.run || !succeeded(comparison.reference.run->outcome.ending)) return comparison;
 
   const model::Motion& motion = comparison.reference.run->motion;

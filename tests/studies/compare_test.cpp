@@ -53,6 +53,18 @@ TEST(Compare, AMethodThatIsNoneIsToldAndTheOthersStand) {
   EXPECT_TRUE(comparison.contenders[1].simulated.run);
 }
 
+// Stiff: -1e6 lets a pair take 300,000 steps and more, and a pair cannot solve `0 = ...` at all. x = cos t solves both.
+TEST(Compare, StiffMethodsAndAlgebraicEquationsAreComparedWithAStiffReference) {
+  const auto stiff = program_of("x' = -1e6*(x - cos(t)) - sin(t)\nx(0) = 1\nrun 0..1 output 0.1\n");
+  const Comparison comparison = compare(stiff, {.methods = {"dop853", "bdf"}, .tolerances = {1e-6}});
+  ASSERT_EQ(comparison.contenders.size(), 2u);
+  EXPECT_LT(comparison.reference.run->statistics.steps, 3000u);
+  EXPECT_LT(comparison.contenders[1].largest_error, 30e-6);
+
+  const auto algebraic = program_of("unknown s = 0\nx' = s\n0 = s + sin(t)\nx(0) = 1\nrun 0..1 output 0.1\n");
+  EXPECT_LT(compare(algebraic, {.methods = {"bdf"}, .tolerances = {1e-6}}).contenders.at(0).largest_error, 30e-6);
+}
+
 TEST(Compare, WithoutAReferenceThereAreNoContenders) {  // x = 1/(1 - t) does not reach t = 2
   const Comparison comparison =
       compare(program_of("x' = x^2\nx(0) = 1\nrun 0..2\n"), {.methods = {"rk4"}, .steps = {0.1}});
