@@ -8,15 +8,22 @@
 
 #include <continuo/methods/adams.hpp>
 #include <continuo/methods/all.hpp>
+#include <continuo/methods/bdf2.hpp>
 #include <continuo/methods/dormand_prince_nystrom6.hpp>
 #include <continuo/methods/dormand_prince_nystrom8.hpp>
 #include <continuo/methods/generalized_alpha.hpp>
+#include <continuo/methods/implicit_euler.hpp>
+#include <continuo/methods/implicit_midpoint.hpp>
 #include <continuo/methods/kahan_li8.hpp>
+#include <continuo/methods/kencarp4.hpp>
+#include <continuo/methods/kvaerno5.hpp>
 #include <continuo/methods/mclachlan_atela4.hpp>
 #include <continuo/methods/newmark.hpp>
 #include <continuo/methods/rodas4.hpp>
 #include <continuo/methods/rodas5p.hpp>
 #include <continuo/methods/rosenbrock23.hpp>
+#include <continuo/methods/tr_bdf2.hpp>
+#include <continuo/methods/trapezoidal.hpp>
 
 namespace {
 std::size_t allocations = 0;
@@ -116,6 +123,13 @@ TEST(Allocation, NoImplicitStepAllocatesAfterTheFirst) {
   expect_none(Rosenbrock23{});
   expect_none(Rodas4{});
   expect_none(Rodas5P{});
+  expect_none(ImplicitEuler{});
+  expect_none(ImplicitMidpoint{});
+  expect_none(Trapezoidal{});
+  expect_none(Bdf2{});
+  expect_none(TrBdf2{});
+  expect_none(KenCarp4{});
+  expect_none(Kvaerno5{});
 }
 
 TEST(Allocation, NoStructuralStepAllocatesAfterTheFirst) {
