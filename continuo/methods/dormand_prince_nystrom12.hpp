@@ -13,6 +13,7 @@ namespace continuo {
 struct DormandPrinceNystrom12 : RungeKuttaNystrom<DormandPrinceNystrom12> {
   static constexpr std::string_view name = "dprkn12";
   static constexpr int order = 12, error_order = 10;
+  static constexpr int dense_degree = 9, dense_order = 8, dense_rounds = 2;
   static constexpr NystromTableau<17> tableau{
       .c = {0, 1_c / 50, 1_c / 25, 1_c / 10, 2_c / 15, 4_c / 25, 1_c / 20, 1_c / 5, 1_c / 4, 1_c / 3, 1_c / 2, 5_c / 9,
             3_c / 4, 6_c / 7, 8437_c / 8926, 1, 1},

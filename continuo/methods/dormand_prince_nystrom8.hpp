@@ -12,6 +12,7 @@ namespace continuo {
 struct DormandPrinceNystrom8 : RungeKuttaNystrom<DormandPrinceNystrom8> {
   static constexpr std::string_view name = "dprkn8";
   static constexpr int order = 8, error_order = 6;
+  static constexpr int dense_degree = 7, dense_order = 6, dense_rounds = 1;
   static constexpr NystromTableau<9> tableau{
       .c = {0, 1_c / 20, 1_c / 10, 3_c / 10, 1_c / 2, 7_c / 10, 9_c / 10, 1, 1},
       .a = {{},

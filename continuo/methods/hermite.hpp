@@ -22,9 +22,10 @@ inline void set_cubic_hermite(const U& x, const U& x_new, const U& first, const 
 /// q(theta) = q0 + h v0 theta + h^2 a0 theta^2 / 2 + A theta^3 + B theta^4 + C theta^5, where A, B, C are what the
 /// other end asks for: with Q, V, W the position, h times the velocity and h^2 times the acceleration still missing
 /// there, A = 10 Q - 4 V + W/2, B = -15 Q + 7 V - W, C = 6 Q - 3 V + W/2.
-template <State X>
+template <State X, int Degree>
+  requires(Degree >= 5)
 void set_quintic_hermite(const X& x, const Scalar<X>& h, const X& x_new, const Scalar<X>& a0, const Scalar<X>& a1,
-                         PositionVelocity pair, Interpolant<X, 5>& interpolant) {
+                         PositionVelocity pair, Interpolant<X, Degree>& interpolant) {
   using Real = Scalar<X>;
   const auto [q, v] = pair;
   const Real v0 = x.data()[v], half = Real(0.5);
@@ -41,7 +42,8 @@ void set_quintic_hermite(const X& x, const Scalar<X>& h, const X& x_new, const S
   for (std::size_t j = 0; j < 6; ++j) interpolant.c[j].data()[q] = c[j];
   for (std::size_t j = 0; j < 5; ++j)
     interpolant.c[j].data()[v] = j == 0 ? v0 : Real(static_cast<double>(j + 1)) * c[j + 1] / h;
-  interpolant.c[5].data()[v] = Real(0);
+  for (std::size_t j = 5; j <= Degree; ++j) interpolant.c[j].data()[v] = Real(0);
+  for (std::size_t j = 6; j <= Degree; ++j) interpolant.c[j].data()[q] = Real(0);
 }
 
 }  // namespace continuo::detail

@@ -20,6 +20,7 @@
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/packs.hpp>
 #include <continuo/methods/pairs.hpp>
+#include <continuo/methods/refined_quintic.hpp>
 #include <continuo/methods/second_order_method.hpp>
 #include <continuo/methods/weighted_sum.hpp>
 #include <continuo/system/second_order.hpp>
@@ -56,9 +57,8 @@ template <class Derived>
 struct RungeKuttaNystrom {
   static constexpr bool second_order = true;
   /// Between the ends, where `Derived` has no `dense` of its own: positions by the quintic that meets position,
-  /// velocity and acceleration at both ends, velocities by its derivative. The step of a method of order 12 is long;
-  /// where the way between matters, bound it by `max_step`.
-  static constexpr int dense_degree = 5, dense_order = 4;
+  /// velocity and acceleration at both ends, made better in `Derived::dense_rounds` (refined_quintic.hpp) for two and
+  /// four accelerations each; velocities by its derivative.
 
   /// The accelerations of the stages (where it is first the same as last, the last is the next first) and at the end of
   /// the step.
@@ -67,6 +67,8 @@ struct RungeKuttaNystrom {
     std::array<detail::Accelerations<X>, Derived::tableau.stages> k;
     detail::Accelerations<X> end;
     X slope, argument;  // f at the start; the argument of f, then the errors
+    X between;          // and f there, for the dense output
+    std::array<detail::Accelerations<X>, 4> k_between;
     bool start_fresh = false, end_fresh = false;
   };
 
@@ -74,7 +76,7 @@ struct RungeKuttaNystrom {
   static Workspace<X> workspace(const X& x) {
     const detail::Accelerations<X> none = detail::no_accelerations(x);
     return [&]<std::size_t... j>(std::index_sequence<j...>) {
-      return Workspace<X>{{((void)j, none)...}, none, x, x};
+      return Workspace<X>{{((void)j, none)...}, none, x, x, x, {none, none, none, none}};
     }(std::make_index_sequence<Derived::tableau.stages>());
   }
 
@@ -140,7 +142,10 @@ struct RungeKuttaNystrom {
         const Scalar<X> end = detail::acceleration<X>(last, n, pair);
         detail::set_quintic_hermite(x, h, x_new, work.slope.data()[pair.velocity], end, pair, interpolant);
       }
-      return end_known ? 0 : 1;
+      int evaluations = end_known ? 0 : 1;
+      if constexpr (Derived::dense_rounds >= 1) evaluations += refine<1>(system, t, h, work, interpolant);
+      if constexpr (Derived::dense_rounds >= 2) evaluations += refine<2>(system, t, h, work, interpolant);
+      return evaluations;
     }
   }
 
@@ -288,6 +293,24 @@ struct RungeKuttaNystrom {
     });
     detail::set_pairs(system, start, work.argument, velocities,
                       [&](const U&, const U&, std::size_t i) { return U(h * detail::row_sum<VelocityOff, P>(ev, i)); });
+  }
+
+  template <int Round, class System, State X, int Degree>
+  static int refine(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
+                    Interpolant<X, Degree>& interpolant) {
+    constexpr auto& round = detail::QuinticRound<Round>::data;
+    const std::size_t size = dimension(work.between);
+    for (std::size_t j = 0; j < round.nodes; ++j) {
+      const Scalar<X> theta(round.node[j].template as<CoefficientOf<Scalar<X>>>());
+      interpolant(theta, work.between);
+      detail::evaluate_accelerations(system, t + theta * h, work.between, work.k_between[j]);
+    }
+    for (std::size_t n = 0; n < system.pair_count(size); ++n) {
+      const PositionVelocity pair = system.pair(n, size);
+      const auto acceleration = [&](std::size_t j) { return detail::acceleration<X>(work.k_between[j], n, pair); };
+      detail::refine_quintic<Round>(h, pair, acceleration, interpolant);
+    }
+    return static_cast<int>(round.nodes);
   }
 
   template <State X, int Degree>
