@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <continuo/numerics/complex_number.hpp>
+#include <continuo/numerics/listed_lu.hpp>
 #include <continuo/numerics/small_lu.hpp>
 
 namespace continuo {
@@ -32,6 +33,14 @@ class DenseLU;
 template <class Number, std::size_t N>
   requires(N <= greatest_small_size)
 class DenseLU<Number, N> : public detail::SmallLU<Number, N> {
+ public:
+  explicit DenseLU(std::size_t) {}
+  static constexpr std::size_t size() { return N; }
+};
+
+template <class Number, std::size_t N>
+  requires(N > greatest_small_size && N <= greatest_listed_size)
+class DenseLU<Number, N> : public detail::ListedLU<Number, N> {
  public:
   explicit DenseLU(std::size_t) {}
   static constexpr std::size_t size() { return N; }
@@ -92,7 +101,7 @@ class DenseLU {
     }
     for (std::size_t i = n; i-- > 0;) {
       Number sum = b[i];
-      for (std::size_t j = i + 1; j < n; ++j) sum -= a[i * n + j] * b[j];
+      for (std::size_t j = n; j-- > i + 1;) sum -= a[i * n + j] * b[j];  // the newest last: all wait for it
       b[i] = sum * a[i * n + i];
     }
   }

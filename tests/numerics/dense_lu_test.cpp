@@ -49,6 +49,9 @@ double error_of_random_system(std::size_t n, unsigned seed) {
 TEST(DenseLU, SolvesRandomSystems) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     EXPECT_LT((error_of_random_system<double, 3>(3, seed)), 1e-11);
+    EXPECT_LT((error_of_random_system<double, 8>(8, seed)), 1e-11);
+    EXPECT_LT((error_of_random_system<double, 20>(20, seed)), 1e-11);
+    EXPECT_LT((error_of_random_system<ComplexNumber<double>, 11>(11, seed)), 1e-11);
     EXPECT_LT((error_of_random_system<double, run_time_size>(17, seed)), 1e-11);
     EXPECT_LT((error_of_random_system<ComplexNumber<double>, 5>(5, seed)), 1e-11);
     EXPECT_LT((error_of_random_system<ComplexNumber<double>, run_time_size>(11, seed)), 1e-11);
