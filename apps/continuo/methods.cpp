@@ -28,7 +28,7 @@ constexpr std::array citations{
     Citation{"rk38", "Kutta, Z. Math. Phys. 46 (1901), the 3/8 rule"},
     Citation{"bogacki_shampine3", "Bogacki, Shampine, Appl. Math. Lett. 2 (1989)"},
     Citation{"dormand_prince5", "Dormand, Prince, J. Comp. Appl. Math. 6 (1980)"},
-    Citation{"tsitouras5", "Tsitouras, Comput. Math. Appl. 62 (2011); the default"},
+    Citation{"tsitouras5", "Tsitouras, Comput. Math. Appl. 62 (2011)"},
     Citation{"dop853", "Hairer, Norsett, Wanner, Solving ODEs I, II.5 and II.10"},
     Citation{"verner7", "Verner, Numer. Algorithms 53 (2010), most efficient 7(6), https://www.sfu.ca/~jverner/"},
     Citation{"mclachlan_atela4", "McLachlan, Atela, Nonlinearity 5 (1992); symplectic"},
@@ -39,6 +39,13 @@ constexpr std::array citations{
     Citation{"dprkn12", "Dormand, El-Mikkawy, Prince, IMA J. Numer. Anal. 7 (1987), Nystrom 12(10)"},
     Citation{"newmark", "Newmark, J. Eng. Mech. Div. ASCE 85 (1959), average acceleration"},
     Citation{"generalized_alpha", "Chung, Hulbert, J. Appl. Mech. 60 (1993), spectral radius 0.8"},
+    Citation{"adams", "Shampine, Gordon, Computer Solution of ODEs (1975), orders 1 to 12; for costly equations"},
+    Citation{"gauss4", "Hairer, Wanner, Solving ODEs II, IV.5; symplectic"},
+    Citation{"radau5", "Hairer, Wanner, Solving ODEs II, IV.8"},
+    Citation{"radau", "Hairer, Wanner, J. Comput. Appl. Math. 111 (1999), orders 5, 9, 13; stiff and strict"},
+    Citation{"tsitouras5_rodas5p", "both, handing over where stiffness begins and ends; the default"},
+    Citation{"dop853_radau", "the default for tolerances below 1e-8"},
+    Citation{"tsitouras5_bdf", "the default for more than 100 states"},
     Citation{"rkc2", "Sommeijer, Shampine, Verwer, J. Comput. Appl. Math. 88 (1998); for diffusion"},
     Citation{"rosenbrock23", "Shampine, Reichelt, SIAM J. Sci. Comput. 18 (1997)"},
     Citation{"rodas4", "Hairer, Wanner, Solving ODEs II, IV.7"},
@@ -55,6 +62,7 @@ std::string_view source_of(std::string_view method) {
 std::string_view kind_of(const MethodInfo& method) {
   if (method.second_order && method.implicit) return "structures, x'' = a(t, x, x')";
   if (method.second_order) return method.error_order > 0 ? "adaptive, x'' = a(t, x)" : "fixed step, x'' = a(t, x)";
+  if (method.name.find("tsitouras5_") == 0 || method.name.find("dop853_") == 0) return "adaptive, any system";
   if (method.implicit) return method.error_order > 0 ? "adaptive, stiff, algebraic" : "fixed step, stiff, algebraic";
   return method.error_order > 0 ? "adaptive" : "fixed step";
 }

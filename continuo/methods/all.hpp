@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include <continuo/methods/adams.hpp>
+#include <continuo/methods/automatic.hpp>
 #include <continuo/methods/bdf.hpp>
 #include <continuo/methods/bogacki_shampine3.hpp>
 #include <continuo/methods/central_difference.hpp>
@@ -16,12 +18,14 @@
 #include <continuo/methods/dormand_prince_nystrom6.hpp>
 #include <continuo/methods/dormand_prince_nystrom8.hpp>
 #include <continuo/methods/explicit_euler.hpp>
+#include <continuo/methods/gauss4.hpp>
 #include <continuo/methods/generalized_alpha.hpp>
 #include <continuo/methods/heun.hpp>
 #include <continuo/methods/kahan_li8.hpp>
 #include <continuo/methods/mclachlan_atela4.hpp>
 #include <continuo/methods/midpoint.hpp>
 #include <continuo/methods/newmark.hpp>
+#include <continuo/methods/radau.hpp>
 #include <continuo/methods/rk38.hpp>
 #include <continuo/methods/rk4.hpp>
 #include <continuo/methods/rkc2.hpp>
@@ -45,9 +49,11 @@ using AccelerationMethods = std::tuple<McLachlanAtela4, Yoshida6, KahanLi8, Dorm
                                        DormandPrinceNystrom8, DormandPrinceNystrom12>;
 /// For structures, M x'' + C x' + K x = f.
 using StructuralMethods = std::tuple<Newmark, GeneralizedAlpha>;
-using StiffMethods = std::tuple<Rkc2, Rosenbrock23, Rodas4, Rodas5P, Bdf>;
-using AllMethods =
-    decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{}, StiffMethods{}));
+using StiffMethods = std::tuple<Rkc2, Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf>;
+/// What is taken where no method is named.
+using AutomaticMethods = std::tuple<Tsitouras5Rodas5P, Dop853Radau, Tsitouras5Bdf>;
+using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
+                                           std::tuple<Adams>{}, StiffMethods{}, AutomaticMethods{}));
 
 /// Calls visit.template operator()<M>() for every method M of the list.
 template <class Methods = AllMethods, class Visit>

@@ -37,9 +37,11 @@ struct Switching {
     Tolerance<Scalar<X>> tolerance{Scalar<X>(1e-6), Scalar<X>(1e-9)};
     bool is_stiff = false, fresh = false;  // fresh: the method in use has not made a step here yet
     bool begun = false, has_mass = false;
+    Scalar<X> h{};              // |h| of the last step
     std::size_t steps = 0;      // accepted, since the last change of method
     std::size_t in_favour = 0;  // probes in a row that speak for a change
     std::size_t patience = least_patience;
+    Scalar<X> h_of_stiff{};  // |h| of the stiff method when it was left last
   };
 
   template <State X>
@@ -74,6 +76,7 @@ struct Switching {
       ++evaluations;
       work.in_favour = speaks_for_change(work, h) ? work.in_favour + 1 : 0;
     }
+    work.h = h < 0 ? -h : h;
     return evaluations;
   }
 
@@ -133,7 +136,10 @@ struct Switching {
     ++work.steps;
     if (work.in_favour >= work.patience) {
       // Each return to the explicit method doubles the patience: a system at the border is not tossed to and fro.
-      if (work.is_stiff) work.patience *= 2;
+      if (work.is_stiff) {
+        work.patience *= 2;
+        work.h_of_stiff = work.h;
+      }
       work.is_stiff = !work.is_stiff;
       work.fresh = true;
       work.steps = work.in_favour = 0;
@@ -152,12 +158,14 @@ struct Switching {
 
  private:
   static constexpr std::size_t probe_every = 8, least_patience = 3;
+  static constexpr int worthwhile = 8;  // a stiff step costs some three to ten explicit ones
 
-  // An explicit method at the boundary of its stability, or a stiff one whose step any explicit method could make.
+  // An explicit method at the boundary of its stability, or one whose steps are far shorter than those of the stiff
+  // method were, even if it is accuracy that shortens them; a stiff method whose step any explicit one could make.
   template <State X>
   static bool speaks_for_change(const Workspace<X>& work, const Scalar<X>& h) {
     using std::abs;
-    if (!work.is_stiff) return work.watch.bounds(h);
+    if (!work.is_stiff) return work.watch.bounds(h) || worthwhile * abs(h) < work.h_of_stiff;
     return work.watch.radius() * abs(h) < Scalar<X>(1);
   }
 

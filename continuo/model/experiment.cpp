@@ -7,14 +7,14 @@
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/suggest.hpp>
 #include <continuo/solve/catalogue.hpp>
+#include <continuo/solve/choice.hpp>
 
 namespace continuo::model {
 
 namespace {
 
 constexpr double default_rtol = 1e-6;
-constexpr double atol_part = 1e-3;        // of rtol, where nothing is said
-constexpr double high_order_from = 1e-8;  // below this tolerance an eighth-order method is the cheaper one
+constexpr double atol_part = 1e-3;  // of rtol, where nothing is said
 
 class Planner {
  public:
@@ -90,8 +90,10 @@ class Planner {
 
   void set_method() {
     std::string name = experiment_.method.value_or(run_.method.value_or(""));
-    if (name.empty() && model_.needs_dae_solver()) name = "bdf";
-    if (name.empty()) name = plan_.step == 0 && plan_.rtol < high_order_from ? "dop853" : "tsitouras5";
+    if (name.empty() && plan_.step > 0 && !model_.needs_dae_solver()) name = "tsitouras5";
+    if (name.empty())
+      name = choose_method({.size = model_.states.size(), .rtol = plan_.rtol, .algebraic = model_.needs_dae_solver()})
+                 .method;
     plan_.method = canonical_name(name);
     std::vector<std::string> names;
     for (const MethodInfo& info : method_catalogue()) {

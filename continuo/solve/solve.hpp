@@ -138,6 +138,7 @@ Solution<X> run(Integrator<System, X, M, Events>& integrator) {
 
 /// Integrates dx/dt = f(t, x) from x(from) = x0. Never throws for what happens on the way: see Solution::outcome.
 template <class System, State X, class M>
+  requires Method<M, X>
 Solution<X> solve(System system, X x0, Interval<std::type_identity_t<Scalar<X>>> interval, M method,
                   std::type_identity_t<Options<X>> options = {}) {
   Integrator<System, X, M> integrator(std::move(system), std::move(x0), interval, method, std::move(options));

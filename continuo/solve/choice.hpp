@@ -1,0 +1,23 @@
+// continuo/solve/choice.hpp
+// Which method to take where nobody names one, and why.
+#pragma once
+#include <cstddef>
+#include <string_view>
+
+namespace continuo {
+
+/// What the choice depends on.
+struct SystemTraits {
+  std::size_t size = 0;
+  double rtol = 1e-6;
+  bool algebraic = false;  // M x' = f with a singular M
+};
+
+struct Choice {
+  std::string_view method, reason;
+};
+
+/// By tolerance and size: every choice takes stiff systems as they come.
+Choice choose_method(const SystemTraits& system);
+
+}  // namespace continuo
