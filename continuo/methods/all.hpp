@@ -10,6 +10,7 @@
 #include <continuo/methods/adams.hpp>
 #include <continuo/methods/automatic.hpp>
 #include <continuo/methods/bdf.hpp>
+#include <continuo/methods/bdf2.hpp>
 #include <continuo/methods/bogacki_shampine3.hpp>
 #include <continuo/methods/central_difference.hpp>
 #include <continuo/methods/dop853.hpp>
@@ -21,7 +22,11 @@
 #include <continuo/methods/gauss4.hpp>
 #include <continuo/methods/generalized_alpha.hpp>
 #include <continuo/methods/heun.hpp>
+#include <continuo/methods/implicit_euler.hpp>
+#include <continuo/methods/implicit_midpoint.hpp>
 #include <continuo/methods/kahan_li8.hpp>
+#include <continuo/methods/kencarp4.hpp>
+#include <continuo/methods/kvaerno5.hpp>
 #include <continuo/methods/mclachlan_atela4.hpp>
 #include <continuo/methods/midpoint.hpp>
 #include <continuo/methods/newmark.hpp>
@@ -33,6 +38,8 @@
 #include <continuo/methods/rodas5p.hpp>
 #include <continuo/methods/rosenbrock23.hpp>
 #include <continuo/methods/semi_implicit_euler.hpp>
+#include <continuo/methods/tr_bdf2.hpp>
+#include <continuo/methods/trapezoidal.hpp>
 #include <continuo/methods/tsitouras5.hpp>
 #include <continuo/methods/velocity_verlet.hpp>
 #include <continuo/methods/verner7.hpp>
@@ -49,7 +56,8 @@ using AccelerationMethods = std::tuple<McLachlanAtela4, Yoshida6, KahanLi8, Dorm
                                        DormandPrinceNystrom8, DormandPrinceNystrom12>;
 /// For structures, M x'' + C x' + K x = f.
 using StructuralMethods = std::tuple<Newmark, GeneralizedAlpha>;
-using StiffMethods = std::tuple<Rkc2, Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf>;
+using StiffMethods = std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5, Rkc2,
+                                Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf>;
 /// What is taken where no method is named.
 using AutomaticMethods = std::tuple<Tsitouras5Rodas5P, Dop853Radau, Tsitouras5Bdf>;
 using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
