@@ -13,6 +13,7 @@ namespace continuo {
 struct KahanLi8 : SymplecticComposition<KahanLi8> {
   static constexpr std::string_view name = "kahan_li8";
   static constexpr int order = 8;
+  static constexpr int dense_degree = 9, dense_order = 7, dense_rounds = 2;
   static constexpr SymplecticTableau<18> tableau = symmetric_composition(
       {0.1302024830888900808788176320967005223572472338_c, 0.5611629817751083845619644077001505672661593543_c,
        -0.3894749626448472864080785982352483888360680468_c, 0.1588419065551556008962107457071524814121478094_c,

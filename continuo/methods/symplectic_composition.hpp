@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include <continuo/methods/refined_quintic.hpp>
 #include <continuo/methods/second_order_method.hpp>
 #include <continuo/numerics/coefficient.hpp>
 
@@ -52,18 +53,22 @@ constexpr SymplecticTableau<2 * Half> symmetric_composition(const Coefficient (&
 /// `Derived` has a tableau. Fixed steps; systems whose accelerations read velocities are refused.
 template <class Derived>
 struct SymplecticComposition : SecondOrderMethod {
-  /// Between the ends the quintic that meets position, velocity and acceleration at both of them.
-  static constexpr int dense_degree = 5, dense_order = 4;
+  /// Between the ends the quintic that meets position, velocity and acceleration at both of them, made better in
+  /// `Derived::dense_rounds` (refined_quintic.hpp) for two and four accelerations each.
+  /// The velocity is its derivative and has the error of the step divided by h: one order less than the method's.
+  static constexpr int dense_degree = 5, dense_order = 3, dense_rounds = 0;
 
   template <State X>
   struct Workspace : EndDerivatives<X> {
     X rest, rest_new;  // what the sums that made x, and x_new, have lost
     X slope;           // f within the step
+    X between;         // and f there, for the dense output
+    std::array<X, 4> f_between;
   };
 
   template <State X>
   static Workspace<X> workspace(const X& x) {
-    return {{x, x}, x, x, x};
+    return {{x, x}, x, x, x, x, {x, x, x, x}};
   }
 
   template <class System, State X>
@@ -98,16 +103,18 @@ struct SymplecticComposition : SecondOrderMethod {
     return evaluations + static_cast<int>(Derived::tableau.stages) - 1;
   }
 
-  template <class System, State X>
+  template <class System, State X, int Degree>
   static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, const X& x_new,
-                         Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {
-    const int evaluations = work.end_fresh ? 0 : 1;
+                         Workspace<X>& work, Interpolant<X, Degree>& interpolant) {
+    int evaluations = work.end_fresh ? 0 : 1;
     if (!work.end_fresh) evaluate(system, t + h, x_new, work.end);
     work.end_fresh = true;
     for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
       detail::set_quintic_hermite(x, h, x_new, work.start.data()[velocity], work.end.data()[velocity],
                                   {position, velocity}, interpolant);
     });
+    if constexpr (Derived::dense_rounds >= 1) evaluations += refine<1>(system, t, h, work, interpolant);
+    if constexpr (Derived::dense_rounds >= 2) evaluations += refine<2>(system, t, h, work, interpolant);
     return evaluations;
   }
 
@@ -124,6 +131,22 @@ struct SymplecticComposition : SecondOrderMethod {
   }
 
  private:
+  template <int Round, class System, State X, int Degree>
+  static int refine(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
+                    Interpolant<X, Degree>& interpolant) {
+    constexpr auto& round = detail::QuinticRound<Round>::data;
+    for (std::size_t j = 0; j < round.nodes; ++j) {
+      const Scalar<X> theta(round.node[j].template as<CoefficientOf<Scalar<X>>>());
+      interpolant(theta, work.between);
+      evaluate(system, t + theta * h, work.between, work.f_between[j]);
+    }
+    for_each_pair(system, work.between, [&](std::size_t position, std::size_t velocity) {
+      const auto acceleration = [&](std::size_t j) { return work.f_between[j].data()[velocity]; };
+      detail::refine_quintic<Round>(h, {position, velocity}, acceleration, interpolant);
+    });
+    return static_cast<int>(round.nodes);
+  }
+
   template <std::size_t i, class System, State X>
   static void stage(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work, X& x) {
     using Real = Scalar<X>;

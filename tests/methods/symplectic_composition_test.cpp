@@ -152,17 +152,28 @@ TEST(KahanLi8, RunsBackTheWayItCame) {
   expect_way_back<KahanLi8>();
 }
 
-TYPED_TEST(Symplectic, DenseOutputIsTheQuintic) {
-  // The quintic's error is (h/2)^6 / 720 times the sixth derivative of q, at most some 4e4 at the near point of this
-  // ellipse, its slope's h^5 / 1000 times that; the method adds its own.
-  const double h = 0.01;
-  const auto solution =
-      solve(Kepler{}, Kepler::start(), {0.0, 3.0}, TypeParam{}, {.step = h, .save = Save<X>::every(0.0037)});
-  ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
-  for (std::size_t n = 0; n < solution.t.size(); ++n) {
-    const X exact = Kepler::exact(solution.t[n]);
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(solution.x[n][i], exact[i], i < 2 ? 2e-8 : 4e-8);
-  }
+// One step from an exact state of x'' = -x, in 34 digits: the greatest error between the ends, which is that of the
+// velocity, falls with h^(p+1).
+TYPED_TEST(Symplectic, TheInterpolantHasTheStatedOrder) {
+  using Q = std::array<Quad, 2>;
+  const auto error = [](const Quad& h) {
+    auto spring = second_order([](const Quad&, const std::array<Quad, 1>& q) { return std::array<Quad, 1>{-q[0]}; });
+    const Quad t = 0.3;
+    const Q x{cos(t), -sin(t)};
+    Q x_new = x, between = x;
+    auto work = TypeParam::workspace(x);
+    TypeParam::step(spring, t, x, h, true, work, x_new);
+    Interpolant<Q, TypeParam::dense_degree> interpolant(x);
+    TypeParam::interpolate(spring, t, x, h, x_new, work, interpolant);
+    Quad worst = 0;
+    for (Quad theta = 0.0625; theta <= 1; theta += 0.0625) {
+      interpolant(theta, between);
+      worst = std::max({worst, Quad(abs(between[0] - cos(t + theta * h))), Quad(abs(between[1] + sin(t + theta * h)))});
+    }
+    return worst;
+  };
+  const double order = std::log2(static_cast<double>(Quad(error(Quad(0.03125)) / error(Quad(0.015625)))));
+  EXPECT_NEAR(order, TypeParam::dense_order + 1, 0.3);
 }
 
 TYPED_TEST(Symplectic, EvaluatesOnceAStage) {
