@@ -17,7 +17,7 @@
 #include <limits>
 #include <string_view>
 
-#include <continuo/methods/linearization.hpp>
+#include <continuo/methods/direct_equations.hpp>
 #include <continuo/methods/newton.hpp>
 #include <continuo/system/mass.hpp>
 
@@ -49,9 +49,9 @@ Real error_constant(std::size_t k) {
 
 }  // namespace ndf
 
-/// The method for large stiff systems: one real matrix per step, and orders that follow the smoothness of the solution.
-struct Bdf {
-  static constexpr std::string_view name = "bdf";
+/// The stepper. Equations<X> solves (c M - J) y = b: see direct_equations.hpp.
+template <template <State> class Equations>
+struct BackwardDifferentiation {
   static constexpr int order = 5, error_order = 5, dense_order = 5, dense_degree = 5;
   static constexpr bool second_order = false, implicit = true;
   static constexpr std::size_t greatest_order = 5;
@@ -61,11 +61,9 @@ struct Bdf {
     using Real = Scalar<X>;
     std::array<X, greatest_order + 3> D;
     X d, end, f, correction;  // of the last step: x_new - predicted, x_new; f and a scratch
-    Linearization<X> linear;
-    Decomposition<X> lu;
+    Equations<X> equations;
     NewtonMemory<Real> memory{};
     Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
-    EquationCosts costs{};
     StepStatus status = StepStatus::done;
     Real h{}, decomposed_for{};  // the spacing of D; the c of lu, 0 for none
     std::size_t order = 1, next_order = 1;
@@ -77,7 +75,7 @@ struct Bdf {
 
   template <State X>
   static Workspace<X> workspace(const X& x) {
-    return {{x, x, x, x, x, x, x, x}, x, x, x, x, Linearization<X>(x), Decomposition<X>(x)};
+    return {{x, x, x, x, x, x, x, x}, x, x, x, x, Equations<X>(x)};
   }
 
   template <State X>
@@ -90,7 +88,7 @@ struct Bdf {
   }
   template <State X>
   static EquationCosts costs(const Workspace<X>& work) {
-    return work.costs;
+    return work.equations.costs();
   }
   template <State X>
   static int error_order_of(const Workspace<X>& work) {
@@ -100,7 +98,7 @@ struct Bdf {
   template <class System, State X>
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
                   Workspace<X>& work, X& x_new) {
-    if (!work.linear.prepared()) work.linear.prepare(system, x);
+    if (!work.equations.prepared()) work.equations.prepare(system, x);
     int evaluations = 0;
     if (made_jump) {
       evaluations += begin(system, t, x, h, work);
@@ -109,14 +107,14 @@ struct Bdf {
       work.equal_steps = 0;
     }
     work.h = h;
-    work.is_current = false;
+    work.is_current = work.equations.is_always_current(system);
     for (;;) {
       predict(work, x_new);
       if (!work.has_jacobian || work.jacobian_age >= oldest_jacobian) {
         evaluations += linearize(system, t + h, x_new, work);
       }
       const Scalar<X> c = Scalar<X>(ndf::alpha<Scalar<X>>(work.order)) / h;
-      if (c != work.decomposed_for && !decompose(work, c)) {
+      if (c != work.decomposed_for && !decompose(system, work, c)) {
         if (work.is_current) break;
         work.has_jacobian = false;
         continue;
@@ -322,24 +320,18 @@ struct Bdf {
 
   template <class System, State X>
   static int linearize(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
-    evaluate(system, t, x, work.f);
-    const int evaluations =
-        work.linear.evaluate(system, t, x, work.f, least_increments(work.tolerance, work.h, x, work.f));
-    ++work.costs.jacobians;
+    const int evaluations = work.equations.linearize(system, t, x, work.h, work.tolerance, work.f);
     work.has_jacobian = work.is_current = true;
     work.jacobian_age = 0;
     work.decomposed_for = Scalar<X>(0);
-    return evaluations + 1;
+    return evaluations;
   }
 
-  template <State X>
-  static bool decompose(Workspace<X>& work, const Scalar<X>& c) {
-    ++work.costs.decompositions;
-    const bool done = work.lu.factor(work.linear, c);
+  template <class System, State X>
+  static bool decompose(System& system, Workspace<X>& work, const Scalar<X>& c) {
+    work.status = work.equations.decompose(system, c);
+    const bool done = work.status == StepStatus::done;
     work.decomposed_for = done ? c : Scalar<X>(0);
-    work.status = done                      ? StepStatus::done
-                  : work.linear.is_finite() ? StepStatus::singular_matrix
-                                            : StepStatus::not_finite;
     return done;
   }
 
@@ -364,14 +356,13 @@ struct Bdf {
       evaluate(system, t, x, work.f);
       ++evaluations;
       for (std::size_t i = 0; i < n; ++i) work.correction.data()[i] = c * (past.data()[i] + work.d.data()[i]);
-      if (work.linear.has_mass()) {
-        work.linear.multiply_mass(work.correction, work.end);
+      if (work.equations.has_mass()) {
+        work.equations.multiply_mass(work.correction, work.end);
       } else {
         work.end = work.correction;
       }
       for (std::size_t i = 0; i < n; ++i) work.correction.data()[i] = work.f.data()[i] - work.end.data()[i];
-      work.lu.solve(work.correction.data());
-      ++work.costs.solutions;
+      evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, target, work.correction);
       const Real size = norm(work.correction, x, x, work.tolerance);
       for (std::size_t i = 0; i < n; ++i) {
         work.d.data()[i] += work.correction.data()[i];
@@ -397,6 +388,11 @@ struct Bdf {
     for (std::size_t i = 0; i < dimension(x); ++i) sum += x.data()[i] - x.data()[i];
     return sum;
   }
+};
+
+/// The method for large stiff systems: one real matrix per step, and orders that follow the smoothness of the solution.
+struct Bdf : BackwardDifferentiation<DirectEquations> {
+  static constexpr std::string_view name = "bdf";
 };
 
 }  // namespace continuo

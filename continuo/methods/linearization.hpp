@@ -12,28 +12,17 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <continuo/methods/constant_mass.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/sparse_lu.hpp>
 #include <continuo/system/jacobian.hpp>
-#include <continuo/system/mass.hpp>
 
 namespace continuo {
-
-/// The number of components where the type of state fixes it.
-template <State X>
-constexpr std::size_t fixed_size() {
-  if constexpr (requires { std::tuple_size<X>::value; }) {
-    return std::tuple_size<X>::value;
-  } else {
-    return run_time_size;
-  }
-}
 
 /// Systems of run-time size with at least this many components and a pattern with at most this part of all entries are
 /// solved by a sparse solver, if their scalar is double.
@@ -46,9 +35,7 @@ class Linearization {
   using Real = Scalar<X>;
   static constexpr std::size_t N = fixed_size<X>();
 
-  explicit Linearization(const X& x) : size_(dimension(x)), moved_(x), slope_(x) {
-    if constexpr (N == run_time_size) rows_.resize(size_ * size_);
-  }
+  explicit Linearization(const X& x) : size_(dimension(x)), moved_(x), slope_(x) {}
 
   std::size_t size() const { return size_; }
   bool prepared() const { return prepared_; }
@@ -58,26 +45,19 @@ class Linearization {
   template <class F>
   void prepare(F& f, const X&) {
     prepared_ = true;
-    if (!continuo::has_mass<X>(f)) {
-      mass_ = Mass::identity;
-    } else if constexpr (HasMassMatrix<F, X>) {
-      mass_ = Mass::matrix;
-      if constexpr (N == run_time_size) mass_rows_.resize(size_ * size_);
-      f.mass_matrix(std::span<Real>(mass_rows_));
-    } else if constexpr (HasMassDiagonal<F, X>) {
-      mass_ = Mass::diagonal;
-      if constexpr (N == run_time_size) mass_rows_.resize(size_);
-      for (std::size_t i = 0; i < size_; ++i) mass_rows_[i] = f.mass(i);
-    }
+    mass_.read(f, size_);
     if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
       pattern_ = f.jacobian_pattern();
-      sparse_ = mass_ != Mass::matrix && size_ >= least_sparse_size &&
+      sparse_ = !mass_.is_matrix() && size_ >= least_sparse_size &&
                 static_cast<double>(pattern_.entries()) <=
                     greatest_sparse_part * static_cast<double>(size_) * static_cast<double>(size_);
       if (sparse_) {
         rows_.assign(pattern_.entries(), 0);
         if constexpr (!HasSparseJacobian<F, X>) groups_ = ColumnGroups(pattern_);
       }
+    }
+    if constexpr (N == run_time_size) {
+      if (!sparse_) rows_.assign(size_ * size_, Real(0));
     }
   }
 
@@ -97,21 +77,9 @@ class Linearization {
     return sum == Real(0);
   }
 
-  bool has_mass() const { return mass_ != Mass::identity; }
+  bool has_mass() const { return !mass_.is_identity(); }
   /// Mv = M v.
-  void multiply_mass(const X& v, X& product) const {
-    if (mass_ == Mass::identity) {
-      product = v;
-    } else if (mass_ == Mass::diagonal) {
-      for (std::size_t i = 0; i < size_; ++i) product.data()[i] = mass_rows_[i] * v.data()[i];
-    } else {
-      for (std::size_t i = 0; i < size_; ++i) {
-        Real sum(0);
-        for (std::size_t j = 0; j < size_; ++j) sum += mass_rows_[i * size_ + j] * v.data()[j];
-        product.data()[i] = sum;
-      }
-    }
-  }
+  void multiply_mass(const X& v, X& product) const { mass_.multiply(v, product); }
   /// Jv = J v.
   void multiply_jacobian(const X& v, X& product) const {
     for (std::size_t i = 0; i < size_; ++i) product.data()[i] = Real(0);
@@ -129,11 +97,10 @@ class Linearization {
   template <class Number>
   void shifted(const Number& c, Number* matrix) const {
     for (std::size_t i = 0; i < size_ * size_; ++i) matrix[i] = Number(-rows_[i]);
-    if (mass_ == Mass::matrix) {
-      for (std::size_t i = 0; i < size_ * size_; ++i) matrix[i] += c * Number(mass_rows_[i]);
+    if (mass_.is_matrix()) {
+      for (std::size_t i = 0; i < size_ * size_; ++i) matrix[i] += c * Number(mass_[i]);
     } else {
-      for (std::size_t i = 0; i < size_; ++i)
-        matrix[i * size_ + i] += mass_ == Mass::identity ? c : c * Number(mass_rows_[i]);
+      for (std::size_t i = 0; i < size_; ++i) matrix[i * size_ + i] += mass_.is_identity() ? c : c * Number(mass_[i]);
     }
   }
   /// The entries of c M - J in the order of the pattern; sparse only.
@@ -141,7 +108,7 @@ class Linearization {
   void shifted(const Number& c, std::span<Number> values) const {
     for (std::size_t p = 0; p < values.size(); ++p) values[p] = Number(-rows_[p]);
     for (std::size_t j = 0; j < size_; ++j)
-      values[pattern_.find(j, j)] += mass_ == Mass::identity ? c : c * Number(mass_rows_[j]);
+      values[pattern_.find(j, j)] += mass_.is_identity() ? c : c * Number(mass_[j]);
   }
   const SparsePattern& pattern() const { return pattern_; }
   /// Of J: row by row, or of its pattern.
@@ -153,15 +120,12 @@ class Linearization {
   }
 
  private:
-  enum class Mass { identity, diagonal, matrix };
-
   std::size_t size_;
   X moved_, slope_;
-  BlockOf<Real, N, N * N> rows_{};       // of J, or the entries of its pattern
-  BlockOf<Real, N, N * N> mass_rows_{};  // of M, or its diagonal
+  BlockOf<Real, N, N * N> rows_{};  // of J, or the entries of its pattern
+  ConstantMass<X> mass_;
   SparsePattern pattern_;
   ColumnGroups groups_;
-  Mass mass_ = Mass::identity;
   bool sparse_ = false, prepared_ = false;
 };
 

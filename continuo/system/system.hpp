@@ -76,6 +76,18 @@ concept HasSparseJacobian =
 template <class F, class X>
 concept HasTimeDerivative = requires(F& f, Scalar<X> t, const X& x, X& dfdt) { f.time_derivative(t, x, dfdt); };
 
+/// The system multiplies by df/dx without writing it down: f.jacobian_action(t, x, v, product).
+template <class F, class X>
+concept HasJacobianAction =
+    requires(F& f, Scalar<X> t, const X& x, X& product) { f.jacobian_action(t, x, x, product); };
+/// The system solves (c M - df/dx) y = r approximately, to help an iteration without a matrix: what is needed for it is
+/// set up at a state and a c, then used for many r, each of which becomes its y.
+template <class F, class X>
+concept HasPreconditioner = requires(F& f, Scalar<X> t, const X& x, X& r) {
+  f.set_up_preconditioner(t, x, t);
+  f.precondition(r);
+};
+
 /// The system says that f does not depend on t: f.autonomous, true or false, when compiling or at run time. Methods
 /// that need df/dt then do without; of a system that says nothing they take it by a difference, one evaluation a step.
 template <class F>
