@@ -114,9 +114,9 @@ class Linearization {
   /// Of J: row by row, or of its pattern.
   std::span<const Real> entries() const { return rows_; }
   Real mass(std::size_t i, std::size_t j) const {
-    if (mass_ == Mass::matrix) return mass_rows_[i * size_ + j];
+    if (mass_.is_matrix()) return mass_[i * size_ + j];
     if (i != j) return Real(0);
-    return mass_ == Mass::identity ? Real(1) : mass_rows_[i];
+    return mass_.is_identity() ? Real(1) : mass_[i];
   }
 
  private:
