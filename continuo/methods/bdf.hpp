@@ -311,11 +311,9 @@ struct BackwardDifferentiation {
 
   template <State X>
   static void predict(Workspace<X>& work, X& predicted) {
-    for (std::size_t i = 0; i < dimension(predicted); ++i) {
-      Scalar<X> sum(0);
-      for (std::size_t j = work.order; j >= 1; --j) sum += work.D[j].data()[i];
-      predicted.data()[i] = work.D[0].data()[i] + sum;
-    }
+    predicted = work.D[work.order];  // the small ones first
+    for (std::size_t j = work.order; j-- > 0;)
+      for (std::size_t i = 0; i < dimension(predicted); ++i) predicted.data()[i] += work.D[j].data()[i];
   }
 
   template <class System, State X>
@@ -344,11 +342,10 @@ struct BackwardDifferentiation {
     const std::size_t n = dimension(x), k = work.order;
     const Real one_over_alpha = Real(1) / ndf::alpha<Real>(k);
     X& past = work.D[greatest_order + 2];  // free until the step is accepted
-    for (std::size_t i = 0; i < n; ++i) {
-      Real sum(0);
-      for (std::size_t j = 1; j <= k; ++j) sum += ndf::gamma<Real>(j) * work.D[j].data()[i];
-      past.data()[i] = sum * one_over_alpha;
-      work.d.data()[i] = Real(0);
+    for (std::size_t i = 0; i < n; ++i) past.data()[i] = work.d.data()[i] = Real(0);
+    for (std::size_t j = 1; j <= k; ++j) {
+      const Real weight = ndf::gamma<Real>(j) * one_over_alpha;
+      for (std::size_t i = 0; i < n; ++i) past.data()[i] += weight * work.D[j].data()[i];
     }
     const Real rtol = relative(work.tolerance);
     const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / rtol, min(Real(0.03), sqrt(rtol)));
