@@ -94,6 +94,18 @@ class DenseLU {
     const std::size_t n = size();
     const Number* const a = entries_.data();
     for (std::size_t k = 0; k < n; ++k) std::swap(b[k], b[pivots_[k]]);
+    if (n <= greatest_size_in_cache) {
+      // Column by column: each entry of b changes without waiting for the sum of the one before.
+      for (std::size_t k = 0; k < n; ++k) {
+        const Number x = b[k];
+        for (std::size_t i = k + 1; i < n; ++i) b[i] -= a[i * n + k] * x;
+      }
+      for (std::size_t k = n; k-- > 0;) {
+        const Number x = b[k] = b[k] * a[k * n + k];
+        for (std::size_t i = 0; i < k; ++i) b[i] -= a[i * n + k] * x;
+      }
+      return;
+    }
     for (std::size_t i = 1; i < n; ++i) {
       Number sum = b[i];
       for (std::size_t j = 0; j < i; ++j) sum -= a[i * n + j] * b[j];
@@ -107,6 +119,8 @@ class DenseLU {
   }
 
  private:
+  static constexpr std::size_t greatest_size_in_cache = 48;
+
   std::size_t greatest_in_column(std::size_t k) const {
     const std::size_t n = size();
     std::size_t pivot = k;
