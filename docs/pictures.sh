@@ -7,10 +7,9 @@ mkdir -p "$pictures"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# The block of the tutorial marked `sim file=NAME`, as a file.
+# The block of a page marked `sim file=NAME`, as a file: block PAGE NAME.
 block() {
-  awk -v mark="file=$1" '/^```/ { inside = !inside && index($0, mark); next } inside' \
-    docs/tutorial_bouncing_ball.md > "$scratch/$1"
+  awk -v mark="file=$2" '/^```/ { inside = !inside && index($0, mark); next } inside' "docs/$1" > "$scratch/$2"
 }
 
 picture() {  # picture NAME MODEL [OPTION ...]
@@ -19,8 +18,14 @@ picture() {  # picture NAME MODEL [OPTION ...]
   "${CONTINUO:-./continuo.sh}" run "$model" "$@" --plot "$pictures/$name.svg" -o "$scratch/$name.csv"
 }
 
-block bounce.sim
+block tutorial_bouncing_ball.md bounce.sim
 picture bouncing_ball models/bouncing_ball.sim
 picture ball_through_floor models/ball_through_floor.sim
 picture bounce "$scratch/bounce.sim"
 picture double_pendulum models/double_pendulum.sim
+
+block tutorial_stiffness.md door.sim
+picture stiff_door_explicit "$scratch/door.sim" --method explicit_euler --step 0.0021 --until 0.1
+picture stiff_door_implicit "$scratch/door.sim" --method rosenbrock23 --step 0.1
+picture van_der_pol_stiff models/van_der_pol_stiff.sim
+picture robertson models/robertson.sim
