@@ -20,24 +20,38 @@ Fix: look at the state named and at the time given; guard the expression (max(x,
 `when ... { stop }`, or mend the equation.)"},
     Code{"E302", "the step shrinks to nothing",
          R"(To keep the tolerance the step became so small that t + h is t. The solution escapes to infinity in finite
-time (x' = x^2), jumps where the text has no event, or the tolerance is below rounding.
+time (x' = x^2), jumps where the text has no event, or the tolerance is below rounding. With `0 = ...` it may be a fold:
+the unknown has no solution beyond that place.
 
 Fix: a jump in a right-hand side wants an event (`when`, `at`); a true singularity wants `when ... { stop }` before it;
 a tolerance below 1e-14 wants to be larger.)"},
-    Code{"E303", "too many steps",
-         R"(The run needs more steps than it may take. If the steps stay far below the time scale of the motion the
-equations are stiff: a fast part has died out, but still bounds the steps of an explicit method.
+    Code{
+        "E303", "too many steps",
+        R"(The run needs more steps than it may take. Most often the equations are stiff: a fast part of them has died out,
+and would come back and grow without end if the step were longer than about twice its time. An explicit method must then
+creep along although nothing happens; stability bounds its steps, not accuracy, and a looser tolerance does not help.
 
-Fix: loosen the tolerance, shorten the run, or take the stiff part out of the model.)"},
+  x'' = 1e6*(1 - x^2)*x' - x      between its jumps x hardly moves, and deviations die out within a microsecond
+
+Fix: take an implicit method, whose steps the fast part does not bound: rodas5p for a few equations, radau for tight
+tolerances, bdf for many equations.
+
+  continuo run FILE --method rodas5p
+
+If the message does not say that the system is stiff: loosen the tolerance or shorten the run.)"},
     Code{"E304", "every step is rejected",
          R"(Many smaller and smaller steps were tried at one place and none met the tolerance: the right-hand side jumps
 there, or is noisy at the level of the tolerance.
 
 Fix: describe a jump as an event, or loosen the tolerance.)"},
-    Code{"E305", "the implicit equations find no solution",
-         R"(An implicit method solves equations in each step, and their solver did not converge even with small steps.
+    Code{
+        "E305", "the implicit equations find no solution",
+        R"(An implicit method solves equations in each step, and their solver did not converge even with small steps. At the
+start of a run it is the equations `0 = ...` that found no values for their unknowns.
 
-Fix: loosen the tolerance, or take another method.)"},
+Fix: at the start, begin nearer to a solution (unknown v = GUESS), or look for a contradiction in the equations. Later,
+look whether a right-hand side jumps (make the jump an event) or is not defined where the solver tries it; else loosen
+the tolerance, or take another method.)"},
     Code{"E306", "the run cannot begin",
          R"(Something it begins with is no number: an initial value that divides by zero, a time that is infinite.
 
