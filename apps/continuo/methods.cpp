@@ -1,15 +1,21 @@
 // continuo methods: what can integrate, with order, kind and source.
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <apps/continuo/command_line.hpp>
+#include <apps/continuo/experiment_options.hpp>
+#include <apps/continuo/models.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
+#include <continuo/model/experiment.hpp>
 #include <continuo/solve/catalogue.hpp>
+#include <continuo/solve/choice.hpp>
 
 namespace continuo::app {
 namespace {
@@ -85,12 +91,38 @@ ExitCode methods() {
   return done;
 }
 
+/// The method that a run of the model would take, and the reason.
+ExitCode why(const std::string& file) {
+  if (!readable(file)) return usage;
+  const model::Loaded loaded = load_model(file);
+  if (!loaded) return wrong_model;
+  const model::Model& model = *loaded.model;
+  if (model.run.method) {
+    print(fmt::format("{}: the model names {}\n", model.name, *model.run.method));
+    return done;
+  }
+  std::vector<model::Diagnostic> problems;
+  const auto plan = model::plan(model, {}, problems);
+  show(problems, loaded.source);
+  if (!plan) return usage;
+  const Choice choice =
+      choose_method({.size = model.states.size(), .rtol = plan->rtol, .algebraic = model.needs_dae_solver()});
+  const std::string_view reason =
+      plan->step > 0 ? "the model gives a step, and this one costs little for its order" : choice.reason;
+  print(fmt::format("{}: {}; {}\n", model.name, plan->method, reason));
+  return done;
+}
+
 }  // namespace
 
 void add_methods(CLI::App& app, ExitCode& exit) {
-  static constexpr std::string_view examples = "  continuo methods\n  continuo run models/kepler.sim --method dop853\n";
+  static constexpr std::string_view examples =
+      "  continuo methods\n  continuo methods --why models/lorenz.sim\n  continuo run models/kepler.sim --method "
+      "dop853\n";
   CLI::App* verb = add_verb(app, "methods", "Lists the integration methods", examples);
-  verb->callback([&exit] { exit = methods(); });
+  auto file = std::make_shared<std::string>();
+  verb->add_option("--why", *file, "The method that a run of this model takes, and why")->type_name("FILE");
+  verb->callback([&exit, file] { exit = file->empty() ? methods() : why(*file); });
 }
 
 }  // namespace continuo::app

@@ -143,7 +143,7 @@ every path, and one mode is gone to:
     Code{
         "E260", "there is no such method",
         R"(explicit_euler (also euler), semi_implicit_euler, central_difference, velocity_verlet, midpoint, heun, rk4, rk38,
-bogacki_shampine3, dormand_prince5, tsitouras5 (the default), dop853, verner7, verner9.)"},
+bogacki_shampine3, dormand_prince5, tsitouras5, dop853, verner7, verner9 and many more.)"},
     Code{"E261", "a time or tolerance is not sensible",
          R"(The run ends after it begins; steps, output intervals, periods and tolerances are greater than zero.)"},
     Code{

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "shell.hpp"
+#include <continuo/solve/catalogue.hpp>
 
 namespace continuo::app {
 namespace {
@@ -114,7 +115,14 @@ TEST(Methods, EveryMethodHasItsSource) {
   std::istringstream lines(table);
   std::size_t count = 0;
   for (std::string line; std::getline(lines, line); ++count) EXPECT_GT(line.size(), 60u) << line;
-  EXPECT_EQ(count, 1u + 14u);  // the heading, and the fourteen of the language
+  EXPECT_EQ(count, 1 + method_catalogue().size());  // the heading, and one each
+}
+
+TEST(Methods, SayWhyOneIsChosen) {
+  const Shell shell;
+  EXPECT_THAT(shell.run("methods --why " + gallery("pendulum_dae")).out, HasSubstr("the model names rodas5p"));
+  EXPECT_THAT(shell.run("methods --why " + gallery("lorenz")).out, HasSubstr(": "));
+  EXPECT_EQ(shell.run("methods --why nowhere.sim").exit, 1);
 }
 
 TEST(Explain, SaysMoreAboutACodeAndListsThem) {
