@@ -14,24 +14,10 @@
 #include <bench/problems/lorenz.hpp>
 #include <bench/problems/outer_planets.hpp>
 #include <bench/problems/pleiades.hpp>
+#include <bench/report.hpp>
 
 namespace continuo::bench {
 namespace {
-
-struct Best {
-  const Curve* curve = nullptr;
-  Cost cost{};
-};
-
-Best best(const Measured& measured, double error, bool ours) {
-  Best result;
-  for (const Curve& curve : measured.curves) {
-    if (curve.ours != ours) continue;
-    const Cost cost = cost_at(curve, error);
-    if (!result.curve || cost.seconds < result.cost.seconds) result = {&curve, cost};
-  }
-  return result;
-}
 
 void print_details(const Measured& measured) {
   std::printf("\n%s\n  %-24s %8s %12s %12s %12s\n", std::string(measured.title).c_str(), "solver", "error",
@@ -46,35 +32,6 @@ void print_details(const Measured& measured) {
   }
 }
 
-void write_curves(const std::string& folder, const Measured& measured) {
-  const std::string stem = folder + "/work_precision_" + std::string(measured.name);
-  std::ofstream table(stem + ".csv"), plot(stem + ".gp");
-  table << "solver,tolerance,error,seconds,evaluations\n";
-  plot << "set terminal svg size 800,560 background 'white'\nset output '" << stem << ".svg'\nset title '"
-       << measured.title << "'\nset logscale xy\nset format '10^{%T}'\nset xlabel 'error at the end'\n"
-       << "set ylabel 'seconds'\nset grid\nset key outside right\nset datafile separator ','\nplot ";
-  for (const Curve& curve : measured.curves) {
-    for (const Point& point : curve.points)
-      table << curve.solver << ',' << point.tolerance << ',' << point.error << ',' << point.seconds << ','
-            << point.evaluations << '\n';
-    if (curve.points.empty()) continue;
-    plot << "'" << stem << ".csv' using (strcol(1) eq '" << curve.solver << "' ? $3 : NaN):4 with "
-         << (curve.ours ? "linespoints pt 7 ps 0.4" : "linespoints dt 2 pt 6 ps 0.4") << " title '" << curve.solver
-         << "' noenhanced, ";
-  }
-  plot << '\n';
-}
-
-/// `wanted`, or the smallest error above it that both sides reach.
-double smallest_shared_error(const Measured& measured, double wanted) {
-  const double finer_than_points = std::pow(10, 1.0 / 16);
-  for (double error = wanted; error < loosest_error; error *= finer_than_points) {
-    if (!std::isinf(best(measured, error, true).cost.seconds) && !std::isinf(best(measured, error, false).cost.seconds))
-      return error;
-  }
-  return 0;
-}
-
 /// The table that counts; also as Markdown, without absolute times.
 void print_ratios(const std::vector<Measured>& all, const std::string& folder) {
   std::ofstream table(folder + "/ratios.md");
@@ -84,9 +41,9 @@ void print_ratios(const std::vector<Measured>& all, const std::string& folder) {
               "time");
   for (const Measured& measured : all) {
     for (const double wanted : errors_compared) {
-      const double error = smallest_shared_error(measured, wanted);
+      const double error = smallest_shared_error(measured, wanted, of_ours, of_peers);
       if (error == 0) continue;
-      const Best ours = best(measured, error, true), theirs = best(measured, error, false);
+      const Best ours = best(measured, error, of_ours), theirs = best(measured, error, of_peers);
       const double evaluations = ours.cost.evaluations / theirs.cost.evaluations;
       const double time = ours.cost.seconds / theirs.cost.seconds;
       const std::string title(measured.title);

@@ -18,6 +18,7 @@ namespace continuo::bench {
 struct Answer {
   double error = std::numeric_limits<double>::infinity();
   std::size_t evaluations = 0;
+  double tolerances = std::numeric_limits<double>::infinity();  // the error in units of what was asked
 };
 
 struct Solver {

@@ -8,8 +8,6 @@
 namespace continuo::bench {
 namespace {
 
-constexpr double points_per_decade = 8, tightest_power = 15;
-
 /// y = mean_y + slope (x - mean_x), least squares.
 struct Line {
   double mean_x = 0, mean_y = 0, slope = 0;
@@ -34,13 +32,15 @@ struct Line {
 }  // namespace
 
 std::vector<Curve> sweep(const std::vector<Solver>& solvers, double loosest_error, double tightest_error,
-                         double seconds_to_spend) {
+                         double seconds_to_spend, const Tolerances& tolerances) {
   std::vector<Curve> curves;
   for (const Solver& solver : solvers) {
     Curve curve{solver.name, solver.ours, {}};
-    for (double power = 2; power <= tightest_power; power += 1 / points_per_decade) {
+    for (double power = 2; power <= tolerances.tightest_power; power += 1 / tolerances.points_per_decade) {
       const double tolerance = std::pow(10, -power);
+      const auto start = std::chrono::steady_clock::now();
       const Answer answer = solver.judge(tolerance);
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > tolerances.slowest) break;
       if (answer.error <= loosest_error && answer.error >= tightest_error)
         curve.points.push_back({tolerance, answer.error, std::numeric_limits<double>::infinity(), answer.evaluations});
     }
@@ -50,8 +50,10 @@ std::vector<Curve> sweep(const std::vector<Solver>& solvers, double loosest_erro
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   for (int round = 0; round < 5 || elapsed() < seconds_to_spend; ++round) {
     for (std::size_t i = 0; i < solvers.size(); ++i) {
-      for (Point& point : curves[i].points)
+      for (Point& point : curves[i].points) {
+        if (round >= 2 && point.seconds > tolerances.slowest / 4) continue;  // noise is little in a long run
         point.seconds = std::min(point.seconds, solvers[i].seconds(point.tolerance));
+      }
     }
   }
   return curves;

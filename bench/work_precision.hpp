@@ -4,6 +4,7 @@
 // least time of a point counts.
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,13 @@ struct Cost {
   double seconds, evaluations, tolerance;
 };
 
+/// Which tolerances are tried, and how long a run may take to be worth repeating.
+struct Tolerances {
+  double points_per_decade = 8, tightest_power = 15, slowest = std::numeric_limits<double>::infinity();
+};
+
 std::vector<Curve> sweep(const std::vector<Solver>& solvers, double loosest_error, double tightest_error,
-                         double seconds_to_spend);
+                         double seconds_to_spend, const Tolerances& tolerances = {});
 
 /// The cost at `error`. The end error as a function of the tolerance is rough (an accident of signs makes one point ten
 /// times better than its neighbours), cost as a function of the tolerance is smooth; so log error and log cost are both

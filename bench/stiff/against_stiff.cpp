@@ -1,0 +1,80 @@
+// Compares our stiff methods with rosenbrock4 of Boost.odeint and with CVODE on the stiff problems of the field at
+// equal true error, and says how far every method of ours is from the tolerance it was asked for.
+//   against_stiff [FOLDER [SECONDS [PROBLEM...]]]: the page stiff.md and the plots go to FOLDER.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <bench/report.hpp>
+#include <bench/stiff/measure.hpp>
+#include <bench/stiff/page.hpp>
+
+namespace continuo::bench {
+namespace {
+
+/// Every method of ours at rtol = 1e-3 ... 1e-11; no further once a run takes longer than ten seconds.
+std::vector<Kept> kept_tolerances(const std::vector<Solver>& solvers) {
+  constexpr double longest = 10;
+  std::vector<Kept> kept;
+  for (const Solver& solver : solvers) {
+    kept.push_back({solver.name, {}});
+    kept.back().error.fill(std::numeric_limits<double>::quiet_NaN());
+    double seconds = 0;
+    for (std::size_t i = 0; i < tolerances_asked.size() && seconds < longest; ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      kept.back().error[i] = solver.judge(std::pow(10, -tolerances_asked[i])).tolerances;
+      seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+  }
+  return kept;
+}
+
+template <class Problem>
+StiffResult measure_stiff(double seconds) {
+  // A run of more than a fifth of a second is not repeated: the table then ends at larger errors.
+  constexpr Tolerances tolerances{.points_per_decade = 4, .tightest_power = 14, .slowest = 0.2};
+  std::vector<Solver> solvers = our_stiff_solvers<Problem>();
+  StiffResult result;
+  result.kept = kept_tolerances(solvers);
+  std::vector<Solver> peers = cvode_solvers<Problem>();
+  if constexpr (requires { Problem::size; }) {
+    for (Solver& solver : odeint_stiff_solvers<Problem>()) peers.push_back(std::move(solver));
+  }
+  for (Solver& solver : peers) solvers.push_back(std::move(solver));
+  result.measured = {Problem::name, Problem::title, sweep(solvers, 1e-2, 1e-13, seconds, tolerances)};
+  return result;
+}
+
+}  // namespace
+}  // namespace continuo::bench
+
+int main(int count, char** arguments) {
+  using namespace continuo::bench;
+  const std::string folder = count > 1 ? arguments[1] : ".";
+  const double seconds = count > 2 ? std::atof(arguments[2]) : 15;
+  const std::vector<std::string> wanted(arguments + std::min(count, 3), arguments + count);
+  std::vector<StiffResult> all;
+  const auto add = [&](std::string_view name, StiffResult (*measure)(double), const std::vector<Wanted>& ratios) {
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) return;
+    all.push_back(measure(seconds));
+    all.back().wanted = ratios;
+    print_costs(all.back());
+    write_curves(folder, all.back().measured);
+    write_page(folder + "/stiff.md", all);  // after every problem: what is measured is not lost
+  };
+  // At most this part of the peer's time is wanted.
+  add(Robertson<>::name, measure_stiff<Robertson<>>, {{1e-6, 0.5, of_odeint}, {1e-10, 0.15, of_odeint}});
+  add(Hires<>::name, measure_stiff<Hires<>>, {{1e-6, 0.2, of_odeint}, {1e-10, 0.045, of_odeint}});
+  add(Oregonator<>::name, measure_stiff<Oregonator<>>, {{1e-6, 0.45, of_odeint}, {1e-8, 0.18, of_odeint}});
+  add(VanDerPolScaled<>::name, measure_stiff<VanDerPolScaled<>>, {{1e-6, 0.5, of_odeint}, {1e-10, 0.08, of_odeint}});
+  add(Pollution<>::name, measure_stiff<Pollution<>>, {{1e-6, 0.13, of_odeint}, {1e-10, 0.017, of_odeint}});
+  add(BrusselatorLine<>::name, measure_stiff<BrusselatorLine<>>, {{1e-6, 0.12, of_cvode}});
+  add(VanDerPol<>::name, measure_stiff<VanDerPol<>>, {});
+}
