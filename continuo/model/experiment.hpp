@@ -31,7 +31,7 @@ struct Experiment {
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
   bool estimate_error = false;  // by a second run, a hundred times as strict
-  bool keep_rows = true;  // false: only the first and the last state, for sweeps
+  bool keep_rows = true;        // false: only the first and the last state, for sweeps
 };
 
 /// The experiment as it will run: nothing is left open.
