@@ -137,7 +137,7 @@ Value Checker::unknown_name(const ast::Name& name, const std::string& key, std::
   if (family == families_.end()) {
     const std::string near = did_you_mean(name.text, all_names());
     if (undeclared.empty()) undeclared = fmt::format("declare it: param {} = ..., or give it an equation", name.text);
-    fail("E210", name.span, fmt::format("there is no `{}`", key), {}, near.empty() ? std::move(undeclared) : near);
+    fail("E210", name.span, fmt::format("there is no `{}`", key), {}, near.empty() ? undeclared : near);
     return bad();
   }
   const FamilyShape& shape = family->second;
@@ -207,7 +207,7 @@ Value Checker::defined(std::size_t index, const ast::Name& name) {
 void Checker::finish_definition(std::size_t index, Value value) {
   Definition& definition = definitions_[index];
   const bool declared = definition.kind == Definition::Kind::parameter || definition.kind == Definition::Kind::input;
-  if (declared && value.measured.is_number()) value.measured = Measured::unknown();
+  if (declared && value.measured.is_number() && !definition.structural) value.measured = Measured::unknown();
   if (declared && !value.bad) {
     const auto set = options_.overrides.find(definition.name);
     if (set != options_.overrides.end()) value.node = model_.graph.constant(set->second);

@@ -85,7 +85,8 @@ class BandedLU {
       const Number factor = b[k] = b[k] * column[0];
       const std::size_t above = std::min(filled_, k);
       Number* const rest = b + (k - above);
-      for (std::size_t i = 0; i < above; ++i) rest[i] -= column[i - above] * factor;
+      const Number* const upper = entries_.data() + (place(k, k) - above);
+      for (std::size_t i = 0; i < above; ++i) rest[i] -= upper[i] * factor;
     }
   }
 

@@ -329,6 +329,16 @@ TEST(Simulate, SettingsAreReadAsTheLanguageReadsThem) {
   EXPECT_FALSE(parse_setting(model, "k=", problems));
 }
 
+// What counts the members of a family is a number, so a length divided by it is a length, and becomes kilometres where
+// those are asked for: 2 m / 5 in a second.
+TEST(Simulate, ALengthDividedByACountIsALength) {
+  const Simulated simulated = simulate(
+      model_of("param N = 4, L = 2 [m]\nlet dx = L/(N + 1)\nfor i in 1..N { u[i]' = dx/(1 [s])\nu[i](0) = 0 [km] }\n"
+               "run 0..1 [s]\n"));
+  ASSERT_TRUE(simulated.run);
+  EXPECT_NEAR(simulated.run->final_state()[0], 0.0004, 1e-15);
+}
+
 TEST(Simulate, TheTrueErrorIsEstimated) {
   // x = exp(-t). The second run's own error is about a hundredth of the first's for an adaptive run; for half the step
   // of a method of order 4 Richardson's factor leaves an error of the next order, h times smaller.
