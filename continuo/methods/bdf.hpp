@@ -19,6 +19,7 @@
 
 #include <continuo/methods/direct_equations.hpp>
 #include <continuo/methods/newton.hpp>
+#include <continuo/methods/weighted_norm.hpp>
 #include <continuo/system/mass.hpp>
 
 namespace continuo {
@@ -133,7 +134,8 @@ struct BackwardDifferentiation {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    return strictness(tolerance) * ndf::error_constant<Scalar<X>>(work.order) * norm(work.d, x, x_new, tolerance) +
+    return strictness(tolerance) * ndf::error_constant<Scalar<X>>(work.order) *
+               weighted_norm(work.d, x, x_new, tolerance) +
            not_finite(x_new);
   }
   template <State X>
@@ -155,9 +157,11 @@ struct BackwardDifferentiation {
     };
     const auto norm_of = [&](std::size_t order, auto&& component) {
       for (std::size_t i = 0; i < dimension(x); ++i) work.correction.data()[i] = component(i);
-      return strictness(tolerance) * ndf::error_constant<Real>(order) * norm(work.correction, x, x_new, tolerance);
+      return strictness(tolerance) * ndf::error_constant<Real>(order) *
+             weighted_norm(work.correction, x, x_new, tolerance);
     };
-    Real best = factor_of(k, strictness(tolerance) * ndf::error_constant<Real>(k) * norm(work.d, x, x_new, tolerance));
+    Real best =
+        factor_of(k, strictness(tolerance) * ndf::error_constant<Real>(k) * weighted_norm(work.d, x, x_new, tolerance));
     if (k > 1) {  // the difference of order k after this step
       const Real lower =
           factor_of(k - 1, norm_of(k - 1, [&](std::size_t i) { return work.D[k].data()[i] + work.d.data()[i]; }));
@@ -360,24 +364,13 @@ struct BackwardDifferentiation {
       }
       for (std::size_t i = 0; i < n; ++i) work.correction.data()[i] = work.f.data()[i] - work.end.data()[i];
       evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, target, work.correction);
-      const Real size = norm(work.correction, x, x, work.tolerance);
+      const Real size = weighted_norm(work.correction, x, x, work.tolerance);
       for (std::size_t i = 0; i < n; ++i) {
         work.d.data()[i] += work.correction.data()[i];
         x.data()[i] += work.correction.data()[i];
       }
       return size;
     });
-  }
-
-  template <State X>
-  static Scalar<X> norm(const X& v, const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
-    using std::sqrt;
-    Scalar<X> sum(0);
-    for (std::size_t i = 0; i < dimension(v); ++i) {
-      const Scalar<X> part = v.data()[i] / tolerance.scale(i, x.data()[i], x_new.data()[i]);
-      sum += part * part;
-    }
-    return dimension(v) == 0 ? sum : sqrt(sum / Scalar<X>(static_cast<double>(dimension(v))));
   }
   template <State X>
   static Scalar<X> not_finite(const X& x) {

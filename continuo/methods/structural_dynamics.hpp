@@ -22,6 +22,7 @@
 #include <continuo/methods/effective_matrix.hpp>
 #include <continuo/methods/hermite.hpp>
 #include <continuo/methods/newton.hpp>
+#include <continuo/methods/weighted_norm.hpp>
 #include <continuo/system/mass.hpp>
 
 namespace continuo {
@@ -160,7 +161,7 @@ struct StructuralDynamics {
       // The number of steps grows like tolerance^(-1/3), and so does what their errors add up to: held below the
       // tolerance by that factor, the error at the end stays in proportion to the tolerance.
       using std::pow;
-      sum += norm(work.error, x, x_new, tolerance) * pow(relative(tolerance), Scalar<X>(-1) / Scalar<X>(3));
+      sum += weighted_norm(work.error, x, x_new, tolerance) * pow(relative(tolerance), Scalar<X>(-1) / Scalar<X>(3));
     }
     return sum;
   }
@@ -284,7 +285,7 @@ struct StructuralDynamics {
         work.correction.data()[position] = q_of_a * change;
         work.correction.data()[velocity] = v_of_a * change;
       });
-      return norm(work.correction, x, x, work.tolerance);
+      return weighted_norm(work.correction, x, x, work.tolerance);
     });
   }
 
@@ -305,17 +306,6 @@ struct StructuralDynamics {
   static Real relative(const Tolerance<Real>& tolerance) {
     using std::max;
     return max(tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol, std::numeric_limits<Real>::epsilon());
-  }
-
-  template <State X>
-  static Scalar<X> norm(const X& v, const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
-    using std::sqrt;
-    Scalar<X> sum(0);
-    for (std::size_t i = 0; i < dimension(v); ++i) {
-      const Scalar<X> part = v.data()[i] / tolerance.scale(i, x.data()[i], x_new.data()[i]);
-      sum += part * part;
-    }
-    return dimension(v) == 0 ? sum : sqrt(sum / Scalar<X>(static_cast<double>(dimension(v))));
   }
 };
 
