@@ -11,6 +11,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
+#include "dense_order.hpp"
 #include "nystrom_trees.hpp"
 #include <continuo/methods/dormand_prince_nystrom12.hpp>
 #include <continuo/methods/dormand_prince_nystrom6.hpp>
@@ -145,28 +146,8 @@ TYPED_TEST(Nystrom, EstimateFallsWithItsOrder) {
   EXPECT_NEAR(static_cast<double>(std::log2(estimate(h) / estimate(h / 2))), TypeParam::error_order + 1, 0.5);
 }
 
-// One step from an exact state of x'' = -x, in 34 digits: the greatest error between the ends, which is that of the
-// velocity, falls with h^(p+1).
 TYPED_TEST(Nystrom, TheInterpolantHasTheStatedOrder) {
-  using X = std::array<Quad, 2>;
-  const auto error = [](const Quad& h) {
-    auto spring = second_order([](const Quad&, const std::array<Quad, 1>& q) { return std::array<Quad, 1>{-q[0]}; });
-    const Quad t = 0.3;
-    const X x{cos(t), -sin(t)};
-    X x_new = x, between = x;
-    auto work = TypeParam::workspace(x);
-    TypeParam::step(spring, t, x, h, true, work, x_new);
-    Interpolant<X, TypeParam::dense_degree> interpolant(x);
-    TypeParam::interpolate(spring, t, x, h, x_new, work, interpolant);
-    Quad worst = 0;
-    for (Quad theta = 0.0625; theta <= 1; theta += 0.0625) {
-      interpolant(theta, between);
-      worst = std::max({worst, Quad(abs(between[0] - cos(t + theta * h))), Quad(abs(between[1] + sin(t + theta * h)))});
-    }
-    return worst;
-  };
-  const double order = std::log2(static_cast<double>(Quad(error(Quad(0.25)) / error(Quad(0.125)))));
-  EXPECT_NEAR(order, TypeParam::dense_order + 1, 0.3);
+  expect_dense_order_on_oscillator<TypeParam>(0.25);
 }
 
 TYPED_TEST(Nystrom, AForceThatReadsTheVelocityIsRefused) {

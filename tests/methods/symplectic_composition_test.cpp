@@ -13,6 +13,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
+#include "dense_order.hpp"
 #include "nystrom_trees.hpp"
 #include <continuo/methods/kahan_li8.hpp>
 #include <continuo/methods/mclachlan_atela4.hpp>
@@ -152,28 +153,8 @@ TEST(KahanLi8, RunsBackTheWayItCame) {
   expect_way_back<KahanLi8>();
 }
 
-// One step from an exact state of x'' = -x, in 34 digits: the greatest error between the ends, which is that of the
-// velocity, falls with h^(p+1).
 TYPED_TEST(Symplectic, TheInterpolantHasTheStatedOrder) {
-  using Q = std::array<Quad, 2>;
-  const auto error = [](const Quad& h) {
-    auto spring = second_order([](const Quad&, const std::array<Quad, 1>& q) { return std::array<Quad, 1>{-q[0]}; });
-    const Quad t = 0.3;
-    const Q x{cos(t), -sin(t)};
-    Q x_new = x, between = x;
-    auto work = TypeParam::workspace(x);
-    TypeParam::step(spring, t, x, h, true, work, x_new);
-    Interpolant<Q, TypeParam::dense_degree> interpolant(x);
-    TypeParam::interpolate(spring, t, x, h, x_new, work, interpolant);
-    Quad worst = 0;
-    for (Quad theta = 0.0625; theta <= 1; theta += 0.0625) {
-      interpolant(theta, between);
-      worst = std::max({worst, Quad(abs(between[0] - cos(t + theta * h))), Quad(abs(between[1] + sin(t + theta * h)))});
-    }
-    return worst;
-  };
-  const double order = std::log2(static_cast<double>(Quad(error(Quad(0.03125)) / error(Quad(0.015625)))));
-  EXPECT_NEAR(order, TypeParam::dense_order + 1, 0.3);
+  expect_dense_order_on_oscillator<TypeParam>(0.03125);
 }
 
 TYPED_TEST(Symplectic, EvaluatesOnceAStage) {
