@@ -28,6 +28,33 @@ std::optional<model::Overrides> read_settings(const model::Model& model, const s
   return fine ? std::optional(std::move(values)) : std::nullopt;
 }
 
+/// False, after saying why, where a text is no tolerance.
+bool read_tolerances(const model::Model& model, const ExperimentOptions& options, model::Experiment& experiment) {
+  bool fine = true;
+  const auto read = [&](model::ToleranceKind kind, const char* option, const std::vector<std::string>& texts,
+                        const auto& of_all, model::Overrides& of_each) {
+    for (const std::string& text : texts) {
+      std::vector<model::Diagnostic> problems;
+      const auto tolerance = model::parse_tolerance(model, kind, text, problems);
+      show(problems, model::Source(option, text));
+      fine = fine && tolerance.has_value();
+      if (!tolerance) continue;
+      if (tolerance->name.empty()) {
+        of_all(tolerance->value);
+      } else {
+        of_each[tolerance->name] = tolerance->value;
+      }
+    }
+  };
+  read(
+      model::ToleranceKind::relative, "--tol", options.tolerances, [&](double rtol) { experiment.rtol = rtol; },
+      experiment.rtol_of);
+  read(
+      model::ToleranceKind::absolute, "--atol", options.absolute_tolerances,
+      [&](double atol) { experiment.atol = {atol}; }, experiment.atol_of);
+  return fine;
+}
+
 bool decides_a_size(const model::Model& model, const model::Overrides& values) {
   return std::ranges::any_of(values, [&](const auto& value) {
     const std::size_t i = model::find_parameter(model, value.first);
@@ -49,8 +76,15 @@ void add_experiment(CLI::App& verb, ExperimentOptions& options) {
 
 void add_method(CLI::App& verb, ExperimentOptions& options) {
   verb.add_option("--method", options.method, "The integration method (continuo methods)")->type_name("NAME");
-  auto* tolerance = verb.add_option("--tol", options.tolerance, "The relative tolerance")->type_name("RTOL");
-  verb.add_option("--step", options.step, "A fixed step")->type_name("H")->excludes(tolerance);
+  const auto list = [&verb](const char* name, std::vector<std::string>& texts, const char* help) {
+    return verb.add_option(name, texts, help)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  };
+  auto* relative = list("--tol,--rtol", options.tolerances, "The relative tolerance: --tol 1e-8 --tol y2=1e-10")
+                       ->type_name("[NAME=]RTOL");
+  auto* absolute = list("--atol", options.absolute_tolerances,
+                        "The absolute tolerance, in the unit of the state: --atol 1e-9 --atol \"h'=1e-12\"")
+                       ->type_name("[NAME=]ATOL");
+  verb.add_option("--step", options.step, "A fixed step")->type_name("H")->excludes(relative)->excludes(absolute);
 }
 
 void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source) {
@@ -79,12 +113,12 @@ Prepared prepare(const ExperimentOptions& options) {
   }
   prepared.program = model::compile(*prepared.loaded.model);
   prepared.experiment = {.method = options.method,
-                         .rtol = options.tolerance,
                          .step = options.step,
                          .to = options.until,
                          .output = options.output,
                          .parameters = std::move(*values),
                          .interrupt = &interrupt_flag()};
+  if (!read_tolerances(*prepared.loaded.model, options, prepared.experiment)) prepared.exit = usage;
   return prepared;
 }
 

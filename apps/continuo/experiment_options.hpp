@@ -19,15 +19,19 @@ struct ExperimentOptions {
   std::string file;
   std::vector<std::string> settings;  // "k=5"
   std::optional<std::string> method;
-  std::optional<double> tolerance, step, until, output;
+  std::vector<std::string> tolerances, absolute_tolerances;  // "1e-8", "y2=1e-10"
+  std::optional<double> step, until, output;
 
   /// Nothing differs from what the model says: then its checks are meant for this run.
-  bool as_written() const { return settings.empty() && !method && !tolerance && !step && !until && !output; }
+  bool as_written() const {
+    return settings.empty() && !method && tolerances.empty() && absolute_tolerances.empty() && !step && !until &&
+           !output;
+  }
 };
 
 /// --set, --until and --output, which every such verb takes.
 void add_experiment(CLI::App& verb, ExperimentOptions& options);
-/// --method, --tol and --step, one each.
+/// --method, --step, --tol and --atol.
 void add_method(CLI::App& verb, ExperimentOptions& options);
 
 /// A model made ready for a run, or how the verb ends without one; what is wrong has been said.

@@ -45,8 +45,12 @@ ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program,
     factor = power / (power - 1);
   } else {
     strict.rtol = std::max(run.plan.rtol / stricter, least_rtol);
+    strict.rtol_of.clear();
+    for (std::size_t i = 0; i < run.plan.rtol_each.size(); ++i)
+      strict.rtol_of[run.motion.columns[i + 1].name] = std::max(run.plan.rtol_each[i] / stricter, least_rtol);
     strict.atol.clear();
     for (const double atol : run.plan.atol) strict.atol.push_back(atol / stricter);
+    strict.atol_of.clear();
   }
   const Simulated second = simulate(program, strict);
   if (!second.run || second.run->outcome.ending != run.outcome.ending) {

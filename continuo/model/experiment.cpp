@@ -1,4 +1,5 @@
 // continuo/model/experiment.cpp
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -69,22 +70,54 @@ class Planner {
   }
 
   void set_accuracy() {
-    const auto step = experiment_.step ? experiment_.step : experiment_.rtol ? std::nullopt : value(run_.step);
+    const auto step = experiment_.step ? experiment_.step : asks_for_tolerance() ? std::nullopt : value(run_.step);
     plan_.step = step.value_or(0);
     if (step && !(*step > 0)) {
       fail("E333", fmt::format("a step of {} leads nowhere", *step), "give a positive step",
            experiment_.step.has_value());
     }
+    set_tolerances();
+  }
+
+  bool asks_for_tolerance() const {
+    return experiment_.rtol || !experiment_.atol.empty() || !experiment_.rtol_of.empty() ||
+           !experiment_.atol_of.empty();
+  }
+
+  void set_tolerances() {
+    const std::size_t n = model_.states.size();
     plan_.rtol = experiment_.rtol.value_or(run_.rtol.value_or(default_rtol));
-    if (!(plan_.rtol >= 0)) {
-      fail("E333", "the tolerance is negative", "give a positive one, such as --tol 1e-6",
-           experiment_.rtol.has_value());
+    if (!experiment_.rtol_of.empty()) {
+      plan_.rtol_each.assign(n, plan_.rtol);
+      place_by_name(experiment_.rtol_of, plan_.rtol_each);
     }
     plan_.atol = !experiment_.atol.empty() ? experiment_.atol : run_.atol;
-    if (plan_.atol.empty()) plan_.atol = {plan_.rtol * atol_part};
-    if (plan_.atol.size() != 1 && plan_.atol.size() != model_.states.size()) {
-      fail("E333", fmt::format("{} absolute tolerances for {} states", plan_.atol.size(), model_.states.size()),
-           "give one for all, or one for each");
+    if (plan_.atol.empty()) {
+      for (const double rtol : plan_.rtol_each) plan_.atol.push_back(rtol * atol_part);
+      if (plan_.atol.empty()) plan_.atol = {plan_.rtol * atol_part};
+    }
+    if (plan_.atol.size() != 1 && plan_.atol.size() != n) {
+      return fail("E333", fmt::format("{} absolute tolerances for {} states", plan_.atol.size(), n),
+                  "give one for all, or one for each");
+    }
+    if (!experiment_.atol_of.empty()) {
+      if (plan_.atol.size() == 1) plan_.atol.resize(n, plan_.atol.front());
+      place_by_name(experiment_.atol_of, plan_.atol);
+    }
+    if (!plan_.rtol_each.empty()) plan_.rtol = std::ranges::min(plan_.rtol_each);
+    const bool usable = plan_.rtol >= 0 && std::ranges::all_of(plan_.atol, [](double atol) { return atol > 0; });
+    if (!usable) {
+      fail("E333", "a tolerance is not positive", "give positive ones, such as --tol 1e-6 --atol 1e-9",
+           asks_for_tolerance());
+    }
+  }
+
+  // In the order of the names, so that u[3] comes after u, its family.
+  void place_by_name(const Overrides& given, std::vector<double>& each) {
+    for (const auto& [name, tolerance] : given) {
+      const std::vector<std::size_t> meant = states_named(model_, name);
+      if (meant.empty()) problems_.push_back(no_state(model_, name, run_.span));
+      for (const std::size_t i : meant) each[i] = tolerance;
     }
   }
 

@@ -19,9 +19,10 @@ namespace continuo::model {
 /// What stands here replaces what the model says. Numbers are in the model's units.
 struct Experiment {
   std::optional<std::string> method{};
-  std::optional<double> rtol{};  // takes the place of a fixed step
-  std::optional<double> step{};  // takes the place of a tolerance
-  std::vector<double> atol{};    // empty, one, or one per state
+  std::optional<double> rtol{};    // takes the place of a fixed step
+  std::optional<double> step{};    // takes the place of a tolerance
+  std::vector<double> atol{};      // empty, one, or one per state
+  Overrides rtol_of{}, atol_of{};  // of single states or families of them, by their columns: "x'", "u[3]", "u"
   std::optional<double> from{}, to{};
   std::optional<double> output{};  // a row every so much time
   bool output_steps = false;       // a row at every step
@@ -37,22 +38,27 @@ struct Experiment {
 /// The experiment as it will run: nothing is left open.
 struct Plan {
   std::string method;
-  double rtol = 0;
-  std::vector<double> atol;
-  double step = 0;  // > 0: fixed, and rtol says nothing
+  double rtol = 0;                // the smallest of them
+  std::vector<double> rtol_each;  // one per state where they differ, else empty
+  std::vector<double> atol;       // one, or one per state
+  double step = 0;                // > 0: fixed, and the tolerances say nothing
   double from = 0, to = 0;
   OutputPlan::Kind output = OutputPlan::Kind::steps;
   double interval = 0;            // of Kind::every
   int per_decade = 0;             // of Kind::logarithmic,
   double first = 0;               // and its first time
   std::vector<double> variables;  // the register file at the start
+
+  double rtol_of(std::size_t state) const { return rtol_each.empty() ? rtol : rtol_each[state]; }
+  double atol_of(std::size_t state) const { return atol.size() == 1 ? atol.front() : atol[state]; }
 };
 
 /// The plan, or why there is none: E33x, E34x.
 std::optional<Plan> plan(const Model& model, const Experiment& experiment, std::vector<Diagnostic>& problems);
 
-/// E340 with the names that may have been meant.
+/// E340, E344 with the names that may have been meant.
 Diagnostic no_parameter(const Model& model, std::string_view name, Span span);
+Diagnostic no_state(const Model& model, std::string_view name, Span span);
 
 /// The times at which rows are wanted, one after the other; infinity when there are no more.
 class OutputTimes {

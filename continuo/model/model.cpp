@@ -29,6 +29,18 @@ void set_all(const Model& model, const std::vector<Item>& items, NodeId Item::* 
 std::size_t find_state(const Model& model, std::string_view column) {
   return find_by(model.states, &State::column, column);
 }
+std::vector<std::size_t> states_named(const Model& model, std::string_view name) {
+  if (const std::size_t one = find_state(model, name); one != npos) return {one};
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < model.states.size(); ++i) {
+    std::string family = model.states[i].column;
+    const std::size_t begin = family.find('['), end = family.rfind(']');
+    if (begin == std::string::npos || end == std::string::npos) continue;
+    if (family.erase(begin, end + 1 - begin) == name) found.push_back(i);
+  }
+  return found;
+}
+
 std::size_t find_parameter(const Model& model, std::string_view name) {
   return find_by(model.parameters, &Parameter::name, name);
 }

@@ -343,6 +343,8 @@ struct Model {
 /// By name, `npos` where there is none: "h'" for states, "k" or "m[3]" for parameters.
 inline constexpr std::size_t npos = static_cast<std::size_t>(-1);
 std::size_t find_state(const Model& model, std::string_view column);
+/// The state of that column; where there is none, the states of the family of that name: "u'" for all u[i]'.
+std::vector<std::size_t> states_named(const Model& model, std::string_view name);
 std::size_t find_parameter(const Model& model, std::string_view name);
 std::size_t find_input(const Model& model, std::string_view name);
 std::size_t find_mode(const Model& model, std::string_view name);

@@ -1,6 +1,6 @@
 // continuo/model/setting.cpp
-// Parameters given by name on the command line. The value is read by the language itself, so everything that may
-// stand behind `param k =` may stand here.
+// Parameters and tolerances given by name on the command line. The value is read by the language itself, so everything
+// that may stand behind `param k =` may stand here.
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
 
 /// The value and unit of `param value = TEXT` in a model of its own.
 std::optional<Parameter> read_value(std::string_view text, std::string& problem) {
-  if (text.find_first_of("\n;#,") != std::string_view::npos) {
+  if (text.empty() || text.find_first_of("\n;#,") != std::string_view::npos) {
     problem = "one value is expected";
     return std::nullopt;
   }
@@ -40,12 +40,12 @@ std::optional<Parameter> read_value(std::string_view text, std::string& problem)
   return std::nullopt;
 }
 
-std::optional<double> in_unit_of(const Parameter& parameter, const Parameter& given, std::string& problem) {
-  if (given.unit.empty() || given.unit == parameter.unit) return given.value;
-  const auto from = parse_unit(given.unit).unit, to = parse_unit(parameter.unit.empty() ? "1" : parameter.unit).unit;
+std::optional<double> in_unit(const std::string& unit, const Parameter& given, std::string& problem) {
+  if (given.unit.empty() || given.unit == unit) return given.value;
+  const auto from = parse_unit(given.unit).unit, to = parse_unit(unit.empty() ? "1" : unit).unit;
   const auto factor = from && to ? conversion_factor(*from, *to) : std::nullopt;
   if (factor) return given.value * *factor;
-  problem = fmt::format("[{}] is no [{}]", given.unit, parameter.unit.empty() ? "1" : parameter.unit);
+  problem = fmt::format("[{}] is no [{}]", given.unit, unit.empty() ? "1" : unit);
   return std::nullopt;
 }
 
@@ -55,19 +55,26 @@ Span place(std::string_view whole, std::string_view part) {
   return {begin, begin + static_cast<std::uint32_t>(part.size())};
 }
 
-std::string known_names(const Model& model, std::string_view name) {
-  std::vector<std::string> names;
-  names.reserve(model.parameters.size());
-  for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
+/// The name that may have been meant, else all of them if they are few.
+std::string known_names(std::span<const std::string> names, std::string_view name, std::string_view what) {
   std::string help = did_you_mean(name, names);
   if (!help.empty() || names.size() > 20) return help;
-  return names.empty() ? "it has none" : fmt::format("its parameters are {}", fmt::join(names, ", "));
+  return names.empty() ? "it has none" : fmt::format("its {} are {}", what, fmt::join(names, ", "));
 }
 
 }  // namespace
 
 Diagnostic no_parameter(const Model& model, std::string_view name, Span span) {
-  return error("E340", span, fmt::format("the model has no parameter `{}`", name), {}, known_names(model, name));
+  std::vector<std::string> names;
+  for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
+  return error("E340", span, fmt::format("the model has no parameter `{}`", name), {},
+               known_names(names, name, "parameters"));
+}
+
+Diagnostic no_state(const Model& model, std::string_view name, Span span) {
+  std::vector<std::string> names;
+  for (const State& state : model.states) names.push_back(state.column);
+  return error("E344", span, fmt::format("the model has no state `{}`", name), {}, known_names(names, name, "states"));
 }
 
 std::optional<ParameterSetting> parse_setting(const Model& model, std::string_view text,
@@ -89,7 +96,7 @@ std::optional<ParameterSetting> parse_setting(const Model& model, std::string_vi
   const Span span = given_text.empty() ? place(text, text) : place(text, given_text);
   std::string problem;
   const auto given = read_value(given_text, problem);
-  const auto value = given ? in_unit_of(parameter, *given, problem) : std::nullopt;
+  const auto value = given ? in_unit(parameter.unit, *given, problem) : std::nullopt;
   if (!value) {
     problems.push_back(error("E341", span, fmt::format("`{}` cannot be set to `{}`", name, given_text), problem));
     return std::nullopt;
@@ -100,6 +107,30 @@ std::optional<ParameterSetting> parse_setting(const Model& model, std::string_vi
                                            parameter.range->low, parameter.range->high)));
   }
   return ParameterSetting{std::string(name), *value};
+}
+
+std::optional<ToleranceSetting> parse_tolerance(const Model& model, ToleranceKind kind, std::string_view text,
+                                                std::vector<Diagnostic>& problems) {
+  const std::size_t equals = text.find('=');
+  const std::string_view name = equals == std::string_view::npos ? std::string_view() : trimmed(text.substr(0, equals));
+  const std::string_view given_text = trimmed(equals == std::string_view::npos ? text : text.substr(equals + 1));
+  std::string unit;
+  if (equals != std::string_view::npos) {
+    const std::vector<std::size_t> meant = states_named(model, name);
+    if (meant.empty()) {
+      problems.push_back(no_state(model, name, name.empty() ? place(text, text) : place(text, name)));
+      return std::nullopt;
+    }
+    if (kind == ToleranceKind::absolute) unit = model.states[meant.front()].unit;
+  }
+  std::string problem;
+  const auto given = read_value(given_text, problem);
+  const auto value = given ? in_unit(unit, *given, problem) : std::nullopt;
+  if (value && *value > 0) return ToleranceSetting{std::string(name), *value};
+  if (value) problem = "a tolerance is greater than zero";
+  const Span span = given_text.empty() ? place(text, text) : place(text, given_text);
+  problems.push_back(error("E345", span, fmt::format("`{}` is no tolerance", given_text), {}, problem));
+  return std::nullopt;
 }
 
 }  // namespace continuo::model

@@ -25,9 +25,12 @@ std::optional<Diagnostic> not_there_yet(const Model& model) {
 
 Options<ModelSystem::X> options_of(const Plan& plan, const Experiment& experiment) {
   Options<ModelSystem::X> options{.rtol = plan.rtol, .atol = plan.atol.front()};
-  if (plan.atol.size() > 1) {
-    options.atol_each = plan.atol;
-    options.rtol_each.assign(plan.atol.size(), plan.rtol);
+  const std::size_t n = std::max(plan.atol.size(), plan.rtol_each.size());
+  if (n > 1) {
+    for (std::size_t i = 0; i < n; ++i) {
+      options.rtol_each.push_back(plan.rtol_of(i));
+      options.atol_each.push_back(plan.atol_of(i));
+    }
   }
   options.step = plan.step;
   options.max_step = experiment.max_step;
@@ -54,16 +57,23 @@ bool is_positive_period(const Model& model, const Plan& plan, std::vector<Diagno
 
 }  // namespace
 
+std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
+                             std::vector<Diagnostic>& problems) {
+  if (auto problem = not_there_yet(program.model)) {
+    problems.push_back(std::move(*problem));
+    return std::nullopt;
+  }
+  auto planned = plan(program.model, experiment, problems);
+  if (!planned || !is_positive_period(program.model, *planned, problems)) return std::nullopt;
+  place_step_inputs(program, *planned);
+  return planned;
+}
+
 Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {
   Simulated simulated;
   const Model& model = program->model;
-  if (auto problem = not_there_yet(model)) {
-    simulated.diagnostics.push_back(std::move(*problem));
-    return simulated;
-  }
-  auto planned = plan(model, experiment, simulated.diagnostics);
-  if (!planned || !is_positive_period(model, *planned, simulated.diagnostics)) return simulated;
-  place_step_inputs(*program, *planned);
+  auto planned = plan_run(*program, experiment, simulated.diagnostics);
+  if (!planned) return simulated;
 
   Run run;
   run.plan = std::move(*planned);

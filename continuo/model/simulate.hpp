@@ -33,6 +33,10 @@ Simulated simulate(const Model& model, const Experiment& experiment = {});
 /// The same for a program compiled before: for many runs of one model.
 Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment = {});
 
+/// The plan of a run with its inputs in place, or why there can be no run.
+std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
+                             std::vector<Diagnostic>& problems);
+
 /// What an ending that is no success says as a diagnostic: E30x, E310.
 Diagnostic failure(const Model& model, const Run& run);
 
@@ -48,5 +52,15 @@ struct ParameterSetting {
 /// Empty where the text cannot be used; `problems` says why (E34x), or warns of a value outside the declared range.
 std::optional<ParameterSetting> parse_setting(const Model& model, std::string_view text,
                                               std::vector<Diagnostic>& problems);
+
+/// `1e-8` for all states, `y2=1e-10`, `x' = 1 [mm/s]` for one or a family of them; absolute ones in the state's unit.
+enum class ToleranceKind { relative, absolute };
+struct ToleranceSetting {
+  std::string name;  // empty: of all
+  double value;
+};
+/// Empty where the text cannot be used; `problems` says why (E344, E345).
+std::optional<ToleranceSetting> parse_tolerance(const Model& model, ToleranceKind kind, std::string_view text,
+                                                std::vector<Diagnostic>& problems);
 
 }  // namespace continuo::model

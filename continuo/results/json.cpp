@@ -60,7 +60,11 @@ Json manifest_object(const model::Model& model, const model::Run& run, std::stri
   if (plan.step > 0) {
     json["step"] = plan.step;
   } else {
-    json["rtol"] = plan.rtol;
+    if (plan.rtol_each.empty()) {
+      json["rtol"] = plan.rtol;
+    } else {
+      json["rtol"] = plan.rtol_each;
+    }
     json["atol"] = plan.atol;
   }
   json["seed"] = nullptr;

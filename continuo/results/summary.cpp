@@ -32,6 +32,11 @@ void append_ending(const model::Model& model, const model::Run& run, std::string
   text += '\n';
 }
 
+/// What the error of one step at x may be.
+double tolerance_of(const model::Run& run, std::size_t state, double x) {
+  return run.plan.atol_of(state) + run.plan.rtol_of(state) * std::abs(x);
+}
+
 void append_states(const model::Run& run, std::string& text) {
   const std::span columns = std::span(run.motion.columns).subspan(1, run.motion.states);
   const auto values = run.final_state();
@@ -40,9 +45,11 @@ void append_states(const model::Run& run, std::string& text) {
   for (std::size_t i = 0; i < shown; ++i) widest = std::max(widest, columns[i].name.size());
   for (std::size_t i = 0; i < shown; ++i) {
     std::string value = short_number(values[i]);
-    if (run.error && i < run.error->at_end.size()) value += fmt::format(" +- {:.1g}", run.error->at_end[i]);
-    fmt::format_to(std::back_inserter(text), "  {:<{}} = {}\n", columns[i].name, widest,
-                   with_unit(std::move(value), columns[i].unit));
+    const bool estimated = run.error && i < run.error->at_end.size();
+    if (estimated) value += fmt::format(" +- {:.1g}", run.error->at_end[i]);
+    value = with_unit(std::move(value), columns[i].unit);
+    if (estimated && run.plan.step == 0) value += fmt::format(" (tolerance {:.1g})", tolerance_of(run, i, values[i]));
+    fmt::format_to(std::back_inserter(text), "  {:<{}} = {}\n", columns[i].name, widest, value);
   }
   if (shown < values.size()) {
     fmt::format_to(std::back_inserter(text), "  and {} more states (-o FILE writes them all)\n", values.size() - shown);
@@ -113,6 +120,29 @@ void append_checks(const model::Run& run, bool as_written, std::string& text) {
   if (failed.size() > most_checks) fmt::format_to(out, "        and {} more\n", failed.size() - most_checks);
 }
 
+/// The state whose error is the most of its tolerance at its largest value; by a fixed step, the largest error.
+struct Worst {
+  std::size_t state = 0;
+  double tolerance = 0;  // 0: there is none
+};
+Worst worst_state(const model::Run& run) {
+  const std::vector<double>& errors = run.error->largest;
+  if (run.plan.step > 0) {
+    return {static_cast<std::size_t>(std::ranges::max_element(errors) - errors.begin())};
+  }
+  std::vector<double> sizes(errors.size(), 0.0);
+  for (std::size_t row = 0; row < run.motion.rows(); ++row) {
+    const auto state = run.motion.state(row);
+    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = std::max(sizes[i], std::abs(state[i]));
+  }
+  Worst worst{0, tolerance_of(run, 0, sizes[0])};
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    const double tolerance = tolerance_of(run, i, sizes[i]);
+    if (errors[i] * worst.tolerance > errors[worst.state] * tolerance) worst = {i, tolerance};
+  }
+  return worst;
+}
+
 void append_error(const model::Run& run, std::string& text) {
   if (!run.error) return;
   const model::ErrorEstimate& error = *run.error;
@@ -125,20 +155,32 @@ void append_error(const model::Run& run, std::string& text) {
     text += "error   at the end, against a run a hundred times as strict\n";
     return;
   }
-  const auto worst = std::ranges::max_element(error.largest);
-  const model::Column& column = run.motion.columns[static_cast<std::size_t>(worst - error.largest.begin()) + 1];
-  fmt::format_to(out, "error   at most {} in {}, against a run a hundred times as strict\n",
-                 with_unit(fmt::format("{:.1g}", *worst), column.unit), column.name);
+  const auto [worst, tolerance] = worst_state(run);
+  const model::Column& column = run.motion.columns[worst + 1];
+  const std::string most = with_unit(fmt::format("{:.1g}", error.largest[worst]), column.unit);
+  if (tolerance == 0) {
+    fmt::format_to(out, "error   at most {} in {}, against a run by half the step\n", most, column.name);
+  } else {
+    fmt::format_to(out,
+                   "error   at most {} in {}, {:.2g} times its tolerance, against a run a hundred times as strict\n",
+                   most, column.name, error.largest[worst] / tolerance);
+  }
 }
 
 void append_note(const model::Run& run, std::string& text) {
   if (succeeded(run.outcome.ending) && !run.outcome.hint.empty()) text += fmt::format("note    {}\n", run.outcome.hint);
 }
 
+std::string range_of(std::span<const double> each, double one) {
+  if (each.empty()) return short_number(one);
+  const auto [least, most] = std::ranges::minmax(each);
+  return least == most ? short_number(least) : fmt::format("{}..{}", short_number(least), short_number(most));
+}
+
 void append_cost(const model::Run& run, std::string& text) {
   const Statistics& s = run.statistics;
   const std::string control = run.plan.step > 0 ? fmt::format("step {}", short_number(run.plan.step))
-                                                : fmt::format("tol {}", short_number(run.plan.rtol));
+                                                : fmt::format("tol {}", range_of(run.plan.rtol_each, run.plan.rtol));
   fmt::format_to(std::back_inserter(text), "cost    {} steps, {} rejected, {} evaluations, {} by {}, {}\n", s.steps,
                  s.rejected, s.evaluations, duration(s.seconds), run.plan.method, control);
 }

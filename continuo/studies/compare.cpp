@@ -40,6 +40,8 @@ model::Experiment for_reference(model::Experiment experiment, std::string_view m
   experiment.rtol = reference_rtol;
   experiment.step.reset();
   experiment.atol = {reference_rtol};
+  experiment.rtol_of.clear();
+  experiment.atol_of.clear();
   return experiment;
 }
 

@@ -15,6 +15,7 @@ namespace continuo::app {
 namespace {
 
 using nlohmann::json;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -86,6 +87,66 @@ TEST(Run, OptionsOverrideTheModelItemByItem) {
   EXPECT_EQ(result["statistics"]["rejected"], 0);
   ASSERT_EQ(shell.run("run spring.sim --output 0.25 -o out.csv").exit, 0);
   EXPECT_GE(lines_of(shell.read("out.csv")).size(), 2u + 9u);
+}
+
+// Two decays, in m and in um: both end at exp(-1) of where they began.
+constexpr const char* two_sizes =
+    "model TwoSizes\nparam k = 1 [1/s]\nlarge' = -k*large\nsmall' = -k*small\n"
+    "large(0) = 1 [m]; small(0) = 1 [um]\nrun 0..1 [s] output 0.5 method dormand_prince5 tol 1e-6\n";
+
+TEST(Run, ToleranceOfSingleStates) {
+  const Shell shell;
+  shell.write("two.sim", two_sizes);
+  const auto run = [&](const std::string& options) {
+    const Result result = shell.run("run two.sim --estimate-error --json --manifest m.json " + options);
+    EXPECT_EQ(result.exit, 0) << result.err;
+    return json::parse(result.out);
+  };
+  const auto manifest = [&] { return json::parse(shell.read("m.json")); };
+  const auto steps = [](const json& result) { return result["statistics"]["steps"].get<int>(); };
+  const json loose = run("");
+  EXPECT_EQ(manifest()["rtol"], 1e-6);
+  const json tight = run("--tol 1e-6 --tol small=1e-10");
+  EXPECT_EQ(manifest()["rtol"], json({1e-6, 1e-10}));
+  EXPECT_EQ(manifest()["atol"], json({1e-9, 1e-13}));  // a thousandth of each
+  EXPECT_GT(steps(tight), steps(loose));
+  const json absolute = run("--rtol 1e-6 --atol 1e-8 --atol 'small = 1e-9 [mm]'");
+  EXPECT_EQ(manifest()["rtol"], 1e-6);
+  EXPECT_EQ(manifest()["atol"][0], 1e-8);
+  EXPECT_NEAR(manifest()["atol"][1].get<double>(), 1e-6, 1e-20);  // in the state's unit, um
+}
+
+TEST(Run, ToleranceOfNamesThatAreNone) {
+  const Shell shell;
+  shell.write("two.sim", two_sizes);
+  const Result wrong = shell.run("run two.sim --atol smal=1e-12");
+  EXPECT_EQ(wrong.exit, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("error[E344]: the model has no state `smal`"));
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean `small`?"));
+  EXPECT_THAT(shell.run("run two.sim --tol k=1e-12").err, HasSubstr("its states are large, small"));
+  for (const char* option : {"--tol small=0", "--tol=-1", "--atol 'small=1e-9 [s]'", "--tol small=", "--tol =1e-9",
+                             "--tol 'small=1e-9 [m]'", "--atol 0", "--atol small=1e-9 --step 0.1"}) {
+    const Result result = shell.run(std::string("run two.sim ") + option);
+    EXPECT_EQ(result.exit, 1) << option;
+    EXPECT_THAT(result.err, Not(IsEmpty())) << option;
+    EXPECT_THAT(result.out, IsEmpty()) << option;
+  }
+}
+
+TEST(Run, ToleranceOfAFamilyAndOfOneOfIt) {
+  const Shell shell;
+  shell.write("rod.sim", "for i in 1..3 { u[i]' = -u[i];  u[i](0) = 1 }\nv' = -v\nv(0) = 1\nrun 0..1\n");
+  ASSERT_EQ(shell.run("run rod.sim --tol u=1e-8 --tol 'u[2]=1e-10' --manifest m.json").exit, 0);
+  EXPECT_EQ(json::parse(shell.read("m.json"))["rtol"], json({1e-8, 1e-10, 1e-8, 1e-6}));
+}
+
+TEST(Run, TheEstimateStandsBesideTheTolerance) {
+  const Shell shell;
+  shell.write("two.sim", two_sizes);
+  const std::string text = shell.run("run two.sim --tol 1e-4 --atol small=1e-9 --estimate-error").out;
+  EXPECT_THAT(text, ContainsRegex("large = 0.3678[0-9]* \\+- [0-9e.-]+ m \\(tolerance 4e-05\\)"));  // 1e-4 exp(-1)
+  EXPECT_THAT(text, ContainsRegex("error   at most [0-9e.-]+ u?m in (large|small), [0-9e.-]+ times its tolerance"));
+  EXPECT_THAT(shell.run("run two.sim --method rk4 --step 0.1 --estimate-error").out, HasSubstr("by half the step"));
 }
 
 TEST(Run, TheSameRunHasTheSameBytes) {

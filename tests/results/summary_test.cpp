@@ -56,6 +56,19 @@ TEST(Summary, ARunOfAnotherModelSaysWhoseChecksTheseAreAndWhichFail) {
   EXPECT_THAT(text, HasSubstr("        and 91 more\n"));
 }
 
+TEST(Summary, TheErrorIsThatOfTheStateFurthestFromItsTolerance) {
+  auto [model, run] = falling_ball();  // |h| <= 1 m, |h'| <= 2 m/s
+  run.plan.rtol_each = {1e-10, 1e-4};
+  run.plan.atol = {1e-12, 1e-4};
+  run.error = model::ErrorEstimate{{2e-10, 3e-6}, {5e-10, 3e-5}, ""};
+  const std::string text = summary(model, run);
+  EXPECT_THAT(text, HasSubstr("  h  = 0 +- 2e-10 m (tolerance 1e-12)\n"));
+  EXPECT_THAT(text, HasSubstr("  h' = 1 +- 3e-06 m/s (tolerance 0.0002)\n"));
+  // 5e-10 of 1e-12 + 1e-10 * 1 is more than 3e-5 of 1e-4 + 1e-4 * 2, though the less in numbers.
+  EXPECT_THAT(text, HasSubstr("error   at most 5e-10 m in h, 5 times its tolerance"));
+  EXPECT_THAT(text, HasSubstr("tol 1e-10..0.0001\n"));
+}
+
 TEST(Summary, WhatIsNoNumberHasNoSign) {
   auto [model, run] = falling_ball();
   const double nan = -std::numeric_limits<double>::quiet_NaN();
