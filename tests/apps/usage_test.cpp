@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "shell.hpp"
 #include <continuo/solve/catalogue.hpp>
@@ -99,6 +100,29 @@ TEST(Check, AWrongModelIsShownWithItsPlace) {
   EXPECT_EQ(shell.run("run wrong.sim").exit, 2);
   EXPECT_EQ(shell.run("verify wrong.sim").exit, 2);
   EXPECT_THAT(shell.run("check wrong.sim --json").out, HasSubstr("\"line\":"));
+}
+
+TEST(Check, DerivativesAreComparedWithDifferencesAlongARun) {
+  const Shell shell;
+  const Result result = shell.run("check " + gallery("robertson") + " --jacobian");
+  EXPECT_EQ(result.exit, 0);
+  EXPECT_THAT(result.out, HasSubstr("df/dx   3 x 3, pattern of 8"));
+  EXPECT_THAT(result.out, HasSubstr("right   by differences at "));
+  EXPECT_THAT(result.out, Not(HasSubstr("wrong")));
+  shell.write("kink.sim", "x' = v\nv' = -abs(v)\nx(0) = 1; v(0) = 0\nrun 0..1\n");
+  EXPECT_THAT(shell.run("check kink.sim --jacobian").out, HasSubstr("kink    d(v')/d(v) at t = 0: 1 below, -1 above"));
+  const auto object = nlohmann::json::parse(shell.run("check kink.sim --jacobian --json").out);
+  EXPECT_TRUE(object["messages"].empty());
+  EXPECT_EQ(object["jacobian"]["kinks"][0]["entry"], "d(v')/d(v)");
+  EXPECT_TRUE(object["jacobian"]["agrees"]);
+}
+
+TEST(Check, DerivativesOfAModelWithoutARunAreNotCompared) {
+  const Shell shell;
+  shell.write("short.sim", "x' = -x\nx(0) = 1\n");
+  const Result result = shell.run("check short.sim --jacobian");
+  EXPECT_EQ(result.exit, 3);
+  EXPECT_THAT(result.err, HasSubstr("E333"));
 }
 
 TEST(Info, NamesStatesParametersAndEvents) {
