@@ -118,6 +118,9 @@ class StepControl {
   }
 
   // x_begin_ is the start of the step from here on; after a failure the start is all that stands.
+  static constexpr const char* singular_hint =
+      "the solution may be singular here, or f jumps: declare an event at the jump, or loosen the tolerance";
+
   bool fail(Ending ending, Real error, std::string component, std::string hint, Outcome<Real>& outcome) {
     outcome = {ending, begin_, h_, error, std::move(component), {}, {}, std::move(hint)};
     end_ = begin_;
@@ -139,14 +142,26 @@ class StepControl {
   }
 
   // A step whose equations were not solved.
-  bool fail_to_solve(StepStatus status, Outcome<Real>& outcome) {
-    return fail(Ending::nonlinear_solve_failed, 0, {},
-                status == StepStatus::singular_matrix
-                    ? "the matrix of the step's equations is singular: a system with algebraic equations may be of an "
-                      "index above 1, or an unknown appears in no equation"
-                    : "Newton's iteration does not converge: take a smaller step, or look for a jump in f and declare "
-                      "an event there",
-                outcome);
+  bool fail_to_solve(StepStatus status, const Options<X>& options, Outcome<Real>& outcome) {
+    const char* hint =
+        fixed(options)
+            ? "Newton's iteration does not converge: take a smaller step, or look for a jump in f and declare "
+              "an event there"
+            : "Newton's iteration does not converge, however small the step: the solution may be singular or "
+              "end here, or f jumps: declare an event at the jump";
+    if (status == StepStatus::singular_matrix)
+      hint =
+          "the matrix of the step's equations is singular: a system with algebraic equations may be of an index above "
+          "1, or an unknown appears in no equation";
+    return fail(Ending::nonlinear_solve_failed, 0, {}, hint, outcome);
+  }
+
+  /// For a step that did not move t, and only some part of what is carried: a few may be, at the start of a fast
+  /// motion.
+  bool stands_still() {
+    constexpr std::size_t most = 1000;
+    if (stood_at_ != begin_) stood_at_ = begin_, standing_ = 0;
+    return ++standing_ >= most;
   }
 
   /// The square of M::error_norm, without its root where the method has it so.
@@ -188,10 +203,11 @@ class StepControl {
     attempt(short_step ? limit - begin_ : nominal, options);
     const StepStatus status = detail::status_of<M>(work_);
     if (status == StepStatus::newton_diverged || status == StepStatus::singular_matrix)
-      return fail_to_solve(status, outcome);
+      return fail_to_solve(status, options, outcome);
     if (status == StepStatus::not_finite || !finite_end()) {
       return fail(Ending::not_finite, 0, first_not_finite(x_end_),
-                  "f or the state overflows: take a smaller step, or a method with error control", outcome);
+                  "f, its Jacobian or the state is not finite: take a smaller step, or a method with error control",
+                  outcome);
     }
     end_ = last ? limit : on_grid;
     ++grid_steps_;
@@ -271,6 +287,8 @@ class StepControl {
           const Real wanted = h_ + carried_;
           end_ = begin_ + wanted;
           carried_ = wanted - (end_ - begin_);
+          if (end_ == begin_ && stands_still()) [[unlikely]]
+            return fail(Ending::step_too_small, sqrt(square), worst_component(weights), singular_hint, outcome);
         }
         if constexpr (watches_stiffness) {
           if (statistics_.steps % probe_every == 0 && statistics_.steps >= first_probe) [[unlikely]]
@@ -313,19 +331,25 @@ class StepControl {
     if (options.interrupt && options.interrupt->load(std::memory_order_relaxed))
       return fail(Ending::interrupted, error, {}, {}, outcome);
     if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done && !not_finite)
-      return fail_to_solve(status, outcome);
-    if (not_finite) {
-      std::string component = first_not_finite(x_end_);
-      if (component.empty()) component = first_not_finite(slope(begin_, x_begin_));
+      return fail_to_solve(status, options, outcome);
+    if (not_finite) return fail_not_finite(outcome);
+    return fail(too_many ? Ending::too_many_rejects : Ending::step_too_small, error, worst_component(weights),
+                singular_hint, outcome);
+  }
+
+  // The equations of a step spread what is not finite over all components: which it comes from f knows.
+  bool fail_not_finite(Outcome<Real>& outcome) {
+    std::string component = first_not_finite(slope(begin_ + h_, x_begin_));
+    if (!component.empty())
       return fail(Ending::not_finite, 0, component,
                   "f is not finite just beyond this state: look for a division by zero, a root or logarithm of a "
                   "negative number, or a solution that grows without bound",
                   outcome);
-    }
-    std::string hint =
-        "the solution may be singular here, or f jumps: declare an event at the jump, or loosen the tolerance";
-    return fail(too_many ? Ending::too_many_rejects : Ending::step_too_small, error, worst_component(weights),
-                std::move(hint), outcome);
+    return fail(
+        Ending::not_finite, 0, {},
+        "f is finite at this state, but it, or its Jacobian, is not around it: look for an infinite slope, such "
+        "as that of a root at 0, or a solution that grows without bound",
+        outcome);
   }
 
   std::string worst_component(const Tolerance<Real>& weights) const {
@@ -343,7 +367,8 @@ class StepControl {
   Real forward_, begin_, end_, h_{}, next_{};
   Real carried_{};  // of adaptive steps: what end_ lacks
   Real grid_;       // fixed steps are counted from here
-  std::size_t grid_steps_ = 0;
+  std::size_t grid_steps_ = 0, standing_ = 0;
+  Real stood_at_{};  // where the last steps stood, while t did not move
   bool jumped_ = true, interpolated_ = false;
   ErrorHistory errors_;
   X x_begin_, x_end_, scratch_, slope_;

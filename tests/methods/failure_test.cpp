@@ -1,0 +1,235 @@
+// What can go wrong in a step that solves equations, for every family of methods: the run goes on if it can, else ends
+// with the outcome of that name, a hint, and everything that was computed before.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <continuo/methods/all.hpp>
+#include <continuo/methods/bdf_krylov.hpp>
+#include <continuo/solve/solve.hpp>
+
+namespace continuo {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using X = std::array<double, 2>;
+using Rows = std::array<double, 4>;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Any right-hand side with any Jacobian, so that each method is compiled once.
+struct Anything {
+  std::function<X(double, const X&)> f;
+  std::function<Rows(double, const X&)> slopes;
+  X masses{1, 1};
+
+  void operator()(double t, const X& x, X& dxdt) const { dxdt = f(t, x); }
+  void jacobian(double t, const X& x, std::span<double> rows) const { std::ranges::copy(slopes(t, x), rows.begin()); }
+  double mass(std::size_t i) const { return masses[i]; }
+};
+
+template <class M>
+class Failure : public testing::Test {
+ protected:
+  static constexpr bool adaptive = M::error_order > 0;
+  static constexpr double step = 1e-3;  // of the others
+  // Newton's iteration with a matrix at each stage. Rosenbrock's methods do not iterate, and the error of a predictor
+  // may forbid a step before its iteration fails.
+  static constexpr bool iterates =
+      !(std::same_as<M, Rosenbrock23> || std::same_as<M, Rodas4> || std::same_as<M, Rodas5P> || std::same_as<M, Bdf> ||
+        std::same_as<M, BdfKrylov> || std::same_as<M, Tsitouras5Rodas5P> || std::same_as<M, Tsitouras5Bdf>);
+  static constexpr bool without_matrix = std::same_as<M, BdfKrylov>;
+  // Stable for every stiff equation, but what it should damp at once rings on.
+  static constexpr bool rings = std::same_as<M, Gauss4>;
+
+  static constexpr double rtol = 1e-6;
+
+  /// Each step errs by no more than the tolerance, and these equations let no error grow: they add up. An error
+  /// estimate is off by some factor; 30 tolerances are what these tests allow everywhere. Of a fixed step: h/2, as of
+  /// Euler.
+  static double allowed(const Solution<X>& solution) {
+    return adaptive ? rtol * std::max(30.0, static_cast<double>(solution.statistics.steps)) : step / 2;
+  }
+
+  static Solution<X> run(const Anything& system, const X& start, double end, std::size_t max_steps = 20000) {
+    Options<X> options{.rtol = rtol, .atol = 1e-9, .max_steps = max_steps};
+    if (!adaptive) options.step = step;
+    const Solution<X> solution = solve(system, start, {0.0, end}, M{}, options);
+    // Nothing is lost, and nothing that is no number is kept.
+    EXPECT_EQ(solution.t.size(), solution.statistics.steps + 1);
+    EXPECT_EQ(solution.t.back(), solution.outcome.t);
+    for (const X& x : solution.x) EXPECT_TRUE(std::isfinite(x[0]) && std::isfinite(x[1]));
+    EXPECT_TRUE(solution.outcome || !solution.outcome.hint.empty()) << describe(solution.outcome);
+    return solution;
+  }
+};
+
+template <class List>
+struct TypesOf;
+template <class... M>
+struct TypesOf<std::tuple<M...>> {
+  using type = testing::Types<M...>;
+};
+using Solving =
+    decltype(std::tuple_cat(std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5,
+                                       Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf, BdfKrylov>{},
+                            AutomaticMethods{}));
+struct NameOfMethod {
+  template <class M>
+  static std::string GetName(int) {
+    return std::string(M::name);
+  }
+};
+TYPED_TEST_SUITE(Failure, TypesOf<Solving>::type, NameOfMethod);
+
+// x' = z, 0 = z^2 + t - 1: z = sqrt(1 - t), and beyond t = 1 there is none.
+TYPED_TEST(Failure, NewtonDivergesWhereTheSolutionEnds) {
+  const Anything system{[](double t, const X& x) { return X{x[1], x[1] * x[1] + t - 1}; },
+                        [](double, const X& x) { return Rows{0, 1, 0, 2 * x[1]}; },
+                        {1, 0}};
+  const auto solution = TestFixture::run(system, {0, 1}, 2);
+  EXPECT_FALSE(solution.outcome);
+  if (TestFixture::rings) return;  // its algebraic components are not those of the equations (docs/methods.md)
+  const bool newton = solution.outcome.ending == Ending::nonlinear_solve_failed;
+  EXPECT_TRUE(newton || (!TestFixture::iterates && solution.outcome.ending == Ending::step_too_small))
+      << describe(solution.outcome);
+  EXPECT_THAT(solution.outcome.hint, AnyOf(HasSubstr("Newton's iteration does not converge"), HasSubstr("singular")));
+  EXPECT_NEAR(solution.outcome.t, 1, TestFixture::adaptive ? 1e-5 : 2 * TestFixture::step);
+  // x = 2/3 (1 - (1 - t)^(3/2)).
+  EXPECT_NEAR(solution.final_state()[0], 2.0 / 3.0, TestFixture::allowed(solution));
+}
+
+// An algebraic equation that does not contain its unknown.
+TYPED_TEST(Failure, ASingularMatrixIsNamedWithItsUnknown) {
+  const Anything system{[](double t, const X& x) { return X{-x[0], t - x[0]}; },
+                        [](double, const X&) { return Rows{-1, 0, -1, 0}; },
+                        {1, 0}};
+  const auto solution = TestFixture::run(system, {0, 1}, 1);
+  EXPECT_EQ(solution.outcome.ending, Ending::nonlinear_solve_failed) << describe(solution.outcome);
+  EXPECT_EQ(solution.outcome.component, "x[1]");
+  EXPECT_THAT(solution.outcome.hint, HasSubstr("index"));
+}
+
+// 0 = z^2 + x has no real solution at x = 1.
+TYPED_TEST(Failure, StartValuesThatCannotBeMadeConsistentAreNamed) {
+  const Anything system{[](double, const X& x) { return X{-x[1], x[1] * x[1] + x[0]}; },
+                        [](double, const X& x) { return Rows{0, -1, 1, 2 * x[1]}; },
+                        {1, 0}};
+  const auto solution = TestFixture::run(system, {1, 3}, 1);
+  EXPECT_EQ(solution.outcome.ending, Ending::nonlinear_solve_failed) << describe(solution.outcome);
+  EXPECT_EQ(solution.outcome.t, 0);
+  EXPECT_EQ(solution.outcome.component, "x[1]");
+  EXPECT_THAT(solution.outcome.hint, HasSubstr("no values of the unknowns"));
+}
+
+TYPED_TEST(Failure, NoNumberInFEndsTheRunWhereItBegins) {
+  const Anything system{[](double t, const X& x) { return X{-x[0], t < 1 ? -1000 * x[1] : nan}; },
+                        [](double, const X&) { return Rows{-1, 0, 0, -1000}; }};
+  const auto solution = TestFixture::run(system, {1, 1}, 2);
+  EXPECT_EQ(solution.outcome.ending, Ending::not_finite) << describe(solution.outcome);
+  // A method whose last stage lies within its step may end a little beyond.
+  EXPECT_NEAR(solution.outcome.t, 1, TestFixture::rings ? 1e-2 : TestFixture::adaptive ? 1e-7 : 2 * TestFixture::step);
+  if (TestFixture::rings) return;
+  EXPECT_NEAR(solution.final_state()[0], std::exp(-solution.outcome.t), TestFixture::allowed(solution));
+}
+
+TYPED_TEST(Failure, NoNumberInTheJacobianEndsByNameOrDoesNotMatter) {
+  const Anything system{[](double, const X& x) { return X{-x[0], -1000 * x[1]}; },
+                        [](double, const X&) { return Rows{-1, 0, 0, nan}; }};
+  const auto solution = TestFixture::run(system, {1, 1}, 2);
+  if (TestFixture::without_matrix) {
+    EXPECT_TRUE(solution.outcome) << describe(solution.outcome);
+  } else {
+    EXPECT_EQ(solution.outcome.ending, Ending::not_finite) << describe(solution.outcome);
+    EXPECT_THAT(solution.outcome.hint, HasSubstr("Jacobian"));
+  }
+}
+
+// x' = -1000 (x -+ 1): from 1 towards -1 from t = 0.4321 on.
+TYPED_TEST(Failure, AJumpOfFIsPassed) {
+  const Anything system{[](double t, const X& x) { return X{-x[0], -1000 * (x[1] - (t < 0.4321 ? 1 : -1))}; },
+                        [](double, const X&) { return Rows{-1, 0, 0, -1000}; }};
+  const auto solution = TestFixture::run(system, {1, 1}, 1);
+  EXPECT_TRUE(solution.outcome) << describe(solution.outcome);
+  EXPECT_NEAR(solution.final_state()[0], std::exp(-1.0), TestFixture::allowed(solution));
+  if (TestFixture::rings) return;
+  EXPECT_NEAR(solution.final_state()[1], -1, 30e-6);
+}
+
+// A relay that holds x at 0: f has no value there at which the equations of a step have a solution.
+TYPED_TEST(Failure, ARelayThatChattersEndsByName) {
+  const Anything system{[](double, const X& x) { return X{-x[0], x[1] < 0 ? 1000.0 : -1000.0}; },
+                        [](double, const X&) { return Rows{-1, 0, 0, 0}; }};
+  const auto solution = TestFixture::run(system, {1, 1}, 1);
+  EXPECT_FALSE(solution.outcome);
+  EXPECT_THAT(solution.outcome.hint, AnyOf(HasSubstr("jump"), HasSubstr("max_steps")));
+  EXPECT_NEAR(solution.final_state()[1], 0, 1);  // it does not fly off
+}
+
+// x' = x^2 from 1: x = 1/(1 - t).
+TYPED_TEST(Failure, ABlowUpEndsAtItsSingularity) {
+  const Anything system{[](double, const X& x) { return X{x[0] * x[0], -1000 * x[1]}; },
+                        [](double, const X& x) { return Rows{2 * x[0], 0, 0, -1000}; }};
+  const auto solution = TestFixture::run(system, {1, 1}, 2, 1'000'000);
+  const Ending ending = solution.outcome.ending;
+  EXPECT_TRUE(ending == Ending::step_too_small || ending == Ending::not_finite ||
+              ending == Ending::nonlinear_solve_failed)
+      << describe(solution.outcome);
+  EXPECT_THAT(solution.outcome.hint,
+              AnyOf(HasSubstr("singular"), HasSubstr("without bound"), HasSubstr("smaller step")));
+  // The singularity of what is computed is that of a solution within the tolerance: a relative error of x is as large
+  // an error of the distance to it, and errors add up over the steps, of which implicit Euler takes the most.
+  EXPECT_NEAR(solution.outcome.t, 1, TestFixture::adaptive ? 1e-3 : 5 * TestFixture::step);
+  EXPECT_GT(solution.final_state()[0], 100);
+}
+
+// The sign of an entry is lost: the iteration converges slowly or for small steps alone, never to something else.
+TYPED_TEST(Failure, AWrongJacobianCostsStepsNotAccuracy) {
+  const Anything system{[](double, const X& x) { return X{-x[0], -100 * x[1] * x[1] * x[1]}; },
+                        [](double, const X& x) { return Rows{-1, 0, 0, 300 * x[1] * x[1]}; }};
+  const auto solution = TestFixture::run(system, {1, 1}, 0.5);
+  if (!solution.outcome) {
+    EXPECT_FALSE(TestFixture::adaptive) << describe(solution.outcome);
+    EXPECT_EQ(solution.outcome.ending, Ending::nonlinear_solve_failed);
+    return;
+  }
+  // x = 1/sqrt(1 + 200 t).
+  EXPECT_NEAR(solution.final_state()[1], 1 / std::sqrt(101.0), TestFixture::allowed(solution));
+}
+
+/// x'' = a(t, x, v).
+struct Mass {
+  double from = 1;
+  double broken = nan;
+  std::size_t pair_count(std::size_t) const { return 1; }
+  PositionVelocity pair(std::size_t, std::size_t) const { return {0, 1}; }
+  void operator()(double t, const X& x, X& dxdt) const { dxdt = {x[1], t < from ? -100 * x[0] - x[1] : broken}; }
+};
+
+template <class M>
+class StructuralFailure : public testing::Test {};
+TYPED_TEST_SUITE(StructuralFailure, TypesOf<StructuralMethods>::type, NameOfMethod);
+
+TYPED_TEST(StructuralFailure, NoNumberInFEndsTheRunWhereItBegins) {
+  const auto solution = solve(Mass{}, X{1, 0}, {0.0, 2.0}, TypeParam{}, {.step = 1e-3});
+  EXPECT_EQ(solution.outcome.ending, Ending::not_finite) << describe(solution.outcome);
+  EXPECT_NEAR(solution.outcome.t, 1, 2e-3);
+  for (const X& x : solution.x) EXPECT_TRUE(std::isfinite(x[0]) && std::isfinite(x[1]));
+  EXPECT_FALSE(solution.outcome.hint.empty());
+}
+
+TYPED_TEST(StructuralFailure, AJumpOfFIsPassed) {
+  const auto solution = solve(Mass{.broken = 10}, X{0, 0}, {0.0, 2.0}, TypeParam{}, {.step = 1e-3});
+  ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
+  EXPECT_NEAR(solution.final_state()[0], 5, 1e-2);  // 10 t^2/2 from t = 1, which a step of 0.001 may miss by itself
+}
+
+}  // namespace
+}  // namespace continuo
