@@ -1,0 +1,241 @@
+// The orders that docs/methods.md states for the methods that solve equations are those that are measured: on a plain
+// problem, on that of Prothero and Robinson, where stages of low order cost order, and on a system of index 1, each
+// component by itself; of the states and of the dense output.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <bench/problems/prothero_robinson.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <gtest/gtest.h>
+
+#include "implicit_problems.hpp"
+#include <continuo/methods/all.hpp>
+
+namespace continuo {
+namespace {
+
+using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
+                                           boost::multiprecision::et_off>;
+/// High orders need room before rounding.
+template <class M>
+using RealOf = std::conditional_t<(M::order > 8), Quad, long double>;
+using testing::Forced;
+
+/// The columns of the table, in its order.
+enum Column { classical, classical_dense, stiff, stiff_dense, differential, algebraic, columns };
+using Orders = std::array<std::optional<double>, columns>;
+
+/// The stiff problem: lambda h is beyond -1000 for every h here.
+template <class Real>
+struct Stiff : bench::ProtheroRobinson<Real> {
+  static constexpr int duration = 2;
+};
+
+/// x' = z, 0 = z + x^2/4 - (cos(t) + sin(t)^2/4): x = sin(t) and, by an equation of index 1, z = cos(t).
+struct Algebraic {
+  static constexpr int duration = 2;
+  static double mass(std::size_t i) { return i == 0 ? 1 : 0; }
+  template <class X>
+  void operator()(const Scalar<X>& t, const X& x, X& dxdt) const {
+    using std::cos, std::sin;
+    const Scalar<X> s = sin(t);
+    dxdt[0] = x[1];
+    dxdt[1] = x[1] - cos(t) + (x[0] * x[0] - s * s) / 4;
+  }
+  template <class X>
+  void jacobian(const Scalar<X>&, const X& x, std::span<Scalar<X>> rows) const {
+    rows[0] = 0, rows[1] = 1, rows[2] = x[0] / 2, rows[3] = 1;
+  }
+  template <class X>
+  void time_derivative(const Scalar<X>& t, const X&, X& dfdt) const {
+    using std::cos, std::sin;
+    dfdt[0] = 0, dfdt[1] = sin(t) - sin(t) * cos(t) / 2;
+  }
+  template <class Real>
+  static std::array<Real, 2> exact(const Real& t) {
+    return Forced::exact(t);
+  }
+};
+
+/// The error that `error_by` finds where the equations are solved a thousand times as closely as that; infinite where
+/// they cannot be.
+template <class M, class ErrorBy>
+RealOf<M> of_solved_equations(const ErrorBy& error_by) {
+  using Real = RealOf<M>;
+  Real error(0);
+  for (Real tolerance(0.001); tolerance > std::numeric_limits<Real>::epsilon(); tolerance /= 100) {
+    error = error_by([&tolerance](auto& work) {
+      if constexpr (requires { M::aim(work, Tolerance<Real>{}); }) M::aim(work, Tolerance<Real>{tolerance, tolerance});
+    });
+    if (error > 1000 * tolerance) return error;
+  }
+  return error;
+}
+
+/// A method whose first step needs others before it has no dense output of its own in it.
+template <class M>
+constexpr bool one_step = !std::same_as<M, Bdf2>;
+
+/// The greatest error of a component after n equal steps; infinite where one of them cannot be solved.
+template <class M, class Problem>
+RealOf<M> error_of_steps(int n, std::size_t component, const auto& aim) {
+  using Real = RealOf<M>;
+  using std::abs;
+  Problem problem;
+  const Real h = Real(Problem::duration) / n;
+  auto x = Problem::exact(Real(0)), x_new = x;
+  auto work = M::workspace(x);
+  aim(work);
+  Real worst(0);
+  for (int i = 0; i < n; ++i) {
+    M::step(problem, Real(h * i), x, h, i == 0, work, x_new);
+    // With a Jacobian of its own, as the driver would.
+    if (one_step<M> && detail::status_of<M>(work) != StepStatus::done)
+      M::step(problem, Real(h * i), x, h, true, work, x_new);
+    if (detail::status_of<M>(work) != StepStatus::done) return std::numeric_limits<Real>::infinity();
+    M::accept(work);
+    x = x_new;
+    worst = std::max<Real>(worst, abs(x[component] - Problem::exact(Real(h * (i + 1)))[component]));
+  }
+  return worst;
+}
+
+/// The greatest error of the interpolant of one step from the exact state.
+template <class M, class Problem>
+RealOf<M> error_within_step(int n, std::size_t component, const auto& aim) {
+  using Real = RealOf<M>;
+  using std::abs;
+  Problem problem;
+  const Real t(0.25), h = Real(1) / n;
+  auto x = Problem::exact(t), x_new = x, value = x;
+  auto work = M::workspace(x);
+  aim(work);
+  Interpolant<decltype(x), M::dense_degree> interpolant(x);
+  M::step(problem, t, x, h, true, work, x_new);
+  M::interpolate(problem, t, x, h, x_new, work, interpolant);
+  Real worst(0);
+  for (Real theta(0.0625); theta < 1; theta += Real(0.0625)) {
+    interpolant(theta, value);
+    worst = std::max<Real>(worst, abs(value[component] - Problem::exact(Real(t + theta * h))[component]));
+  }
+  return worst;
+}
+
+/// log2 of the ratio of the last two errors, each of half the step of the one before, that are above rounding.
+template <class Error>
+std::optional<double> order_of(const Error& error) {
+  using Real = decltype(error(1));
+  const Real least = pow(std::numeric_limits<Real>::epsilon(), Real(0.65));
+  std::optional<double> order;
+  Real before = error(1);
+  for (int n = 2; n <= 256; n *= 2) {
+    const Real now = error(n);
+    if (!(now > least)) break;
+    const Real none = std::numeric_limits<Real>::infinity();
+    if (before < none && now < none) order = std::log2(static_cast<double>(before / now));
+    before = now;
+  }
+  return order;
+}
+
+template <class M, class Problem>
+std::optional<double> order_of_steps(std::size_t component) {
+  return order_of([component](int n) {
+    return of_solved_equations<M>([&](const auto& aim) { return error_of_steps<M, Problem>(n, component, aim); });
+  });
+}
+
+template <class M, class Problem>
+std::optional<double> order_within_step() {
+  return order_of([](int n) {
+    return of_solved_equations<M>([&](const auto& aim) { return error_within_step<M, Problem>(n, 0, aim); });
+  });
+}
+
+template <class M>
+Orders measured() {
+  using Hard = Stiff<RealOf<M>>;
+  constexpr bool for_stiff = detail::is_implicit<M>();
+  Orders orders;
+  orders[classical] = order_of_steps<M, Forced>(0);
+  if constexpr (one_step<M>) {
+    // The error within one step is of an order more than that of many.
+    if (const auto within = order_within_step<M, Forced>()) orders[classical_dense] = *within - 1;
+    if constexpr (for_stiff) orders[stiff_dense] = order_within_step<M, Hard>();
+  }
+  if constexpr (for_stiff) {
+    orders[stiff] = order_of_steps<M, Hard>(0);
+    orders[differential] = order_of_steps<M, Algebraic>(0);
+    orders[algebraic] = order_of_steps<M, Algebraic>(1);
+  }
+  return orders;
+}
+
+std::string row_of(std::string_view name, const Orders& orders) {
+  std::ostringstream row;
+  row.precision(1);
+  row << std::fixed << "| `" << name << "` |";
+  for (const auto& order : orders) {
+    if (order) {
+      row << ' ' << *order << " |";
+    } else {
+      row << " - |";
+    }
+  }
+  return row.str();
+}
+
+/// The rows of the table under "## Measured orders": | `name` | 1.0 | ... |.
+std::map<std::string, Orders, std::less<>> documented() {
+  std::ifstream page(CONTINUO_SOURCE_DIR "/docs/methods.md");
+  std::map<std::string, Orders, std::less<>> rows;
+  bool there = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("## ")) there = line == "## Measured orders";
+    if (!there || !line.starts_with("| `")) continue;
+    std::istringstream cells(line.substr(3));
+    std::string name, cell;
+    std::getline(cells, name, '`');
+    std::getline(cells, cell, '|');
+    Orders& orders = rows[name];
+    for (std::size_t i = 0; i < columns && std::getline(cells, cell, '|'); ++i)
+      if (cell != " - ") orders[i] = std::stod(cell);
+  }
+  return rows;
+}
+
+template <class M>
+void expect_as_documented(const std::map<std::string, Orders, std::less<>>& rows) {
+  const Orders orders = measured<M>();
+  const auto row = rows.find(M::name);
+  ASSERT_NE(row, rows.end()) << "docs/methods.md lacks " << row_of(M::name, orders);
+  for (std::size_t i = 0; i < columns; ++i) {
+    ASSERT_EQ(orders[i].has_value(), row->second[i].has_value()) << row_of(M::name, orders);
+    // The last halving of the step is not the limit yet, and the libraries' sines differ in their last digit.
+    if (!orders[i]) continue;
+    EXPECT_NEAR(*orders[i], *row->second[i], 0.25) << row_of(M::name, orders);
+  }
+}
+
+TEST(StiffOrder, IsTheDocumentedOneForEveryMethod) {
+  if (std::numeric_limits<long double>::digits < 64)
+    GTEST_SKIP() << "long double is double here: no room before rounding";
+  const auto rows = documented();
+  using Measured = std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5, Rkc2,
+                              Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau9, Radau13>;
+  for_each_method<Measured>([&]<class M>() { expect_as_documented<M>(rows); });
+  EXPECT_EQ(rows.size(), std::tuple_size_v<Measured>);
+}
+
+}  // namespace
+}  // namespace continuo
