@@ -194,9 +194,9 @@ struct Adams {
   }
 
  private:
-  // Where a Runge-Kutta method of high order takes one step this one takes some sixteen short ones, each with an error
-  // of its own: held to a sixteenth, the same tolerance means the same error.
-  static constexpr double strictness = 16;
+  // The order grows with the strictness of the tolerance, so that hundreds of short steps make a run at any: as many
+  // errors add up. With p of the order of log(1 / tolerance) the factor of tolerance_proportionality.hpp is constant.
+  static constexpr double strictness = 300;
   static constexpr std::size_t order_of_fixed_steps = 4;
 
   /// The size of the coefficient of Adams-Moulton formulas: gamma*_0 = 1, sum_j gamma*_j / (m + 1 - j) = 0 (Hairer,

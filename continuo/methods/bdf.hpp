@@ -19,6 +19,7 @@
 
 #include <continuo/methods/direct_equations.hpp>
 #include <continuo/methods/newton.hpp>
+#include <continuo/methods/tolerance_proportionality.hpp>
 #include <continuo/methods/weighted_norm.hpp>
 #include <continuo/system/mass.hpp>
 
@@ -134,8 +135,7 @@ struct BackwardDifferentiation {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    return strictness(tolerance) * ndf::error_constant<Scalar<X>>(work.order) *
-               weighted_norm(work.d, x, x_new, tolerance) +
+    return strict(tolerance) * ndf::error_constant<Scalar<X>>(work.order) * weighted_norm(work.d, x, x_new, tolerance) +
            not_finite(x_new);
   }
   template <State X>
@@ -157,11 +157,10 @@ struct BackwardDifferentiation {
     };
     const auto norm_of = [&](std::size_t order, auto&& component) {
       for (std::size_t i = 0; i < dimension(x); ++i) work.correction.data()[i] = component(i);
-      return strictness(tolerance) * ndf::error_constant<Real>(order) *
-             weighted_norm(work.correction, x, x_new, tolerance);
+      return strict(tolerance) * ndf::error_constant<Real>(order) * weighted_norm(work.correction, x, x_new, tolerance);
     };
     Real best =
-        factor_of(k, strictness(tolerance) * ndf::error_constant<Real>(k) * weighted_norm(work.d, x, x_new, tolerance));
+        factor_of(k, strict(tolerance) * ndf::error_constant<Real>(k) * weighted_norm(work.d, x, x_new, tolerance));
     if (k > 1) {  // the difference of order k after this step
       const Real lower =
           factor_of(k - 1, norm_of(k - 1, [&](std::size_t i) { return work.D[k].data()[i] + work.d.data()[i]; }));
@@ -254,18 +253,10 @@ struct BackwardDifferentiation {
     return Real(table[j][power]) / factorial;
   }
 
+  // Whatever the order of the step: strict tolerances are met by the greatest.
   template <class Real>
-  static Real relative(const Tolerance<Real>& tolerance) {
-    using std::max;
-    return max(tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol, std::numeric_limits<Real>::epsilon());
-  }
-  // By how much the error of a step is held below the tolerance. The number of steps grows like tolerance^(-1/(k+1)),
-  // and so does what their errors add up to: with this factor the error at the end stays in proportion to the
-  // tolerance.
-  template <class Real>
-  static Real strictness(const Tolerance<Real>& tolerance) {
-    using std::pow;
-    return pow(relative(tolerance), Real(-1) / Real(static_cast<double>(greatest_order) + 1));
+  static Real strict(const Tolerance<Real>& tolerance) {
+    return strictness(tolerance, order, order + 1);
   }
 
   template <class System, State X>
@@ -351,8 +342,8 @@ struct BackwardDifferentiation {
       const Real weight = ndf::gamma<Real>(j) * one_over_alpha;
       for (std::size_t i = 0; i < n; ++i) past.data()[i] += weight * work.D[j].data()[i];
     }
-    const Real rtol = relative(work.tolerance);
-    const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / rtol, min(Real(0.03), sqrt(rtol)));
+    const Real asked = tolerance_as_number(work.tolerance);
+    const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / asked, min(Real(0.03), sqrt(asked)));
     return newton(work.memory, target, most_iterations, [&] {
       evaluate(system, t, x, work.f);
       ++evaluations;

@@ -18,6 +18,10 @@ struct NewtonMemory {
   Real rate = 0;       // theta: the last correction against the one before; near 1 the Jacobian has grown old
   int iterations = 0;  // of the last call
   bool finite = true;  // whether the corrections of the last call were
+  // Whether the matrix is known to be good here: by a rate measured near this state, or because it is of here. A matrix
+  // that has nothing to do with the equations may let only tiny corrections through, and theta is near 1 or far below
+  // by chance: neither says that z is near the solution.
+  bool matrix_is_known = true;
 };
 
 /// Iterates until what is still to come is below `target` (of a norm in which the tolerance is 1). `correct` makes one
@@ -37,11 +41,12 @@ bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& 
     if (k > 0) {
       const Real rate = size / last;
       memory.rate = rate;
-      if (rate >= Real(0.99)) return size <= target;  // no longer shrinking: diverging, or down to rounding
+      if (rate >= Real(0.99)) return memory.matrix_is_known && size <= target;  // diverging, or down to rounding
       remainder = rate / (1 - rate);
+      memory.matrix_is_known = true;
       if (remainder * size * pow(rate, most - 2 - k) > target && k + 1 < most) return false;  // eq. 8.11
     }
-    if (remainder * size <= target || size == 0) {
+    if ((memory.matrix_is_known && remainder * size <= target) || size == 0) {
       memory.remainder = remainder;
       if (k == 0) memory.rate = 0;
       return true;

@@ -14,6 +14,8 @@
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/newton.hpp>
 #include <continuo/methods/rosenbrock_tableau.hpp>
+#include <continuo/methods/tolerance_proportionality.hpp>
+#include <continuo/methods/weighted_norm.hpp>
 #include <continuo/methods/weighted_sum.hpp>
 
 namespace continuo {
@@ -65,6 +67,7 @@ struct RosenbrockMethod {
       stages(system, t, x, h, work, x_new);
     }
     work.costs.solutions += Derived::tableau.stages;
+    if constexpr (estimates_its_own_error<Derived>()) filter_error(h, work);
     return evaluations + static_cast<int>(Derived::tableau.stages) - 1;
   }
 
@@ -86,7 +89,11 @@ struct RosenbrockMethod {
       const detail::Unit<X> ratio = detail::row_sum<Error, X>(u, i) / detail::error_scale<X>(tolerance, i, x, x_new);
       sum += ratio * ratio + (end - end);  // which is 0, if it is finite
     });
-    return detail::total<X>(sum) * detail::one_over_dimension(x);
+    const Scalar<X> square = detail::total<X>(sum) * detail::one_over_dimension(x);
+    if constexpr (!estimates_its_own_error<Derived>()) return square;
+    // Errors that die out must be below the tolerance; those that stay must be so once they are added up.
+    const Scalar<X> lasting = strictness_of<Derived>(tolerance) * weighted_norm(work.product, x, x_new, tolerance);
+    return square > lasting * lasting ? square : lasting * lasting;
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
@@ -162,6 +169,21 @@ struct RosenbrockMethod {
   struct DenseWeight {
     constexpr const Coefficient& operator()(std::size_t j) const { return Derived::tableau.dense[n][j]; }
   };
+
+  /// (c M - J)^-1 c M times the error: what of it is left where stiff components have lost theirs.
+  template <State X>
+  static void filter_error(const Scalar<X>& h, Workspace<X>& work) {
+    using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
+    const auto u = detail::stages_of<Error, X>(work.u);
+    detail::for_each_unit(work.argument, [&, to = work.argument.data()](std::size_t i) __attribute__((always_inline)) {
+      set_unit<X>(detail::row_sum<Error, X>(u, i), i, to);
+    });
+    work.linear.multiply_mass(work.argument, work.product);
+    const Scalar<X> c = 1 / (h * constant<GammaValue, Scalar<X>>());
+    for (std::size_t i = 0; i < dimension(work.product); ++i) work.product.data()[i] *= c;
+    work.lu.solve(work.product.data());
+    ++work.costs.solutions;
+  }
 
   /// One coefficient, 0 too.
   template <class Source, class Real>

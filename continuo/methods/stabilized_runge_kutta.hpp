@@ -19,6 +19,8 @@
 #include <continuo/methods/hermite.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/spectral_radius.hpp>
+#include <continuo/methods/tolerance_proportionality.hpp>
+#include <continuo/methods/weighted_norm.hpp>
 
 namespace continuo {
 
@@ -82,15 +84,9 @@ struct StabilizedRungeKutta {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    using Real = Scalar<X>;
-    using std::sqrt;
-    const std::size_t n = dimension(x);
-    Real sum(0);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Real part = work.error.data()[i] / tolerance.scale(i, x.data()[i], x_new.data()[i]);
-      sum += part * part + (x_new.data()[i] - x_new.data()[i]);
-    }
-    return n == 0 ? sum : sqrt(sum / Real(static_cast<double>(n)));
+    Scalar<X> not_finite(0);
+    for (std::size_t i = 0; i < dimension(x); ++i) not_finite += x_new.data()[i] - x_new.data()[i];
+    return strictness_of<Derived>(tolerance) * weighted_norm(work.error, x, x_new, tolerance) + not_finite;
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {

@@ -2,9 +2,10 @@
 // Solves the equation of one implicit stage, M z = gamma h f(t, base + z), by simplified Newton iterations, and looks
 // after the Jacobian and its decomposition from stage to stage and from step to step.
 //
-//   evaluations += solver.prepare(system, t, x, h, made_jump);       // a Jacobian, if there is none or it has grown
-//   old if (!solver.decompose(1 / (gamma * h))) return solver.status; if (!solver.solve(system, t_stage, base, x, z,
-//   evaluations)) ...; // z: the guess, then the solution
+//   evaluations += solver.prepare(system, t, x, h, made_jump);  // a Jacobian, if there is none or it has grown old
+//   if (!solver.decompose(1 / (gamma * h))) return solver.status;
+//   // z: the guess, then the solution
+//   if (!solver.solve(system, t_stage, base, x, z, target, evaluations)) return solver.status;
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,7 @@ struct StageSolver {
   EquationCosts costs{};
   StepStatus status = StepStatus::done;
   Real shift{};             // c of the decomposed c M - J; 0: there is none
+  Real evaluated_for{};     // h of the step that J was evaluated for
   Real slowest{};           // rate of convergence of this step
   bool insists = false;     // a step that is not solved cannot be a smaller one: iterate with ever new Jacobians
   bool is_current = false;  // J is that of the start of this step
@@ -38,6 +40,9 @@ struct StageSolver {
 
   /// Above this rate of convergence a new Jacobian saves more iterations than it costs.
   static constexpr double worst_rate = 0.1;
+  /// What a Jacobian misses counts in proportion to h, and may be masked in all rates that were measured so far: after
+  /// a jump of the solution, when steps grow again, an old one would stop the iteration short unnoticed.
+  static constexpr double most_growth = 2;
   static constexpr int most_iterations = 10;
 
   /// Where a step begins: J at (t, x) unless the one at hand will do.
@@ -45,7 +50,10 @@ struct StageSolver {
   int prepare(System& system, const Real& t, const X& x, const Real& h, bool made_jump) {
     status = StepStatus::done;
     slowest = Real(0);
-    return made_jump || (grown_old && !is_current) ? evaluate_jacobian(system, t, x, h) : 0;
+    memory.matrix_is_known = is_current;
+    using std::abs;
+    const bool is_old = grown_old || abs(h) > Real(most_growth) * abs(evaluated_for);
+    return made_jump || (is_old && !is_current) ? evaluate_jacobian(system, t, x, h) : 0;
   }
   template <class System>
   int evaluate_jacobian(System& system, const Real& t, const X& x, const Real& h) {
@@ -58,8 +66,9 @@ struct StageSolver {
       evaluations = 1 + linear.evaluate(system, t, x, residual, least_increments(tolerance, h, x, residual));
     }
     ++costs.jacobians;
-    is_current = true;
+    is_current = memory.matrix_is_known = true;
     grown_old = false;
+    evaluated_for = h;
     shift = Real(0);
     return evaluations;
   }
@@ -108,15 +117,6 @@ struct StageSolver {
     }
     if (!arrived) status = memory.finite ? StepStatus::newton_diverged : StepStatus::not_finite;
     return arrived;
-  }
-
-  /// (c M - J) y = c M y: damps what the method does not resolve in an estimate of the error (L. F. Shampine, L. S.
-  /// Baca, "Error estimators for stiff differential equations", J. Comp. Appl. Math. 11 (1984)).
-  void smooth(X& y) {
-    linear.multiply_mass(y, product);
-    for (std::size_t i = 0; i < dimension(y); ++i) y.data()[i] = shift * product.data()[i];
-    lu.solve(y.data());
-    ++costs.solutions;
   }
 
   /// Where a stage was not solved: a new Jacobian would not help.
