@@ -38,7 +38,7 @@ Real strictness(const Tolerance<Real>& tolerance, int p, int m, double spare = 1
 }
 
 /// Of one-step methods; what a problem amplifies its errors by comes on top.
-inline constexpr double spare_of_one_step = 5;
+inline constexpr double spare_of_one_step = 2;
 
 /// Whether the estimate of a method is that of the error of its own result.
 template <class M>
