@@ -24,6 +24,10 @@ namespace continuo::bench {
 /// Compiled problem by problem in bench/stiff/ours and bench/stiff/peers.
 template <class Problem>
 std::vector<Solver> our_stiff_solvers();
+/// Ours that must keep their tolerance but take no part in the race: the automatic pairs, whose stiff half does, and
+/// implicit Euler.
+template <class Problem>
+std::vector<Solver> our_unraced_solvers();
 /// Boost.odeint's only stiff method, with the problem's own dense Jacobian.
 template <class Problem>
 std::vector<Solver> odeint_stiff_solvers();

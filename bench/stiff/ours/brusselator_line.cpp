@@ -5,3 +5,8 @@ template <>
 std::vector<continuo::bench::Solver> continuo::bench::our_stiff_solvers<continuo::bench::BrusselatorLine<>>() {
   return all_our_stiff_solvers<BrusselatorLine<>, SparseBrusselator>();
 }
+
+template <>
+std::vector<continuo::bench::Solver> continuo::bench::our_unraced_solvers<continuo::bench::BrusselatorLine<>>() {
+  return all_our_unraced_solvers<BrusselatorLine<>, SparseBrusselator>();
+}

@@ -4,3 +4,8 @@ template <>
 std::vector<continuo::bench::Solver> continuo::bench::our_stiff_solvers<continuo::bench::Oregonator<>>() {
   return all_our_stiff_solvers<Oregonator<>>();
 }
+
+template <>
+std::vector<continuo::bench::Solver> continuo::bench::our_unraced_solvers<continuo::bench::Oregonator<>>() {
+  return all_our_unraced_solvers<Oregonator<>>();
+}
