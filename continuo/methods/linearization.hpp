@@ -196,7 +196,6 @@ class Decomposition {
         for (std::size_t p = pattern.begin(j); p < pattern.end(j); ++p)
           band_.places[p] = band_.lu.place(pattern.row(p), j);
     }
-    band_.lu.clear();
     linear.shifted(c, band_.lu.entries(), [this](std::size_t p) { return band_.places[p]; });
     return band_.lu.factor();
   }
