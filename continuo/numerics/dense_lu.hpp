@@ -27,29 +27,12 @@ inline constexpr std::size_t run_time_size = static_cast<std::size_t>(-1);
 template <class T, std::size_t N, std::size_t Count>
 using BlockOf = std::conditional_t<N == run_time_size, std::vector<T>, std::array<T, N == run_time_size ? 1 : Count>>;
 
-template <class Number, std::size_t N = run_time_size>
-class DenseLU;
+namespace detail {
 
 template <class Number, std::size_t N>
-  requires(N <= greatest_small_size)
-class DenseLU<Number, N> : public detail::SmallLU<Number, N> {
+class PlainLU {
  public:
-  explicit DenseLU(std::size_t) {}
-  static constexpr std::size_t size() { return N; }
-};
-
-template <class Number, std::size_t N>
-  requires(N > greatest_small_size && N <= greatest_listed_size)
-class DenseLU<Number, N> : public detail::ListedLU<Number, N> {
- public:
-  explicit DenseLU(std::size_t) {}
-  static constexpr std::size_t size() { return N; }
-};
-
-template <class Number, std::size_t N>
-class DenseLU {
- public:
-  explicit DenseLU(std::size_t size) : size_(size) {
+  explicit PlainLU(std::size_t size) : size_(size) {
     if constexpr (N == run_time_size) {
       entries_.resize(size * size);
       pivots_.resize(size);
@@ -134,6 +117,51 @@ class DenseLU {
   std::size_t size_;
   BlockOf<Number, N, N * N> entries_{};
   BlockOf<std::uint32_t, N, N> pivots_{};
+};
+
+}  // namespace detail
+
+template <class Number, std::size_t N = run_time_size>
+class DenseLU : public detail::PlainLU<Number, N> {
+ public:
+  using detail::PlainLU<Number, N>::PlainLU;
+};
+
+template <class Number, std::size_t N>
+  requires(N <= greatest_small_size)
+class DenseLU<Number, N> : public detail::SmallLU<Number, N> {
+ public:
+  explicit DenseLU(std::size_t) {}
+  static constexpr std::size_t size() { return N; }
+};
+
+/// With a list where that is less work.
+template <class Number, std::size_t N>
+  requires(N > greatest_small_size && N <= greatest_listed_size)
+class DenseLU<Number, N> {
+ public:
+  explicit DenseLU(std::size_t size) : plain_(size) {}
+  static constexpr std::size_t size() { return N; }
+  std::array<Number, N * N>& matrix() { return plain_.matrix(); }
+
+  bool factor() {
+    const auto result = listed_.factor(plain_.matrix());
+    is_listed_ = result != Listed::Result::not_listed;
+    return is_listed_ ? result == Listed::Result::done : plain_.factor();
+  }
+  void solve(Number* b) const {
+    if (is_listed_) {
+      listed_.solve(b);
+    } else {
+      plain_.solve(b);
+    }
+  }
+
+ private:
+  using Listed = detail::ListedLU<Number, N>;
+  Listed listed_;
+  detail::PlainLU<Number, N> plain_;
+  bool is_listed_ = false;
 };
 
 }  // namespace continuo
