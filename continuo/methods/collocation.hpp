@@ -153,12 +153,10 @@ struct CollocationMethod {
   static void accept(Workspace<X>& work) {
     with_stages(work.stages, [&]<std::size_t s>() {
       const auto& table = collocation::table<Scalar<X>, nodes, s>();
-      for (std::size_t i = 0; i < dimension(work.f); ++i)
-        for (std::size_t k = 0; k < s; ++k) {
-          Scalar<X> sum(0);
-          for (std::size_t j = 0; j < s; ++j) sum += table.ahead[k][j] * work.Z[j].data()[i];
-          work.ahead[k].data()[i] = sum;
-        }
+      collocation::for_each_sums(
+          table.ahead, work.Z, [&](std::size_t i, const auto& ahead) __attribute__((always_inline)) {
+            detail::unrolled<0, s>([&](auto k) __attribute__((always_inline)) { work.ahead[k].data()[i] = ahead[k]; });
+          });
     });
     work.ahead_degree = work.stages;
     work.ahead_h = work.h;

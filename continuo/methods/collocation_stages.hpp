@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include <continuo/methods/collocation_sums.hpp>
 #include <continuo/methods/collocation_table.hpp>
 #include <continuo/methods/collocation_workspace.hpp>
 #include <continuo/numerics/complex_number.hpp>
@@ -33,27 +34,33 @@ bool decompose(const Scalar<X>& h, Workspace<X, most>& work) {
   return done;
 }
 
-/// Z and W from the polynomial of the last step, beyond its end.
-template <Nodes nodes, std::size_t s, State X, std::size_t most>
-void guess(const Scalar<X>& h, Workspace<X, most>& work) {
+/// Z and W from the polynomial of the last step, beyond its end; it has at most `degree` powers.
+template <Nodes nodes, std::size_t s, std::size_t degree, State X, std::size_t most>
+void extend(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
   const auto& numbers = table<Real, nodes, s>();
-  const std::size_t degree = work.ahead_degree;
-  const Real ratio = degree == 0 ? Real(0) : h / work.ahead_h;
-  for (std::size_t i = 0; i < dimension(work.f); ++i) {
-    std::array<Real, s> z{};
+  std::array<std::array<Real, degree>, s> power{};  // of the places of the stages, seen from that end
+  if (work.ahead_degree != 0) {
+    const Real ratio = h / work.ahead_h;
     for (std::size_t j = 0; j < s; ++j) {
       const Real sigma = ratio * numbers.c[j];
-      for (std::size_t k = degree; k-- > 0;) z[j] = (z[j] + work.ahead[k].data()[i]) * sigma;
-      work.Z[j].data()[i] = z[j];
+      Real product = sigma;
+      for (std::size_t k = 0; k < degree && k < work.ahead_degree; ++k, product *= sigma) power[j][k] = product;
     }
-    for (std::size_t m = 0; m < s; ++m) {
-      Real sum(0);
-      for (std::size_t j = 0; j < s; ++j) sum += numbers.forward[m][j] * z[j];
-      work.W[m].data()[i] = sum;
-    }
-    work.guess.data()[i] = z[s - 1];
   }
+  for_each_sums(power, work.ahead, [&](std::size_t i, const auto& z) __attribute__((always_inline)) {
+    const std::array<Real, s> w = product(numbers.forward, z);
+    detail::unrolled<0, s>([&](auto j) __attribute__((always_inline)) {
+      work.Z[j].data()[i] = z[j];
+      work.W[j].data()[i] = w[j];
+    });
+    work.guess.data()[i] = z[s - 1];
+  });
+}
+template <Nodes nodes, std::size_t s, State X, std::size_t most>
+void guess(const Scalar<X>& h, Workspace<X, most>& work) {
+  if (work.ahead_degree <= s) return extend<nodes, s, s>(h, work);
+  extend<nodes, s, most>(h, work);
 }
 
 /// Without a last step: the powers of q fall off like a geometric series, and K is the first one that q has not.
@@ -104,51 +111,60 @@ void stage_slopes(System& system, const Scalar<X>& t, const X& x, const Scalar<X
   }
 }
 
+/// The right-hand sides of the systems for a correction.
+template <Nodes nodes, std::size_t s, State X, std::size_t most>
+[[gnu::always_inline]] inline void set_right(const Scalar<X>& h, Workspace<X, most>& work) {
+  using Real = Scalar<X>;
+  const auto& numbers = table<Real, nodes, s>();
+  constexpr std::size_t reals = s % 2, pairs = s / 2;
+  if (work.linear.has_mass())
+    for (std::size_t m = 0; m < s; ++m) work.linear.multiply_mass(work.W[m], work.MW[m]);
+  const auto& MW = work.linear.has_mass() ? work.MW : work.W;
+  const Real one_over_h = Real(1) / h;
+  std::array<Real, s> shift{};
+  for (std::size_t m = 0; m < s; ++m) shift[m] = numbers.eigenvalue[m] * one_over_h;
+  for_each_sums(numbers.forward, work.F, [&](std::size_t i, const auto& right) __attribute__((always_inline)) {
+    if constexpr (reals == 1) work.right.data()[i] = right[0] - shift[0] * MW[0].data()[i];
+    detail::unrolled<0, pairs>([&](auto p) __attribute__((always_inline)) {
+      constexpr std::size_t m = reals + 2 * p;
+      const Real re = MW[m].data()[i], im = MW[m + 1].data()[i];
+      work.pair_right[p].data()[i] = {right[m] - shift[m] * re + shift[m + 1] * im,
+                                      right[m + 1] - shift[m] * im - shift[m + 1] * re};
+    });
+  });
+}
+
 /// One correction of Z and W from the slopes F; its norm over all stages.
 template <Nodes nodes, std::size_t s, State X, std::size_t most>
-Scalar<X> correct(const Scalar<X>& h, Workspace<X, most>& work) {
+[[gnu::always_inline]] inline Scalar<X> correct(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
   using std::sqrt;
   const auto& numbers = table<Real, nodes, s>();
   constexpr std::size_t reals = s % 2, pairs = s / 2;
-  const std::size_t n = dimension(work.f);
-  const Real one_over_h = Real(1) / h;
-  if (work.linear.has_mass())
-    for (std::size_t m = 0; m < s; ++m) work.linear.multiply_mass(work.W[m], work.MW[m]);
-  const auto& MW = work.linear.has_mass() ? work.MW : work.W;
-  for (std::size_t i = 0; i < n; ++i) {
-    std::array<Real, s> right{};
-    for (std::size_t m = 0; m < s; ++m)
-      for (std::size_t j = 0; j < s; ++j) right[m] += numbers.forward[m][j] * work.F[j].data()[i];
-    if constexpr (reals == 1) work.right.data()[i] = right[0] - numbers.eigenvalue[0] * one_over_h * MW[0].data()[i];
-    for (std::size_t p = 0; p < pairs; ++p) {
-      const std::size_t m = reals + 2 * p;
-      const Real re = numbers.eigenvalue[m] * one_over_h, im = numbers.eigenvalue[m + 1] * one_over_h;
-      work.pair_right[p][i] = {right[m] - re * MW[m].data()[i] + im * MW[m + 1].data()[i],
-                               right[m + 1] - re * MW[m + 1].data()[i] - im * MW[m].data()[i]};
-    }
-  }
+  set_right<nodes, s>(h, work);
   if constexpr (reals == 1) work.lu.solve(work.right.data());
   for (std::size_t p = 0; p < pairs; ++p) work.pair_lu[p].solve(work.pair_right[p].data());
   work.costs.solutions += reals + pairs;
-  Real sum(0);
-  for (std::size_t i = 0; i < n; ++i) {
-    std::array<Real, s> change{};
+  const std::size_t n = dimension(work.f);
+  for_each_component(work.f, [&](std::size_t i) __attribute__((always_inline)) {
+    std::array<Real, s> change;
     if constexpr (reals == 1) change[0] = work.right.data()[i];
-    for (std::size_t p = 0; p < pairs; ++p) {
-      change[reals + 2 * p] = work.pair_right[p][i].re;
-      change[reals + 2 * p + 1] = work.pair_right[p][i].im;
-    }
-    for (std::size_t j = 0; j < s; ++j) {
+    detail::unrolled<0, pairs>([&](auto p) __attribute__((always_inline)) {
+      constexpr std::size_t m = reals + 2 * p;
+      change[m] = work.pair_right[p].data()[i].re;
+      change[m + 1] = work.pair_right[p].data()[i].im;
+    });
+    const std::array<Real, s> moved = product(numbers.back, change);
+    Real squares(0);
+    detail::unrolled<0, s>([&](auto j) __attribute__((always_inline)) {
       work.W[j].data()[i] += change[j];
-      Real moved(0);
-      for (std::size_t m = 0; m < s; ++m) moved += numbers.back[j][m] * change[m];
-      work.Z[j].data()[i] += moved;
-      const Real part = moved * work.weight.data()[i];
-      sum += part * part;
-    }
-  }
-  return n == 0 ? Real(0) : Real(sqrt(sum / Real(static_cast<double>(n * s))));
+      work.Z[j].data()[i] += moved[j];
+      const Real part = moved[j] * work.weight.data()[i];
+      squares += part * part;
+    });
+    work.point.data()[i] = squares;
+  });
+  return n == 0 ? Real(0) : Real(sqrt(total(work.point) / Real(static_cast<double>(n * s))));
 }
 
 }  // namespace continuo::collocation

@@ -14,14 +14,22 @@ struct ComplexNumber {
   constexpr ComplexNumber(const Real& re_) : re(re_), im(Real(0)) {}
   constexpr ComplexNumber(const Real& re_, const Real& im_) : re(re_), im(im_) {}
 
-  constexpr ComplexNumber& operator+=(const ComplexNumber& b) { return re += b.re, im += b.im, *this; }
-  constexpr ComplexNumber& operator-=(const ComplexNumber& b) { return re -= b.re, im -= b.im, *this; }
-  constexpr ComplexNumber& operator*=(const ComplexNumber& b) { return *this = *this * b; }
+  [[gnu::always_inline]] constexpr ComplexNumber& operator+=(const ComplexNumber& b) {
+    return re += b.re, im += b.im, *this;
+  }
+  [[gnu::always_inline]] constexpr ComplexNumber& operator-=(const ComplexNumber& b) {
+    return re -= b.re, im -= b.im, *this;
+  }
+  [[gnu::always_inline]] constexpr ComplexNumber& operator*=(const ComplexNumber& b) { return *this = *this * b; }
 
-  friend constexpr ComplexNumber operator+(ComplexNumber a, const ComplexNumber& b) { return a += b; }
-  friend constexpr ComplexNumber operator-(ComplexNumber a, const ComplexNumber& b) { return a -= b; }
-  friend constexpr ComplexNumber operator-(const ComplexNumber& a) { return {-a.re, -a.im}; }
-  friend constexpr ComplexNumber operator*(const ComplexNumber& a, const ComplexNumber& b) {
+  [[gnu::always_inline]] friend constexpr ComplexNumber operator+(ComplexNumber a, const ComplexNumber& b) {
+    return a += b;
+  }
+  [[gnu::always_inline]] friend constexpr ComplexNumber operator-(ComplexNumber a, const ComplexNumber& b) {
+    return a -= b;
+  }
+  [[gnu::always_inline]] friend constexpr ComplexNumber operator-(const ComplexNumber& a) { return {-a.re, -a.im}; }
+  [[gnu::always_inline]] friend constexpr ComplexNumber operator*(const ComplexNumber& a, const ComplexNumber& b) {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
   }
   friend constexpr bool operator==(const ComplexNumber&, const ComplexNumber&) = default;
@@ -29,19 +37,19 @@ struct ComplexNumber {
 
 /// What a pivot is chosen by: |re| + |im|.
 template <class Real>
-Real magnitude(const ComplexNumber<Real>& z) {
+[[gnu::always_inline]] inline Real magnitude(const ComplexNumber<Real>& z) {
   using std::abs;
   return abs(z.re) + abs(z.im);
 }
 template <class Real>
-Real magnitude(const Real& x) {
+[[gnu::always_inline]] inline Real magnitude(const Real& x) {
   using std::abs;
   return abs(x);
 }
 
 /// 1/z, scaled so that neither square overflows (R. L. Smith, "Algorithm 116", CACM 5 (1962)).
 template <class Real>
-ComplexNumber<Real> reciprocal(const ComplexNumber<Real>& z) {
+[[gnu::always_inline]] inline ComplexNumber<Real> reciprocal(const ComplexNumber<Real>& z) {
   using std::abs;
   if (abs(z.re) >= abs(z.im)) {
     const Real ratio = z.im / z.re, denominator = z.re + z.im * ratio;
@@ -51,7 +59,7 @@ ComplexNumber<Real> reciprocal(const ComplexNumber<Real>& z) {
   return {ratio / denominator, Real(-1) / denominator};
 }
 template <class Real>
-Real reciprocal(const Real& x) {
+[[gnu::always_inline]] inline Real reciprocal(const Real& x) {
   return Real(1) / x;
 }
 

@@ -216,8 +216,10 @@ class ListedLU {
     const std::uint16_t* target = list_.target.data();
     for (std::size_t k = 0; k < N; ++k) {
       const std::size_t below = list_.below[k], right = list_.right[k], end = list_.first[k + 1];
-      const Number inverse = value_[list_.first[k]] = reciprocal(value_[list_.first[k]]);
-      good = good && magnitude(inverse) < std::numeric_limits<Real>::infinity();
+      Number& pivot = value_[list_.first[k]];
+      const Real size_of_pivot = magnitude(pivot);
+      good = good && size_of_pivot > 0 && size_of_pivot - size_of_pivot == 0;
+      const Number inverse = pivot = reciprocal(pivot);
       for (std::size_t p = below; p < right; ++p) {
         const Number factor = value_[p] = value_[p] * inverse;
         good = good && magnitude(factor) <= most;

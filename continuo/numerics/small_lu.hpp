@@ -34,7 +34,9 @@ class SmallLU {
   std::array<Number, N * N>& matrix() { return entries_; }
 
   bool factor() {
-    std::array<Number, N * N> a = entries_;
+    // Few rows are in registers; of many, those that have nothing to be eliminated are left as they are.
+    constexpr bool in_registers = N <= 4;
+    std::conditional_t<in_registers, std::array<Number, N * N>, std::array<Number, N * N>&> a = entries_;
     std::array<std::uint32_t, N> order;
     for (std::size_t i = 0; i < N; ++i) order[i] = static_cast<std::uint32_t>(i);
     bool regular = true;
@@ -45,12 +47,13 @@ class SmallLU {
       const Number inverse = reciprocal(a[k * N + k]);
       a[k * N + k] = inverse;
       unrolled<k + 1, N>([&](auto i) __attribute__((always_inline)) {
+        if (!in_registers && a[i * N + k] == Number{}) return;
         const Number factor = a[i * N + k] = a[i * N + k] * inverse;
         unrolled<k + 1, N>([&](auto j) __attribute__((always_inline)) { a[i * N + j] -= factor * a[k * N + j]; });
       });
       unrolled<k + 1, N>([&](auto j) __attribute__((always_inline)) { a[k * N + j] = a[k * N + j] * inverse; });
     });
-    entries_ = a;
+    if constexpr (in_registers) entries_ = a;
     order_ = order;
     in_order_ = true;
     for (std::size_t i = 0; i < N; ++i) in_order_ = in_order_ && order[i] == i;
