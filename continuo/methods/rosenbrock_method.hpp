@@ -240,8 +240,13 @@ struct RosenbrockMethod {
     if constexpr (detail::FixedSize<X>) {
       X argument{}, right{}, product{};
       solve_stage<s>(system, t, x, h, inverse_h, work, argument, right, product);
+      if constexpr (detail::Packed<X>) {
+        work.u[s] = detail::keep(right);
+      } else {
+        work.u[s] = right;
+      }
     } else {
-      solve_stage<s>(system, t, x, h, inverse_h, work, work.argument, work.right, work.product);
+      solve_stage<s>(system, t, x, h, inverse_h, work, work.argument, work.u[s], work.product);
     }
   }
   template <std::size_t s, class System, State X>
@@ -264,11 +269,6 @@ struct RosenbrockMethod {
       }
     }
     work.lu.solve(right.data());
-    if constexpr (detail::Packed<X>) {
-      work.u[s] = detail::keep(right);
-    } else {
-      work.u[s] = right;
-    }
   }
 
   /// y = x + sum_j row_j u_j. The newest term is added last and by itself: see advance().

@@ -124,8 +124,7 @@ class BandedLU {
       for (std::size_t j = lower - i; j <= right; ++j)
         window[i * (right + 1) + j + i - lower] = entries_[i * (right + 1) + j];
     const Number none{};
-    std::size_t reach = 0;  // the last column that a pivot row so far has an entry in
-    filled_ = 0;
+    std::size_t lowest = 0;  // of the pivots, from the diagonal
     for (std::size_t k = 0; k < size_; ++k) {
       const bool inside = k + lower < size_;
       const Number* const next = inside ? entries_.data() + (k + lower) * (right + 1) : &none;
@@ -137,9 +136,8 @@ class BandedLU {
       });
       if (!(greatest > 0) || !(greatest - greatest == 0)) return false;
       pivots_[k] = static_cast<std::uint32_t>(pivot);
-      reach = std::max(reach, std::min(k + pivot + upper_, size_ - 1));
-      filled_ = std::max(filled_, reach - k);
       if (pivot != 0) {
+        lowest = std::max(lowest, pivot);
         each<1>(lower, [&](auto i) __attribute__((always_inline)) {
           if (pivot == i)
             each<0>(right, [&](auto j) __attribute__((always_inline)) { std::swap(window[j], at(i, j)); });
@@ -158,41 +156,62 @@ class BandedLU {
         window[(i - 1) * (right + 1) + right] = Number{};
       });
     }
+    filled_ = upper_ + lowest;
     return true;
+  }
+
+  /// turn(r, moved, k, inside) for k = 0, 1, ..., n - 1, where `inside` says that k + beyond < n. What moves through a
+  /// window of `period` places by one each time stays where it is while r = k modulo `period` and moved = 0 are
+  /// constants of the code; with r = 0 and moved = 1 the turn moves it. So it does for complex numbers, for which the
+  /// registers would not last.
+  template <std::size_t period, std::size_t beyond, class Turn>
+  [[gnu::always_inline]] static void in_turns(std::size_t n, Turn&& turn) {
+    constexpr std::integral_constant<std::size_t, 0> zero;
+    constexpr std::integral_constant<std::size_t, 1> one;
+    std::size_t k = 0;
+    if constexpr (std::is_floating_point_v<Number>) {
+      for (; k + period - 1 + beyond < n; k += period)
+        detail::unrolled<0, period>([&](auto r) __attribute__((always_inline)) { turn(r, zero, k + r, true); });
+    }
+    for (; k < n; ++k) turn(zero, one, k, k + beyond < n);
   }
 
   /// b becomes D^-1 L^-1 P b.
   template <std::size_t lower>
   void solve_lower(Number* b) const {
-    std::array<Number, lower + 1> ahead{};  // b[k], ..., b[k + lower], as far as they are known
+    constexpr std::size_t period = lower + 1;
+    std::array<Number, period> ahead{};  // b[k], ..., b[k + lower], as far as they are known, from place r on
     for (std::size_t i = 0; i < std::min(lower, size_); ++i) ahead[i] = b[i];
-    const Number* left = left_factors_.data();
-    for (std::size_t k = 0; k < size_; ++k, left += lower) {
-      ahead[lower] = k + lower < size_ ? b[k + lower] : Number{};
+    in_turns<period, lower>(size_, [&](auto r, auto moved, std::size_t k, bool inside) __attribute__((always_inline)) {
+      ahead[(r + lower) % period] = inside ? b[k + lower] : Number{};
       if (const std::uint32_t pivot = pivots_[k]; pivot != 0) {
-        detail::unrolled<1, lower + 1>([&](auto i) __attribute__((always_inline)) {
-          if (pivot == i) std::swap(ahead[0], ahead[i]);
+        detail::unrolled<1, period>([&](auto i) __attribute__((always_inline)) {
+          if (pivot == i) std::swap(ahead[r], ahead[(r + i) % period]);
         });
       }
-      const Number known = ahead[0];
+      const Number known = ahead[r];
+      const Number* const left = left_factors_.data() + k * lower;
       b[k] = known * inverse_[k];
-      detail::unrolled<1, lower + 1>(
-          [&](auto i) __attribute__((always_inline)) { ahead[i - 1] = ahead[i] - left[i - 1] * known; });
-    }
+      detail::unrolled<1, period>([&](auto i) __attribute__((always_inline)) {
+        ahead[(r + i - moved) % period] = ahead[(r + i) % period] - left[i - 1] * known;
+      });
+    });
   }
   /// b becomes U^-1 b, where U has entries in `upper` columns behind the diagonal, and room for `room`.
   template <std::size_t upper, std::size_t room>
   void solve_upper(Number* b) const {
-    std::array<Number, upper + 1> ahead{};  // b[k], ..., b[k - upper], as far as they are known
+    constexpr std::size_t period = upper + 1;
+    std::array<Number, period> ahead{};  // b[k], ..., b[k - upper], as far as they are known, from place r on
     for (std::size_t i = 0; i < std::min(upper, size_); ++i) ahead[i] = b[size_ - 1 - i];
-    const Number* column = right_factors_.data() + size_ * room;
-    for (std::size_t k = size_; k-- > 0;) {
-      column -= room;
-      ahead[upper] = k >= upper ? b[k - upper] : Number{};
-      const Number known = b[k] = ahead[0];
-      detail::unrolled<1, upper + 1>(
-          [&](auto i) __attribute__((always_inline)) { ahead[i - 1] = ahead[i] - column[room - i] * known; });
-    }
+    in_turns<period, upper>(size_, [&](auto r, auto moved, std::size_t j, bool inside) __attribute__((always_inline)) {
+      const std::size_t k = size_ - 1 - j;
+      ahead[(r + upper) % period] = inside ? b[k - upper] : Number{};
+      const Number known = b[k] = ahead[r];
+      const Number* const column = right_factors_.data() + (k + 1) * room;
+      detail::unrolled<1, period>([&](auto i) __attribute__((always_inline)) {
+        ahead[(r + i - moved) % period] = ahead[(r + i) % period] - *(column - i) * known;
+      });
+    });
   }
 
   void solve_wide(Number* b) const {
