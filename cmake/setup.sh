@@ -12,6 +12,7 @@ packages_to_build=(
   "libudunits2-dev        -            physical units"
   "libxsimd-dev           -            vector instructions"
   "libsuitesparse-dev     -            sparse linear systems"
+  "libeigen3-dev          -            eigenvalues of matrices"
   "gnuplot-nox            gnuplot      plots"
 )
 packages_to_test=(
