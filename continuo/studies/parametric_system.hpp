@@ -1,0 +1,93 @@
+// What the studies study: x' = f(t, x, p), with constants p that a study may move. Made from a lambda, from any System,
+// or from a model (of_model.hpp); its type says nothing of where it came from, so that every study is compiled once.
+//
+//   const auto decay = parametric_system(1, [](double, auto x, auto p, auto dxdt) { dxdt[0] = -p[0] * x[0]; }, {2.0});
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/numerics/sparse_pattern.hpp>
+#include <continuo/system/jacobian.hpp>
+#include <continuo/system/system.hpp>
+
+namespace continuo::studies {
+
+using Values = std::span<const double>;
+
+struct ParametricSystem {
+  std::size_t size = 0;             // n: components of x
+  std::vector<double> constants{};  // m: p as it is unless a study says otherwise
+  /// dxdt = f(t, x, p)
+  std::function<void(double t, Values x, Values p, std::span<double> dxdt)> derivative{};
+
+  // What may be missing.
+  /// Where df/dx may differ from zero; empty: anywhere.
+  SparsePattern pattern{};
+  /// The entries of df/dx in the order of the pattern, or row by row; else by differences.
+  std::function<void(double t, Values x, Values p, std::span<double> entries)> jacobian{};
+  /// df/dp, n * m row by row; else by differences.
+  std::function<void(double t, Values x, Values p, std::span<double> rows)> constant_jacobian{};
+  std::vector<std::string> names{};           // of the components
+  std::vector<std::string> constant_names{};  // of the constants
+
+  std::size_t parameters() const { return constants.size(); }
+  /// `x[i]` where it has none.
+  std::string name(std::size_t i) const;
+  std::string constant_name(std::size_t i) const;
+};
+
+/// f called as f(t, x, p, dxdt) with spans.
+template <class F>
+  requires std::invocable<F&, double, Values, Values, std::span<double>>
+ParametricSystem parametric_system(std::size_t size, F f, std::vector<double> constants = {}) {
+  return {.size = size, .constants = std::move(constants), .derivative = std::move(f)};
+}
+
+/// Any System for std::vector<double>, with the Jacobian and the names it has.
+template <RightHandSide<std::vector<double>> System>
+ParametricSystem parametric_system(std::size_t size, System system) {
+  using X = std::vector<double>;
+  struct Shared {
+    System system;
+    X x, dxdt;
+  };
+  const auto shared = std::make_shared<Shared>(Shared{std::move(system), X(size), X(size)});
+  ParametricSystem result{.size = size};
+  result.derivative = [shared](double t, Values x, Values, std::span<double> dxdt) {
+    shared->x.assign(x.begin(), x.end());
+    evaluate(shared->system, t, shared->x, shared->dxdt);
+    std::copy(shared->dxdt.begin(), shared->dxdt.end(), dxdt.begin());
+  };
+  if constexpr (HasSparseJacobian<System, X>) {
+    result.pattern = shared->system.jacobian_pattern();
+    result.jacobian = [shared](double t, Values x, Values, std::span<double> entries) {
+      shared->x.assign(x.begin(), x.end());
+      shared->system.jacobian_values(t, shared->x, entries);
+    };
+  } else if constexpr (HasJacobian<System, X>) {
+    result.jacobian = [shared](double t, Values x, Values, std::span<double> rows) {
+      shared->x.assign(x.begin(), x.end());
+      shared->system.jacobian(t, shared->x, rows);
+    };
+  }
+  if constexpr (Named<System>)
+    for (std::size_t i = 0; i < size; ++i) result.names.push_back(component_name(shared->system, i));
+  return result;
+}
+
+/// df/dx, n * n row by row, exact where the system gives it, else by central differences. `scale` (of each component,
+/// may be empty) says what is small.
+std::vector<double> jacobian_of(const ParametricSystem& system, double t, Values x, Values p, Values scale = {});
+/// df/dp, n * m row by row.
+std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p);
+
+/// The increment of a central difference, of a number or of `scale`, whichever is larger: the third root of epsilon,
+/// where its error and that of rounding are alike.
+double central_increment(double x, double scale);
+
+}  // namespace continuo::studies
