@@ -1,0 +1,68 @@
+// Conditions at several times: x' = f(t, x, p) on an interval, with as many conditions as there are components of x and
+// unknown constants p, each on x at one or several times.
+//
+//   // x'' = 2, x(1) = 3, x(7) = 4
+//   const auto parabola = [](double, const std::vector<double>& x, std::vector<double>& dxdt) { dxdt = {x[1], 2}; };
+//   const auto ends = [](Values x, Values, std::span<double> g) { g[0] = x[0] - 3, g[1] = x[2] - 4; };
+//   const auto solution = solve_boundary_values({parametric_system(2, parabola), {1, 7}, ends});
+//   if (solution.outcome) fmt::print("{}\n", solution(4)[0]);
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/numerics/sparse_pattern.hpp>
+#include <continuo/solve/outcome.hpp>
+#include <continuo/studies/parametric_system.hpp>
+
+namespace continuo::studies {
+
+struct BoundaryValueProblem {
+  ParametricSystem system{};    // its constants p, of which there are m, are unknown
+  std::vector<double> times{};  // at which conditions read x, ascending; the first and the last bound the interval
+  /// residuals = g(x, p), n + m of them: x at the first time, at the second, ...
+  std::function<void(Values x, Values p, std::span<double> residuals)> conditions{};
+  /// Where g may depend on x and p (columns: x at the first time, ..., then p); empty: anywhere.
+  std::vector<MatrixPlace> condition_places{};
+};
+
+/// Why a problem cannot be solved by any method; empty where nothing is wrong.
+std::string what_is_wrong(const BoundaryValueProblem& problem);
+
+struct BoundaryValueOptions {
+  /// Of |x' - f| / (1 + |f|), root mean square over each interval of the mesh.
+  double tolerance = 1e-6;
+  std::size_t most_intervals = 50'000;
+  std::size_t most_iterations = 40;  // of Newton on one mesh
+  std::vector<double> mesh{};        // to begin with; empty: even
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(std::size_t intervals, double residual)> progress{};  // after each mesh
+};
+
+/// Where the search begins: x(t), zero where there is none; the constants begin as the system has them.
+using BoundaryValueGuess = std::function<void(double t, std::span<double> x)>;
+
+/// A piecewise polynomial of degree 4 with continuous derivative.
+struct BoundaryValueSolution {
+  Outcome<double> outcome;  // `nonlinear_solve_failed`: no solution near the guess was found
+  std::size_t size = 0;
+  std::vector<double> mesh;    // its points
+  std::vector<double> points;  // x at the collocation points, those of the mesh among them
+  std::vector<double> slopes;  // f there
+  std::vector<double> parameters;
+  double residual = 0;                     // the greatest of an interval, see BoundaryValueOptions::tolerance
+  std::size_t meshes = 0, iterations = 0;  // how many meshes, and iterations of Newton on all of them
+  std::size_t evaluations = 0;             // of f
+
+  void at(double t, std::span<double> x) const;
+  void slope_at(double t, std::span<double> dxdt) const;
+  std::vector<double> operator()(double t) const;
+};
+
+BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess = {},
+                                            const BoundaryValueOptions& options = {});
+
+}  // namespace continuo::studies

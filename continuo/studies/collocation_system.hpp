@@ -1,0 +1,78 @@
+// The equations of collocation on one mesh, and Newton's iteration on them. Internal to boundary_value.
+//
+// Unknowns: x at all points (the mesh's and those between, n numbers each), then the constants p. Equations, in the
+// rows of the point they determine: g = 0 at the first point (and in the last rows, as many as constants), and for each
+// interval and each of its points but the first, X_i - X_1 - h sum_j a_ij f(t_j, X_j) = 0. The matrix is almost block
+// diagonal; it is decomposed by a sparse solver whose analysis is made once for the mesh.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <continuo/numerics/sparse_lu.hpp>
+#include <continuo/studies/boundary_value.hpp>
+#include <continuo/studies/lobatto.hpp>
+
+namespace continuo::studies::detail {
+
+/// How Newton's iteration ended.
+enum class NewtonEnding { converged, no_descent, singular, not_finite, too_many, interrupted };
+
+class CollocationSystem {
+ public:
+  static constexpr const auto& table = lobatto4;
+  static constexpr std::size_t per_interval = lobatto4.stages - 1;  // points of an interval but its first
+
+  /// `mesh` holds every one of problem.times.
+  CollocationSystem(const BoundaryValueProblem& problem, std::span<const double> mesh);
+
+  std::size_t point_count() const { return per_interval * intervals() + 1; }
+  std::size_t intervals() const { return mesh_.size() - 1; }
+  double time(std::size_t point) const;
+
+  /// Unknowns, to be set before `iterate` and read after it.
+  std::span<double> unknowns() { return z_; }
+  std::span<double> point(std::size_t q) { return std::span(z_).subspan(q * n_, n_); }
+  std::span<double> constants() { return std::span(z_).subspan(point_count() * n_, m_); }
+  /// f at the points, of the last iteration.
+  std::span<const double> slopes() const { return f_; }
+
+  /// Damped until a correction is below `target`, relative to the size of each component.
+  NewtonEnding iterate(double target, const BoundaryValueOptions& options);
+  std::size_t iterations() const { return iterations_; }
+  std::size_t evaluations() const { return evaluations_; }
+  /// The component or constant that moved most, in its measure, in the last correction.
+  std::size_t worst() const { return worst_; }
+
+ private:
+  void make_pattern();
+  void evaluate_slopes(std::span<const double> z);
+  void evaluate_residuals(std::span<const double> z, std::span<double> residuals);
+  void evaluate_jacobians();
+  void evaluate_condition_jacobian();
+  void fill_matrix();
+  void measure();
+  double size_of(std::span<const double> correction);
+  std::span<const double> constants_of(std::span<const double> z) const { return z.subspan(point_count() * n_, m_); }
+  std::span<const double> gather(std::span<const double> z);
+
+  const BoundaryValueProblem& problem_;
+  std::size_t n_, m_;
+  std::vector<double> mesh_;
+  std::vector<std::size_t> condition_points_;
+  std::vector<double> z_, f_, trial_, residuals_, correction_, simplified_;
+  SparsePattern block_;                     // of df/dx with its diagonal
+  std::vector<double> jacobians_;           // of all points, entries of problem.pattern or rows
+  std::vector<double> constant_jacobians_;  // df/dp of all points, n * m row by row
+  std::vector<double> condition_values_, gathered_;
+  std::vector<MatrixPlace> condition_places_;
+  std::vector<double> scales_;  // of the components, then the constants
+  std::vector<std::uint32_t> slots_;
+  std::optional<SparseLU<double>> lu_;
+  std::vector<double> moved_, moved_slope_;
+  std::size_t iterations_ = 0, evaluations_ = 0, worst_ = 0;
+};
+
+}  // namespace continuo::studies::detail
