@@ -21,6 +21,7 @@
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/results/tables.hpp>
+#include <continuo/studies/boundary_of_model.hpp>
 
 namespace continuo::app {
 namespace {
@@ -29,6 +30,7 @@ struct RunRequest {
   ExperimentOptions experiment;
   std::string motion, events, plot, manifest;  // files; empty: not wanted
   bool json = false, estimate_error = false;
+  std::size_t solution = 1;
 
   bool data_to_standard_output() const { return json || motion == "-" || events == "-" || manifest == "-"; }
 };
@@ -85,6 +87,7 @@ ExitCode exit_without_run(std::span<const model::Diagnostic> diagnostics) {
   const bool asked_wrongly = std::ranges::any_of(diagnostics, [](const auto& problem) {
     return problem.code.starts_with("E33") || problem.code.starts_with("E34");
   });
+  if (std::ranges::any_of(diagnostics, [](const auto& problem) { return problem.code == "E307"; })) return interrupted;
   return asked_wrongly ? usage : numerical_failure;
 }
 
@@ -109,7 +112,7 @@ ExitCode run(const RunRequest& request) {
     Progress progress;
     prepared.experiment.progress = progress.watcher();
     prepared.experiment.estimate_error = request.estimate_error;
-    return model::simulate(prepared.program, prepared.experiment);
+    return studies::run_model(prepared.program, prepared.experiment, request.solution);
   }();
   show(simulated.diagnostics, source);
   if (!simulated.run) {
@@ -117,7 +120,7 @@ ExitCode run(const RunRequest& request) {
     return exit_without_run(simulated.diagnostics);
   }
   const model::Run& run = *simulated.run;
-  const bool as_written = request.experiment.as_written();
+  const bool as_written = request.experiment.as_written() && request.solution == 1;
   const bool fine = write_files(request, *prepared.program, run);
   if (request.json) {
     print(results::run_json(run));
@@ -150,6 +153,9 @@ void add_run(CLI::App& app, ExitCode& exit) {
   verb->add_option("--manifest", request->manifest, "What was run and how (else beside the CSV)")->type_name("FILE");
   verb->add_flag("--estimate-error", request->estimate_error,
                  "The true error, by a second run a hundred times as strict");
+  verb->add_option("--solution", request->solution, "Of a boundary-value problem with several: which one")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
   verb->add_flag("--json", request->json, "The result as one JSON object on standard output");
   verb->callback([&exit, request] { exit = run(*request); });
 }

@@ -15,6 +15,7 @@
 
 #include <continuo/model/simulate.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/studies/boundary_of_model.hpp>
 
 namespace continuo::app {
 namespace {
@@ -36,7 +37,8 @@ std::string failed_line(const model::CheckResult& check) {
 Verdict verify(const std::string& path) {
   const model::Loaded loaded = load_model(path);
   if (!loaded) return {.exit = wrong_model, .remark = "not a model", .failed = {}};
-  const model::Simulated simulated = model::simulate(*loaded.model, {.interrupt = &interrupt_flag()});
+  const model::Simulated simulated =
+      studies::run_model(model::compile(*loaded.model), {.interrupt = &interrupt_flag()});
   if (!simulated.run) {
     show(simulated.diagnostics, loaded.source);
     return {.exit = numerical_failure, .remark = "cannot be run", .failed = {}};

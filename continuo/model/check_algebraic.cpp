@@ -51,6 +51,7 @@ class Assignment {
 
 void Checker::append_unknowns() {
   if (errors_ > 0 || unknowns_.empty()) return;
+  const bool constant = model_.algebraic.empty();  // of a boundary-value problem: x' = 0
   for (const Unknown& unknown : model_.unknowns) {
     model_.states.push_back({.base = unknown.name,
                              .primes = 0,
@@ -59,9 +60,14 @@ void Checker::append_unknowns() {
                              .unit = unknown.unit,
                              .initial = unknown.guess,
                              .span = unknown.span,
-                             .algebraic = true});
+                             .algebraic = !constant});
   }
   model_.all_paired = false;
+  if (constant) {
+    for (Mode& mode : model_.modes)
+      mode.derivatives.insert(mode.derivatives.end(), unknowns_.size(), model_.graph.constant(0));
+    return;
+  }
   for (const AlgebraicEquation& equation : model_.algebraic)
     model_.modes[equation.mode].derivatives.push_back(equation.residual);
   for (std::size_t mode = 0; mode < model_.modes.size(); ++mode) check_index(mode);

@@ -45,11 +45,17 @@ void Checker::check_event_name(const std::string& begin, Span span) {
                        : "the events are " + listed(names));
 }
 
+bool Checker::is_in_run(const Setting& time) const {
+  if (!model_.run.from || !model_.run.to) return true;
+  const double from = model_.run.from->value, to = model_.run.to->value, slack = 1e-12 * (to - from);
+  if (!(from < to)) return true;  // said elsewhere
+  return time.value >= from - slack && time.value <= to + slack;
+}
+
 /// A time in the run; the end of the run decides, where it is known.
 void Checker::check_time_in_run(const Setting& time, Span span) {
-  if (!model_.run.from || !model_.run.to) return;
-  const double from = model_.run.from->value, to = model_.run.to->value, slack = 1e-12 * (to - from);
-  if (time.value >= from - slack && time.value <= to + slack) return;
+  if (is_in_run(time)) return;
+  const double from = model_.run.from->value, to = model_.run.to->value;
   fail("E281", span, "this time is not in the run", fmt::format("the run goes from {:g} to {:g}", from, to));
 }
 

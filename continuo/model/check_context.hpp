@@ -37,7 +37,7 @@ struct Scope {
   std::vector<Index> indices = {};
   int mode = no_mode;
   bool constant = false;                   // states and inputs are no constants; parameters are their values
-  std::vector<Sample>* samples = nullptr;  // where h(1) may stand
+  std::vector<Sample>* samples = nullptr;  // where h(1) may stand: in checks and conditions
 };
 
 /// A node with what it measures. `bad`: an error was reported, nothing more is said about it.
@@ -119,6 +119,7 @@ struct ConditionText {
   std::size_t base;
   std::optional<Setting> time{};
   Value value{};
+  std::vector<Sample> samples{};  // `x(10)` in the value
   Progress progress = Progress::untouched;
 };
 
@@ -260,6 +261,7 @@ class Checker {
 
   void make_conditions();  // check_initial.cpp
   const Value& condition_value(std::size_t index);
+  void count_conditions();
   void place_condition(std::size_t index, bool initial);
   void missing_conditions();
   void make_guesses();
@@ -316,6 +318,7 @@ class Checker {
   Value measure(const ast::Check& text, Scope& scope, Check& check);
   Moment moment(const ast::Moment& text, Scope& scope, Span span);
   void check_event_name(const std::string& begin, Span span);
+  bool is_in_run(const Setting& time) const;
   void check_time_in_run(const Setting& time, Span span);
   Value value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check);
 

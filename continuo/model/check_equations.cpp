@@ -83,6 +83,7 @@ void Checker::sort_out_algebraic(ModeAtWork& work) {
     report_empty_equation(work, e, variables);
   }
   if (algebraic == unknowns_.size() || errors_ > 0) return;
+  if (algebraic == 0 && model_.needs_boundary_solver()) return;  // constants that the conditions determine
   std::vector<std::string> names;
   names.reserve(unknowns_.size());
   for (const UnknownText& unknown : unknowns_) names.push_back(unknown.name);

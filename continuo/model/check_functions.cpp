@@ -212,7 +212,7 @@ Value Checker::sample(const ast::Call& node, Span span, Scope& scope) {
     return bad();
   }
   if (!scope.samples || node.arguments.size() != 1) {
-    fail("E282", span, "a value at a time can only stand in a check", {},
+    fail("E282", span, "a value at a time can only stand in a check or a condition", {},
          fmt::format("to multiply, write {}*(...)", source_.slice(node.callee.span)));
     return bad();
   }

@@ -14,7 +14,9 @@ const Value& Checker::condition_value(std::size_t index) {
   if (condition.progress == Progress::untouched) {
     condition.progress = Progress::busy;
     const auto outer = std::exchange(highest_, {});
-    condition.value = elaborate(condition.text->value, condition.scope);
+    Scope scope = condition.scope;
+    scope.samples = &condition.samples;
+    condition.value = elaborate(condition.text->value, scope);
     want_number(condition.text->value, condition.value);
     highest_ = outer;
     condition.progress = Progress::done;
@@ -28,17 +30,25 @@ void Checker::make_conditions() {
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     ConditionText& condition = conditions_[i];
     condition.time = time_setting(condition.text->time, condition.scope, "the time of a condition");
-    if (condition.time && condition.time->value != start_time_) all_at_start = false;
+    if ((condition.time && condition.time->value != start_time_) || !condition.samples.empty()) all_at_start = false;
   }
   for (std::size_t i = 0; i < conditions_.size(); ++i) place_condition(i, all_at_start);
   if (all_at_start) {
     missing_conditions();
-  } else if (errors_ == 0 && model_.boundary.size() != model_.states.size()) {
-    fail("E244", conditions_.back().span,
-         fmt::format("{} boundary conditions are needed, one per state", model_.states.size()),
-         fmt::format("here are {}", model_.boundary.size()));
+  } else {
+    count_conditions();
   }
   make_guesses();
+}
+
+/// Of a boundary-value problem: as many as there are numbers to find.
+void Checker::count_conditions() {
+  const std::size_t needed = model_.states.size() + unknowns_.size();
+  if (errors_ > 0 || model_.boundary.size() == needed) return;
+  fail("E244", conditions_.back().span,
+       fmt::format("{} boundary conditions are needed, one per state{}", needed,
+                   unknowns_.empty() ? "" : " and unknown"),
+       fmt::format("here are {}", model_.boundary.size()));
 }
 
 void Checker::place_condition(std::size_t index, bool initial) {
@@ -67,11 +77,17 @@ void Checker::place_condition(std::size_t index, bool initial) {
   }
   const NodeId node =
       in_unit(condition.text->value, value, measures_[state], "`" + with_primes(base.name, primes) + "`");
-  if (condition.time->value == start_time_) {
+  if (condition.time->value == start_time_ && condition.samples.empty()) {
     model_.states[state].initial = node;
     model_.states[state].span = condition.span;
   }
-  if (!initial) model_.boundary.push_back({state, *condition.time, node, condition.span});
+  if (initial) return;
+  if (!is_in_run(*condition.time)) {
+    fail("E245", condition.span, "this condition stands outside of the run",
+         fmt::format("the run goes from {:g} to {:g}", start_time_, model_.run.to->value),
+         "let the run reach it, or move it");
+  }
+  model_.boundary.push_back({state, *condition.time, node, condition.samples, condition.span});
 }
 
 /// One message per family, about its first member without a value.

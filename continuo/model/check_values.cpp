@@ -99,6 +99,7 @@ bool Checker::only_parameters(NodeId node, Span span, std::string_view what, std
   const Layout& layout = model_.layout;
   for (const std::uint32_t variable : variables_of(model_.graph, node)) {
     if (variable >= layout.parameters && variable < layout.inputs) continue;
+    if (variable >= layout.samples && variable < layout.size) continue;  // `x(10)` in a condition: a number
     fail("E222", span, fmt::format("{} may depend on parameters only", what),
          fmt::format("`{}` changes with time", name_of(variable)), std::move(help));
     return false;

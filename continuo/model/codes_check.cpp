@@ -123,7 +123,10 @@ and the states begin on the circle, with a velocity along it.)"},
     Code{
         "E244", "the number of boundary conditions is wrong",
         R"(Conditions at more than one time (x(1) = 3; x(7) = 4) make a boundary-value problem: one condition per state, here
-two for x''.)"},
+two for x''. A condition may name a state at another time (x(0) = x(10)). An `unknown` without an equation 0 = ... is a
+constant to be found, and needs one condition more.)"},
+    Code{"E245", "a condition stands outside of the run",
+         R"(Every condition of a boundary-value problem is at a time between the ends of `run A..B`.)"},
     Code{"E250", "there is no such mode",
          R"(`in MODE`, `go MODE` and `start in MODE` name a mode of the model: mode NAME { equations }.)"},
     Code{

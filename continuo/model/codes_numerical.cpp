@@ -80,11 +80,18 @@ satisfy an equation.
 
 Fix: take an implicit method for stiff systems, such as rodas5p, radau or bdf, or leave the choice to Continuo. Where
 the unknown can be written as an expression, `let` does without an equation.)"},
-    Code{"E321", "boundary-value problems cannot be solved yet",
-         R"(The model gives values of its states at different times (x(0) = 1; x(7) = 4). It is read and checked; the
-solver for such problems is not there yet.
+    Code{"E321", "conditions at different times do not fit here",
+         R"(The model gives values of its states at different times (x(0) = 1; x(7) = 4). `continuo run` solves such
+problems, for models without events, modes and algebraic equations; what integrates from the start cannot.
 
-Fix: give all values at the start, and try different ones until the end fits.)"},
+Fix: give all values at the start, or take `continuo run`.)"},
+    Code{
+        "E322", "the boundary-value problem was not solved",
+        R"(No motion was found that meets the conditions at all their times. There may be none, or several, or the search
+began too far away.
+
+Fix: guess x = ... gives the search a place to begin, as a function of t; `guess x' = ...` too. A greater tolerance asks
+for less.)"},
     Code{"E330", "there is no such method", R"(`continuo methods` lists the methods with their order and use.)"},
     Code{
         "E331", "the method needs a step",

@@ -261,11 +261,12 @@ struct Check {
 
 // ---- what is checked but solved elsewhere ---------------------------------------------------------------------------
 
-/// `x(7) = 4` where not all conditions are at one time.
+/// `x(7) = 4` where not all conditions are at one time, `x(0) = x(10)`.
 struct BoundaryCondition {
   std::size_t state;
   Setting time;
-  NodeId value;
+  NodeId value;                 // of parameters and samples
+  std::vector<Sample> samples;  // states at times, that `value` needs first
   Span span;
 };
 struct Guess {

@@ -14,13 +14,12 @@ namespace continuo::model {
 
 namespace {
 
-/// Models that are read and checked but cannot be run yet.
-std::optional<Diagnostic> not_there_yet(const Model& model) {
-  if (model.needs_boundary_solver()) {
-    return error("E321", model.boundary.front().span, "conditions at different times cannot be solved yet",
-                 "this makes it a boundary-value problem", "give all conditions at the start");
-  }
-  return std::nullopt;
+/// Models that no integration from the start can run.
+std::optional<Diagnostic> no_integration(const Model& model) {
+  if (!model.needs_boundary_solver()) return std::nullopt;
+  return error("E321", model.boundary.front().span, "conditions at different times cannot be integrated from the start",
+               "this makes it a boundary-value problem",
+               "`continuo run` solves it; or give all conditions at the start");
 }
 
 Options<ModelSystem::X> options_of(const Plan& plan, const Experiment& experiment) {
@@ -59,7 +58,7 @@ bool is_positive_period(const Model& model, const Plan& plan, std::vector<Diagno
 
 std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
                              std::vector<Diagnostic>& problems) {
-  if (auto problem = not_there_yet(program.model)) {
+  if (auto problem = no_integration(program.model)) {
     problems.push_back(std::move(*problem));
     return std::nullopt;
   }
@@ -94,7 +93,7 @@ Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Exp
 }
 
 Simulated simulate(const Model& model, const Experiment& experiment) {
-  if (auto problem = not_there_yet(model)) return {std::nullopt, {std::move(*problem)}};
+  if (auto problem = no_integration(model)) return {std::nullopt, {std::move(*problem)}};
   return simulate(compile(model), experiment);
 }
 

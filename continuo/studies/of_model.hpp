@@ -1,0 +1,29 @@
+// A model as the studies see it: x' = f(t, x, p) in one of its modes, with chosen parameters as constants that a study
+// may move.
+//
+//   const ParametricSystem system = of_model(program, {.constants = {"k", "c"}});
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/studies/parametric_system.hpp>
+
+namespace continuo::studies {
+
+struct OfModel {
+  std::vector<std::string> constants{};  // names of parameters, each one of the model's
+  model::Overrides parameters{};         // values that stand for those in the text
+  std::size_t mode = 0;                  // one of the model's
+};
+
+/// Derivatives are exact, by the model's graph; sparse where the model is. Each call of the system's functions changes
+/// registers that its copies share: one thread at a time.
+ParametricSystem of_model(const std::shared_ptr<const model::ModelProgram>& program, const OfModel& what = {});
+
+/// The initial state of the model with these parameters.
+std::vector<double> start_of(const model::Model& model, const model::Overrides& parameters = {});
+
+}  // namespace continuo::studies
