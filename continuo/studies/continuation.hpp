@@ -1,0 +1,54 @@
+// How equilibria move when one constant does: a branch of f(x, p) = 0 followed round its folds by pseudo-arclength,
+// with the places where its stability changes: folds, Hopf points, crossings with other branches. H. B. Keller,
+// "Numerical solution of bifurcation and nonlinear eigenvalue problems" (1977); Yu. A. Kuznetsov, "Elements of Applied
+// Bifurcation Theory", chapter 10.
+#pragma once
+#include <atomic>
+#include <complex>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/parametric_system.hpp>
+
+namespace continuo::studies {
+
+struct BranchPoint {
+  double constant;  // its value
+  std::vector<double> x;
+  std::vector<std::complex<double>> eigenvalues;
+  Stability stability;
+};
+
+/// `fold`: the branch turns round in the constant. `hopf`: a pair of eigenvalues crosses the imaginary axis; an orbit
+/// with `frequency` is born. `crossing`: another branch passes through (transcritical, pitchfork).
+enum class Bifurcation { fold, hopf, crossing };
+std::string_view to_string(Bifurcation kind);
+
+struct BifurcationPoint {
+  Bifurcation kind;
+  BranchPoint at;
+  double frequency = 0;  // of a Hopf point: imaginary part / 2 pi
+};
+
+struct Branch {
+  std::vector<BranchPoint> points;
+  std::vector<BifurcationPoint> bifurcations;  // in the order of the branch
+  bool complete = false;                       // it left the range of the constant, or closed
+  std::string_view message{};                  // why it ended elsewhere; empty where complete
+};
+
+struct ContinuationOptions {
+  std::size_t constant = 0;                       // which of the system's
+  double low = 0, high = 1;                       // of the constant
+  double first_step = 0.01, largest_step = 0.05;  // in parts of high - low, and of the size of x
+  std::size_t most_points = 5000;
+  double t = 0;
+  const std::atomic<bool>* interrupt = nullptr;
+};
+
+/// From an equilibrium (near x at the constant's present value) in both directions.
+Branch continue_equilibrium(const ParametricSystem& system, std::vector<double> x, const ContinuationOptions& options);
+
+}  // namespace continuo::studies

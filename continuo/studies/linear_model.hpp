@@ -1,0 +1,23 @@
+// A model near one point as a linear system: x' = A x + B u, y = C x + D u, all exact by the model's graph. Its inputs
+// are the `input`s of the model, its outputs the `output`s.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
+
+namespace continuo::studies {
+
+struct LinearModel {
+  std::vector<std::string> states, inputs, outputs;
+  std::vector<double> a, b, c, d;  // row by row: n * n, n * inputs, outputs * n, outputs * inputs
+};
+
+/// At (t, x), inputs and parameters as the model has them unless `parameters` says otherwise.
+LinearModel linearize_model(const std::shared_ptr<const model::ModelProgram>& program, std::vector<double> x, double t,
+                            const model::Overrides& parameters = {}, std::size_t mode = 0);
+
+}  // namespace continuo::studies

@@ -1,0 +1,34 @@
+// Lyapunov exponents: how fast neighbours part, in each direction on the average. The variational equations are
+// integrated beside the motion, their columns made orthogonal again every so often (G. Benettin, L. Galgani, A.
+// Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9-30).
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include <continuo/solve/outcome.hpp>
+#include <continuo/studies/parametric_system.hpp>
+
+namespace continuo::studies {
+
+struct LyapunovOptions {
+  double duration = 1000;  // of what is averaged
+  double settle = 50;      // before that, to come to the attractor
+  double interval = 0.5;   // at most, between two orthogonalisations
+  double rtol = 1e-8, atol = 1e-10;
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double t)> progress{};
+};
+
+struct LyapunovExponents {
+  Outcome<double> outcome;
+  std::vector<double> exponents;  // descending, per unit of time; of what was averaged where it was interrupted
+  std::vector<double> spread;     // standard error of each, from the averages of twenty parts of the run
+  double averaged = 0;            // over how much time
+};
+
+LyapunovExponents lyapunov_exponents(const ParametricSystem& system, std::vector<double> x0,
+                                     const LyapunovOptions& options = {});
+
+}  // namespace continuo::studies

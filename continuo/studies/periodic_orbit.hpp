@@ -1,0 +1,48 @@
+// Closed orbits of systems that do not depend on time: found by running until the motion comes back to where it was,
+// then solved for as a boundary-value problem with an unknown period; the multipliers say whether neighbours come
+// nearer.
+#pragma once
+#include <atomic>
+#include <complex>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <continuo/studies/boundary_value.hpp>
+#include <continuo/studies/parametric_system.hpp>
+
+namespace continuo::studies {
+
+struct PeriodicOrbitOptions {
+  double settle = 100;       // time for the motion to come to the orbit, before it is looked for
+  double duration = 1000;    // within which it must come back
+  double tolerance = 1e-10;  // of the boundary-value problem
+  double rtol = 1e-9;        // of the integrations
+  const std::atomic<bool>* interrupt = nullptr;
+};
+
+struct PeriodicOrbit {
+  Outcome<double> outcome;  // its hint says why there is none
+  double period = 0;
+  BoundaryValueSolution orbit;                    // over t / period from 0 to 1
+  std::vector<std::complex<double>> multipliers;  // by descending size; one of them is 1
+  bool stable = false;                            // all but that one inside the unit circle
+};
+
+PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<double> x0,
+                                  const PeriodicOrbitOptions& options = {});
+
+/// Crossings of a plane x_i = level, in the direction of growth: a Poincare section.
+struct SectionPoint {
+  double t;
+  std::vector<double> x;
+};
+struct Section {
+  Outcome<double> outcome;
+  std::vector<SectionPoint> points;
+};
+Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component, double level,
+                         double settle, double duration, double rtol = 1e-9,
+                         const std::atomic<bool>* interrupt = nullptr);
+
+}  // namespace continuo::studies

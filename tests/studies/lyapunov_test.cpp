@@ -1,0 +1,44 @@
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <continuo/studies/lyapunov.hpp>
+
+namespace continuo::studies {
+namespace {
+
+TEST(Lyapunov, OfALinearSystemTheyAreTheRealParts) {  // eigenvalues -0.1 +- 2i and -3
+  const auto f = [](double, Values x, Values, std::span<double> out) {
+    out[0] = -0.1 * x[0] + 2 * x[1];
+    out[1] = -2 * x[0] - 0.1 * x[1];
+    out[2] = -3 * x[2] + x[0];
+  };
+  const auto found = lyapunov_exponents(parametric_system(3, f), {1, 0, 1}, {.duration = 200, .settle = 10});
+  ASSERT_TRUE(found.outcome) << describe(found.outcome);
+  // What is left of the start's direction after the settling is spread over the duration: exp(-29)/200 and less.
+  EXPECT_NEAR(found.exponents[0], -0.1, 2e-2 / 20);
+  EXPECT_NEAR(found.exponents[1], -0.1, 2e-2 / 20);
+  EXPECT_NEAR(found.exponents[2], -3, 2e-2);
+  EXPECT_NEAR(found.averaged, 200, 1e-9);
+}
+
+/// J. C. Sprott, "Chaos and Time-Series Analysis" (2003): 0.9056, 0, -14.5723; their sum is the trace, -41/3, at any
+/// time.
+TEST(Lyapunov, Lorenz) {
+  const auto f = [](double, Values x, Values, std::span<double> out) {
+    out[0] = 10 * (x[1] - x[0]);
+    out[1] = x[0] * (28 - x[2]) - x[1];
+    out[2] = x[0] * x[1] - 8.0 / 3 * x[2];
+  };
+  const auto found = lyapunov_exponents(parametric_system(3, f), {1, 1, 1}, {.duration = 400});
+  ASSERT_TRUE(found.outcome) << describe(found.outcome);
+  EXPECT_NEAR(found.exponents[0] + found.exponents[1] + found.exponents[2], -41.0 / 3, 1e-5);
+  EXPECT_NEAR(found.exponents[0], 0.9056, 4 * found.spread[0]);  // four standard errors
+  EXPECT_LT(found.spread[0], 0.05);                              // else four of them would say nothing
+  EXPECT_NEAR(found.exponents[1], 0, 4 * found.spread[1] + 1e-3);
+  EXPECT_NEAR(found.exponents[2], -14.5723, 4 * found.spread[2]);
+}
+
+}  // namespace
+}  // namespace continuo::studies
