@@ -29,3 +29,13 @@ picture stiff_door_explicit "$scratch/door.sim" --method explicit_euler --step 0
 picture stiff_door_implicit "$scratch/door.sim" --method rosenbrock23 --step 0.1
 picture van_der_pol_stiff models/van_der_pol_stiff.sim
 picture robertson models/robertson.sim
+
+block tutorial_boundary_values.md throw.sim
+picture throw "$scratch/throw.sim"
+study() {  # study NAME VERB MODEL [OPTION ...]
+  local name=$1
+  shift
+  "${CONTINUO:-./continuo.sh}" "$@" --plot "$pictures/$name.svg"
+}
+study lorenz_branches steady models/lorenz.sim --along rho=0..30
+study pendulum_plane phase models/pendulum.sim --box "theta=-7..7,theta'=-8..8"

@@ -31,6 +31,11 @@ int command(int argc, char** argv) {
   add_info(app, exit);
   add_verify(app, exit);
   add_compare(app, exit);
+  add_steady(app, exit);
+  add_linearize(app, exit);
+  add_phase(app, exit);
+  add_orbit(app, exit);
+  add_report(app, exit);
   add_methods(app, exit);
   add_explain(app, exit);
   add_new(app, exit);

@@ -14,6 +14,8 @@ struct Curve {
   std::string label;
   std::vector<double> x, y;  // of equal length; a NaN breaks the line
   std::string color{};       // "#rrggbb"; empty: the next of the palette
+  enum class Style { line, thin_line, full_points, empty_points };
+  Style style = Style::line;
 };
 
 struct Panel {
@@ -24,6 +26,7 @@ struct Panel {
   bool equal_scale = false;    // one unit is as long upwards as to the right
   bool logarithmic_x = false;  // what is not positive has no place there
   bool logarithmic_y = false;
+  bool tall = false;  // as high as wide pictures allow: for planes
 };
 
 struct Figure {

@@ -49,7 +49,7 @@ std::string ending_of(const std::string& path) {
 }
 
 int height_of(const Panel& panel) {
-  return panel.equal_scale ? square_height : panel_height;
+  return panel.equal_scale || panel.tall ? square_height : panel_height;
 }
 
 int height_of(const Figure& figure) {
@@ -74,6 +74,16 @@ void append_data(std::string& script, std::size_t panel, std::size_t number, con
 std::string style_of(const Curve& curve, std::size_t number) {
   const std::string_view color = curve.color.empty() ? palette[number % std::size(palette)] : curve.color;
   const std::size_t round = number / std::size(palette);  // dashes tell the second round of colours from the first
+  switch (curve.style) {
+    case Curve::Style::thin_line:
+      return fmt::format("lines lw 0.9 lc rgb '{}'", color);
+    case Curve::Style::full_points:
+      return fmt::format("points pt 7 ps 1.3 lc rgb '{}'", color);
+    case Curve::Style::empty_points:
+      return fmt::format("points pt 6 lw 2 ps 1.3 lc rgb '{}'", color);
+    case Curve::Style::line:
+      break;
+  }
   return fmt::format("lines lw 1.8 dt {} lc rgb '{}'", round + 1, color);
 }
 

@@ -1,0 +1,190 @@
+// continuo orbit FILE: a closed orbit with its period and multipliers, a Poincare section, Lyapunov exponents.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <apps/continuo/command_line.hpp>
+#include <apps/continuo/interrupt.hpp>
+#include <apps/continuo/models.hpp>
+#include <apps/continuo/progress.hpp>
+#include <apps/continuo/studied_model.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/results/csv.hpp>
+#include <continuo/results/figure.hpp>
+#include <continuo/results/output_file.hpp>
+#include <continuo/results/summary.hpp>
+#include <continuo/studies/lyapunov.hpp>
+#include <continuo/studies/periodic_orbit.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct OrbitOptions {
+  ExperimentOptions experiment;
+  std::string mode, section, out, plot;
+  std::optional<double> settle;
+  double duration = 0, tolerance = 1e-9;
+  bool lyapunov = false;
+};
+
+std::string with_time_unit(double t, const model::Model& model) {
+  const std::string number = fmt::format("{:.10g}", t);
+  return model.time_unit.empty() ? number : number + " " + model.time_unit;
+}
+
+std::string complex_text(const std::complex<double>& value) {
+  if (std::abs(value.imag()) < 1e-12 * std::abs(value)) return results::short_number(value.real());
+  return fmt::format("{} {} {} i", results::short_number(value.real()), value.imag() < 0 ? "-" : "+",
+                     results::short_number(std::abs(value.imag())));
+}
+
+ExitCode ended(const Outcome<double>& outcome) {
+  if (outcome.ending == Ending::interrupted) return interrupted;
+  say(outcome.hint.empty() ? describe(outcome) : outcome.hint);
+  return numerical_failure;
+}
+
+ExitCode show_exponents(const Studied& studied, const OrbitOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  Progress progress;
+  const auto found = studies::lyapunov_exponents(studied.system, studied.start,
+                                                 {.duration = options.duration,
+                                                  .settle = *options.settle,
+                                                  .interrupt = &interrupt_flag(),
+                                                  .progress = progress.watcher()});
+  if (found.exponents.empty()) return ended(found.outcome);
+  std::string text = fmt::format("Lyapunov exponents over {}\n", with_time_unit(found.averaged, model));
+  for (std::size_t i = 0; i < found.exponents.size(); ++i)
+    text += fmt::format("  {:>10} +- {:.1g}\n", results::short_number(found.exponents[i]), found.spread[i]);
+  print(text);
+  return found.outcome ? done : ended(found.outcome);
+}
+
+/// `x=0.5`: the plane that the motion passes upwards.
+ExitCode show_section(const Studied& studied, const OrbitOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  const auto equals = options.section.find('=');
+  std::vector<double> levels(studied.start.size());
+  if (!set_states(model, {options.section}, levels)) return usage;
+  const std::size_t component = *state_named(model, options.section.substr(0, equals));
+  const auto section =
+      studies::poincare_section(studied.system, studied.start, component, levels[component], *options.settle,
+                                options.duration, options.tolerance, &interrupt_flag());
+  std::string csv = "t";
+  for (const model::State& state : model.states) csv += "," + state.column;
+  csv += "\n";
+  for (const studies::SectionPoint& point : section.points) {
+    results::append_number(csv, point.t);
+    for (const double x : point.x) {
+      csv += ',';
+      results::append_number(csv, x);
+    }
+    csv += '\n';
+  }
+  if (options.out.empty() || options.out == "-") {
+    print(csv);
+  } else if (const auto failure = results::write_file(options.out, csv)) {
+    say(*failure);
+    return usage;
+  }
+  say(fmt::format("{} passes through {}", section.points.size(), options.section));
+  return section.outcome ? done : ended(section.outcome);
+}
+
+/// The first two states against each other, and the first over one period.
+results::Figure figure_of(const model::Model& model, const studies::PeriodicOrbit& found) {
+  results::Curve plane{.label = "orbit", .x = {}, .y = {}}, time{.label = model.states[0].column, .x = {}, .y = {}};
+  const std::size_t second = std::min<std::size_t>(1, model.states.size() - 1);
+  for (const double s : found.orbit.mesh) {
+    const auto x = found.orbit(s);
+    plane.x.push_back(x[0]);
+    plane.y.push_back(x[second]);
+    time.x.push_back(s * found.period);
+    time.y.push_back(x[0]);
+  }
+  return {
+      .title = model.name,
+      .panels = {
+          {.x_label = model.states[0].column, .y_label = model.states[second].column, .curves = {plane}, .tall = true},
+          {.x_label = "t", .y_label = model.states[0].column, .curves = {time}}}};
+}
+
+ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  const auto found = studies::find_periodic_orbit(studied.system, studied.start,
+                                                  {.settle = *options.settle,
+                                                   .duration = options.duration,
+                                                   .tolerance = options.tolerance,
+                                                   .rtol = std::max(options.tolerance, 1e-12),
+                                                   .interrupt = &interrupt_flag()});
+  if (!found.outcome) return ended(found.outcome);
+  std::string text = fmt::format("period {}, {}\nmultipliers", with_time_unit(found.period, model),
+                                 found.stable ? "neighbours come nearer" : "some neighbours go away");
+  for (std::size_t i = 0; i < found.multipliers.size(); ++i)
+    text += (i == 0 ? " " : ", ") + complex_text(found.multipliers[i]);
+  text += "\n";
+  for (std::size_t i = 0; i < model.states.size(); ++i) {
+    double low = found.orbit(0)[i], high = low;
+    for (const double s : found.orbit.mesh) {
+      low = std::min(low, found.orbit(s)[i]);
+      high = std::max(high, found.orbit(s)[i]);
+    }
+    text += fmt::format("  {} from {} to {}\n", model.states[i].column, results::short_number(low),
+                        results::short_number(high));
+  }
+  print(text);
+  if (options.plot.empty()) return done;
+  if (const auto failure = results::draw(figure_of(model, found), options.plot)) {
+    say(*failure);
+    return usage;
+  }
+  return done;
+}
+
+ExitCode orbit(OrbitOptions options) {
+  if (!drawable(options.plot) || !writable(options.out)) return usage;
+  const Studied studied = study(options.experiment, options.mode);
+  if (studied.prepared.exit != done) return studied.prepared.exit;
+  const model::Model& model = studied.prepared.program->model;
+  const double run = model.run.to && model.run.from ? model.run.to->value - model.run.from->value : 100;
+  if (!options.settle) options.settle = run;
+  if (!(options.duration > 0)) options.duration = options.lyapunov ? 20 * run : run;
+  if (!(*options.settle >= 0) || !(options.tolerance > 0)) {
+    say("--settle must not be negative, --tol must be greater than zero");
+    return usage;
+  }
+  if (options.lyapunov) return show_exponents(studied, options);
+  return options.section.empty() ? show_orbit(studied, options) : show_section(studied, options);
+}
+
+}  // namespace
+
+void add_orbit(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo orbit models/van_der_pol_stiff.sim --set mu=10                  period, multipliers, extent\n"
+      "  continuo orbit models/lorenz.sim --lyapunov --duration 5000              how fast neighbours part\n"
+      "  continuo orbit models/lorenz.sim --section z=27 --duration 500 -o s.csv  passes through a plane\n";
+  CLI::App* verb = add_verb(app, "orbit", "Finds a closed orbit, a section, or Lyapunov exponents", examples);
+  auto options = std::make_shared<OrbitOptions>();
+  add_experiment(*verb, options->experiment);
+  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
+  verb->add_option("--settle", options->settle, "Time to come to the orbit first; else that of the model's run")
+      ->type_name("T");
+  verb->add_option("--duration", options->duration, "Time to look for it; else that of the model's run")
+      ->type_name("T");
+  verb->add_option("--tol", options->tolerance, "How exact")->type_name("TOL");
+  auto* section = verb->add_option("--section", options->section, "States as a plane is passed upwards, as CSV")
+                      ->type_name("NAME=VALUE");
+  verb->add_flag("--lyapunov", options->lyapunov, "Lyapunov exponents")->excludes(section);
+  verb->add_option("-o,--out", options->out, "The section's file (else standard output)")->type_name("FILE");
+  verb->add_option("--plot", options->plot, "The orbit as a picture, .svg or .png")->type_name("FILE");
+  verb->callback([&exit, options] { exit = orbit(*options); });
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,187 @@
+// continuo steady FILE: where a model comes to rest, whether it stays there, and how that moves with a parameter.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <apps/continuo/command_line.hpp>
+#include <apps/continuo/interrupt.hpp>
+#include <apps/continuo/models.hpp>
+#include <apps/continuo/studied_model.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/model/simulate.hpp>
+#include <continuo/results/figure.hpp>
+#include <continuo/results/summary.hpp>
+#include <continuo/studies/continuation.hpp>
+#include <continuo/studies/equilibrium.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct SteadyOptions {
+  ExperimentOptions experiment;
+  std::string mode, along, plot, of;
+  std::vector<std::string> box;
+  std::size_t starts = 200;
+};
+
+/// Where to look: what the run passes through, twice as wide; the ranges that were asked for.
+bool set_box(const Studied& studied, const std::vector<std::string>& ranges, studies::EquilibriumBox& box) {
+  const model::Model& model = studied.prepared.program->model;
+  box.low = box.high = box.first = studied.start;
+  model::Experiment experiment = studied.prepared.experiment;
+  experiment.interrupt = &interrupt_flag();
+  const model::Simulated simulated = model::simulate(studied.prepared.program, experiment);
+  for (std::size_t row = 0; simulated.run && row < simulated.run->motion.rows(); ++row) {
+    const auto x = simulated.run->motion.state(row);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (!std::isfinite(x[i])) continue;
+      box.low[i] = std::min(box.low[i], x[i]);
+      box.high[i] = std::max(box.high[i], x[i]);
+    }
+  }
+  for (std::size_t i = 0; i < box.low.size(); ++i) {
+    const double wide = std::max(box.high[i] - box.low[i], std::max(1.0, std::abs(box.high[i])));
+    box.low[i] -= wide / 2;
+    box.high[i] += wide / 2;
+  }
+  for (const std::string& text : ranges) {
+    const auto range = parse_range(text);
+    const auto i = range ? state_named(model, range->name) : std::nullopt;
+    if (!i) return false;
+    box.low[*i] = range->low;
+    box.high[*i] = range->high;
+  }
+  return true;
+}
+
+std::string table_of(const studies::Equilibria& found, const model::Model& model) {
+  std::string text;
+  for (std::size_t k = 0; k < found.equilibria.size(); ++k) {
+    const studies::Equilibrium& e = found.equilibria[k];
+    text += fmt::format("{}  {}{}\n", k + 1, to_string(e.stability), e.isolated ? "" : ", not isolated");
+    for (std::size_t i = 0; i < e.x.size(); ++i) {
+      const std::string& unit = model.states[i].unit;
+      // What rounding leaves of a zero.
+      const double value = std::abs(e.x[i]) < 1e-13 ? 0 : e.x[i];
+      text += fmt::format("   {} = {}{}\n", model.states[i].column, results::short_number(value),
+                          unit.empty() || unit == "1" ? "" : " " + unit);
+    }
+    text += "   eigenvalues";
+    for (std::size_t i = 0; i < e.eigenvalues.size(); ++i) {
+      if (e.eigenvalues[i].imag() < 0) continue;
+      text +=
+          fmt::format("{} {}", i == 0 ? "" : ",", eigenvalue_text(e.eigenvalues[i].real(), e.eigenvalues[i].imag()));
+    }
+    text += "\n";
+  }
+  text += fmt::format("{} of {} searches came to rest, at {} place{}", found.arrived, found.searches,
+                      found.equilibria.size(), found.equilibria.size() == 1 ? "" : "s");
+  if (found.outside > 0) text += fmt::format("; {} elsewhere, beyond where was looked (--box)", found.outside);
+  return text + "\n";
+}
+
+/// A branch in pieces of equal stability, so that the picture shows it.
+void add_curves(const studies::Branch& branch, std::size_t component, results::Panel& panel) {
+  for (const bool stable : {true, false}) {
+    results::Curve curve{
+        .label = stable ? "stable" : "not stable", .x = {}, .y = {}, .color = stable ? "#0072b2" : "#d55e00"};
+    bool before = false;  // the line to the next point belongs to the piece where it begins
+    for (const studies::BranchPoint& point : branch.points) {
+      const bool here = (point.stability == studies::Stability::asymptotically_stable) == stable;
+      curve.x.push_back(point.constant);
+      curve.y.push_back(here || before ? point.x[component] : std::nan(""));
+      before = here;
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+}
+
+ExitCode follow(const Studied& studied, const studies::Equilibria& found, const NamedRange& range,
+                const SteadyOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  std::optional<std::size_t> component = 0;
+  if (!options.of.empty()) component = state_named(model, options.of);
+  if (!component) return usage;
+  results::Panel panel{.x_label = range.name, .y_label = model.states[*component].column, .curves = {}};
+  for (std::size_t k = 0; k < found.equilibria.size(); ++k) {
+    const auto branch = studies::continue_equilibrium(
+        studied.system, found.equilibria[k].x, {.low = range.low, .high = range.high, .interrupt = &interrupt_flag()});
+    print(fmt::format("\nfrom {}: {} points{}\n", k + 1, branch.points.size(),
+                      branch.complete ? "" : fmt::format("; {}", branch.message)));
+    for (const studies::BifurcationPoint& point : branch.bifurcations) {
+      std::string line = fmt::format("   {} = {:.10g}: {}", range.name, point.at.constant, to_string(point.kind));
+      if (point.frequency > 0) line += fmt::format(", frequency {}", results::short_number(point.frequency));
+      print(line + "\n");
+    }
+    add_curves(branch, *component, panel);
+  }
+  if (interrupt_flag()) return interrupted;
+  if (options.plot.empty()) return done;
+  for (std::size_t c = 2; c < panel.curves.size(); ++c) panel.curves[c].label.clear();
+  if (const auto failure = results::draw({.title = model.name, .panels = {std::move(panel)}}, options.plot)) {
+    say(*failure);
+    return usage;
+  }
+  return done;
+}
+
+ExitCode steady(const SteadyOptions& options) {
+  if (!drawable(options.plot)) return usage;
+  if (!options.plot.empty() && options.along.empty()) {
+    say("--plot draws how the places of rest move with a parameter: give --along NAME=LOW..HIGH");
+    return usage;
+  }
+  std::optional<NamedRange> range;
+  std::vector<std::string> constants;
+  if (!options.along.empty()) {
+    range = parse_range(options.along);
+    if (!range) return usage;
+    constants.push_back(range->name);
+  }
+  const Studied studied = study(options.experiment, options.mode, constants);
+  if (studied.prepared.exit != done) return studied.prepared.exit;
+  studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
+  if (!set_box(studied, options.box, box)) return usage;
+  const studies::Equilibria found = studies::find_equilibria(studied.system, box);
+  if (found.equilibria.empty()) {
+    if (interrupt_flag()) return interrupted;
+    say(
+        fmt::format("no place of rest was found from {} starts; nearest to it, `{}` still changes by {} ({}). "
+                    "--box NAME=LOW..HIGH looks elsewhere",
+                    found.searches, studied.system.name(found.nearest.worst),
+                    results::short_number(found.nearest.residual), to_string(found.nearest.ending)));
+    return numerical_failure;
+  }
+  print(table_of(found, studied.prepared.program->model));
+  if (interrupt_flag()) return interrupted;
+  return range ? follow(studied, found, *range, options) : done;
+}
+
+}  // namespace
+
+void add_steady(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo steady models/lorenz.sim                              every place of rest, and whether it is stable\n"
+      "  continuo steady models/lorenz.sim --along rho=0..30            how they move, where their stability changes\n"
+      "  continuo steady models/lorenz.sim --along rho=0..30 --plot branches.svg\n"
+      "  continuo steady models/pendulum.sim --box a=-7..7              where to look\n";
+  CLI::App* verb = add_verb(app, "steady", "Finds where a model comes to rest, and whether it stays there", examples);
+  auto options = std::make_shared<SteadyOptions>();
+  add_experiment(*verb, options->experiment);
+  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
+  verb->add_option("--box", options->box, "Where to look, of single states")
+      ->delimiter(',')
+      ->type_name("NAME=LOW..HIGH");
+  verb->add_option("--starts", options->starts, "How many places to begin from")->type_name("N");
+  verb->add_option("--along", options->along, "Follow each place while a parameter moves")->type_name("NAME=LOW..HIGH");
+  verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE");
+  verb->add_option("--plot", options->plot, "A picture of --along, .svg or .png")->type_name("FILE");
+  verb->callback([&exit, options] { exit = steady(*options); });
+}
+
+}  // namespace continuo::app

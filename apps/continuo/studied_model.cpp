@@ -1,0 +1,126 @@
+// apps/continuo/studied_model.cpp
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include <apps/continuo/studied_model.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <fmt/format.h>
+
+#include <continuo/model/suggest.hpp>
+#include <continuo/results/summary.hpp>
+#include <continuo/studies/of_model.hpp>
+
+namespace continuo::app {
+
+namespace {
+
+std::optional<double> number_in(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string with_suggestion(std::string message, const std::string& name, const std::vector<std::string>& names) {
+  const std::string near = model::did_you_mean(name, names);
+  if (!near.empty()) return message + "; " + near;
+  std::string all;
+  for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
+  return message + "; there are " + all;
+}
+
+bool fits(const model::Model& model) {
+  if (model.needs_boundary_solver()) {
+    say("the model's conditions stand at several times; `continuo run` solves it, this verb studies motions from a "
+        "start");
+  } else if (model.needs_dae_solver()) {
+    say("the model has algebraic equations, which this verb cannot study yet");
+  } else {
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Studied study(const ExperimentOptions& options, const std::string& mode, const std::vector<std::string>& constants) {
+  Studied studied{.prepared = prepare(options)};
+  if (studied.prepared.exit != done) return studied;
+  const model::Model& model = studied.prepared.program->model;
+  if (!fits(model)) {
+    studied.prepared.exit = wrong_model;
+    return studied;
+  }
+  studied.mode = model.start_mode;
+  if (!mode.empty()) {
+    studied.mode = model::find_mode(model, mode);
+    if (studied.mode == model::npos) {
+      std::vector<std::string> names;
+      for (const model::Mode& known : model.modes) names.push_back(known.name);
+      say(with_suggestion(fmt::format("there is no mode `{}`", mode), mode, names));
+      studied.prepared.exit = usage;
+      return studied;
+    }
+  }
+  for (const std::string& name : constants) {
+    if (model::find_parameter(model, name) != model::npos) continue;
+    std::vector<std::string> names;
+    for (const model::Parameter& known : model.parameters) names.push_back(known.name);
+    say(with_suggestion(fmt::format("there is no parameter `{}`", name), name, names));
+    studied.prepared.exit = usage;
+    return studied;
+  }
+  const model::Overrides& parameters = studied.prepared.experiment.parameters;
+  studied.system = studies::of_model(studied.prepared.program,
+                                     {.constants = constants, .parameters = parameters, .mode = studied.mode});
+  studied.start = studies::start_of(model, parameters);
+  return studied;
+}
+
+std::optional<std::size_t> state_named(const model::Model& model, const std::string& name) {
+  const std::size_t i = model::find_state(model, name);
+  if (i != model::npos) return i;
+  std::vector<std::string> names;
+  for (const model::State& known : model.states) names.push_back(known.column);
+  say(with_suggestion(fmt::format("there is no state `{}`", name), name, names));
+  return std::nullopt;
+}
+
+bool set_states(const model::Model& model, const std::vector<std::string>& texts, std::vector<double>& state) {
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    const auto value =
+        equals == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(equals + 1));
+    if (!value) {
+      say(fmt::format("`{}` is not NAME=NUMBER", text));
+      return false;
+    }
+    const auto i = state_named(model, text.substr(0, equals));
+    if (!i) return false;
+    state[*i] = *value;
+  }
+  return true;
+}
+
+std::optional<NamedRange> parse_range(const std::string& text) {
+  const auto equals = text.find('='), dots = text.find("..", equals == std::string::npos ? 0 : equals);
+  if (equals != std::string::npos && dots != std::string::npos) {
+    const auto low = number_in(std::string_view(text).substr(equals + 1, dots - equals - 1));
+    const auto high = number_in(std::string_view(text).substr(dots + 2));
+    if (low && high && *low < *high) return NamedRange{text.substr(0, equals), *low, *high};
+  }
+  say(fmt::format("`{}` is not NAME=LOW..HIGH", text));
+  return std::nullopt;
+}
+
+std::string eigenvalue_text(double real, double imaginary) {
+  const std::string head = results::short_number(real);
+  if (imaginary == 0) return head;
+  return fmt::format("{} +- {} i", head, results::short_number(std::abs(imaginary)));
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,41 @@
+// What the verbs that study a model's equations share: the model as a parametric system, states by name.
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <apps/continuo/experiment_options.hpp>
+
+#include <continuo/studies/parametric_system.hpp>
+
+namespace continuo::app {
+
+/// A model whose equations can be studied: not a boundary-value problem, without algebraic equations. Says why not.
+struct Studied {
+  Prepared prepared;
+  std::size_t mode = 0;
+  studies::ParametricSystem system{};
+  std::vector<double> start{};  // the initial state
+};
+/// `constants`: parameters that the study moves. exit in `prepared` where the verb ends here.
+Studied study(const ExperimentOptions& options, const std::string& mode,
+              const std::vector<std::string>& constants = {});
+
+/// `x=1`, `x'=-2` in the states' units: sets them in `state`. Says what is wrong with them.
+bool set_states(const model::Model& model, const std::vector<std::string>& texts, std::vector<double>& state);
+
+/// `NAME=LOW..HIGH`.
+struct NamedRange {
+  std::string name;
+  double low, high;
+};
+std::optional<NamedRange> parse_range(const std::string& text);
+
+/// Which state has this name; says so where none has.
+std::optional<std::size_t> state_named(const model::Model& model, const std::string& name);
+
+/// "-0.5 +- 2.1 i"
+std::string eigenvalue_text(double real, double imaginary);
+
+}  // namespace continuo::app

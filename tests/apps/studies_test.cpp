@@ -1,0 +1,125 @@
+// The verbs that study a model's equations, and boundary values by `run`: what they say of good and of bad questions.
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shell.hpp"
+
+namespace continuo::app {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(BoundaryValues, RunSolvesThemByItself) {
+  const Shell shell;
+  shell.write("p.sim", "x'' = 2\nx(1) = 3\nx(7) = 4\nrun 1..7\ncheck x(4) = -5.5 within 1e-12\n");
+  const Result result = shell.run("run p.sim -o p.csv");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("checks  1 of 1 hold"), HasSubstr("collocation")));
+  EXPECT_THAT(shell.read("p.csv"), HasSubstr("t,x,x'"));
+  EXPECT_EQ(shell.run("verify p.sim").exit, 0);
+}
+
+TEST(BoundaryValues, SeveralSolutionsCanBeChosen) {
+  const Shell shell;
+  EXPECT_THAT(shell.run("run " + gallery("bratu")).out, HasSubstr("2 guesses led to 2 different solutions"));
+  EXPECT_THAT(shell.run("run " + gallery("bratu") + " --solution 2").out, HasSubstr("u' = -10.8"));
+  const Result third = shell.run("run " + gallery("bratu") + " --solution 3");
+  EXPECT_EQ(third.exit, 3);
+  EXPECT_THAT(third.err, HasSubstr("2 were found"));
+}
+
+TEST(BoundaryValues, WhatCannotBeSolvedIsSaidWithItsLine) {
+  const Shell shell;
+  shell.write("none.sim", "u'' = -4*exp(u)\nu(0) = 0\nu(1) = 0\nrun 0..1\n");  // Bratu beyond its fold
+  const Result none = shell.run("run none.sim");
+  EXPECT_EQ(none.exit, 3);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("error[E322]"), HasSubstr("none.sim:2:1"), HasSubstr("guess")));
+
+  shell.write("outside.sim", "x'' = 2\nx(1) = 3\nx(9) = 4\nrun 1..7\n");
+  const Result outside = shell.run("run outside.sim");
+  EXPECT_EQ(outside.exit, 2);
+  EXPECT_THAT(outside.err, AllOf(HasSubstr("error[E245]"), HasSubstr("outside.sim:3:1"), HasSubstr("from 1 to 7")));
+
+  shell.write("few.sim", "x'' = 2\nx(1) = 3\ny' = x\ny(7) = 4\nrun 1..7\n");
+  EXPECT_THAT(shell.run("run few.sim").err, AllOf(HasSubstr("error[E244]"), HasSubstr("3 boundary conditions")));
+
+  shell.write("events.sim", "x'' = 2\nx(1) = 3\nx(7) = 4\nwhen x falls through 0 { mark \"zero\" }\nrun 1..7\n");
+  EXPECT_THAT(shell.run("run events.sim").err, AllOf(HasSubstr("error[E321]"), HasSubstr("events")));
+  EXPECT_THAT(shell.run("compare outside.sim --methods rk4").err, HasSubstr("E245"));
+}
+
+TEST(Steady, FindsAndFollows) {
+  const Shell shell;
+  const Result result = shell.run("steady " + gallery("lorenz") + " --along rho=0..30");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("at 3 places"), HasSubstr("rho = 24.7368"), HasSubstr("Hopf point"),
+                                HasSubstr("rho = 1: crossing")));
+}
+
+TEST(Steady, WhatCannotBeAsked) {
+  const Shell shell;
+  shell.write("fall.sim", "h'' = -9.8\nh(0) = 10; h'(0) = 0\nrun 0..1\n");
+  const Result none = shell.run("steady fall.sim");
+  EXPECT_EQ(none.exit, 3);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("no place of rest"), HasSubstr("`h'` still changes by 9.8")));
+  EXPECT_THAT(none.out, IsEmpty());
+  const std::string lorenz = "steady " + gallery("lorenz");
+  EXPECT_THAT(shell.run(lorenz + " --along roh=0..3").err, HasSubstr("did you mean `rho`?"));
+  EXPECT_THAT(shell.run(lorenz + " --along rho=3").err, HasSubstr("NAME=LOW..HIGH"));
+  EXPECT_THAT(shell.run(lorenz + " --box q=0..1").err, HasSubstr("there is no state `q`"));
+  EXPECT_THAT(shell.run(lorenz + " --mode fly").err, HasSubstr("there is no mode `fly`"));
+  EXPECT_EQ(shell.run(lorenz + " --along rho=0..3 --plot /nowhere/x.svg").exit, 1);
+  EXPECT_EQ(shell.run("steady " + gallery("bratu")).exit, 2);
+  EXPECT_EQ(shell.run("steady " + gallery("rc_diode")).exit, 2);
+  EXPECT_EQ(shell.run("steady nothing.sim").exit, 1);
+}
+
+TEST(Linearize, MassSpringDamper) {
+  const Shell shell;
+  const Result text = shell.run("linearize " + gallery("mass_spring_damper"));
+  EXPECT_EQ(text.exit, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("frequency 0.31831, damping 0.15"));  // sqrt(4)/2pi, 0.6/(2 sqrt 4)
+  EXPECT_THAT(shell.run("linearize " + gallery("mass_spring_damper") + " --json").out, HasSubstr("\"A\""));
+  shell.write("fall.sim", "h'' = -9.8\nh(0) = 10; h'(0) = 0\nrun 0..1\n");
+  const Result none = shell.run("linearize fall.sim");
+  EXPECT_EQ(none.exit, 3);
+  EXPECT_THAT(none.err, HasSubstr("--start"));
+  EXPECT_EQ(shell.run("linearize fall.sim --start").exit, 0);
+  EXPECT_THAT(shell.run("linearize fall.sim --at h=high").err, HasSubstr("`h=high` is not NAME=NUMBER"));
+  shell.write("kink.sim", "x' = -sqrt(x)\nx(0) = 0\nrun 0..1\n");
+  EXPECT_THAT(shell.run("linearize kink.sim --start").err, HasSubstr("no derivative"));
+}
+
+TEST(Phase, DrawsThePlane) {
+  const Shell shell;
+  const Result result = shell.run("phase " + gallery("pendulum") + " --box \"theta=-7..7,theta'=-8..8\" --plot p.svg");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("8 separatrices"));
+  EXPECT_THAT(shell.read("p.svg"), HasSubstr("separatrices"));
+  EXPECT_THAT(shell.run("phase " + gallery("lorenz")).err, HasSubstr("two states, this model has 3"));
+}
+
+TEST(Orbit, PeriodSectionAndExponents) {
+  const Shell shell;
+  const std::string oscillator = "orbit " + gallery("van_der_pol_stiff") + " --set mu=10";
+  EXPECT_THAT(shell.run(oscillator).out, HasSubstr("period 19.07836957"));
+  const Result section = shell.run("orbit " + gallery("lorenz") + " --section z=27 --duration 10");
+  EXPECT_THAT(section.out, testing::StartsWith("t,x,y,z\n"));
+  EXPECT_THAT(shell.run("orbit " + gallery("lorenz") + " --lyapunov --duration 20").out,
+              HasSubstr("Lyapunov exponents"));
+  EXPECT_THAT(shell.run("orbit " + gallery("pendulum")).err, HasSubstr("energy"));
+  EXPECT_EQ(shell.run("orbit " + gallery("lorenz") + " --section q=27").exit, 1);
+}
+
+TEST(Studies, HelpBeginsWithExamples) {
+  const Shell shell;
+  for (const std::string verb : {"steady", "linearize", "phase", "orbit"})
+    EXPECT_THAT(shell.run(verb + " --help").out, testing::StartsWith("Examples:\n  continuo " + verb)) << verb;
+}
+
+}  // namespace
+}  // namespace continuo::app
