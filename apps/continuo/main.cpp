@@ -31,6 +31,8 @@ int command(int argc, char** argv) {
   add_info(app, exit);
   add_verify(app, exit);
   add_compare(app, exit);
+  add_converge(app, exit);
+  add_stability(app, exit);
   add_steady(app, exit);
   add_linearize(app, exit);
   add_phase(app, exit);

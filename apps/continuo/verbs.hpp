@@ -11,6 +11,8 @@ void add_check(CLI::App& app, ExitCode& exit);
 void add_info(CLI::App& app, ExitCode& exit);
 void add_verify(CLI::App& app, ExitCode& exit);
 void add_compare(CLI::App& app, ExitCode& exit);
+void add_converge(CLI::App& app, ExitCode& exit);
+void add_stability(CLI::App& app, ExitCode& exit);
 void add_steady(CLI::App& app, ExitCode& exit);
 void add_linearize(CLI::App& app, ExitCode& exit);
 void add_phase(CLI::App& app, ExitCode& exit);

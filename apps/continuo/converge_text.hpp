@@ -1,0 +1,18 @@
+// A study of convergence as people read it: a table, a picture.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <continuo/results/figure.hpp>
+#include <continuo/studies/converge.hpp>
+
+namespace continuo::app {
+
+/// False, and said which, where a name is no method.
+bool known_methods(const std::vector<std::string>& names);
+
+/// A line per method; with `all_points` every step of each below it.
+std::string convergence_text(const studies::Convergence& study, bool in_float, bool in_long_double, bool all_points);
+results::Figure convergence_figure(const studies::Convergence& study, const std::string& title);
+
+}  // namespace continuo::app

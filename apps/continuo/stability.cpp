@@ -1,0 +1,217 @@
+// continuo stability METHOD...: how far each method's steps may go, as numbers and as a picture; with a model the
+// largest stable step, predicted from its eigenvalues and confirmed by runs next to it.
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <apps/continuo/command_line.hpp>
+#include <apps/continuo/converge_text.hpp>
+#include <apps/continuo/experiment_options.hpp>
+#include <apps/continuo/interrupt.hpp>
+#include <apps/continuo/models.hpp>
+#include <apps/continuo/studied_model.hpp>
+#include <apps/continuo/study_progress.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/model/simulate.hpp>
+#include <continuo/results/figure.hpp>
+#include <continuo/results/summary.hpp>
+#include <continuo/studies/stability.hpp>
+
+namespace continuo::app {
+namespace {
+
+using studies::Complex;
+using studies::StepLimit;
+
+struct StabilityOptions {
+  ExperimentOptions experiment;  // its file: --model
+  std::vector<std::string> methods;
+  std::string plot;
+};
+
+std::string limit_text(double limit) {
+  if (std::isnan(limit)) return "-";
+  return std::isinf(limit) ? "no end" : fmt::format("{:.4f}", limit);
+}
+
+struct Region {
+  std::string method;
+  studies::StabilityRegion region;
+};
+
+std::string regions_text(const std::vector<Region>& regions) {
+  std::string text = fmt::format("{:<24} {:>14} {:>14}\n", "method", "real axis to", "imaginary to");
+  for (const auto& [method, region] : regions) {
+    const std::string real = limit_text(region.real_limit);
+    const bool finite = std::isfinite(region.real_limit) && region.real_limit > 0;
+    text +=
+        fmt::format("{:<24} {:>14} {:>14}\n", method, finite ? "-" + real : real, limit_text(region.imaginary_limit));
+  }
+  return text;
+}
+
+/// The states of a run of the model, at most so many of them.
+struct Samples {
+  std::vector<double> times;
+  std::vector<std::vector<double>> states;
+};
+Samples samples_of(const model::Motion& motion) {
+  constexpr std::size_t most = 50;
+  Samples samples;
+  const std::size_t stride = motion.rows() / most + 1;
+  for (std::size_t row = 0; row < motion.rows(); row += stride) {
+    const auto state = motion.state(row);
+    samples.times.push_back(motion.time(row));
+    samples.states.emplace_back(state.begin(), state.end());
+  }
+  return samples;
+}
+
+struct Confirmed {
+  std::string method;
+  StepLimit limit;
+  studies::Fate below = studies::Fate::no_run, above = studies::Fate::no_run;
+};
+
+Confirmed confirm(const std::string& method, const Studied& studied, const Samples& samples,
+                  const studies::Spectrum& spectrum) {
+  Confirmed confirmed{.method = method, .limit = studies::largest_stable_step(method, spectrum)};
+  const StepLimit& limit = confirmed.limit;
+  if (!std::isfinite(limit.step) || limit.step == 0) return confirmed;
+  const model::Model& model = studied.prepared.program->model;
+  const studies::Pairing pairing{model.pairs, !model.accelerations_depend_on_velocities};
+  std::size_t at = 0;
+  while (at + 1 < samples.times.size() && samples.times[at] != limit.time) ++at;
+  const auto fate = [&](double part) {
+    return studies::fate_of(method, studied.system, pairing, limit.time, samples.states[at], part * limit.step,
+                            limit.beyond);
+  };
+  confirmed.below = fate(0.99);
+  confirmed.above = fate(1.01);
+  return confirmed;
+}
+
+std::string confirmed_text(const std::vector<Confirmed>& all, const std::string& unit) {
+  std::string text = fmt::format("\n{:<24} {:>14}  {:<26} {:>10} {:>10}\n", "method", "largest step", "set by",
+                                 "at 0.99 of", "at 1.01 of");
+  for (const Confirmed& c : all) {
+    const StepLimit& limit = c.limit;
+    const bool has_limit = std::isfinite(limit.step) && limit.step > 0;
+    const std::string step = std::isnan(limit.step)   ? "unknown"
+                             : std::isinf(limit.step) ? "any"
+                             : has_limit              ? fmt::format("{:.6g}{}", limit.step, unit)
+                                                      : "none";
+    text += fmt::format("{:<24} {:>14}  {:<26} {:>10} {:>10}\n", c.method, step,
+                        std::isinf(limit.step) ? "" : eigenvalue_text(limit.eigenvalue.real(), limit.eigenvalue.imag()),
+                        has_limit ? studies::to_string(c.below) : "", has_limit ? studies::to_string(c.above) : "");
+    while (text[text.size() - 2] == ' ') text.erase(text.size() - 2, 1);
+  }
+  return text;
+}
+
+/// Each region with the eigenvalues, times that method's largest step, in it.
+results::Figure figure_of(const std::vector<Region>& regions, const std::vector<Confirmed>& confirmed,
+                          const studies::Spectrum& spectrum, std::string title) {
+  results::Panel panel{.x_label = "Re z", .y_label = "Im z", .curves = {}, .equal_scale = true};
+  for (const auto& [method, region] : regions) {
+    if (!region.x.empty()) panel.curves.push_back({method, region.x, region.y});
+    if (region.x.empty() && region.imaginary_limit > 0 && std::isfinite(region.imaginary_limit))
+      panel.curves.push_back({method, {0, 0}, {-region.imaginary_limit, region.imaginary_limit}});
+  }
+  for (const Confirmed& c : confirmed) {
+    if (!std::isfinite(c.limit.step) || c.limit.step == 0) continue;
+    results::Curve points{
+        .label = "eigenvalues, " + c.method, .x = {}, .y = {}, .style = results::Curve::Style::full_points};
+    for (std::size_t k = 0; k < spectrum.times.size(); ++k)
+      for (const Complex& value : spectrum.values[k]) {
+        points.x.push_back(c.limit.step * value.real());
+        points.y.push_back(c.limit.step * value.imag());
+      }
+    panel.curves.push_back(std::move(points));
+  }
+  return {.title = std::move(title), .panels = {std::move(panel)}};
+}
+
+ExitCode stability(const StabilityOptions& options) {
+  if (!drawable(options.plot) || !known_methods(options.methods)) return usage;
+  StudyProgress progress;
+  const auto watcher = progress.watcher();
+  const bool with_model = !options.experiment.file.empty();
+  const double parts = static_cast<double>(options.methods.size()) * (with_model ? 2 : 1);
+  double part = 0;
+  const auto more = [&] {
+    part += 1 / parts;
+    if (watcher) watcher(part);
+    return !interrupt_flag().load();
+  };
+  std::optional<Studied> studied;
+  Samples samples;
+  studies::Spectrum spectrum;
+  if (with_model) {
+    studied = study(options.experiment, "");
+    if (studied->prepared.exit != done) return studied->prepared.exit;
+    const auto simulated = model::simulate(studied->prepared.program, studied->prepared.experiment);
+    show(simulated.diagnostics, studied->prepared.loaded.source);
+    if (!simulated.run) return numerical_failure;
+    samples = samples_of(simulated.run->motion);
+    spectrum = studies::spectrum_along(studied->system, samples.times, samples.states);
+  }
+  std::vector<Region> regions;
+  std::vector<Confirmed> confirmed;
+  bool go_on = true;
+  for (const std::string& method : options.methods) {
+    if (!go_on) break;
+    const std::size_t points = options.plot.empty() ? 0 : 240;
+    regions.push_back({method, studies::stability_region(studies::steps_of(method), points, &interrupt_flag())});
+    go_on = more();
+  }
+  if (with_model)
+    for (const std::string& method : options.methods) {
+      if (!go_on) break;
+      confirmed.push_back(confirm(method, *studied, samples, spectrum));
+      go_on = more();
+    }
+  std::string text = regions_text(regions);
+  if (!confirmed.empty()) {
+    const std::string& unit = studied->prepared.program->model.time_unit;
+    text += confirmed_text(confirmed, unit.empty() ? "" : " " + unit);
+  }
+  print(text);
+  ExitCode exit = go_on ? done : interrupted;
+  if (!options.plot.empty()) {
+    const std::string title = with_model ? studied->prepared.program->model.name : "Regions of absolute stability";
+    if (const auto failure = results::draw(figure_of(regions, confirmed, spectrum, title), options.plot)) {
+      say(*failure);
+      if (exit == done) exit = usage;
+    }
+  }
+  return exit;
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo stability euler,heun,rk4 --plot regions.svg         z = lambda h for which x' = lambda x does not "
+      "grow\n"
+      "  continuo stability euler,rk4,bdf2 --model models/heat_equation.sim     the largest stable step\n"
+      "  continuo stability central_difference --model models/mass_spring_damper.sim --set c=0\n";
+  CLI::App* verb =
+      add_verb(app, "stability", "How long a step may be: regions of stability, the largest stable step", examples);
+  auto options = std::make_shared<StabilityOptions>();
+  verb->add_option("methods", options->methods, "The methods, with commas")->required()->delimiter(',')->type_name("");
+  auto* model = verb->add_option("--model", options->experiment.file, "Whose eigenvalues are laid into the regions")
+                    ->type_name("FILE");
+  verb->add_option("--set", options->experiment.settings, "A parameter of the model")
+      ->needs(model)
+      ->type_name("NAME=VALUE");
+  verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
+  verb->callback([&exit, options] { exit = stability(*options); });
+}
+
+}  // namespace continuo::app

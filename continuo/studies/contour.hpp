@@ -1,0 +1,24 @@
+// Where a function of the plane, known on a grid, is zero: as curves.
+#pragma once
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace continuo::studies {
+
+struct Grid {
+  std::size_t columns = 0, rows = 0;
+  double left = 0, bottom = 0, width = 1, height = 1;  // the corner, and the distances between neighbours
+  std::vector<double> values{};                        // row by row
+
+  double x(std::size_t i) const { return left + static_cast<double>(i) * width; }
+  double y(std::size_t j) const { return bottom + static_cast<double>(j) * height; }
+  double at(std::size_t i, std::size_t j) const { return values[j * columns + i]; }
+};
+
+using Polyline = std::vector<std::pair<double, double>>;
+
+/// By marching squares: straight through each cell, joined from cell to cell. Cells with a NaN have no part of it.
+std::vector<Polyline> zero_lines(const Grid& grid);
+
+}  // namespace continuo::studies
