@@ -32,10 +32,15 @@ picture robertson models/robertson.sim
 
 block tutorial_boundary_values.md throw.sim
 picture throw "$scratch/throw.sim"
-study() {  # study NAME VERB MODEL [OPTION ...]
+study() {  # study NAME VERB [OPTION ...]
   local name=$1
   shift
-  "${CONTINUO:-./continuo.sh}" "$@" --plot "$pictures/$name.svg"
+  "${CONTINUO:-./continuo.sh}" "$@" --plot "$pictures/$name.svg" > /dev/null
 }
+
 study lorenz_branches steady models/lorenz.sim --along rho=0..30
 study pendulum_plane phase models/pendulum.sim --box "theta=-7..7,theta'=-8..8"
+study differences converge --derivative "sin(x)" --at 1
+study orders converge models/mass_spring_damper.sim --methods euler,heun,bogacki_shampine3,rk4,tsitouras5
+study regions stability euler,heun,rk4,central_difference,implicit_euler,bdf2
+study heat_regions stability euler,heun,rk4,dop853 --model models/heat_equation.sim

@@ -32,6 +32,7 @@ Limit limit_of(const Factor& factor, double farthest) {
   constexpr double nearest = 0.01, fine = 1.01, coarse = 1.2, fine_up_to = 100;
   const auto grows = [&](double r) { return factor(r) > neutral_factor; };
   if (std::isnan(factor(nearest))) return {unknown};
+  if (grows(nearest)) return {0};
   double inside = 0, outside = nearest;
   while (outside <= farthest && !grows(outside)) {
     inside = outside;

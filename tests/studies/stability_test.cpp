@@ -1,0 +1,152 @@
+// Regions of absolute stability against their polynomials, the largest stable steps against closed forms and runs.
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <continuo/model/load.hpp>
+#include <continuo/model/simulate.hpp>
+#include <continuo/solve/catalogue.hpp>
+#include <continuo/studies/of_model.hpp>
+#include <continuo/studies/stability.hpp>
+
+namespace continuo::studies {
+namespace {
+
+// Limits end where a factor exceeds neutral_factor, 1 + 1e-9: beyond the true one by 1e-9 over the slope of |R| there,
+// which is at least 1/4 at the crossings below.
+constexpr double limit_error = 4e-9;
+
+double real_limit(std::string_view method) {
+  return stability_limit(steps_of(method), -1);
+}
+double imaginary_limit(std::string_view method) {
+  return stability_limit(steps_of(method), Complex(0, 1));
+}
+
+TEST(Stability, OneStepMethodsMultiplyByTheirPolynomial) {
+  const Complex z(-1.2, 0.7);
+  EXPECT_NEAR(amplification(steps_of("explicit_euler"), z), std::abs(1.0 + z), 1e-13);
+  EXPECT_NEAR(amplification(steps_of("heun"), z), std::abs(1.0 + z + z * z / 2.0), 1e-13);
+  EXPECT_NEAR(amplification(steps_of("rk4"), z),
+              std::abs(1.0 + z + z * z / 2.0 + z * z * z / 6.0 + z * z * z * z / 24.0), 1e-13);
+  EXPECT_NEAR(amplification(steps_of("implicit_euler"), z), 1 / std::abs(1.0 - z), 1e-13);
+  EXPECT_NEAR(amplification(steps_of("trapezoidal"), z), std::abs((1.0 + z / 2.0) / (1.0 - z / 2.0)), 1e-13);
+}
+
+TEST(Stability, AMethodOfTwoStepsHasTheRootsOfItsOwnEquation) {  // (3/2 - z) zeta^2 - 2 zeta + 1/2 = 0
+  for (const Complex z : {Complex(-1.2, 0.7), Complex(0.5, 1), Complex(-20, 3)}) {
+    const Complex root = std::sqrt(4.0 - 2.0 * (1.5 - z)), below = 2.0 * (1.5 - z);
+    EXPECT_NEAR(amplification(steps_of("bdf2"), z),
+                std::max(std::abs((2.0 + root) / below), std::abs((2.0 - root) / below)), 1e-9);
+  }
+}
+
+TEST(Stability, CrossingsOfTheAxesAreTheKnownOnes) {
+  EXPECT_NEAR(real_limit("explicit_euler"), 2, limit_error);
+  EXPECT_NEAR(real_limit("heun"), 2, limit_error);
+  EXPECT_NEAR(real_limit("rk4"), 2.785293563405282, limit_error);  // the real root of 1 + z/2 + z^2/6 + z^3/24
+  EXPECT_NEAR(imaginary_limit("rk4"), std::sqrt(8.0), limit_error);
+  EXPECT_NEAR(imaginary_limit("bogacki_shampine3"), std::sqrt(3.0), limit_error);
+  EXPECT_EQ(imaginary_limit("explicit_euler"), 0);  // |1 + iy| > 1 wherever y is not 0
+  EXPECT_EQ(imaginary_limit("heun"), 0);            // |R|^2 = 1 + y^4/4
+}
+
+TEST(Stability, OfTheLeapfrogASegment) {
+  // In steps of positions h w = 2 (Hairer, Lubich, Wanner, "Geometric Numerical Integration", I.5.1).
+  EXPECT_NEAR(imaginary_limit("central_difference"), 2, limit_error);
+  EXPECT_NEAR(imaginary_limit("velocity_verlet"), 2, limit_error);
+  EXPECT_NEAR(imaginary_limit("semi_implicit_euler"), 2, limit_error);
+  // As a scheme of two steps, x_(n+1) = x_(n-1) + 2 h f(x_n), to 1: there velocities stand between the positions, two
+  // steps of its make one of the others. Any sequence of states will do for a method: this one is not of the suite.
+  const StepSequence leapfrog = [](Complex z, std::size_t steps) {
+    std::vector<Complex> y{1, 1.0 + z};
+    while (y.size() <= steps) y.push_back(y[y.size() - 2] + 2.0 * z * y.back());
+    return y;
+  };
+  EXPECT_NEAR(stability_limit(leapfrog, Complex(0, 1)), 1, limit_error);
+  EXPECT_EQ(stability_limit(leapfrog, -1), 0);
+}
+
+TEST(Stability, ImplicitMethodsHaveNoEndOnTheLeft) {
+  for (const char* method :
+       {"implicit_euler", "trapezoidal", "bdf2", "trbdf2", "radau5", "gauss4", "rodas5p", "newmark"}) {
+    EXPECT_TRUE(std::isinf(real_limit(method))) << method;
+    for (double angle = 1.6; angle < 3.1; angle += 0.25)
+      EXPECT_LE(amplification(steps_of(method), std::polar(7.0, angle)), neutral_factor) << method << " at " << angle;
+  }
+  const StabilityRegion euler = stability_region(steps_of("implicit_euler"), 80);
+  EXPECT_TRUE(euler.outside);
+  ASSERT_FALSE(euler.x.empty());
+  for (std::size_t i = 0; i < euler.x.size(); ++i) {
+    if (std::isnan(euler.x[i])) continue;
+    // The circle |1 - z| = 1, from values at the corners of cells 5/79 wide: the error of a line through one, 1/8 of
+    // the curvature times the square, and as much from that of ln |R|.
+    EXPECT_NEAR(std::hypot(1 - euler.x[i], euler.y[i]), 1, 0.002);
+  }
+}
+
+TEST(Stability, EveryMethodOfTheSuiteHasAnAnswer) {
+  for (const MethodInfo& method : method_catalogue()) {
+    EXPECT_FALSE(std::isnan(imaginary_limit(method.name))) << method.name;
+    if (!method.implicit && !method.second_order) {
+      EXPECT_GT(real_limit(method.name), 1) << method.name;
+    }
+  }
+}
+
+void expect_confirmed(const std::string& file, const model::Overrides& parameters, bool first_order_only) {
+  const model::Loaded loaded = model::load(std::string(CONTINUO_SOURCE_DIR) + "/models/" + file);
+  ASSERT_TRUE(loaded) << loaded.text();
+  const auto program = model::compile(*loaded.model);
+  const ParametricSystem system = of_model(program, {.parameters = parameters});
+  const std::vector<double> start = start_of(program->model, parameters);
+  const Spectrum spectrum = spectrum_along(system, {0.0}, {start});
+  const Pairing pairing{program->model.pairs, !program->model.accelerations_depend_on_velocities};
+  for (const MethodInfo& method : method_catalogue()) {
+    if (method.implicit || (method.second_order && first_order_only)) continue;
+    const StepLimit limit = largest_stable_step(method.name, spectrum);
+    if (method.second_order && std::isnan(limit.step)) continue;  // refuses velocities in the acceleration
+    ASSERT_GT(limit.step, 0) << method.name;
+    if (std::isinf(limit.step)) continue;
+    EXPECT_EQ(fate_of(method.name, system, pairing, 0, start, 0.99 * limit.step, limit.beyond), Fate::bounded)
+        << method.name << " below " << limit.step;
+    // It takes as many stages as its own estimate of the spectral radius asks for, which is above the true one where
+    // the matrix is not normal, as that of a damped mass: its steps depend on more than z.
+    if (method.name == "rkc2") continue;
+    EXPECT_EQ(fate_of(method.name, system, pairing, 0, start, 1.01 * limit.step, limit.beyond), Fate::grows)
+        << method.name << " above " << limit.step;
+  }
+}
+
+TEST(Stability, TheLargestStepIsConfirmedForMassSpringDamper) {
+  expect_confirmed("mass_spring_damper.sim", {}, false);
+}
+TEST(Stability, TheLargestStepIsConfirmedForRcLadder) {
+  expect_confirmed("rc_ladder.sim", {}, true);
+}
+TEST(Stability, TheLargestStepIsConfirmedForHeatEquation) {
+  expect_confirmed("heat_equation.sim", {}, true);
+}
+
+TEST(Stability, TheLargestStepOfEulerIsThatOfTheClosedForm) {
+  const auto limit_of = [](const char* file) {
+    const auto program = model::compile(*model::load(std::string(CONTINUO_SOURCE_DIR) + "/models/" + file).model);
+    const std::vector<double> start = start_of(program->model);
+    return largest_stable_step("explicit_euler", spectrum_along(of_model(program), {0.0}, {start})).step;
+  };
+  using std::numbers::pi;
+  // Eigenvalues -4 D/dx^2 sin(k pi dx/2)^2 and -4/(R C) sin(k pi/(2 N + 2))^2, the fastest with k = N; for a pair
+  // -d +- i w explicit Euler needs |1 + h lambda| <= 1: h <= 2 d/|lambda|^2, here d = c/(2 m), |lambda|^2 = k/m.
+  EXPECT_NEAR(limit_of("heat_equation.sim"), 2 / (1600 * std::pow(std::sin(19 * pi / 40), 2)), 1e-11);
+  EXPECT_NEAR(limit_of("rc_ladder.sim"), 2e-3 / (4 * std::pow(std::sin(8 * pi / 18), 2)), 1e-11);
+  // Here |R| grows beyond the limit by 0.045 per unit of h: 1e-9/0.045, on a step of 0.15.
+  EXPECT_NEAR(limit_of("mass_spring_damper.sim"), 0.6 / 4, 1e-7);
+}
+
+}  // namespace
+}  // namespace continuo::studies
