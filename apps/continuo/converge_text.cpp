@@ -24,9 +24,10 @@ std::string error_text(double error) {
   return std::isnan(error) ? "-" : fmt::format("{:.1e}", error);
 }
 
-std::string best_text(const ErrorCurve& curve) {
+std::string best_text(const ErrorCurve& curve, bool by_tolerance = false) {
   if (!(curve.best_step > 0)) return "-";
-  return fmt::format("{:.1e} at {:.1e}{}", curve.least_error, curve.best_step, curve.floor_reached ? "" : " *");
+  return fmt::format("{:.1e} at {:.1e}{}", curve.least_error, curve.best_step,
+                     curve.floor_reached || by_tolerance ? "" : " *");
 }
 
 std::string predicted_text(const std::optional<studies::FloorPrediction>& floor) {
@@ -53,6 +54,11 @@ std::string points_text(const MethodConvergence& method, bool by_tolerance, bool
 
 }  // namespace
 
+void end_line(std::string& text) {
+  while (text.back() == ' ') text.pop_back();
+  text += '\n';
+}
+
 bool known_methods(const std::vector<std::string>& names) {
   std::vector<std::string> known;
   for (const MethodInfo& method : method_catalogue()) known.emplace_back(method.name);
@@ -71,7 +77,8 @@ std::string convergence_text(const Convergence& study, bool in_float, bool in_lo
       fmt::format("{:<24} {:>5} {:>7} {:>7} {:>7}  {:<20}  {:<34}", "method", "order", "global", "local", "energy",
                   "least error at " + what, study.by_tolerance ? "" : "where rounding should balance it");
   text += in_float ? fmt::format("  {:<20}  there", "in float") : "";
-  text += in_long_double ? "  long\n" : "\n";
+  text += in_long_double ? "  long" : "";
+  end_line(text);
   bool unreached = false;
   for (const MethodConvergence& method : study.methods) {
     if (!method.problem.empty()) {
@@ -81,12 +88,12 @@ std::string convergence_text(const Convergence& study, bool in_float, bool in_lo
     unreached = unreached || (method.global.best_step > 0 && !method.global.floor_reached);
     text += fmt::format("{:<24} {:>5} {:>7} {:>7} {:>7}  {:<20}  {:<34}", method.method, method.nominal,
                         order_text(method.global), order_text(method.local), order_text(method.energy),
-                        best_text(method.global), predicted_text(method.floor));
+                        best_text(method.global, study.by_tolerance),
+                        study.by_tolerance ? "" : predicted_text(method.floor));
     if (in_float)
       text += fmt::format("  {:<20}  {}", best_text(method.in_float), predicted_text(method.floor_in_float));
     if (in_long_double) text += "  " + order_text(method.in_long_double);
-    while (text.back() == ' ') text.pop_back();
-    text += '\n';
+    end_line(text);
   }
   text += fmt::format("errors against {}, relative to each state's largest value\n", study.reference);
   if (unreached && !study.by_tolerance) text += "* smaller steps would still gain: --most-steps\n";
@@ -99,7 +106,7 @@ std::string convergence_text(const Convergence& study, bool in_float, bool in_lo
 
 results::Figure convergence_figure(const Convergence& study, const std::string& title) {
   const std::string x_label = study.by_tolerance ? "tolerance" : "step";
-  const auto panel = [&](std::string label, double StepErrors::* error, std::string suffix = {}) {
+  const auto panel_of = [&](std::string label, double StepErrors::* error, std::string suffix = {}) {
     results::Panel panel{
         .x_label = x_label, .y_label = std::move(label), .curves = {}, .logarithmic_x = true, .logarithmic_y = true};
     for (const MethodConvergence& method : study.methods) {
@@ -113,15 +120,15 @@ results::Figure convergence_figure(const Convergence& study, const std::string& 
     }
     return panel;
   };
-  results::Panel global = panel("error of the run", &StepErrors::global);
-  for (results::Curve& curve : panel("", &StepErrors::in_float, ", float").curves) global.curves.push_back(curve);
+  results::Panel global = panel_of("error of the run", &StepErrors::global);
+  for (results::Curve& curve : panel_of("", &StepErrors::in_float, ", float").curves) global.curves.push_back(curve);
   global.tall = true;
   results::Figure figure{.title = title, .panels = {std::move(global)}};
-  if (auto local = panel("error of one step", &StepErrors::local); !local.curves.empty()) {
+  if (auto local = panel_of("error of one step", &StepErrors::local); !local.curves.empty()) {
     local.tall = true;
     figure.panels.push_back(std::move(local));
   }
-  if (auto energy = panel("error of the energy", &StepErrors::energy); !energy.curves.empty())
+  if (auto energy = panel_of("error of the energy", &StepErrors::energy); !energy.curves.empty())
     figure.panels.push_back(std::move(energy));
   return figure;
 }

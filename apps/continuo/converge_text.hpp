@@ -11,6 +11,9 @@ namespace continuo::app {
 /// False, and said which, where a name is no method.
 bool known_methods(const std::vector<std::string>& names);
 
+/// Ends a line of a table, without blanks at its end.
+void end_line(std::string& text);
+
 /// A line per method; with `all_points` every step of each below it.
 std::string convergence_text(const studies::Convergence& study, bool in_float, bool in_long_double, bool all_points);
 results::Figure convergence_figure(const studies::Convergence& study, const std::string& title);

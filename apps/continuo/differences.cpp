@@ -2,6 +2,7 @@
 #include <memory>
 #include <utility>
 
+#include <apps/continuo/converge_text.hpp>
 #include <apps/continuo/differences.hpp>
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/terminal.hpp>
@@ -63,7 +64,8 @@ std::string differences_text(const std::vector<studies::DifferenceErrors>& study
   };
   std::string text = fmt::format("{:<14} {:>5} {:>8}  {:<20}  {:<18}", "difference", "order", "observed",
                                  "least error at h", "predicted");
-  text += in_float ? fmt::format("  {:<20}  predicted\n", "in float") : "\n";
+  text += in_float ? fmt::format("  {:<20}  predicted", "in float") : "";
+  end_line(text);
   for (const studies::DifferenceErrors& errors : study) {
     const auto& curve = errors.of_double;
     text += fmt::format("{:<14} {:>5} {:>8}  {:<20}  {:<18}", errors.scheme.name, errors.scheme.order,
@@ -72,8 +74,7 @@ std::string differences_text(const std::vector<studies::DifferenceErrors>& study
     if (in_float)
       text += fmt::format("  {:<20}  {}", measured(errors.of_float),
                           curve.found ? predicted(errors.predicted_in_float) : "-");
-    while (text.back() == ' ') text.pop_back();
-    text += '\n';
+    end_line(text);
   }
   return text;
 }

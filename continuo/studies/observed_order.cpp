@@ -35,6 +35,9 @@ bool ends_flat(std::span<const double> steps, std::span<const double> errors, st
   return line_through(x, y).slope < 0.5;
 }
 
+/// Rounding scatters: of errors on its floor one is the least by chance. What gains less than this factor gains
+/// nothing.
+constexpr double worth = 2;
 /// Errors this many times the least one of all are hardly touched by the rounding that sets it.
 constexpr double clear_of_floor = 50;
 
@@ -47,7 +50,8 @@ ErrorCurve read_errors(std::span<const double> steps, std::span<const double> er
     if (std::isfinite(errors[i]) && errors[i] > 0) valid.push_back(i);
   if (valid.empty()) return curve;
   const std::size_t best = *std::ranges::min_element(valid, {}, [&](std::size_t i) { return errors[i]; });
-  curve.best_step = steps[best];
+  curve.best_step =
+      steps[*std::ranges::find_if(valid, [&](std::size_t i) { return errors[i] <= worth * errors[best]; })];
   curve.least_error = errors[best];
   curve.floor_reached = ends_flat(steps, errors, valid, best);
 

@@ -21,8 +21,9 @@ struct ErrorCurve {
   bool found = false;  // a slope: else there are too few points between the largest steps and rounding
   double order = 0, constant = 0, standard_error = 0;
   std::size_t first = 0, last = 0;  // the points that were used
-  bool floor_reached = false;       // smaller steps than the best one do worse
-  double best_step = 0, least_error = 0;
+  bool floor_reached = false;       // rounding ends it
+  double least_error = 0;
+  double best_step = 0;  // the largest one with an error of no more than twice the least
 };
 
 /// Relative errors above this are no approximation, and no part of a slope.
