@@ -65,7 +65,7 @@ bool known_methods(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (find_method(name) != nullptr) continue;
     const std::string near = model::did_you_mean(name, known);
-    say(fmt::format("there is no method `{}`{}; `continuo methods` lists them", name, near.empty() ? "" : ", " + near));
+    say(fmt::format("there is no method `{}`{} `continuo methods` lists them", name, near.empty() ? ";" : ", " + near));
     return false;
   }
   return true;

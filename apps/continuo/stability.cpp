@@ -127,11 +127,13 @@ results::Figure figure_of(const std::vector<Region>& regions, const std::vector<
     if (!std::isfinite(c.limit.step) || c.limit.step == 0) continue;
     results::Curve points{
         .label = "eigenvalues, " + c.method, .x = {}, .y = {}, .style = results::Curve::Style::full_points};
-    for (std::size_t k = 0; k < spectrum.times.size(); ++k)
+    for (std::size_t k = 0; k < spectrum.times.size(); ++k) {
+      if (k > 0 && spectrum.values[k] == spectrum.values[k - 1]) continue;  // of a linear model once
       for (const Complex& value : spectrum.values[k]) {
         points.x.push_back(c.limit.step * value.real());
         points.y.push_back(c.limit.step * value.imag());
       }
+    }
     panel.curves.push_back(std::move(points));
   }
   return {.title = std::move(title), .panels = {std::move(panel)}};

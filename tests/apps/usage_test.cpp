@@ -20,7 +20,8 @@ using ::testing::StartsWith;
 TEST(Usage, HelpBeginsWithExamples) {
   const Shell shell;
   EXPECT_THAT(shell.run("--help").out, StartsWith("Examples:\n  continuo run"));
-  for (const std::string verb : {"run", "check", "info", "verify", "compare", "methods", "explain", "new"}) {
+  for (const std::string verb :
+       {"run", "check", "info", "verify", "compare", "converge", "stability", "methods", "explain", "new"}) {
     const Result help = shell.run(verb + " --help");
     EXPECT_EQ(help.exit, 0) << verb;
     EXPECT_THAT(help.out, StartsWith("Examples:\n  continuo ")) << verb;
@@ -51,6 +52,18 @@ TEST(Usage, AWrongOptionIsToldTheNearest) {
   const Result result = shell.run("run spring.sim --metod rk4");
   EXPECT_EQ(result.exit, 1);
   EXPECT_THAT(result.err, HasSubstr("did you mean `--method`?"));
+}
+
+TEST(Usage, StudiesOfMethodsNameWhatIsWrong) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  EXPECT_THAT(shell.run("stability rk5").err, HasSubstr("did you mean `rk4`?"));
+  EXPECT_THAT(shell.run("converge spring.sim --methods rk5").err, HasSubstr("did you mean `rk4`?"));
+  EXPECT_THAT(shell.run("converge spring.sim").err, HasSubstr("--methods"));
+  EXPECT_THAT(shell.run("converge --derivative 'sin(y)'").err, HasSubstr("there is no `y`"));
+  EXPECT_THAT(shell.run("converge --derivative 'sqrt(x)' --at 0").err, HasSubstr("no derivatives at x = 0"));
+  EXPECT_EQ(shell.run("converge spring.sim --methods rk4 --plot orders.gif").exit, 1);
+  EXPECT_EQ(shell.run("stability rk4 --model nothing.sim").exit, 1);
 }
 
 TEST(Usage, AWrongMethodOrParameterIsToldTheNearest) {
