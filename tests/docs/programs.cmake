@@ -26,7 +26,7 @@ function(continuo_document_programs file)
     file(CONFIGURE OUTPUT ${source}.new CONTENT "@code@" @ONLY)
     file(COPY_FILE ${source}.new ${source} ONLY_IF_DIFFERENT)
     add_executable(${name} ${source})
-    target_link_libraries(${name} PRIVATE continuo_model continuo_flags)
+    target_link_libraries(${name} PRIVATE continuo_studies continuo_flags)
 
     set(expected "")
     string(FIND "${rest}" "${fence}" next)
