@@ -9,27 +9,6 @@ namespace continuo::model {
 
 namespace {
 
-/// Interpolated inputs become functions of time in the model's own graph, wherever they stand.
-class InputsInPlace {
- public:
-  explicit InputsInPlace(const ModelProgram& program) : program_(program) {}
-
-  NodeId operator()(Graph& graph, NodeId node) const {
-    if (program_.linear_inputs.empty()) return node;
-    return substitute(graph, node, [&](std::uint32_t variable) -> std::optional<NodeId> {
-      for (std::size_t i = 0; i < program_.linear_inputs.size(); ++i) {
-        if (program_.linear_inputs[i].variable != variable) continue;
-        const auto table = static_cast<std::uint32_t>(program_.model.tables.size() + i);
-        return graph.interpolate(table, graph.variable(Layout::time));
-      }
-      return std::nullopt;
-    });
-  }
-
- private:
-  const ModelProgram& program_;
-};
-
 /// Collects the expressions of a block and lays out its actions.
 class BlockCompiler {
  public:
@@ -149,11 +128,23 @@ void place_tables(ModelProgram& program) {
 
 }  // namespace
 
+NodeId ModelProgram::with_inputs(Graph& graph, NodeId node) const {
+  if (linear_inputs.empty()) return node;
+  return substitute(graph, node, [&](std::uint32_t variable) -> std::optional<NodeId> {
+    for (std::size_t i = 0; i < linear_inputs.size(); ++i) {
+      if (linear_inputs[i].variable != variable) continue;
+      const auto table = static_cast<std::uint32_t>(model.tables.size() + i);
+      return graph.interpolate(table, graph.variable(Layout::time));
+    }
+    return std::nullopt;
+  });
+}
+
 std::shared_ptr<const Tape> ModelProgram::tape_of(std::span<const NodeId> nodes) const {
   if (linear_inputs.empty()) return std::make_shared<const Tape>(model.graph, nodes, tape_variables(), tables);
   Graph graph = model.graph;
   std::vector<NodeId> replaced;
-  for (const NodeId node : nodes) replaced.push_back(InputsInPlace(*this)(graph, node));
+  for (const NodeId node : nodes) replaced.push_back(with_inputs(graph, node));
   return std::make_shared<const Tape>(graph, replaced, tape_variables(), tables);
 }
 

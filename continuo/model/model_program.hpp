@@ -61,6 +61,8 @@ struct ModelProgram {
   TapeVariables tape_variables() const {
     return {.variables = model.layout.size, .steady_begin = model.layout.parameters, .steady_end = model.layout.inputs};
   }
+  /// The expression with interpolated inputs in place, as functions of time.
+  NodeId with_inputs(Graph& graph, NodeId node) const;
   /// A tape of these expressions, interpolated inputs in place.
   std::shared_ptr<const Tape> tape_of(std::span<const NodeId> nodes) const;
 };

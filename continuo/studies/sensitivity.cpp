@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <continuo/methods/automatic.hpp>
+#include <continuo/solve/choice.hpp>
+#include <continuo/studies/sensitive_integration.hpp>
+#include <continuo/studies/sensitivity.hpp>
+
+namespace continuo::studies {
+
+namespace detail {
+
+template <>
+SensitiveEnding integrate_sensitive<Tsitouras5Rodas5P>(SensitiveIntegration, SensitiveRows&);
+template <>
+SensitiveEnding integrate_sensitive<Dop853Radau>(SensitiveIntegration, SensitiveRows&);
+template <>
+SensitiveEnding integrate_sensitive<Tsitouras5Bdf>(SensitiveIntegration, SensitiveRows&);
+
+namespace {
+
+SensitiveEnding integrate(SensitiveIntegration integration, SensitiveRows& rows) {
+  const std::string_view method = choose_method({.size = integration.x0.size(),
+                                                 .rtol = integration.options.rtol,
+                                                 .algebraic = integration.system.has_mass()})
+                                      .method;
+  if (method == Dop853Radau::name || method == Radau::name)
+    return integrate_sensitive<Dop853Radau>(std::move(integration), rows);
+  if (method == Tsitouras5Bdf::name || method == Bdf::name)
+    return integrate_sensitive<Tsitouras5Bdf>(std::move(integration), rows);
+  return integrate_sensitive<Tsitouras5Rodas5P>(std::move(integration), rows);
+}
+
+}  // namespace
+}  // namespace detail
+
+namespace {
+
+/// S has the unit of x by that of p, so what is small for x is small for S at |p| times that. A. C. Hindmarsh et al.,
+/// "SUNDIALS", ACM TOMS 31 (2005), section 3.1 on CVODES.
+Options<std::vector<double>> options_of(const model::Plan& plan, const model::Experiment& experiment,
+                                        std::size_t states, std::span<const double> sizes) {
+  Options<std::vector<double>> options{.rtol = plan.rtol, .atol = plan.atol.front()};
+  for (std::size_t k = 0; k <= sizes.size(); ++k) {
+    const double size = k == 0 ? 1 : sizes[k - 1];
+    for (std::size_t i = 0; i < states; ++i)
+      options.atol_each.push_back((plan.atol.size() > 1 ? plan.atol[i] : plan.atol.front()) / size);
+  }
+  options.rtol_each.assign(options.atol_each.size(), plan.rtol);
+  options.max_step = experiment.max_step;
+  options.max_steps = experiment.max_steps;
+  options.interrupt = experiment.interrupt;
+  options.progress = experiment.progress;
+  return options;
+}
+
+bool changes_something(const model::Block& block) {
+  return std::ranges::any_of(block, [](const model::Action& action) {
+    if (const auto* branch = std::get_if<model::If>(&action.what))
+      return changes_something(branch->then) || changes_something(branch->otherwise);
+    return std::holds_alternative<model::Assign>(action.what) || std::holds_alternative<model::Go>(action.what);
+  });
+}
+
+}  // namespace
+
+std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::span<const Influence> influences) {
+  if (model.needs_boundary_solver())
+    return model::error("E361", model.boundary.front().span,
+                        "no sensitivities of a model whose conditions stand at several times",
+                        "this makes it a boundary-value problem", "they follow a motion from its start");
+  for (const Influence& influence : influences) {
+    if (influence.kind == Influence::Kind::initial) {
+      const model::State& state = model.states[influence.index];
+      if (!state.algebraic) continue;
+      return model::error("E361", state.span, fmt::format("`{}` has no initial value of its own", state.column),
+                          "this is a guess", "its equation `0 = ...` determines it");
+    }
+    const model::Parameter& parameter = model.parameters[influence.index];
+    if (parameter.structural)
+      return model::error("E361", parameter.span,
+                          fmt::format("nothing can be differentiated by `{}`", parameter.name), {},
+                          "it decides how many equations there are");
+  }
+  if (!model.needs_dae_solver()) return std::nullopt;
+  const auto refuse = [](const model::Span& span) {
+    return model::error("E361", span, "no sensitivities through an event that changes a model with equations `0 = ...`",
+                        "this event", "without it, or with the equations solved by hand, they can be had");
+  };
+  for (const model::When& when : model.events)
+    if (changes_something(when.actions)) return refuse(when.span);
+  for (const model::Scheduled& scheduled : model.schedule)
+    if (changes_something(scheduled.actions)) return refuse(scheduled.span);
+  return std::nullopt;
+}
+
+std::string unit_of_ratio(const std::string& of, const std::string& by) {
+  const auto is_number = [](const std::string& unit) { return unit.empty() || unit == "1"; };
+  if (of.empty() && by.empty()) return "";
+  if (of == by) return "1";
+  const auto in_brackets = [](const std::string& unit) {
+    return unit.find_first_of("*/ ^") == std::string::npos ? unit : "(" + unit + ")";
+  };
+  if (is_number(by)) return of;
+  return (is_number(of) ? "1" : of) + "/" + in_brackets(by);
+}
+
+SensitivityStudy::SensitivityStudy(std::shared_ptr<const model::ModelProgram> program,
+                                   std::vector<Influence> influences, const model::Overrides& overrides,
+                                   bool start_is_given)
+    : program_(std::make_shared<detail::SensitiveProgram>(std::move(program), std::move(influences), overrides,
+                                                          start_is_given)) {}
+
+const model::ModelProgram& SensitivityStudy::program() const {
+  return program_->program();
+}
+const std::vector<Influence>& SensitivityStudy::influences() const {
+  return program_->influences();
+}
+
+SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
+  const model::Model& model = program().model;
+  SensitivityRun run;
+  run.states = model.states.size();
+  run.influences = influences().size();
+  model::Experiment experiment = request.experiment;
+  experiment.method.reset();
+  experiment.step.reset();
+  auto planned = model::plan(model, experiment, run.diagnostics);
+  if (auto refused = no_sensitivity(model, influences())) run.diagnostics.push_back(std::move(*refused));
+  if (!planned || !run.diagnostics.empty()) return run;
+  std::vector<double>& variables = planned->variables;
+  for (const model::TableInput& input : program().step_inputs)
+    variables[input.variable] = input.table.value(planned->from);
+  for (const auto& [state, value] : request.initial) variables[model.states[state].variable] = value;
+
+  detail::SensitiveSystem system(program_, variables);
+  std::vector<double> x0(run.states * (1 + run.influences)), rates(x0.size());
+  std::copy_n(variables.begin() + model.layout.states, run.states, x0.begin());
+  system.rates(model.start_mode, planned->from, x0, rates);
+  std::ranges::copy(program_->start(variables, rates), x0.begin() + static_cast<std::ptrdiff_t>(run.states));
+
+  std::vector<double> sizes;
+  for (const Influence& influence : influences()) {
+    const std::uint32_t variable = influence.kind == Influence::Kind::parameter
+                                       ? model.parameters[influence.index].variable
+                                       : model.states[influence.index].variable;
+    sizes.push_back(variables[variable] != 0 ? std::abs(variables[variable]) : 1);
+  }
+  detail::SensitiveRows rows{.time = {}, .events = request.times.empty()};
+  const model::OutputTimes output(*planned);
+  if (!request.times.empty()) {
+    rows.time = [&](std::size_t row) {
+      return row < request.times.size() ? request.times[row] : std::numeric_limits<double>::infinity();
+    };
+  } else if (planned->output != model::OutputPlan::Kind::steps) {
+    rows.time = [&](std::size_t row) { return output[row]; };
+  }
+  run.variables = variables;
+  detail::SensitiveEvents events(*program_, variables, planned->from);
+  const detail::SensitiveEnding ending =
+      detail::integrate({std::move(system), std::move(x0), {planned->from, planned->to},
+                         options_of(*planned, experiment, run.states, sizes), std::move(events)},
+                        rows);
+  run.times = std::move(rows.times);
+  run.values = std::move(rows.values);
+  run.outcome = ending.outcome;
+  run.statistics = ending.statistics;
+  run.problem = ending.problem;
+  for (const detail::SensitiveHappening& happened : ending.happened) {
+    const model::EventOrder& place = model.event_order[happened.event];
+    run.events.push_back({place.scheduled ? model.schedule[place.index].name : model.events[place.index].name,
+                          happened.t, happened.time_moves});
+  }
+  return run;
+}
+
+std::vector<double> SensitivityStudy::along(const SensitivityRun& run,
+                                            std::span<const model::NodeId> quantities) const {
+  const auto tape = program_->along({quantities.begin(), quantities.end()});
+  detail::WideEvaluation evaluation(tape, *program_, run.variables);
+  std::vector<double> values(run.rows() * tape->output_count());
+  for (std::size_t r = 0; r < run.rows(); ++r) {
+    for (const model::TableInput& input : program().step_inputs)
+      evaluation.set(input.variable, input.table.value(run.times[r]));
+    evaluation(run.times[r], run.row(r), std::span(values).subspan(r * tape->output_count(), tape->output_count()));
+  }
+  return values;
+}
+
+}  // namespace continuo::studies

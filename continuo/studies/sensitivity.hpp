@@ -1,0 +1,89 @@
+// How a model's motion depends on its parameters and initial values: S = dx/dp along the run, exact but for the
+// tolerance of the integration, which holds for S as for x; through events, whose times move too, and through modes.
+//
+//   const SensitivityStudy study(program, {{.index = model::find_parameter(program->model, "k")}});
+//   const SensitivityRun run = study.run();
+//   fmt::print("d x / d k = {} at the end\n", run.sensitivity(run.rows() - 1, 0, 0));
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/model/diagnostic.hpp>
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/solve/outcome.hpp>
+#include <continuo/studies/influence.hpp>
+
+namespace continuo::studies {
+
+namespace detail {
+class SensitiveProgram;
+}
+
+struct SensitivityEvent {
+  std::string name;
+  double t;
+  std::vector<double> time_moves;  // dt/dp
+};
+
+struct SensitivityRun {
+  std::size_t states = 0, influences = 0;
+  std::vector<double> times;
+  std::vector<double> values;     // row after row: x, then dx/dp of each influence
+  std::vector<double> variables;  // the register file at the start
+  std::vector<SensitivityEvent> events;
+  Outcome<double> outcome;
+  Statistics statistics;
+  std::string problem;  // why the motion has no derivative; else empty
+  std::vector<model::Diagnostic> diagnostics;
+
+  bool good() const { return diagnostics.empty() && problem.empty() && succeeded(outcome.ending); }
+  std::size_t rows() const { return times.size(); }
+  std::span<const double> row(std::size_t r) const {
+    const std::size_t width = states * (1 + influences);
+    return {values.data() + r * width, width};
+  }
+  double value(std::size_t r, std::size_t state) const { return row(r)[state]; }
+  double sensitivity(std::size_t r, std::size_t state, std::size_t influence) const {
+    return row(r)[states * (1 + influence) + state];
+  }
+};
+
+struct SensitivityRequest {
+  /// Its method and its step have no part: the method is chosen by tolerance and size.
+  model::Experiment experiment{};
+  /// Rows at these times, ascending, and nowhere else; empty: as the model's `run` says, both sides of events too.
+  std::vector<double> times{};
+  /// Initial values in place of the model's, by state; of influences that are initial values.
+  std::vector<std::pair<std::size_t, double>> initial{};
+};
+
+/// Compiled once, for any number of runs with other values.
+class SensitivityStudy {
+ public:
+  SensitivityStudy(std::shared_ptr<const model::ModelProgram> program, std::vector<Influence> influences,
+                   const model::Overrides& overrides = {}, bool start_is_given = false);
+
+  SensitivityRun run(const SensitivityRequest& request = {}) const;
+
+  const model::ModelProgram& program() const;
+  const std::vector<Influence>& influences() const;
+  /// Quantities q of the model along a run: for each row and each quantity q, then dq/dp of each influence.
+  std::vector<double> along(const SensitivityRun& run, std::span<const model::NodeId> quantities) const;
+
+ private:
+  std::shared_ptr<const detail::SensitiveProgram> program_;
+};
+
+/// Why there are no sensitivities of this model by these influences: E36x.
+std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::span<const Influence> influences);
+
+/// "m/(N/m)": the unit of a derivative. Empty without units.
+std::string unit_of_ratio(const std::string& of, const std::string& by);
+
+}  // namespace continuo::studies
