@@ -13,11 +13,11 @@ packages_to_build=(
   "libxsimd-dev           -            vector instructions"
   "libsuitesparse-dev     -            sparse linear systems"
   "libeigen3-dev          -            eigenvalues of matrices"
+  "libceres-dev           -            least squares, and dual numbers"
   "gnuplot-nox            gnuplot      plots"
 )
 packages_to_test=(
   "libgtest-dev           -            unit tests"
-  "libceres-dev           -            dual numbers: exact derivatives in C++"
   "libgmock-dev           -            unit tests"
   "libboost-dev           -            numbers of 113 bits, and the peer in bench/"
   "clang-19               clang++-19   the second compiler, with sanitizers"

@@ -17,17 +17,17 @@ Progress::~Progress() {
   if (shown_) fmt::print(stderr, "\r\033[K");
 }
 
-std::function<void(double)> Progress::watcher() {
+std::function<void(double)> Progress::watcher(std::string_view of) {
   if (!watched()) return {};
-  return [this](double t) { show(t); };
+  return [this, of](double t) { show(of, t); };
 }
 
-void Progress::show(double t) {
+void Progress::show(std::string_view of, double t) {
   const auto now = Clock::now();
   if (now < next_) return;
   next_ = now + pause;
   shown_ = true;
-  fmt::print(stderr, "\r\033[Kt = {:.6g}", t);
+  fmt::print(stderr, "\r\033[K{} = {:.6g}", of, t);
   std::fflush(stderr);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <chrono>
 #include <functional>
+#include <string_view>
 
 namespace continuo::app {
 
@@ -13,12 +14,12 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
-  /// What a run calls with its time; empty where nobody watches.
-  std::function<void(double)> watcher();
+  /// What a run calls with its time (or what `of` names); empty where nobody watches.
+  std::function<void(double)> watcher(std::string_view of = "t");
 
  private:
   using Clock = std::chrono::steady_clock;
-  void show(double t);
+  void show(std::string_view of, double t);
 
   Clock::time_point next_;
   bool shown_ = false;

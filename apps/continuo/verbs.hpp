@@ -18,6 +18,8 @@ void add_linearize(CLI::App& app, ExitCode& exit);
 void add_phase(CLI::App& app, ExitCode& exit);
 void add_orbit(CLI::App& app, ExitCode& exit);
 void add_report(CLI::App& app, ExitCode& exit);
+void add_sense(CLI::App& app, ExitCode& exit);
+void add_fit(CLI::App& app, ExitCode& exit);
 void add_methods(CLI::App& app, ExitCode& exit);
 void add_explain(CLI::App& app, ExitCode& exit);
 void add_new(CLI::App& app, ExitCode& exit);

@@ -1,6 +1,5 @@
 // continuo/model/table.cpp
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -8,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/model/cells.hpp>
 #include <continuo/model/table.hpp>
 
 namespace continuo::model {
@@ -26,30 +26,6 @@ const Table::Piece& Table::at(double x) const {
 }
 
 namespace {
-
-std::vector<std::string_view> split(std::string_view line) {
-  const bool blanks_only = line.find_first_of(",;") == std::string_view::npos;
-  const std::string_view separators = blanks_only ? " \t" : ",;";
-  std::vector<std::string_view> cells;
-  while (!line.empty()) {
-    const std::size_t end = std::min(line.find_first_of(separators), line.size());
-    std::string_view cell = line.substr(0, end);
-    line.remove_prefix(std::min(end + 1, line.size()));
-    const std::size_t first = cell.find_first_not_of(" \t\"");
-    const std::size_t last = cell.find_last_not_of(" \t\"");
-    cell = first == std::string_view::npos ? std::string_view() : cell.substr(first, last - first + 1);
-    if (!cell.empty() || !blanks_only) cells.push_back(cell);
-  }
-  return cells;
-}
-
-std::optional<double> number(std::string_view cell) {
-  if (cell.starts_with('+')) cell.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  const bool whole = error == std::errc{} && end == cell.data() + cell.size();
-  return whole ? std::optional(value) : std::nullopt;
-}
 
 class Reader {
  public:
@@ -74,17 +50,17 @@ class Reader {
   }
 
   void row(std::string_view line) {
-    const auto cells = split(line);
+    const auto cells = split_cells(line);
     if (cells.empty()) return;
     if (!started_) {
       started_ = true;
-      const bool is_heading = std::ranges::none_of(cells, [](auto cell) { return number(cell).has_value(); });
+      const bool is_heading = std::ranges::none_of(cells, [](auto cell) { return cell_number(cell).has_value(); });
       if (!choose_columns(cells, is_heading) || is_heading) return;
     }
     if (cells.size() <= std::max(x_column_, y_column_)) {
       return fail(fmt::format("{} columns, but column {} is needed", cells.size(), std::max(x_column_, y_column_) + 1));
     }
-    const auto x = number(cells[x_column_]), y = number(cells[y_column_]);
+    const auto x = cell_number(cells[x_column_]), y = cell_number(cells[y_column_]);
     if (!x) return fail(fmt::format("`{}` is not a number", cells[x_column_]));
     if (!y) return fail(fmt::format("`{}` is not a number", cells[y_column_]));
     if (!std::isfinite(*x) || !std::isfinite(*y)) return fail("a number is not finite");

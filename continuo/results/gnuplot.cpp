@@ -78,9 +78,9 @@ std::string style_of(const Curve& curve, std::size_t number) {
     case Curve::Style::thin_line:
       return fmt::format("lines lw 0.9 lc rgb '{}'", color);
     case Curve::Style::full_points:
-      return fmt::format("points pt 7 ps 1.3 lc rgb '{}'", color);
+      return fmt::format("points pt 7 ps 1.0 lc rgb '{}'", color);
     case Curve::Style::empty_points:
-      return fmt::format("points pt 6 lw 2 ps 1.3 lc rgb '{}'", color);
+      return fmt::format("points pt 6 lw 2 ps 1.0 lc rgb '{}'", color);
     case Curve::Style::line:
       break;
   }
@@ -201,7 +201,9 @@ std::string gnuplot_script(const Figure& figure, const std::string& path) {
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     for (std::size_t c = 0; c < figure.panels[p].curves.size(); ++c) {
       const Panel& panel = figure.panels[p];
-      append_data(script, p, c, panel.logarithmic_x ? panel.curves[c] : thinned(panel.curves[c], 2 * width));
+      const bool whole = panel.logarithmic_x || panel.curves[c].style == Curve::Style::full_points ||
+                         panel.curves[c].style == Curve::Style::empty_points;
+      append_data(script, p, c, whole ? panel.curves[c] : thinned(panel.curves[c], 2 * width));
     }
   }
   script +=

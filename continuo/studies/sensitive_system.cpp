@@ -142,7 +142,7 @@ std::vector<double> SensitiveEvents::time_moves(std::size_t event, std::span<con
     moves[k] = along == 0 ? 0 : -along / rate;
     if (!std::isfinite(moves[k]) && problem_.empty())
       problem_ = "`" + std::string(plain_.name(event + inputs_)) +
-                 "` is touched, not crossed: the motion has no derivative there";
+                 "` is not crossed with a slope: the motion has no derivative there";
   }
   return moves;
 }

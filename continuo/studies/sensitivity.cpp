@@ -127,7 +127,8 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   run.states = model.states.size();
   run.influences = influences().size();
   model::Experiment experiment = request.experiment;
-  experiment.method.reset();
+  // A plan wants one that chooses its steps; which it is, is decided where the size is known.
+  experiment.method = model.needs_dae_solver() ? Radau::name : Dop853Radau::name;
   experiment.step.reset();
   auto planned = model::plan(model, experiment, run.diagnostics);
   if (auto refused = no_sensitivity(model, influences())) run.diagnostics.push_back(std::move(*refused));
@@ -178,17 +179,19 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   return run;
 }
 
-std::vector<double> SensitivityStudy::along(const SensitivityRun& run,
-                                            std::span<const model::NodeId> quantities) const {
+SensitivityStudy::Along SensitivityStudy::along(std::span<const model::NodeId> quantities) const {
   const auto tape = program_->along({quantities.begin(), quantities.end()});
-  detail::WideEvaluation evaluation(tape, *program_, run.variables);
-  std::vector<double> values(run.rows() * tape->output_count());
-  for (std::size_t r = 0; r < run.rows(); ++r) {
-    for (const model::TableInput& input : program().step_inputs)
-      evaluation.set(input.variable, input.table.value(run.times[r]));
-    evaluation(run.times[r], run.row(r), std::span(values).subspan(r * tape->output_count(), tape->output_count()));
-  }
-  return values;
+  return [program = program_, tape](const SensitivityRun& run) {
+    detail::WideEvaluation evaluation(tape, *program, run.variables);
+    const std::size_t width = tape->output_count();
+    std::vector<double> values(run.rows() * width);
+    for (std::size_t r = 0; r < run.rows(); ++r) {
+      for (const model::TableInput& input : program->program().step_inputs)
+        evaluation.set(input.variable, input.table.value(run.times[r]));
+      evaluation(run.times[r], run.row(r), std::span(values).subspan(r * width, width));
+    }
+    return values;
+  };
 }
 
 }  // namespace continuo::studies

@@ -6,6 +6,7 @@
 //   fmt::print("d x / d k = {} at the end\n", run.sensitivity(run.rows() - 1, 0, 0));
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -74,7 +75,8 @@ class SensitivityStudy {
   const model::ModelProgram& program() const;
   const std::vector<Influence>& influences() const;
   /// Quantities q of the model along a run: for each row and each quantity q, then dq/dp of each influence.
-  std::vector<double> along(const SensitivityRun& run, std::span<const model::NodeId> quantities) const;
+  using Along = std::function<std::vector<double>(const SensitivityRun& run)>;
+  Along along(std::span<const model::NodeId> quantities) const;
 
  private:
   std::shared_ptr<const detail::SensitiveProgram> program_;

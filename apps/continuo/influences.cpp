@@ -1,0 +1,44 @@
+#include <apps/continuo/influences.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <fmt/format.h>
+
+#include <continuo/model/suggest.hpp>
+
+namespace continuo::app {
+
+std::string no_such(const std::string& kind, const std::string& name, const std::vector<std::string>& names) {
+  const std::string near = model::did_you_mean(name, names);
+  return fmt::format("there is no {} `{}`; {}", kind, name,
+                     near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : near);
+}
+
+std::optional<std::vector<studies::Influence>> influences_named(const model::Model& model,
+                                                                const std::vector<std::string>& parameters,
+                                                                const std::vector<std::string>& initial) {
+  using Kind = studies::Influence::Kind;
+  std::vector<studies::Influence> influences;
+  const auto add = [&](Kind kind, const std::string& name) {
+    const bool is_parameter = kind == Kind::parameter;
+    const std::size_t i = is_parameter ? model::find_parameter(model, name) : model::find_state(model, name);
+    if (i != model::npos) {
+      influences.push_back({kind, i});
+      return true;
+    }
+    std::vector<std::string> names;
+    for (const model::Parameter& known : model.parameters)
+      if (is_parameter) names.push_back(known.name);
+    for (const model::State& known : model.states)
+      if (!is_parameter) names.push_back(known.column);
+    say(no_such(is_parameter ? "parameter" : "state", name, names));
+    return false;
+  };
+  for (const std::string& name : parameters)
+    if (!add(Kind::parameter, name)) return std::nullopt;
+  for (const std::string& name : initial)
+    if (!add(Kind::initial, name)) return std::nullopt;
+  if (!influences.empty()) return influences;
+  say("name parameters by --param k,c or states by --initial x; `continuo info FILE` lists them");
+  return std::nullopt;
+}
+
+}  // namespace continuo::app

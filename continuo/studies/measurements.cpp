@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include <continuo/model/cells.hpp>
+#include <continuo/studies/measurements.hpp>
+
+namespace continuo::studies {
+
+namespace {
+
+class Reader {
+ public:
+  explicit Reader(const std::string& name) { read_.measurements.file = name; }
+
+  ReadMeasurements read(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the mark some spreadsheets put before UTF-8
+    while (!text.empty() && read_.problem.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      ++line_;
+      row(text.substr(0, std::min(text.find_first_of("#\r\n"), end)));
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    if (read_.problem.empty() && headings_.empty()) fail("the file is empty");
+    if (read_.problem.empty() && data_.times.empty()) fail("no rows of numbers below the names of the columns");
+    if (read_.problem.empty()) sort();
+    return std::move(read_);
+  }
+
+ private:
+  void fail(std::string_view what) {
+    read_.problem = fmt::format("{}:{}: {}", data_.file, std::max<std::size_t>(line_, 1), what);
+  }
+
+  void row(std::string_view line) {
+    const auto cells = model::split_cells(line);
+    if (cells.empty() || std::ranges::all_of(cells, [](auto cell) { return cell.empty(); })) return;
+    if (headings_.empty()) return head(cells);
+    if (cells.size() > headings_.size())
+      return fail(fmt::format("{} cells under {} names of columns", cells.size(), headings_.size()));
+    for (std::size_t c = 0; c < headings_.size() && read_.problem.empty(); ++c) {
+      const std::string_view cell = c < cells.size() ? cells[c] : std::string_view();
+      const bool missing = cell.empty() || cell == "NA" || cell == "nan" || cell == "NaN";
+      const auto number = missing ? std::nan("") : model::cell_number(cell);
+      if (!number || std::isinf(*number)) {
+        fail(fmt::format("`{}` in column `{}` is no number", cell, headings_[c]));
+      } else if (c != time_) {
+        data_.values[c - (c > time_ ? 1 : 0)].push_back(*number);
+      } else if (missing) {
+        fail(fmt::format("no time in column `{}`", headings_[c]));
+      } else {
+        data_.times.push_back(*number);
+        data_.lines.push_back(line_);
+      }
+    }
+  }
+
+  void head(const std::vector<std::string_view>& cells) {
+    if (std::ranges::any_of(cells, [](auto cell) { return model::cell_number(cell).has_value(); }))
+      return fail("the first line must name the columns, like `t,x`");
+    headings_.assign(cells.begin(), cells.end());
+    for (std::size_t c = 0; c < headings_.size(); ++c) {
+      if (std::count(headings_.begin(), headings_.end(), headings_[c]) > 1)
+        return fail(fmt::format("two columns are called `{}`", headings_[c]));
+    }
+    if (headings_.size() < 2) return fail("one column only; a time and at least one quantity are needed");
+    const auto t = std::ranges::find(headings_, "t");
+    time_ = t == headings_.end() ? 0 : static_cast<std::size_t>(t - headings_.begin());
+    for (std::size_t c = 0; c < headings_.size(); ++c)
+      if (c != time_) data_.columns.push_back(headings_[c]);
+    data_.values.resize(data_.columns.size());
+  }
+
+  void sort() {
+    std::vector<std::size_t> order(data_.times.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return data_.times[i]; });
+    const auto arrange = [&](auto& list) {
+      auto copy = list;
+      for (std::size_t i = 0; i < order.size(); ++i) list[i] = copy[order[i]];
+    };
+    arrange(data_.times);
+    arrange(data_.lines);
+    for (auto& column : data_.values) arrange(column);
+  }
+
+  ReadMeasurements read_;
+  Measurements& data_ = read_.measurements;
+  std::vector<std::string> headings_;
+  std::size_t time_ = 0, line_ = 0;
+};
+
+}  // namespace
+
+ReadMeasurements parse_measurements(std::string_view text, const std::string& name) {
+  return Reader(name).read(text);
+}
+
+ReadMeasurements read_measurements(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return {{}, fmt::format("{}:1: the file cannot be read", file)};
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parse_measurements(text, file);
+}
+
+}  // namespace continuo::studies

@@ -1,0 +1,32 @@
+// Measured columns over time from a CSV file, for fits:
+//
+//   const ReadMeasurements read = read_measurements("spring.csv");
+//   if (!read.problem.empty()) fmt::print("{}\n", read.problem);   // "spring.csv:7: `abc` in column `x` is no number"
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace continuo::studies {
+
+struct Measurements {
+  std::string file;
+  std::vector<std::string> columns;         // without the time's
+  std::vector<double> times;                // ascending
+  std::vector<std::size_t> lines;           // of each row, in the file
+  std::vector<std::vector<double>> values;  // by column, one per time; NaN where nothing was measured
+};
+
+struct ReadMeasurements {
+  Measurements measurements;
+  std::string problem;  // begins with "file:line: "; empty where all is well
+};
+
+/// The first line names the columns; one of them is `t`, else the first is the time. Empty cells, `nan` and `NA` are
+/// missing values. Rows may come in any order.
+ReadMeasurements read_measurements(const std::string& file);
+/// The same from text, `name` being what messages call it.
+ReadMeasurements parse_measurements(std::string_view text, const std::string& name);
+
+}  // namespace continuo::studies

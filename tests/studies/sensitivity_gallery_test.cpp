@@ -1,0 +1,135 @@
+// Sensitivities of every model of the gallery against differences of its runs.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <continuo/model/load.hpp>
+#include <continuo/model/simulate.hpp>
+#include <continuo/studies/sensitivity.hpp>
+
+namespace continuo::studies {
+namespace {
+
+/// Ends before chaos or many orbits have made a difference of 1e-3 in a parameter a large one, and large models short
+/// of what a test may take. The others run to their own end, but at most ten units of their time.
+const std::map<std::string, double> ends = {
+    {"arenstorf", 3},    {"beam", 1e-3},         {"double_pendulum", 2}, {"galaxy", 0.05},  {"kepler", 5},
+    {"lorenz", 1},       {"outer_planets", 300}, {"pleiades", 0.5},      {"robertson", 40}, {"rc_diode", 1e-2},
+    {"relaxation", 0.05}, {"fed_batch", 1}, {"oregonator", 0.5}, {"ball_on_stairs", 2},
+    {"wave_equation", 0.2}, {"heat_equation", 0.05}, {"brusselator_line", 0.2}, {"thermostat", 3},
+};
+
+/// Without sensitivities: conditions at both ends.
+const std::set<std::string> boundary = {"blasius", "boundary_layer", "bratu", "cantilever", "swinging_period"};
+
+struct Case {
+  std::shared_ptr<const model::ModelProgram> program;
+  double end;
+  Influence influence;
+
+  double value() const {
+    const auto start = model::start_values(program->model);
+    return start[influence.kind == Influence::Kind::parameter ? program->model.parameters[influence.index].variable
+                                                              : program->model.states[influence.index].variable];
+  }
+  SensitivityRequest request(double value, double rtol = 1e-11) const {
+    SensitivityRequest request{.experiment = {.rtol = rtol, .to = end}};
+    if (influence.kind == Influence::Kind::initial) {
+      request.initial = {{influence.index, value}};
+    } else {
+      request.experiment.parameters = {{program->model.parameters[influence.index].name, value}};
+    }
+    return request;
+  }
+  /// The state at the end, by the run of the model alone where a parameter moves.
+  std::vector<double> end_state(double value, double rtol = 1e-11) const {
+    const SensitivityRequest asked = request(value, rtol);
+    if (influence.kind == Influence::Kind::initial) {
+      const SensitivityRun run = SensitivityStudy(program, {influence}).run(asked);
+      return {run.row(run.rows() - 1).begin(), run.row(run.rows() - 1).begin() + static_cast<long>(run.states)};
+    }
+    model::Experiment experiment = asked.experiment;
+    experiment.method = program->model.needs_dae_solver() ? "radau" : "dop853_radau";
+    experiment.keep_rows = false;
+    const model::Simulated simulated = model::simulate(program, experiment);
+    EXPECT_TRUE(simulated.run && succeeded(simulated.run->outcome.ending));
+    const auto x = simulated.run->final_state();
+    return {x.begin(), x.end()};
+  }
+};
+
+// Central differences with h, h/2, h/4 and Richardson's extrapolation in h^2: the last correction bounds the error of
+// cutting off, that of the runs is e/h with weights that add up to less than 8. What the runs err is seen where two
+// computations of the same state differ, or one of a tenth of the accuracy; so is what the sensitivities err.
+void compare(const Case& of, const std::string& name) {
+  const SensitivityRun run = SensitivityStudy(of.program, {of.influence}).run(of.request(of.value()));
+  ASSERT_TRUE(run.good()) << name << ": " << describe(run.outcome) << run.problem;
+  const std::size_t last = run.rows() - 1;
+  const SensitivityRun loose = SensitivityStudy(of.program, {of.influence}).run(of.request(of.value(), 1e-10));
+  const double p = of.value(), h = p == 0 ? 1e-3 : 1e-3 * std::abs(p);
+  const std::vector<double> middle = of.end_state(p), coarse = of.end_state(p, 1e-10);
+  std::vector<std::vector<double>> differences;
+  for (const double step : {h, h / 2, h / 4}) {
+    const auto high = of.end_state(p + step), low = of.end_state(p - step);
+    std::vector<double>& difference = differences.emplace_back();
+    for (std::size_t i = 0; i < run.states; ++i) difference.push_back((high[i] - low[i]) / (2 * step));
+  }
+  // Members of a family (x[1], x[2], ...) err alike, each by chance more or less: the largest counts for all.
+  const auto family = [&](std::size_t i) {
+    const model::State& state = of.program->model.states[i];
+    return state.base.substr(0, state.base.find('[')) + std::string(static_cast<std::size_t>(state.primes), '\'');
+  };
+  std::vector<double> expected(run.states);
+  std::map<std::string, double> tolerances;
+  double largest = 0, loosest = 0;
+  for (std::size_t i = 0; i < run.states; ++i) {
+    const double first = (4 * differences[1][i] - differences[0][i]) / 3;
+    const double second = (4 * differences[2][i] - differences[1][i]) / 3;
+    expected[i] = (16 * second - first) / 15;
+    const double error_of_run = std::abs(middle[i] - run.value(last, i)) + std::abs(middle[i] - coarse[i]);
+    const double error_of_s = std::abs(run.sensitivity(last, i, 0) - loose.sensitivity(loose.rows() - 1, i, 0));
+    double& tolerance = tolerances[family(i)];
+    tolerance = std::max(tolerance, std::abs(expected[i] - second) + 8 * error_of_run / h + error_of_s);
+  }
+  for (std::size_t i = 0; i < run.states; ++i) {
+    const double s = run.sensitivity(last, i, 0), tolerance = tolerances[family(i)];
+    EXPECT_NEAR(s, expected[i], tolerance) << name << ": d " << of.program->model.states[i].column << " / d "
+                                           << name_of(of.program->model, of.influence);
+    largest = std::max(largest, std::abs(s));
+    loosest = std::max(loosest, tolerance);
+  }
+  EXPECT_LE(loosest, 1e-3 * largest) << name << ": the comparison says nothing";
+}
+
+TEST(SensitivityGallery, EveryModelAgreesWithDifferences) {
+  std::size_t compared = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(CONTINUO_SOURCE_DIR "/models")) {
+    if (entry.path().extension() != ".sim") continue;
+    const std::string name = entry.path().stem().string();
+    const model::Loaded loaded = model::load(entry.path());
+    ASSERT_TRUE(loaded) << loaded.text();
+    const auto program = model::compile(*loaded.model);
+    const model::Model& model = program->model;
+    std::vector<Influence> influences;
+    for (std::size_t i = 0; i < model.parameters.size() && influences.size() < 2; ++i)
+      if (!model.parameters[i].structural) influences.push_back({.index = i});
+    if (influences.empty()) influences.push_back({Influence::Kind::initial, 0});
+    EXPECT_EQ(no_sensitivity(model, influences).has_value(), boundary.contains(name)) << name;
+    if (boundary.contains(name)) continue;
+    const auto end = ends.find(name);
+    const double to = end != ends.end() ? end->second : std::min(model.run.to->value, 10.0);
+    for (const Influence& influence : influences) compare({program, to, influence}, name);
+    ++compared;
+  }
+  EXPECT_GT(compared, 25u);
+}
+
+}  // namespace
+}  // namespace continuo::studies
