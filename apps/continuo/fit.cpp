@@ -309,7 +309,7 @@ void add_fit(CLI::App& app, ExitCode& exit) {
       ->required()
       ->type_name("");
   const auto list = [&](const char* name, std::vector<std::string>& target, const char* text, const char* type) {
-    verb->add_option(name, target, text)->delimiter(',')->type_name(type);
+    verb->add_option(name, target, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
   };
   list("--param", options->parameters, "Parameters to find, within the ranges the model gives them", "NAMES");
   list("--initial", options->initial, "States whose initial values are to be found", "STATES");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -22,7 +23,7 @@ namespace {
 const std::map<std::string, double> ends = {
     {"arenstorf", 3},    {"beam", 1e-3},         {"double_pendulum", 2}, {"galaxy", 0.05},  {"kepler", 5},
     {"lorenz", 1},       {"outer_planets", 300}, {"pleiades", 0.5},      {"robertson", 40}, {"rc_diode", 1e-2},
-    {"relaxation", 0.05}, {"fed_batch", 1}, {"oregonator", 0.5}, {"ball_on_stairs", 2},
+    {"relaxation", 0.05}, {"fed_batch", 1}, {"oregonator", 0.1}, {"ball_on_stairs", 2},
     {"wave_equation", 0.2}, {"heat_equation", 0.05}, {"brusselator_line", 0.2}, {"thermostat", 3},
 };
 
@@ -93,7 +94,10 @@ void compare(const Case& of, const std::string& name) {
     const double first = (4 * differences[1][i] - differences[0][i]) / 3;
     const double second = (4 * differences[2][i] - differences[1][i]) / 3;
     expected[i] = (16 * second - first) / 15;
-    const double error_of_run = std::abs(middle[i] - run.value(last, i)) + std::abs(middle[i] - coarse[i]);
+    // The hundred: rounding of that many steps.
+    const double rounding = 100 * std::numeric_limits<double>::epsilon() * std::abs(middle[i]);
+    const double error_of_run =
+        std::abs(middle[i] - run.value(last, i)) + std::abs(middle[i] - coarse[i]) + rounding;
     const double error_of_s = std::abs(run.sensitivity(last, i, 0) - loose.sensitivity(loose.rows() - 1, i, 0));
     double& tolerance = tolerances[family(i)];
     tolerance = std::max(tolerance, std::abs(expected[i] - second) + 8 * error_of_run / h + error_of_s);
