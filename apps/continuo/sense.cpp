@@ -103,21 +103,21 @@ results::Figure figure_of(const model::Model& model, const SensitivityRun& run,
   for (const studies::SensitivityEvent& event : run.events) marks.push_back(event.t);
   const std::size_t states = std::min(run.states, most_curves);
   for (std::size_t k = 0; k < influences.size(); ++k) {
+    const std::size_t first = figure.panels.size();
     std::vector<std::string> units;
     for (std::size_t i = 0; i < states; ++i) {
       const model::Column column = column_of(model, i, influences[k]);
-      const auto same = std::ranges::find(units, column.unit);
-      if (same == units.end()) {
+      const auto panel = static_cast<std::size_t>(std::ranges::find(units, column.unit) - units.begin());
+      if (panel == units.size()) {
         units.push_back(column.unit);
         figure.panels.push_back({.x_label = results::label_of({"t", model.time_unit}),
                                  .y_label = results::label_of({"d / d " + name_of(model, influences[k]), column.unit}),
                                  .curves = {},
                                  .marks = marks});
       }
-      const std::size_t back = same == units.end() ? 1 : static_cast<std::size_t>(units.end() - same);
       results::Curve curve{.label = column.name, .x = run.times, .y = {}};
       for (std::size_t r = 0; r < run.rows(); ++r) curve.y.push_back(run.sensitivity(r, i, k));
-      figure.panels[figure.panels.size() - back].curves.push_back(std::move(curve));
+      figure.panels[first + panel].curves.push_back(std::move(curve));
     }
   }
   return figure;

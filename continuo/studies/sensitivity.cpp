@@ -105,7 +105,8 @@ std::string unit_of_ratio(const std::string& of, const std::string& by) {
     return unit.find_first_of("*/ ^") == std::string::npos ? unit : "(" + unit + ")";
   };
   if (is_number(by)) return of;
-  return (is_number(of) ? "1" : of) + "/" + in_brackets(by);
+  const bool product = of.find('/') == std::string::npos;
+  return (is_number(of) ? "1" : product ? of : "(" + of + ")") + "/" + in_brackets(by);
 }
 
 SensitivityStudy::SensitivityStudy(std::shared_ptr<const model::ModelProgram> program,

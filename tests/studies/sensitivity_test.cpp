@@ -181,6 +181,7 @@ TEST(Sensitivity, RefusesWhatHasNone) {
 
 TEST(Sensitivity, HasTheUnitsOfARatio) {
   EXPECT_EQ(unit_of_ratio("m", "N/m"), "m/(N/m)");
+  EXPECT_EQ(unit_of_ratio("m/s", "s"), "(m/s)/s");
   EXPECT_EQ(unit_of_ratio("m", "s"), "m/s");
   EXPECT_EQ(unit_of_ratio("m", "m"), "1");
   EXPECT_EQ(unit_of_ratio("m", ""), "m");
