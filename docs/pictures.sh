@@ -30,7 +30,6 @@ picture stiff_door_implicit "$scratch/door.sim" --method rosenbrock23 --step 0.1
 picture van_der_pol_stiff models/van_der_pol_stiff.sim
 picture robertson models/robertson.sim
 
-<<<<<<< HEAD
 block tutorial_boundary_values.md throw.sim
 picture throw "$scratch/throw.sim"
 study() {  # study NAME VERB [OPTION ...]
@@ -45,15 +44,7 @@ study differences converge --derivative "sin(x)" --at 1
 study orders converge models/mass_spring_damper.sim --methods euler,heun,bogacki_shampine3,rk4,tsitouras5
 study regions stability euler,heun,rk4,central_difference,implicit_euler,bdf2
 study heat_regions stability euler,heun,rk4,dop853 --model models/heat_equation.sim
-=======
-study() {  # study NAME VERB [ARGUMENT ...]
-  local name=$1
-  shift
-  "${CONTINUO:-./continuo.sh}" "$@" --plot "$pictures/$name.svg"
-}
-
 for file in spring.csv ball.csv ball.sim; do block tutorial_fit.md "$file"; done
 study sense_spring sense models/mass_spring_damper.sim --param k,c
 study fit_spring fit models/mass_spring_damper.sim "$scratch/spring.csv" --param k,c
 study fit_ball fit "$scratch/ball.sim" "$scratch/ball.csv" --param e,h0 --loss cauchy
->>>>>>> 026d4b2 (Add the verbs sense and fit, with a tutorial)

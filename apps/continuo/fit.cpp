@@ -251,9 +251,9 @@ results::Figure figure_of(const studies::FitRequest& request, const studies::Fit
     const std::vector<double>& measured = data.measurements.values[column.column];
     figure.panels.push_back({.x_label = results::label_of({"t", model.time_unit}),
                              .y_label = results::label_of({column.quantity, unit}),
-                             .curves = {{.label = "fit", .x = curve.t, .y = curve.y},
-                                        {.label = "95 % of measurements", .x = curve.t, .y = low, .color = "#bbbbbb"},
+                             .curves = {{.label = "95 % of measurements", .x = curve.t, .y = low, .color = "#bbbbbb"},
                                         {.label = "", .x = curve.t, .y = high, .color = "#bbbbbb"},
+                                        {.label = "fit", .x = curve.t, .y = curve.y, .color = "#0072b2"},
                                         {.label = data.measurements.file,
                                          .x = data.measurements.times,
                                          .y = measured,
@@ -317,7 +317,8 @@ void add_fit(CLI::App& app, ExitCode& exit) {
   list("--column", options->columns, "Which quantity a column is; - for none", "COLUMN=QUANTITY");
   list("--sigma", options->deviations, "The deviation of a column's measurements; else estimated", "COLUMN=NUMBER");
   list("--in", options->settings, "A parameter's value in one data file", "FILE:NAME=VALUE");
-  verb->add_option("--loss", options->loss, "squares, or for outliers huber, soft_l1, cauchy, tukey")->type_name("NAME");
+  verb->add_option("--loss", options->loss, "squares, or for outliers huber, soft_l1, cauchy, tukey")
+      ->type_name("NAME");
   verb->add_option("--starts", options->starts, "Search from this many places")->type_name("N");
   verb->add_option("--tol", options->experiment.tolerance, "The relative tolerance of the runs, 1e-8 at most")
       ->type_name("RTOL");

@@ -39,9 +39,9 @@ model::Column column_of(const model::Model& model, std::size_t state, const stud
 }
 
 double value_of(const model::Model& model, const SensitivityRun& run, const studies::Influence& influence) {
-  return run.variables[influence.kind == studies::Influence::Kind::parameter
-                           ? model.parameters[influence.index].variable
-                           : model.states[influence.index].variable];
+  return run
+      .variables[influence.kind == studies::Influence::Kind::parameter ? model.parameters[influence.index].variable
+                                                                       : model.states[influence.index].variable];
 }
 
 /// The largest |x| of a state's way: what changes of it are relative to where it passes through zero.

@@ -134,8 +134,9 @@ have them: --atol "h'=1e-9" --tol "u[3]=1e-10". The name of a family without an 
         R"(--tol takes a relative tolerance, a number without a unit greater than zero; --atol an absolute one, in the unit of
 the state unless it names another of the same kind: --atol "h = 1 [um]". With NAME= before it the tolerance is that of
 one state, without it that of all.)"},
-    Code{"E361", "there are no sensitivities of this",
-         R"(Sensitivities follow a motion from its start, so the conditions must stand there. Where a model has equations
+    Code{
+        "E361", "there are no sensitivities of this",
+        R"(Sensitivities follow a motion from its start, so the conditions must stand there. Where a model has equations
 `0 = ...`, events that change its state or mode cannot be followed. A parameter that decides how many equations there
 are, and the guess of an algebraic unknown, are nothing to differentiate by.)"},
 };

@@ -154,8 +154,9 @@ void append_panel(std::string& script, const Panel& panel, std::size_t number, d
   }
   script += "plot ";
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
-    script += fmt::format("{}$curve{}_{} using 1:2 with {} title {}", i > 0 ? ", " : "", number, i,
-                          style_of(panel.curves[i], i), in_quotes(panel.curves[i].label));
+    const std::string& label = panel.curves[i].label;
+    script += fmt::format("{}$curve{}_{} using 1:2 with {} {}", i > 0 ? ", " : "", number, i,
+                          style_of(panel.curves[i], i), label.empty() ? "notitle" : "title " + in_quotes(label));
   }
   if (!marks.empty())
     script += fmt::format(", NaN with lines lw 1 dt 3 lc rgb '#999999' title {}", in_quotes(panel.mark_label));

@@ -85,9 +85,8 @@ class Part {
       for (std::size_t row = 0; row < run.rows(); ++row) {
         for (std::size_t c = 0; c < states_.size(); ++c) {
           for (std::size_t k = 0; k < width; ++k)
-            values.numbers.push_back(states_[c] == model::npos
-                                         ? others[(row * quantities_ + places_[c]) * width + k]
-                                         : run.row(row)[run.states * k + states_[c]]);
+            values.numbers.push_back(states_[c] == model::npos ? others[(row * quantities_ + places_[c]) * width + k]
+                                                               : run.row(row)[run.states * k + states_[c]]);
         }
       }
     }
@@ -156,7 +155,9 @@ class Problem {
   std::size_t size() const { return measured_.size(); }
   const std::vector<double>& scales() const { return scales_; }
   std::vector<double>& scales() { return scales_; }
-  bool all_known() const { return std::ranges::all_of(known_, [](bool known) { return known; }); }
+  bool all_known() const {
+    return std::ranges::all_of(known_, [](bool known) { return known; });
+  }
   /// Residuals of different quantities have different deviations, some of them unknown.
   bool several_unknown() const {
     std::set<std::string> groups;
@@ -179,6 +180,9 @@ class Problem {
         const double off = residuals.empty() ? measured_[r].value - mean : residuals[r];
         sum += off * off;
       }
+      // A few values that happen to be met well would draw all weight to themselves.
+      constexpr double fewest = 10;
+      if (!residuals.empty() && count < fewest + static_cast<double>(unknowns_)) return;
       pending_.resize(scales_.size());
       pending_[s] = std::sqrt(sum / count) * (residuals.empty() ? 1 : scales_[s]);
     }
@@ -283,9 +287,9 @@ Fit fit(const FitRequest& request) {
     return result;
   }
   for (const double scale : problem.scales()) result.scales.push_back(scale * result.least.residual_deviation);
-  result.confidence_factor =
-      options.known_deviation ? student_t_quantile(0.95, 1e9)
-      : result.least.degrees > 0 ? student_t_quantile(0.95, static_cast<double>(result.least.degrees))
+  result.confidence_factor = options.known_deviation ? student_t_quantile(0.95, 1e9)
+                             : result.least.degrees > 0
+                                 ? student_t_quantile(0.95, static_cast<double>(result.least.degrees))
                                  : std::numeric_limits<double>::infinity();
   return result;
 }
@@ -310,7 +314,8 @@ std::vector<FitCurve> curves_of(const FitRequest& request, const Fit& fit, std::
         const double* number = &values.numbers[(row * request.data[d].columns.size() + c) * (1 + m)];
         double variance = fit.scales[scale] * fit.scales[scale];
         for (std::size_t i = 0; i < m; ++i)
-          for (std::size_t j = 0; j < m; ++j) variance += number[1 + i] * fit.least.covariance[i * m + j] * number[1 + j];
+          for (std::size_t j = 0; j < m; ++j)
+            variance += number[1 + i] * fit.least.covariance[i * m + j] * number[1 + j];
         curve.y.push_back(number[0]);
         curve.half_width.push_back(fit.confidence_factor * std::sqrt(variance));
       }

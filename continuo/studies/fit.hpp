@@ -56,7 +56,7 @@ struct FitCurve {
 
 struct Fit {
   LeastSquaresResult least;
-  std::vector<double> scales;  // the residual deviation of each column of each set, one set after the other
+  std::vector<double> scales;    // the residual deviation of each column of each set, one set after the other
   double confidence_factor = 0;  // Student's t for 95 %
   std::vector<model::Diagnostic> diagnostics;
   std::string problem;  // why there is no fit, or "file:line: ..."; else empty

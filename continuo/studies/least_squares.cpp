@@ -1,11 +1,11 @@
 // The only file that includes Ceres.
+#include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <random>
 
-#include <Eigen/Dense>
 #include <ceres/ceres.h>
 
 #include <continuo/studies/least_squares.hpp>
@@ -173,7 +173,8 @@ void judge(const LeastSquares& problem, const LeastSquaresOptions& options, cons
   result.at_bound.assign(m, 0);
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < m; ++i) {
-    const bool bound = !problem.low.empty() && (is_at(result.p[i], problem.low[i]) || is_at(result.p[i], problem.high[i]));
+    const bool bound =
+        !problem.low.empty() && (is_at(result.p[i], problem.low[i]) || is_at(result.p[i], problem.high[i]));
     result.at_bound[i] = bound ? 1 : 0;
     if (!bound) free.push_back(i);
   }
@@ -187,9 +188,9 @@ void judge(const LeastSquares& problem, const LeastSquaresOptions& options, cons
   }
   result.cost = sum / 2;
   result.degrees = n > free.size() ? n - free.size() : 0;
-  result.residual_deviation = options.known_deviation     ? 1
-                              : result.degrees > 0 ? std::sqrt(sum / static_cast<double>(result.degrees))
-                                                   : std::numeric_limits<double>::infinity();
+  result.residual_deviation = options.known_deviation ? 1
+                              : result.degrees > 0    ? std::sqrt(sum / static_cast<double>(result.degrees))
+                                                      : std::numeric_limits<double>::infinity();
   Rows jacobian(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(free.size()));
   for (std::size_t r = 0; r < n; ++r)
     for (std::size_t c = 0; c < free.size(); ++c)
@@ -222,7 +223,8 @@ LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquares
   const auto stopped = [&] { return options.interrupt != nullptr && options.interrupt->load(); };
   std::vector<Found> all;
   for (std::size_t start = 0; start < std::max<std::size_t>(1, options.starts) && !stopped(); ++start) {
-    all.push_back(search(problem, options, start == 0 ? problem.start : another_start(problem, random), start, nullptr));
+    all.push_back(
+        search(problem, options, start == 0 ? problem.start : another_start(problem, random), start, nullptr));
     result.iterations += all.back().iterations;
     result.evaluations += all.back().evaluations;
   }

@@ -60,7 +60,8 @@ struct SensitiveObserver {
   template <class I>
   void happening(I& integrator, const Happening<SensitiveSystem::X>& now) {
     if (!rows.events) return;
-    const bool declared = std::ranges::any_of(now.events, [&](std::size_t i) { return integrator.events().is_declared(i); });
+    const bool declared =
+        std::ranges::any_of(now.events, [&](std::size_t i) { return integrator.events().is_declared(i); });
     if (!declared || now.before == now.after) return;
     if (rows.times.empty() || rows.times.back() != now.t) rows.keep(now.t, now.before);
     rows.keep(now.t, now.after);
@@ -80,8 +81,8 @@ SensitiveEnding integrate_sensitive_by(SensitiveIntegration integration, Sensiti
     if (count % 256 == 0 && integrator.options().progress) integrator.options().progress(integrator.t());
   if (rows.events && rows.times.back() != integrator.t()) rows.keep(integrator.t(), integrator.x());
   const auto happened = integrator.events().happened();
-  return {integrator.outcome(), integrator.statistics(), {happened.begin(), happened.end()},
-          integrator.events().problem()};
+  return {
+      integrator.outcome(), integrator.statistics(), {happened.begin(), happened.end()}, integrator.events().problem()};
 }
 
 }  // namespace continuo::studies::detail

@@ -74,8 +74,8 @@ NodeId SensitiveProgram::variation(Graph& graph, NodeId node, std::size_t k) con
   for (const std::uint32_t variable : model::variables_of(graph, node)) {
     if (variable < states || variable >= states + n_) continue;
     const auto place = static_cast<std::uint32_t>(k * n_ + (variable - states));
-    sum = graph.add(sum, graph.multiply(model::differentiate(graph, node, variable),
-                                        graph.variable(registers_of_s() + place)));
+    sum = graph.add(
+        sum, graph.multiply(model::differentiate(graph, node, variable), graph.variable(registers_of_s() + place)));
   }
   return sum;
 }
@@ -160,10 +160,10 @@ void SensitiveProgram::add_events() {
         const NodeId time = scheduled.time ? by_parameters(graph, scheduled.time->node, k) : graph.constant(0);
         const bool repeats = scheduled.kind == Kind::every;
         event.period.push_back(repeats ? time : graph.constant(0));
-        event.first.push_back(scheduled.first                       ? by_parameters(graph, scheduled.first->node, k)
-                              : repeats                             ? graph.add(start_time_[k], time)
+        event.first.push_back(scheduled.first                     ? by_parameters(graph, scheduled.first->node, k)
+                              : repeats                           ? graph.add(start_time_[k], time)
                               : scheduled.kind == Kind::initially ? start_time_[k]
-                                                                    : time);
+                                                                  : time);
       }
       event.actions = actions_of(scheduled.actions, outputs);
     } else {

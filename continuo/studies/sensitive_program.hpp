@@ -35,9 +35,9 @@ struct Variation {
 struct SensitiveAction {
   enum class Kind { assign, branch, go };
   Kind kind = Kind::assign;
-  Variation value{};           // of assign
-  std::size_t condition = 0;   // of branch: an output
-  std::size_t target = 0;      // of assign: the state; of go: the mode
+  Variation value{};          // of assign
+  std::size_t condition = 0;  // of branch: an output
+  std::size_t target = 0;     // of assign: the state; of go: the mode
   std::vector<SensitiveAction> then{}, otherwise{};
 };
 
@@ -105,7 +105,8 @@ class SensitiveProgram {
   std::size_t n_;
   model::ModelProgram own_;  // with the graph in which the derivatives are nodes, and registers for S
   std::vector<std::string> names_;
-  std::vector<std::vector<std::pair<std::uint32_t, model::NodeId>>> parameters_;  // d parameter / d influence, by influence
+  std::vector<std::vector<std::pair<std::uint32_t, model::NodeId>>>
+      parameters_;  // d parameter / d influence, by influence
   std::vector<model::NodeId> start_, start_time_;
   std::vector<std::vector<model::NodeId>> rate_nodes_;
   std::vector<std::shared_ptr<const model::Tape>> rates_;

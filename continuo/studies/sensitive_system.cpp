@@ -131,8 +131,7 @@ std::vector<double> SensitiveEvents::time_moves(std::size_t event, std::span<con
   std::vector<double> moves(count_);
   if (const auto& schedule = schedules_[event]) {
     const double number = schedule->period > 0 ? std::round((t - schedule->first) / schedule->period) : 0;
-    for (std::size_t k = 0; k < count_; ++k)
-      moves[k] = schedule->first_moves[k] + number * schedule->period_moves[k];
+    for (std::size_t k = 0; k < count_; ++k) moves[k] = schedule->first_moves[k] + number * schedule->period_moves[k];
     return moves;
   }
   const Variation& guard = *program_->events()[event].guard;
@@ -179,8 +178,11 @@ void SensitiveEvents::perform(const std::vector<SensitiveAction>& actions, std::
 
 EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::span<const std::size_t> fired, double t,
                                     const X& before, X& x) {
-  const auto of_model = [this](const X& wide) { return X(wide.begin(), wide.begin() + static_cast<std::ptrdiff_t>(n_)); };
-  const bool follows = last_changed_ && t == last_t_ && before == last_after_;  // set off by the jump before, not by a crossing
+  const auto of_model = [this](const X& wide) {
+    return X(wide.begin(), wide.begin() + static_cast<std::ptrdiff_t>(n_));
+  };
+  const bool follows =
+      last_changed_ && t == last_t_ && before == last_after_;  // set off by the jump before, not by a crossing
   std::size_t mode = system.mode();
   X rates(before.size()), old_rates(before.size()), new_rates(before.size());
   system.rates(mode, t, before, rates);

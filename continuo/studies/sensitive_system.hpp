@@ -76,7 +76,7 @@ class SensitiveSystem {
 
 /// An event as it happened.
 struct SensitiveHappening {
-  std::size_t event;                 // of the model, in the order of the text
+  std::size_t event;  // of the model, in the order of the text
   double t;
   std::vector<double> time_moves{};  // dt/dp
 };

@@ -23,10 +23,10 @@ SensitiveEnding integrate_sensitive<Tsitouras5Bdf>(SensitiveIntegration, Sensiti
 namespace {
 
 SensitiveEnding integrate(SensitiveIntegration integration, SensitiveRows& rows) {
-  const std::string_view method = choose_method({.size = integration.x0.size(),
-                                                 .rtol = integration.options.rtol,
-                                                 .algebraic = integration.system.has_mass()})
-                                      .method;
+  const std::string_view method =
+      choose_method(
+          {.size = integration.x0.size(), .rtol = integration.options.rtol, .algebraic = integration.system.has_mass()})
+          .method;
   if (method == Dop853Radau::name || method == Radau::name)
     return integrate_sensitive<Dop853Radau>(std::move(integration), rows);
   if (method == Tsitouras5Bdf::name || method == Bdf::name)
@@ -81,9 +81,8 @@ std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::
     }
     const model::Parameter& parameter = model.parameters[influence.index];
     if (parameter.structural)
-      return model::error("E361", parameter.span,
-                          fmt::format("nothing can be differentiated by `{}`", parameter.name), {},
-                          "it decides how many equations there are");
+      return model::error("E361", parameter.span, fmt::format("nothing can be differentiated by `{}`", parameter.name),
+                          {}, "it decides how many equations there are");
   }
   if (!model.needs_dae_solver()) return std::nullopt;
   const auto refuse = [](const model::Span& span) {
@@ -163,10 +162,12 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   }
   run.variables = variables;
   detail::SensitiveEvents events(*program_, variables, planned->from);
-  const detail::SensitiveEnding ending =
-      detail::integrate({std::move(system), std::move(x0), {planned->from, planned->to},
-                         options_of(*planned, experiment, run.states, sizes), std::move(events)},
-                        rows);
+  const detail::SensitiveEnding ending = detail::integrate({std::move(system),
+                                                            std::move(x0),
+                                                            {planned->from, planned->to},
+                                                            options_of(*planned, experiment, run.states, sizes),
+                                                            std::move(events)},
+                                                           rows);
   run.times = std::move(rows.times);
   run.values = std::move(rows.values);
   run.outcome = ending.outcome;

@@ -31,7 +31,7 @@ struct SensitivityDuals {
   using Number = ceres::Jet<double, static_cast<int>(M)>;
   using State = std::array<Number, N>;
   using Parameters = std::array<Number, M>;
-  using Wide = std::array<double, N*(1 + M)>;  // x, then dx/dp[0], dx/dp[1], ...
+  using Wide = std::array<double, N * (1 + M)>;  // x, then dx/dp[0], dx/dp[1], ...
 
   static State read(const Wide& wide) {
     State x;
@@ -67,7 +67,7 @@ SensitiveGuard(std::string, Guard, Direction, Action) -> SensitiveGuard<Guard, A
 
 template <std::size_t N, std::size_t M>
 struct DualSensitivities {
-  Solution<std::array<double, N*(1 + M)>> solution;
+  Solution<std::array<double, N * (1 + M)>> solution;
 
   std::size_t rows() const { return solution.t.size(); }
   std::array<double, N> x(std::size_t row) const { return part(row, 0); }

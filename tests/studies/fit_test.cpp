@@ -60,7 +60,7 @@ TEST(Fit, FindsWhatMadeTheData) {  // without noise: to the runs' tolerance
 }
 
 // In 1,000 repeats the share inside an interval of 95 % has the deviation sqrt(0.95 * 0.05/1000) = 0.7 %.
-TEST(Fit, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(Fit, IntervalsHoldTheTruthAsOftenAsTheySayInThousandRepeats) {
   std::mt19937_64 random(20);
   FitRequest request = spring_request(100, 0.05, random);
   int k_inside = 0, c_inside = 0;
@@ -127,10 +127,11 @@ TEST(Fit, TakesSeveralSetsEachWithItsOwnParametersAndGaps) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), a = 0.7;
   const Measurements first{"1.csv", {"x"}, {0, 1, 2}, {2, 3, 4}, {{nan, std::exp(-a), nan}}};
   const Measurements second{"2.csv", {"twice"}, {0.5, 0.5}, {2, 3}, {{6 * std::exp(-a / 2), 6 * std::exp(-a / 2)}}};
-  const Fit result = fit({.program = program,
-                          .data = {{.measurements = first, .columns = {{0, "x", 0.1}}},
-                                   {.measurements = second, .columns = {{0, "twice", 0.1}}, .parameters = {{"x0", 3.0}}}},
-                          .unknowns = {unknown(*program, "a")}});
+  const Fit result =
+      fit({.program = program,
+           .data = {{.measurements = first, .columns = {{0, "x", 0.1}}},
+                    {.measurements = second, .columns = {{0, "twice", 0.1}}, .parameters = {{"x0", 3.0}}}},
+           .unknowns = {unknown(*program, "a")}});
   ASSERT_TRUE(result.found()) << result.problem;
   EXPECT_NEAR(result.least.p[0], a, 1e-7);
   // Known deviations: 1/s^2 = sum of (dq/da)^2 / 0.1^2.

@@ -21,10 +21,24 @@ namespace {
 /// Ends before chaos or many orbits have made a difference of 1e-3 in a parameter a large one, and large models short
 /// of what a test may take. The others run to their own end, but at most ten units of their time.
 const std::map<std::string, double> ends = {
-    {"arenstorf", 3},    {"beam", 1e-3},         {"double_pendulum", 2}, {"galaxy", 0.05},  {"kepler", 5},
-    {"lorenz", 1},       {"outer_planets", 300}, {"pleiades", 0.5},      {"robertson", 40}, {"rc_diode", 1e-2},
-    {"relaxation", 0.05}, {"fed_batch", 1}, {"oregonator", 0.1}, {"ball_on_stairs", 2},
-    {"wave_equation", 0.2}, {"heat_equation", 0.05}, {"brusselator_line", 0.2}, {"thermostat", 3},
+    {"arenstorf", 3},
+    {"beam", 1e-3},
+    {"double_pendulum", 2},
+    {"galaxy", 0.05},
+    {"kepler", 5},
+    {"lorenz", 1},
+    {"outer_planets", 300},
+    {"pleiades", 0.5},
+    {"robertson", 40},
+    {"rc_diode", 1e-2},
+    {"relaxation", 0.05},
+    {"fed_batch", 1},
+    {"oregonator", 0.1},
+    {"ball_on_stairs", 2},
+    {"wave_equation", 0.2},
+    {"heat_equation", 0.05},
+    {"brusselator_line", 0.2},
+    {"thermostat", 3},
 };
 
 /// Without sensitivities: conditions at both ends.
@@ -96,16 +110,15 @@ void compare(const Case& of, const std::string& name) {
     expected[i] = (16 * second - first) / 15;
     // The hundred: rounding of that many steps.
     const double rounding = 100 * std::numeric_limits<double>::epsilon() * std::abs(middle[i]);
-    const double error_of_run =
-        std::abs(middle[i] - run.value(last, i)) + std::abs(middle[i] - coarse[i]) + rounding;
+    const double error_of_run = std::abs(middle[i] - run.value(last, i)) + std::abs(middle[i] - coarse[i]) + rounding;
     const double error_of_s = std::abs(run.sensitivity(last, i, 0) - loose.sensitivity(loose.rows() - 1, i, 0));
     double& tolerance = tolerances[family(i)];
     tolerance = std::max(tolerance, std::abs(expected[i] - second) + 8 * error_of_run / h + error_of_s);
   }
   for (std::size_t i = 0; i < run.states; ++i) {
     const double s = run.sensitivity(last, i, 0), tolerance = tolerances[family(i)];
-    EXPECT_NEAR(s, expected[i], tolerance) << name << ": d " << of.program->model.states[i].column << " / d "
-                                           << name_of(of.program->model, of.influence);
+    EXPECT_NEAR(s, expected[i], tolerance)
+        << name << ": d " << of.program->model.states[i].column << " / d " << name_of(of.program->model, of.influence);
     largest = std::max(largest, std::abs(s));
     loosest = std::max(loosest, tolerance);
   }

@@ -59,8 +59,8 @@ TEST(Sensitivity, OfMassSpringDamperIsThatOfTheClosedForm) {
 // h = v_n s - g s^2/2 with s = t - t_n.
 TEST(Sensitivity, OfABallAfterTenBouncesIsThatOfTheClosedForm) {
   const auto program = gallery("bouncing_ball");
-  const SensitivityStudy study(
-      program, {parameter(*program, "e"), parameter(*program, "g"), parameter(*program, "h0")});
+  const SensitivityStudy study(program,
+                               {parameter(*program, "e"), parameter(*program, "g"), parameter(*program, "h0")});
   const double g = 9.8, e = 0.9, h0 = 10, first = std::sqrt(2 * h0 / g), speed = std::sqrt(2 * g * h0);
   const int n = 10;
   double sum = 0.5, sum_by_e = 0;
@@ -106,10 +106,10 @@ TEST(Sensitivity, KnowsTimesOfScheduledEventsThatDependOnParameters) {
       "param a = 0.7, b = 0.1, p = 0.5, q = 0.2\nmode on { x' = 2*t }\nmode off { x' = -x }\nx(0) = 0\n"
       "at a { go off }\nevery p from a + q { x := x + b }\nrun 0..1.6 tol 1e-12\n");
   const double a = 0.7, b = 0.1, p = 0.5, q = 0.2, t = 1.6;  // additions at a + q = 0.9 and 1.4
-  const std::vector<double> end = final_row(
-      SensitivityStudy(program, {parameter(*program, "a"), parameter(*program, "b"), parameter(*program, "p"),
-                                 parameter(*program, "q")})
-          .run());
+  const std::vector<double> end =
+      final_row(SensitivityStudy(program, {parameter(*program, "a"), parameter(*program, "b"), parameter(*program, "p"),
+                                           parameter(*program, "q")})
+                    .run());
   const double one = std::exp(-(t - a - q)), two = std::exp(-(t - a - q - p)), kept = std::exp(-(t - a));
   EXPECT_NEAR(end[0], a * a * kept + b * (one + two), 1e-9);
   EXPECT_NEAR(end[1], 2 * a * kept + a * a * kept + b * (one + two), 1e-8);
@@ -154,7 +154,8 @@ TEST(Sensitivity, TellsEventsOfOneInstantApart) {
 // The guard jumps through zero without a slope: no implicit function gives its time.
 TEST(Sensitivity, SaysWhereAMotionHasNoDerivative) {
   const auto program = program_of(
-      "param p = 1\nx' = 1\nx(0) = 0\nlet side = if x > 1 then p else -p\nwhen side rises through 0 { x := 0 }\nrun 0..2\n");
+      "param p = 1\nx' = 1\nx(0) = 0\nlet side = if x > 1 then p else -p\nwhen side rises through 0 { x := 0 }\nrun "
+      "0..2\n");
   const SensitivityRun run = SensitivityStudy(program, {parameter(*program, "p")}).run();
   EXPECT_FALSE(run.good());
   EXPECT_NE(run.problem.find("has no derivative"), std::string::npos) << run.problem;
@@ -172,7 +173,8 @@ TEST(Sensitivity, OfAlgebraicEquations) {
 TEST(Sensitivity, RefusesWhatHasNone) {
   const auto boundary = program_of("param a = 1\nx'' = a\nx(0) = 0\nx(1) = 1\nrun 0..1\n");
   EXPECT_EQ(no_sensitivity(boundary->model, std::vector{parameter(*boundary, "a")})->code, "E361");
-  const auto family = program_of("param N = 2\nfor i in 1..N { x[i]' = -x[i] }\nfor i in 1..N { x[i](0) = 1 }\nrun 0..1\n");
+  const auto family =
+      program_of("param N = 2\nfor i in 1..N { x[i]' = -x[i] }\nfor i in 1..N { x[i](0) = 1 }\nrun 0..1\n");
   EXPECT_EQ(no_sensitivity(family->model, std::vector{parameter(*family, "N")})->code, "E361");
   const auto event = program_of(
       "param a = 1\nunknown y = 1\nx' = -y\n0 = y - a*x\nx(0) = 1\nwhen x falls through 0.5 { x := 1 }\nrun 0..1\n");

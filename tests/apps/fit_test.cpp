@@ -1,0 +1,82 @@
+// sense and fit: what they print, what they write, and what they say of wrong data.
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shell.hpp"
+
+namespace continuo::app {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr const char* decay =
+    "param a = 1 in 0..5, N = 2\nx' = -a*x\nx(0) = 1\noutput twice = N*x\nrun 0..2 output 1\n";
+
+TEST(Sense, WritesStatesAndTheirDerivatives) {
+  Shell shell;
+  shell.write("decay.sim", decay);
+  const Result result = shell.run("sense decay.sim --param a --initial x -o s.csv --tol 1e-10");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("d x / d a"));
+  EXPECT_THAT(result.out, HasSubstr("d x / d x(0)"));
+  EXPECT_THAT(shell.read("s.csv"), StartsWith("t,x,d x / d a,d x / d x(0)\n0,1,0,1\n1,0.36787944"));
+}
+
+TEST(Sense, SaysWhichNameIsWrong) {
+  Shell shell;
+  shell.write("decay.sim", decay);
+  EXPECT_THAT(shell.run("sense decay.sim").err, HasSubstr("name parameters by --param"));
+  const Result wrong = shell.run("sense decay.sim --param b");
+  EXPECT_EQ(wrong.exit, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("there is no parameter `b`"));
+  EXPECT_THAT(shell.run("sense decay.sim --initial y").err, HasSubstr("there is no state `y`"));
+  EXPECT_THAT(shell.run("sense decay.sim --param a -o /no/such/folder/s.csv").err, HasSubstr("cannot write"));
+  shell.write("boundary.sim", "param a = 1\nx'' = a\nx(0) = 0\nx(1) = 1\nrun 0..1\n");
+  const Result boundary = shell.run("sense boundary.sim --param a");
+  EXPECT_EQ(boundary.exit, 2);
+  EXPECT_THAT(boundary.err, HasSubstr("boundary.sim:3"));
+}
+
+TEST(Fit, FindsAParameterFromTwoFiles) {  // x = exp(-0.5 t), and the double of it
+  Shell shell;
+  shell.write("decay.sim", decay);
+  shell.write("a.csv", "t,x\n0,1\n1,0.60653\n2,\n");
+  shell.write("b.csv", "time;both\n1;1.81959\n2;1.10364\n");
+  const Result result =
+      shell.run("fit decay.sim a.csv b.csv --param a --column both=twice --in b.csv:N=3 --plot fit.svg --starts 3");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("a                       0.5 "));
+  EXPECT_THAT(result.out, HasSubstr("4 values"));
+  EXPECT_TRUE(shell.has("fit.svg"));
+}
+
+TEST(Fit, SaysFileAndLineOfWrongData) {
+  Shell shell;
+  shell.write("decay.sim", decay);
+  shell.write("good.csv", "t,x\n0,1\n1,0.6\n");
+  const auto message = [&](const std::string& data, const std::string& more = "--param a") {
+    shell.write("d.csv", data);
+    const Result result = shell.run("fit decay.sim d.csv " + more);
+    EXPECT_NE(result.exit, 0) << data;
+    return result.err;
+  };
+  EXPECT_THAT(message(""), HasSubstr("d.csv:1: the file is empty"));
+  EXPECT_THAT(message("t,x\n"), HasSubstr("d.csv:1: no rows"));
+  EXPECT_THAT(message("t,x\n0,1\n1,one\n"), HasSubstr("d.csv:3: `one` in column `x` is no number"));
+  EXPECT_THAT(message("t,y\n0,1\n"), HasSubstr("d.csv:1: there is no state or output `y`"));
+  EXPECT_THAT(message("t,x\n-1,1\n"), HasSubstr("d.csv:2: the time -1 is before the model's start at 0"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param b"), HasSubstr("there is no parameter `b`"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --loss best"), HasSubstr("there is no loss `best`"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --sigma x=-1"), HasSubstr("a deviation is a positive number"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --bounds a=2"), HasSubstr("`a=2` is not NAME=LOW..HIGH"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --column z=x"), HasSubstr("there is no column `z`"));
+  EXPECT_THAT(message("t,x\n0,\n", "--param a"), HasSubstr("0 measured values cannot determine 1 unknowns"));
+  EXPECT_THAT(shell.run("fit decay.sim none.csv --param a").err, HasSubstr("none.csv:1: the file cannot be read"));
+  EXPECT_THAT(shell.run("fit decay.sim good.csv --param a --plot /no/such/x.svg").err, HasSubstr("cannot write"));
+}
+
+}  // namespace
+}  // namespace continuo::app
