@@ -17,7 +17,8 @@ Run run_along(const ModelProgram& program, Plan plan, std::span<const double> st
   at(run.plan.from, x);
   recorder.begin(run.plan.from, x);
   Function motion = at;
-  const At call{&motion, [](void* of, double t, std::vector<double>& state) { (*static_cast<Function*>(of))(t, state); }};
+  const At call{&motion,
+                [](void* of, double t, std::vector<double>& state) { (*static_cast<Function*>(of))(t, state); }};
   for (const double t : steps)
     if (t > run.plan.from && t < run.plan.to) recorder.stretch(t, call);
   recorder.stretch(run.plan.to, call);

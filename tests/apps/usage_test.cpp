@@ -20,9 +20,8 @@ using ::testing::StartsWith;
 TEST(Usage, HelpBeginsWithExamples) {
   const Shell shell;
   EXPECT_THAT(shell.run("--help").out, StartsWith("Examples:\n  continuo run"));
-  for (const std::string verb :
-       {"run", "check", "info", "verify", "compare", "converge", "stability", "sense", "fit", "methods", "explain",
-        "new"}) {
+  for (const std::string verb : {"run", "check", "info", "verify", "compare", "converge", "stability", "sense", "fit",
+                                 "methods", "explain", "new"}) {
     const Result help = shell.run(verb + " --help");
     EXPECT_EQ(help.exit, 0) << verb;
     EXPECT_THAT(help.out, StartsWith("Examples:\n  continuo ")) << verb;
