@@ -227,6 +227,14 @@ struct CollocationMethod {
                              : Scalar<X>(sqrt(size / Scalar<X>(static_cast<double>(dimension(x)))) / work.looseness);
   }
 
+  // What RADAU calls fast is a rate of 0.002. The stricter the tolerance, the more a higher order gains, and a few
+  // iterations more are nothing against it: a nonlinearity that spoils the rate would keep a strict run at order 5.
+  template <class Real>
+  static Real fast_rate(const Real& rtol) {
+    using std::clamp, std::sqrt;
+    return Real(2e-3) * clamp(sqrt(Real(1e-6) / rtol), Real(1), Real(50));
+  }
+
   // The strategy of RADAU: the order goes up where Newton's iteration converges fast and steps are calm, and down where
   // it barely converges, for then it is what bounds the step (Hairer & Wanner 1999, section 4).
   template <State X>
@@ -235,7 +243,8 @@ struct CollocationMethod {
     const auto& memory = work.memory;
     if (memory.rate >= Scalar<X>(0.8) && work.stages > least) return work.stages - 2;
     const bool calm = factor > Scalar<X>(0.8) && factor < Scalar<X>(1.2);
-    if (calm && memory.iterations > 1 && memory.rate <= Scalar<X>(2e-3) && work.stages < most) return work.stages + 2;
+    if (calm && memory.iterations > 1 && memory.rate <= fast_rate(work.rtol) && work.stages < most)
+      return work.stages + 2;
     return work.stages;
   }
 
