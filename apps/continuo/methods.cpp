@@ -15,7 +15,6 @@
 
 #include <continuo/model/experiment.hpp>
 #include <continuo/solve/catalogue.hpp>
-#include <continuo/solve/choice.hpp>
 
 namespace continuo::app {
 namespace {
@@ -50,8 +49,10 @@ constexpr std::array citations{
     Citation{"radau5", "Hairer, Wanner, Solving ODEs II, IV.8"},
     Citation{"radau", "Hairer, Wanner, J. Comput. Appl. Math. 111 (1999), orders 5, 9, 13; stiff and strict"},
     Citation{"tsitouras5_rodas5p", "both, handing over where stiffness begins and ends; the default"},
-    Citation{"dop853_radau", "the default for tolerances below 1e-8"},
+    Citation{"dop853_radau", "the default for tolerances below 1e-6"},
     Citation{"tsitouras5_bdf", "the default for more than 100 states"},
+    Citation{"dprkn8_radau", "the default for x'' = a(t, x)"},
+    Citation{"dprkn12_radau", "the default for x'' = a(t, x) and tolerances below 1e-6"},
     Citation{"implicit_euler", "Hairer, Wanner, Solving ODEs II, IV.3"},
     Citation{"trapezoidal", "Crank, Nicolson, Proc. Camb. Phil. Soc. 43 (1947); also `crank_nicolson`"},
     Citation{"implicit_midpoint", "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1; symplectic"},
@@ -74,9 +75,9 @@ std::string_view source_of(std::string_view method) {
 }
 
 std::string_view kind_of(const MethodInfo& method) {
+  if (method.automatic) return method.second_order ? "automatic, x'' = a(t, x)" : "automatic, any system";
   if (method.second_order && method.implicit) return "structures, x'' = a(t, x, x')";
   if (method.second_order) return method.error_order > 0 ? "adaptive, x'' = a(t, x)" : "fixed step, x'' = a(t, x)";
-  if (method.name.find("tsitouras5_") == 0 || method.name.find("dop853_") == 0) return "adaptive, any system";
   if (method.implicit) return method.error_order > 0 ? "adaptive, stiff, algebraic" : "fixed step, stiff, algebraic";
   return method.error_order > 0 ? "adaptive" : "fixed step";
 }
@@ -97,19 +98,11 @@ ExitCode why(const std::string& file) {
   const model::Loaded loaded = load_model(file);
   if (!loaded) return wrong_model;
   const model::Model& model = *loaded.model;
-  if (model.run.method) {
-    print(fmt::format("{}: the model names {}\n", model.name, *model.run.method));
-    return done;
-  }
   std::vector<model::Diagnostic> problems;
   const auto plan = model::plan(model, {}, problems);
   show(problems, loaded.source);
   if (!plan) return usage;
-  const Choice choice =
-      choose_method({.size = model.states.size(), .rtol = plan->rtol, .algebraic = model.needs_dae_solver()});
-  const std::string_view reason =
-      plan->step > 0 ? "the model gives a step, and this one costs little for its order" : choice.reason;
-  print(fmt::format("{}: {}; {}\n", model.name, plan->method, reason));
+  print(fmt::format("{}: {}; {}\n", model.name, plan->method, plan->reason));
   return done;
 }
 

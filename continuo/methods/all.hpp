@@ -58,8 +58,6 @@ using AccelerationMethods = std::tuple<McLachlanAtela4, Yoshida6, KahanLi8, Dorm
 using StructuralMethods = std::tuple<Newmark, GeneralizedAlpha>;
 using StiffMethods = std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5, Rkc2,
                                 Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf>;
-/// What is taken where no method is named.
-using AutomaticMethods = std::tuple<Tsitouras5Rodas5P, Dop853Radau, Tsitouras5Bdf>;
 using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
                                            std::tuple<Adams>{}, StiffMethods{}, AutomaticMethods{}));
 

@@ -1,11 +1,14 @@
 // continuo/methods/automatic.hpp
 // The methods that take what comes: each an explicit one and a stiff one that hand over to each other, for moderate and
-// for strict tolerances, and for large systems. <continuo/solve/automatic.hpp> chooses among them.
+// for strict tolerances, for large systems, and for x'' = a(t, x). <continuo/solve/automatic.hpp> chooses among them.
 #pragma once
 #include <string_view>
+#include <tuple>
 
 #include <continuo/methods/bdf.hpp>
 #include <continuo/methods/dop853.hpp>
+#include <continuo/methods/dormand_prince_nystrom12.hpp>
+#include <continuo/methods/dormand_prince_nystrom8.hpp>
 #include <continuo/methods/radau.hpp>
 #include <continuo/methods/rodas5p.hpp>
 #include <continuo/methods/switching.hpp>
@@ -22,5 +25,15 @@ struct Dop853Radau : Switching<Dop853, Radau> {
 struct Tsitouras5Bdf : Switching<Tsitouras5, Bdf> {
   static constexpr std::string_view name = "tsitouras5_bdf";
 };
+struct DormandPrinceNystrom8Radau : Switching<DormandPrinceNystrom8, Radau> {
+  static constexpr std::string_view name = "dprkn8_radau";
+};
+struct DormandPrinceNystrom12Radau : Switching<DormandPrinceNystrom12, Radau> {
+  static constexpr std::string_view name = "dprkn12_radau";
+};
+
+/// What is taken where no method is named.
+using AutomaticMethods =
+    std::tuple<Tsitouras5Rodas5P, Dop853Radau, Tsitouras5Bdf, DormandPrinceNystrom8Radau, DormandPrinceNystrom12Radau>;
 
 }  // namespace continuo

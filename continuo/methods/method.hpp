@@ -72,6 +72,7 @@ struct EquationCosts {
 ///   M::why_not(system, x)  what the method has against this system, to be read after its name; empty where nothing. A
 ///       run of what it refuses does not begin
 ///   M::implicit       true where M x' = f(t, x) with a mass matrix (singular, of index 1) can be integrated
+///   M::automatic      true where it is an explicit and a stiff method that hand over to each other
 ///   M::aim(work, tolerance)  before every step: how close the equations of the step must be solved
 ///   M::status(work)   -> StepStatus of the last step; what is not `done` is rejected and tried with a smaller h
 ///   M::costs(work)    -> EquationCosts
@@ -98,6 +99,14 @@ template <class M>
 constexpr bool is_implicit() {
   if constexpr (requires { M::implicit; }) {
     return M::implicit;
+  } else {
+    return false;
+  }
+}
+template <class M>
+constexpr bool is_automatic() {
+  if constexpr (requires { M::automatic; }) {
+    return M::automatic;
   } else {
     return false;
   }

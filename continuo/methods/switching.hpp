@@ -24,8 +24,8 @@ struct Switching {
   static constexpr int order = NonStiff::order, error_order = NonStiff::error_order;
   static constexpr int dense_order = std::min(NonStiff::dense_order, Stiff::dense_order);
   static constexpr int dense_degree = std::max(NonStiff::dense_degree, Stiff::dense_degree);
-  static constexpr bool second_order = false, implicit = true;
-  static_assert(!NonStiff::second_order && Stiff::implicit && NonStiff::error_order > 0 && Stiff::error_order > 0);
+  static constexpr bool second_order = NonStiff::second_order, implicit = true, automatic = true;
+  static_assert(!Stiff::second_order && Stiff::implicit && NonStiff::error_order > 0 && Stiff::error_order > 0);
 
   template <State X>
   struct Workspace {
@@ -41,13 +41,21 @@ struct Switching {
     std::size_t steps = 0;      // accepted, since the last change of method
     std::size_t in_favour = 0;  // probes in a row that speak for a change
     std::size_t patience = least_patience;
-    Scalar<X> h_of_stiff{};  // |h| of the stiff method when it was left last
+    Scalar<X> worthwhile_h{};  // |h| from which the stiff method is the cheaper one, as it was when it took over
+    bool worthwhile = false;   // it has come that far
+    Scalar<X> h_of_stiff{};    // its |h| when it was left last
   };
 
   template <State X>
   static Workspace<X> workspace(const X& x) {
     return {NonStiff::workspace(x), Stiff::workspace(x), Interpolant<X, NonStiff::dense_degree>(x),
             Interpolant<X, Stiff::dense_degree>(x), StiffnessWatch<X>(x)};
+  }
+
+  template <class System, State X>
+  static std::string_view why_not(const System& system, const X& x) {
+    if constexpr (requires { NonStiff::why_not(system, x); }) return NonStiff::why_not(system, x);
+    return {};
   }
 
   template <State X>
@@ -68,13 +76,9 @@ struct Switching {
     int evaluations = work.is_stiff ? Stiff::step(system, t, x, h, anew, work.stiff, x_new)
                                     : NonStiff::step(system, t, x, h, anew, work.nonstiff, x_new);
     if (!work.has_mass && work.steps % probe_every == probe_every - 1) {
-      if (work.is_stiff) {
-        work.watch.probe(system, t, x, Stiff::derivative(work.stiff), work.tolerance);
-      } else {
-        work.watch.probe(system, t, x, NonStiff::derivative(work.nonstiff), work.tolerance);
-      }
-      ++evaluations;
-      work.in_favour = speaks_for_change(work, h) ? work.in_favour + 1 : 0;
+      const bool change = work.is_stiff ? explicit_would_do(system, t, x, h, work, evaluations)
+                                        : stiff_would_help(system, t, x, h, work, evaluations);
+      work.in_favour = change ? work.in_favour + 1 : 0;
     }
     work.h = h < 0 ? -h : h;
     return evaluations;
@@ -134,12 +138,9 @@ struct Switching {
   static void accept(Workspace<X>& work) {
     work.fresh = false;
     ++work.steps;
+    if (work.is_stiff && work.h >= work.worthwhile_h) work.worthwhile = true;
     if (work.in_favour >= work.patience) {
-      // Each return to the explicit method doubles the patience: a system at the border is not tossed to and fro.
-      if (work.is_stiff) {
-        work.patience *= 2;
-        work.h_of_stiff = work.h;
-      }
+      work.is_stiff ? leave_stiff(work) : enter_stiff(work);
       work.is_stiff = !work.is_stiff;
       work.fresh = true;
       work.steps = work.in_favour = 0;
@@ -160,13 +161,40 @@ struct Switching {
   static constexpr std::size_t probe_every = 8, least_patience = 3;
   static constexpr int worthwhile = 8;  // a stiff step costs some three to ten explicit ones
 
-  // An explicit method at the boundary of its stability, or one whose steps are far shorter than those of the stiff
-  // method were, even if it is accuracy that shortens them; a stiff method whose step any explicit one could make.
-  template <State X>
-  static bool speaks_for_change(const Workspace<X>& work, const Scalar<X>& h) {
+  // The explicit method is held by stiffness, or its steps are far shorter than those of the stiff method were, even if
+  // it is accuracy that shortens them.
+  template <class System, State X>
+  static bool stiff_would_help(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
+                               int& evaluations) {
     using std::abs;
-    if (!work.is_stiff) return work.watch.bounds(h) || worthwhile * abs(h) < work.h_of_stiff;
-    return work.watch.radius() * abs(h) < Scalar<X>(1);
+    const auto& slope = NonStiff::derivative(work.nonstiff);
+    work.watch.probe(system, t, x, slope, work.tolerance);
+    ++evaluations;
+    return work.watch.holds(system, t, x, slope, h, work.tolerance, evaluations) ||
+           worthwhile * abs(h) < work.h_of_stiff;
+  }
+
+  // Any explicit method could make steps like those of the stiff one, or they are not so much longer.
+  template <class System, State X>
+  static bool explicit_would_do(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
+                                int& evaluations) {
+    using std::abs;
+    work.watch.probe(system, t, x, Stiff::derivative(work.stiff), work.tolerance);
+    ++evaluations;
+    return work.watch.radius() * abs(h) < Scalar<X>(1) || (!work.worthwhile && abs(h) < work.worthwhile_h);
+  }
+
+  template <State X>
+  static void enter_stiff(Workspace<X>& work) {
+    work.worthwhile_h = worthwhile * work.h;
+    work.worthwhile = false;
+  }
+  // A stiff method that was of no use waits twice as long the next time: a system at the border is not tossed to and
+  // fro, and one that only looks stiff costs a few attempts.
+  template <State X>
+  static void leave_stiff(Workspace<X>& work) {
+    if (!work.worthwhile) work.patience *= 2;
+    work.h_of_stiff = work.worthwhile ? work.h : Scalar<X>(0);
   }
 
   template <State X, int Degree>

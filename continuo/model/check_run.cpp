@@ -25,6 +25,12 @@ bool is_second_order(std::string_view name) {
   return method && method->second_order;
 }
 
+/// Not those for structures, which take damping.
+bool needs_no_velocities(std::string_view name) {
+  const MethodInfo* method = find_method(name);
+  return method && method->second_order && (!method->implicit || method->automatic);
+}
+
 bool has_units_inside(const ast::Expression& expression) {
   return std::visit(
       [](const auto& node) {
@@ -138,7 +144,7 @@ void Checker::check_method_fits() {
   if (!model_.all_paired) {
     fail("E264", span, fmt::format("`{}` is for equations x'' = a(t, x)", *model_.run.method),
          "this model is not made of pairs of position and velocity", "take a general method such as tsitouras5");
-  } else if (model_.accelerations_depend_on_velocities && !find_method(*model_.run.method)->implicit) {
+  } else if (model_.accelerations_depend_on_velocities && needs_no_velocities(*model_.run.method)) {
     warn("E292", span, fmt::format("`{}` loses its order here", *model_.run.method),
          "an acceleration depends on a velocity", "a general method such as tsitouras5 keeps its order");
   }

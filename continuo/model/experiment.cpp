@@ -122,12 +122,9 @@ class Planner {
   }
 
   void set_method() {
-    std::string name = experiment_.method.value_or(run_.method.value_or(""));
-    if (name.empty() && plan_.step > 0 && !model_.needs_dae_solver()) name = "tsitouras5";
-    if (name.empty())
-      name = choose_method({.size = model_.states.size(), .rtol = plan_.rtol, .algebraic = model_.needs_dae_solver()})
-                 .method;
+    const auto [name, reason] = choice();
     plan_.method = canonical_name(name);
+    plan_.reason = reason;
     std::vector<std::string> names;
     for (const MethodInfo& info : method_catalogue()) {
       names.emplace_back(info.name);
@@ -136,6 +133,18 @@ class Planner {
     const std::string near = did_you_mean(name, names);
     fail("E330", fmt::format("there is no method `{}`", name), near.empty() ? "`continuo methods` lists them" : near,
          experiment_.method.has_value());
+  }
+
+  Choice choice() const {
+    if (experiment_.method) return {*experiment_.method, "it was asked for"};
+    if (run_.method) return {*run_.method, "the model names it"};
+    if (plan_.step > 0 && !model_.needs_dae_solver())
+      return {"tsitouras5", "a step is given, and this one costs little for its order"};
+    return choose_method({.size = model_.states.size(),
+                          .rtol = plan_.rtol,
+                          .algebraic = model_.needs_dae_solver(),
+                          .accelerations = model_.all_paired && !model_.accelerations_depend_on_velocities,
+                          .sparse = true});  // the graph has the pattern of df/dx
   }
 
   void accept(const MethodInfo& method) {

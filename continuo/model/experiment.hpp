@@ -38,6 +38,7 @@ struct Experiment {
 /// The experiment as it will run: nothing is left open.
 struct Plan {
   std::string method;
+  std::string reason;             // why this one
   double rtol = 0;                // the smallest of them
   std::vector<double> rtol_each;  // one per state where they differ, else empty
   std::vector<double> atol;       // one, or one per state

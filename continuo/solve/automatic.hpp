@@ -1,8 +1,12 @@
 // continuo/solve/automatic.hpp
-// `solve` without a method: one is chosen by tolerance and size, and hands over to a stiff one where that is due.
+// `solve` without a method: one is chosen by tolerance, size and kind of system, and hands over to a stiff one where
+// that is due.
 //
 //   auto solution = solve(f, std::array{1.0, 0.0}, {0, 10}, {.rtol = 1e-7});
 #pragma once
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -10,18 +14,39 @@
 #include <continuo/solve/choice.hpp>
 #include <continuo/solve/solve.hpp>
 #include <continuo/system/mass.hpp>
+#include <continuo/system/second_order.hpp>
 
 namespace continuo {
+
+/// What `choose_method` wants to know of a system and a state of it.
+template <class System, State X>
+SystemTraits traits_of(System& system, const X& x, double rtol) {
+  SystemTraits traits{.size = dimension(x), .rtol = rtol, .algebraic = has_mass<X>(system)};
+  if constexpr (SecondOrder<System>) {
+    traits.accelerations = 2 * system.pair_count(traits.size) == traits.size && ignores_velocity(system, x);
+  }
+  if constexpr (HasJacobianPattern<System>) {
+    constexpr std::size_t entries_of_sparse = 10;  // one in so many
+    const SparsePattern& pattern = system.jacobian_pattern();
+    traits.sparse = entries_of_sparse * pattern.entries() < traits.size * traits.size;
+  }
+  return traits;
+}
 
 template <class System, State X>
 auto solve(System system, const X& x0, Interval<std::type_identity_t<Scalar<X>>> interval,
            const std::type_identity_t<Options<X>>& options = {}) {
-  const Choice choice = choose_method(
-      {.size = dimension(x0), .rtol = static_cast<double>(options.rtol), .algebraic = has_mass<X>(system)});
-  const auto by = [&](auto method) { return solve(std::move(system), x0, interval, method, options); };
-  if (choice.method == Dop853Radau::name || choice.method == Radau::name) return by(Dop853Radau{});
-  if (choice.method == Tsitouras5Bdf::name || choice.method == Bdf::name) return by(Tsitouras5Bdf{});
-  return by(Tsitouras5Rodas5P{});  // with algebraic equations each of them begins, and stays, with its stiff half
+  const auto rtol = options.rtol_each.empty() ? options.rtol : *std::ranges::min_element(options.rtol_each);
+  const std::string_view method = choose_method(traits_of(system, x0, static_cast<double>(rtol))).method;
+  const auto by = [&](auto chosen) { return solve(std::move(system), x0, interval, chosen, options); };
+  if constexpr (SecondOrder<System>) {
+    if (method == DormandPrinceNystrom8Radau::name) return by(DormandPrinceNystrom8Radau{});
+    if (method == DormandPrinceNystrom12Radau::name) return by(DormandPrinceNystrom12Radau{});
+  }
+  // With algebraic equations each of these begins, and stays, with its stiff half.
+  if (method == Dop853Radau::name || method == Radau::name) return by(Dop853Radau{});
+  if (method == Tsitouras5Bdf::name || method == Bdf::name) return by(Tsitouras5Bdf{});
+  return by(Tsitouras5Rodas5P{});
 }
 
 }  // namespace continuo

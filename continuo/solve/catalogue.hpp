@@ -15,6 +15,7 @@ struct MethodInfo {
   int dense_order;
   bool second_order;  // only for x'' = a(t, x)
   bool implicit;      // solves equations in each step: for stiff systems and algebraic equations
+  bool automatic;     // an explicit and a stiff method that hand over to each other
 };
 
 /// Other names of a method: `euler` for explicit_euler, `crank_nicolson` for trapezoidal.

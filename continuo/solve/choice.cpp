@@ -5,25 +5,39 @@ namespace continuo {
 
 namespace {
 
-// From here on a high order is the cheaper one: bench/ compares tsitouras5 with dop853, and rodas5p with radau.
-constexpr double high_order_below = 1e-8;
-// Above, decomposing a matrix dominates a stiff step, and one matrix per step is the fewest there can be.
+// From here on a high order is the cheaper one: bench/ compares tsitouras5 with dop853, dprkn8 with dprkn12, and
+// rodas5p with radau. The three meet between 1e-6 and 1e-7.
+constexpr double high_order_below = 1e-6;
+// rodas5p solves algebraic equations more closely than its tolerance asks, radau as closely as it has to: as long as
+// there is little between them, the former.
+constexpr double high_order_of_algebraic_below = 1e-8;
+// Above, decomposing a matrix dominates a stiff step, and one matrix for several steps is the fewest there can be.
 constexpr std::size_t large = 100;
 
 }  // namespace
 
 Choice choose_method(const SystemTraits& system) {
-  const bool strict = system.rtol < high_order_below;
-  if (system.algebraic && system.size > large)
-    return {"bdf", "algebraic equations need an implicit method, and one matrix a step suits a large system"};
+  const bool strict = system.rtol < (system.algebraic ? high_order_of_algebraic_below : high_order_below);
+  // A sparse matrix costs little enough for the fewer steps of a high order to be worth it.
+  const bool few_matrices = system.size > large && !(system.sparse && strict);
+  if (system.algebraic && few_matrices)
+    return {"bdf",
+            "algebraic equations need an implicit method, and one matrix for several steps suits a large system"};
   if (system.algebraic && strict)
     return {"radau", "algebraic equations need an implicit method, and a strict tolerance one of high order"};
   if (system.algebraic) return {"rodas5p", "algebraic equations need an implicit method"};
-  if (system.size > large)
+  if (system.accelerations && strict)
     return {
-        "tsitouras5_bdf",
-        "explicit while accuracy bounds the steps; where stability would, one with a single matrix a step, as suits "
-        "a large system"};
+        "dprkn12_radau",
+        "x'' = a(t, x) and a strict tolerance ask for a Nystrom method of high order; an implicit one where stiffness "
+        "holds its steps"};
+  if (system.accelerations)
+    return {"dprkn8_radau", "x'' = a(t, x) asks for a Nystrom method; an implicit one where stiffness holds its steps"};
+  if (few_matrices)
+    return {"tsitouras5_bdf",
+            "explicit while accuracy bounds the steps; where stability would, one with a matrix for several steps, as "
+            "suits "
+            "a large system"};
   if (strict)
     return {
         "dop853_radau",

@@ -10,14 +10,16 @@ namespace continuo {
 struct SystemTraits {
   std::size_t size = 0;
   double rtol = 1e-6;
-  bool algebraic = false;  // M x' = f with a singular M
+  bool algebraic = false;      // M x' = f with a singular M
+  bool accelerations = false;  // all of it is x'' = a(t, x)
+  bool sparse = false;         // most entries of df/dx are known to be zero
 };
 
 struct Choice {
   std::string_view method, reason;
 };
 
-/// By tolerance and size: every choice takes stiff systems as they come.
+/// By tolerance, size and kind: every choice takes stiff systems as they come.
 Choice choose_method(const SystemTraits& system);
 
 }  // namespace continuo

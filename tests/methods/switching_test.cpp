@@ -12,6 +12,8 @@
 #include <continuo/methods/bdf.hpp>
 #include <continuo/methods/switching.hpp>
 #include <continuo/methods/tsitouras5.hpp>
+#include <continuo/solve/automatic.hpp>
+#include <continuo/system/second_order.hpp>
 
 namespace continuo {
 namespace {
@@ -64,6 +66,44 @@ TEST(Switching, DenseOutputMeetsTheToleranceAcrossTheChange) {
 
 TEST(Switching, SolvesAlgebraicEquationsByTheStiffMethodAlone) {
   EXPECT_LT(promises::error_of_algebraic_decay<Pair>(1e-6), 30);
+}
+
+// An explicit method of high order with a strict tolerance steps well inside its region of stability, and is held by
+// stiffness all the same: dop853 alone takes more than 10,000 steps here.
+TEST(Switching, HandsOverWhereAStrictToleranceKeepsStepsOffTheBoundary) {
+  const auto run = [](auto method) {
+    return solve(bench::Oregonator<>{}, bench::Oregonator<>::start(), {0.0, 360.0}, method,
+                 {.rtol = 1e-11, .atol = 1e-17});
+  };
+  const auto pair = run(Dop853Radau{}), stiff = run(Radau{});
+  ASSERT_TRUE(pair.outcome);
+  EXPECT_LT(pair.statistics.steps, 3 * stiff.statistics.steps);
+}
+
+// A spring of frequency 1e4 that follows cos t: three steps in its period of 2 pi / 1e4 are the fewest for a Nystrom
+// method, which would make some 100,000 to t = 30.
+TEST(Switching, ASpringThatCouldOscillateAndDoesNotIsStiff) {
+  const auto spring =
+      second_order([](double t, const std::array<double, 1>& q) { return std::array{-1e8 * (q[0] - std::cos(t))}; });
+  const std::array start{1 / (1 - 1e-8), 0.0};
+  for (const double tolerance : {1e-4, 1e-8}) {
+    const auto solution = solve(spring, start, {0.0, 30.0}, {.rtol = tolerance, .atol = tolerance});
+    ASSERT_TRUE(solution.outcome);
+    EXPECT_LT(solution.statistics.steps, 3'000U) << tolerance;
+    EXPECT_GT(solution.statistics.decompositions, 0U);
+    EXPECT_NEAR(solution.final_state()[0], std::cos(30.0) / (1 - 1e-8), 30 * tolerance);
+  }
+}
+
+// One that does is not: the stiff half is never used, or a few times to see that it helps nothing.
+TEST(Switching, AnOscillationStaysWithTheNystromMethod) {
+  const auto spring = second_order([](double, const std::array<double, 1>& q) { return std::array{-1e8 * q[0]}; });
+  const auto run = [&](auto method) {
+    return solve(spring, std::array{1.0, 0.0}, {0.0, 1.0}, method, {.rtol = 1e-8, .atol = 1e-8});
+  };
+  const auto pair = run(DormandPrinceNystrom12Radau{}), alone = run(DormandPrinceNystrom12{});
+  ASSERT_TRUE(pair.outcome);
+  EXPECT_LT(pair.statistics.evaluations, 1.1 * static_cast<double>(alone.statistics.evaluations));
 }
 
 }  // namespace
