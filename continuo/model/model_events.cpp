@@ -49,6 +49,9 @@ ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> va
     if (!place.scheduled) guard_place_[place.index] = events_.size();
     events_.push_back(place.scheduled ? entry_of(program, model.schedule[place.index], place.index, variables, from)
                                       : entry_of(model.events[place.index], place.index));
+    const auto& block = place.scheduled ? program.schedule_blocks[place.index] : program.event_blocks[place.index];
+    events_.back().only_notes = std::ranges::all_of(
+        block.actions, [](const ProgramAction& action) { return action.kind == ProgramAction::Kind::mark; });
   }
   guard_values_.resize(model.events.size());
   stop_counts_.resize(program.stops);

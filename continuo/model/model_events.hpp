@@ -31,6 +31,7 @@ class ModelEvents {
   std::string_view name(std::size_t i) const { return events_[i].name; }
   Direction direction(std::size_t i) const { return events_[i].direction; }
   bool is_guard(std::size_t i) const { return events_[i].kind == Kind::guard; }
+  bool only_notes(std::size_t i) const { return events_[i].only_notes; }
   bool active(const ModelSystem& system, std::size_t i) const {
     return !events_[i].in_one_mode || events_[i].mode == system.mode();
   }
@@ -50,6 +51,7 @@ class ModelEvents {
     std::size_t index;  // into Model::events, Model::schedule, or the step inputs
     std::string name;
     Direction direction = Direction::crosses;
+    bool only_notes = false;  // its actions are marks
     bool in_one_mode = false;
     std::size_t mode = 0;
     std::vector<double> times{};         // of scheduled ones, ascending

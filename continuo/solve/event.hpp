@@ -85,6 +85,7 @@ struct EventResponse {
 ///   is_guard(i); guards(system, t, x, span of size() values): g_i, anything for those not guards or not active
 ///   next_time(i, t, inclusive): the first scheduled time > t (>= t where inclusive), infinity where none
 ///   fire(system, fired, t, before, x) -> EventResponse
+/// and, where it knows, only_notes(i): firing changes nothing and never stops the run.
 template <class S, class System, class X>
 concept EventSource = State<X> && requires(S& s, const S& constant, System& system, const X& before, X& x,
                                            std::span<Scalar<X>> values, std::span<const std::size_t> fired) {
@@ -110,6 +111,7 @@ class EventList {
   std::string_view name(std::size_t i) const { return events_[i].name; }
   Direction direction(std::size_t i) const { return events_[i].direction; }
   bool is_guard(std::size_t i) const { return static_cast<bool>(events_[i].guard); }
+  bool only_notes(std::size_t i) const { return !events_[i].action && events_[i].stop_after == 0; }
   template <class System>
   bool active(const System&, std::size_t) const {
     return true;
@@ -154,5 +156,15 @@ class EventList {
   std::vector<Event<X>> events_;
   std::vector<std::size_t> fired_;
 };
+
+/// Whether an event of the source can change the run; so it is where nobody knows better.
+template <class Source>
+bool can_change(const Source& source, std::size_t i) {
+  if constexpr (requires { source.only_notes(i); }) {
+    return !source.only_notes(i);
+  } else {
+    return true;
+  }
+}
 
 }  // namespace continuo

@@ -69,6 +69,7 @@ class Integrator {
     if (settle_algebraic()) steps_.jump(t_, x_, options_);
     for (std::size_t i = 0; i < events_.size(); ++i) {
       any_guard_ = any_guard_ || events_.is_guard(i);
+      any_turning_guard_ = any_turning_guard_ || (events_.is_guard(i) && can_change(events_, i));
       any_scheduled_ = any_scheduled_ || !events_.is_guard(i);
     }
   }
@@ -84,6 +85,9 @@ class Integrator {
     if (statistics().steps + statistics().rejected >= options_.max_steps)
       return end(Ending::too_many_steps, steps_.stiff() ? stiff_hint : "raise max_steps or loosen the tolerance");
     const Real limit = any_scheduled_ ? next_scheduled(t_, false) : interval_.to;
+    // An event with an action could change everything; without one it is no use to go on to the limit of steps.
+    if (const Real needed = any_turning_guard_ ? Real(0) : steps_.endless(limit, options_); needed > 0) [[unlikely]]
+      return end(Ending::too_many_steps, hint_of_endless(needed));
     if (!steps_.take(limit, options_, outcome_)) {
       ended_ = true;
       return false;
@@ -136,7 +140,14 @@ class Integrator {
  private:
   static constexpr int most_rounds = 20, most_slides = 100;
   static constexpr const char* stiff_hint =
-      "the system is stiff: stability, not accuracy, holds the steps of this method; take rodas5p, radau or bdf";
+      "the system is stiff: stability, not accuracy, holds the steps of this method; name no method, or take rodas5p, "
+      "radau or bdf";
+
+  static std::string hint_of_endless(Real steps) {
+    using std::floor, std::log10;
+    const auto power = static_cast<int>(static_cast<double>(floor(log10(steps))));
+    return "some 1e" + std::to_string(power) + " steps more would be needed; " + stiff_hint;
+  }
 
   Real forward() const { return interval_.to < interval_.from ? Real(-1) : Real(1); }
 
@@ -406,6 +417,7 @@ class Integrator {
   std::vector<std::size_t> fired_, next_fired_;
   Consistency consistent_;
   bool started_ = false, ended_ = false, any_guard_ = false, any_scheduled_ = false;
+  bool any_turning_guard_ = false;  // one that can change the run
   Outcome<Real> outcome_;
 };
 

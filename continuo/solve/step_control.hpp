@@ -14,6 +14,7 @@
 #include <continuo/solve/first_step.hpp>
 #include <continuo/solve/options.hpp>
 #include <continuo/solve/outcome.hpp>
+#include <continuo/solve/pace.hpp>
 #include <continuo/system/mass.hpp>
 
 namespace continuo {
@@ -58,6 +59,7 @@ class StepControl {
     x_end_ = x;
     jumped_ = true;
     errors_ = {};
+    pace_.forget();
     next_ = fixed(options) ? forward_ * options.step : Real(0);  // 0: to be estimated
   }
 
@@ -83,6 +85,14 @@ class StepControl {
 
   /// Whether stability held most of the steps of an explicit method (of a run of some length).
   bool stiff() const { return probes_ >= least_probes && 2 * stiff_probes_ > probes_; }
+
+  /// The steps that a run to `limit` would need, where stiffness holds them and they are far too many; else 0.
+  Real endless(Real limit, const Options<X>& options) const {
+    if (!pace_.steady()) [[likely]]
+      return 0;
+    const Real steps = pace_.steps_for(limit - end_);
+    return steps > Real(Pace<Real>::far_beyond) * Real(static_cast<double>(options.max_steps)) ? steps : Real(0);
+  }
 
   /// x at a time of the last step, on the dense output.
   void at(Real t, X& x) {
@@ -222,16 +232,19 @@ class StepControl {
   }
 
   // Kept out of line: the loop of short steps has no room for it.
-  [[gnu::noinline]] void probe_stiffness(const Tolerance<Real>& weights) {
+  [[gnu::noinline]] void probe_stiffness(const Tolerance<Real>& weights, std::size_t max_steps) {
     const X& slope_begin = M::derivative(work_);
     if (!stiffness_) stiffness_.emplace(x_begin_);
     stiffness_->probe(system_, begin_, x_begin_, slope_begin, weights);
-    ++statistics_.evaluations;
+    int evaluations = 1;
+    const bool held = stiffness_->holds(system_, begin_, x_begin_, slope_begin, h_, weights, evaluations);
+    statistics_.evaluations += static_cast<std::size_t>(evaluations);
     ++probes_;
-    if (stiffness_->bounds(h_)) ++stiff_probes_;
+    if (held) ++stiff_probes_;
+    held ? pace_.mark(statistics_.steps, max_steps, begin_) : pace_.forget();
   }
 
-  static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0 && !M::second_order;
+  static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0;
   static constexpr std::size_t first_probe = 1000, probe_every = 50, least_probes = 10;
 
   bool estimate_first(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
@@ -292,7 +305,7 @@ class StepControl {
         }
         if constexpr (watches_stiffness) {
           if (statistics_.steps % probe_every == 0 && statistics_.steps >= first_probe) [[unlikely]]
-            probe_stiffness(weights);
+            probe_stiffness(weights, options.max_steps);
         }
         return accepted();
       }
@@ -377,6 +390,7 @@ class StepControl {
   Statistics statistics_;
   std::optional<StiffnessWatch<X>> stiffness_;
   std::size_t probes_ = 0, stiff_probes_ = 0;
+  Pace<Real> pace_;
 };
 
 }  // namespace continuo

@@ -4,13 +4,16 @@
 
 #include <bench/problems/hires.hpp>
 #include <bench/problems/kepler.hpp>
+#include <bench/problems/robertson.hpp>
 #include <bench/problems/van_der_pol.hpp>
 #include <gtest/gtest.h>
 
 #include <continuo/methods/dop853.hpp>
+#include <continuo/methods/dormand_prince_nystrom8.hpp>
 #include <continuo/methods/stiffness_watch.hpp>
 #include <continuo/methods/tsitouras5.hpp>
 #include <continuo/solve/solve.hpp>
+#include <continuo/system/second_order.hpp>
 
 namespace continuo {
 namespace {
@@ -33,6 +36,71 @@ TEST(Stiffness, AnExplicitMethodThatRunsOutOfStepsNamesTheCause) {
   EXPECT_EQ(solution.outcome.ending, Ending::too_many_steps);
   EXPECT_NE(solution.outcome.hint.find("stiff"), std::string::npos) << solution.outcome.hint;
   EXPECT_NE(solution.outcome.hint.find("rodas5p"), std::string::npos);
+}
+
+// Steps of some 1e-3 for a run to 1e11: 1e14 of them, of which 1e7 are allowed.
+TEST(Stiffness, AnEndlessRunIsNotGoneOnWith) {
+  const auto solution = solve(bench::Robertson<>{}, bench::Robertson<>::start(), {0.0, 1e11}, Dop853{}, {.rtol = 1e-4});
+  EXPECT_EQ(solution.outcome.ending, Ending::too_many_steps);
+  EXPECT_LT(solution.statistics.steps, 1'000'000U);
+  EXPECT_NE(solution.outcome.hint.find("stiff"), std::string::npos) << solution.outcome.hint;
+  EXPECT_NE(solution.outcome.hint.find("1e1"), std::string::npos) << solution.outcome.hint;
+}
+
+// An event that only takes note cannot change that, one that acts could.
+TEST(Stiffness, AnEndlessRunGoesOnWhereAnEventCouldChangeIt) {
+  using X = std::array<double, 3>;
+  const auto steps = [](Action<X> action) {
+    Options<X> options{.rtol = 1e-4, .max_steps = 100'000};
+    options.events = {rises<X>("late", [](double, const X& x) { return x[2] - 0.9; }, std::move(action))};
+    return solve(bench::Robertson<>{}, bench::Robertson<>::start(), {0.0, 1e11}, Dop853{}, options).statistics.steps;
+  };
+  EXPECT_LT(steps({}), 50'000U);
+  EXPECT_GT(steps([](EventAction<X>& now) { now.stop = true; }), 90'000U);
+}
+
+// The eigenvalue -1e5 / (1 + t)^2: at first, at the pace of h = 6 / 1e5, 1e5 / 6 * 2000 steps would be needed, three
+// hundred times the limit. In all it is the integral of lambda / 6 to 3, some 1e5 / 6.
+TEST(Stiffness, ARunThatGetsFasterIsNotGivenUp) {
+  const auto f = [](double t, const std::array<double, 1>& x) {
+    return std::array{-1e5 / ((1 + t) * (1 + t)) * (x[0] - std::cos(t))};
+  };
+  const auto solution =
+      solve(f, std::array{1.0}, {0.0, 2000.0}, Dop853{}, {.rtol = 1e-3, .atol = 1e-3, .max_steps = 100'000});
+  EXPECT_TRUE(solution.outcome) << solution.outcome.hint;
+  EXPECT_GT(solution.statistics.steps, 10'000U);
+}
+
+// The same where only a change at a known time makes it faster.
+TEST(Stiffness, ARunIsNotGivenUpBeforeAScheduledEvent) {
+  double lambda = 1e5;
+  const auto f = [&lambda](double, const std::array<double, 1>& x) { return std::array{lambda * (1 - x[0])}; };
+  using X = std::array<double, 1>;
+  Options<X> options{.rtol = 1e-3, .atol = 1e-3, .max_steps = 20'000};
+  options.events = {at<X>("calm", {0.3}, [&lambda](EventAction<X>& now) {
+    lambda = 1;
+    now.restart = true;
+  })};
+  EXPECT_TRUE(solve(f, std::array{0.0}, {0.0, 1e4}, Dop853{}, options).outcome);
+}
+
+// x'' = -1e8 (x - cos t), on the solution that follows cos t: the eigenvalues lie on the imaginary axis.
+TEST(Stiffness, AStiffSpringIsFoundByMethodsForAccelerations) {
+  const auto spring =
+      second_order([](double t, const std::array<double, 1>& q) { return std::array{-1e8 * (q[0] - std::cos(t))}; });
+  const std::array start{1 / (1 - 1e-8), 0.0};
+  const auto solution = solve(spring, start, {0.0, 3.0}, DormandPrinceNystrom8{}, {.rtol = 1e-4, .atol = 1e-4});
+  ASSERT_TRUE(solution.outcome);
+  EXPECT_GT(solution.statistics.steps, 3'000U);
+  EXPECT_NE(solution.outcome.hint.find("stiff"), std::string::npos);
+}
+
+TEST(Stiffness, AMotionOfPlanetsIsNot) {
+  const auto solution =
+      solve(bench::Kepler{}, bench::Kepler::start(), {0.0, 1e4}, DormandPrinceNystrom8{}, {.rtol = 1e-8});
+  ASSERT_TRUE(solution.outcome);
+  EXPECT_GT(solution.statistics.steps, 2000U);
+  EXPECT_EQ(solution.outcome.hint, "");
 }
 
 TEST(Stiffness, ARunThatArrivesAllTheSameSaysWhatItCost) {
