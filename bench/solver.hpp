@@ -3,12 +3,13 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <ctime>
 #include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include <bench/reference/end_values.hpp>
 
@@ -20,6 +21,9 @@ struct Answer {
   std::size_t evaluations = 0;
   double tolerances = std::numeric_limits<double>::infinity();  // the error in units of what was asked
 };
+
+/// The solver that is no method of its own: what `solve` takes where nobody names one.
+inline constexpr std::string_view default_choice = "default";
 
 struct Solver {
   std::string name;
@@ -39,15 +43,21 @@ double end_error(const std::array<double, Problem::size>& x) {
   return std::isfinite(worst) ? worst : std::numeric_limits<double>::infinity();
 }
 
-/// Wall time of `run()`, whose result is kept from being optimised away.
+/// Time of the processor for `run()`, whose result is kept from being optimised away. Not by the clock on the wall:
+/// others may have the processor in between, and of a long run not even the least of many times is free of that.
 template <class Run>
 double timed(Run&& run) {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto now = [] {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  };
+  const double begin = now();
   const auto result = run();
-  const auto end = std::chrono::steady_clock::now();
+  const double end = now();
   volatile double sink = result[0];
   static_cast<void>(sink);
-  return std::chrono::duration<double>(end - begin).count();
+  return end - begin;
 }
 
 }  // namespace continuo::bench

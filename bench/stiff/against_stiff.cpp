@@ -1,18 +1,17 @@
 // Compares our stiff methods with rosenbrock4 of Boost.odeint and with CVODE on the stiff problems of the field at
 // equal true error, and says how far every method of ours is from the tolerance it was asked for.
 //   against_stiff [FOLDER [SECONDS [PROBLEM...]]]: the page stiff.md and the plots go to FOLDER.
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include <bench/command.hpp>
 #include <bench/report.hpp>
 #include <bench/stiff/measure.hpp>
 #include <bench/stiff/page.hpp>
@@ -59,17 +58,15 @@ StiffResult measure_stiff(double seconds) {
 
 int main(int count, char** arguments) {
   using namespace continuo::bench;
-  const std::string folder = count > 1 ? arguments[1] : ".";
-  const double seconds = count > 2 ? std::atof(arguments[2]) : 15;
-  const std::vector<std::string> wanted(arguments + std::min(count, 3), arguments + count);
+  const Command command = read_command(count, arguments);
   std::vector<StiffResult> all;
   const auto add = [&](std::string_view name, StiffResult (*measure)(double), const std::vector<Wanted>& ratios) {
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) return;
-    all.push_back(measure(seconds));
+    if (!command.wants(name)) return;
+    all.push_back(measure(command.seconds));
     all.back().wanted = ratios;
     print_costs(all.back());
-    write_curves(folder, all.back().measured);
-    write_page(folder + "/stiff.md", all);  // after every problem: what is measured is not lost
+    write_curves(command.folder, all.back().measured);
+    write_page(command.folder + "/stiff.md", all);  // after every problem: what is measured is not lost
   };
   // At most this part of the peer's time is wanted.
   add(Robertson<>::name, measure_stiff<Robertson<>>, {{1e-6, 0.5, of_odeint}, {1e-10, 0.15, of_odeint}});

@@ -11,19 +11,6 @@ namespace {
 
 constexpr std::array<double, 4> errors_shown{1e-4, 1e-6, 1e-8, 1e-10};
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char line[200];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
-
-/// Two digits, whatever the size; "-" where there is no number.
-std::string number(double value) {
-  if (!std::isfinite(value) || value <= 0) return "-";
-  return text(value >= 10 ? "%.0f" : value >= 1 ? "%.1f" : value >= 0.095 ? "%.2f" : "%.3f", value);
-}
-
 constexpr const char* introduction =
     "# Stiff methods, ours and the peers'\n\n"
     "`bench/stiff/run.sh` measures again and writes this page. Each solver is run over a range of tolerances with the "
@@ -45,38 +32,6 @@ constexpr const char* introduction =
     "without\n"
     "tuning for the machine, its Newton iteration with dense matrices or with KLU.\n\n";
 
-void write_ratios(std::ofstream& page, const std::vector<StiffResult>& all) {
-  page
-      << "| Problem | Error | Our best | The peer's best | Time, ours : theirs | Wanted |\n|---|---|---|---|---|---|\n";
-  for (const StiffResult& result : all) {
-    for (const Wanted& wanted : result.wanted) {
-      const double error = smallest_shared_error(result.measured, wanted.error, of_ours, wanted.peer);
-      page << "| " << result.measured.title << " | ";
-      if (error == 0) {
-        page << text("%.0e", wanted.error) << " | - | - | not measured | " << number(wanted.at_most) << " |\n";
-        continue;
-      }
-      const Best ours = best(result.measured, error, of_ours), theirs = best(result.measured, error, wanted.peer);
-      page << text(error == wanted.error ? "%.0e" : "%.0e not reached by both; %.1e", wanted.error, error) << " | "
-           << ours.curve->solver << " | " << theirs.curve->solver << " | **"
-           << number(ours.cost.seconds / theirs.cost.seconds) << "** | " << number(wanted.at_most) << " |\n";
-    }
-  }
-}
-
-/// Time of every solver in units of our best at that error.
-void write_times(std::ofstream& page, const StiffResult& result) {
-  page << "| Solver |";
-  for (const double error : errors_shown) page << text(" %.0e |", error);
-  page << "\n|---|---|---|---|---|\n";
-  for (const Curve& curve : result.measured.curves) {
-    page << "| " << curve.solver << " |";
-    for (const double error : errors_shown)
-      page << ' ' << number(cost_at(curve, error).seconds / best(result.measured, error, of_ours).cost.seconds) << " |";
-    page << '\n';
-  }
-}
-
 void write_kept(std::ofstream& page, const StiffResult& result) {
   page << "| Method |";
   for (const int power : tolerances_asked) page << " 1e-" << power << " |";
@@ -94,16 +49,7 @@ void write_kept(std::ofstream& page, const StiffResult& result) {
 }  // namespace
 
 void print_costs(const StiffResult& result) {
-  std::printf("\n%s\n  %-24s %8s %12s %12s %10s\n", std::string(result.measured.title).c_str(), "solver", "error",
-              "microseconds", "evaluations", "rtol");
-  for (const Curve& curve : result.measured.curves) {
-    for (const double error : errors_shown) {
-      const Cost cost = cost_at(curve, error);
-      if (!std::isinf(cost.seconds))
-        std::printf("  %-24s %8.0e %12.2f %12.0f %10.1e\n", curve.solver.c_str(), error, 1e6 * cost.seconds,
-                    cost.evaluations, cost.tolerance);
-    }
-  }
+  print_costs(result.measured, errors_shown);
   for (const Kept& kept : result.kept) {
     std::printf("  %-24s", kept.method.c_str());
     for (const double error : kept.error) std::printf(" %8.2g", error);
@@ -115,10 +61,15 @@ void print_costs(const StiffResult& result) {
 void write_page(const std::string& file, const std::vector<StiffResult>& all) {
   std::ofstream page(file);
   page << introduction << "## Time at equal true error\n\n";
-  write_ratios(page, all);
+  write_head_of_ratios(page);
+  for (const StiffResult& result : all) write_ratios(page, result.measured, result.wanted);
+  page << "\n## No method named\n\n`solve` without a method, here `default`: its time in units of that of our best "
+          "named method, which stands behind it.\n\n";
+  write_head_of_defaults(page, errors_shown);
+  for (const StiffResult& result : all) write_default(page, result.measured, errors_shown);
   for (const StiffResult& result : all) {
     page << "\n## " << result.measured.title << "\n\nTime at the error of the column, in units of our best.\n\n";
-    write_times(page, result);
+    write_times(page, result.measured, errors_shown);
     page << "\n![Time against error](pictures/work_precision_" << result.measured.name << ".svg)\n";
   }
   page

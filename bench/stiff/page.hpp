@@ -27,12 +27,6 @@ struct Kept {
   std::array<double, tolerances_asked.size()> error;
 };
 
-/// Our time as a part of a peer's at an error.
-struct Wanted {
-  double error, at_most;
-  Which peer;
-};
-
 struct StiffResult {
   Measured measured;
   std::vector<Kept> kept;

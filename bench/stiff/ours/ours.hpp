@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,25 +20,25 @@
 #include <continuo/methods/rodas5p.hpp>
 #include <continuo/methods/rosenbrock23.hpp>
 #include <continuo/methods/tr_bdf2.hpp>
-#include <continuo/solve/solve.hpp>
+#include <continuo/solve/automatic.hpp>
 
 namespace continuo::bench {
 
-/// `System` is the problem, or the problem with a sparse Jacobian. A method of order 2 needs more steps at 1e-11 than a
-/// run may take by default.
-template <class Problem, class M, class System = Problem>
-Solver our_stiff_solver() {
+/// `System` is the problem, or the problem with a sparse Jacobian; `M` a method, or none for what `solve` takes by
+/// itself. A method of order 2 needs more steps at 1e-11 than a run may take by default.
+template <class Problem, class System, class... M>
+Solver our_stiff_solver(std::string_view name) {
   const auto run = [](double tolerance) {
     System system;
     auto start = system.start();
     using State = decltype(start);
-    return solve(std::move(system), std::move(start), {0, Problem::duration}, M{},
-                 {.rtol = tolerance,
-                  .atol = tolerance * absolute_part<Problem>,
-                  .max_steps = std::numeric_limits<std::size_t>::max(),
-                  .save = Save<State>::only_end()});
+    return solve(std::move(system), std::move(start), {0, Problem::duration}, M{}...,
+                 Options<State>{.rtol = tolerance,
+                                .atol = tolerance * absolute_part<Problem>,
+                                .max_steps = std::numeric_limits<std::size_t>::max(),
+                                .save = Save<State>::only_end()});
   };
-  return {std::string(M::name), true,
+  return {std::string(name), true,
           [run](double tolerance) {
             const auto solution = run(tolerance);
             if (!solution.outcome) return Answer{};
@@ -46,19 +47,21 @@ Solver our_stiff_solver() {
           [run](double tolerance) { return timed([&] { return run(tolerance).final_state(); }); }};
 }
 
+template <class Problem, class System, class... M>
+std::vector<Solver> our_stiff_solvers_by() {
+  return {our_stiff_solver<Problem, System, M>(M::name)...};
+}
 template <class Problem, class System = Problem>
 std::vector<Solver> all_our_stiff_solvers() {
-  return {our_stiff_solver<Problem, Rodas5P, System>(),     our_stiff_solver<Problem, Rodas4, System>(),
-          our_stiff_solver<Problem, Radau, System>(),       our_stiff_solver<Problem, Radau5, System>(),
-          our_stiff_solver<Problem, Bdf, System>(),         our_stiff_solver<Problem, Kvaerno5, System>(),
-          our_stiff_solver<Problem, KenCarp4, System>(),    our_stiff_solver<Problem, TrBdf2, System>(),
-          our_stiff_solver<Problem, Rosenbrock23, System>()};
+  std::vector<Solver> solvers = our_stiff_solvers_by<Problem, System, Rodas5P, Rodas4, Radau, Radau5, Bdf, Kvaerno5,
+                                                     KenCarp4, TrBdf2, Rosenbrock23>();
+  solvers.insert(solvers.begin(), our_stiff_solver<Problem, System>(default_choice));
+  return solvers;
 }
 
 template <class Problem, class System = Problem>
 std::vector<Solver> all_our_unraced_solvers() {
-  return {our_stiff_solver<Problem, Tsitouras5Rodas5P, System>(), our_stiff_solver<Problem, Dop853Radau, System>(),
-          our_stiff_solver<Problem, Tsitouras5Bdf, System>(), our_stiff_solver<Problem, ImplicitEuler, System>()};
+  return our_stiff_solvers_by<Problem, System, Tsitouras5Rodas5P, Dop853Radau, Tsitouras5Bdf, ImplicitEuler>();
 }
 
 }  // namespace continuo::bench

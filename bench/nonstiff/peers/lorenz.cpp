@@ -1,4 +1,4 @@
-#include <bench/peers/odeint.hpp>
+#include <bench/nonstiff/peers/odeint.hpp>
 #include <bench/problems/lorenz.hpp>
 
 template std::vector<continuo::bench::Solver> continuo::bench::odeint_solvers<continuo::bench::Lorenz>(double);

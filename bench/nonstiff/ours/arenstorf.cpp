@@ -1,4 +1,4 @@
-#include <bench/ours/ours.hpp>
+#include <bench/nonstiff/ours/ours.hpp>
 #include <bench/problems/arenstorf.hpp>
 
 template std::vector<continuo::bench::Solver> continuo::bench::our_solvers<continuo::bench::Arenstorf>();

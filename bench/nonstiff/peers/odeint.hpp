@@ -1,4 +1,4 @@
-// bench/peers/odeint.hpp
+// bench/nonstiff/peers/odeint.hpp
 // The peer: Boost.odeint's adaptive explicit solvers with their own step control and their own defaults. Its states are
 // std::array too, which it adds up with loops of fixed length.
 #pragma once
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <bench/measure.hpp>
+#include <bench/nonstiff/measure.hpp>
 #include <boost/numeric/odeint.hpp>
 
 namespace continuo::bench {
@@ -54,13 +54,13 @@ std::vector<Solver> odeint_solvers(double first_step) {
   const auto controlled = []<class Stepper>(std::type_identity<Stepper>) {
     return [](double tolerance) { return odeint::make_controlled<Stepper>(tolerance, tolerance); };
   };
-  return {odeint_solver<Problem>("runge_kutta_fehlberg78", first_step,
+  return {odeint_solver<Problem>("odeint fehlberg78", first_step,
                                  controlled(std::type_identity<odeint::runge_kutta_fehlberg78<State>>{})),
-          odeint_solver<Problem>("runge_kutta_dopri5", first_step,
+          odeint_solver<Problem>("odeint dopri5", first_step,
                                  controlled(std::type_identity<odeint::runge_kutta_dopri5<State>>{})),
-          odeint_solver<Problem>("runge_kutta_cash_karp54", first_step,
+          odeint_solver<Problem>("odeint cash_karp54", first_step,
                                  controlled(std::type_identity<odeint::runge_kutta_cash_karp54<State>>{})),
-          odeint_solver<Problem>("bulirsch_stoer", first_step,
+          odeint_solver<Problem>("odeint bulirsch_stoer", first_step,
                                  [](double tolerance) { return odeint::bulirsch_stoer<State>(tolerance, tolerance); })};
 }
 

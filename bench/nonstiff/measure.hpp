@@ -1,0 +1,37 @@
+// bench/nonstiff/measure.hpp
+// The problems that are not stiff and how they are measured.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <bench/problems/arenstorf.hpp>
+#include <bench/problems/kepler.hpp>
+#include <bench/problems/lorenz.hpp>
+#include <bench/problems/outer_planets.hpp>
+#include <bench/problems/pleiades.hpp>
+#include <bench/solver.hpp>
+
+namespace continuo::bench {
+
+/// Compiled problem by problem in bench/nonstiff/ours and bench/nonstiff/peers: with fixed sizes every solver becomes
+/// code of its own.
+template <class Problem>
+std::vector<Solver> our_solvers();
+template <class Problem>
+std::vector<Solver> odeint_solvers(double first_step);
+/// Of the GNU Scientific Library; empty where the benchmarks are built without it.
+template <class Problem>
+std::vector<Solver> gsl_solvers(double first_step);
+/// Adams' methods of CVODE; empty where the benchmarks are built without SUNDIALS.
+template <class Problem>
+std::vector<Solver> cvode_adams_solvers();
+
+/// Methods with fixed steps have no tolerance: they are given this time, multiplied by tolerance^(1 / order).
+template <class Problem>
+inline constexpr double pace = 1;
+template <>
+inline constexpr double pace<Kepler> = 6;
+template <>
+inline constexpr double pace<OuterPlanets> = 4000;  // days, about a turn of Jupiter
+
+}  // namespace continuo::bench

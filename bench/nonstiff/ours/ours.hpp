@@ -1,0 +1,80 @@
+// bench/nonstiff/ours/ours.hpp
+// Our methods as anybody would call them: one `solve`, the tolerance (or the step) and nothing else set.
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <bench/nonstiff/measure.hpp>
+
+#include <continuo/methods/adams.hpp>
+#include <continuo/methods/dop853.hpp>
+#include <continuo/methods/dormand_prince5.hpp>
+#include <continuo/methods/dormand_prince_nystrom12.hpp>
+#include <continuo/methods/dormand_prince_nystrom6.hpp>
+#include <continuo/methods/dormand_prince_nystrom8.hpp>
+#include <continuo/methods/kahan_li8.hpp>
+#include <continuo/methods/mclachlan_atela4.hpp>
+#include <continuo/methods/tsitouras5.hpp>
+#include <continuo/methods/verner7.hpp>
+#include <continuo/methods/verner9.hpp>
+#include <continuo/methods/yoshida6.hpp>
+#include <continuo/solve/automatic.hpp>
+
+namespace continuo::bench {
+
+/// `M` is a method, or none for what `solve` takes by itself; `set(options, tolerance)` says how accurate.
+template <class Problem, class... M, class Set>
+Solver our_solver(std::string_view name, Set set) {
+  using State = std::array<double, Problem::size>;
+  const auto run = [set](double tolerance) {
+    Options<State> options{.save = Save<State>::only_end()};
+    set(options, tolerance);
+    return solve(Problem{}, Problem::start(), {0, Problem::duration}, M{}..., options);
+  };
+  return {std::string(name), true,
+          [run](double tolerance) {
+            const auto solution = run(tolerance);
+            if (!solution.outcome) return Answer{};
+            return Answer{end_error<Problem>(solution.final_state()), solution.statistics.evaluations};
+          },
+          [run](double tolerance) { return timed([&] { return run(tolerance).final_state(); }); }};
+}
+
+template <class Problem, class... M>
+Solver our_adaptive_solver(std::string_view name) {
+  return our_solver<Problem, M...>(name,
+                                   [](auto& options, double tolerance) { options.rtol = options.atol = tolerance; });
+}
+template <class Problem, class M>
+Solver our_fixed_solver() {
+  return our_solver<Problem, M>(M::name, [](auto& options, double tolerance) {
+    options.step = pace<Problem> * std::pow(tolerance, 1.0 / M::order);
+  });
+}
+
+template <class Problem, class... M>
+void add_adaptive(std::vector<Solver>& solvers) {
+  (solvers.push_back(our_adaptive_solver<Problem, M>(M::name)), ...);
+}
+template <class Problem, class... M>
+void add_fixed(std::vector<Solver>& solvers) {
+  (solvers.push_back(our_fixed_solver<Problem, M>()), ...);
+}
+
+/// The named methods, and for problems q'' = a(t, q) those made for them: Runge-Kutta-Nystrom and symplectic ones.
+template <class Problem>
+std::vector<Solver> our_solvers() {
+  std::vector<Solver> solvers{our_adaptive_solver<Problem>(default_choice)};
+  add_adaptive<Problem, DormandPrince5, Tsitouras5, Dop853, Verner7, Verner9, Adams>(solvers);
+  if constexpr (SecondOrder<Problem>) {
+    add_adaptive<Problem, DormandPrinceNystrom6, DormandPrinceNystrom8, DormandPrinceNystrom12>(solvers);
+    add_fixed<Problem, McLachlanAtela4, Yoshida6, KahanLi8>(solvers);
+  }
+  return solvers;
+}
+
+}  // namespace continuo::bench
