@@ -74,17 +74,24 @@ void add_experiment(CLI::App& verb, ExperimentOptions& options) {
   verb.add_option("--output", options.output, "A row every DT")->type_name("DT");
 }
 
-void add_method(CLI::App& verb, ExperimentOptions& options) {
-  verb.add_option("--method", options.method, "The integration method (continuo methods)")->type_name("NAME");
+void add_tolerances(CLI::App& verb, ExperimentOptions& options) {
   const auto list = [&verb](const char* name, std::vector<std::string>& texts, const char* help) {
     return verb.add_option(name, texts, help)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   };
-  auto* relative = list("--tol,--rtol", options.tolerances, "The relative tolerance: --tol 1e-8 --tol y2=1e-10")
-                       ->type_name("[NAME=]RTOL");
-  auto* absolute = list("--atol", options.absolute_tolerances,
-                        "The absolute tolerance, in the unit of the state: --atol 1e-9 --atol \"h'=1e-12\"")
-                       ->type_name("[NAME=]ATOL");
-  verb.add_option("--step", options.step, "A fixed step")->type_name("H")->excludes(relative)->excludes(absolute);
+  list("--tol,--rtol", options.tolerances, "The relative tolerance: --tol 1e-8 --tol y2=1e-10")
+      ->type_name("[NAME=]RTOL");
+  list("--atol", options.absolute_tolerances,
+       "The absolute tolerance, in the unit of the state: --atol 1e-9 --atol \"h'=1e-12\"")
+      ->type_name("[NAME=]ATOL");
+}
+
+void add_method(CLI::App& verb, ExperimentOptions& options) {
+  verb.add_option("--method", options.method, "The integration method (continuo methods)")->type_name("NAME");
+  add_tolerances(verb, options);
+  verb.add_option("--step", options.step, "A fixed step")
+      ->type_name("H")
+      ->excludes(verb.get_option("--tol"))
+      ->excludes(verb.get_option("--atol"));
 }
 
 void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source) {

@@ -31,6 +31,8 @@ struct ExperimentOptions {
 
 /// --set, --until and --output, which every such verb takes.
 void add_experiment(CLI::App& verb, ExperimentOptions& options);
+/// --tol and --atol, for all states or single ones.
+void add_tolerances(CLI::App& verb, ExperimentOptions& options);
 /// --method, --step, --tol and --atol.
 void add_method(CLI::App& verb, ExperimentOptions& options);
 

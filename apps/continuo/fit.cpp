@@ -320,8 +320,7 @@ void add_fit(CLI::App& app, ExitCode& exit) {
   verb->add_option("--loss", options->loss, "squares, or for outliers huber, soft_l1, cauchy, tukey")
       ->type_name("NAME");
   verb->add_option("--starts", options->starts, "Search from this many places")->type_name("N");
-  verb->add_option("--tol", options->experiment.tolerance, "The relative tolerance of the runs, 1e-8 at most")
-      ->type_name("RTOL");
+  add_tolerances(*verb, options->experiment);
   verb->add_option("--plot", options->plot, "Measurements, fit and prediction band, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = fit(*options); });
 }

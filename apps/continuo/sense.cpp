@@ -175,8 +175,7 @@ void add_sense(CLI::App& app, ExitCode& exit) {
   verb->add_option("--initial", options->initial, "States whose initial values count, with commas")
       ->delimiter(',')
       ->type_name("STATES");
-  verb->add_option("--tol", options->experiment.tolerance, "The relative tolerance, of the sensitivities too")
-      ->type_name("RTOL");
+  add_tolerances(*verb, options->experiment);
   verb->add_option("-o", options->output, "A CSV file of states and sensitivities; - is standard output")
       ->type_name("FILE");
   verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");

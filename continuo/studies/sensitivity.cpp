@@ -46,10 +46,11 @@ Options<std::vector<double>> options_of(const model::Plan& plan, const model::Ex
   Options<std::vector<double>> options{.rtol = plan.rtol, .atol = plan.atol.front()};
   for (std::size_t k = 0; k <= sizes.size(); ++k) {
     const double size = k == 0 ? 1 : sizes[k - 1];
-    for (std::size_t i = 0; i < states; ++i)
-      options.atol_each.push_back((plan.atol.size() > 1 ? plan.atol[i] : plan.atol.front()) / size);
+    for (std::size_t i = 0; i < states; ++i) {
+      options.atol_each.push_back(plan.atol_of(i) / size);
+      options.rtol_each.push_back(plan.rtol_of(i));
+    }
   }
-  options.rtol_each.assign(options.atol_each.size(), plan.rtol);
   options.max_step = experiment.max_step;
   options.max_steps = experiment.max_steps;
   options.interrupt = experiment.interrupt;
