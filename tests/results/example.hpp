@@ -34,7 +34,14 @@ inline Example falling_ball() {
                        .independent = true,
                        .structural = false,
                        .span = {}}};
-  run.plan = {.method = "dop853", .rtol = 1e-10, .rtol_each = {}, .atol = {1e-12}, .from = 0, .to = 1, .variables = {0, 1, 0, 2}};
+  run.plan = {.method = "dop853",
+              .reason = "",
+              .rtol = 1e-10,
+              .rtol_each = {},
+              .atol = {1e-12},
+              .from = 0,
+              .to = 1,
+              .variables = {0, 1, 0, 2}};
   run.motion.columns = {{"t", "s"}, {"h", "m"}, {"h'", "m/s"}};
   run.motion.values = {0, 1, 0, 0.5, 0.75, -1, 1, 0, -2, 1, 0, 1};
   run.motion.states = 2;
