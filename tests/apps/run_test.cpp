@@ -206,14 +206,6 @@ TEST(Run, CtrlCKeepsWhatWasComputed) {
   EXPECT_GT(lines_of(shell.read("out.csv")).size(), 10u);
 }
 
-TEST(Run, ABoundaryValueProblemSaysPlainlyThatItCannotBeSolvedYet) {
-  const Shell shell;
-  shell.write("beam.sim", "model Beam\nx'' = -x\nx(0) = 1\nx(1) = 2\nrun 0..1\n");
-  const Result result = shell.run("run beam.sim");
-  EXPECT_EQ(result.exit, 3);
-  EXPECT_THAT(result.err, HasSubstr("E321"));
-}
-
 TEST(Run, AFailedCheckIsExitCodeFourForTheModelAsWritten) {
   const Shell shell;
   shell.write("wrong.sim", std::string(spring) + "check x(2) = 0 within 1e-9\n");

@@ -32,6 +32,7 @@ const std::map<std::string, double> ends = {
     {"robertson", 40},
     {"rc_diode", 1e-2},
     {"relaxation", 0.05},
+    {"rc_ladder", 5e-3},
     {"fed_batch", 1},
     {"oregonator", 0.1},
     {"ball_on_stairs", 2},
