@@ -19,9 +19,9 @@ Eigenvalues eigenvalues(std::span<const double> rows, std::size_t n) {
   const auto vectors = solver.eigenvectors();
   std::vector<Eigen::Index> order(n);
   std::iota(order.begin(), order.end(), Eigen::Index(0));
-  std::ranges::stable_sort(order, [&](Eigen::Index a, Eigen::Index b) {
+  std::ranges::sort(order, [&](Eigen::Index a, Eigen::Index b) {
     const auto x = solver.eigenvalues()[a], y = solver.eigenvalues()[b];
-    return x.real() != y.real() ? x.real() > y.real() : x.imag() > y.imag();
+    return x.real() != y.real() ? x.real() > y.real() : x.imag() != y.imag() ? x.imag() > y.imag() : a < b;
   });
   for (const Eigen::Index k : order) {
     result.values.push_back(solver.eigenvalues()[k]);

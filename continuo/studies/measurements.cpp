@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -79,7 +80,7 @@ class Reader {
   void sort() {
     std::vector<std::size_t> order(data_.times.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return data_.times[i]; });
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(data_.times[i], i); });
     const auto arrange = [&](auto& list) {
       auto copy = list;
       for (std::size_t i = 0; i < order.size(); ++i) list[i] = copy[order[i]];
