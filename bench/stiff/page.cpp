@@ -50,6 +50,12 @@ void write_kept(std::ofstream& page, const StiffResult& result) {
 
 void print_costs(const StiffResult& result) {
   print_costs(result.measured, errors_shown);
+  std::fflush(stdout);
+}
+
+void print_kept(const StiffResult& result) {
+  std::printf("%.*s: error in tolerances\n", static_cast<int>(result.measured.title.size()),
+              result.measured.title.data());
   for (const Kept& kept : result.kept) {
     std::printf("  %-24s", kept.method.c_str());
     for (const double error : kept.error) std::printf(" %8.2g", error);
@@ -76,7 +82,8 @@ void write_page(const std::string& file, const std::vector<StiffResult>& all) {
       << "\n## Error in units of the tolerance\n\nThe largest error of a component at the end, in units of atol + rtol "
          "times the component, for each rtol. Above "
       << number(most_tolerances)
-      << " in bold; \"-\": at the rtol before a run took\nlonger than a minute, for a method of order p needs steps in "
+      << " in bold; \"-\": at the rtol before a run took\nlonger than eight seconds, for a method of order p needs "
+         "steps in "
          "proportion to rtol^(-1/p).\n";
   for (const StiffResult& result : all) {
     page << "\n### " << result.measured.title << "\n\n";

@@ -34,6 +34,7 @@ struct StiffResult {
 };
 
 void print_costs(const StiffResult& result);
+void print_kept(const StiffResult& result);
 void write_page(const std::string& file, const std::vector<StiffResult>& all);
 
 }  // namespace continuo::bench

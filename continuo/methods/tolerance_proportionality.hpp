@@ -28,13 +28,14 @@ Real tolerance_as_number(const Tolerance<Real>& tolerance) {
 }
 
 /// By how much an error of order m of one step is held below the tolerance, in a method of order p. That many errors
-/// may add up as `spare` says before it is above 1.
+/// may add up as `spare` says before it is above 1. Not below rounding, though: no step, however short, gets there.
 template <class Real>
 Real strictness(const Tolerance<Real>& tolerance, int p, int m, double spare = 1) {
-  using std::max, std::pow;
+  using std::max, std::min, std::pow;
   if (m <= p) return Real(1);
-  const Real exponent = Real(p - m) / Real(p);
-  return max(Real(1), Real(pow(tolerance_as_number(tolerance), exponent) / Real(spare)));
+  const Real exponent = Real(p - m) / Real(p), asked = tolerance_as_number(tolerance);
+  const Real finest = asked / (4 * std::numeric_limits<Real>::epsilon());
+  return max(Real(1), min(finest, Real(pow(asked, exponent) / Real(spare))));
 }
 
 /// Of one-step methods; what a problem amplifies its errors by comes on top.
