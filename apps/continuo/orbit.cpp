@@ -9,6 +9,7 @@
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
+#include <apps/continuo/orbit_branch.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
@@ -27,10 +28,10 @@ namespace {
 
 struct OrbitOptions {
   ExperimentOptions experiment;
-  std::string mode, section, out, plot;
+  std::string mode, section, along, of, out, plot;
   std::optional<double> settle;
   double duration = 0, tolerance = 1e-9;
-  bool lyapunov = false;
+  bool lyapunov = false, from_hopf = false;
 };
 
 std::string with_time_unit(double t, const model::Model& model) {
@@ -115,14 +116,17 @@ results::Figure figure_of(const model::Model& model, const studies::PeriodicOrbi
           {.x_label = "t", .y_label = model.states[0].column, .curves = {time}}}};
 }
 
+studies::PeriodicOrbitOptions search_of(const OrbitOptions& options) {
+  return {.settle = *options.settle,
+          .duration = options.duration,
+          .tolerance = options.tolerance,
+          .rtol = std::max(options.tolerance, 1e-12),
+          .interrupt = &interrupt_flag()};
+}
+
 ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
   const model::Model& model = studied.prepared.program->model;
-  const auto found = studies::find_periodic_orbit(studied.system, studied.start,
-                                                  {.settle = *options.settle,
-                                                   .duration = options.duration,
-                                                   .tolerance = options.tolerance,
-                                                   .rtol = std::max(options.tolerance, 1e-12),
-                                                   .interrupt = &interrupt_flag()});
+  const auto found = studies::find_periodic_orbit(studied.system, studied.start, search_of(options));
   if (!found.outcome) return ended(found.outcome);
   std::string text = fmt::format("period {}, {}\nmultipliers", with_time_unit(found.period, model),
                                  found.stable ? "neighbours come nearer" : "some neighbours go away");
@@ -149,7 +153,14 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
 
 ExitCode orbit(OrbitOptions options) {
   if (!drawable(options.plot) || !writable(options.out)) return usage;
-  const Studied studied = study(options.experiment, options.mode);
+  std::optional<NamedRange> range;
+  std::vector<std::string> constants;
+  if (!options.along.empty()) {
+    range = parse_range(options.along);
+    if (!range) return usage;
+    constants.push_back(range->name);
+  }
+  const Studied studied = study(options.experiment, options.mode, constants);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   const model::Model& model = studied.prepared.program->model;
   const double run = model.run.to && model.run.from ? model.run.to->value - model.run.from->value : 100;
@@ -159,6 +170,13 @@ ExitCode orbit(OrbitOptions options) {
     say("--settle must not be negative, --tol must be greater than zero");
     return usage;
   }
+  if (range)
+    return show_orbit_branches(studied, {.range = *range,
+                                         .search = search_of(options),
+                                         .from_hopf = options.from_hopf,
+                                         .of = options.of,
+                                         .out = options.out,
+                                         .plot = options.plot});
   if (options.lyapunov) return show_exponents(studied, options);
   return options.section.empty() ? show_orbit(studied, options) : show_section(studied, options);
 }
@@ -168,6 +186,9 @@ ExitCode orbit(OrbitOptions options) {
 void add_orbit(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo orbit models/van_der_pol_stiff.sim --set mu=10                  period, multipliers, extent\n"
+      "  continuo orbit models/van_der_pol_stiff.sim --set mu=1 --along mu=0.1..10 --plot mu.svg  how it changes\n"
+      "  continuo orbit models/lorenz.sim --along rho=10..30 --from-hopf          orbits that a place of rest gives "
+      "birth to\n"
       "  continuo orbit models/lorenz.sim --lyapunov --duration 5000              how fast neighbours part\n"
       "  continuo orbit models/lorenz.sim --section z=27 --duration 500 -o s.csv  passes through a plane\n";
   CLI::App* verb = add_verb(app, "orbit", "Finds a closed orbit, a section, or Lyapunov exponents", examples);
@@ -181,9 +202,16 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
   verb->add_option("--tol", options->tolerance, "How exact")->type_name("TOL");
   auto* section = verb->add_option("--section", options->section, "States as a plane is passed upwards, as CSV")
                       ->type_name("NAME=VALUE");
-  verb->add_flag("--lyapunov", options->lyapunov, "Lyapunov exponents")->excludes(section);
-  verb->add_option("-o,--out", options->out, "The section's file (else standard output)")->type_name("FILE");
-  verb->add_option("--plot", options->plot, "The orbit as a picture, .svg or .png")->type_name("FILE");
+  auto* lyapunov = verb->add_flag("--lyapunov", options->lyapunov, "Lyapunov exponents")->excludes(section);
+  auto* along = verb->add_option("--along", options->along, "Follow the orbit while a parameter moves")
+                    ->type_name("NAME=LOW..HIGH")
+                    ->excludes(section)
+                    ->excludes(lyapunov);
+  verb->add_flag("--from-hopf", options->from_hopf, "Begin where places of rest begin to oscillate")->needs(along);
+  verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);
+  verb->add_option("-o,--out", options->out, "The section's file (else standard output), or the table of --along")
+      ->type_name("FILE");
+  verb->add_option("--plot", options->plot, "The orbit, or --along, as a picture, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = orbit(*options); });
 }
 

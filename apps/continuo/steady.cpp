@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <apps/continuo/branch_curves.hpp>
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
@@ -13,7 +14,6 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
-#include <continuo/model/simulate.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/continuation.hpp>
@@ -28,36 +28,6 @@ struct SteadyOptions {
   std::vector<std::string> box;
   std::size_t starts = 200;
 };
-
-/// Where to look: what the run passes through, twice as wide; the ranges that were asked for.
-bool set_box(const Studied& studied, const std::vector<std::string>& ranges, studies::EquilibriumBox& box) {
-  const model::Model& model = studied.prepared.program->model;
-  box.low = box.high = box.first = studied.start;
-  model::Experiment experiment = studied.prepared.experiment;
-  experiment.interrupt = &interrupt_flag();
-  const model::Simulated simulated = model::simulate(studied.prepared.program, experiment);
-  for (std::size_t row = 0; simulated.run && row < simulated.run->motion.rows(); ++row) {
-    const auto x = simulated.run->motion.state(row);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      if (!std::isfinite(x[i])) continue;
-      box.low[i] = std::min(box.low[i], x[i]);
-      box.high[i] = std::max(box.high[i], x[i]);
-    }
-  }
-  for (std::size_t i = 0; i < box.low.size(); ++i) {
-    const double wide = std::max(box.high[i] - box.low[i], std::max(1.0, std::abs(box.high[i])));
-    box.low[i] -= wide / 2;
-    box.high[i] += wide / 2;
-  }
-  for (const std::string& text : ranges) {
-    const auto range = parse_range(text);
-    const auto i = range ? state_named(model, range->name) : std::nullopt;
-    if (!i) return false;
-    box.low[*i] = range->low;
-    box.high[*i] = range->high;
-  }
-  return true;
-}
 
 std::string table_of(const studies::Equilibria& found, const model::Model& model) {
   std::string text;
@@ -85,22 +55,6 @@ std::string table_of(const studies::Equilibria& found, const model::Model& model
   return text + "\n";
 }
 
-/// A branch in pieces of equal stability, so that the picture shows it.
-void add_curves(const studies::Branch& branch, std::size_t component, results::Panel& panel) {
-  for (const bool stable : {true, false}) {
-    results::Curve curve{
-        .label = stable ? "stable" : "not stable", .x = {}, .y = {}, .color = stable ? "#0072b2" : "#d55e00"};
-    bool before = false;  // the line to the next point belongs to the piece where it begins
-    for (const studies::BranchPoint& point : branch.points) {
-      const bool here = (point.stability == studies::Stability::asymptotically_stable) == stable;
-      curve.x.push_back(point.constant);
-      curve.y.push_back(here || before ? point.x[component] : std::nan(""));
-      before = here;
-    }
-    panel.curves.push_back(std::move(curve));
-  }
-}
-
 ExitCode follow(const Studied& studied, const studies::Equilibria& found, const NamedRange& range,
                 const SteadyOptions& options) {
   const model::Model& model = studied.prepared.program->model;
@@ -118,11 +72,17 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
       if (point.frequency > 0) line += fmt::format(", frequency {}", results::short_number(point.frequency));
       print(line + "\n");
     }
-    add_curves(branch, *component, panel);
+    std::vector<double> constants, values;
+    std::vector<bool> stable;
+    for (const studies::BranchPoint& point : branch.points) {
+      constants.push_back(point.constant);
+      values.push_back(point.x[*component]);
+      stable.push_back(point.stability == studies::Stability::asymptotically_stable);
+    }
+    add_branch(panel, constants, values, stable);
   }
   if (interrupt_flag()) return interrupted;
   if (options.plot.empty()) return done;
-  for (std::size_t c = 2; c < panel.curves.size(); ++c) panel.curves[c].label.clear();
   if (const auto failure = results::draw({.title = model.name, .panels = {std::move(panel)}}, options.plot)) {
     say(*failure);
     return usage;

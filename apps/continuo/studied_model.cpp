@@ -1,12 +1,15 @@
 // apps/continuo/studied_model.cpp
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
 
+#include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
 
+#include <continuo/model/simulate.hpp>
 #include <continuo/model/suggest.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/of_model.hpp>
@@ -115,6 +118,35 @@ std::optional<NamedRange> parse_range(const std::string& text) {
   }
   say(fmt::format("`{}` is not NAME=LOW..HIGH", text));
   return std::nullopt;
+}
+
+bool set_box(const Studied& studied, const std::vector<std::string>& ranges, studies::EquilibriumBox& box) {
+  const model::Model& model = studied.prepared.program->model;
+  box.low = box.high = box.first = studied.start;
+  model::Experiment experiment = studied.prepared.experiment;
+  experiment.interrupt = &interrupt_flag();
+  const model::Simulated simulated = model::simulate(studied.prepared.program, experiment);
+  for (std::size_t row = 0; simulated.run && row < simulated.run->motion.rows(); ++row) {
+    const auto x = simulated.run->motion.state(row);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (!std::isfinite(x[i])) continue;
+      box.low[i] = std::min(box.low[i], x[i]);
+      box.high[i] = std::max(box.high[i], x[i]);
+    }
+  }
+  for (std::size_t i = 0; i < box.low.size(); ++i) {
+    const double wide = std::max(box.high[i] - box.low[i], std::max(1.0, std::abs(box.high[i])));
+    box.low[i] -= wide / 2;
+    box.high[i] += wide / 2;
+  }
+  for (const std::string& text : ranges) {
+    const auto range = parse_range(text);
+    const auto i = range ? state_named(model, range->name) : std::nullopt;
+    if (!i) return false;
+    box.low[*i] = range->low;
+    box.high[*i] = range->high;
+  }
+  return true;
 }
 
 std::string eigenvalue_text(double real, double imaginary) {

@@ -7,6 +7,7 @@
 
 #include <apps/continuo/experiment_options.hpp>
 
+#include <continuo/studies/equilibrium.hpp>
 #include <continuo/studies/parametric_system.hpp>
 
 namespace continuo::app {
@@ -34,6 +35,9 @@ std::optional<NamedRange> parse_range(const std::string& text);
 
 /// Which state has this name; says so where none has.
 std::optional<std::size_t> state_named(const model::Model& model, const std::string& name);
+
+/// Where to look for places of rest: what the run passes through, twice as wide; the ranges that were asked for.
+bool set_box(const Studied& studied, const std::vector<std::string>& ranges, studies::EquilibriumBox& box);
 
 /// "-0.5 +- 2.1 i"
 std::string eigenvalue_text(double real, double imaginary);

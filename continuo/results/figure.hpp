@@ -14,7 +14,7 @@ struct Curve {
   std::string label;
   std::vector<double> x, y;  // of equal length; a NaN breaks the line
   std::string color{};       // "#rrggbb"; empty: the next of the palette
-  enum class Style { line, thin_line, full_points, empty_points };
+  enum class Style { line, dashed_line, thin_line, full_points, empty_points };
   Style style = Style::line;
 };
 

@@ -75,6 +75,8 @@ std::string style_of(const Curve& curve, std::size_t number) {
   const std::string_view color = curve.color.empty() ? palette[number % std::size(palette)] : curve.color;
   const std::size_t round = number / std::size(palette);  // dashes tell the second round of colours from the first
   switch (curve.style) {
+    case Curve::Style::dashed_line:
+      return fmt::format("lines lw 1.8 dt '-' lc rgb '{}'", color);
     case Curve::Style::thin_line:
       return fmt::format("lines lw 0.9 lc rgb '{}'", color);
     case Curve::Style::full_points:

@@ -66,11 +66,19 @@ class Follower {
   }
   bool inside(const Vector& z) const { return constant_of(z) >= options_.low && constant_of(z) <= options_.high; }
 
+  /// What is small of each constant: of that which moves a part of its range, for its value may be zero on the way.
+  Vector sizes_of_constants() const {
+    Vector sizes(p_);
+    for (double& size : sizes) size = size == 0 ? 1 : std::abs(size);
+    sizes[options_.constant] = units_[n_] / 100;
+    return sizes;
+  }
+
   /// df/dz, n rows of n + 1.
   Vector jacobian(const Vector& z) {
     p_[options_.constant] = constant_of(z);
     const Vector x = state_of(z), by_x = jacobian_of(system_, options_.t, x, p_),
-                 by_p = constant_jacobian_of(system_, options_.t, x, p_);
+                 by_p = constant_jacobian_of(system_, options_.t, x, p_, sizes_of_constants());
     Vector rows(n_ * (n_ + 1));
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j) rows[i * (n_ + 1) + j] = by_x[i * n_ + j] * units_[j];
@@ -232,7 +240,7 @@ class Follower {
       return best;
     };
     const auto add = [&](Bifurcation kind, std::optional<Place> place, double frequency) {
-      if (place) branch.bifurcations.push_back({kind, std::move(place->point), frequency});
+      if (place && inside(place->z)) branch.bifurcations.push_back({kind, std::move(place->point), frequency});
     };
     const bool crosses = a.direction_sign * b.direction_sign < 0;  // a pitchfork also turns round
     if (a.tangent[n_] * b.tangent[n_] < 0 && !crosses)

@@ -61,7 +61,7 @@ std::vector<double> jacobian_of(const ParametricSystem& system, double t, Values
   return rows;
 }
 
-std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p) {
+std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p, Values scale) {
   const std::size_t n = system.size, m = p.size();
   std::vector<double> rows(n * m);
   if (system.constant_jacobian) {
@@ -70,7 +70,7 @@ std::vector<double> constant_jacobian_of(const ParametricSystem& system, double 
   }
   std::vector<double> moved(p.begin(), p.end()), above(n), below(n);
   for (std::size_t j = 0; j < m; ++j) {
-    const double increment = central_increment(p[j], p[j] == 0 ? 1 : 0);
+    const double increment = central_increment(p[j], !scale.empty() ? scale[j] : p[j] == 0 ? 1 : 0);
     set_column(rows, n, m, j, increment, moved, above, below,
                [&](std::vector<double>& out) { system.derivative(t, x, moved, out); });
   }

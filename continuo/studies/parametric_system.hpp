@@ -83,8 +83,9 @@ ParametricSystem parametric_system(std::size_t size, System system) {
 /// df/dx, n * n row by row, exact where the system gives it, else by central differences. `scale` (of each component,
 /// may be empty) says what is small.
 std::vector<double> jacobian_of(const ParametricSystem& system, double t, Values x, Values p, Values scale = {});
-/// df/dp, n * m row by row.
-std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p);
+/// df/dp, n * m row by row. Without a `scale` a constant is as large as it is now, which says nothing near zero.
+std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p,
+                                         Values scale = {});
 
 /// The increment of a central difference, of a number or of `scale`, whichever is larger: the third root of epsilon,
 /// where its error and that of rounding are alike.

@@ -91,14 +91,14 @@ std::vector<std::complex<double>> multipliers_of(const ParametricSystem& system,
   return values;
 }
 
+}  // namespace
+
 bool depends_on_time(const ParametricSystem& system, const X& x) {
   X now(x.size()), later(x.size());
   system.derivative(0, x, system.constants, now);
   system.derivative(0.7310585786300049, x, system.constants, later);
   return now != later;
 }
-
-}  // namespace
 
 Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component, double level,
                          double settle, double duration, double rtol, const std::atomic<bool>* interrupt) {

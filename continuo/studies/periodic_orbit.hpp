@@ -32,6 +32,9 @@ struct PeriodicOrbit {
 PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<double> x0,
                                   const PeriodicOrbitOptions& options = {});
 
+/// Whether f(t, x) differs from one t to another.
+bool depends_on_time(const ParametricSystem& system, const std::vector<double>& x);
+
 /// Crossings of a plane x_i = level, in the direction of growth: a Poincare section.
 struct SectionPoint {
   double t;

@@ -115,6 +115,42 @@ TEST(Orbit, PeriodSectionAndExponents) {
   EXPECT_EQ(shell.run("orbit " + gallery("lorenz") + " --section q=27").exit, 1);
 }
 
+TEST(Orbit, ABranchWithItsTableAndPicture) {
+  const Shell shell;
+  shell.write("bautin.sim",
+              "model Bautin\nparam mu = 0.5 in -1..1\nlet grow = mu + (x^2 + y^2) - (x^2 + y^2)^2\n"
+              "x' = grow*x - 1.5*y\ny' = grow*y + 1.5*x\nx(0) = 1; y(0) = 0\nrun 0..40\n");
+  const Result found = shell.run("orbit bautin.sim --along mu=-1..1 -o b.csv --plot b.svg");
+  EXPECT_EQ(found.exit, 0) << found.err;
+  EXPECT_THAT(found.out, AllOf(HasSubstr("begins at mu = 0: the orbit shrinks"), HasSubstr("mu = -0.25: fold"),
+                               HasSubstr("ends at mu = 1")));
+  EXPECT_THAT(
+      shell.read("b.csv"),
+      testing::StartsWith("branch,mu,period,stable,x min,x max,y min,y max,multiplier 1 re,multiplier 1 im\n1,"));
+  EXPECT_THAT(shell.read("b.svg"), HasSubstr("least and greatest"));
+  EXPECT_THAT(shell.run("orbit bautin.sim --along mu=-1..1 --from-hopf").out, HasSubstr("mu = -0.25: fold"));
+  // From the start the motion comes to rest; the orbits begin elsewhere.
+  const Result fallback = shell.run("orbit bautin.sim --along mu=-1..1 --set mu=-0.5");
+  EXPECT_EQ(fallback.exit, 0);
+  EXPECT_THAT(fallback.err, HasSubstr("begin to oscillate"));
+  EXPECT_THAT(fallback.out, HasSubstr("mu = -0.25: fold"));
+}
+
+TEST(Orbit, WhatCannotBeFollowed) {
+  const Shell shell;
+  const std::string lorenz = "orbit " + gallery("lorenz");
+  EXPECT_THAT(shell.run(lorenz + " --along roh=10..30").err, HasSubstr("did you mean `rho`?"));
+  EXPECT_THAT(shell.run(lorenz + " --along rho=10..20").err, AllOf(HasSubstr("outside of 10..20"), HasSubstr("--set")));
+  EXPECT_THAT(shell.run(lorenz + " --along rho=30").err, HasSubstr("NAME=LOW..HIGH"));
+  EXPECT_THAT(shell.run(lorenz + " --along rho=10..30 --of q").err, HasSubstr("there is no state `q`"));
+  EXPECT_THAT(shell.run(lorenz + " --from-hopf").err, HasSubstr("--along"));
+  EXPECT_EQ(shell.run(lorenz + " --along rho=10..30 -o /nowhere/x.csv").exit, 1);
+  shell.write("line.sim", "param k = 1\nx' = -k*x\nx(0) = 1\nrun 0..1\n");
+  const Result none = shell.run("orbit line.sim --along k=0.5..2");
+  EXPECT_EQ(none.exit, 3);
+  EXPECT_THAT(none.err, HasSubstr("no orbit was found to follow along k=0.5..2"));
+}
+
 TEST(Studies, HelpBeginsWithExamples) {
   const Shell shell;
   for (const std::string verb : {"steady", "linearize", "phase", "orbit"})

@@ -1,0 +1,33 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <apps/continuo/branch_curves.hpp>
+
+namespace continuo::app {
+
+void add_branch(results::Panel& panel, std::span<const double> constants, std::span<const double> values,
+                const std::vector<bool>& stable) {
+  using enum results::Curve::Style;
+  for (const bool wanted : {true, false}) {
+    const std::string label = wanted ? "stable" : "not stable";
+    const bool named = std::ranges::any_of(panel.curves, [&](const auto& curve) { return curve.label == label; });
+    results::Curve curve{.label = named ? "" : label,
+                         .x = {},
+                         .y = {},
+                         .color = wanted ? "#0072b2" : "#d55e00",
+                         .style = wanted ? line : dashed_line};
+    bool before = false;  // the line to the next point belongs to the piece where it begins
+    for (std::size_t k = 0; k < constants.size(); ++k) {
+      const bool here = stable[k] == wanted;
+      curve.x.push_back(constants[k]);
+      curve.y.push_back(here || before ? values[k] : std::nan(""));
+      before = here;
+    }
+    if (std::ranges::any_of(curve.y, [](double y) { return std::isfinite(y); }))
+      panel.curves.push_back(std::move(curve));
+  }
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <apps/continuo/branch_curves.hpp>
+#include <apps/continuo/interrupt.hpp>
+#include <apps/continuo/orbit_branch.hpp>
+#include <apps/continuo/study_progress.hpp>
+#include <apps/continuo/terminal.hpp>
+#include <fmt/format.h>
+
+#include <continuo/results/csv.hpp>
+#include <continuo/results/figure.hpp>
+#include <continuo/results/output_file.hpp>
+#include <continuo/results/summary.hpp>
+#include <continuo/studies/continuation.hpp>
+#include <continuo/studies/orbit_continuation.hpp>
+
+namespace continuo::app {
+namespace {
+
+using studies::OrbitBranch;
+
+std::string multipliers_text(const studies::OrbitPoint& point) {
+  std::string text;
+  for (const auto& value : point.multipliers) {
+    if (value.imag() < 0) continue;  // its conjugate was there
+    text += (text.empty() ? " " : ", ") + eigenvalue_text(value.real(), value.imag());
+  }
+  return text;
+}
+
+std::string table_of(const OrbitBranch& branch, const NamedRange& range) {
+  const std::string& name = range.name;
+  std::string text;
+  // What the place is exact to leaves of a zero.
+  const auto shown = [&](double value) { return std::abs(value) < 1e-8 * (range.high - range.low) ? 0 : value; };
+  const auto end = [&](const char* word, const studies::OrbitBranchEnd& where) {
+    return fmt::format("   {} at {} = {:.10g}: {}\n", word, name, shown(where.constant), where.reason);
+  };
+  text += fmt::format("{} orbits, period {:.10g} to {:.10g}\n", branch.points.size(), branch.points.front().period,
+                      branch.points.back().period);
+  text += end("begins", branch.ends[0]);
+  for (const studies::OrbitMark& mark : branch.marks) {
+    text += fmt::format("   {} = {:.10g}: {}, period {:.10g}", name, shown(mark.at.constant), to_string(mark.kind),
+                        mark.at.period);
+    if (mark.kind == studies::OrbitBifurcation::torus)
+      text += fmt::format(", {} turns a period", results::short_number(mark.rotation));
+    text += ", multipliers" + multipliers_text(mark.at) + "\n";
+  }
+  return text + end("ends", branch.ends[1]);
+}
+
+std::string csv_of(const std::vector<OrbitBranch>& branches, const Studied& studied, const std::string& name) {
+  const model::Model& model = studied.prepared.program->model;
+  std::string csv = "branch,";
+  results::append_field(csv, name);
+  csv += ",period,stable";
+  for (const model::State& state : model.states)
+    for (const char* end : {" min", " max"}) {
+      csv += ',';
+      results::append_field(csv, state.column + end);
+    }
+  for (std::size_t k = 1; k < model.states.size(); ++k) csv += fmt::format(",multiplier {0} re,multiplier {0} im", k);
+  csv += "\n";
+  const auto field = [&](double value) {
+    csv += ',';
+    results::append_number(csv, value);
+  };
+  for (std::size_t b = 0; b < branches.size(); ++b) {
+    for (const studies::OrbitPoint& point : branches[b].points) {
+      csv += fmt::format("{}", b + 1);
+      field(point.constant);
+      field(point.period);
+      csv += point.stable ? ",1" : ",0";
+      for (std::size_t i = 0; i < point.low.size(); ++i) field(point.low[i]), field(point.high[i]);
+      for (const auto& value : point.multipliers) field(value.real()), field(value.imag());
+      csv += '\n';
+    }
+  }
+  return csv;
+}
+
+/// The greatest and the least value of one state, and the period, over the parameter.
+results::Figure figure_of(const std::vector<OrbitBranch>& branches, const model::Model& model, std::size_t component,
+                          const std::string& name) {
+  const std::string& column = model.states[component].column;
+  results::Panel extent{.x_label = name, .y_label = column + ", least and greatest", .curves = {}};
+  results::Panel period{.x_label = name, .y_label = "period", .curves = {}};
+  for (const OrbitBranch& branch : branches) {
+    std::vector<double> constants, low, high, periods;
+    std::vector<bool> stable;
+    for (const studies::OrbitPoint& point : branch.points) {
+      constants.push_back(point.constant);
+      low.push_back(point.low[component]);
+      high.push_back(point.high[component]);
+      periods.push_back(point.period);
+      stable.push_back(point.stable);
+    }
+    add_branch(extent, constants, high, stable);
+    add_branch(extent, constants, low, stable);
+    add_branch(period, constants, periods, stable);
+  }
+  results::Figure figure{.title = model.name, .panels = {std::move(extent)}};
+  // Where all periods are the same to what is known of them there is nothing to see.
+  double least = std::numeric_limits<double>::infinity(), greatest = 0;
+  for (const OrbitBranch& branch : branches)
+    for (const studies::OrbitPoint& point : branch.points) {
+      least = std::min(least, point.period);
+      greatest = std::max(greatest, point.period);
+    }
+  if (greatest - least > 1e-6 * greatest) figure.panels.push_back(std::move(period));
+  return figure;
+}
+
+/// Where places of rest within the range begin to oscillate, each once.
+std::vector<studies::HopfPoint> hopf_points(const Studied& studied, const NamedRange& range) {
+  std::vector<studies::HopfPoint> found;
+  studies::EquilibriumBox box{.low = {}, .high = {}, .interrupt = &interrupt_flag()};
+  if (!set_box(studied, {}, box)) return found;
+  const auto equilibria = studies::find_equilibria(studied.system, box);
+  for (const studies::Equilibrium& equilibrium : equilibria.equilibria) {
+    const auto branch = studies::continue_equilibrium(
+        studied.system, equilibrium.x, {.low = range.low, .high = range.high, .interrupt = &interrupt_flag()});
+    for (const studies::BifurcationPoint& point : branch.bifurcations) {
+      if (point.kind != studies::Bifurcation::hopf) continue;
+      const auto known = [&](const studies::HopfPoint& other) {
+        double apart = std::abs(other.constant - point.at.constant) / (range.high - range.low);
+        for (std::size_t i = 0; i < other.x.size(); ++i)
+          apart = std::max(apart, std::abs(other.x[i] - point.at.x[i]) / std::max(1.0, std::abs(other.x[i])));
+        return apart < 1e-5;
+      };
+      if (std::ranges::any_of(found, known)) continue;
+      auto hopf = studies::find_hopf_point(studied.system, {.value = point.at.constant,
+                                                            .low = range.low,
+                                                            .high = range.high,
+                                                            .x = point.at.x,
+                                                            .angular_frequency = 2 * M_PI * point.frequency});
+      if (hopf) found.push_back(std::move(*hopf));
+    }
+  }
+  return found;
+}
+
+/// From the orbit that the motion comes to; from Hopf points where there is none, or the user wants them.
+std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions& options) {
+  const NamedRange& range = options.range;
+  StudyProgress progress;
+  double begin = 0, share = 1;
+  studies::OrbitContinuationOptions continuation{.low = range.low,
+                                                 .high = range.high,
+                                                 .rtol = std::clamp(options.search.rtol, 1e-12, 1e-6),
+                                                 .interrupt = &interrupt_flag()};
+  if (const auto watch = progress.watcher())
+    continuation.progress = [&, watch](double part) { watch(begin + share * part); };
+  std::vector<OrbitBranch> branches;
+  if (!options.from_hopf) {
+    const auto start = studies::find_periodic_orbit(studied.system, studied.start, options.search);
+    if (start.outcome) {
+      branches.push_back(studies::continue_orbit(studied.system, start, continuation));
+      return branches;
+    }
+    if (interrupt_flag()) return branches;
+    say(fmt::format("no orbit was found from the start: {}; looking where places of rest begin to oscillate",
+                    start.outcome.hint.empty() ? describe(start.outcome) : start.outcome.hint));
+  }
+  const auto points = hopf_points(studied, range);
+  for (std::size_t k = 0; k < points.size() && !interrupt_flag(); ++k) {
+    share = 1 / static_cast<double>(points.size());
+    begin = share * static_cast<double>(k);
+    branches.push_back(studies::continue_orbit(studied.system, points[k], continuation));
+  }
+  return branches;
+}
+
+}  // namespace
+
+ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  const NamedRange& range = options.range;
+  const double now = studied.system.constants[0];
+  if (!options.from_hopf && !(now >= range.low && now <= range.high)) {
+    say(fmt::format("{} is {:.10g}, outside of {:.10g}..{:.10g}: --set {}=VALUE gives it a value to begin with",
+                    range.name, now, range.low, range.high, range.name));
+    return usage;
+  }
+  std::optional<std::size_t> component = 0;
+  if (!options.of.empty()) component = state_named(model, options.of);
+  if (!component) return usage;
+  std::vector<OrbitBranch> branches = follow(studied, options);
+  for (const OrbitBranch& branch : branches)
+    if (!branch.message.empty()) say(branch.message);
+  std::erase_if(branches, [](const OrbitBranch& branch) { return branch.points.empty(); });
+  if (branches.empty()) {
+    if (interrupt_flag()) return interrupted;
+    say(fmt::format("no orbit was found to follow along {}={:.10g}..{:.10g}", range.name, range.low, range.high));
+    return numerical_failure;
+  }
+  for (std::size_t b = 0; b < branches.size(); ++b)
+    print((branches.size() == 1 ? "" : fmt::format("{}{}: ", b == 0 ? "" : "\n", b + 1)) +
+          table_of(branches[b], range));
+  if (!options.out.empty()) {
+    const std::string csv = csv_of(branches, studied, range.name);
+    if (options.out == "-") {
+      print(csv);
+    } else if (const auto failure = results::write_file(options.out, csv)) {
+      say(*failure);
+      return usage;
+    }
+  }
+  if (!options.plot.empty()) {
+    if (const auto failure = results::draw(figure_of(branches, model, *component, range.name), options.plot)) {
+      say(*failure);
+      return usage;
+    }
+  }
+  return interrupt_flag() ? interrupted : done;
+}
+
+}  // namespace continuo::app

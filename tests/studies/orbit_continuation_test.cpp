@@ -1,0 +1,249 @@
+// Branches of closed orbits against normal forms, whose orbits, periods and multipliers are known, and against
+// published values.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <continuo/studies/orbit_continuation.hpp>
+
+namespace continuo::studies {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// r' = r g(r^2, mu), angle' = omega(r^2): circles with g = 0.
+template <class Growth, class Speed>
+ParametricSystem rotating(double mu, Growth g, Speed omega) {
+  const auto f = [=](double, Values x, Values p, std::span<double> out) {
+    const double square = x[0] * x[0] + x[1] * x[1], grow = g(square, p[0]), turn = omega(square);
+    out[0] = grow * x[0] - turn * x[1];
+    out[1] = grow * x[1] + turn * x[0];
+  };
+  return parametric_system(2, f, {mu});
+}
+double radius(const OrbitPoint& point) {
+  return std::hypot(point.x[0], point.x[1]);
+}
+
+std::vector<OrbitMark> of_kind(const OrbitBranch& branch, OrbitBifurcation kind) {
+  std::vector<OrbitMark> found;
+  std::ranges::copy_if(branch.marks, std::back_inserter(found), [&](const auto& mark) { return mark.kind == kind; });
+  return found;
+}
+
+// r' = r (mu - r^2), angle' = 2 + r^2: r = sqrt(mu), T = 2 pi / (2 + mu), multiplier exp(-2 mu T), born at mu = 0.
+TEST(OrbitContinuation, HopfNormalForm) {
+  const auto system =
+      rotating(1, [](double square, double mu) { return mu - square; }, [](double square) { return 2 + square; });
+  const auto start = find_periodic_orbit(system, {0.3, 0}, {.settle = 20, .duration = 20});
+  ASSERT_TRUE(start.outcome);
+  const auto branch = continue_orbit(system, start, {.low = -1, .high = 3});
+  ASSERT_EQ(branch.message, "");
+  EXPECT_EQ(branch.ends[0].ending, OrbitEnding::hopf);
+  EXPECT_NEAR(branch.ends[0].constant, 0, 1e-10);
+  EXPECT_EQ(branch.ends[1].ending, OrbitEnding::bound);
+  EXPECT_EQ(branch.points.back().constant, 3);
+  EXPECT_TRUE(branch.marks.empty());
+  EXPECT_GE(branch.points.size(), 20u);
+  for (std::size_t k = 1; k < branch.points.size(); ++k) {
+    const OrbitPoint& point = branch.points[k];
+    const double mu = point.constant, period = 2 * pi / (2 + mu);
+    // The integration's tolerance is 1e-9, of each of the eight parts of the period; near the Hopf point an error of r
+    // is that of mu - r^2 divided by 2 r.
+    EXPECT_NEAR(radius(point), std::sqrt(mu), 1e-8 + 1e-9 / std::sqrt(mu));
+    EXPECT_NEAR(point.period, period, 1e-8 * period);
+    ASSERT_EQ(point.multipliers.size(), 1u);
+    EXPECT_NEAR(point.multipliers[0].real(), std::exp(-2 * mu * period), 1e-7);
+    EXPECT_TRUE(point.stable);
+    EXPECT_NEAR(point.high[0], std::sqrt(mu), 1e-5);  // parabolas between samples: h^4, h = a 50th of the turn
+    EXPECT_NEAR(point.low[1], -std::sqrt(mu), 1e-5);
+  }
+}
+
+// Bautin: r' = r (mu + r^2 - r^4): two circles between the fold at mu = -1/4, r^2 = 1/2, and the Hopf point at 0.
+TEST(OrbitContinuation, AFoldIsRounded) {
+  const auto bautin = [](double mu) {
+    return rotating(
+        mu, [](double square, double p) { return p + square - square * square; }, [](double) { return 1.5; });
+  };
+  const auto start = find_periodic_orbit(bautin(0.5), {1, 0}, {.settle = 20, .duration = 20});
+  ASSERT_TRUE(start.outcome);
+  const auto branch = continue_orbit(bautin(0.5), start, {.low = -1, .high = 1});
+  EXPECT_EQ(branch.ends[0].ending, OrbitEnding::hopf);
+  EXPECT_NEAR(branch.ends[0].constant, 0, 1e-10);
+  EXPECT_EQ(branch.ends[1].ending, OrbitEnding::bound);
+  ASSERT_EQ(branch.marks.size(), 1u);
+  EXPECT_EQ(branch.marks[0].kind, OrbitBifurcation::fold);
+  EXPECT_NEAR(branch.marks[0].at.constant, -0.25, 1e-8);
+  EXPECT_NEAR(branch.marks[0].at.multipliers[0].real(), 1, 1e-6);
+  EXPECT_NEAR(std::pow(radius(branch.marks[0].at), 2), 0.5, 1e-6);
+  for (std::size_t k = 1; k < branch.points.size(); ++k) {
+    const OrbitPoint& point = branch.points[k];
+    const double square = std::pow(radius(point), 2);
+    EXPECT_NEAR(point.constant, square * square - square, 1e-7);
+    // d(r g)/dr = 2 r^2 (1 - 2 r^2)
+    EXPECT_NEAR(point.multipliers[0].real(), std::exp(2 * square * (1 - 2 * square) * 2 * pi / 1.5), 1e-6);
+    EXPECT_EQ(point.stable, square > 0.5) << square;
+  }
+  // From the other end, where the orbits cannot be found by running: they repel.
+  const HopfPoint hopf = *find_hopf_point(bautin(0.1), {.value = 0.1, .low = -1, .high = 1, .x = {0.01, 0}});
+  EXPECT_NEAR(hopf.angular_frequency, 1.5, 1e-8);
+  const auto other = continue_orbit(bautin(0.1), hopf, {.low = -1, .high = 1});
+  EXPECT_EQ(other.ends[0].ending, OrbitEnding::hopf);
+  EXPECT_EQ(other.ends[1].ending, OrbitEnding::bound);
+  ASSERT_EQ(other.marks.size(), 1u);
+  EXPECT_NEAR(other.marks[0].at.constant, -0.25, 1e-8);
+}
+
+// C. M. Andersen, J. F. Geer, SIAM J. Appl. Math. 42 (1982); mu = 10 by tests/studies/periodic_orbit_test.
+TEST(OrbitContinuation, PeriodsOfVanDerPol) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    out[0] = x[1];
+    out[1] = p[0] * (1 - x[0] * x[0]) * x[1] - x[0];
+  };
+  const auto system = parametric_system(2, f, {2});
+  const auto start = find_periodic_orbit(system, {2, 0}, {.settle = 50, .duration = 50});
+  const auto branch = continue_orbit(system, start, {.low = 1, .high = 10});
+  ASSERT_EQ(branch.message, "");
+  EXPECT_TRUE(branch.marks.empty());
+  EXPECT_EQ(branch.points.front().constant, 1);
+  EXPECT_NEAR(branch.points.front().period, 6.6632868593, 1e-8);
+  EXPECT_EQ(branch.points.back().constant, 10);
+  EXPECT_NEAR(branch.points.back().period, 19.07836957, 1e-7);
+  for (const OrbitPoint& point : branch.points) EXPECT_TRUE(point.stable);
+}
+
+ParametricSystem lorenz(double rho) {
+  const auto f = [](double, Values x, Values p, std::span<double> dxdt) {
+    dxdt[0] = p[0] * (x[1] - x[0]);
+    dxdt[1] = x[0] * (p[1] - x[2]) - x[1];
+    dxdt[2] = x[0] * x[1] - p[2] * x[2];
+  };
+  return parametric_system(3, f, {10, rho, 8.0 / 3});
+}
+
+// The orbits that are born at the subcritical Hopf point, sigma (sigma + beta + 3) / (sigma - beta - 1), all repel;
+// they end in the homoclinic orbit of the origin, at 13.926557407 (C. Sparrow, "The Lorenz Equations", 1982: 13.926).
+TEST(OrbitContinuation, LorenzFromTheHopfPointToTheHomoclinicOrbit) {
+  const double side = std::sqrt(8.0 / 3 * 23);
+  const auto hopf = find_hopf_point(
+      lorenz(24), {.constant = 1, .value = 24, .low = 0, .high = 30, .x = {side, side, 23}, .angular_frequency = 9});
+  ASSERT_TRUE(hopf);
+  EXPECT_NEAR(hopf->constant, 470.0 / 19, 1e-8);
+  const auto branch = continue_orbit(lorenz(24), *hopf, {.constant = 1, .low = 10, .high = 30});
+  ASSERT_EQ(branch.message, "");
+  EXPECT_EQ(branch.ends[1].ending, OrbitEnding::homoclinic) << branch.ends[1].reason;
+  EXPECT_NEAR(branch.ends[1].constant, 13.926557407, 1e-6);
+  EXPECT_TRUE(branch.marks.empty());
+  for (std::size_t k = 1; k < branch.points.size(); ++k) EXPECT_FALSE(branch.points[k].stable);
+
+  // And back from the middle.
+  const auto middle = std::ranges::find_if(branch.points, [](const auto& point) { return point.constant < 20; });
+  const auto back = continue_orbit(lorenz(24), *middle, {.constant = 1, .low = 15, .high = 30});
+  ASSERT_EQ(back.message, "");
+  EXPECT_EQ(back.ends[0].ending, OrbitEnding::bound);
+  EXPECT_EQ(back.points.front().constant, 15);
+  EXPECT_EQ(back.ends[1].ending, OrbitEnding::hopf);
+  EXPECT_NEAR(back.ends[1].constant, 470.0 / 19, 1e-8);
+}
+
+// C. Roessler's system with a = b = 0.2: the first doubling of its cascade stands near c = 2.83. Two tolerances agree,
+// and beyond it the orbit of twice the period is what motions come to.
+TEST(OrbitContinuation, RoesslerDoublesItsPeriod) {
+  const auto roessler = [](double c) {
+    const auto f = [](double, Values x, Values p, std::span<double> out) {
+      out[0] = -x[1] - x[2];
+      out[1] = x[0] + 0.2 * x[1];
+      out[2] = 0.2 + x[2] * (x[0] - p[0]);
+    };
+    return parametric_system(3, f, {c});
+  };
+  const auto start = find_periodic_orbit(roessler(2.5), {1, 1, 0}, {.settle = 500, .duration = 100});
+  ASSERT_TRUE(start.outcome) << describe(start.outcome);
+  std::vector<double> doubling;
+  for (const double rtol : {1e-8, 1e-11}) {
+    const auto branch = continue_orbit(roessler(2.5), start, {.low = 2.3, .high = 3.2, .rtol = rtol});
+    const auto found = of_kind(branch, OrbitBifurcation::period_doubling);
+    ASSERT_EQ(found.size(), 1u);
+    doubling.push_back(found[0].at.constant);
+    EXPECT_NEAR(found[0].at.multipliers[0].real(), -1, 1e-6);
+    for (const OrbitPoint& point : branch.points) EXPECT_EQ(point.stable, point.constant < doubling.back());
+  }
+  EXPECT_NEAR(doubling[0], doubling[1], 1e-6);
+  EXPECT_NEAR(doubling[1], 2.832, 1e-3);
+  const auto before = find_periodic_orbit(roessler(doubling[1] - 0.02), {1, 1, 0}, {.settle = 2000, .duration = 100});
+  const auto after = find_periodic_orbit(roessler(doubling[1] + 0.02), {1, 1, 0}, {.settle = 2000, .duration = 100});
+  EXPECT_NEAR(after.period / before.period, 2, 0.02);
+}
+
+// Two rotations: r' = r (1 - r^2) with angular speed 1, and beside it a spiral u' = (mu - r) u + i omega u that is made
+// to feel the first: the multipliers of the circle r = 1 are exp(-4 pi) and exp(2 pi (mu - 1 +- i omega)).
+TEST(OrbitContinuation, ATorusIsBorn) {
+  const double omega = 0.3;
+  const auto f = [=](double, Values x, Values p, std::span<double> out) {
+    const double square = x[0] * x[0] + x[1] * x[1], outer = x[2] * x[2] + x[3] * x[3];
+    out[0] = (1 - square) * x[0] - x[1];
+    out[1] = (1 - square) * x[1] + x[0];
+    out[2] = (p[0] - std::sqrt(square) - outer) * x[2] - omega * x[3];
+    out[3] = (p[0] - std::sqrt(square) - outer) * x[3] + omega * x[2];
+  };
+  const auto system = parametric_system(4, f, {0.5});
+  const auto start = find_periodic_orbit(system, {0.5, 0, 0.1, 0}, {.settle = 60, .duration = 60});
+  ASSERT_TRUE(start.outcome) << describe(start.outcome);
+  const auto branch = continue_orbit(system, start, {.low = 0.4, .high = 1.6});
+  ASSERT_EQ(branch.marks.size(), 1u);
+  EXPECT_EQ(branch.marks[0].kind, OrbitBifurcation::torus);
+  EXPECT_NEAR(branch.marks[0].at.constant, 1, 1e-8);
+  EXPECT_NEAR(branch.marks[0].rotation, omega, 1e-7);
+  for (const OrbitPoint& point : branch.points) EXPECT_EQ(point.stable, point.constant < 1);
+}
+
+// x'' = -x - c x': only at c = 0 are there orbits, of any size.
+TEST(OrbitContinuation, AFamilyIsSaidToBeOne) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    out[0] = x[1];
+    out[1] = -std::sin(x[0]) - p[0] * x[1];
+  };
+  const auto system = parametric_system(2, f, {0.0});
+  const auto hopf = find_hopf_point(system, {.value = 0.1, .low = -1, .high = 1, .x = {0, 0}});
+  ASSERT_TRUE(hopf);
+  const auto branch = continue_orbit(system, *hopf, {.low = -1, .high = 1});
+  EXPECT_EQ(branch.ends[1].ending, OrbitEnding::family) << branch.ends[1].reason;
+}
+
+TEST(OrbitContinuation, WhatCannotBeFollowedIsSaid) {
+  const auto system = rotating(1, [](double square, double mu) { return mu - square; }, [](double) { return 1.0; });
+  const auto start = find_periodic_orbit(system, {0.3, 0}, {.settle = 20, .duration = 20});
+  const auto says = [&](const OrbitContinuationOptions& options) {
+    const auto branch = continue_orbit(system, start, options);
+    EXPECT_TRUE(branch.points.empty());
+    return branch.message;
+  };
+  EXPECT_NE(says({.low = 2, .high = 3}).find("outside of 2..3"), std::string::npos);
+  EXPECT_NE(says({.constant = 1}).find("no constant number 1"), std::string::npos);
+  EXPECT_NE(says({.low = 1, .high = 1}).find("empty"), std::string::npos);
+  const auto none = find_periodic_orbit(system, {0, 0}, {.settle = 1, .duration = 1});
+  EXPECT_FALSE(continue_orbit(system, none, {}).message.empty());
+}
+
+TEST(OrbitContinuation, WhatIsInterruptedKeepsWhatItHas) {
+  const auto system = rotating(1, [](double square, double mu) { return mu - square; }, [](double) { return 1.0; });
+  const auto start = find_periodic_orbit(system, {0.3, 0}, {.settle = 20, .duration = 20});
+  std::atomic<bool> interrupt = false;
+  double part = 0;
+  const auto stop = [&](double now) {
+    EXPECT_GE(now, part);
+    part = now;
+    interrupt = now > 0.2;
+  };
+  const auto branch = continue_orbit(system, start, {.low = 0.2, .high = 3, .interrupt = &interrupt, .progress = stop});
+  EXPECT_EQ(branch.ends[0].ending, OrbitEnding::interrupted);
+  EXPECT_GE(branch.points.size(), 2u);
+  EXPECT_LE(part, 0.3);
+}
+
+}  // namespace
+}  // namespace continuo::studies
