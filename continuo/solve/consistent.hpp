@@ -28,6 +28,15 @@ struct Consistency {
   explicit operator bool() const { return result == Result::consistent; }
 };
 
+/// What is wrong where there are no consistent values.
+constexpr const char* hint_of(const Consistency& found) {
+  return found.result == Consistency::Result::singular
+             ? "the algebraic equations do not determine their unknowns here: an unknown appears in no equation, two "
+               "equations say the same, or the index is above 1"
+             : "no values of the unknowns satisfy the algebraic equations: begin nearer to them, or look for a "
+               "contradiction in the equations";
+}
+
 /// Solves for the unknowns without mass, the other components stay. Newton's iteration; a correction is halved until
 /// the next one, with the same matrix, is shorter (P. Deuflhard, "Newton Methods for Nonlinear Problems", 3.3: natural
 /// monotonicity, which does not depend on how the equations are scaled).

@@ -4,41 +4,25 @@
 //   Integrator integrator(f, x0, {0.0, 10.0}, Tsitouras5{}, {.rtol = 1e-9});
 //   while (integrator.advance()) use(integrator.t(), integrator.x());
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <continuo/solve/accumulation.hpp>
+#include <continuo/solve/check_input.hpp>
 #include <continuo/solve/consistent.hpp>
 #include <continuo/solve/guard_watch.hpp>
+#include <continuo/solve/observer.hpp>
 #include <continuo/solve/step_control.hpp>
 
 namespace continuo {
-
-/// An event as it happened. The references hold during the call that gets it.
-template <State X>
-struct Happening {
-  Scalar<X> t;
-  std::span<const std::size_t> events;  // by number, in order of declaration
-  const X& before;
-  const X& after;
-};
-
-/// Who watches a run: `stretch(integrator, from, to)` for every piece of trajectory that stands (integrator.at(t, x)
-/// gives x there), `happening(integrator, Happening)` at every event.
-struct NoObserver {
-  template <class I, class Real>
-  void stretch(I&, Real, Real) {}
-  template <class I, class H>
-  void happening(I&, const H&) {}
-};
 
 template <class System, State X, class M, class Events = EventList<X>>
 class Integrator {
@@ -164,7 +148,7 @@ class Integrator {
   template <class Observer>
   void start(Observer& observer) {
     started_ = true;
-    if (const std::string why = wrong_input(); !why.empty()) {
+    if (const std::string why = wrong_input<M>(system(), x_, interval_, options_); !why.empty()) {
       end(Ending::invalid_input, why);
       return;
     }
@@ -178,26 +162,6 @@ class Integrator {
     for (std::size_t i = 0; i < events_.size(); ++i)
       if (!events_.is_guard(i) && events_.next_time(i, t_, true) == t_) fired_.push_back(i);
     if (!fired_.empty()) fire(observer);
-  }
-
-  std::string wrong_input() const {
-    using std::isfinite;
-    for (std::size_t i = 0; i < dimension(x_); ++i)
-      if (!(Real(0) * x_.data()[i] == Real(0))) return component_name(system(), i) + " is not finite at the start";
-    if (!(Real(0) * (interval_.to - interval_.from) == Real(0))) return "the interval of time is not finite";
-    if (has_mass<X>(system()) && !detail::is_implicit<M>())
-      return std::string(M::name) + " cannot integrate M x' = f(t, x): take an implicit method, such as rodas5p";
-    if constexpr (requires { M::why_not(system(), x_); }) {
-      if (const std::string_view why = M::why_not(system(), x_); !why.empty())
-        return std::string(M::name) + ' ' + std::string(why);
-    }
-    if (M::error_order == 0 && !(options_.step > 0))
-      return std::string(M::name) + " has no error estimate: give it a step";
-    for (const auto* each : {&options_.rtol_each, &options_.atol_each})
-      if (!each->empty() && each->size() != dimension(x_)) return "a tolerance per component needs one for each";
-    if (!(options_.rtol >= 0) || !(options_.atol >= 0) || !(options_.rtol + options_.atol > 0))
-      return "rtol and atol must not be negative, and not both zero";
-    return {};
   }
 
   void restart() {
@@ -217,12 +181,7 @@ class Integrator {
     return false;
   }
   bool end_inconsistent() {
-    end(Ending::nonlinear_solve_failed,
-        consistent_.result == Consistency::Result::singular
-            ? "the algebraic equations do not determine their unknowns here: an unknown appears in no equation, two "
-              "equations say the same, or the index is above 1"
-            : "no values of the unknowns satisfy the algebraic equations: begin nearer to them, or look for a "
-              "contradiction in the equations");
+    end(Ending::nonlinear_solve_failed, hint_of(consistent_));
     outcome_.component = component_name(system(), consistent_.equation);
     return false;
   }
