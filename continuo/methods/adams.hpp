@@ -146,7 +146,7 @@ struct Adams {
         here = higher;
       }
     }
-    const Real one_more(static_cast<double>(work.next_order) + 1);
+    const Real one_more = Real(static_cast<double>(work.next_order) + 1);
     if (here * pow(Real(2), one_more) <= Real(0.5)) return Real(2);
     if (here <= Real(0.5)) return Real(1);
     return max(Real(0.5), min(Real(0.9), Real(pow(Real(0.5) / here, Real(1) / one_more))));

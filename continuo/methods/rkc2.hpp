@@ -29,7 +29,7 @@ struct Rkc2 : StabilizedRungeKutta<Rkc2> {
   }
   template <class Real>
   static Real reach(std::size_t s) {
-    const Real stages(static_cast<double>(s));
+    const Real stages = Real(static_cast<double>(s));
     return (stages * stages - 1) / Real(1.54);
   }
   /// Rounding errors grow like s^2 epsilon within a step.
@@ -45,7 +45,7 @@ struct Rkc2 : StabilizedRungeKutta<Rkc2> {
                      Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
     const std::size_t n = dimension(x);
-    const Real s(static_cast<double>(stages));
+    const Real s = Real(static_cast<double>(stages));
     Chebyshev<Real> last{.w0 = 1 + Real(2) / (13 * s * s)};
     const Real w1 = w1_of(last.w0, stages);
     last.to_one();

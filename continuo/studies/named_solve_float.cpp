@@ -1,8 +1,3 @@
-// Some methods turn a count into a number through double, which a warning takes for a loss: counts are exact in both.
-#pragma GCC diagnostic ignored "-Wfloat-conversion"
-#ifdef __clang__
-#pragma clang diagnostic ignored "-Wimplicit-float-conversion"
-#endif
 #include <continuo/studies/named_solve_body.hpp>
 
 namespace continuo::studies {
