@@ -30,6 +30,7 @@ struct Solver {
   bool ours = false;
   std::function<Answer(double)> judge;    // tolerance -> error and evaluations, by a run that counts
   std::function<double(double)> seconds;  // tolerance -> wall time of a run that does nothing else
+  double slowest = 0;                     // a longer run is not worth repeating; 0: as the sweep says
 };
 
 /// The largest error of a component, relative where the component is greater than one.

@@ -34,13 +34,14 @@ struct Line {
 std::vector<Curve> sweep(const std::vector<Solver>& solvers, double loosest_error, double tightest_error,
                          double seconds_to_spend, const Tolerances& tolerances) {
   std::vector<Curve> curves;
+  const auto slowest = [&](const Solver& solver) { return solver.slowest > 0 ? solver.slowest : tolerances.slowest; };
   for (const Solver& solver : solvers) {
     Curve curve{solver.name, solver.ours, {}};
     for (double power = 2; power <= tolerances.tightest_power; power += 1 / tolerances.points_per_decade) {
       const double tolerance = std::pow(10, -power);
       const auto start = std::chrono::steady_clock::now();
       const Answer answer = solver.judge(tolerance);
-      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > tolerances.slowest) break;
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > slowest(solver)) break;
       if (answer.error <= loosest_error && answer.error >= tightest_error)
         curve.points.push_back({tolerance, answer.error, std::numeric_limits<double>::infinity(), answer.evaluations});
     }
@@ -51,7 +52,7 @@ std::vector<Curve> sweep(const std::vector<Solver>& solvers, double loosest_erro
   for (int round = 0; round < 5 || elapsed() < seconds_to_spend; ++round) {
     for (std::size_t i = 0; i < solvers.size(); ++i) {
       for (Point& point : curves[i].points) {
-        if (round >= 2 && point.seconds > tolerances.slowest / 4) continue;  // noise is little in a long run
+        if (round >= 2 && point.seconds > slowest(solvers[i]) / 4) continue;  // noise is little in a long run
         point.seconds = std::min(point.seconds, solvers[i].seconds(point.tolerance));
       }
     }

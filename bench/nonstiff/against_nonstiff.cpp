@@ -16,7 +16,7 @@ namespace {
 template <class Problem>
 Measured measure(double seconds) {
   // A run of more than a fifth of a second is not repeated: the table then ends at larger errors.
-  constexpr Tolerances tolerances{.points_per_decade = 6, .tightest_power = 15.5, .slowest = 0.2};
+  constexpr Tolerances tolerances{.points_per_decade = 6, .tightest_power = 15.5, .slowest = slowest_run};
   // A thousandth of the run suits all five problems; the peer's control finds its own size within a few steps.
   constexpr double first_step = Problem::duration / 1000;
   std::vector<Solver> solvers = our_solvers<Problem>();

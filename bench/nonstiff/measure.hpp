@@ -26,12 +26,7 @@ std::vector<Solver> gsl_solvers(double first_step);
 template <class Problem>
 std::vector<Solver> cvode_adams_solvers();
 
-/// Methods with fixed steps have no tolerance: they are given this time, multiplied by tolerance^(1 / order).
-template <class Problem>
-inline constexpr double pace = 1;
-template <>
-inline constexpr double pace<Kepler> = 6;
-template <>
-inline constexpr double pace<OuterPlanets> = 4000;  // days, about a turn of Jupiter
+/// Seconds of a run that is worth repeating.
+inline constexpr double slowest_run = 0.2, slowest_of_fixed_steps = 0.6;
 
 }  // namespace continuo::bench

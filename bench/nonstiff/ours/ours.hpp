@@ -49,11 +49,31 @@ Solver our_adaptive_solver(std::string_view name) {
   return our_solver<Problem, M...>(name,
                                    [](auto& options, double tolerance) { options.rtol = options.atol = tolerance; });
 }
+
+/// The step with which the error would be 1, were it proportional to step^order for long steps too: from the first of
+/// ever shorter steps whose error is small enough for that to hold.
+template <class Problem, class M>
+double step_of_error_one() {
+  using State = std::array<double, Problem::size>;
+  constexpr double small = 1e-4;
+  double step = Problem::duration / 64, error = 1;
+  for (int halvings = 0; halvings < 12 && !(error < small); ++halvings) {
+    step /= 2;
+    const Options<State> options{.step = step, .save = Save<State>::only_end()};
+    error = end_error<Problem>(solve(Problem{}, Problem::start(), {0, Problem::duration}, M{}, options).final_state());
+  }
+  return step * std::pow(error, -1.0 / M::order);
+}
+/// Methods with fixed steps have no tolerance: they are given the step from which an error of that size is expected.
+/// Many short steps are what they are made of: their runs may take longer.
 template <class Problem, class M>
 Solver our_fixed_solver() {
-  return our_solver<Problem, M>(M::name, [](auto& options, double tolerance) {
-    options.step = pace<Problem> * std::pow(tolerance, 1.0 / M::order);
-  });
+  Solver solver = our_solver<Problem, M>(
+      M::name, [of_error_one = step_of_error_one<Problem, M>()](auto& options, double tolerance) {
+        options.step = of_error_one * std::pow(tolerance, 1.0 / M::order);
+      });
+  solver.slowest = slowest_of_fixed_steps;
+  return solver;
 }
 
 template <class Problem, class... M>
