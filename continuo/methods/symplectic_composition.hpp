@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include <continuo/methods/compensated_sum.hpp>
 #include <continuo/methods/refined_quintic.hpp>
 #include <continuo/methods/second_order_method.hpp>
 #include <continuo/numerics/coefficient.hpp>
@@ -79,14 +80,13 @@ struct SymplecticComposition : SecondOrderMethod {
   template <class System, State X>
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
                   Workspace<X>& work, X& x_new) {
-    const bool first = made_jump || !work.start_fresh;
     int evaluations = work.evaluate_start(system, t, x, made_jump);
     if (!why_not(system, x).empty()) {
       for (std::size_t i = 0; i < dimension(x); ++i)
         x_new.data()[i] = Scalar<X>(std::numeric_limits<double>::quiet_NaN());
       return evaluations;
     }
-    if (first) {
+    if (made_jump) {
       for (std::size_t i = 0; i < dimension(x); ++i) work.rest.data()[i] = Scalar<X>(0);
     }
     x_new = x;
@@ -158,19 +158,12 @@ struct SymplecticComposition : SecondOrderMethod {
     const Real kicked = h * kick.template as<CoefficientOf<Real>>();
     const Real drifted = h * drift.template as<CoefficientOf<Real>>();
     for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
-      add(kicked * slope.data()[velocity], x.data()[velocity], work.rest_new.data()[velocity]);
+      detail::add_compensated<Real>(kicked * slope.data()[velocity], x.data()[velocity],
+                                    work.rest_new.data()[velocity]);
       if constexpr (!drift.is_zero()) {
-        add(drifted * x.data()[velocity], x.data()[position], work.rest_new.data()[position]);
+        detail::add_compensated<Real>(drifted * x.data()[velocity], x.data()[position], work.rest_new.data()[position]);
       }
     });
-  }
-
-  /// sum + rest is what it would be without rounding, to twice the digits.
-  template <class Real>
-  static void add(const Real& term, Real& sum, Real& rest) {
-    const Real whole = term + rest, last = sum;
-    sum = last + whole;
-    rest = (last - sum) + whole;
   }
 };
 
