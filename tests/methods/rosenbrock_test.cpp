@@ -250,5 +250,16 @@ TEST(RosenbrockMethod, ASystemThatSaysSoIsSpentNoEvaluationForTime) {
   EXPECT_EQ(known.final_state(), unknown.final_state());
 }
 
+// 700,000 steps, in which the third amount creeps towards 1: what each of them loses by rounding adds up to 2e-13
+// unless it is carried along. The amounts add up to 1 then, to the rounding of the three.
+TEST(Rosenbrock23, RoundingIsNotAddedUp) {
+  const auto solution = solve(bench::Robertson<>{}, bench::Robertson<>::start(), {0.0, 1e11}, Rosenbrock23{},
+                              {.rtol = 1e-8, .atol = 1e-18, .save = Save<std::array<double, 3>>::only_end()});
+  ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
+  EXPECT_GT(solution.statistics.steps, 500'000U);
+  const auto& x = solution.final_state();
+  EXPECT_NEAR(x[0] + x[1] + x[2], 1, 3e-16);
+}
+
 }  // namespace
 }  // namespace continuo
