@@ -67,8 +67,9 @@ struct BackwardDifferentiation {
     NewtonMemory<Real> memory{};
     Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
     StepStatus status = StepStatus::done;
-    Real h{}, decomposed_for{};  // the spacing of D; the c of lu, 0 for none
-    std::size_t order = 1, next_order = 1;
+    Real h{}, decomposed_for{};                     // the spacing of D; the c of lu, 0 for none
+    std::size_t order = 1;                          // k of this step
+    std::size_t next_order = 0;                     // 0: nobody asked, the steps are fixed
     std::size_t equal_steps = 0;                    // accepted ones of this h and order
     std::size_t rejections = 0;                     // since the last accepted
     std::size_t jacobian_age = 0;                   // steps
@@ -213,7 +214,10 @@ struct BackwardDifferentiation {
       for (std::size_t j = k; j >= 1; --j) work.D[j].data()[i] += work.D[j + 1].data()[i];
       work.D[0].data()[i] = work.end.data()[i];
     }
+    // Without error control nobody chooses an order.
+    if (work.next_order == 0) work.next_order = std::min(k + 1, order_of_fixed_steps);
     work.order = work.next_order;
+    work.next_order = 0;
     work.rejections = 0;
     ++work.jacobian_age;
   }
@@ -234,6 +238,9 @@ struct BackwardDifferentiation {
   static constexpr int most_iterations = 4;
   static constexpr std::size_t oldest_jacobian = 50;
   static constexpr double least_worthwhile = 1.2;
+  // The first step has order 1 and leaves an error of the size of h^2: what the higher orders would gain is lost there,
+  // and of order 2 the formula is still A-stable.
+  static constexpr std::size_t order_of_fixed_steps = 2;
 
   // The power of theta in (theta - 1) theta ... (theta + j - 2) / j!, which multiplies D_j of the end of the step.
   template <class Real>
@@ -267,8 +274,8 @@ struct BackwardDifferentiation {
     for (std::size_t i = 0; i < dimension(x); ++i) work.D[1].data()[i] = h * work.f.data()[i];
     for (std::size_t j = 2; j < work.D.size(); ++j)
       for (std::size_t i = 0; i < dimension(x); ++i) work.D[j].data()[i] = Scalar<X>(0);
-    work.order = work.next_order = 1;
-    work.equal_steps = work.rejections = 0;
+    work.order = 1;
+    work.next_order = work.equal_steps = work.rejections = 0;
     work.has_jacobian = false;
     work.memory = {};
     return 1;
@@ -372,6 +379,7 @@ struct BackwardDifferentiation {
 };
 
 /// The method for large stiff systems: one real matrix per step, and orders that follow the smoothness of the solution.
+/// Steps of a fixed size rise to order 2.
 struct Bdf : BackwardDifferentiation<DirectEquations> {
   static constexpr std::string_view name = "bdf";
 };

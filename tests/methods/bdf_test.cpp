@@ -71,6 +71,19 @@ TEST(Bdf, DenseOutputMeetsTheTolerance) {
     EXPECT_LT(promises::dense_error_in_tolerances<Bdf>(problem, 10, tolerance, exact), 30) << tolerance;
 }
 
+// Order 2 from the second step on; what the first, of order 1, leaves is of the size of h^2 too.
+TEST(Bdf, FixedStepsHaveOrderTwo) {
+  using X = std::array<double, 1>;
+  const auto logistic = [](double, const X& x) { return X{x[0] * (1 - x[0])}; };
+  const auto error = [&](double h) {
+    const auto solution = solve(logistic, X{0.125}, {0.0, 4.0}, Bdf{}, {.rtol = 1e-12, .atol = 1e-12, .step = h});
+    EXPECT_TRUE(solution.outcome) << describe(solution.outcome);
+    return std::abs(solution.final_state()[0] - 1 / (1 + 7 * std::exp(-4.0)));
+  };
+  // The next term of the error is some h smaller.
+  EXPECT_NEAR(std::log2(error(0.02) / error(0.01)), 2, 0.1);
+}
+
 TEST(Bdf, SolvesAlgebraicEquations) {
   for (const double tolerance : {1e-3, 1e-6, 1e-9}) EXPECT_LT(promises::error_of_algebraic_decay<Bdf>(tolerance), 30);
 }
