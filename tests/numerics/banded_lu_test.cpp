@@ -55,7 +55,25 @@ TEST(BandedLU, SolvesRandomSystemsThatNeedPivots) {
   constexpr double bound = 100 * std::numeric_limits<double>::epsilon();
   for (unsigned seed = 0; seed < 10; ++seed) {
     for (const auto& [n, lower, upper] : std::vector<std::array<std::size_t, 3>>{
-             {1, 0, 0}, {2, 1, 1}, {30, 1, 1}, {30, 2, 1}, {30, 1, 3}, {30, 0, 2}, {30, 2, 0}, {40, 5, 7}, {6, 5, 5}}) {
+             {1, 0, 0},
+             {2, 1, 1},
+             {30, 1, 1},
+             {30, 2, 1},
+             {30, 1, 3},
+             {30, 0, 2},
+             {30, 2, 0},
+             {40, 5, 7},
+             {6, 5, 5},
+             // from both ends, with and without a row in the middle that neither sees
+             {32, 1, 1},
+             {33, 1, 1},
+             {32, 2, 2},
+             {33, 2, 1},
+             {40, 3, 3},
+             {41, 1, 3},
+             {64, 4, 4},
+             {65, 4, 0},
+             {501, 2, 2}}) {
       EXPECT_LT(residual_of_random_system<double>(n, lower, upper, seed), bound) << n << ' ' << lower << ' ' << upper;
       EXPECT_LT(residual_of_random_system<ComplexNumber<double>>(n, lower, upper, seed), bound)
           << n << ' ' << lower << ' ' << upper;
@@ -80,6 +98,25 @@ TEST(BandedLU, CanBeFilledAgain) {
     b = {2, 4, 6};
     lu.solve(b.data());
     EXPECT_EQ(b, (std::vector<double>{1, 2, 3}));
+  }
+}
+
+// Two rows that are the same, wherever they are: near the ends, in the middle, among those both ends have left over.
+TEST(BandedLU, FindsASingularMatrixAnywhere) {
+  for (const std::size_t n : {std::size_t{40}, std::size_t{41}}) {
+    for (std::size_t row = 0; row + 1 < n; ++row) {
+      BandedLU<double> lu(n, 2, 2);
+      lu.clear();
+      for (std::size_t i = 0; i < n; ++i) lu(i, i) = 1;
+      lu(row, row + 1) = lu(row + 1, row) = 1;
+      EXPECT_FALSE(lu.factor()) << n << ' ' << row;
+      lu(row, row + 1) = 2;
+      EXPECT_TRUE(lu.factor()) << n << ' ' << row;
+      std::vector<double> b(n, 1);  // x = 1 but for the pair: x + 2 y = 1, x + y = 1
+      b[row] = 3, b[row + 1] = 2;
+      lu.solve(b.data());
+      EXPECT_EQ(b, std::vector<double>(n, 1)) << n << ' ' << row;
+    }
   }
 }
 
