@@ -138,10 +138,11 @@ struct Algebraic {
 template <class M, class ErrorBy>
 RealOf<M> of_solved_equations(const ErrorBy& error_by) {
   using Real = RealOf<M>;
-  if constexpr (!detail::is_implicit<M>()) return error_by([](auto&) {});
+  const auto solves_nothing = [](auto&) {};
+  if constexpr (!detail::is_implicit<M>()) return error_by(solves_nothing);
   Real error(0);
   for (Real tolerance(0.001); tolerance > std::numeric_limits<Real>::epsilon(); tolerance /= 100) {
-    error = error_by([&tolerance](auto& work) {
+    error = error_by([&](auto& work) {
       if constexpr (requires { M::aim(work, Tolerance<Real>{}); }) M::aim(work, Tolerance<Real>{tolerance, tolerance});
     });
     if (error > 1000 * tolerance) return error;
