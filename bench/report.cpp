@@ -85,13 +85,13 @@ void write_head_of_ratios(std::ostream& page) {
 
 void write_ratios(std::ostream& page, const Measured& measured, std::span<const Wanted> ratios) {
   for (const Wanted& wanted : ratios) {
-    const double error = smallest_shared_error(measured, wanted.error, 1e-4, of_ours, wanted.peer);
+    const double error = smallest_shared_error(measured, wanted.error, 1e-4, wanted.ours, wanted.peer);
     page << "| " << measured.title << " | ";
     if (error == 0) {
       page << text("%.0e", wanted.error) << " | - | - | not measured | " << number(wanted.at_most) << " |\n";
       continue;
     }
-    const Best ours = best(measured, error, of_ours), theirs = best(measured, error, wanted.peer);
+    const Best ours = best(measured, error, wanted.ours), theirs = best(measured, error, wanted.peer);
     page << text(error == wanted.error ? "%.0e" : "%.0e not reached by both; %.1e", wanted.error, error) << " | "
          << ours.curve->solver << " | " << theirs.curve->solver << " | **"
          << number(ours.cost.seconds / theirs.cost.seconds) << "** | " << number(wanted.at_most) << " |\n";

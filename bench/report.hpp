@@ -14,9 +14,13 @@ namespace continuo::bench {
 
 /// Which solvers are meant.
 using Which = bool (*)(const Curve&);
+/// Our methods by name on a model that is typed, not compiled: "model METHOD".
+inline bool of_model(const Curve& curve) {
+  return curve.ours && curve.solver.starts_with("model ");
+}
 /// Our methods by name.
 inline bool of_ours(const Curve& curve) {
-  return curve.ours && curve.solver != default_choice;
+  return curve.ours && curve.solver != default_choice && !of_model(curve);
 }
 inline bool of_default(const Curve& curve) {
   return curve.solver == default_choice;
@@ -46,6 +50,7 @@ double smallest_shared_error(const Measured& measured, double wanted, double loo
 struct Wanted {
   double error, at_most;
   Which peer;
+  Which ours = of_ours;
 };
 
 /// FOLDER/work_precision_NAME.csv and a script for gnuplot that makes the .svg beside it.

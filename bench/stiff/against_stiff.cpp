@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,9 +43,13 @@ StiffResult measure_stiff(double seconds) {
   // A run of more than a fifth of a second is not repeated: the table then ends at larger errors.
   constexpr Tolerances tolerances{.points_per_decade = 4, .tightest_power = 14, .slowest = 0.2};
   std::vector<Solver> solvers = our_stiff_solvers<Problem>();
+  if constexpr (std::is_same_v<Problem, BrusselatorLine<>>) {
+    for (Solver& solver : our_brusselator_model_solvers()) solvers.push_back(std::move(solver));
+  }
   std::vector<Solver> peers = cvode_solvers<Problem>();
   if constexpr (requires { Problem::size; }) {
     for (Solver& solver : odeint_stiff_solvers<Problem>()) peers.push_back(std::move(solver));
+    for (Solver& solver : gsl_stiff_solvers<Problem>()) peers.push_back(std::move(solver));
   }
   for (Solver& solver : peers) solvers.push_back(std::move(solver));
   StiffResult result;
@@ -83,7 +88,7 @@ int main(int count, char** arguments) {
   add.operator()<Oregonator<>>({{1e-6, 0.45, of_odeint}, {1e-8, 0.18, of_odeint}});
   add.operator()<VanDerPolScaled<>>({{1e-6, 0.5, of_odeint}, {1e-10, 0.08, of_odeint}});
   add.operator()<Pollution<>>({{1e-6, 0.13, of_odeint}, {1e-10, 0.017, of_odeint}});
-  add.operator()<BrusselatorLine<>>({{1e-6, 0.12, of_cvode}});
+  add.operator()<BrusselatorLine<>>({{1e-6, 0.12, of_cvode}, {1e-6, 0.12, of_cvode, of_model}});
   add.operator()<VanDerPol<>>({});
   // Last, as no clock is read there: the machine may do something else again.
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -28,12 +28,18 @@ std::vector<Solver> our_stiff_solvers();
 /// implicit Euler.
 template <class Problem>
 std::vector<Solver> our_unraced_solvers();
+/// Ours on the problem as a model of the gallery, with the Jacobian of its graph; only where there is one that large.
+std::vector<Solver> our_brusselator_model_solvers();
 /// Boost.odeint's only stiff method, with the problem's own dense Jacobian.
 template <class Problem>
 std::vector<Solver> odeint_stiff_solvers();
 /// CVODE of SUNDIALS; empty where the benchmarks are built without it.
 template <class Problem>
 std::vector<Solver> cvode_solvers();
+/// The GNU Scientific Library's stiff methods, with the problem's own dense Jacobian; empty where the benchmarks are
+/// built without it.
+template <class Problem>
+std::vector<Solver> gsl_stiff_solvers();
 
 /// atol = absolute_part<Problem> * rtol, for all solvers alike: small enough for the components to count relative to
 /// their size. HIRES, Oregonator and van der Pol as in F. Mazzia and others, Test Set for IVP Solvers, and Hairer's

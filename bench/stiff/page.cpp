@@ -30,7 +30,13 @@ constexpr const char* introduction =
     "step\n"
     "control as `controlled` and as `dense` stepper, first step given. CVODE of SUNDIALS as the distribution ships it, "
     "without\n"
-    "tuning for the machine, its Newton iteration with dense matrices or with KLU.\n\n";
+    "tuning for the machine, its Newton iteration with dense matrices or with KLU. `msbdf` and `bsimp` of the GNU "
+    "Scientific\n"
+    "Library by its driver, first step given, dense matrices too.\n\n"
+    "`model METHOD` runs the equations as they stand in `models/brusselator_line.sim`, on the tape, with the Jacobian "
+    "of "
+    "their\n"
+    "graph; the others have them compiled.\n\n";
 
 void write_kept(std::ofstream& page, const StiffResult& result) {
   page << "| Method |";

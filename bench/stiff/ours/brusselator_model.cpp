@@ -1,0 +1,66 @@
+// The Brusselator as it stands in the gallery: equations on the tape, the Jacobian from their graph.
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <source_location>
+
+#include <bench/stiff/measure.hpp>
+
+#include <continuo/methods/bdf.hpp>
+#include <continuo/methods/radau.hpp>
+#include <continuo/methods/rodas4.hpp>
+#include <continuo/model/load.hpp>
+#include <continuo/model/model_system.hpp>
+#include <continuo/solve/solve.hpp>
+
+namespace continuo::bench {
+namespace {
+
+using X = std::vector<double>;
+
+struct Typed {
+  model::ModelSystem system;
+  X start;
+};
+
+std::filesystem::path gallery() {
+  const std::filesystem::path here(std::source_location::current().file_name());
+  return here.parent_path() / "../../../models";
+}
+
+/// The model's states are u[1], v[1], u[2], ...: in the order of BrusselatorLine.
+template <class M>
+Solver model_solver(const std::shared_ptr<const Typed>& typed) {
+  const auto run = [typed](double tolerance) {
+    return solve(
+        typed->system, typed->start, {0, BrusselatorLine<>::duration}, M{},
+        Options<X>{
+            .rtol = tolerance, .atol = tolerance * absolute_part<BrusselatorLine<>>, .save = Save<X>::only_end()});
+  };
+  return {"model " + std::string(M::name), true,
+          [run](double tolerance) {
+            const auto solution = run(tolerance);
+            if (!solution.outcome) return Answer{};
+            return judged<BrusselatorLine<>>(solution.final_state(), tolerance, solution.statistics.evaluations);
+          },
+          [run](double tolerance) { return timed([&] { return run(tolerance).final_state(); }); }};
+}
+
+}  // namespace
+
+std::vector<Solver> our_brusselator_model_solvers() {
+  const BrusselatorLine<> problem;
+  model::CheckOptions options;
+  options.overrides = {{"N", static_cast<double>(problem.points)}};
+  const model::Loaded loaded = model::load(gallery() / "brusselator_line.sim", options);
+  if (!loaded.model) {
+    std::fputs(loaded.text().c_str(), stderr);
+    return {};
+  }
+  const auto typed = std::make_shared<const Typed>(
+      model::ModelSystem(model::compile(*loaded.model), model::start_values(*loaded.model)), problem.start());
+  return {model_solver<Rodas4>(typed), model_solver<Radau>(typed), model_solver<Bdf>(typed)};
+}
+
+}  // namespace continuo::bench
