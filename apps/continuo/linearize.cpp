@@ -60,7 +60,7 @@ std::string modes_text(const std::vector<studies::MotionMode>& modes, const mode
   return text;
 }
 
-std::string as_json(const studies::LinearModel& linear, const std::vector<double>& x,
+std::string as_json(const studies::LinearModel& linear, const std::vector<double>& point, const model::Model& model,
                     const std::vector<studies::MotionMode>& modes) {
   const auto matrix = [](const std::vector<double>& rows, std::size_t columns) {
     auto result = nlohmann::json::array();
@@ -69,6 +69,9 @@ std::string as_json(const studies::LinearModel& linear, const std::vector<double
                                            rows.begin() + static_cast<std::ptrdiff_t>(i + columns)));
     return result;
   };
+  // The unknowns of algebraic equations stand behind the states.
+  const auto end = point.begin() + static_cast<std::ptrdiff_t>(linear.states.size());
+  const std::vector<double> x(point.begin(), end), z(end, point.end());
   nlohmann::json json{{"states", linear.states},
                       {"inputs", linear.inputs},
                       {"outputs", linear.outputs},
@@ -77,6 +80,10 @@ std::string as_json(const studies::LinearModel& linear, const std::vector<double
                       {"B", matrix(linear.b, linear.inputs.size())},
                       {"C", matrix(linear.c, linear.states.size())},
                       {"D", matrix(linear.d, linear.inputs.size())}};
+  for (std::size_t k = 0; k < z.size(); ++k) {
+    json["unknowns"].push_back(model.states[x.size() + k].column);
+    json["z"].push_back(z[k]);
+  }
   for (const studies::MotionMode& mode : modes)
     json["modes"].push_back({{"eigenvalue", {mode.eigenvalue.real(), mode.eigenvalue.imag()}},
                              {"frequency", mode.frequency},
@@ -85,7 +92,7 @@ std::string as_json(const studies::LinearModel& linear, const std::vector<double
 }
 
 ExitCode linearize(const LinearizeOptions& options) {
-  const Studied studied = study(options.experiment, options.mode);
+  const Studied studied = study(options.experiment, options.mode, {}, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   const model::Model& model = studied.prepared.program->model;
   std::vector<double> x = studied.start;
@@ -100,9 +107,21 @@ ExitCode linearize(const LinearizeOptions& options) {
       return numerical_failure;
     }
     x = std::move(search.x);
+  } else if (studied.system.algebraic > 0) {
+    auto search = studies::find_unknowns(studied.system, x, studied.system.constants, options.time);
+    if (search.ending != studies::EquilibriumEnding::found) {
+      say(fmt::format("the algebraic equations have no solution near this point ({}); --at {}=VALUE is a better guess",
+                      to_string(search.ending), studied.system.name(search.worst)));
+      return numerical_failure;
+    }
+    x = std::move(search.x);
   }
   const auto linear = studies::linearize_model(studied.prepared.program, x, options.time,
                                                studied.prepared.experiment.parameters, studied.mode);
+  if (!linear.undetermined.equations.empty()) {
+    say(describe_undetermined(studied, linear.undetermined));
+    return numerical_failure;
+  }
   for (const double entry : linear.a) {
     if (std::isfinite(entry)) continue;
     say("the equations have no derivative at this point: an entry of A is not a number");
@@ -110,12 +129,12 @@ ExitCode linearize(const LinearizeOptions& options) {
   }
   const auto modes = studies::modes_of(linear.a, linear.states.size());
   if (options.json) {
-    print(as_json(linear, x, modes));
+    print(as_json(linear, x, model, modes));
     return done;
   }
   std::string text = options.at.empty() && !options.start ? "at rest:" : "at:";
   for (std::size_t i = 0; i < x.size(); ++i)
-    text += fmt::format("{} {} = {}", i == 0 ? "" : ",", linear.states[i],
+    text += fmt::format("{} {} = {}", i == 0 ? "" : ",", model.states[i].column,
                         results::short_number(std::abs(x[i]) < 1e-13 ? 0 : x[i]));
   text += "\n" + matrix_text("A", linear.a, linear.states, linear.states) +
           matrix_text("B", linear.b, linear.states, linear.inputs) +

@@ -29,9 +29,13 @@ struct SteadyOptions {
   std::size_t starts = 200;
 };
 
-std::string table_of(const studies::Equilibria& found, const model::Model& model) {
+constexpr std::size_t most_shown = 20;  // places; --along follows them all
+
+std::string table_of(const studies::Equilibria& found, const Studied& studied) {
+  const model::Model& model = studied.prepared.program->model;
   std::string text;
-  for (std::size_t k = 0; k < found.equilibria.size(); ++k) {
+  const std::size_t shown = std::min(found.equilibria.size(), most_shown);
+  for (std::size_t k = 0; k < shown; ++k) {
     const studies::Equilibrium& e = found.equilibria[k];
     text += fmt::format("{}  {}{}\n", k + 1, to_string(e.stability), e.isolated ? "" : ", not isolated");
     for (std::size_t i = 0; i < e.x.size(); ++i) {
@@ -41,6 +45,10 @@ std::string table_of(const studies::Equilibria& found, const model::Model& model
       text += fmt::format("   {} = {}{}\n", model.states[i].column, results::short_number(value),
                           unit.empty() || unit == "1" ? "" : " " + unit);
     }
+    if (!e.undetermined.equations.empty()) {
+      text += fmt::format("   {}\n", describe_undetermined(studied, e.undetermined));
+      continue;
+    }
     text += "   eigenvalues";
     for (std::size_t i = 0; i < e.eigenvalues.size(); ++i) {
       if (e.eigenvalues[i].imag() < 0) continue;
@@ -49,6 +57,8 @@ std::string table_of(const studies::Equilibria& found, const model::Model& model
     }
     text += "\n";
   }
+  if (shown < found.equilibria.size())
+    text += fmt::format("and {} more: perhaps a whole curve of places is at rest\n", found.equilibria.size() - shown);
   text += fmt::format("{} of {} searches came to rest, at {} place{}", found.arrived, found.searches,
                       found.equilibria.size(), found.equilibria.size() == 1 ? "" : "s");
   if (found.outside > 0) text += fmt::format("; {} elsewhere, beyond where was looked (--box)", found.outside);
@@ -103,7 +113,7 @@ ExitCode steady(const SteadyOptions& options) {
     if (!range) return usage;
     constants.push_back(range->name);
   }
-  const Studied studied = study(options.experiment, options.mode, constants);
+  const Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
   if (!set_box(studied, options.box, box)) return usage;
@@ -117,7 +127,7 @@ ExitCode steady(const SteadyOptions& options) {
                     results::short_number(found.nearest.residual), to_string(found.nearest.ending)));
     return numerical_failure;
   }
-  print(table_of(found, studied.prepared.program->model));
+  print(table_of(found, studied));
   if (interrupt_flag()) return interrupted;
   return range ? follow(studied, found, *range, options) : done;
 }

@@ -36,11 +36,11 @@ std::string with_suggestion(std::string message, const std::string& name, const 
   return message + "; there are " + all;
 }
 
-bool fits(const model::Model& model) {
+bool fits(const model::Model& model, Equations equations) {
   if (model.needs_boundary_solver()) {
     say("the model's conditions stand at several times; `continuo run` solves it, this verb studies motions from a "
         "start");
-  } else if (model.needs_dae_solver()) {
+  } else if (equations == Equations::differential && model.needs_dae_solver()) {
     say("the model has algebraic equations, which this verb cannot study yet");
   } else {
     return true;
@@ -50,11 +50,12 @@ bool fits(const model::Model& model) {
 
 }  // namespace
 
-Studied study(const ExperimentOptions& options, const std::string& mode, const std::vector<std::string>& constants) {
+Studied study(const ExperimentOptions& options, const std::string& mode, const std::vector<std::string>& constants,
+              Equations equations) {
   Studied studied{.prepared = prepare(options)};
   if (studied.prepared.exit != done) return studied;
   const model::Model& model = studied.prepared.program->model;
-  if (!fits(model)) {
+  if (!fits(model, equations)) {
     studied.prepared.exit = wrong_model;
     return studied;
   }
@@ -82,6 +83,26 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
                                      {.constants = constants, .parameters = parameters, .mode = studied.mode});
   studied.start = studies::start_of(model, parameters);
   return studied;
+}
+
+std::string describe_undetermined(const Studied& studied, const studies::Undetermined& open) {
+  const model::Model& model = studied.prepared.program->model;
+  const model::Source& source = studied.prepared.loaded.source;
+  std::vector<const model::AlgebraicEquation*> own;
+  for (const model::AlgebraicEquation& equation : model.algebraic)
+    if (equation.mode == studied.mode) own.push_back(&equation);
+  std::string unknowns, equations;
+  for (const std::size_t k : open.unknowns)
+    unknowns +=
+        fmt::format("{}`{}`", unknowns.empty() ? "" : ", ", model.states[studied.system.differential() + k].column);
+  for (const std::size_t k : open.equations) {
+    const model::Span span = own[k]->span;
+    equations +=
+        fmt::format("{}`{}` (line {})", equations.empty() ? "" : ", ",
+                    model.text.content.substr(span.begin, span.end - span.begin), source.place(span.begin).line);
+  }
+  return fmt::format("the algebraic equations do not determine {} here: {} {} nothing that the others do not say",
+                     unknowns, equations, open.equations.size() == 1 ? "says" : "say");
 }
 
 std::optional<std::size_t> state_named(const model::Model& model, const std::string& name) {

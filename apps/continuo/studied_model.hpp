@@ -12,7 +12,11 @@
 
 namespace continuo::app {
 
-/// A model whose equations can be studied: not a boundary-value problem, without algebraic equations. Says why not.
+/// What a study can do with: x' = f alone, or also 0 = g.
+enum class Equations { differential, algebraic_too };
+
+/// A model whose equations can be studied: not a boundary-value problem, algebraic equations only where the study takes
+/// them. Says why not.
 struct Studied {
   Prepared prepared;
   std::size_t mode = 0;
@@ -20,8 +24,11 @@ struct Studied {
   std::vector<double> start{};  // the initial state
 };
 /// `constants`: parameters that the study moves. exit in `prepared` where the verb ends here.
-Studied study(const ExperimentOptions& options, const std::string& mode,
-              const std::vector<std::string>& constants = {});
+Studied study(const ExperimentOptions& options, const std::string& mode, const std::vector<std::string>& constants = {},
+              Equations equations = Equations::differential);
+
+/// Which equations, by their text and line, and which unknowns.
+std::string describe_undetermined(const Studied& studied, const studies::Undetermined& open);
 
 /// `x=1`, `x'=-2` in the states' units: sets them in `state`. Says what is wrong with them.
 bool set_states(const model::Model& model, const std::vector<std::string>& texts, std::vector<double>& state);

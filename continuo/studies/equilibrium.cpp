@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include <continuo/numerics/dense_lu.hpp>
@@ -75,6 +76,27 @@ std::size_t prime(std::size_t k) {
     for (std::size_t d = 2; d * d <= candidate; ++d) is_prime = is_prime && candidate % d != 0;
     if (is_prime && k-- == 0) return candidate;
   }
+}
+
+/// Of df/dx and df/dp, with the unknowns of algebraic equations taken out.
+Linearization reduced(const ParametricSystem& system, std::vector<double> by_x, std::vector<double> by_p) {
+  const std::size_t size = system.size, n = system.differential(), m = system.algebraic, inputs = by_p.size() / size;
+  if (m == 0) return {.states = n, .inputs = inputs, .a = std::move(by_x), .b = std::move(by_p)};
+  const LinearColumns columns{.states = n, .unknowns = m, .inputs = inputs};
+  std::vector<double> rows, square;
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto x = std::span(by_x).subspan(i * size, size), p = std::span(by_p).subspan(i * inputs, inputs);
+    rows.insert(rows.end(), x.begin(), x.end());
+    rows.insert(rows.end(), p.begin(), p.end());
+    if (i >= n) square.insert(square.end(), x.begin() + static_cast<std::ptrdiff_t>(n), x.end());
+  }
+  Linearization linear{.states = n, .inputs = inputs, .a = {}, .b = {}, .undetermined = undetermined_by(square, m)};
+  if (!linear.undetermined.equations.empty()) return linear;
+  const std::size_t split = n * columns.all();
+  const auto left = without_unknowns(std::span(rows).first(split), std::span(rows).subspan(split), columns);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n + inputs; ++j) (j < n ? linear.a : linear.b).push_back(left[i * (n + inputs) + j]);
+  return linear;
 }
 
 }  // namespace
@@ -158,10 +180,39 @@ EquilibriumSearch find_equilibrium(const ParametricSystem& system, std::vector<d
   return ended(EquilibriumEnding::too_many);
 }
 
+EquilibriumSearch find_unknowns(const ParametricSystem& system, const std::vector<double>& x, Values p, double t) {
+  const std::size_t n = system.differential(), m = system.algebraic;
+  const auto whole = [x, n](Values z) {
+    std::vector<double> all(x);
+    std::ranges::copy(z, all.begin() + static_cast<std::ptrdiff_t>(n));
+    return all;
+  };
+  ParametricSystem alone{.size = m, .constants = {p.begin(), p.end()}};
+  alone.derivative = [&](double at, Values z, Values q, std::span<double> g) {
+    std::vector<double> f(n + m);
+    system.derivative(at, whole(z), q, f);
+    std::copy(f.begin() + static_cast<std::ptrdiff_t>(n), f.end(), g.begin());
+  };
+  alone.jacobian = [&](double at, Values z, Values q, std::span<double> rows) {
+    const auto all = jacobian_of(system, at, whole(z), q);
+    for (std::size_t i = 0; i < m; ++i)
+      for (std::size_t j = 0; j < m; ++j) rows[i * m + j] = all[(n + i) * (n + m) + n + j];
+  };
+  auto search = find_equilibrium(alone, {x.begin() + static_cast<std::ptrdiff_t>(n), x.end()}, p, t);
+  search.x = whole(search.x);
+  search.worst += n;
+  return search;
+}
+
 Equilibrium describe_equilibrium(const ParametricSystem& system, std::vector<double> x, Values p, double t) {
   Equilibrium equilibrium{.x = std::move(x), .eigenvalues = {}};
-  const auto rows = jacobian_of(system, t, equilibrium.x, p);
-  equilibrium.eigenvalues = eigenvalues(rows, system.size).values;
+  const auto linear = reduced(system, jacobian_of(system, t, equilibrium.x, p), {});
+  equilibrium.undetermined = linear.undetermined;
+  if (!linear.undetermined.equations.empty()) {
+    equilibrium.isolated = false;
+    return equilibrium;
+  }
+  equilibrium.eigenvalues = eigenvalues(linear.a, linear.states).values;
   equilibrium.stability = stability_of(equilibrium.eigenvalues);
   double least = std::numeric_limits<double>::infinity(), greatest = 0;
   for (const auto& value : equilibrium.eigenvalues) {
@@ -222,7 +273,7 @@ Equilibria find_equilibria(const ParametricSystem& system, const EquilibriumBox&
 }
 
 Linearization linearize(const ParametricSystem& system, Values x, Values p, double t) {
-  return {system.size, p.size(), jacobian_of(system, t, x, p), constant_jacobian_of(system, t, x, p)};
+  return reduced(system, jacobian_of(system, t, x, p), constant_jacobian_of(system, t, x, p));
 }
 
 std::vector<MotionMode> modes_of(const std::vector<double>& a, std::size_t n) {

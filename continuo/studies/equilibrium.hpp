@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <continuo/studies/algebraic_elimination.hpp>
 #include <continuo/studies/parametric_system.hpp>
 
 namespace continuo::studies {
@@ -22,10 +23,13 @@ std::string_view to_string(Stability stability);
 Stability stability_of(const std::vector<std::complex<double>>& eigenvalues, double slack = 1e-9);
 
 struct Equilibrium {
-  std::vector<double> x;
-  std::vector<std::complex<double>> eigenvalues;  // of df/dx, by descending real part
+  std::vector<double> x;  // unknowns of algebraic equations among them
+  /// Of df/dx, by descending real part; with algebraic equations of what is left when their unknowns are taken out.
+  /// None where `undetermined` is not empty.
+  std::vector<std::complex<double>> eigenvalues;
   Stability stability = Stability::undecided;
-  bool isolated = true;  // false: df/dx is singular there, a whole curve may be at rest, or a fold is near
+  bool isolated = true;         // false: df/dx is singular there, a whole curve may be at rest, or a fold is near
+  Undetermined undetermined{};  // by the algebraic equations there
 };
 
 /// How one search ended.
@@ -43,6 +47,9 @@ struct EquilibriumSearch {
 /// Damped Newton from x. Steps are shortened until |f| falls, each component measured by its size at the start; where
 /// df/dx is singular they follow the least-squares solution (Levenberg, Marquardt).
 EquilibriumSearch find_equilibrium(const ParametricSystem& system, std::vector<double> x, Values p, double t = 0);
+
+/// Solves the algebraic equations for their unknowns, the other components of x stay.
+EquilibriumSearch find_unknowns(const ParametricSystem& system, const std::vector<double>& x, Values p, double t = 0);
 
 /// The eigenvalues and what follows from them.
 Equilibrium describe_equilibrium(const ParametricSystem& system, std::vector<double> x, Values p, double t = 0);
@@ -63,11 +70,13 @@ struct Equilibria {
 };
 Equilibria find_equilibria(const ParametricSystem& system, const EquilibriumBox& box);
 
-/// x' = A u, y = C u near (x, p): the matrices of the linear system, the inputs being the constants p.
+/// x' = A u, y = C u near (x, p): the matrices of the linear system, the inputs being the constants p. Unknowns of
+/// algebraic equations are taken out; where these do not determine them there are no matrices.
 struct Linearization {
   std::size_t states = 0, inputs = 0;
   std::vector<double> a;  // states * states, row by row
   std::vector<double> b;  // states * inputs
+  Undetermined undetermined{};
 };
 Linearization linearize(const ParametricSystem& system, Values x, Values p, double t = 0);
 

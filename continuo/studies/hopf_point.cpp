@@ -26,8 +26,9 @@ std::optional<Oscillating> oscillating_at(const ParametricSystem& system, std::s
   p[constant] = value;
   auto search = find_equilibrium(system, near.x, p, t);
   if (search.ending != EquilibriumEnding::found) return std::nullopt;
-  auto spectrum = eigenvalues(jacobian_of(system, t, search.x, p), system.size);
-  if (!spectrum.found) return std::nullopt;
+  const auto linear = linearize(system, search.x, p, t);
+  auto spectrum = eigenvalues(linear.a, linear.states);
+  if (!linear.undetermined.equations.empty() || !spectrum.found) return std::nullopt;
   double least = std::numeric_limits<double>::infinity();
   std::size_t nearest = 0;
   for (std::size_t k = 0; k < spectrum.values.size(); ++k) {

@@ -1,5 +1,6 @@
 // continuo/studies/linear_model.cpp
 #include <numeric>
+#include <span>
 
 #include <continuo/model/derivative.hpp>
 #include <continuo/model/evaluation.hpp>
@@ -36,7 +37,8 @@ LinearModel linearize_model(const std::shared_ptr<const model::ModelProgram>& pr
   LinearModel linear;
   std::vector<std::uint32_t> states(model.states.size()), inputs;
   std::iota(states.begin(), states.end(), model.layout.states);
-  for (const model::State& state : model.states) linear.states.push_back(state.column);
+  for (const model::State& state : model.states)
+    if (!state.algebraic) linear.states.push_back(state.column);
   for (const model::Input& input : model.inputs) {
     inputs.push_back(input.variable);
     linear.inputs.push_back(input.name);
@@ -48,10 +50,24 @@ LinearModel linearize_model(const std::shared_ptr<const model::ModelProgram>& pr
   }
   const std::vector<double> values = model::start_values(model, parameters);
   const auto& rates = model.modes[mode].derivatives;
-  linear.a = derivatives(*program, rates, states, values, x, t);
-  linear.b = derivatives(*program, rates, inputs, values, x, t);
-  linear.c = derivatives(*program, outputs, states, values, x, t);
-  linear.d = derivatives(*program, outputs, inputs, values, x, t);
+  const std::size_t n = linear.states.size(), m = states.size() - n;
+  const LinearColumns columns{.states = n, .unknowns = m, .inputs = inputs.size()};
+  std::vector<std::uint32_t> variables(states);
+  variables.insert(variables.end(), inputs.begin(), inputs.end());
+  const auto rows = derivatives(*program, rates, variables, values, x, t);
+  const auto equations = std::span(rows).subspan(n * columns.all());
+  std::vector<double> square;
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = 0; j < m; ++j) square.push_back(equations[i * columns.all() + n + j]);
+  linear.undetermined = undetermined_by(square, m);
+  if (!linear.undetermined.equations.empty()) return linear;
+  const auto split = [&](std::span<const double> of, std::vector<double>& by_states, std::vector<double>& by_inputs) {
+    const auto kept = without_unknowns(of, equations, columns);
+    const std::size_t width = n + inputs.size();
+    for (std::size_t k = 0; k < kept.size(); ++k) (k % width < n ? by_states : by_inputs).push_back(kept[k]);
+  };
+  split(std::span(rows).first(n * columns.all()), linear.a, linear.b);
+  split(derivatives(*program, outputs, variables, values, x, t), linear.c, linear.d);
   return linear;
 }
 

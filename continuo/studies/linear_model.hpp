@@ -8,12 +8,14 @@
 
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/model_program.hpp>
+#include <continuo/studies/algebraic_elimination.hpp>
 
 namespace continuo::studies {
 
 struct LinearModel {
-  std::vector<std::string> states, inputs, outputs;
-  std::vector<double> a, b, c, d;  // row by row: n * n, n * inputs, outputs * n, outputs * inputs
+  std::vector<std::string> states, inputs, outputs;  // without the unknowns of algebraic equations, which are taken out
+  std::vector<double> a, b, c, d;                    // row by row: n * n, n * inputs, outputs * n, outputs * inputs
+  Undetermined undetermined{};                       // by the algebraic equations; then the matrices are empty
 };
 
 /// At (t, x), inputs and parameters as the model has them unless `parameters` says otherwise.

@@ -82,7 +82,10 @@ ParametricSystem of_model(const std::shared_ptr<const model::ModelProgram>& prog
   system.jacobian = [tapes](double t, Values x, Values p, std::span<double> entries) {
     tapes->jacobian(t, x, p, entries);
   };
-  for (const model::State& state : program->model.states) system.names.push_back(state.column);
+  for (const model::State& state : program->model.states) {
+    system.names.push_back(state.column);
+    if (state.algebraic) ++system.algebraic;
+  }
   system.constant_names = what.constants;
   return system;
 }

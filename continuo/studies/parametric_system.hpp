@@ -26,6 +26,8 @@ struct ParametricSystem {
   std::function<void(double t, Values x, Values p, std::span<double> dxdt)> derivative{};
 
   // What may be missing.
+  /// So many components at the end of x are unknowns of algebraic equations: theirs read 0 = f_i(t, x, p), of index 1.
+  std::size_t algebraic = 0;
   /// Where df/dx may differ from zero; empty: anywhere.
   SparsePattern pattern{};
   /// The entries of df/dx in the order of the pattern, or row by row; else by differences.
@@ -35,6 +37,7 @@ struct ParametricSystem {
   std::vector<std::string> names{};           // of the components
   std::vector<std::string> constant_names{};  // of the constants
 
+  std::size_t differential() const { return size - algebraic; }
   std::size_t parameters() const { return constants.size(); }
   /// `x[i]` where it has none.
   std::string name(std::size_t i) const;

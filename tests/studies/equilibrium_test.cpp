@@ -83,6 +83,61 @@ TEST(Equilibrium, NotFinite) {
   EXPECT_NEAR(search.x[0], 1, 1e-15);
 }
 
+// x' = z - 2x + p, y' = -y w, 0 = z + x + y, 0 = w - 1 - z^2: written out z = -x - y, w = 1 + (x + y)^2.
+TEST(Equilibrium, UnknownsOfAlgebraicEquationsAreTakenOut) {
+  const auto dae = [](double, Values x, Values p, std::span<double> f) {
+    f[0] = x[2] - 2 * x[0] + p[0];
+    f[1] = -x[1] * x[3];
+    f[2] = x[2] + x[0] + x[1];
+    f[3] = x[3] - 1 - x[2] * x[2];
+  };
+  const auto ode = [](double, Values x, Values p, std::span<double> f) {
+    f[0] = -3 * x[0] - x[1] + p[0];
+    f[1] = -x[1] * (1 + (x[0] + x[1]) * (x[0] + x[1]));
+  };
+  ParametricSystem with = parametric_system(4, dae, {6});
+  with.algebraic = 2;
+  const ParametricSystem without = parametric_system(2, ode, {6});
+  const auto found = find_equilibria(with, {.low = {-5, -5, -5, -5}, .high = {5, 5, 5, 9}, .starts = 20});
+  ASSERT_EQ(found.equilibria.size(), 1u);  // x = 2, y = 0
+  const Equilibrium& rest = found.equilibria[0];
+  EXPECT_NEAR(rest.x[0], 2, 1e-12);
+  EXPECT_NEAR(rest.x[3], 5, 1e-12);
+  ASSERT_EQ(rest.eigenvalues.size(), 2u);
+  EXPECT_NEAR(rest.eigenvalues[0].real(), -3, 1e-8);  // by differences
+  EXPECT_NEAR(rest.eigenvalues[1].real(), -5, 1e-8);
+  const std::vector<double> x{0.3, -0.7, 0.4, 1.16}, p{6};
+  const auto a = linearize(with, x, p), b = linearize(without, std::span(x).first(2), p);
+  ASSERT_EQ(a.states, 2u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(a.a[k], b.a[k], 1e-8);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(a.b[k], b.b[k], 1e-8);
+  const auto unknowns = find_unknowns(with, {0.3, -0.7, 5, 5}, p);
+  EXPECT_EQ(unknowns.ending, EquilibriumEnding::found);
+  EXPECT_NEAR(unknowns.x[2], 0.4, 1e-14);
+  EXPECT_NEAR(unknowns.x[3], 1.16, 1e-14);
+}
+
+TEST(Equilibrium, WhatAlgebraicEquationsLeaveOpenIsNamed) {  // 0 = x - 1 - z^2 at z = 0; the other equation is regular
+  const auto f = [](double, Values x, Values, std::span<double> out) {
+    out[0] = -x[0] + 1 + x[1];
+    out[1] = x[2] - 3;
+    out[2] = x[0] - 1 - x[1] * x[1];
+  };
+  ParametricSystem system = parametric_system(3, f);
+  system.algebraic = 2;
+  system.names = {"x", "z", "w"};
+  // z stands first among the unknowns, its equation last.
+  const auto rest = describe_equilibrium(system, {1, 0, 3}, {});
+  EXPECT_EQ(rest.undetermined.unknowns, std::vector<std::size_t>{0});
+  EXPECT_EQ(rest.undetermined.equations, std::vector<std::size_t>{1});
+  EXPECT_TRUE(rest.eigenvalues.empty());
+  EXPECT_EQ(rest.stability, Stability::undecided);
+  // Twice the same equation, in other units: either may be left out.
+  const std::vector<double> square{1, 2, 1e9, 2e9};
+  EXPECT_EQ(undetermined_by(square, 2).equations.size(), 1u);
+  EXPECT_TRUE(undetermined_by(std::vector<double>{1e-12}, 1).equations.empty());  // a matter of units
+}
+
 TEST(Modes, MassSpringDamper) {  // lambda = -c/2m +- i sqrt(k/m - (c/2m)^2)
   const double k = 30, c = 0.8, m = 2;
   const auto f = [](double, Values x, Values p, std::span<double> out) {
