@@ -16,46 +16,40 @@ ModelDerivatives::ModelDerivatives(const ModelProgram& program, std::span<const 
   std::vector<std::uint32_t> columns(model.states.size());
   std::iota(columns.begin(), columns.end(), model.layout.states);
   constexpr std::uint32_t time[] = {Layout::time};
+  std::vector<std::vector<JacobianEntry>> entries;
   std::vector<MatrixPlace> all;
   for (const Mode& mode : model.modes) {
+    for (const JacobianEntry& entry : entries.emplace_back(model::jacobian(own.model.graph, mode.derivatives, columns)))
+      all.push_back({entry.row, entry.column});
+  }
+  pattern_ = SparsePattern(columns.size(), all);
+  for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
     OfMode& mine = modes_.emplace_back();
-    std::vector<NodeId> nodes;
-    for (const JacobianEntry& entry : model::jacobian(own.model.graph, mode.derivatives, columns)) {
-      mine.places.push_back({entry.row, entry.column});
-      nodes.push_back(entry.value);
-    }
+    std::vector<NodeId> nodes(pattern_.entries(), own.model.graph.constant(0));
+    for (const JacobianEntry& entry : entries[mode]) nodes[pattern_.find(entry.row, entry.column)] = entry.value;
     mine.entries = Evaluation(own.tape_of(nodes), model.layout, variables);
-    all.insert(all.end(), mine.places.begin(), mine.places.end());
     nodes.clear();
-    for (const JacobianEntry& entry : model::jacobian(own.model.graph, mode.derivatives, time)) {
+    for (const JacobianEntry& entry : model::jacobian(own.model.graph, model.modes[mode].derivatives, time)) {
       mine.moving.push_back(entry.row);
       nodes.push_back(entry.value);
     }
     mine.by_time = Evaluation(own.tape_of(nodes), model.layout, variables);
   }
-  pattern_ = SparsePattern(columns.size(), all);
-  std::size_t most = columns.size();
-  for (OfMode& mine : modes_) {
-    for (const MatrixPlace& place : mine.places) mine.entry.push_back(pattern_.find(place.row, place.column));
-    most = std::max(most, mine.places.size());
-  }
-  values_.resize(most);
+  values_.resize(std::max(columns.size(), pattern_.entries()));
 }
 
 void ModelDerivatives::jacobian_values(std::size_t mode, double t, std::span<const double> x,
                                        std::span<double> values) {
-  OfMode& mine = modes_[mode];
-  std::ranges::fill(values, 0.0);
-  mine.entries(t, x, std::span(values_).first(mine.places.size()));
-  for (std::size_t k = 0; k < mine.entry.size(); ++k) values[mine.entry[k]] = values_[k];
+  modes_[mode].entries(t, x, values);
 }
 
 void ModelDerivatives::jacobian(std::size_t mode, double t, std::span<const double> x, std::span<double> rows) {
-  OfMode& mine = modes_[mode];
   std::ranges::fill(rows, 0.0);
-  mine.entries(t, x, std::span(values_).first(mine.places.size()));
-  for (std::size_t k = 0; k < mine.places.size(); ++k)
-    rows[mine.places[k].row * x.size() + mine.places[k].column] = values_[k];
+  modes_[mode].entries(t, x, values_);
+  for (std::size_t column = 0; column < pattern_.size(); ++column) {
+    for (std::size_t k = pattern_.begin(column); k < pattern_.end(column); ++k)
+      rows[pattern_.row(k) * x.size() + column] = values_[k];
+  }
 }
 
 void ModelDerivatives::time_derivative(std::size_t mode, double t, std::span<const double> x, std::span<double> dfdt) {

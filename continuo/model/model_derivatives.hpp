@@ -32,10 +32,9 @@ class ModelDerivatives {
 
  private:
   struct OfMode {
-    std::vector<MatrixPlace> places;    // of the outputs of `entries`
-    std::vector<std::size_t> entry;     // which entry of the pattern each is
-    std::vector<std::uint32_t> moving;  // the components whose derivative by time is not zero: outputs of `by_time`
-    Evaluation entries, by_time;
+    Evaluation entries;                 // of the pattern, zero where this mode has none
+    std::vector<std::uint32_t> moving;  // the components whose derivative by time is not zero
+    Evaluation by_time;                 // of those
   };
 
   SparsePattern pattern_;

@@ -1,5 +1,7 @@
 // continuo/model/model_program.cpp
+#include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -127,6 +129,16 @@ void place_tables(ModelProgram& program) {
 }
 
 }  // namespace
+
+ModelProgram::ModelProgram(Model model_) : model(std::move(model_)), families(model.layout.size) {
+  std::map<std::pair<std::string_view, int>, std::uint32_t> numbers;
+  for (const State& state : model.states) {
+    const std::size_t bracket = state.base.find('[');
+    if (bracket == std::string::npos) continue;
+    const std::pair name(std::string_view(state.base).substr(0, bracket), state.primes);
+    families[state.variable] = numbers.try_emplace(name, static_cast<std::uint32_t>(numbers.size() + 1)).first->second;
+  }
+}
 
 NodeId ModelProgram::with_inputs(Graph& graph, NodeId node) const {
   if (linear_inputs.empty()) return node;

@@ -44,7 +44,7 @@ struct TableInput {
 };
 
 struct ModelProgram {
-  explicit ModelProgram(Model model_) : model(std::move(model_)) {}
+  explicit ModelProgram(Model model_);
 
   Model model;
   std::vector<Table> tables;              // those of the model, then one per input that is interpolated linearly
@@ -57,9 +57,13 @@ struct ModelProgram {
   std::vector<NodeId> always;  // what `check always` watches: each side minus the other, in the order of the checks
   NodeId energy_scale;         // the sum of the energies' absolute values; not valid without any
   std::size_t stops = 0;       // number of `stop` actions
+  std::vector<std::uint32_t> families;  // as TapeVariables says: u[1], u[2], ... are one, their derivatives another
 
   TapeVariables tape_variables() const {
-    return {.variables = model.layout.size, .steady_begin = model.layout.parameters, .steady_end = model.layout.inputs};
+    return {.variables = model.layout.size,
+            .steady_begin = model.layout.parameters,
+            .steady_end = model.layout.inputs,
+            .families = families};
   }
   /// The expression with interpolated inputs in place, as functions of time.
   NodeId with_inputs(Graph& graph, NodeId node) const;

@@ -15,9 +15,10 @@ Tape::Size Tape::size() const {
   const auto count = [](const Program& program) {
     return program.instructions.empty() ? 0 : program.instructions.size() - 1;
   };
-  Size size{.prepared = count(preparation_), .single = count(body_) - body_.batches.size()};
+  Size size{.prepared = count(preparation_), .single = count(body_) - body_.batches.size() - body_.copies.size()};
   size.batches = body_.batches.size();
   for (const tape::Batch& batch : body_.batches) size.batched += batch.count;
+  size.gathered = body_.gathered.size();
   return size;
 }
 

@@ -12,7 +12,8 @@
 //
 // How it is fast: what hangs on parameters alone is computed by `prepare` (a division by a parameter becomes a
 // multiplication by its reciprocal); a product and the sum it goes into are one instruction; equal operations that
-// do not wait for each other are one loop over neighbouring registers.
+// do not wait for each other are one loop over neighbouring registers, a grid's inner points without their ends; a
+// family whose members lie apart (u[1], v[1], u[2], v[2], ...) is first copied to where they are neighbours.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,7 @@
 #include <continuo/model/expression.hpp>
 #include <continuo/model/table.hpp>
 #include <continuo/model/tape_code.hpp>
+#include <continuo/model/tape_copy.hpp>
 
 namespace continuo::model {
 
@@ -30,6 +32,9 @@ struct TapeVariables {
   std::uint32_t variables = 0;  // how many
   // Those that change seldom, [begin, end): the parameters. `prepare` must follow each change of theirs.
   std::uint32_t steady_begin = 0, steady_end = 0;
+  // By variable, for as many as there are: members of one family, ascending, have the same number; 0 is alone. They
+  // need not lie side by side.
+  std::span<const std::uint32_t> families = {};
 };
 
 class Tape {
@@ -39,7 +44,7 @@ class Tape {
        std::span<const Table> tables = {});
 
   std::size_t register_count() const { return registers_; }
-  std::size_t output_count() const { return outputs_.size(); }
+  std::size_t output_count() const { return output_count_; }
 
   /// Constants, and what hangs on them and on the steady variables alone.
   template <class Real>
@@ -55,6 +60,7 @@ class Tape {
     std::size_t single = 0;    // instructions of `evaluate` on one register each
     std::size_t batches = 0;   // its loops
     std::size_t batched = 0;   // results of those loops
+    std::size_t gathered = 0;  // operands of those that do not lie side by side
   };
   Size size() const;
 
@@ -68,6 +74,7 @@ class Tape {
     std::vector<tape::Instruction> instructions;  // the last one is `stop`
     std::vector<tape::Batch> batches;
     std::vector<std::uint32_t> gathered;  // registers of the batches' scattered operands
+    std::vector<tape::Copy> copies;
   };
 
   template <class Real>
@@ -75,10 +82,11 @@ class Tape {
   template <class Real>
   void run_batch(const Program& program, const tape::Batch& batch, Real* registers) const;
 
-  std::size_t registers_ = 0;
+  std::size_t registers_ = 0, output_count_ = 0;
   std::vector<Constant> constants_;
   Program preparation_, body_;
   std::vector<std::uint32_t> outputs_;  // registers
+  tape::Copies many_outputs_;           // registers to outputs, where there are that many: then `outputs_` is empty
   std::vector<Table> tables_;
 };
 

@@ -63,13 +63,14 @@ enum class Code : std::uint16_t {
   interpolate,        // table b at a
   interpolate_slope,  // its slope
   batch,              // batches[a]: one operation on many registers
+  copy,               // copies[a]: variables of a family side by side
   stop,
 };
 inline constexpr std::size_t operations = static_cast<std::size_t>(Code::interpolate);
 
 inline constexpr std::size_t frequent = static_cast<std::size_t>(Code::select_less);
 
-/// Where the evaluation goes for a code: a place of its own for the frequent ones, one for all others, three at last.
+/// Where the evaluation goes for a code: a place of its own for the frequent ones, one for all others, four at last.
 constexpr std::uint16_t entry(Code code) {
   const auto c = static_cast<std::size_t>(code);
   return static_cast<std::uint16_t>(c < operations ? (c < frequent ? c : frequent) : c - operations + frequent + 1);

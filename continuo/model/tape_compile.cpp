@@ -7,6 +7,8 @@
 #include <utility>
 
 #include <continuo/model/tape.hpp>
+#include <continuo/model/tape_copy.hpp>
+#include <continuo/model/tape_group.hpp>
 #include <continuo/model/tape_select.hpp>
 #include <continuo/model/tape_steady.hpp>
 
@@ -14,11 +16,8 @@ namespace continuo::model {
 
 namespace {
 
-using tape::Batch, tape::Code, tape::Instruction, tape::Operand, tape::Selected;
-
-/// From this many equal operations on, a loop over them is cheaper than as many instructions (measured by
-/// bench/tape: a loop costs about as much as eight of them to begin).
-constexpr std::size_t smallest_batch = 12;
+using tape::Batch, tape::Code, tape::Group, tape::Instruction, tape::Operand, tape::Place, tape::Places, tape::Selected,
+    tape::Stretch;
 
 /// The free registers as intervals; the lowest that fits is taken, which keeps the file small and in the cache.
 class Registers {
@@ -71,11 +70,13 @@ class TapeCompiler {
       : graph_(prepared.graph),
         registers_(variables.variables),
         place_(graph_.size(), nowhere),
-        last_use_(graph_.size(), 0) {
+        last_use_(graph_.size(), 0),
+        colour_(graph_.size(), 0) {
     for (std::uint32_t i = 0; i < graph_.size(); ++i) {
       if (graph_[NodeId{i}].op == Op::variable) place_[i] = graph_[NodeId{i}].number;
     }
     selected_ = tape::select_operations(prepared);
+    for (const Family& family : families_of(prepared, variables.families)) place_family(family);
     for (const NodeId output : prepared.outputs) last_use_[output.index] = kept;
   }
 
@@ -86,16 +87,78 @@ class TapeCompiler {
     // What is prepared stays where it is until the next preparation.
     for (const Selected& s : steady) last_use_[s.result.index] = kept;
     emit(tape_.preparation_, steady);
+    for (const Selected& s : steady) colour_[s.result.index] = 0;  // a number like any constant
     emit(tape_.body_, moving);
-    for (const NodeId output : outputs) tape_.outputs_.push_back(place_[output.index]);
+    place_outputs(outputs);
     tape_.registers_ = registers_.size();
     return std::move(tape_);
   }
 
  private:
+  struct Member {
+    const Selected* operation;
+    Places places;
+  };
   static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
   static constexpr std::size_t kept = std::numeric_limits<std::size_t>::max();
-  using Groups = std::vector<std::vector<std::size_t>>;
+
+  /// Variables of one family, the nodes that are read, ascending.
+  using Family = std::vector<NodeId>;
+
+  std::vector<Family> families_of(const tape::Prepared& prepared, std::span<const std::uint32_t> numbers) const {
+    std::map<std::uint32_t, Family> families;
+    for (std::uint32_t i = 0; i < graph_.size(); ++i) {
+      const Node& node = graph_[NodeId{i}];
+      if (node.op != Op::variable || prepared.steady[i]) continue;  // `prepare` reads those where they are
+      if (node.number >= numbers.size() || numbers[node.number] == 0) continue;
+      families[numbers[node.number]].push_back(NodeId{i});
+    }
+    std::vector<Family> large;
+    for (auto& [number, members] : families) {
+      if (members.size() < tape::smallest_batch) continue;
+      std::ranges::sort(members, {}, [&](NodeId id) { return graph_[id].number; });
+      large.push_back(std::move(members));
+    }
+    return large;
+  }
+
+  /// A family that does not lie side by side, and is read more than once, is copied to where it does: at the price of
+  /// reading it once from where it lies.
+  void place_family(const Family& family) {
+    const tape::Colour mine = ++colours_;
+    for (const NodeId id : family) colour_[id.index] = mine;
+    std::size_t reads = 0;
+    for (const Selected& s : selected_) {
+      for (std::size_t k = 0; k < operands(s.code); ++k) reads += colour_[s.operand[k].index] == mine;
+    }
+    const std::uint32_t first = place_[family.front().index], last = place_[family.back().index];
+    const bool contiguous = last - first + 1 == family.size();
+    if (contiguous || reads < 2 * family.size()) return;
+    std::uint32_t next = registers_.take(static_cast<std::uint32_t>(family.size()));
+    std::vector<Place> copied;
+    for (const NodeId id : family) {
+      copied.push_back({.from = place_[id.index], .to = next});
+      place_[id.index] = next++;
+    }
+    const tape::Copies copies = tape::regular_copies(copied);
+    for (const tape::Copy& copy : copies.regular) emit_copy(copy);
+    for (const Place& place : copies.alone) emit_copy({place.from, 0, place.to, 0, 1});
+  }
+
+  void emit_copy(const tape::Copy& copy) {
+    tape_.body_.instructions.emplace_back(Code::copy).a = static_cast<std::uint32_t>(tape_.body_.copies.size());
+    tape_.body_.copies.push_back(copy);
+  }
+
+  void place_outputs(std::span<const NodeId> outputs) {
+    tape_.output_count_ = outputs.size();
+    std::vector<Place> places;
+    for (std::uint32_t k = 0; k < outputs.size(); ++k) places.push_back({.from = place_[outputs[k].index], .to = k});
+    for (const Place& place : places) tape_.outputs_.push_back(place.from);
+    std::ranges::sort(places);
+    tape_.many_outputs_ = tape::regular_copies(places);
+    if (!tape_.many_outputs_.regular.empty()) tape_.outputs_.clear();
+  }
 
   void place_constant(NodeId id) {
     if (graph_[id].op != Op::constant || place_[id.index] != nowhere) return;
@@ -111,31 +174,8 @@ class TapeCompiler {
     for (const NodeId output : outputs) place_constant(output);
   }
 
-  /// Operations that do not wait for each other and do the same stand together; large groups of them become batches.
-  Groups groups_of(const std::vector<Selected>& operations) const {
-    std::vector<std::uint32_t> level(graph_.size(), 0);
-    std::map<std::pair<std::uint32_t, Code>, std::vector<std::size_t>> by_level;
-    for (std::size_t i = 0; i < operations.size(); ++i) {
-      const Selected& s = operations[i];
-      std::uint32_t mine = 1;
-      for (std::size_t k = 0; k < operands(s.code); ++k) mine = std::max(mine, level[s.operand[k].index] + 1);
-      level[s.result.index] = mine;
-      by_level[{mine, s.code}].push_back(i);
-    }
-    Groups groups;
-    for (auto& [key, members] : by_level) {
-      const bool batched = members.size() >= smallest_batch && key.second < Code::interpolate;
-      if (batched) {
-        groups.push_back(std::move(members));
-      } else {
-        for (const std::size_t i : members) groups.push_back({i});
-      }
-    }
-    return groups;
-  }
-
   void emit(Tape::Program& program, const std::vector<Selected>& operations) {
-    const Groups groups = groups_of(operations);
+    const std::vector<Group> groups = groups_of(operations, colour_);
     for (std::size_t g = 0; g < groups.size(); ++g) {
       for (const std::size_t i : groups[g]) {
         for (std::size_t k = 0; k < operands(operations[i].code); ++k) {
@@ -148,14 +188,22 @@ class TapeCompiler {
       if (groups[g].size() == 1) {
         emit_single(program, operations[groups[g].front()], g);
       } else {
-        emit_batch(program, operations, groups[g], g);
+        emit_group(program, operations, groups[g], g);
       }
     }
     program.instructions.emplace_back(Code::stop);
   }
 
-  std::uint32_t place(const Selected& s, std::size_t k) const {
-    return k < operands(s.code) ? place_[s.operand[k].index] : 0;
+  Places places_of(const Selected& s) const {
+    Places places{};
+    for (std::size_t k = 0; k < operands(s.code); ++k) places[k] = place_[s.operand[k].index];
+    return places;
+  }
+
+  static std::vector<Places> places_of(std::span<const Member> members) {
+    std::vector<Places> places;
+    for (const Member& member : members) places.push_back(member.places);
+    return places;
   }
 
   void release(const Selected& s, std::size_t group) {
@@ -168,44 +216,80 @@ class TapeCompiler {
   }
 
   void emit_single(Tape::Program& program, const Selected& s, std::size_t group) {
-    Instruction i(s.code);
-    i.a = place(s, 0), i.b = place(s, 1), i.c = place(s, 2), i.d = place(s, 3);
-    if (s.code == Code::interpolate || s.code == Code::interpolate_slope) i.b = s.table;
+    const Member member{&s, places_of(s)};
     release(s, group);  // before the result is placed: it may take an operand's register
-    i.result = place_[s.result.index] = registers_.take(1);
+    place_[s.result.index] = registers_.take(1);
+    emit_instruction(program, member, place_[s.result.index]);
+  }
+
+  static void emit_instruction(Tape::Program& program, const Member& member, std::uint32_t result) {
+    Instruction i(member.operation->code);
+    i.a = member.places[0], i.b = member.places[1], i.c = member.places[2], i.d = member.places[3];
+    if (i.code == Code::interpolate || i.code == Code::interpolate_slope) i.b = member.operation->table;
+    i.result = result;
     program.instructions.push_back(i);
   }
 
-  void emit_batch(Tape::Program& program, const std::vector<Selected>& operations, std::vector<std::size_t> members,
-                  std::size_t group) {
-    const auto key = [&](std::size_t i) {
-      const Selected& s = operations[i];
-      return std::array{place(s, 0), place(s, 1), place(s, 2), place(s, 3)};
-    };
-    std::ranges::sort(members, {}, key);
-    const auto count = static_cast<std::uint32_t>(members.size());
-    Batch batch{.code = operations[members.front()].code, .result = registers_.take(count), .count = count};
-    for (std::size_t k = 0; k < operands(batch.code); ++k) {
-      batch.operand[k] = layout(program, members, [&](std::size_t i) { return place(operations[i], k); });
+  /// The results of a group lie side by side, whatever it is made of.
+  void emit_group(Tape::Program& program, const std::vector<Selected>& operations, const Group& group,
+                  std::size_t number) {
+    const std::vector<Member> members = in_order(operations, group);
+    const std::uint32_t results = registers_.take(static_cast<std::uint32_t>(members.size()));
+    for (const Stretch& stretch : tape::stretches(places_of(members))) {
+      const std::span part = std::span(members).subspan(stretch.begin, stretch.end - stretch.begin);
+      const std::uint32_t result = results + static_cast<std::uint32_t>(stretch.begin);
+      if (part.size() >= tape::smallest_batch) {
+        emit_batch(program, part, result);
+      } else {
+        for (std::uint32_t m = 0; m < part.size(); ++m) emit_instruction(program, part[m], result + m);
+      }
     }
-    for (std::uint32_t m = 0; m < count; ++m) place_[operations[members[m]].result.index] = batch.result + m;
-    for (const std::size_t i : members) release(operations[i], group);
+    for (std::uint32_t m = 0; m < members.size(); ++m) place_[members[m].operation->result.index] = results + m;
+    for (const Member& member : members) release(*member.operation, number);
+  }
+
+  /// Ordered by the place of one operand, then by those after it: the operand by which most of it needs no gathering.
+  std::vector<Member> in_order(const std::vector<Selected>& operations, const Group& group) const {
+    std::vector<Member> members, best;
+    for (const std::size_t i : group) members.push_back({&operations[i], places_of(operations[i])});
+    std::size_t fewest = kept;
+    const std::size_t count = operands(operations[group.front()].code);
+    for (std::size_t by = 0; by < count && fewest > 1; ++by) {
+      std::ranges::sort(members, [&](const Member& a, const Member& b) {
+        for (std::size_t i = by; i < by + count; ++i) {
+          const std::size_t k = i < count ? i : i - count;
+          if (a.places[k] != b.places[k]) return a.places[k] < b.places[k];
+        }
+        return a.operation->result.index < b.operation->result.index;
+      });
+      if (const std::size_t breaks = tape::breaks(places_of(members)); breaks < fewest) {
+        fewest = breaks;
+        best = members;
+      }
+    }
+    return best;
+  }
+
+  void emit_batch(Tape::Program& program, std::span<const Member> members, std::uint32_t result) {
+    Batch batch{
+        .code = members.front().operation->code, .result = result, .count = static_cast<std::uint32_t>(members.size())};
+    for (std::size_t k = 0; k < operands(batch.code); ++k) batch.operand[k] = layout(program, members, k);
     const auto number = static_cast<std::uint32_t>(program.batches.size());
     program.batches.push_back(batch);
     program.instructions.emplace_back(Code::batch).a = number;
   }
 
-  static Operand layout(Tape::Program& program, const std::vector<std::size_t>& members, auto&& place_of) {
-    const std::uint32_t first = place_of(members.front());
+  static Operand layout(Tape::Program& program, std::span<const Member> members, std::size_t k) {
+    const std::uint32_t first = members.front().places[k];
     bool one = true, contiguous = true;
     for (std::uint32_t m = 0; m < members.size(); ++m) {
-      one = one && place_of(members[m]) == first;
-      contiguous = contiguous && place_of(members[m]) == first + m;
+      one = one && members[m].places[k] == first;
+      contiguous = contiguous && members[m].places[k] == first + m;
     }
     if (one) return {Operand::Layout::one, first};
     if (contiguous) return {Operand::Layout::contiguous, first};
     const auto begin = static_cast<std::uint32_t>(program.gathered.size());
-    for (const std::size_t i : members) program.gathered.push_back(place_of(i));
+    for (const Member& member : members) program.gathered.push_back(member.places[k]);
     return {Operand::Layout::gathered, begin};
   }
 
@@ -213,6 +297,8 @@ class TapeCompiler {
   Registers registers_;
   std::vector<std::uint32_t> place_;   // register of each node
   std::vector<std::size_t> last_use_;  // the group that reads it last
+  std::vector<tape::Colour> colour_;   // by node: 0 or a family, of results how they come about
+  tape::Colour colours_ = 0;
   std::vector<Selected> selected_;
   Tape tape_;
 };

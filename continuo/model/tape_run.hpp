@@ -47,7 +47,7 @@ const Real* side_by_side(const Operand& operand, const Real* registers, const st
 }
 
 template <Code code, class Real>
-void many(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
+[[gnu::always_inline]] inline void in_pieces(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
   constexpr std::size_t n = operands(code);
   Real buffers[n][piece<Real>];
   for (std::size_t begin = 0; begin < batch.count; begin += piece<Real>) {
@@ -64,6 +64,38 @@ void many(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
   }
 }
 
+template <Code code, class Real>
+void many(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
+  in_pieces<code>(registers, batch, gathered);
+}
+
+#if defined(__x86_64__)
+/// The same in vectors of 256 bits. Without the instructions that round only once for a product and a sum, so that
+/// every machine computes the same.
+template <Code code, class Real>
+[[gnu::target("avx2")]] void many_wide(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
+  in_pieces<code>(registers, batch, gathered);
+}
+inline bool has_wide_vectors() {
+  return __builtin_cpu_supports("avx2") != 0;
+}
+#else
+template <Code code, class Real>
+void many_wide(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
+  many<code>(registers, batch, gathered);
+}
+constexpr bool has_wide_vectors() {
+  return false;
+}
+#endif
+
+/// What compilers make vectors of.
+template <class Real>
+constexpr bool gains_by_vectors(Code code) {
+  const bool is_plain = code <= Code::square_root || (code >= Code::select_less && code <= Code::absolute);
+  return is_plain && (std::is_same_v<Real, float> || std::is_same_v<Real, double>);
+}
+
 template <class Real>
 using Single = void (*)(Real*, const Instruction&);
 template <class Real>
@@ -74,9 +106,16 @@ inline constexpr auto singles = []<std::size_t... I>(std::index_sequence<I...>) 
   return std::array<Single<Real>, operations>{&single<static_cast<Code>(I), Real>...};
 }(std::make_index_sequence<operations>());
 
-template <class Real>
+template <bool wide, class Real>
 inline constexpr auto manys = []<std::size_t... I>(std::index_sequence<I...>) {
-  return std::array<Many<Real>, operations>{&many<static_cast<Code>(I), Real>...};
+  constexpr auto one_of = []<Code code>() -> Many<Real> {
+    if constexpr (wide && gains_by_vectors<Real>(code)) {
+      return &many_wide<code, Real>;
+    } else {
+      return &many<code, Real>;
+    }
+  };
+  return std::array<Many<Real>, operations> { one_of.template operator()<static_cast<Code>(I)>()... };
 }(std::make_index_sequence<operations>());
 
 /// A table at x; lanes one by one, derivatives along the piece that holds the value.
@@ -104,7 +143,8 @@ namespace continuo::model {
 
 template <class Real>
 void Tape::run_batch(const Program& program, const tape::Batch& batch, Real* registers) const {
-  tape::manys<Real>[static_cast<std::size_t>(batch.code)](registers, batch, program.gathered.data());
+  const auto& manys = tape::has_wide_vectors() ? tape::manys<true, Real> : tape::manys<false, Real>;
+  manys[static_cast<std::size_t>(batch.code)](registers, batch, program.gathered.data());
 }
 
 template <class Real>
@@ -117,7 +157,7 @@ void Tape::run(const Program& program, Real* registers) const {
       &&add_, &&subtract_, &&multiply_, &&divide_, &&multiply_add_, &&multiply_subtract_, &&subtract_product_,
       &&negated_product_, &&negated_sum_, &&negated_multiply_add_, &&negated_sum_of_products_, &&sum_of_products_,
       &&difference_of_products_, &&sum_times_, &&difference_times_, &&negate_, &&square_root_, &&sine_, &&cosine_,
-      &&other_, &&table_, &&table_, &&batch_, &&stop_};
+      &&other_, &&table_, &&table_, &&batch_, &&copy_, &&stop_};
   // clang-format on
   static_assert(std::size(labels) == tape::entry(Code::stop) + 1);
   const tape::Instruction* i = program.instructions.data();
@@ -191,6 +231,10 @@ batch_:
   run_batch(program, program.batches[i->a], registers);
   ++i;
   goto* labels[i->entry];
+copy_:
+  tape::run(program.copies[i->a], registers, registers);
+  ++i;
+  goto* labels[i->entry];
 stop_:
   return;
 }
@@ -205,6 +249,7 @@ template <class Real>
 void Tape::evaluate(std::span<Real> registers, std::span<Real> outputs) const {
   run(body_, registers.data());
   for (std::size_t k = 0; k < outputs_.size(); ++k) outputs[k] = registers[outputs_[k]];
+  if (!many_outputs_.regular.empty()) tape::run(many_outputs_, registers.data(), outputs.data());
 }
 
 }  // namespace continuo::model
