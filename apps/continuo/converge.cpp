@@ -59,6 +59,7 @@ ExitCode converge(const ConvergeOptions& options) {
   if (!known_methods(options.methods)) return usage;
   Prepared prepared = prepare(options.experiment);
   if (prepared.exit != done) return prepared.exit;
+  if (has_no_start(prepared)) return wrong_model;
   StudyProgress progress;
   const auto study = studies::converge(prepared.program, prepared.experiment,
                                        {.methods = options.methods,

@@ -52,6 +52,31 @@ std::string points_text(const MethodConvergence& method, bool by_tolerance, bool
   return text;
 }
 
+std::string heading(bool by_tolerance) {
+  if (by_tolerance) return fmt::format("{:<24} {:>7} {:>7}  {}", "method", "slope", "energy", "least error at tol");
+  return fmt::format("{:<24} {:>5} {:>7} {:>7} {:>7}  {:<20}  {:<34}", "method", "order", "global", "local", "energy",
+                     "least error at h", "where rounding should balance it");
+}
+
+std::string row_of(const MethodConvergence& method, bool by_tolerance) {
+  if (by_tolerance)
+    return fmt::format("{:<24} {:>7} {:>7}  {}", method.method, order_text(method.global), order_text(method.energy),
+                       best_text(method.global, by_tolerance));
+  return fmt::format("{:<24} {:>5} {:>7} {:>7} {:>7}  {:<20}  {:<34}", method.method, method.nominal,
+                     order_text(method.global), order_text(method.local), order_text(method.energy),
+                     best_text(method.global), predicted_text(method.floor));
+}
+
+/// A line on methods that choose more than the size of a step: what was measured of them.
+std::string what_keeps_its_order(const std::string& name) {
+  const MethodInfo* info = find_method(name);
+  if (info->automatic)
+    return fmt::format("{}: measured is its explicit method, unless equations are stiff or algebraic\n", name);
+  if (info->order == info->order_of_fixed_steps) return "";
+  return fmt::format("{}: steps of a fixed size keep order {}; of those it chooses by tolerance (up to {}): --tol\n",
+                     name, info->order_of_fixed_steps, info->order);
+}
+
 }  // namespace
 
 void end_line(std::string& text) {
@@ -72,10 +97,7 @@ bool known_methods(const std::vector<std::string>& names) {
 }
 
 std::string convergence_text(const Convergence& study, bool in_float, bool in_long_double, bool all_points) {
-  const std::string what = study.by_tolerance ? "tol" : "h";
-  std::string text =
-      fmt::format("{:<24} {:>5} {:>7} {:>7} {:>7}  {:<20}  {:<34}", "method", "order", "global", "local", "energy",
-                  "least error at " + what, study.by_tolerance ? "" : "where rounding should balance it");
+  std::string text = heading(study.by_tolerance);
   text += in_float ? fmt::format("  {:<20}  there", "in float") : "";
   text += in_long_double ? "  long" : "";
   end_line(text);
@@ -86,17 +108,17 @@ std::string convergence_text(const Convergence& study, bool in_float, bool in_lo
       continue;
     }
     unreached = unreached || (method.global.best_step > 0 && !method.global.floor_reached);
-    text += fmt::format("{:<24} {:>5} {:>7} {:>7} {:>7}  {:<20}  {:<34}", method.method, method.nominal,
-                        order_text(method.global), order_text(method.local), order_text(method.energy),
-                        best_text(method.global, study.by_tolerance),
-                        study.by_tolerance ? "" : predicted_text(method.floor));
+    text += row_of(method, study.by_tolerance);
     if (in_float)
       text += fmt::format("  {:<20}  {}", best_text(method.in_float), predicted_text(method.floor_in_float));
     if (in_long_double) text += "  " + order_text(method.in_long_double);
     end_line(text);
   }
   text += fmt::format("errors against {}, relative to each state's largest value\n", study.reference);
+  if (study.by_tolerance) text += "slope 1: a tenth of the tolerance leaves a tenth of the error\n";
   if (unreached && !study.by_tolerance) text += "* smaller steps would still gain: --most-steps\n";
+  for (const MethodConvergence& method : study.methods)
+    if (method.problem.empty() && !study.by_tolerance) text += what_keeps_its_order(method.method);
   if (all_points)
     for (const MethodConvergence& method : study.methods)
       if (method.problem.empty()) text += points_text(method, study.by_tolerance, in_float, in_long_double);
@@ -111,12 +133,14 @@ results::Figure convergence_figure(const Convergence& study, const std::string& 
         .x_label = x_label, .y_label = std::move(label), .curves = {}, .logarithmic_x = true, .logarithmic_y = true};
     for (const MethodConvergence& method : study.methods) {
       results::Curve curve{.label = method.method + suffix, .x = {}, .y = {}};
+      bool some = false;
       for (const StepErrors& point : method.points) {
-        if (!(point.*error > 0) || point.*error > 10) continue;  // beyond that it is no approximation
-        curve.x.push_back(point.step);
-        curve.y.push_back(point.*error);
+        const bool shown = point.*error > 0 && point.*error <= 10;  // beyond that it is no approximation
+        curve.x.push_back(point.step);                              // for all panels the same
+        curve.y.push_back(shown ? point.*error : std::nan(""));
+        some = some || shown;
       }
-      if (!curve.x.empty()) panel.curves.push_back(std::move(curve));
+      if (some) panel.curves.push_back(std::move(curve));
     }
     return panel;
   };

@@ -32,6 +32,7 @@ struct Adams {
   static constexpr std::size_t greatest_order = 12;  // of the prediction
   static constexpr std::string_view name = "adams";
   static constexpr int order = 13, error_order = 12, starting_order = 1, dense_degree = 13, dense_order = 12;
+  static constexpr int order_of_fixed_steps = 3;  // what the first of them lose, at lower orders, stays
   static constexpr bool second_order = false;
 
   template <State X>
@@ -185,7 +186,7 @@ struct Adams {
     work.rejections = 0;
     work.has_new_point = true;
     // Without error control nobody chooses an order.
-    if (work.next_order == 0) work.next_order = std::min(work.order + 1, order_of_fixed_steps);
+    if (work.next_order == 0) work.next_order = std::min(work.order + 1, greatest_of_fixed_steps);
   }
 
   template <State X>
@@ -197,7 +198,7 @@ struct Adams {
   // The order grows with the strictness of the tolerance, so that hundreds of short steps make a run at any: as many
   // errors add up. With p of the order of log(1 / tolerance) the factor of tolerance_proportionality.hpp is constant.
   static constexpr double strictness = 300;
-  static constexpr std::size_t order_of_fixed_steps = 4;
+  static constexpr std::size_t greatest_of_fixed_steps = 4;
 
   /// The size of the coefficient of Adams-Moulton formulas: gamma*_0 = 1, sum_j gamma*_j / (m + 1 - j) = 0 (Hairer,
   /// Norsett & Wanner, eq. III.1.10).

@@ -54,7 +54,7 @@ Real error_constant(std::size_t k) {
 /// The stepper. Equations<X> solves (c M - J) y = b: see direct_equations.hpp.
 template <template <State> class Equations>
 struct BackwardDifferentiation {
-  static constexpr int order = 5, error_order = 5, dense_order = 5, dense_degree = 5;
+  static constexpr int order = 5, error_order = 5, dense_order = 5, dense_degree = 5, order_of_fixed_steps = 2;
   static constexpr bool second_order = false, implicit = true;
   static constexpr std::size_t greatest_order = 5;
 
@@ -215,7 +215,7 @@ struct BackwardDifferentiation {
       work.D[0].data()[i] = work.end.data()[i];
     }
     // Without error control nobody chooses an order.
-    if (work.next_order == 0) work.next_order = std::min(k + 1, order_of_fixed_steps);
+    if (work.next_order == 0) work.next_order = std::min(k + 1, greatest_of_fixed_steps);
     work.order = work.next_order;
     work.next_order = 0;
     work.rejections = 0;
@@ -240,7 +240,7 @@ struct BackwardDifferentiation {
   static constexpr double least_worthwhile = 1.2;
   // The first step has order 1 and leaves an error of the size of h^2: what the higher orders would gain is lost there,
   // and of order 2 the formula is still A-stable.
-  static constexpr std::size_t order_of_fixed_steps = 2;
+  static constexpr std::size_t greatest_of_fixed_steps = order_of_fixed_steps;
 
   // The power of theta in (theta - 1) theta ... (theta + j - 2) / j!, which multiplies D_j of the end of the step.
   template <class Real>

@@ -31,6 +31,7 @@ struct CollocationMethod {
   static constexpr std::size_t least = all_stages.front(), most = all_stages.back();
   static constexpr bool radau = nodes == collocation::Nodes::radau;
   static constexpr int order = static_cast<int>(radau ? 2 * most - 1 : 2 * most);
+  static constexpr int order_of_fixed_steps = static_cast<int>(radau ? 2 * least - 1 : 2 * least);
   static constexpr int error_order = radau ? static_cast<int>(most) : 3;
   static constexpr int dense_order = radau ? static_cast<int>(most) : 3;
   static constexpr int dense_degree = radau ? static_cast<int>(most) : 3;

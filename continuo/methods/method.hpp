@@ -78,6 +78,7 @@ struct EquationCosts {
 ///   M::costs(work)    -> EquationCosts
 ///   M::error_order_of(work) -> error_order where the order varies (then M::order and M::error_order are the greatest)
 ///   M::starting_order order of the first step of a run and after a jump, where the order varies
+///   M::order_of_fixed_steps where the order varies: the one that steps of a fixed size keep
 ///   M::next_factor(work, factor, h, x, x_new, tolerance) -> after a step whose error passed and before `accept`: the
 ///       factor for the next h, where `factor` is what the controller wants. A method of variable order chooses its
 ///       next order here; one that keeps a decomposition may answer 1.
@@ -123,6 +124,14 @@ template <class M>
 constexpr int starting_order() {
   if constexpr (requires { M::starting_order; }) {
     return M::starting_order;
+  } else {
+    return M::order;
+  }
+}
+template <class M>
+constexpr int order_of_fixed_steps() {
+  if constexpr (requires { M::order_of_fixed_steps; }) {
+    return M::order_of_fixed_steps;
   } else {
     return M::order;
   }

@@ -22,6 +22,7 @@ namespace continuo {
 template <class NonStiff, class Stiff>
 struct Switching {
   static constexpr int order = NonStiff::order, error_order = NonStiff::error_order;
+  static constexpr int order_of_fixed_steps = detail::order_of_fixed_steps<NonStiff>();
   static constexpr int dense_order = std::min(NonStiff::dense_order, Stiff::dense_order);
   static constexpr int dense_degree = std::max(NonStiff::dense_degree, Stiff::dense_degree);
   static constexpr bool second_order = NonStiff::second_order, implicit = true, automatic = true;

@@ -16,8 +16,8 @@ const std::vector<MethodInfo>& method_catalogue() {
   static const std::vector<MethodInfo> all = [] {
     std::vector<MethodInfo> list;
     for_each_method([&]<class M>() {
-      list.push_back({M::name, M::order, M::error_order, M::dense_order, M::second_order, detail::is_implicit<M>(),
-                      detail::is_automatic<M>()});
+      list.push_back({M::name, M::order, detail::order_of_fixed_steps<M>(), M::error_order, M::dense_order,
+                      M::second_order, detail::is_implicit<M>(), detail::is_automatic<M>()});
     });
     return list;
   }();

@@ -10,8 +10,9 @@ namespace continuo {
 /// What there is to say of a method before using it.
 struct MethodInfo {
   std::string_view name;
-  int order;
-  int error_order;  // 0: no error estimate, needs a step
+  int order;                 // the greatest, where it varies;
+  int order_of_fixed_steps;  // then this is what steps of a fixed size keep
+  int error_order;           // 0: no error estimate, needs a step
   int dense_order;
   bool second_order;  // only for x'' = a(t, x)
   bool implicit;      // solves equations in each step: for stiff systems and algebraic equations

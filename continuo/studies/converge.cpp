@@ -116,7 +116,7 @@ class Study {
   MethodConvergence of(const std::string& name, std::size_t number) {
     MethodConvergence result{.method = name};
     const MethodInfo* info = find_method(name);
-    result.nominal = info == nullptr ? 0 : info->order;
+    result.nominal = info == nullptr || !request_.tolerances.empty() ? 0 : info->order_of_fixed_steps;
     if (!request_.tolerances.empty() && info != nullptr && info->error_order == 0) {
       result.problem = "has no step control; it is studied by steps";
       return result;

@@ -87,7 +87,7 @@ struct FloorPrediction {
 
 struct MethodConvergence {
   std::string method;
-  int nominal = 0;  // the order it claims
+  int nominal = 0;  // the order it claims for steps of a fixed size; 0 by tolerance, which has none
   std::vector<StepErrors> points{};
   ErrorCurve global{}, local{}, energy{}, in_float{}, in_long_double{};
   std::optional<FloorPrediction> floor{}, floor_in_float{};

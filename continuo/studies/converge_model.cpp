@@ -44,9 +44,10 @@ NamedSystem<Real> equations(const model::ModelProgram& program, const Parametric
 }
 
 /// Points of a model that is more than equations: by the comparison of whole runs.
-MethodConvergence by_comparison(const std::string& method, std::span<const Contender> contenders) {
+MethodConvergence by_comparison(const std::string& method, std::span<const Contender> contenders, bool by_tolerance) {
   MethodConvergence result{.method = method};
-  if (const MethodInfo* info = find_method(method)) result.nominal = info->order;
+  if (const MethodInfo* info = find_method(method); info != nullptr && !by_tolerance)
+    result.nominal = info->order_of_fixed_steps;
   std::vector<double> steps, global, energy;
   for (const Contender& contender : contenders) {
     if (contender.method != method) continue;
@@ -91,7 +92,7 @@ Convergence compare_runs(const std::shared_ptr<const model::ModelProgram>& progr
       result.problem = problems.empty() ? "there is no reference run" : problems.front().message;
       return result;
     }
-    result.methods.push_back(by_comparison(request.methods[i], comparison.contenders));
+    result.methods.push_back(by_comparison(request.methods[i], comparison.contenders, result.by_tolerance));
     if (request.progress) request.progress(static_cast<double>(i + 1) / static_cast<double>(request.methods.size()));
     if (request.interrupt != nullptr && request.interrupt->load()) {
       result.interrupted = true;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "problems.hpp"
 #include <continuo/studies/boundary_value.hpp>
 
 namespace continuo::studies {
@@ -12,13 +13,6 @@ namespace {
 
 using X = std::vector<double>;
 
-/// x(first) = a, x(last) = b, for x'' = ...
-auto ends(double a, double b) {
-  return [a, b](Values x, Values, std::span<double> g) {
-    g[0] = x[0] - a;
-    g[1] = x[2] - b;
-  };
-}
 /// The residual measured anew, at points that the solver does not look at.
 double residual_of(const BoundaryValueProblem& problem, const BoundaryValueSolution& solution) {
   double worst = 0;

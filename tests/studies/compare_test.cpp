@@ -3,17 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/model/load.hpp>
+#include "problems.hpp"
 #include <continuo/studies/compare.hpp>
 
 namespace continuo::studies {
 namespace {
-
-std::shared_ptr<const model::ModelProgram> program_of(const char* text) {
-  const model::Loaded loaded = model::load(model::Source("test.sim", text));
-  EXPECT_TRUE(loaded) << loaded.text();
-  return model::compile(*loaded.model);
-}
 
 constexpr const char* decay = "x' = -x\nx(0) = 1\nrun 0..1 output 0.1\n";
 

@@ -4,19 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "problems.hpp"
 #include <continuo/studies/continuation.hpp>
 
 namespace continuo::studies {
 namespace {
-
-ParametricSystem lorenz(double rho) {
-  const auto f = [](double, Values x, Values p, std::span<double> dxdt) {
-    dxdt[0] = p[0] * (x[1] - x[0]);
-    dxdt[1] = x[0] * (p[1] - x[2]) - x[1];
-    dxdt[2] = x[0] * x[1] - p[2] * x[2];
-  };
-  return parametric_system(3, f, {10, rho, 8.0 / 3});
-}
 
 TEST(Continuation, LorenzFromTheSide) {  // Hopf at rho = 24.7368..., and where it began, at 1, the pitchfork
   const double beta = 8.0 / 3, side = std::sqrt(beta * 13);

@@ -7,17 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/model/load.hpp>
+#include "problems.hpp"
 #include <continuo/studies/fit.hpp>
 
 namespace continuo::studies {
 namespace {
-
-std::shared_ptr<const model::ModelProgram> program_of(const std::string& text) {
-  const model::Loaded loaded = model::load(model::Source("test.sim", text));
-  EXPECT_TRUE(loaded) << loaded.text();
-  return model::compile(*loaded.model);
-}
 
 // x'' + c x' + k x = 0 from x = 1 at rest: x = exp(-d t) (cos w t + d/w sin w t), d = c/2, w^2 = k - d^2.
 constexpr const char* spring =

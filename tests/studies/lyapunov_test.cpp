@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "problems.hpp"
 #include <continuo/studies/lyapunov.hpp>
 
 namespace continuo::studies {
@@ -26,12 +27,7 @@ TEST(Lyapunov, OfALinearSystemTheyAreTheRealParts) {  // eigenvalues -0.1 +- 2i 
 /// J. C. Sprott, "Chaos and Time-Series Analysis" (2003): 0.9056, 0, -14.5723; their sum is the trace, -41/3, at any
 /// time.
 TEST(Lyapunov, Lorenz) {
-  const auto f = [](double, Values x, Values, std::span<double> out) {
-    out[0] = 10 * (x[1] - x[0]);
-    out[1] = x[0] * (28 - x[2]) - x[1];
-    out[2] = x[0] * x[1] - 8.0 / 3 * x[2];
-  };
-  const auto found = lyapunov_exponents(parametric_system(3, f), {1, 1, 1}, {.duration = 400});
+  const auto found = lyapunov_exponents(lorenz(28), {1, 1, 1}, {.duration = 400});
   ASSERT_TRUE(found.outcome) << describe(found.outcome);
   EXPECT_NEAR(found.exponents[0] + found.exponents[1] + found.exponents[2], -41.0 / 3, 1e-5);
   EXPECT_NEAR(found.exponents[0], 0.9056, 4 * found.spread[0]);  // four standard errors

@@ -4,19 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include "problems.hpp"
 #include <continuo/studies/multiple_shooting.hpp>
 
 namespace continuo::studies {
 namespace {
 
 using X = std::vector<double>;
-
-auto ends(double a, double b) {
-  return [a, b](Values x, Values, std::span<double> g) {
-    g[0] = x[0] - a;
-    g[1] = x[2] - b;
-  };
-}
 
 TEST(MultipleShooting, ParabolaIsExact) {
   const auto f = [](double, const X& x, X& dxdt) { dxdt = {x[1], 2}; };

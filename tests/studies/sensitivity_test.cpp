@@ -4,23 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/model/load.hpp>
+#include "problems.hpp"
 #include <continuo/studies/sensitivity.hpp>
 
 namespace continuo::studies {
 namespace {
-
-std::shared_ptr<const model::ModelProgram> program_of(const std::string& text) {
-  const model::Loaded loaded = model::load(model::Source("test.sim", text));
-  EXPECT_TRUE(loaded) << loaded.text();
-  return model::compile(*loaded.model);
-}
-
-std::shared_ptr<const model::ModelProgram> gallery(const std::string& name) {
-  const model::Loaded loaded = model::load(CONTINUO_SOURCE_DIR "/models/" + name + ".sim");
-  EXPECT_TRUE(loaded) << loaded.text();
-  return model::compile(*loaded.model);
-}
 
 Influence parameter(const model::ModelProgram& program, const std::string& name) {
   return {.index = model::find_parameter(program.model, name)};

@@ -1,0 +1,45 @@
+// tests/studies/problems.hpp
+// What several tests of studies begin with: systems known from the literature, models from text and of the gallery.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <continuo/model/load.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/studies/parametric_system.hpp>
+
+namespace continuo::studies {
+
+/// The conditions x(first) = a, x(last) = b of a boundary-value problem x'' = ...
+inline auto ends(double a, double b) {
+  return [a, b](Values x, Values, std::span<double> g) {
+    g[0] = x[0] - a;
+    g[1] = x[2] - b;
+  };
+}
+
+/// E. N. Lorenz, J. Atmos. Sci. 20 (1963), with the constants sigma, rho, beta.
+inline ParametricSystem lorenz(double rho) {
+  const auto f = [](double, Values x, Values p, std::span<double> dxdt) {
+    dxdt[0] = p[0] * (x[1] - x[0]);
+    dxdt[1] = x[0] * (p[1] - x[2]) - x[1];
+    dxdt[2] = x[0] * x[1] - p[2] * x[2];
+  };
+  return parametric_system(3, f, {10, rho, 8.0 / 3});
+}
+
+inline std::shared_ptr<const model::ModelProgram> program_of(const model::Loaded& loaded) {
+  EXPECT_TRUE(loaded) << loaded.text();
+  return model::compile(*loaded.model);
+}
+inline std::shared_ptr<const model::ModelProgram> program_of(const std::string& text) {
+  return program_of(model::load(model::Source("test.sim", text)));
+}
+inline std::shared_ptr<const model::ModelProgram> gallery(const std::string& name) {
+  return program_of(model::load(CONTINUO_SOURCE_DIR "/models/" + name + ".sim"));
+}
+
+}  // namespace continuo::studies
