@@ -64,12 +64,16 @@ bool decides_a_size(const model::Model& model, const model::Overrides& values) {
 
 }  // namespace
 
-void add_experiment(CLI::App& verb, ExperimentOptions& options) {
+void add_model(CLI::App& verb, ExperimentOptions& options) {
   verb.add_option("file", options.file, "The model")->required()->type_name("");
   verb.add_option("--set", options.settings, "Another value of a parameter: --set k=5 --set \"c=0.2 [N*s/m]\"")
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_experiment(CLI::App& verb, ExperimentOptions& options) {
+  add_model(verb, options);
   verb.add_option("--until", options.until, "The time at which the run ends")->type_name("T");
   verb.add_option("--output", options.output, "A row every DT")->type_name("DT");
 }
@@ -92,6 +96,27 @@ void add_method(CLI::App& verb, ExperimentOptions& options) {
       ->type_name("H")
       ->excludes(verb.get_option("--tol"))
       ->excludes(verb.get_option("--atol"));
+}
+
+void refuse_option(CLI::App& verb, const std::string& name, const std::string& why) {
+  verb.add_option_function<std::string>(name,
+                                        [name, why](const std::string&) { throw CLI::ValidationError(name, why); })
+      ->group("");  // not in --help
+}
+
+std::string place_text(const Prepared& prepared, const model::Span& span) {
+  const model::Source& source = prepared.loaded.source;
+  return fmt::format("{}:{}", source.name(), source.place(span.begin).line);
+}
+
+bool has_no_start(const Prepared& prepared) {
+  const model::Model& model = prepared.program->model;
+  if (!model.needs_boundary_solver()) return false;
+  say(
+      fmt::format("{}: the model's conditions stand at several times; `continuo run` solves it, this verb studies "
+                  "motions from a start",
+                  place_text(prepared, model.boundary.front().span)));
+  return true;
 }
 
 void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source) {

@@ -22,15 +22,19 @@ struct ExperimentOptions {
   std::vector<std::string> tolerances, absolute_tolerances;  // "1e-8", "y2=1e-10"
   std::optional<double> step, until, output;
 
-  /// Nothing differs from what the model says: then its checks are meant for this run.
+  /// The motion is the one that the model describes, by its own method: then its checks are meant for this run. Which
+  /// rows of it are wanted makes no difference.
   bool as_written() const {
-    return settings.empty() && !method && tolerances.empty() && absolute_tolerances.empty() && !step && !until &&
-           !output;
+    return settings.empty() && !method && tolerances.empty() && absolute_tolerances.empty() && !step && !until;
   }
 };
 
-/// --set, --until and --output, which every such verb takes.
+/// The model's file and --set.
+void add_model(CLI::App& verb, ExperimentOptions& options);
+/// These and --until and --output, for verbs with a run of their own.
 void add_experiment(CLI::App& verb, ExperimentOptions& options);
+/// An option that other verbs have and this one cannot: it says why, where the name alone would be called unknown.
+void refuse_option(CLI::App& verb, const std::string& name, const std::string& why);
 /// --tol and --atol, for all states or single ones.
 void add_tolerances(CLI::App& verb, ExperimentOptions& options);
 /// --method, --step, --tol and --atol.
@@ -44,6 +48,12 @@ struct Prepared {
   model::Experiment experiment;
 };
 Prepared prepare(const ExperimentOptions& options);
+
+/// "spring.sim:3": where something of the model stands.
+std::string place_text(const Prepared& prepared, const model::Span& span);
+
+/// Whether its conditions stand at several times: for verbs that follow motions from a start, who then say so.
+bool has_no_start(const Prepared& prepared);
 
 /// Messages of a run as people read them, on standard error.
 void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source);

@@ -1,6 +1,7 @@
 // continuo fit FILE DATA.csv --param k,c: the parameters that measurements speak for, and how surely.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -232,7 +233,7 @@ std::string table_of(const studies::FitRequest& request, const studies::Fit& fit
   text += fmt::format("{} values, {} iterations, {} runs", least.residuals.size(), least.iterations,
                       least.evaluations * request.data.size());
   if (least.starts_done > 1) text += fmt::format(", {} of {} starts agree", least.starts_agreeing, least.starts_done);
-  return text + "\n";
+  return text + (least.interrupted ? "\ninterrupted: the best there was until then\n" : "\n");
 }
 
 results::Figure figure_of(const studies::FitRequest& request, const studies::Fit& fit) {
@@ -246,15 +247,22 @@ results::Figure figure_of(const studies::FitRequest& request, const studies::Fit
     for (const auto* list : {&model.outputs, &model.lets, &model.energies})
       for (const model::Quantity& quantity : *list)
         if (quantity.name == column.quantity) unit = quantity.unit;
-    std::vector<double> low = curve.y, high = curve.y;
-    for (std::size_t i = 0; i < curve.y.size(); ++i) low[i] -= curve.half_width[i], high[i] += curve.half_width[i];
+    results::Curve band{.label = "95 % of measurements",
+                        .x = curve.t,
+                        .y = {},
+                        .color = "#0072b2",
+                        .style = results::Curve::Style::area};
+    for (std::size_t i = 0; i < curve.y.size(); ++i) band.y.push_back(curve.y[i] - curve.half_width[i]);
+    for (std::size_t i = curve.y.size(); i-- > 0;) {  // and back along its upper side
+      band.x.push_back(curve.t[i]);
+      band.y.push_back(curve.y[i] + curve.half_width[i]);
+    }
     const std::vector<double>& measured = data.measurements.values[column.column];
     figure.panels.push_back({.x_label = results::label_of({"t", model.time_unit}),
                              .y_label = results::label_of({column.quantity, unit}),
-                             .curves = {{.label = "95 % of measurements", .x = curve.t, .y = low, .color = "#bbbbbb"},
-                                        {.label = "", .x = curve.t, .y = high, .color = "#bbbbbb"},
+                             .curves = {std::move(band),
                                         {.label = "fit", .x = curve.t, .y = curve.y, .color = "#0072b2"},
-                                        {.label = data.measurements.file,
+                                        {.label = std::filesystem::path(data.measurements.file).filename().string(),
                                          .x = data.measurements.times,
                                          .y = measured,
                                          .color = "#444444",
@@ -263,10 +271,26 @@ results::Figure figure_of(const studies::FitRequest& request, const studies::Fit
   return figure;
 }
 
+/// Runs less exact than the search would be noise to it: asked for, they are refused.
+bool strict_enough(const model::Experiment& experiment) {
+  std::vector<double> asked;
+  if (experiment.rtol) asked.push_back(*experiment.rtol);
+  for (const auto& [state, rtol] : experiment.rtol_of) asked.push_back(rtol);
+  for (const double rtol : asked) {
+    if (rtol <= studies::greatest_rtol_of_fit) continue;
+    say(fmt::format("--tol {}: the runs of a fit need {} or less, beyond it they are noise to the search",
+                    short_number(rtol), short_number(studies::greatest_rtol_of_fit)));
+    return false;
+  }
+  return true;
+}
+
 ExitCode fit(const FitOptions& options) {
   if (!drawable(options.plot)) return usage;
   Prepared prepared = prepare(options.experiment);
   if (prepared.exit != done) return prepared.exit;
+  if (!strict_enough(prepared.experiment)) return usage;
+  say_step_has_no_part(prepared);
   auto request = Request(options, prepared).make();
   if (!request) return usage;
   request->options.interrupt = prepared.experiment.interrupt;
@@ -281,7 +305,10 @@ ExitCode fit(const FitOptions& options) {
   }
   show(found.diagnostics, prepared.loaded.source);
   if (!found.found()) {
-    if (found.least.interrupted) return interrupted;
+    if (found.least.interrupted) {
+      say("interrupted before anything was found");
+      return interrupted;
+    }
     say(found.problem);
     return found.diagnostics.empty() ? numerical_failure : wrong_model;
   }
@@ -304,7 +331,10 @@ void add_fit(CLI::App& app, ExitCode& exit) {
       "  continuo fit spring.sim a.csv b.csv --param k --in b.csv:m=2 --column \"pos=x\" --sigma pos=0.01\n";
   CLI::App* verb = add_verb(app, "fit", "Finds parameters and initial values from measurements", examples);
   auto options = std::make_shared<FitOptions>();
-  add_experiment(*verb, options->experiment);
+  add_model(*verb, options->experiment);
+  refuse_option(*verb, "--until", "a fit's runs end with each data file's last time");
+  refuse_option(*verb, "--output", "a fit's runs have their rows at the times of the data");
+  refuse_methods(*verb);
   verb->add_option("data", options->data, "CSV files: t, and columns named like states or outputs")
       ->required()
       ->type_name("");

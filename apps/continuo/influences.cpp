@@ -6,6 +6,23 @@
 
 namespace continuo::app {
 
+void refuse_methods(CLI::App& verb) {
+  const std::string why = verb.get_name() +
+                          " integrates derivatives along with the motion and chooses the method and the steps itself; "
+                          "--tol says how exact";
+  refuse_option(verb, "--method", why);
+  refuse_option(verb, "--step", why);
+}
+
+void say_step_has_no_part(const Prepared& prepared) {
+  const model::RunSettings& run = prepared.program->model.run;
+  if (run.step)
+    say(
+        fmt::format("{}: the fixed step has no part here: derivatives are integrated along with the motion, in steps "
+                    "chosen for both",
+                    place_text(prepared, run.span)));
+}
+
 std::string no_such(const std::string& kind, const std::string& name, const std::vector<std::string>& names) {
   const std::string near = model::did_you_mean(name, names);
   return fmt::format("there is no {} `{}`; {}", kind, name,

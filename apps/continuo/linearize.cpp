@@ -101,9 +101,10 @@ ExitCode linearize(const LinearizeOptions& options) {
     auto search = studies::find_equilibrium(studied.system, x, studied.system.constants, options.time);
     if (search.ending != studies::EquilibriumEnding::found) {
       say(fmt::format(
-          "no place of rest was found near the start ({}; `{}` still changes by {}); --start linearizes at "
+          "{}: no place of rest was found near the start ({}; `{}` still changes by {}); --start linearizes at "
           "the start, --at NAME=VALUE elsewhere",
-          to_string(search.ending), studied.system.name(search.worst), results::short_number(search.residual)));
+          place_text(studied.prepared, model.states[search.worst].span), to_string(search.ending),
+          studied.system.name(search.worst), results::short_number(search.residual)));
       return numerical_failure;
     }
     x = std::move(search.x);
@@ -122,9 +123,11 @@ ExitCode linearize(const LinearizeOptions& options) {
     say(describe_undetermined(studied, linear.undetermined));
     return numerical_failure;
   }
-  for (const double entry : linear.a) {
-    if (std::isfinite(entry)) continue;
-    say("the equations have no derivative at this point: an entry of A is not a number");
+  for (std::size_t i = 0; i < linear.a.size(); ++i) {
+    if (std::isfinite(linear.a[i])) continue;
+    const std::size_t row = i / linear.states.size(), column = i % linear.states.size();
+    say(fmt::format("{}: the equation of `{}` has no derivative by `{}` at this point: that entry of A is not a number",
+                    place_text(studied.prepared, model.states[row].span), linear.states[row], linear.states[column]));
     return numerical_failure;
   }
   const auto modes = studies::modes_of(linear.a, linear.states.size());

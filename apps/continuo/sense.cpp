@@ -124,10 +124,11 @@ results::Figure figure_of(const model::Model& model, const SensitivityRun& run,
 }
 
 ExitCode sense(const SenseOptions& options) {
-  if (!drawable(options.plot)) return usage;
+  if (!drawable(options.plot) || !writable(options.output)) return usage;
   Prepared prepared = prepare(options.experiment);
   if (prepared.exit != done) return prepared.exit;
   const model::Model& model = prepared.program->model;
+  say_step_has_no_part(prepared);
   const auto influences = influences_named(model, options.parameters, options.initial);
   if (!influences) return usage;
   if (const auto refused = studies::no_sensitivity(model, *influences)) {
@@ -175,6 +176,7 @@ void add_sense(CLI::App& app, ExitCode& exit) {
   verb->add_option("--initial", options->initial, "States whose initial values count, with commas")
       ->delimiter(',')
       ->type_name("STATES");
+  refuse_methods(*verb);
   add_tolerances(*verb, options->experiment);
   verb->add_option("-o", options->output, "A CSV file of states and sensitivities; - is standard output")
       ->type_name("FILE");

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <string_view>
 
+#include <apps/continuo/influences.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
 
 #include <continuo/model/simulate.hpp>
-#include <continuo/model/suggest.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/of_model.hpp>
 
@@ -28,23 +28,10 @@ std::optional<double> number_in(std::string_view text) {
   return value;
 }
 
-std::string with_suggestion(std::string message, const std::string& name, const std::vector<std::string>& names) {
-  const std::string near = model::did_you_mean(name, names);
-  if (!near.empty()) return message + "; " + near;
-  std::string all;
-  for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
-  return message + "; there are " + all;
-}
-
-bool fits(const model::Model& model, Equations equations) {
-  if (model.needs_boundary_solver()) {
-    say("the model's conditions stand at several times; `continuo run` solves it, this verb studies motions from a "
-        "start");
-  } else if (equations == Equations::differential && model.needs_dae_solver()) {
-    say("the model has algebraic equations, which this verb cannot study yet");
-  } else {
-    return true;
-  }
+bool fits(const Prepared& prepared, Equations equations) {
+  if (has_no_start(prepared)) return false;
+  if (equations == Equations::algebraic_too || !prepared.program->model.needs_dae_solver()) return true;
+  say("the model has algebraic equations, which this verb cannot study yet");
   return false;
 }
 
@@ -55,7 +42,7 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
   Studied studied{.prepared = prepare(options)};
   if (studied.prepared.exit != done) return studied;
   const model::Model& model = studied.prepared.program->model;
-  if (!fits(model, equations)) {
+  if (!fits(studied.prepared, equations)) {
     studied.prepared.exit = wrong_model;
     return studied;
   }
@@ -65,7 +52,7 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
     if (studied.mode == model::npos) {
       std::vector<std::string> names;
       for (const model::Mode& known : model.modes) names.push_back(known.name);
-      say(with_suggestion(fmt::format("there is no mode `{}`", mode), mode, names));
+      say(no_such("mode", mode, names));
       studied.prepared.exit = usage;
       return studied;
     }
@@ -74,7 +61,7 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
     if (model::find_parameter(model, name) != model::npos) continue;
     std::vector<std::string> names;
     for (const model::Parameter& known : model.parameters) names.push_back(known.name);
-    say(with_suggestion(fmt::format("there is no parameter `{}`", name), name, names));
+    say(no_such("parameter", name, names));
     studied.prepared.exit = usage;
     return studied;
   }
@@ -110,7 +97,7 @@ std::optional<std::size_t> state_named(const model::Model& model, const std::str
   if (i != model::npos) return i;
   std::vector<std::string> names;
   for (const model::State& known : model.states) names.push_back(known.column);
-  say(with_suggestion(fmt::format("there is no state `{}`", name), name, names));
+  say(no_such("state", name, names));
   return std::nullopt;
 }
 

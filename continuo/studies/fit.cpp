@@ -13,9 +13,6 @@ namespace continuo::studies {
 
 namespace {
 
-/// Steps of the search are as small as its tolerance: the runs must not be noise to it.
-constexpr double greatest_rtol = 1e-8;
-
 /// A quantity, where it is no state, as a node.
 std::optional<model::NodeId> quantity_node(const model::Model& model, const std::string& name) {
   for (const auto* list : {&model.outputs, &model.lets, &model.energies})
@@ -65,8 +62,8 @@ class Part {
     SensitivityRequest request{.experiment = request_.experiment, .times = times};
     request.experiment.parameters = fixed(request_, data_);
     request.experiment.to = times.back();
-    request.experiment.rtol =
-        std::min(request_.experiment.rtol.value_or(model.run.rtol.value_or(greatest_rtol)), greatest_rtol);
+    request.experiment.rtol = std::min(request_.experiment.rtol.value_or(model.run.rtol.value_or(greatest_rtol_of_fit)),
+                                       greatest_rtol_of_fit);
     for (std::size_t u = 0; u < p.size(); ++u) {
       const Influence& influence = request_.unknowns[u].influence;
       if (influence.kind == Influence::Kind::initial) {
@@ -271,12 +268,18 @@ Fit fit(const FitRequest& request) {
   options.known_deviation = problem.all_known();
   result.least = least_squares(least, options);
   // Where deviations differ from column to column they come from the residuals, and the fit once more from them.
-  for (int round = 0; round < 2 && result.least.found && problem.several_unknown(); ++round) {
+  const auto goes_on = [&] { return result.least.found && !result.least.interrupted && problem.several_unknown(); };
+  for (int round = 0; round < 2 && goes_on(); ++round) {
     problem.estimate_scales(result.least.residuals);
     least.start = result.least.p;
     options.starts = 1;
-    const LeastSquaresResult before = std::move(result.least);
+    LeastSquaresResult before = std::move(result.least);
     result.least = least_squares(least, options);
+    if (!result.least.found && result.least.interrupted) {  // before its first iteration
+      result.least = std::move(before);
+      result.least.interrupted = true;
+      break;
+    }
     result.least.starts_done = before.starts_done;
     result.least.starts_agreeing = before.starts_agreeing;
     result.least.iterations += before.iterations;

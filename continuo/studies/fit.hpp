@@ -66,6 +66,10 @@ struct Fit {
   double half_width(std::size_t unknown) const { return confidence_factor * least.deviation(unknown); }
 };
 
+/// The method of the runs is chosen by size and tolerance, which is at most this: the steps of the search are small,
+/// and the runs must not be noise to it.
+inline constexpr double greatest_rtol_of_fit = 1e-8;
+
 Fit fit(const FitRequest& request);
 
 /// The fitted model along time. `points` per curve.

@@ -1,0 +1,218 @@
+// What every study says of a question that has no answer: each bad question is put to every verb it can be put to.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shell.hpp"
+
+namespace continuo::app {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// Every verb that studies a model, with options by which it would succeed.
+const std::vector<std::string> studies{
+    "run MODEL",
+    "compare MODEL --methods rk4 --step 0.1",
+    "converge MODEL --methods rk4 --most-steps 64",
+    "stability rk4 --model MODEL",
+    "steady MODEL",
+    "linearize MODEL",
+    "phase MODEL",
+    "orbit MODEL --section x=0",
+    "sense MODEL --param k",
+    "fit MODEL data.csv --param k",
+};
+
+std::string asked(std::string study, const std::string& model, const std::string& more = "") {
+  study.replace(study.find("MODEL"), 5, model);
+  return study + " " + more;
+}
+
+/// A folder with a good model, data of it, and what is to be put in their place.
+struct Folder : Shell {
+  Folder() {
+    write("good.sim", "param k = 4 in 0..9\nx'' = -k*x\nx(0) = 1; x'(0) = 0\nrun 0..2 output 0.5\n");
+    write("data.csv", "t,x\n0.5,0.54\n1,-0.42\n1.5,-0.99\n");
+  }
+};
+
+TEST(BadStudies, TheQuestionsBelowHaveAnAnswerForAGoodModel) {
+  const Folder folder;
+  for (const std::string& study : studies) {
+    const Result result = folder.run(asked(study, "good.sim"));
+    EXPECT_EQ(result.exit, 0) << study << "\n" << result.err;
+  }
+}
+
+TEST(BadStudies, AnUnknownParameterIsToldTheNearest) {
+  const Folder folder;
+  folder.write("named.sim", "param k = 4, stiffness = 4\nx'' = -stiffness*x\nx(0) = 1; x'(0) = 0\nrun 0..2\n");
+  for (const std::string& study : studies) {
+    const Result result = folder.run(asked(study, "named.sim", "--set stifness=5"));
+    EXPECT_EQ(result.exit, 1) << study;
+    EXPECT_THAT(result.err, HasSubstr("`stiffness`")) << study;
+  }
+}
+
+TEST(BadStudies, AModelWithAMistakeIsNamedWithItsLine) {
+  const Folder folder;
+  folder.write("bad.sim", "param k = 4\nx'' = -k*y\nx(0) = 1; x'(0) = 0\nrun 0..2\n");
+  for (const std::string& study : studies) {
+    const Result result = folder.run(asked(study, "bad.sim"));
+    EXPECT_EQ(result.exit, 2) << study;
+    EXPECT_THAT(result.err, HasSubstr("bad.sim:2:")) << study;
+  }
+}
+
+TEST(BadStudies, AMissingModelIsNamed) {
+  const Folder folder;
+  for (const std::string& study : studies) {
+    const Result result = folder.run(asked(study, "missing.sim"));
+    EXPECT_EQ(result.exit, 1) << study;
+    EXPECT_THAT(result.err, HasSubstr("missing.sim")) << study;
+  }
+}
+
+TEST(BadStudies, AFileThatCannotBeWrittenIsNamed) {
+  const Folder folder;
+  const std::vector<std::string> with_plot{studies[0],   studies[1], studies[2], studies[3],
+                                           studies[6],   studies[8], studies[9], "steady MODEL --along k=1..5",
+                                           "orbit MODEL"};
+  for (const std::string& study : with_plot) {
+    const Result nowhere = folder.run(asked(study, "good.sim", "--plot /no/such/folder/x.svg"));
+    EXPECT_EQ(nowhere.exit, 1) << study;
+    EXPECT_THAT(nowhere.err, HasSubstr("cannot write /no/such/folder/x.svg")) << study;
+    EXPECT_EQ(nowhere.out, "") << study << " began before it looked";
+    const Result ending = folder.run(asked(study, "good.sim", "--plot x.gif"));
+    EXPECT_EQ(ending.exit, 1) << study;
+    EXPECT_THAT(ending.err, HasSubstr("cannot plot to x.gif")) << study;
+  }
+  for (const std::string& study : {studies[0], studies[7], studies[8], std::string("report MODEL")}) {
+    const Result nowhere = folder.run(asked(study, "good.sim", "-o /no/such/folder/x"));
+    EXPECT_EQ(nowhere.exit, 1) << study;
+    EXPECT_THAT(nowhere.err, HasSubstr("cannot write /no/such/folder/x")) << study;
+    EXPECT_EQ(nowhere.out, "") << study << " began before it looked";
+  }
+}
+
+TEST(BadStudies, ConditionsAtSeveralTimesAreRefusedByWhatFollowsAStart) {
+  const Folder folder;
+  folder.write("boundary.sim", "param k = 4\nx'' = -k*x\nx(0) = 1\nx(1) = 0\nrun 0..1\n");
+  for (const std::string& study : studies) {
+    const Result result = folder.run(asked(study, "boundary.sim"));
+    if (study == studies[0]) {
+      EXPECT_EQ(result.exit, 0) << result.err;
+      continue;
+    }
+    EXPECT_NE(result.exit, 0) << study;
+    EXPECT_THAT(result.err, HasSubstr("boundary.sim:3")) << study;
+  }
+}
+
+TEST(BadStudies, BoundaryValuesThatDetermineNothing) {
+  const Folder folder;
+  // x'' = -pi^2 x with x(0) = x(1) = 0: every multiple of sin(pi t), so the matrix of the conditions is singular.
+  folder.write("singular.sim", "x'' = -pi^2*x\nx(0) = 0\nx(1) = 1\nrun 0..1\n");
+  const Result singular = folder.run("run singular.sim");
+  EXPECT_EQ(singular.exit, 3);
+  EXPECT_THAT(singular.err, AllOf(HasSubstr("error[E322]"), HasSubstr("singular.sim:2:")));
+  folder.write("few.sim", "x'' = 2\ny' = x\nx(1) = 3\ny(7) = 4\nrun 1..7\n");
+  EXPECT_THAT(folder.run("run few.sim").err, AllOf(HasSubstr("error[E244]"), HasSubstr("few.sim:")));
+  folder.write("outside.sim", "x'' = 2\nx(1) = 3\nx(9) = 4\nrun 1..7\n");
+  EXPECT_THAT(folder.run("run outside.sim").err, AllOf(HasSubstr("error[E245]"), HasSubstr("outside.sim:3:")));
+}
+
+TEST(BadStudies, WhereNothingRestsTheEquationIsNamedWithItsLine) {
+  const Folder folder;
+  folder.write("fall.sim", "h'' = -9.8\nh(0) = 10\nh'(0) = 0\nrun 0..1\n");
+  for (const std::string verb : {"steady", "linearize"}) {
+    const Result result = folder.run(verb + " fall.sim");
+    EXPECT_EQ(result.exit, 3) << verb;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("fall.sim:3: no place of rest"), HasSubstr("`h'`"))) << verb;
+  }
+  EXPECT_THAT(folder.run("orbit fall.sim").err, HasSubstr("does not come back"));
+  EXPECT_EQ(folder.run("orbit fall.sim").exit, 3);
+}
+
+// df/dx = -1/(2 sqrt(x)) is infinite at x = 0; d(x^2 + y)/dx = 0 at the only place of rest of the other.
+TEST(BadStudies, AJacobianThatIsNoneOrSingular) {
+  const Folder folder;
+  folder.write("kink.sim", "y' = -y\nx' = -sqrt(x)\ny(0) = 1\nx(0) = 0\nrun 0..1\n");
+  const Result kink = folder.run("linearize kink.sim --start");
+  EXPECT_EQ(kink.exit, 3);
+  EXPECT_THAT(kink.err, HasSubstr("kink.sim:4: the equation of `x` has no derivative by `x`"));
+  folder.write("line.sim", "x' = -x + y\ny' = x - y\nx(0) = 1\ny(0) = 0\nrun 0..1\n");  // all of x = y rests
+  const Result line = folder.run("steady line.sim");
+  EXPECT_THAT(line.out, HasSubstr("not isolated")) << line.err;
+}
+
+TEST(BadStudies, MethodsAndStepsThatWouldHaveNoPart) {
+  const Folder folder;
+  for (const std::string& study : {studies[8], studies[9]}) {
+    for (const std::string option : {"--method rk4", "--step 0.1"}) {
+      const Result result = folder.run(asked(study, "good.sim", option));
+      EXPECT_EQ(result.exit, 1) << study << option;
+      EXPECT_THAT(result.err, HasSubstr("chooses the method and the steps itself; --tol says how exact")) << study;
+    }
+  }
+  EXPECT_THAT(folder.run(asked(studies[9], "good.sim", "--until 1")).err, HasSubstr("last time"));
+  EXPECT_THAT(folder.run(asked(studies[9], "good.sim", "--tol 1e-4")).err, HasSubstr("need 1e-08 or less"));
+  folder.write("steps.sim", "param k = 4 in 0..9\nx'' = -k*x\nx(0) = 1; x'(0) = 0\nrun 0..2 method rk4 step 0.1\n");
+  for (const std::string& study : {studies[8], studies[9]}) {
+    const Result result = folder.run(asked(study, "steps.sim"));
+    EXPECT_EQ(result.exit, 0);
+    EXPECT_THAT(result.err, HasSubstr("steps.sim:4: the fixed step has no part here")) << study;
+  }
+}
+
+TEST(BadStudies, TolerancesAreHonoured) {
+  const Folder folder;
+  const auto steps = [&](const std::string& tolerance) {  // x at the end, to the digits of the tolerance
+    return folder.run("sense good.sim --param k -o - --tol " + tolerance).out;
+  };
+  EXPECT_NE(steps("1e-3"), steps("1e-11"));
+}
+
+TEST(BadStudies, AStudyThatReportDoesNotKnow) {
+  const Folder folder;
+  const Result result = folder.run("report good.sim --with stedy -o page.html");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.err, HasSubstr("did you mean `steady`?"));
+}
+
+TEST(BadStudies, ConvergeOfWhatHasNoReference) {
+  const Folder folder;
+  folder.write("blow.sim", "x' = x^2\nx(0) = 1\nrun 0..2\n");  // 1/(1 - t)
+  const Result result = folder.run("converge blow.sim --methods rk4");
+  EXPECT_EQ(result.exit, 3);
+  EXPECT_THAT(result.err, HasSubstr("there is no reference run"));
+}
+
+TEST(Fit, CtrlCKeepsWhatWasFound) {
+  const Folder folder;
+  // Two sets with deviations of their own, many starts, and runs of thousands of swings: it takes minutes.
+  folder.write("long.sim",
+               "param k = 4 in 0..9, c = 0.001 in 0..1\nx'' = -k*x - c*x'\nx(0) = 1; x'(0) = 0\n"
+               "output v = x'\nrun 0..2000\n");
+  folder.write("a.csv", "t,x,v\n0.5,0.54,-1.7\n1,-0.42,-1.8\n1.5,-0.99,-0.3\n2000,0.1,0.1\n");
+  folder.write("b.csv", "t,x\n0.5,0.54\n1,-0.42\n1.5,-0.99\n2000,0.2\n");
+  const Result result = folder.run("fit long.sim a.csv b.csv --param k,c --starts 100000",
+                                   "timeout --foreground --preserve-status --signal INT 3");
+  EXPECT_EQ(result.exit, 130) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("k "), HasSubstr("c "), HasSubstr("starts agree"),
+                                HasSubstr("interrupted: the best there was until then")));
+}
+
+TEST(Run, OtherRowsAreNoOtherMotion) {
+  const Folder folder;
+  folder.write("checked.sim", "x' = -x\nx(0) = 1\nrun 0..1 output 0.1 tol 1e-10\ncheck x(0.55) = 1 within 1e-9\n");
+  EXPECT_EQ(folder.run("run checked.sim --output 0.3").exit, 4);  // the checks judge it
+  EXPECT_EQ(folder.run("run checked.sim --until 2").exit, 0);
+}
+
+}  // namespace
+}  // namespace continuo::app
