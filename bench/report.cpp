@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -40,6 +41,24 @@ double smallest_shared_error(const Measured& measured, double wanted, double loo
   return 0;
 }
 
+namespace {
+// Okabe and Ito's, told apart by all common kinds of colour vision, without the yellow that is too pale on white.
+constexpr std::array colors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+}  // namespace
+
+std::string line_of(std::size_t number, bool dashed) {
+  return text("dt %d lc rgb '%s'", dashed ? 2 : 1, colors[number % colors.size()]);
+}
+
+namespace {
+/// What tells curves of one colour apart.
+std::string points_of(std::size_t number, bool ours) {
+  constexpr std::array full{7, 5, 9, 13}, empty{6, 4, 8, 12};
+  const std::size_t round = number / colors.size() % full.size();
+  return text("pt %d ps 0.45", ours ? full[round] : empty[round]);
+}
+}  // namespace
+
 void write_curves(const std::string& folder, const Measured& measured) {
   const std::string stem = folder + "/work_precision_" + std::string(measured.name);
   std::ofstream table(stem + ".csv"), plot(stem + ".gp");
@@ -47,14 +66,16 @@ void write_curves(const std::string& folder, const Measured& measured) {
   plot << "set terminal svg size 800,560 background 'white'\nset output '" << stem << ".svg'\nset title '"
        << measured.title << "'\nset logscale xy\nset format '10^{%T}'\nset xlabel 'error at the end'\n"
        << "set ylabel 'seconds'\nset grid\nset key outside right\nset datafile separator ','\nplot ";
+  std::size_t shown = 0;
   for (const Curve& curve : measured.curves) {
     for (const Point& point : curve.points)
       table << curve.solver << ',' << point.tolerance << ',' << point.error << ',' << point.seconds << ','
             << point.evaluations << '\n';
     if (curve.points.empty()) continue;
     plot << "'" << stem << ".csv' using (strcol(1) eq '" << curve.solver << "' ? $3 : NaN):4 with "
-         << (curve.ours ? "linespoints pt 7 ps 0.4" : "linespoints dt 2 pt 6 ps 0.4") << " title '" << curve.solver
-         << "' noenhanced, ";
+         << "linespoints " << line_of(shown, !curve.ours) << ' ' << points_of(shown, curve.ours) << " title '"
+         << curve.solver << "' noenhanced, ";
+    ++shown;
   }
   plot << '\n';
 }

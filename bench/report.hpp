@@ -55,6 +55,8 @@ struct Wanted {
 
 /// FOLDER/work_precision_NAME.csv and a script for gnuplot that makes the .svg beside it.
 void write_curves(const std::string& folder, const Measured& measured);
+/// How gnuplot draws the curve of this number.
+std::string line_of(std::size_t number, bool dashed);
 /// The same on the terminal, at a few errors.
 void print_costs(const Measured& measured, std::span<const double> errors);
 

@@ -7,27 +7,46 @@
 
 namespace continuo::app {
 
+namespace {
+
+bool is_named(const results::Panel& panel, const std::string& label) {
+  return std::ranges::any_of(panel.curves, [&](const results::Curve& curve) { return curve.label == label; });
+}
+
+}  // namespace
+
 void add_branch(results::Panel& panel, std::span<const double> constants, std::span<const double> values,
                 const std::vector<bool>& stable) {
   using enum results::Curve::Style;
   for (const bool wanted : {true, false}) {
     const std::string label = wanted ? "stable" : "not stable";
-    const bool named = std::ranges::any_of(panel.curves, [&](const auto& curve) { return curve.label == label; });
-    results::Curve curve{.label = named ? "" : label,
+    results::Curve curve{.label = is_named(panel, label) ? "" : label,
                          .x = {},
                          .y = {},
                          .color = wanted ? "#0072b2" : "#d55e00",
                          .style = wanted ? line : dashed_line};
-    bool before = false;  // the line to the next point belongs to the piece where it begins
+    bool drawn = false;  // the line that ends here
     for (std::size_t k = 0; k < constants.size(); ++k) {
-      const bool here = stable[k] == wanted;
+      const bool next = k + 1 < constants.size() && (stable[k] || stable[k + 1]) == wanted;
       curve.x.push_back(constants[k]);
-      curve.y.push_back(here || before ? values[k] : std::nan(""));
-      before = here;
+      curve.y.push_back(drawn || next ? values[k] : std::nan(""));
+      if (drawn && !next) {  // the next line may begin at the next point
+        curve.x.push_back(constants[k]);
+        curve.y.push_back(std::nan(""));
+      }
+      drawn = next;
     }
     if (std::ranges::any_of(curve.y, [](double y) { return std::isfinite(y); }))
       panel.curves.push_back(std::move(curve));
   }
+}
+
+void add_bifurcation(results::Panel& panel, const std::string& kind, double constant, double value) {
+  panel.curves.push_back({.label = is_named(panel, kind) ? "" : kind,
+                          .x = {constant},
+                          .y = {value},
+                          .color = kind.starts_with("Hopf") ? "#cc79a7" : "#444444",
+                          .style = results::Curve::Style::full_points});
 }
 
 }  // namespace continuo::app

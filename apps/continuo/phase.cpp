@@ -125,13 +125,15 @@ results::Figure figure_of(const model::Model& model, const PhasePortrait& portra
   add("nullcline of " + model.states[0].column, "#009e73", portrait.nullclines[0], line);
   add("nullcline of " + model.states[1].column, "#e69f00", portrait.nullclines[1], line);
   add("separatrices", "#d55e00", portrait.separatrices, line);
-  std::vector<PlaneCurve> full, empty;
+  std::vector<PlaneCurve> stable, undecided, others;
   for (const studies::Equilibrium& e : portrait.equilibria) {
-    const bool stable = e.stability == studies::Stability::asymptotically_stable;
-    (stable ? full : empty).push_back({{e.x[0], e.x[1]}});
+    const bool is_stable = e.stability == studies::Stability::asymptotically_stable;
+    auto& places = is_stable ? stable : e.stability == studies::Stability::undecided ? undecided : others;
+    places.push_back({{e.x[0], e.x[1]}});
   }
-  add("at rest, stable", "#000000", full, full_points);
-  add("at rest, not stable", "#000000", empty, empty_points);
+  add("at rest, stable", "#000000", stable, full_points);
+  add("at rest, undecided", "#888888", undecided, full_points);
+  add("at rest, not stable", "#000000", others, empty_points);
   return {.title = model.name, .panels = {std::move(panel)}};
 }
 

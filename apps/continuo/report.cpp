@@ -63,7 +63,11 @@ ExitCode report(const ReportOptions& options) {
     if (interrupt_flag() || worst == interrupted) break;
     std::vector<std::string> words = words_of(line);
     if (words.empty()) continue;
-    words.insert(words.begin() + 1, options.file);
+    if (words.front() == "stability") {  // whose first word are methods
+      words.insert(words.end(), {"--model", options.file});
+    } else {
+      words.insert(words.begin() + 1, options.file);
+    }
     sections.push_back(section_of(line, words, scratch, exit));
     if (exit == usage) {
       say(fmt::format("`{}` was refused:\n{}", line, sections.back().messages));

@@ -1,9 +1,12 @@
 // continuo stability METHOD...: how far each method's steps may go, as numbers and as a picture; with a model the
 // largest stable step, predicted from its eigenvalues and confirmed by runs next to it.
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <apps/continuo/command_line.hpp>
@@ -114,28 +117,69 @@ std::string confirmed_text(const std::vector<Confirmed>& all, const std::string&
   return text;
 }
 
-/// Each region with the eigenvalues, times that method's largest step, in it.
-results::Figure figure_of(const std::vector<Region>& regions, const std::vector<Confirmed>& confirmed,
-                          const studies::Spectrum& spectrum, std::string title) {
-  results::Panel panel{.x_label = "Re z", .y_label = "Im z", .curves = {}, .equal_scale = true};
+/// Each region lightly filled, with its crossings of the axes. Returns the number of each method's colour.
+std::vector<std::size_t> add_regions(const std::vector<Region>& regions, results::Panel& panel) {
+  using enum results::Curve::Style;
+  std::vector<results::Curve> areas, crossings;
+  std::vector<std::size_t> colors;
   for (const auto& [method, region] : regions) {
-    if (!region.x.empty()) panel.curves.push_back({method, region.x, region.y});
-    if (region.x.empty() && region.imaginary_limit > 0 && std::isfinite(region.imaginary_limit))
-      panel.curves.push_back({method, {0, 0}, {-region.imaginary_limit, region.imaginary_limit}});
+    colors.push_back(panel.curves.size());
+    const std::string color(results::color_of(colors.back()));
+    results::Curve outline{method, region.x, region.y};
+    const double up = std::isfinite(region.imaginary_limit) ? region.imaginary_limit : 0;
+    if (region.x.empty() && up > 0) outline.x = {0, 0}, outline.y = {-up, up};
+    if (outline.x.empty()) continue;
+    panel.curves.push_back(std::move(outline));
+    if (!region.area_x.empty()) areas.push_back({"", region.area_x, region.area_y, color, area, false});
+    results::Curve points{.label = "", .x = {}, .y = {}, .color = color, .style = full_points};
+    if (std::isfinite(region.real_limit) && region.real_limit > 0)
+      points.x.push_back(-region.real_limit), points.y.push_back(0);
+    for (const double y : {up, -up})
+      if (up > 0) points.x.push_back(0), points.y.push_back(y);
+    if (!points.x.empty()) crossings.push_back(std::move(points));
   }
-  for (const Confirmed& c : confirmed) {
-    if (!std::isfinite(c.limit.step) || c.limit.step == 0) continue;
-    results::Curve points{
-        .label = "eigenvalues, " + c.method, .x = {}, .y = {}, .style = results::Curve::Style::full_points};
+  panel.curves.insert(panel.curves.end(), areas.begin(), areas.end());
+  panel.curves.insert(panel.curves.end(), crossings.begin(), crossings.end());
+  return colors;
+}
+
+/// The eigenvalues times each method's largest step, in its colour; those of short steps above those of long ones,
+/// which reach further.
+void add_eigenvalues(const std::vector<Confirmed>& confirmed, const studies::Spectrum& spectrum,
+                     const std::vector<std::size_t>& colors, results::Panel& panel) {
+  struct Points {
+    double step;
+    results::Curve curve;
+  };
+  std::vector<Points> all;
+  for (std::size_t i = 0; i < confirmed.size(); ++i) {
+    const StepLimit& limit = confirmed[i].limit;
+    if (!std::isfinite(limit.step) || limit.step == 0) continue;
+    results::Curve points{.label = "",
+                          .x = {},
+                          .y = {},
+                          .color = std::string(results::color_of(colors[i])),
+                          .style = results::Curve::Style::dots};
     for (std::size_t k = 0; k < spectrum.times.size(); ++k) {
       if (k > 0 && spectrum.values[k] == spectrum.values[k - 1]) continue;  // of a linear model once
       for (const Complex& value : spectrum.values[k]) {
-        points.x.push_back(c.limit.step * value.real());
-        points.y.push_back(c.limit.step * value.imag());
+        points.x.push_back(limit.step * value.real());
+        points.y.push_back(limit.step * value.imag());
       }
     }
-    panel.curves.push_back(std::move(points));
+    all.push_back({limit.step, std::move(points)});
   }
+  if (all.empty()) return;
+  std::ranges::sort(all, std::ranges::greater(), &Points::step);
+  all.front().curve.label = "eigenvalues times the largest step";
+  for (auto& [step, points] : all) panel.curves.push_back(std::move(points));
+}
+
+results::Figure figure_of(const std::vector<Region>& regions, const std::vector<Confirmed>& confirmed,
+                          const studies::Spectrum& spectrum, std::string title) {
+  results::Panel panel{.x_label = "Re z", .y_label = "Im z", .curves = {}, .equal_scale = true, .zero_lines = true};
+  const auto colors = add_regions(regions, panel);
+  add_eigenvalues(confirmed, spectrum, colors, panel);
   return {.title = std::move(title), .panels = {std::move(panel)}};
 }
 

@@ -65,6 +65,31 @@ std::string table_of(const studies::Equilibria& found, const Studied& studied) {
   return text + "\n";
 }
 
+/// The points of a branch and between them those where its stability changes.
+std::vector<const studies::BranchPoint*> all_points(const studies::Branch& branch) {
+  std::vector<const studies::BranchPoint*> points;
+  auto bifurcation = branch.bifurcations.begin();
+  for (std::size_t i = 0; i <= branch.points.size(); ++i) {
+    for (; bifurcation != branch.bifurcations.end() && bifurcation->next == i; ++bifurcation)
+      points.push_back(&bifurcation->at);
+    if (i < branch.points.size()) points.push_back(&branch.points[i]);
+  }
+  return points;
+}
+
+void add_curves(const studies::Branch& branch, std::size_t component, results::Panel& panel) {
+  std::vector<double> constants, values;
+  std::vector<bool> stable;
+  for (const studies::BranchPoint* point : all_points(branch)) {
+    constants.push_back(point->constant);
+    values.push_back(point->x[component]);
+    stable.push_back(point->stability == studies::Stability::asymptotically_stable);
+  }
+  add_branch(panel, constants, values, stable);
+  for (const studies::BifurcationPoint& point : branch.bifurcations)
+    add_bifurcation(panel, std::string(to_string(point.kind)), point.at.constant, point.at.x[component]);
+}
+
 ExitCode follow(const Studied& studied, const studies::Equilibria& found, const NamedRange& range,
                 const SteadyOptions& options) {
   const model::Model& model = studied.prepared.program->model;
@@ -82,14 +107,7 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
       if (point.frequency > 0) line += fmt::format(", frequency {}", results::short_number(point.frequency));
       print(line + "\n");
     }
-    std::vector<double> constants, values;
-    std::vector<bool> stable;
-    for (const studies::BranchPoint& point : branch.points) {
-      constants.push_back(point.constant);
-      values.push_back(point.x[*component]);
-      stable.push_back(point.stability == studies::Stability::asymptotically_stable);
-    }
-    add_branch(panel, constants, values, stable);
+    add_curves(branch, *component, panel);
   }
   if (interrupt_flag()) return interrupted;
   if (options.plot.empty()) return done;
@@ -121,8 +139,9 @@ ExitCode steady(const SteadyOptions& options) {
   if (found.equilibria.empty()) {
     if (interrupt_flag()) return interrupted;
     say(
-        fmt::format("no place of rest was found from {} starts; nearest to it, `{}` still changes by {} ({}). "
+        fmt::format("{}: no place of rest was found from {} starts; nearest to it, `{}` still changes by {} ({}). "
                     "--box NAME=LOW..HIGH looks elsewhere",
+                    place_text(studied.prepared, studied.prepared.program->model.states[found.nearest.worst].span),
                     found.searches, studied.system.name(found.nearest.worst),
                     results::short_number(found.nearest.residual), to_string(found.nearest.ending)));
     return numerical_failure;

@@ -7,6 +7,7 @@
 
 #include <bench/nonstiff/drift.hpp>
 #include <bench/problems/kepler.hpp>
+#include <bench/report.hpp>
 
 #include <continuo/methods/dop853.hpp>
 #include <continuo/methods/dormand_prince_nystrom8.hpp>
@@ -70,12 +71,14 @@ void write_drift(const std::string& folder, const std::vector<Drift>& drifts) {
        << ".svg'\nset title 'Kepler, e = 0.5, 100,000 orbits'\nset logscale y\nset format y '10^{%T}'\n"
        << "set xlabel 'orbits'\nset ylabel 'largest relative error of the energy in a hundredth of the run'\nset grid\n"
        << "set key outside right\nset datafile separator ','\nplot ";
+  std::size_t shown = 0;
   for (const Drift& drift : drifts) {
     for (std::size_t i = 0; i < drift.worst.size(); ++i)
       table << drift.method << ',' << orbits * static_cast<double>(i + 1) / static_cast<double>(drift.worst.size())
             << ',' << drift.worst[i] << '\n';
     plot << "'" << stem << ".csv' using (strcol(1) eq '" << drift.method << "' ? $2 : NaN):3 with lines "
-         << (drift.symplectic ? "lw 2" : "dt 2") << " title '" << drift.method << "' noenhanced, ";
+         << (drift.symplectic ? "lw 2 " : "lw 1.5 ") << line_of(shown++, !drift.symplectic) << " title '"
+         << drift.method << "' noenhanced, ";
   }
   plot << '\n';
 }

@@ -4,8 +4,10 @@
 //   Figure figure{.title = "Ball", .panels = {{.x_label = "t [s]", .y_label = "h [m]", .curves = {{"h", t, h}}}}};
 //   if (auto failure = draw(figure, "ball.svg")) fmt::print(stderr, "{}\n", *failure);
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace continuo::results {
@@ -14,8 +16,10 @@ struct Curve {
   std::string label;
   std::vector<double> x, y;  // of equal length; a NaN breaks the line
   std::string color{};       // "#rrggbb"; empty: the next of the palette
-  enum class Style { line, dashed_line, thin_line, full_points, empty_points };
+  /// An area is a closed path, lightly filled.
+  enum class Style { line, dashed_line, thin_line, full_points, empty_points, dots, area };
   Style style = Style::line;
+  bool widens_axes = true;  // false: the axes do not reach for it
 };
 
 struct Panel {
@@ -26,7 +30,8 @@ struct Panel {
   bool equal_scale = false;    // one unit is as long upwards as to the right
   bool logarithmic_x = false;  // what is not positive has no place there
   bool logarithmic_y = false;
-  bool tall = false;  // as high as wide pictures allow: for planes
+  bool tall = false;        // as high as wide pictures allow: for planes
+  bool zero_lines = false;  // through the origin
 };
 
 struct Figure {
@@ -34,12 +39,22 @@ struct Figure {
   std::vector<Panel> panels;
 };
 
+/// The colour of the curve of this number where it names none.
+std::string_view color_of(std::size_t number);
+
 /// The file's ending says the format: .svg or .png. Returns what went wrong, if anything: unknown ending, gnuplot not
 /// installed, folder not writable.
 std::optional<std::string> draw(const Figure& figure, const std::string& path);
 
 /// The program for gnuplot that `draw` runs.
 std::string gnuplot_script(const Figure& figure, const std::string& path);
+
+struct Range {
+  double low, high;
+};
+
+/// What of a closed path without gaps lies in a rectangle.
+Curve clipped(const Curve& path, Range x, Range y);
 
 /// A curve of many points without those that no eye can tell apart on a picture `pixels` wide. Peaks stay.
 Curve thinned(const Curve& curve, std::size_t pixels);

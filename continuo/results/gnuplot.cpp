@@ -72,8 +72,9 @@ void append_data(std::string& script, std::size_t panel, std::size_t number, con
 }
 
 std::string style_of(const Curve& curve, std::size_t number) {
-  const std::string_view color = curve.color.empty() ? palette[number % std::size(palette)] : curve.color;
-  const std::size_t round = number / std::size(palette);  // dashes tell the second round of colours from the first
+  const std::string_view color = curve.color.empty() ? color_of(number) : curve.color;
+  // Dashes tell the second round of colours from the first.
+  const std::size_t round = curve.color.empty() ? number / std::size(palette) : 0;
   switch (curve.style) {
     case Curve::Style::dashed_line:
       return fmt::format("lines lw 1.8 dt '-' lc rgb '{}'", color);
@@ -83,24 +84,37 @@ std::string style_of(const Curve& curve, std::size_t number) {
       return fmt::format("points pt 7 ps 1.0 lc rgb '{}'", color);
     case Curve::Style::empty_points:
       return fmt::format("points pt 6 lw 2 ps 1.0 lc rgb '{}'", color);
+    case Curve::Style::dots:
+      return fmt::format("points pt 7 ps 0.45 lc rgb '{}'", color);
+    case Curve::Style::area:
+      return fmt::format("filledcurves closed fs transparent solid 0.12 noborder lc rgb '{}'", color);
     case Curve::Style::line:
       break;
   }
   return fmt::format("lines lw 1.8 dt {} lc rgb '{}'", round + 1, color);
 }
 
-/// The range of one axis: all values and a little air, so that no curve lies on the frame.
-std::string range_of(const Panel& panel, std::vector<double> Curve::* values, double air) {
+/// What one axis spans: all values and a little air, so that no curve lies on the frame.
+std::optional<Range> range_of(const Panel& panel, std::vector<double> Curve::* values, double air) {
   double low = INFINITY, high = -INFINITY;
   for (const Curve& curve : panel.curves) {
     for (const double v : curve.*values) {
-      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+      if (std::isfinite(v) && curve.widens_axes) low = std::min(low, v), high = std::max(high, v);
     }
   }
   // Nothing to show, or a constant with its round-off, which is no curve: gnuplot's own choice.
-  if (!(low < high) || high - low < 1e-14 * std::max(std::abs(low), std::abs(high))) return "[*:*]";
+  if (!(low < high) || high - low < 1e-14 * std::max(std::abs(low), std::abs(high))) return std::nullopt;
   const double margin = air * (high - low);
-  return fmt::format("[{}:{}]", low - margin, high + margin);
+  return Range{low - margin, high + margin};
+}
+std::optional<Range> range_of_x(const Panel& panel) {
+  return range_of(panel, &Curve::x, panel.equal_scale ? 0.05 : 0);
+}
+std::optional<Range> range_of_y(const Panel& panel) {
+  return range_of(panel, &Curve::y, 0.05);
+}
+std::string range_text(const std::optional<Range>& range) {
+  return range ? fmt::format("[{}:{}]", range->low, range->high) : "[*:*]";
 }
 
 /// Where x stands on the panel's axis, in any scale; what has no place is no number.
@@ -134,21 +148,34 @@ std::vector<double> distinct_marks(const Panel& panel) {
   return marks;
 }
 
-std::string range_of_x(const Panel& panel) {
-  if (!panel.logarithmic_x) return range_of(panel, &Curve::x, panel.equal_scale ? 0.05 : 0);
+std::string x_range_text(const Panel& panel) {
+  if (!panel.logarithmic_x) return range_text(range_of_x(panel));
   const auto [low, high] = places_of(panel);
-  return low < high ? fmt::format("[{}:{}]", std::pow(10, low), std::pow(10, high)) : "[*:*]";
+  return low < high ? range_text(Range{std::pow(10, low), std::pow(10, high)}) : range_text({});
+}
+
+/// Ticks between the powers of ten, where there are few enough of these.
+std::string_view small_ticks(const Panel& panel, std::vector<double> Curve::* values, bool logarithmic) {
+  constexpr double most_decades = 6;
+  double low = INFINITY, high = 0;
+  for (const Curve& curve : panel.curves)
+    for (const double v : curve.*values)
+      if (std::isfinite(v) && v > 0) low = std::min(low, v), high = std::max(high, v);
+  return logarithmic && high > low * std::pow(10, most_decades) ? "1" : "default";
 }
 
 void append_panel(std::string& script, const Panel& panel, std::size_t number, double bottom, double height) {
   script += fmt::format("set origin 0,{:.5f}\nset size 1,{:.5f}\n", bottom, height);
   script += panel.equal_scale ? "set size ratio -1\n" : "set size noratio\n";
+  script += panel.zero_lines ? "set zeroaxis lw 1 dt 1 lc rgb '#999999'\n" : "unset zeroaxis\n";
   script += panel.logarithmic_x ? "set logscale x\nset format x '%.0e'\n" : "unset logscale x\nset format x '%h'\n";
   script += panel.logarithmic_y ? "set logscale y\nset format y '%.0e'\n" : "unset logscale y\nset format y '%h'\n";
+  script += fmt::format("set mxtics {}\nset mytics {}\n", small_ticks(panel, &Curve::x, panel.logarithmic_x),
+                        small_ticks(panel, &Curve::y, panel.logarithmic_y));
   script +=
       fmt::format("set xlabel {}\nset ylabel {}\nunset arrow\n", in_quotes(panel.x_label), in_quotes(panel.y_label));
-  script += fmt::format("set xrange {}\nset yrange {}\n", range_of_x(panel),
-                        panel.logarithmic_y ? "[*:*]" : range_of(panel, &Curve::y, 0.05));
+  script += fmt::format("set xrange {}\nset yrange {}\n", x_range_text(panel),
+                        range_text(panel.logarithmic_y ? std::nullopt : range_of_y(panel)));
   const auto marks = distinct_marks(panel);
   for (const double mark : marks) {
     script += fmt::format(
@@ -198,15 +225,32 @@ std::optional<std::string> run_gnuplot(const std::string& script_path) {
 
 }  // namespace
 
+namespace {
+
+/// As much of a curve as the picture needs.
+Curve drawn(const Panel& panel, const Curve& curve) {
+  using enum Curve::Style;
+  if (curve.style == area && !curve.widens_axes) {  // gnuplot leaves some of it beyond the frame
+    const auto x = range_of_x(panel), y = range_of_y(panel);
+    return x && y ? clipped(curve, *x, *y) : curve;
+  }
+  const bool is_line = curve.style == line || curve.style == thin_line;
+  return is_line && !panel.logarithmic_x ? thinned(curve, 2 * width) : curve;
+}
+
+}  // namespace
+
+std::string_view color_of(std::size_t number) {
+  return palette[number % std::size(palette)];
+}
+
 std::string gnuplot_script(const Figure& figure, const std::string& path) {
   const int height = height_of(figure);
   std::string script;
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     for (std::size_t c = 0; c < figure.panels[p].curves.size(); ++c) {
       const Panel& panel = figure.panels[p];
-      const bool whole = panel.logarithmic_x || panel.curves[c].style == Curve::Style::full_points ||
-                         panel.curves[c].style == Curve::Style::empty_points;
-      append_data(script, p, c, whole ? panel.curves[c] : thinned(panel.curves[c], 2 * width));
+      append_data(script, p, c, drawn(panel, panel.curves[c]));
     }
   }
   script +=

@@ -12,12 +12,12 @@ constexpr std::string_view style = R"(
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { margin-bottom: 0.2rem; }
 pre { background: color-mix(in srgb, currentColor 6%, transparent); border-radius: 6px; padding: 0.8rem; overflow-x: auto;
-  font: 14px/1.45 ui-monospace, monospace; }
+  font: 13px/1.45 ui-monospace, monospace; }
 pre.messages { border-left: 4px solid #d55e00; }
 code { font-family: ui-monospace, monospace; }
 figure { margin: 1rem 0; background: #fff; border-radius: 6px; padding: 0.5rem; }
 figure svg { width: 100%; height: auto; }
-@media print { body { max-width: none; } details { display: none; } }
+@media print { body { max-width: none; } pre { white-space: pre-wrap; } details { display: none; } }
 )";
 
 /// Without the XML declaration and the document type, which may stand only at the top of a file.
@@ -88,7 +88,7 @@ std::string report_page(std::string_view title, std::string_view heading, std::s
           "</title>\n<style>";
   page += style;
   page += "</style>\n</head>\n<body>\n<h1>" + escaped(title) + "</h1>\n";
-  if (!heading.empty()) page += "<p>" + escaped(heading) + "</p>\n";
+  if (!heading.empty()) page += "<p>" + escaped(heading.substr(0, heading.find("\n\n"))) + "</p>\n";
   for (std::size_t i = 0; i < sections.size(); ++i) append_section(page, sections[i], i);
   return page + "</body>\n</html>\n";
 }

@@ -18,7 +18,7 @@ struct ReportSection {
   bool folded = false;     // shown on a click: long texts such as a manifest
 };
 
-/// `heading`: paragraphs below the title, as plain text.
+/// `heading`: plain text, of which the first paragraph stands below the title; the rest is in the model.
 std::string report_page(std::string_view title, std::string_view heading, std::span<const ReportSection> sections);
 
 /// Text with & < > " as HTML wants them.

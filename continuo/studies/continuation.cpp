@@ -48,6 +48,8 @@ class Follower {
     Branch back = followed(first, -1), ahead = followed(first, 1);
     std::ranges::reverse(back.points);
     std::ranges::reverse(back.bifurcations);
+    for (BifurcationPoint& point : back.bifurcations) point.next = back.points.size() - point.next;
+    for (BifurcationPoint& point : ahead.bifurcations) point.next += back.points.size() + 1;
     branch = std::move(back);
     branch.points.push_back(first.point);
     branch.points.insert(branch.points.end(), ahead.points.begin(), ahead.points.end());
@@ -240,7 +242,8 @@ class Follower {
       return best;
     };
     const auto add = [&](Bifurcation kind, std::optional<Place> place, double frequency) {
-      if (place && inside(place->z)) branch.bifurcations.push_back({kind, std::move(place->point), frequency});
+      if (place && inside(place->z))
+        branch.bifurcations.push_back({kind, std::move(place->point), frequency, branch.points.size()});
     };
     const bool crosses = a.direction_sign * b.direction_sign < 0;  // a pitchfork also turns round
     if (a.tangent[n_] * b.tangent[n_] < 0 && !crosses)

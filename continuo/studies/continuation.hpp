@@ -30,6 +30,7 @@ struct BifurcationPoint {
   Bifurcation kind;
   BranchPoint at;
   double frequency = 0;  // of a Hopf point: imaginary part / 2 pi
+  std::size_t next = 0;  // of the branch's points, the first behind it
 };
 
 struct Branch {

@@ -87,10 +87,68 @@ class Tracer {
   std::map<Edge, bool> used_;
 };
 
+/// The grid in a frame of positive values so large that lines between it and the grid end at the grid's border.
+Grid framed(const Grid& grid) {
+  double greatest = 1;
+  for (const double value : grid.values)
+    if (std::isfinite(value)) greatest = std::max(greatest, std::abs(value));
+  const double outside = 1e9 * greatest;
+  Grid result{.columns = grid.columns + 2,
+              .rows = grid.rows + 2,
+              .left = grid.left - grid.width,
+              .bottom = grid.bottom - grid.height,
+              .width = grid.width,
+              .height = grid.height,
+              .values = std::vector<double>((grid.columns + 2) * (grid.rows + 2), outside)};
+  for (std::size_t j = 0; j < grid.rows; ++j)
+    for (std::size_t i = 0; i < grid.columns; ++i)
+      if (!std::isnan(grid.at(i, j))) result.values[(j + 1) * result.columns + i + 1] = grid.at(i, j);
+  return result;
+}
+
+/// Twice the area, positive where it winds to the left.
+double winding_area(const Polyline& loop) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < loop.size(); ++i)
+    sum += loop[i].first * loop[i + 1].second - loop[i + 1].first * loop[i].second;
+  return sum;
+}
+
+/// By the parity of crossings of a ray to the right.
+bool encloses(const Polyline& loop, std::pair<double, double> point) {
+  bool inside = false;
+  for (std::size_t i = 0; i + 1 < loop.size(); ++i) {
+    const auto [x1, y1] = loop[i];
+    const auto [x2, y2] = loop[i + 1];
+    if ((y1 > point.second) != (y2 > point.second) && point.first < x1 + (point.second - y1) / (y2 - y1) * (x2 - x1))
+      inside = !inside;
+  }
+  return inside;
+}
+
 }  // namespace
 
 std::vector<Polyline> zero_lines(const Grid& grid) {
   return Tracer(grid).lines();
+}
+
+Polyline path_round_negative(const Grid& grid) {
+  const std::vector<Polyline> loops = zero_lines(framed(grid));  // nothing leaves the frame: they are closed
+  Polyline path;
+  for (const Polyline& loop : loops) {
+    std::size_t depth = 0;
+    for (const Polyline& other : loops)
+      if (&other != &loop && encloses(other, loop.front())) ++depth;
+    // The outermost wind to the left, holes in them to the right, islands in holes to the left again.
+    const bool leftwards = depth % 2 == 0;
+    if ((winding_area(loop) > 0) == leftwards) {
+      path.insert(path.end(), loop.begin(), loop.end());
+    } else {
+      path.insert(path.end(), loop.rbegin(), loop.rend());
+    }
+    path.push_back(loops.front().front());
+  }
+  return path;
 }
 
 }  // namespace continuo::studies

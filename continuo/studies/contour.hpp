@@ -21,4 +21,9 @@ using Polyline = std::vector<std::pair<double, double>>;
 /// By marching squares: straight through each cell, joined from cell to cell. Cells with a NaN have no part of it.
 std::vector<Polyline> zero_lines(const Grid& grid);
 
+/// Where the function is not positive: one closed path that winds round all of it once, and round none of the rest,
+/// with bridges of no width between its pieces; to be filled. It goes as far as the grid does. A NaN counts as
+/// positive.
+Polyline path_round_negative(const Grid& grid);
+
 }  // namespace continuo::studies

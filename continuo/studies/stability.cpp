@@ -78,14 +78,29 @@ Grid grid_of(const StepSequence& sequence, double half_side, std::size_t columns
   return grid;
 }
 
-/// Whether the curve leaves the square: a value at its border has another sign than the next one there.
+/// With the lower half, its mirror image.
+Grid both_halves(const Grid& upper) {
+  Grid grid = upper;
+  grid.rows = 2 * upper.rows - 1;
+  grid.bottom = -upper.y(upper.rows - 1);
+  grid.values.clear();
+  for (std::size_t j = 0; j < grid.rows; ++j) {
+    const std::size_t from = j < upper.rows ? upper.rows - 1 - j : j - (upper.rows - 1);
+    for (std::size_t i = 0; i < grid.columns; ++i) grid.values.push_back(upper.at(i, from));
+  }
+  return grid;
+}
+
+/// Whether the curve leaves the square, or touches its border: a value in the outermost rows and columns, two on each
+/// side, has another sign than the next one.
 bool leaves(const Grid& grid) {
   const auto differs = [](double a, double b) { return (a > 0) != (b > 0); };
   for (std::size_t j = 0; j + 1 < grid.rows; ++j)
-    for (const std::size_t i : {std::size_t{0}, grid.columns - 1})
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}, grid.columns - 2, grid.columns - 1})
       if (differs(grid.at(i, j), grid.at(i, j + 1))) return true;
   for (std::size_t i = 0; i + 1 < grid.columns; ++i)
-    if (differs(grid.at(i, grid.rows - 1), grid.at(i + 1, grid.rows - 1))) return true;
+    for (const std::size_t j : {grid.rows - 2, grid.rows - 1})
+      if (differs(grid.at(i, j), grid.at(i + 1, j))) return true;
   return false;
 }
 
@@ -116,6 +131,11 @@ StabilityRegion stability_region(const StepSequence& sequence, std::size_t point
       for (const auto& [x, y] : line) region.x.push_back(x), region.y.push_back(sign * y);
       region.x.push_back(unknown), region.y.push_back(unknown);
     }
+  }
+  constexpr double beyond = 20, border = 1 - 1e-6;
+  for (const auto& [x, y] : path_round_negative(both_halves(grid))) {
+    const double factor = std::max(std::abs(x), std::abs(y)) > border * region.half_side ? beyond : 1;
+    region.area_x.push_back(factor * x), region.area_y.push_back(factor * y);
   }
   return region;
 }

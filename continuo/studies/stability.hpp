@@ -25,6 +25,9 @@ struct StabilityRegion {
   /// The curve |zeta| = 1, piece by piece with a NaN between them, in a square of this half side around the origin.
   std::vector<double> x{}, y{};
   double half_side = 0;
+  /// A closed path round all that is stable, to be filled. What reaches the border of the square goes on beyond it,
+  /// away from the origin, for many times its size.
+  std::vector<double> area_x{}, area_y{};
   bool outside = false;  // stable far out on the left: the method is implicit, the limits say nothing there
 };
 

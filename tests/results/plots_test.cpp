@@ -141,5 +141,56 @@ TEST(Plots, BothFormatsAreDrawn) {
   EXPECT_EQ(content(folder / "ball.png").substr(1, 3), "PNG");
 }
 
+/// Half the sum of x_i y_(i+1) - x_(i+1) y_i.
+double area_of(const Curve& path) {
+  double sum = 0;
+  for (std::size_t i = 0; i < path.x.size(); ++i) {
+    const std::size_t next = i + 1 == path.x.size() ? 0 : i + 1;
+    sum += path.x[i] * path.y[next] - path.x[next] * path.y[i];
+  }
+  return sum / 2;
+}
+
+TEST(Plots, AClosedPathIsCutToTheFrame) {
+  const Curve square{.label = "", .x = {-1, 3, 3, -1}, .y = {-1, -1, 3, 3}};
+  EXPECT_DOUBLE_EQ(area_of(clipped(square, {0, 2}, {0, 1})), 2);
+  EXPECT_DOUBLE_EQ(area_of(clipped(square, {-9, 9}, {-9, 9})), 16);
+  EXPECT_DOUBLE_EQ(area_of(clipped(square, {4, 5}, {4, 5})), 0);
+  // The square without the middle of it, by a bridge from its corner: 16 - 1, of which the frame keeps a quarter.
+  const Curve ring{
+      .label = "", .x = {-1, 3, 3, -1, -1, 0.5, 0.5, 1.5, 1.5, 0.5}, .y = {-1, -1, 3, 3, -1, 0.5, 1.5, 1.5, 0.5, 0.5}};
+  EXPECT_DOUBLE_EQ(area_of(clipped(ring, {1, 9}, {1, 9})), 15.0 / 4);
+}
+
+TEST(Plots, AnAreaThatGoesOnForeverLeavesTheAxesToTheOthers) {
+  const Figure figure{.title = "",
+                      .panels = {{.x_label = "",
+                                  .y_label = "",
+                                  .curves = {{.label = "line", .x = {0, 1}, .y = {0, 1}},
+                                             {.label = "",
+                                              .x = {-9, 9, 9},
+                                              .y = {-9, -9, 9},
+                                              .color = "#0072b2",
+                                              .style = Curve::Style::area,
+                                              .widens_axes = false}}}}};
+  const std::string script = gnuplot_script(figure, "x.svg");
+  EXPECT_THAT(script, HasSubstr("set xrange [0:1]"));
+  EXPECT_THAT(script, HasSubstr("filledcurves closed"));
+  EXPECT_THAT(script, Not(HasSubstr("\n9 ")));  // it is cut to them
+}
+
+TEST(Plots, SmallTicksStandBetweenFewDecadesOnly) {
+  const auto script = [](double least) {
+    return gnuplot_script({.title = "",
+                           .panels = {{.x_label = "",
+                                       .y_label = "",
+                                       .curves = {{.label = "", .x = {1, 10}, .y = {least, 1}}},
+                                       .logarithmic_y = true}}},
+                          "x.svg");
+  };
+  EXPECT_THAT(script(1e-3), HasSubstr("set mytics default"));
+  EXPECT_THAT(script(1e-12), HasSubstr("set mytics 1"));
+}
+
 }  // namespace
 }  // namespace continuo::results
