@@ -156,7 +156,7 @@ void add_linearize(CLI::App& app, ExitCode& exit) {
       "  continuo linearize models/lorenz.sim --start --json\n";
   CLI::App* verb = add_verb(app, "linearize", "A model near one point as a linear system, and its modes", examples);
   auto options = std::make_shared<LinearizeOptions>();
-  add_experiment(*verb, options->experiment);
+  add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
   verb->add_option("--at", options->at, "The point, of single states; the others as at the start")
       ->delimiter(',')

@@ -193,7 +193,7 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
       "  continuo orbit models/lorenz.sim --section z=27 --duration 500 -o s.csv  passes through a plane\n";
   CLI::App* verb = add_verb(app, "orbit", "Finds a closed orbit, a section, or Lyapunov exponents", examples);
   auto options = std::make_shared<OrbitOptions>();
-  add_experiment(*verb, options->experiment);
+  add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
   verb->add_option("--settle", options->settle, "Time to come to the orbit first; else that of the model's run")
       ->type_name("T");

@@ -187,7 +187,7 @@ void add_phase(CLI::App& app, ExitCode& exit) {
       "  continuo phase models/pendulum.sim --start \"theta=1;theta'=0\" --plot one.svg\n";
   CLI::App* verb = add_verb(app, "phase", "Draws the plane of a model with two states", examples);
   auto options = std::make_shared<PhaseOptions>();
-  add_experiment(*verb, options->experiment);
+  add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
   verb->add_option("--box", options->box, "The part of the plane")->delimiter(',')->type_name("NAME=LOW..HIGH");
   verb->add_option("--start", options->starts, "Where a motion begins; may be given again")

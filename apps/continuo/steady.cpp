@@ -161,7 +161,7 @@ void add_steady(CLI::App& app, ExitCode& exit) {
       "  continuo steady models/pendulum.sim --box a=-7..7              where to look\n";
   CLI::App* verb = add_verb(app, "steady", "Finds where a model comes to rest, and whether it stays there", examples);
   auto options = std::make_shared<SteadyOptions>();
-  add_experiment(*verb, options->experiment);
+  add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
   verb->add_option("--box", options->box, "Where to look, of single states")
       ->delimiter(',')

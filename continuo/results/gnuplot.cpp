@@ -234,7 +234,7 @@ Curve drawn(const Panel& panel, const Curve& curve) {
     const auto x = range_of_x(panel), y = range_of_y(panel);
     return x && y ? clipped(curve, *x, *y) : curve;
   }
-  const bool is_line = curve.style == line || curve.style == thin_line;
+  const bool is_line = curve.style == line || curve.style == dashed_line || curve.style == thin_line;
   return is_line && !panel.logarithmic_x ? thinned(curve, 2 * width) : curve;
 }
 

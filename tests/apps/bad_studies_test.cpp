@@ -169,6 +169,15 @@ TEST(BadStudies, MethodsAndStepsThatWouldHaveNoPart) {
   }
 }
 
+TEST(BadStudies, WhatHasNoRunTakesNoTimeToEndIt) {
+  const Folder folder;
+  for (const std::string& study : {studies[4], studies[5], studies[6], studies[7]}) {
+    const Result result = folder.run(asked(study, "good.sim", "--until 3"));
+    EXPECT_EQ(result.exit, 1) << study;
+    EXPECT_THAT(result.err, HasSubstr("has no option --until")) << study;
+  }
+}
+
 TEST(BadStudies, TolerancesAreHonoured) {
   const Folder folder;
   const auto steps = [&](const std::string& tolerance) {  // x at the end, to the digits of the tolerance
