@@ -25,16 +25,12 @@ void add_branch(results::Panel& panel, std::span<const double> constants, std::s
                          .y = {},
                          .color = wanted ? "#0072b2" : "#d55e00",
                          .style = wanted ? line : dashed_line};
-    bool drawn = false;  // the line that ends here
+    bool before = false;  // the line to the next point belongs to the piece where it begins
     for (std::size_t k = 0; k < constants.size(); ++k) {
-      const bool next = k + 1 < constants.size() && (stable[k] || stable[k + 1]) == wanted;
+      const bool here = stable[k] == wanted;
       curve.x.push_back(constants[k]);
-      curve.y.push_back(drawn || next ? values[k] : std::nan(""));
-      if (drawn && !next) {  // the next line may begin at the next point
-        curve.x.push_back(constants[k]);
-        curve.y.push_back(std::nan(""));
-      }
-      drawn = next;
+      curve.y.push_back(here || before ? values[k] : std::nan(""));
+      before = here;
     }
     if (std::ranges::any_of(curve.y, [](double y) { return std::isfinite(y); }))
       panel.curves.push_back(std::move(curve));

@@ -8,9 +8,8 @@
 
 namespace continuo::app {
 
-/// Values over a constant, in pieces of equal stability: a line where stable, dashed where not. The line between two
-/// points is stable where one of them is, so a point where stability changes, itself not stable, ends a piece. Only the
-/// first branch of a panel is named in the key.
+/// Values over a constant, in pieces of equal stability: a line where stable, dashed where not, each from its first
+/// point to the first of the next. Only the first branch of a panel is named in the key.
 void add_branch(results::Panel& panel, std::span<const double> constants, std::span<const double> values,
                 const std::vector<bool>& stable);
 /// A point of a branch where something changes; in the key the first of its kind.

@@ -80,11 +80,14 @@ std::vector<const studies::BranchPoint*> all_points(const studies::Branch& branc
 void add_curves(const studies::Branch& branch, std::size_t component, results::Panel& panel) {
   std::vector<double> constants, values;
   std::vector<bool> stable;
-  for (const studies::BranchPoint* point : all_points(branch)) {
+  const auto points = all_points(branch);
+  for (const studies::BranchPoint* point : points) {
     constants.push_back(point->constant);
     values.push_back(point->x[component]);
     stable.push_back(point->stability == studies::Stability::asymptotically_stable);
   }
+  for (std::size_t i = points.size(); i-- > 1;)  // where it changes it is neither: the piece behind begins there
+    if (points[i - 1]->stability == studies::Stability::undecided) stable[i - 1] = stable[i];
   add_branch(panel, constants, values, stable);
   for (const studies::BifurcationPoint& point : branch.bifurcations)
     add_bifurcation(panel, std::string(to_string(point.kind)), point.at.constant, point.at.x[component]);
