@@ -13,7 +13,7 @@
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
-#include <apps/continuo/study_progress.hpp>
+#include <apps/continuo/progress.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ ExitCode converge(const ConvergeOptions& options) {
   Prepared prepared = prepare(options.experiment);
   if (prepared.exit != done) return prepared.exit;
   if (has_no_start(prepared)) return wrong_model;
-  StudyProgress progress;
+  Progress progress;
   const auto study = studies::converge(prepared.program, prepared.experiment,
                                        {.methods = options.methods,
                                         .most_steps = options.most_steps,
@@ -68,7 +68,7 @@ ExitCode converge(const ConvergeOptions& options) {
                                         .in_float = options.in_float,
                                         .in_long_double = options.in_long_double,
                                         .interrupt = &interrupt_flag(),
-                                        .progress = progress.watcher()});
+                                        .progress = progress.parts()});
   if (!study.problem.empty()) {
     if (interrupt_flag().load()) return interrupted;
     say(study.problem);

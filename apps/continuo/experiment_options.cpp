@@ -119,6 +119,14 @@ bool has_no_start(const Prepared& prepared) {
   return true;
 }
 
+std::function<void(double)> watcher_of(const Prepared& prepared, Progress& progress) {
+  const model::Model& model = prepared.program->model;
+  if (model.needs_boundary_solver()) return progress.parts();
+  std::vector<model::Diagnostic> problems;  // the run itself will tell of them
+  const auto plan = model::plan(model, prepared.experiment, problems);
+  return plan ? progress.over(plan->from, plan->to) : progress.number("t");
+}
+
 void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source) {
   if (!diagnostics.empty()) fmt::print(stderr, "{}", model::render(diagnostics, source, {.color = colors_wanted()}));
 }

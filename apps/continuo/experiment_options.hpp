@@ -1,6 +1,7 @@
 // apps/continuo/experiment_options.hpp
 // The options that change what the model's `run` statement asks for, shared by every verb that runs models.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include <CLI/App.hpp>
 #include <apps/continuo/exit_codes.hpp>
+#include <apps/continuo/progress.hpp>
 
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/load.hpp>
@@ -54,6 +56,9 @@ std::string place_text(const Prepared& prepared, const model::Span& span);
 
 /// Whether its conditions stand at several times: for verbs that follow motions from a start, who then say so.
 bool has_no_start(const Prepared& prepared);
+
+/// What the experiment calls on its way, with the time that is left.
+std::function<void(double)> watcher_of(const Prepared& prepared, Progress& progress);
 
 /// Messages of a run as people read them, on standard error.
 void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source);

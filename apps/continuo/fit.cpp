@@ -297,8 +297,14 @@ ExitCode fit(const FitOptions& options) {
   studies::Fit found;
   {
     Progress progress;
-    if (const auto show_number = progress.watcher("residual"))
+    // How long one search takes nobody knows; of many, those that are done say it.
+    if (options.starts > 1) {
+      if (const auto show_part = progress.parts())
+        request->options.progress = [show_part, starts = static_cast<double>(options.starts)](
+                                        std::size_t start, double) { show_part(static_cast<double>(start) / starts); };
+    } else if (const auto show_number = progress.number("residual")) {
       request->options.progress = [show_number](std::size_t, double cost) { show_number(std::sqrt(2 * cost)); };
+    }
     // A run that is cut off says nothing of its parameters: the search stops between runs.
     request->experiment.interrupt = nullptr;
     found = studies::fit(*request);

@@ -58,7 +58,7 @@ ExitCode show_exponents(const Studied& studied, const OrbitOptions& options) {
                                                  {.duration = options.duration,
                                                   .settle = *options.settle,
                                                   .interrupt = &interrupt_flag(),
-                                                  .progress = progress.watcher()});
+                                                  .progress = progress.over(0, *options.settle + options.duration)});
   if (found.exponents.empty()) return ended(found.outcome);
   std::string text = fmt::format("Lyapunov exponents over {}\n", with_time_unit(found.averaged, model));
   for (std::size_t i = 0; i < found.exponents.size(); ++i)
@@ -74,9 +74,16 @@ ExitCode show_section(const Studied& studied, const OrbitOptions& options) {
   std::vector<double> levels(studied.start.size());
   if (!set_states(model, {options.section}, levels)) return usage;
   const std::size_t component = *state_named(model, options.section.substr(0, equals));
-  const auto section =
-      studies::poincare_section(studied.system, studied.start, component, levels[component], *options.settle,
-                                options.duration, options.tolerance, &interrupt_flag());
+  const auto section = [&] {
+    Progress progress;
+    return studies::poincare_section(studied.system, studied.start, component,
+                                     {.level = levels[component],
+                                      .settle = *options.settle,
+                                      .duration = options.duration,
+                                      .rtol = options.tolerance,
+                                      .interrupt = &interrupt_flag(),
+                                      .progress = progress.over(0, *options.settle + options.duration)});
+  }();
   std::string csv = "t";
   for (const model::State& state : model.states) csv += "," + state.column;
   csv += "\n";
@@ -126,7 +133,12 @@ studies::PeriodicOrbitOptions search_of(const OrbitOptions& options) {
 
 ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
   const model::Model& model = studied.prepared.program->model;
-  const auto found = studies::find_periodic_orbit(studied.system, studied.start, search_of(options));
+  const auto found = [&] {
+    Progress progress;
+    studies::PeriodicOrbitOptions search = search_of(options);
+    search.progress = progress.parts();
+    return studies::find_periodic_orbit(studied.system, studied.start, search);
+  }();
   if (!found.outcome) return ended(found.outcome);
   std::string text = fmt::format("period {}, {}\nmultipliers", with_time_unit(found.period, model),
                                  found.stable ? "neighbours come nearer" : "some neighbours go away");

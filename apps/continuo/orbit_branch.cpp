@@ -6,7 +6,7 @@
 #include <apps/continuo/branch_curves.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/orbit_branch.hpp>
-#include <apps/continuo/study_progress.hpp>
+#include <apps/continuo/progress.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
 
@@ -21,6 +21,8 @@ namespace continuo::app {
 namespace {
 
 using studies::OrbitBranch;
+
+constexpr double search_share = 0.2;  // of the time, to find the orbit to begin with
 
 std::string multipliers_text(const studies::OrbitPoint& point) {
   std::string text;
@@ -146,17 +148,17 @@ std::vector<studies::HopfPoint> hopf_points(const Studied& studied, const NamedR
 /// From the orbit that the motion comes to; from Hopf points where there is none, or the user wants them.
 std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions& options) {
   const NamedRange& range = options.range;
-  StudyProgress progress;
-  double begin = 0, share = 1;
+  Progress progress;
   studies::OrbitContinuationOptions continuation{.low = range.low,
                                                  .high = range.high,
                                                  .rtol = std::clamp(options.search.rtol, 1e-12, 1e-6),
-                                                 .interrupt = &interrupt_flag()};
-  if (const auto watch = progress.watcher())
-    continuation.progress = [&, watch](double part) { watch(begin + share * part); };
+                                                 .interrupt = &interrupt_flag(),
+                                                 .progress = progress.parts(search_share, 1 - search_share)};
   std::vector<OrbitBranch> branches;
   if (!options.from_hopf) {
-    const auto start = studies::find_periodic_orbit(studied.system, studied.start, options.search);
+    studies::PeriodicOrbitOptions search = options.search;
+    search.progress = progress.parts(0, search_share);
+    const auto start = studies::find_periodic_orbit(studied.system, studied.start, search);
     if (start.outcome) {
       branches.push_back(studies::continue_orbit(studied.system, start, continuation));
       return branches;
@@ -167,8 +169,8 @@ std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions
   }
   const auto points = hopf_points(studied, range);
   for (std::size_t k = 0; k < points.size() && !interrupt_flag(); ++k) {
-    share = 1 / static_cast<double>(points.size());
-    begin = share * static_cast<double>(k);
+    const double share = 1 / static_cast<double>(points.size());
+    continuation.progress = progress.parts(share * static_cast<double>(k), share);
     branches.push_back(studies::continue_orbit(studied.system, points[k], continuation));
   }
   return branches;

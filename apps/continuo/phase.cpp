@@ -8,6 +8,7 @@
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
+#include <apps/continuo/progress.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -167,7 +168,11 @@ ExitCode phase(const PhaseOptions& options) {
   }
   PhasePlane plane{.low = {}, .high = {}, .spread = options.spread, .t = options.time, .interrupt = &interrupt_flag()};
   if (!set_plane(studied, options, plane) || !set_starts(studied, options.starts, plane)) return usage;
-  const PhasePortrait portrait = studies::phase_portrait(studied.system, plane);
+  const PhasePortrait portrait = [&] {
+    Progress progress;
+    plane.progress = progress.parts();
+    return studies::phase_portrait(studied.system, plane);
+  }();
   print(summary_of(model, portrait, plane));
   if (!options.plot.empty()) {
     if (const auto failure = results::draw(figure_of(model, portrait, plane), options.plot)) {

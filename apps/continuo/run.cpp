@@ -110,7 +110,7 @@ ExitCode run(const RunRequest& request) {
   }
   const model::Simulated simulated = [&] {
     Progress progress;
-    prepared.experiment.progress = progress.watcher();
+    prepared.experiment.progress = watcher_of(prepared, progress);
     prepared.experiment.estimate_error = request.estimate_error;
     return studies::run_model(prepared.program, prepared.experiment, request.solution);
   }();

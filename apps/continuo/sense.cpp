@@ -138,7 +138,7 @@ ExitCode sense(const SenseOptions& options) {
   SensitivityRun run;
   {
     Progress progress;
-    prepared.experiment.progress = progress.watcher();
+    prepared.experiment.progress = watcher_of(prepared, progress);
     run = studies::SensitivityStudy(prepared.program, *influences, prepared.experiment.parameters)
               .run({.experiment = prepared.experiment});
   }

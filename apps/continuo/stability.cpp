@@ -14,8 +14,8 @@
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
+#include <apps/continuo/progress.hpp>
 #include <apps/continuo/studied_model.hpp>
-#include <apps/continuo/study_progress.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -185,8 +185,8 @@ results::Figure figure_of(const std::vector<Region>& regions, const std::vector<
 
 ExitCode stability(const StabilityOptions& options) {
   if (!drawable(options.plot) || !known_methods(options.methods)) return usage;
-  StudyProgress progress;
-  const auto watcher = progress.watcher();
+  Progress progress;
+  const auto watcher = progress.parts();
   const bool with_model = !options.experiment.file.empty();
   const double parts = static_cast<double>(options.methods.size()) * (with_model ? 2 : 1);
   double part = 0;

@@ -9,6 +9,7 @@
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
+#include <apps/continuo/progress.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -100,9 +101,16 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
   if (!options.of.empty()) component = state_named(model, options.of);
   if (!component) return usage;
   results::Panel panel{.x_label = range.name, .y_label = model.states[*component].column, .curves = {}};
+  const double share = 1 / static_cast<double>(found.equilibria.size());
   for (std::size_t k = 0; k < found.equilibria.size(); ++k) {
-    const auto branch = studies::continue_equilibrium(
-        studied.system, found.equilibria[k].x, {.low = range.low, .high = range.high, .interrupt = &interrupt_flag()});
+    const auto branch = [&] {
+      Progress progress;
+      return studies::continue_equilibrium(studied.system, found.equilibria[k].x,
+                                           {.low = range.low,
+                                            .high = range.high,
+                                            .interrupt = &interrupt_flag(),
+                                            .progress = progress.parts(share * static_cast<double>(k), share)});
+    }();
     print(fmt::format("\nfrom {}: {} points{}\n", k + 1, branch.points.size(),
                       branch.complete ? "" : fmt::format("; {}", branch.message)));
     for (const studies::BifurcationPoint& point : branch.bifurcations) {
@@ -138,7 +146,11 @@ ExitCode steady(const SteadyOptions& options) {
   if (studied.prepared.exit != done) return studied.prepared.exit;
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
   if (!set_box(studied, options.box, box)) return usage;
-  const studies::Equilibria found = studies::find_equilibria(studied.system, box);
+  const studies::Equilibria found = [&] {
+    Progress progress;
+    box.progress = progress.parts();
+    return studies::find_equilibria(studied.system, box);
+  }();
   if (found.equilibria.empty()) {
     if (interrupt_flag()) return interrupted;
     say(

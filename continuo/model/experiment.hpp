@@ -30,9 +30,9 @@ struct Experiment {
   double max_step = std::numeric_limits<double>::infinity();
   std::size_t max_steps = 10'000'000;
   const std::atomic<bool>* interrupt = nullptr;
-  std::function<void(double t)> progress{};
-  bool estimate_error = false;  // by a second run, a hundred times as strict
-  bool keep_rows = true;        // false: only the first and the last state, for sweeps
+  std::function<void(double t)> progress{};  // of conditions at several times: with the part that is done, 0 to 1
+  bool estimate_error = false;               // by a second run, a hundred times as strict
+  bool keep_rows = true;                     // false: only the first and the last state, for sweeps
 };
 
 /// The experiment as it will run: nothing is left open.

@@ -284,12 +284,20 @@ BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, 
       of_model(program, {.parameters = experiment.parameters}), conditions->times(),
       [conditions](Values x, Values, std::span<double> residuals) { (*conditions)(x, residuals); },
       conditions->places()};
-  const BoundaryValueOptions options{.tolerance = planned->rtol, .interrupt = experiment.interrupt};
+  BoundaryValueOptions options{.tolerance = planned->rtol, .interrupt = experiment.interrupt};
   std::vector<BoundaryValueSolution> found;
   std::optional<Outcome<double>> failure;
   result.guesses = guess_count(model);
   for (std::size_t k = 0; k < result.guesses; ++k) {
     const auto begin = std::chrono::steady_clock::now();
+    // A residual that falls as a power of the mesh goes its way in logarithms.
+    if (experiment.progress)
+      options.progress = [&, first = 0.0](std::size_t, double residual) mutable {
+        if (!(first > 0)) first = residual;
+        const double way = std::log(first / planned->rtol), gone = std::log(first / residual);
+        const double part = way > 0 && std::isfinite(gone) ? std::clamp(gone / way, 0.0, 1.0) : 0;
+        experiment.progress((static_cast<double>(k) + part) / static_cast<double>(result.guesses));
+      };
     Guess guess(*program, *planned, *conditions, k);
     auto solution = solve_boundary_values(problem, [&](double t, std::span<double> x) { guess(t, x); }, options);
     if (!solution.outcome) {

@@ -195,6 +195,7 @@ class Follower {
       mark(branch, here, *next, step);
       here = std::move(*next);
       if (inside(here.z)) branch.points.push_back(here.point);
+      report(here.point.constant);
       if (!inside(here.z) || (branch.points.size() > 20 && near(here.z, origin, step))) {
         branch.complete = true;
         return branch;
@@ -203,6 +204,11 @@ class Follower {
     }
     branch.message = "too many points";
     return branch;
+  }
+  void report(double constant) {
+    low_ = std::min(low_, constant);
+    high_ = std::max(high_, constant);
+    if (options_.progress) options_.progress(std::min((high_ - low_) / units_[n_], 1.0));
   }
   std::optional<Place> stepped(const Place& from, double step) {
     Vector guess(from.z);
@@ -268,6 +274,7 @@ class Follower {
   const ContinuationOptions& options_;
   std::size_t n_;
   Vector p_, units_;
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // what has been covered
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -47,6 +48,7 @@ struct ContinuationOptions {
   std::size_t most_points = 5000;
   double t = 0;
   const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double part)> progress{};  // of the range that has been covered
 };
 
 /// From an equilibrium (near x at the constant's present value) in both directions.

@@ -247,6 +247,7 @@ Equilibria find_equilibria(const ParametricSystem& system, const EquilibriumBox&
   };
   for (std::size_t k = box.first.empty() ? 1 : 0; k <= box.starts; ++k) {
     if (box.interrupt && box.interrupt->load()) break;
+    if (box.progress) box.progress(static_cast<double>(k) / static_cast<double>(box.starts));
     std::vector<double> start(box.first);
     if (k > 0) {
       start.resize(n);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct EquilibriumBox {
   std::vector<double> first{};  // tried before all others; may be empty
   double t = 0;                 // where f depends on time: at this one
   const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double part)> progress{};  // from 0 to 1
 };
 
 struct Equilibria {

@@ -100,17 +100,19 @@ bool depends_on_time(const ParametricSystem& system, const X& x) {
   return now != later;
 }
 
-Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component, double level,
-                         double settle, double duration, double rtol, const std::atomic<bool>* interrupt) {
+Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component,
+                         const SectionOptions& options) {
   Section section;
-  Options<X> run{.rtol = rtol, .atol = 1e-3 * rtol};
-  run.interrupt = interrupt;
+  Options<X> run{.rtol = options.rtol, .atol = 1e-3 * options.rtol};
+  run.interrupt = options.interrupt;
+  run.progress = options.progress;
   run.save = Save<X>::only_end();
-  run.events = {rises<X>("section", [=](double, const X& x) { return x[component] - level; })};
-  const auto motion = run_flow(system, system.constants, std::move(x0), {0, settle + duration}, run);
+  run.events = {
+      rises<X>("section", [component, level = options.level](double, const X& x) { return x[component] - level; })};
+  const auto motion = run_flow(system, system.constants, std::move(x0), {0, options.settle + options.duration}, run);
   section.outcome = motion.outcome;
   for (const auto& event : motion.events)
-    if (event.t >= settle) section.points.push_back({event.t, event.before});
+    if (event.t >= options.settle) section.points.push_back({event.t, event.before});
   return section;
 }
 
@@ -122,6 +124,14 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
   run.interrupt = options.interrupt;
   Options<X> to_end = run;
   to_end.save = Save<X>::only_end();
+  // Three runs one after the other: to settle, to see the extent, through the section.
+  const double whole = options.settle + 2 * options.duration;
+  const auto after = [&](double before) -> std::function<void(double)> {
+    if (!options.progress) return {};
+    return [&options, before, whole](double t) { options.progress((before + t) / whole); };
+  };
+  to_end.progress = after(0);
+  run.progress = after(options.settle);
   const auto settled = run_flow(system, system.constants, x0, {0, options.settle}, to_end);
   if (!settled.outcome) return without_orbit(settled.outcome);
   const auto motion = run_flow(system, system.constants, settled.final_state(), {0, options.duration}, run);
@@ -137,8 +147,12 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
   if (share(section) < 1e-6)
     return without_orbit({}, "the motion comes to rest; start elsewhere, or see where with `steady`");
   const double level = (extent.low[section] + extent.high[section]) / 2;
-  const auto crossings = poincare_section(system, motion.final_state(), section, level, 0, options.duration,
-                                          options.rtol, options.interrupt);
+  const auto crossings = poincare_section(system, motion.final_state(), section,
+                                          {.level = level,
+                                           .duration = options.duration,
+                                           .rtol = options.rtol,
+                                           .interrupt = options.interrupt,
+                                           .progress = after(options.settle + options.duration)});
   if (!crossings.outcome) return without_orbit(crossings.outcome);
   const double period = time_to_return(crossings.points, extent);
   if (period == 0)
@@ -148,6 +162,7 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
 
   const X start = crossings.points.back().x;
   Options<X> dense = run;
+  dense.progress = {};
   dense.save = Save<X>::dense();
   const auto turn = run_flow(system, system.constants, start, {0, period}, dense);
   if (!turn.outcome) return without_orbit(turn.outcome);
@@ -171,6 +186,7 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
     return result;
   }
   result.period = result.orbit.parameters[0];
+  to_end.progress = {};
   result.multipliers = multipliers_of(system, result.orbit(0), result.period, to_end);
   // One multiplier is 1, of a shift along the orbit: that nearest to it.
   auto others = result.multipliers;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct PeriodicOrbitOptions {
   double tolerance = 1e-10;  // of the boundary-value problem
   double rtol = 1e-9;        // of the integrations
   const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double part)> progress{};  // from 0 to 1
 };
 
 struct PeriodicOrbit {
@@ -44,8 +46,14 @@ struct Section {
   Outcome<double> outcome;
   std::vector<SectionPoint> points;
 };
-Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component, double level,
-                         double settle, double duration, double rtol = 1e-9,
-                         const std::atomic<bool>* interrupt = nullptr);
+struct SectionOptions {
+  double level = 0;
+  double settle = 0, duration = 100;
+  double rtol = 1e-9;
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double t)> progress{};
+};
+Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component,
+                         const SectionOptions& options);
 
 }  // namespace continuo::studies

@@ -33,7 +33,10 @@ class Portrait {
     portrait_.equilibria = found.equilibria;
     for (const Equilibrium& e : portrait_.equilibria)
       if (e.stability == Stability::saddle) add_separatrices(e);
-    for (const PlanePoint& start : starts()) {
+    const auto begins = starts();
+    for (const PlanePoint& start : begins) {
+      if (plane_.progress)
+        plane_.progress(static_cast<double>(portrait_.motions.size()) / static_cast<double>(begins.size()));
       if (is_interrupted()) return std::move(portrait_);
       PlaneCurve back = motion(start, -1);
       std::ranges::reverse(back);

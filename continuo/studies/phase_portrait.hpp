@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include <continuo/solve/outcome.hpp>
@@ -25,6 +26,7 @@ struct PhasePlane {
   double t = 0;             // where f depends on time: at this one
   double rtol = 1e-7;
   const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double part)> progress{};  // from 0 to 1
 };
 
 struct FieldArrow {

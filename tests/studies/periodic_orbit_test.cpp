@@ -40,7 +40,7 @@ TEST(PeriodicOrbit, VanDerPol) {
   for (const double mu : {1.0, 10.0}) {
     const auto found = find_periodic_orbit(van_der_pol(mu), {2, 0}, {.settle = 60, .duration = 60});
     ASSERT_TRUE(found.outcome) << describe(found.outcome);
-    const auto section = poincare_section(van_der_pol(mu), {2, 0}, 0, 0, 100, 60, 1e-12);
+    const auto section = poincare_section(van_der_pol(mu), {2, 0}, 0, {.settle = 100, .duration = 60, .rtol = 1e-12});
     ASSERT_GE(section.points.size(), 2u);
     const auto& points = section.points;
     EXPECT_NEAR(found.period, points.back().t - points[points.size() - 2].t, 1e-8 * found.period);
