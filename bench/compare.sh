@@ -9,6 +9,7 @@ cmake -S "$root" -B "$root/build-bench" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCO
   -DCONTINUO_APP=OFF
 cmake --build "$root/build-bench" --target "against_$side"
 mkdir -p "$results"
+cd "$root"
 "$root/build-bench/bench/against_$side" "$results" "${2:-15}"
 cp "$results/$side.md" "$root/docs/benchmarks_$side.md"
 if command -v gnuplot >/dev/null; then

@@ -88,7 +88,7 @@ void write_page(const std::string& file, const std::vector<StiffResult>& all) {
       << "\n## Error in units of the tolerance\n\nThe largest error of a component at the end, in units of atol + rtol "
          "times the component, for each rtol. Above "
       << number(most_tolerances)
-      << " in bold; \"-\": at the rtol before a run took\nlonger than eight seconds, for a method of order p needs "
+      << " in bold; \"-\": at the rtol before a run took\nlonger than twelve seconds, for a method of order p needs "
          "steps in "
          "proportion to rtol^(-1/p).\n";
   for (const StiffResult& result : all) {

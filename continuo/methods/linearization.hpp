@@ -30,9 +30,6 @@ namespace continuo {
 /// solved by a sparse solver, if their scalar is double.
 inline constexpr std::size_t least_sparse_size = 20;
 inline constexpr double greatest_sparse_part = 0.3;
-/// Of these, matrices whose band has at most this many times the entries of the pattern are decomposed as a band: in a
-/// half to a third of the time of a sparse solver, which in turn is faster where most of a band would be empty.
-inline constexpr std::size_t greatest_band_part = 4;
 
 template <State X>
 class Linearization {
@@ -61,8 +58,7 @@ class Linearization {
       if (sparse_) {
         rows_.assign(pattern_.entries(), 0);
         if constexpr (!HasSparseJacobian<F, X>) groups_ = ColumnGroups(pattern_);
-        const auto [lower, upper] = pattern_.bandwidth();
-        banded_ = (2 * lower + upper + 1) * size_ <= greatest_band_part * pattern_.entries();
+        banded_ = pattern_.is_banded();
         diagonal_.resize(size_);
         for (std::size_t i = 0; i < size_; ++i) diagonal_[i] = pattern_.find(i, i);
       }

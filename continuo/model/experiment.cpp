@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <continuo/model/experiment.hpp>
+#include <continuo/model/model_system.hpp>
 #include <continuo/model/suggest.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/solve/choice.hpp>
@@ -144,7 +145,15 @@ class Planner {
                           .rtol = plan_.rtol,
                           .algebraic = model_.needs_dae_solver(),
                           .accelerations = model_.all_paired && !model_.accelerations_depend_on_velocities,
-                          .sparse = true});  // the graph has the pattern of df/dx
+                          .sparse = true,  // the graph has the pattern of df/dx
+                          .banded = is_banded()});
+  }
+
+  /// Only of a large model does the choice depend on it; it is differentiated for that.
+  bool is_banded() const {
+    constexpr std::size_t smallest = 100;
+    if (model_.states.size() <= smallest) return false;
+    return ModelSystem(compile(model_), start_values(model_)).jacobian_pattern().is_banded();
   }
 
   void accept(const MethodInfo& method) {

@@ -37,6 +37,12 @@ SparsePattern::Bandwidth SparsePattern::bandwidth() const {
   return width;
 }
 
+bool SparsePattern::is_banded() const {
+  constexpr std::size_t greatest_part = 4;
+  const auto [lower, upper] = bandwidth();
+  return (2 * lower + upper + 1) * size() <= greatest_part * entries();
+}
+
 ColumnGroups::ColumnGroups(const SparsePattern& pattern) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::vector<std::size_t> group_of(pattern.size(), none);

@@ -29,6 +29,7 @@ SystemTraits traits_of(System& system, const X& x, double rtol) {
     constexpr std::size_t entries_of_sparse = 10;  // one in so many
     const SparsePattern& pattern = system.jacobian_pattern();
     traits.sparse = entries_of_sparse * pattern.entries() < traits.size * traits.size;
+    traits.banded = traits.sparse && pattern.is_banded();
   }
   return traits;
 }

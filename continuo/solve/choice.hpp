@@ -13,6 +13,7 @@ struct SystemTraits {
   bool algebraic = false;      // M x' = f with a singular M
   bool accelerations = false;  // all of it is x'' = a(t, x)
   bool sparse = false;         // most entries of df/dx are known to be zero
+  bool banded = false;         // and the others lie near its diagonal
 };
 
 struct Choice {

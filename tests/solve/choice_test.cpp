@@ -19,6 +19,7 @@ TEST(Choice, GoesByToleranceSizeAndKind) {
   EXPECT_EQ(name({.size = 3, .rtol = 1e-7}), "dop853_radau");
   EXPECT_EQ(name({.size = 1000, .rtol = 1e-4, .sparse = true}), "tsitouras5_bdf");
   EXPECT_EQ(name({.size = 1000, .rtol = 1e-9, .sparse = true}), "dop853_radau");
+  EXPECT_EQ(name({.size = 1000, .rtol = 1e-4, .sparse = true, .banded = true}), "tsitouras5_rodas5p");
   EXPECT_EQ(name({.size = 1000, .rtol = 1e-9}), "tsitouras5_bdf");
   EXPECT_EQ(name({.size = 4, .rtol = 1e-4, .accelerations = true}), "dprkn8_radau");
   EXPECT_EQ(name({.size = 4, .rtol = 1e-9, .accelerations = true}), "dprkn12_radau");
