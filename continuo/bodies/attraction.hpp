@@ -1,0 +1,20 @@
+// continuo/bodies/attraction.hpp
+// Gravity between all pairs. Exactly, or by a tree whose distant cells act from their centre of mass (J. Barnes, P.
+// Hut, Nature 324 (1986) 446-449): a cell counts as one body where its edge is below `opening` times its distance.
+#pragma once
+#include <span>
+
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+/// force[i] += what the others do to body i at x[i].
+template <class Real, int Dim>
+void add_attraction(const World<Real, Dim>& world, std::span<const Vector<Real, Dim>> x,
+                    std::span<Vector<Real, Dim>> force);
+
+/// -G m1 m2 / sqrt(r^2 + softening^2) over all pairs that include a body that moves; exact, O(N^2).
+template <class Real, int Dim>
+Real attraction_energy(const World<Real, Dim>& world);
+
+}  // namespace continuo

@@ -1,0 +1,70 @@
+// continuo/bodies/body.hpp
+// What one body is: plain data with defaults that make a ball.
+#pragma once
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <variant>
+
+#include <continuo/bodies/vector.hpp>
+
+namespace continuo {
+
+/// A ball in space, a disc in the plane. Units are the user's, lengths in one and the same.
+template <class Real>
+struct Sphere {
+  Real radius = Real(0.5);
+};
+/// What a body may be. Boxes, capsules and hulls will join it.
+template <class Real, int Dim>
+using Shape = std::variant<Sphere<Real>>;
+
+/// How a surface answers a contact. Two surfaces meet as `combined` says.
+template <class Real>
+struct Material {
+  Real restitution = Real(0);         // e: speed of parting over speed of approach, 0 to 1
+  Real friction = Real(0.5);          // Coulomb's: greatest tangential over normal impulse
+  Real rolling_resistance = Real(0);  // torque over normal force, a length in units of the radius
+};
+
+/// The geometric mean of frictions (one smooth surface makes a smooth contact), the greater restitution (a ball that
+/// bounces does so on any floor) and rolling resistance: what Box2D and most engines do.
+template <class Real>
+Material<Real> combined(const Material<Real>& a, const Material<Real>& b) {
+  using std::max, std::sqrt;
+  return {a.restitution > b.restitution ? a.restitution : b.restitution, sqrt(a.friction * b.friction),
+          a.rolling_resistance > b.rolling_resistance ? a.rolling_resistance : b.rolling_resistance};
+}
+
+template <class Real, int Dim>
+struct BodyDefinition {
+  Shape<Real, Dim> shape = Sphere<Real>{};
+  Vector<Real, Dim> position{}, velocity{};
+  Orientation<Real, Dim> orientation = upright<Real, Dim>();
+  Spin<Real, Dim> spin{};
+  std::optional<Real> mass{};  // without one: density times volume (area in the plane)
+  Real density = Real(1);
+  bool fixed = false;  // never moves, whatever meets it
+  Material<Real> material{};
+  std::uint32_t group = 0;  // below 32; see World::ignore
+};
+
+/// A body, for as long as it is there: a handle of one that was removed is known to be old.
+struct BodyHandle {
+  std::uint32_t slot = 0, generation = 0;
+  friend bool operator==(const BodyHandle&, const BodyHandle&) = default;
+};
+
+/// Volume of a ball, area of a disc.
+template <class Real, int Dim>
+Real volume(const Sphere<Real>& sphere) {
+  const Real r = sphere.radius, pi = Real(std::numbers::pi_v<long double>);
+  return Dim == 2 ? pi * r * r : Real(4) / Real(3) * pi * r * r * r;
+}
+/// Moment of inertia about the centre: 2/5 m r^2 of a ball, 1/2 m r^2 of a disc.
+template <class Real, int Dim>
+Real inertia(const Sphere<Real>& sphere, const Real& mass) {
+  return (Dim == 2 ? Real(1) / Real(2) : Real(2) / Real(5)) * mass * sphere.radius * sphere.radius;
+}
+
+}  // namespace continuo

@@ -1,0 +1,20 @@
+// continuo/bodies/forces.hpp
+// The forces of a world at any positions and velocities, not only the present ones: what integrators ask for.
+#pragma once
+#include <span>
+
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+/// force[i] = the sum of all forces on body i at x[i], v[i]; 0 of fixed bodies. All of size world.size(). O(N), with
+/// attraction O(N^2) or, where it has an opening, O(N log N).
+template <class Real, int Dim>
+void forces(const World<Real, Dim>& world, Real t, std::span<const Vector<Real, Dim>> x,
+            std::span<const Vector<Real, Dim>> v, std::span<Vector<Real, Dim>> force);
+
+/// Whether gravity is the only force, so that paths between collisions are parabolas.
+template <class Real, int Dim>
+bool only_gravity(const World<Real, Dim>& world);
+
+}  // namespace continuo

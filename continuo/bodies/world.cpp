@@ -1,0 +1,172 @@
+// continuo/bodies/world.cpp
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <continuo/bodies/forces.hpp>
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+namespace {
+
+template <class Real>
+bool is_positive(const Real& value) {
+  return value > Real(0) && value < std::numeric_limits<Real>::infinity();
+}
+template <class Real>
+bool is_part(const Real& value) {
+  return value >= Real(0) && value < std::numeric_limits<Real>::infinity();
+}
+
+template <class Real>
+std::string fault_of(const Material<Real>& material) {
+  if (!(material.restitution >= Real(0) && material.restitution <= Real(1)))
+    return "restitution must be between 0 (no bounce) and 1 (no loss)";
+  if (!is_part(material.friction)) return "friction must be 0 or more, and finite";
+  if (!is_part(material.rolling_resistance)) return "rolling_resistance must be 0 or more, and finite";
+  return {};
+}
+
+template <class Real, int Dim>
+std::string fault_of(const BodyDefinition<Real, Dim>& definition) {
+  const auto* sphere = std::get_if<Sphere<Real>>(&definition.shape);
+  if (sphere && !is_positive(sphere->radius)) return "the radius must be greater than 0, and finite";
+  if (!is_finite(definition.position)) return "the position must be finite";
+  if (!is_finite(definition.velocity)) return "the velocity must be finite";
+  if (!is_finite(definition.spin)) return "the spin must be finite";
+  if (!is_finite(definition.orientation) || (Dim == 3 && !is_positive(length(definition.orientation))))
+    return "the orientation must be finite, and in space a quaternion that is not 0";
+  if (definition.mass ? !is_positive(*definition.mass) : !is_positive(definition.density))
+    return "mass and density must be greater than 0, and finite; `fixed` is for bodies that never move";
+  if (definition.group >= 32) return "groups are numbered from 0 to 31";
+  return fault_of(definition.material);
+}
+
+}  // namespace
+
+template <class Real, int Dim>
+typename World<Real, Dim>::Added World<Real, Dim>::add(const BodyDefinition<Real, Dim>& definition) {
+  if (std::string fault = fault_of(definition); !fault.empty()) return {.handle = {}, .error = std::move(fault)};
+  const auto& sphere = std::get<Sphere<Real>>(definition.shape);
+  const Real m = definition.mass ? *definition.mass : definition.density * volume<Real, Dim>(sphere);
+  const Real j = inertia<Real, Dim>(sphere, m);
+  if (!is_positive(m) || !is_positive(j) || !is_positive(1 / m) || !is_positive(1 / j))
+    return {.handle = {},
+            .error = "mass or moment of inertia is beyond the numbers: the body is too small or too large"};
+
+  std::uint32_t slot = static_cast<std::uint32_t>(slots_.size());
+  if (free_slots_.empty()) {
+    slots_.emplace_back();
+  } else {
+    slot = free_slots_.back();
+    free_slots_.pop_back();
+  }
+  slots_[slot].index = static_cast<std::uint32_t>(size());
+  position.push_back(definition.position);
+  velocity.push_back(definition.fixed ? V{} : definition.velocity);
+  constant_force.emplace_back();
+  O turned_by = definition.orientation;
+  if constexpr (Dim == 3) turned_by *= 1 / length(turned_by);
+  orientation.push_back(turned_by);
+  spin.push_back(definition.fixed ? S{} : definition.spin);
+  radius.push_back(sphere.radius);
+  mass.push_back(m);
+  inverse_mass.push_back(definition.fixed ? Real(0) : 1 / m);
+  inverse_inertia.push_back(definition.fixed ? Real(0) : 1 / j);
+  material.push_back(definition.material);
+  group_.push_back(definition.group);
+  slot_of_.push_back(slot);
+  return {.handle = {slot, slots_[slot].generation}, .error = {}};
+}
+
+template <class Real, int Dim>
+bool World<Real, Dim>::remove(BodyHandle body) {
+  if (!contains(body)) return false;
+  const std::size_t i = index(body), last = size() - 1;
+  slots_[slot_of_[last]].index = static_cast<std::uint32_t>(i);
+  slots_[body.slot].index = nowhere;
+  ++slots_[body.slot].generation;
+  free_slots_.push_back(body.slot);
+  for_each_array([&](auto& values) {
+    values[i] = values[last];
+    values.pop_back();
+  });
+  return true;
+}
+
+template <class Real, int Dim>
+std::string World<Real, Dim>::add_wall(Wall<Real, Dim> wall) {
+  const Real size_of_normal = length(wall.normal);
+  if (!is_positive(size_of_normal)) return "the normal of a wall must be finite and not 0";
+  if (!(wall.offset - wall.offset == Real(0))) return "the offset of a wall must be finite";
+  if (std::string fault = fault_of(wall.material); !fault.empty()) return fault;
+  wall.normal *= 1 / size_of_normal;
+  walls_.push_back(wall);
+  return {};
+}
+
+template <class Real, int Dim>
+std::string World<Real, Dim>::add_container(const V& lower, const V& upper, const Material<Real>& of_walls) {
+  for (std::size_t axis = 0; axis < lower.size(); ++axis)
+    if (!(lower[axis] < upper[axis]))
+      return "the lower corner of a container must be below the upper one on every axis";
+  if (!is_finite(lower) || !is_finite(upper)) return "the corners of a container must be finite";
+  if (std::string fault = fault_of(of_walls); !fault.empty()) return fault;
+  for (std::size_t axis = 0; axis < lower.size(); ++axis) {
+    V up, down;
+    up[axis] = Real(1);
+    down[axis] = Real(-1);
+    walls_.push_back({.normal = up, .offset = lower[axis], .material = of_walls});
+    walls_.push_back({.normal = down, .offset = -upper[axis], .material = of_walls});
+  }
+  return {};
+}
+
+template <class Real, int Dim>
+Real kinetic_energy(const World<Real, Dim>& world) {
+  Real sum(0);
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    if (world.is_fixed(i)) continue;
+    sum += squared(world.velocity[i]) / world.inverse_mass[i] + squared(world.spin[i]) / world.inverse_inertia[i];
+  }
+  return sum / 2;
+}
+
+template <class Real, int Dim>
+Vector<Real, Dim> momentum(const World<Real, Dim>& world) {
+  Vector<Real, Dim> sum;
+  for (std::size_t i = 0; i < world.size(); ++i) sum += world.mass[i] * world.velocity[i];
+  return sum;
+}
+
+template <class Real, int Dim>
+Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world) {
+  Spin<Real, Dim> sum;
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    if (world.is_fixed(i)) continue;
+    sum += moment(world.position[i], world.mass[i] * world.velocity[i]);
+    sum += world.spin[i] * (1 / world.inverse_inertia[i]);
+  }
+  return sum;
+}
+
+template class World<float, 2>;
+template class World<float, 3>;
+template class World<double, 2>;
+template class World<double, 3>;
+
+template float kinetic_energy(const World<float, 2>&);
+template float kinetic_energy(const World<float, 3>&);
+template double kinetic_energy(const World<double, 2>&);
+template double kinetic_energy(const World<double, 3>&);
+template Vector<float, 2> momentum(const World<float, 2>&);
+template Vector<float, 3> momentum(const World<float, 3>&);
+template Vector<double, 2> momentum(const World<double, 2>&);
+template Vector<double, 3> momentum(const World<double, 3>&);
+template Spin<float, 2> angular_momentum(const World<float, 2>&);
+template Spin<float, 3> angular_momentum(const World<float, 3>&);
+template Spin<double, 2> angular_momentum(const World<double, 2>&);
+template Spin<double, 3> angular_momentum(const World<double, 3>&);
+
+}  // namespace continuo

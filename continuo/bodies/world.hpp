@@ -1,0 +1,165 @@
+// continuo/bodies/world.hpp
+// What there is and how it moves at this instant: bodies, walls, springs and other forces. A value: a copy is a
+// snapshot.
+//
+//   World<double, 3> world;
+//   world.gravity = {{0, 0, -9.81}};
+//   world.add_wall({.normal = {{0, 0, 1}}});                                       // the floor z = 0
+//   const auto ball = world.add({.position = {{0, 0, 10}}, .material = {.restitution = 1}});
+//   if (!ball) std::cerr << ball.error;
+//   ExactMotion motion(world);  motion.advance_to(100);
+//   world.position(ball.handle)
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <continuo/bodies/body.hpp>
+
+namespace continuo {
+
+/// The points x with normal . x >= offset are free; a body touches where normal . x - radius = offset.
+template <class Real, int Dim>
+struct Wall {
+  Vector<Real, Dim> normal = [] {
+    Vector<Real, Dim> up;
+    up[static_cast<std::size_t>(Dim - 1)] = Real(1);
+    return up;
+  }();
+  Real offset = Real(0);
+  Material<Real> material{};
+};
+
+/// Pulls two bodies, or one body to a point, together with stiffness * (distance - rest_length) + damping * its rate.
+template <class Real, int Dim>
+struct Spring {
+  BodyHandle a{};
+  std::variant<BodyHandle, Vector<Real, Dim>> b = Vector<Real, Dim>{};
+  Real rest_length = Real(0), stiffness = Real(1), damping = Real(0);
+};
+
+/// Against the velocity of every body: linear * v + quadratic * |v| * v.
+template <class Real>
+struct Drag {
+  Real linear = Real(0), quadratic = Real(0);
+};
+
+/// Every pair attracts itself by constant * m1 * m2 * r / (r^2 + softening^2)^(3/2), fixed bodies too.
+template <class Real>
+struct Attraction {
+  Real constant = Real(0), softening = Real(0);
+  Real opening = Real(0);  // of the tree: 0 sums up all pairs, 0.5 is usual, see attraction.hpp
+};
+
+template <class Real, int Dim>
+class World;
+
+/// Forces of the user's own: adds to force[i], of body i at x[i], v[i]. Without a potential they are no part of energy.
+template <class Real, int Dim>
+using ForceLaw = std::function<void(const World<Real, Dim>& world, Real t, std::span<const Vector<Real, Dim>> x,
+                                    std::span<const Vector<Real, Dim>> v, std::span<Vector<Real, Dim>> force)>;
+
+template <class Real, int Dim>
+class World {
+  static_assert(Dim == 2 || Dim == 3);
+
+ public:
+  using V = Vector<Real, Dim>;
+  using S = Spin<Real, Dim>;
+  using O = Orientation<Real, Dim>;
+
+  // Forces; potential energy is known of all but the last two.
+  V gravity{};
+  std::vector<Spring<Real, Dim>> springs;
+  Attraction<Real> attraction{};
+  Drag<Real> drag{};
+  std::vector<ForceLaw<Real, Dim>> force_laws;
+  Real time = Real(0);
+
+  struct Added {
+    BodyHandle handle{};
+    std::string error{};  // what is wrong with the definition and how to mend it; empty where it was added
+    explicit operator bool() const { return error.empty(); }
+  };
+  /// Refuses what has no size or mass or is not finite. Amortised O(1).
+  Added add(const BodyDefinition<Real, Dim>& definition);
+  /// False where it was not there. O(1): the last body takes its place.
+  bool remove(BodyHandle handle);
+  bool contains(BodyHandle handle) const {
+    return handle.slot < slots_.size() && slots_[handle.slot].generation == handle.generation &&
+           slots_[handle.slot].index != nowhere;
+  }
+  /// The handle must be of a body that is there.
+  std::size_t index(BodyHandle handle) const { return slots_[handle.slot].index; }
+  BodyHandle handle(std::size_t index) const { return {slot_of_[index], slots_[slot_of_[index]].generation}; }
+
+  /// Empty where it was added: the normal must be finite and not zero; it is made a unit.
+  std::string add_wall(Wall<Real, Dim> wall);
+  /// The inside of a box with its faces along the axes.
+  std::string add_container(const V& lower, const V& upper, const Material<Real>& material = {});
+  std::span<const Wall<Real, Dim>> walls() const { return walls_; }
+
+  /// Bodies of groups a and b pass through each other from here on.
+  void ignore(std::uint32_t a, std::uint32_t b) {
+    ignored_[a] |= 1u << b;
+    ignored_[b] |= 1u << a;
+  }
+  bool collide(std::size_t i, std::size_t j) const {
+    return (ignored_[group_[i]] >> group_[j] & 1u) == 0 && (inverse_mass[i] > 0 || inverse_mass[j] > 0);
+  }
+
+  std::size_t size() const { return position.size(); }
+
+  // By index: body i has position[i], ... . An index holds until a body is removed; a handle for ever.
+  std::vector<V> position, velocity, constant_force;
+  std::vector<O> orientation;
+  std::vector<S> spin;
+  std::vector<Real> radius, mass, inverse_mass, inverse_inertia;  // inverses are 0 of fixed bodies
+  std::vector<Material<Real>> material;
+
+  const V& position_of(BodyHandle body) const { return position[index(body)]; }
+  const V& velocity_of(BodyHandle body) const { return velocity[index(body)]; }
+  bool is_fixed(std::size_t i) const { return inverse_mass[i] == Real(0); }
+
+ private:
+  static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
+  struct Slot {
+    std::uint32_t index = nowhere, generation = 0;
+  };
+  template <class Act>
+  void for_each_array(Act&& act) {
+    act(position), act(velocity), act(constant_force), act(orientation), act(spin), act(radius), act(mass),
+        act(inverse_mass), act(inverse_inertia), act(material), act(group_), act(slot_of_);
+  }
+
+  std::vector<std::uint32_t> group_, slot_of_;
+  std::vector<Slot> slots_;
+  std::vector<std::uint32_t> free_slots_;
+  std::vector<Wall<Real, Dim>> walls_;
+  std::array<std::uint32_t, 32> ignored_{};
+};
+
+/// Sums over all bodies that move. Angular momentum is about the origin, spin included.
+template <class Real, int Dim>
+Real kinetic_energy(const World<Real, Dim>& world);
+/// Of gravity, constant forces, springs and attraction.
+template <class Real, int Dim>
+Real potential_energy(const World<Real, Dim>& world);
+template <class Real, int Dim>
+Vector<Real, Dim> momentum(const World<Real, Dim>& world);
+template <class Real, int Dim>
+Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world);
+
+extern template class World<float, 2>;
+extern template class World<float, 3>;
+extern template class World<double, 2>;
+extern template class World<double, 3>;
+
+}  // namespace continuo
