@@ -1,0 +1,71 @@
+// continuo/bodies/exact_motion.hpp
+// Spheres under gravity alone, or no force at all, from collision to collision: every path between is a parabola, every
+// collision time comes from a closed form, and energy and momentum hold to rounding. No step, no tolerance.
+//
+// Each body has a clock of its own and one next event, a collision or the crossing into another cell; an event moves
+// the bodies that take part and nobody else. A predicted collision whose partner has collided since is predicted again
+// when its time comes. B. Lubachevsky, "How to simulate billiards and similar systems", J. Comp. Phys. 94 (1991)
+// 255-283.
+//
+// Several collisions at one instant are resolved one after the other, pairs of lower numbers first, until nobody
+// approaches: Newton's cradle sends out as many as came in.
+//
+// Where restitution is below 1, collisions can pile up without end (inelastic collapse). A body that collides twice
+// within `contact_time` keeps its energy the second time (S. Luding, S. McNamara, Granular Matter 1 (1998) 113-128),
+// and one that would leave a wall for less than that stays on it.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+template <class Real>
+struct ExactOptions {
+  std::optional<Real> contact_time{};  // without one: a hundred-thousandth of the time in which a body falls its
+                                       // radius, or flies it where there is no gravity
+  std::size_t most_events = std::numeric_limits<std::size_t>::max();  // in one call of advance_to
+};
+
+struct ExactStatistics {
+  std::size_t collisions = 0;       // of two bodies
+  std::size_t wall_collisions = 0;  //
+  std::size_t crossings = 0;        // of cells
+  std::size_t outdated = 0;         // predictions made again
+};
+
+template <class Real, int Dim>
+class ExactMotion {
+ public:
+  /// The world is moved; it must not be changed but through this, or `refresh` must follow. Forces but gravity are not
+  /// for this motion: see `only_gravity`.
+  explicit ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options = {});
+  ExactMotion(ExactMotion&&) noexcept;
+  ExactMotion& operator=(ExactMotion&&) noexcept;
+  ~ExactMotion();
+
+  /// Brings the world to time t, all its bodies to the same instant. Empty, or what went wrong; the world is then at
+  /// the time of the last event.
+  std::string advance_to(const Real& t);
+  /// Predicts everything again from the world as it is.
+  void refresh();
+
+  const ExactStatistics& statistics() const;
+
+ private:
+  class Flight;
+  std::unique_ptr<Flight> flight_;
+};
+
+extern template class ExactMotion<float, 2>;
+extern template class ExactMotion<float, 3>;
+extern template class ExactMotion<double, 2>;
+extern template class ExactMotion<double, 3>;
+
+}  // namespace continuo
