@@ -225,7 +225,7 @@ class ExactMotion<Real, Dim>::Flight {
 
   void handle(std::uint32_t i) {
     Ball& ball = balls_[i];
-    if (ball.crossing_time < ball.collision_time) return cross(i);
+    if (ball.crossing_time <= ball.collision_time) return cross(i);
     if (ball.partner >= first_wall && ball.partner < look_again) return hit_wall(i, ball.partner - first_wall);
     if (ball.partner == look_again || balls_[ball.partner].collisions != ball.collisions_of_partner) {
       ++statistics.outdated;
@@ -250,6 +250,7 @@ class ExactMotion<Real, Dim>::Flight {
         --lower[axis], ++upper[axis];
       }
     }
+    if (ball.partner == look_again) return predict(i);
     ball.crossing_time = never;
     predict_crossing(ball);
     grid_.for_each_in(lower, upper, [&](std::uint32_t j) { predict_pair(i, j); });

@@ -1,0 +1,233 @@
+// Spheres from collision to collision against what mechanics says of them.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <continuo/bodies/exact_motion.hpp>
+
+namespace continuo {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+const Material<double> elastic{.restitution = 1, .friction = 0};
+
+/// `count` spheres of radius 1/2 on a grid in a box of edge `edge`, all at speed 5 in random directions.
+template <int Dim>
+World<double, Dim> gas(std::size_t count, double edge, const Material<double>& material, unsigned seed = 1) {
+  World<double, Dim> world;
+  Vector<double, Dim> upper;
+  for (std::size_t axis = 0; axis < upper.size(); ++axis) upper[axis] = edge;
+  EXPECT_EQ(world.add_container({}, upper, material), "");
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  std::size_t side = 1;
+  while (std::pow(side, Dim) < static_cast<double>(count)) ++side;
+  for (std::size_t i = 0; i < count; ++i) {
+    BodyDefinition<double, Dim> ball{.material = material};
+    std::size_t rest = i;
+    for (std::size_t axis = 0; axis < upper.size(); ++axis, rest /= side) {
+      ball.position[axis] = (static_cast<double>(rest % side) + 0.5) * edge / static_cast<double>(side);
+      ball.velocity[axis] = normal(engine);
+    }
+    ball.velocity *= 5 / length(ball.velocity);
+    EXPECT_TRUE(world.add(ball));
+  }
+  return world;
+}
+
+template <int Dim>
+double deepest_overlap(const World<double, Dim>& world) {
+  double deepest = 0;
+  for (std::size_t i = 0; i < world.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      deepest = std::max(deepest, world.radius[i] + world.radius[j] - length(world.position[i] - world.position[j]));
+  return deepest;
+}
+
+// Each collision changes the energy of its balls by an ulp or two: the normal is a unit to that. Places are right to an
+// ulp of the edge of the box.
+template <int Dim>
+void keeps_energy_and_room(std::size_t count, double edge, double duration) {
+  World<double, Dim> world = gas<Dim>(count, edge, elastic);
+  const double energy = kinetic_energy(world);
+  ExactMotion motion(world);
+  ASSERT_EQ(motion.advance_to(duration), "");
+  EXPECT_GT(motion.statistics().collisions, 20 * count);
+  const double collisions_of_each = static_cast<double>(2 * motion.statistics().collisions / count);
+  EXPECT_NEAR(kinetic_energy(world) / energy, 1, 2 * epsilon * collisions_of_each);
+  EXPECT_LT(deepest_overlap(world), 4 * 20 * epsilon);
+  for (const auto& x : world.position)
+    for (std::size_t axis = 0; axis < x.size(); ++axis) {
+      EXPECT_GT(x[axis], 0.5 - 20 * epsilon);
+      EXPECT_LT(x[axis], edge - 0.5 + 20 * epsilon);
+    }
+}
+TEST(ExactMotion, KeepsTheEnergyOfAGas) {
+  keeps_energy_and_room<3>(1000, 20, 60);
+}
+TEST(ExactMotion, KeepsTheEnergyOfAGasInThePlane) {
+  keeps_energy_and_room<2>(400, 40, 60);
+}
+
+// Away from walls, momentum and angular momentum change by rounding alone, friction and spin or not.
+TEST(ExactMotion, KeepsMomentumAndAngularMomentum) {
+  World<double, 3> world;
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < 125; ++i) {
+    const Vector<double, 3> x{{1.5 * (i % 5 - 2), 1.5 * (i / 5 % 5 - 2), 1.5 * (i / 25 - 2)}};
+    const double r = 0.4 + 0.1 * uniform(engine);
+    ASSERT_TRUE(
+        world.add({.shape = Sphere<double>{r},
+                   .position = x,
+                   .velocity = x * -1.0 + Vector<double, 3>{{uniform(engine), uniform(engine), uniform(engine)}},
+                   .spin = {{uniform(engine), uniform(engine), uniform(engine)}},
+                   .material = {.restitution = 0.8, .friction = 0.5}}));
+  }
+  const auto p = momentum(world), l = angular_momentum(world);
+  ExactMotion motion(world);
+  ASSERT_EQ(motion.advance_to(5), "");
+  EXPECT_GT(motion.statistics().collisions, 200u);
+  // Sums of 125 products of size 10, each rounded at every collision.
+  const double rounding = 125 * 10 * epsilon * 10;
+  EXPECT_LT(length(momentum(world) - p), rounding);
+  EXPECT_LT(length(angular_momentum(world) - l), rounding);
+}
+
+// E(t) = E(0) / (1 + t / tau)^2 for a gas whose restitution does not depend on speed (P. K. Haff, J. Fluid Mech. 134
+// (1983) 401-430). So 1/sqrt(E) grows in a straight line while the gas stays homogeneous. The line through the ends
+// meets the middle within what 1000 balls fluctuate by, 1/sqrt(1000) = 3 per cent.
+template <int Dim>
+void follows_haff(std::size_t count, double edge) {
+  World<double, Dim> world = gas<Dim>(count, edge, {.restitution = 0.9, .friction = 0});
+  const auto mixed = [&] {  // let the speeds get their distribution first
+    ExactMotion motion(world);
+    EXPECT_EQ(motion.advance_to(2), "");
+  };
+  mixed();
+  std::vector<double> slowness;
+  ExactMotion motion(world);
+  for (const double t : {2.0, 7.0, 12.0}) {
+    ASSERT_EQ(motion.advance_to(t), "");
+    slowness.push_back(1 / std::sqrt(kinetic_energy(world)));
+  }
+  EXPECT_GT(slowness[2], 1.5 * slowness[0]);
+  EXPECT_NEAR((slowness[0] + slowness[2]) / 2 / slowness[1], 1, 0.03);
+}
+TEST(ExactMotion, CoolsAsHaffSays) {
+  follows_haff<3>(1000, 16);
+}
+TEST(ExactMotion, CoolsAsHaffSaysInThePlane) {
+  follows_haff<2>(1000, 50);
+}
+
+// Every impact is found and reversed to some ulp of the speed, 14: of the height, 10, some tens of ulps in 35 bounces.
+TEST(ExactMotion, AnElasticBallReachesItsHeightAgain) {
+  World<double, 2> world;
+  world.gravity = {{0, -9.81}};
+  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add({.position = {{0, 10}}, .material = {.restitution = 1}}));
+  ExactMotion motion(world);
+  const double fall = std::sqrt(2 * 9.5 / 9.81);
+  for (int bounce = 1; 2 * bounce * fall < 100; ++bounce) {
+    ASSERT_EQ(motion.advance_to(2 * bounce * fall), "");
+    EXPECT_NEAR(world.position[0][1], 10, 1e-12) << bounce;
+  }
+}
+
+// Heights fall by e^2 a bounce, and after the last, at fall (1 + e) / (1 - e), the ball lies still.
+TEST(ExactMotion, ADampedBallComesToRest) {
+  World<double, 3> world;
+  world.gravity = {{0, 0, -10}};
+  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(
+      world.add({.position = {{0, 0, 5.5}}, .velocity = {{2, 0, 0}}, .material = {.restitution = 0.5, .friction = 0}}));
+  ExactMotion motion(world);
+  const double fall = 1;  // from 5 at g = 10
+  ASSERT_EQ(motion.advance_to(fall + 0.5 * fall), "");
+  EXPECT_NEAR(world.position[0][2], 0.5 + 5 * 0.25, 1e-14);
+  ASSERT_EQ(motion.advance_to(100), "");
+  EXPECT_EQ(world.velocity[0], (Vector<double, 3>{{2, 0, 0}}));
+  EXPECT_NEAR(world.position[0][2], 0.5, 1e-9);  // half of g times the contact time squared
+  EXPECT_LT(motion.statistics().wall_collisions, 40u);
+}
+
+// As many balls go out as came in, at their speed, with and without a gap.
+TEST(ExactMotion, NewtonsCradleSendsOutAsManyAsCameIn) {
+  for (const double gap : {0.0, 0.001}) {
+    for (const int in : {1, 2, 3}) {
+      World<double, 3> world;
+      for (int i = 0; i < 5; ++i) {
+        const bool moves = i < in;
+        ASSERT_TRUE(world.add({.position = {{i * (1 + gap) - (moves ? 1.0 : 0.0), 0, 0}},
+                               .velocity = {{moves ? 1.0 : 0.0, 0, 0}},
+                               .material = elastic}));
+      }
+      ExactMotion motion(world);
+      ASSERT_EQ(motion.advance_to(2), "");
+      for (int i = 0; i < 5; ++i)
+        EXPECT_NEAR(world.velocity[static_cast<std::size_t>(i)][0], i >= 5 - in ? 1 : 0, 1e-12)
+            << gap << ' ' << in << ' ' << i;
+    }
+  }
+}
+
+// A ball that bounces about on a fixed sphere and the floor under gravity: roots of a polynomial of degree 4. Energy
+// says whether each was right.
+TEST(ExactMotion, FindsFixedSpheresOnCurvedPaths) {
+  World<double, 3> world;
+  world.gravity = {{0, 0, -9.81}};
+  ASSERT_EQ(world.add_container({{-3, -3, 0}}, {{3, 3, 50}}, elastic), "");
+  ASSERT_TRUE(world.add({.shape = Sphere<double>{1.0}, .fixed = true, .material = elastic}));
+  ASSERT_TRUE(world.add({.shape = Sphere<double>{0.3}, .position = {{1, 1, 1}}, .fixed = true, .material = elastic}));
+  ASSERT_TRUE(world.add(
+      {.shape = Sphere<double>{0.2}, .position = {{0.1, 0.2, 4}}, .velocity = {{0.3, 0, 0}}, .material = elastic}));
+  const double energy = kinetic_energy(world) + potential_energy(world);
+  ExactMotion motion(world);
+  for (int second = 1; second <= 60; ++second) {
+    ASSERT_EQ(motion.advance_to(second), "");
+    EXPECT_NEAR((kinetic_energy(world) + potential_energy(world)) / energy, 1, 1e-12);
+    EXPECT_LT(deepest_overlap(world), 1e-12);
+  }
+  EXPECT_GT(motion.statistics().collisions, 10u);
+}
+
+// Where one looks makes no difference to where one gets: advance_to leaves the prediction alone.
+TEST(ExactMotion, LookingDoesNotDisturb) {
+  World<double, 3> a = gas<3>(200, 12, elastic), b = a;
+  ExactMotion once(a), often(b);
+  ASSERT_EQ(once.advance_to(3), "");
+  for (int i = 1; i <= 300; ++i) ASSERT_EQ(often.advance_to(i == 300 ? 3 : i * 0.01), "");
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.velocity, b.velocity);
+}
+
+// Fast, small, far apart: a ball at 1 km/s meets one of a centimetre, and a light ball one of 1e12 times its mass.
+TEST(ExactMotion, NothingPassesThrough) {
+  World<double, 3> world;
+  ASSERT_TRUE(world.add(
+      {.shape = Sphere<double>{0.005}, .position = {{-1000, 0, 0}}, .velocity = {{1000, 0, 0}}, .material = elastic}));
+  ASSERT_TRUE(world.add({.shape = Sphere<double>{0.005}, .mass = 1e12, .material = elastic}));
+  ExactMotion motion(world);
+  ASSERT_EQ(motion.advance_to(2), "");
+  EXPECT_NEAR(world.velocity[0][0], -1000, 1e-8);  // 2 / 1e12 of it stays with the heavy one
+  EXPECT_NEAR(world.position[0][0], -1000.02, 1e-6);
+}
+
+TEST(ExactMotion, SaysWhatItCannotDo) {
+  World<double, 3> world;
+  ASSERT_TRUE(world.add({}));
+  ExactMotion motion(world);
+  EXPECT_NE(motion.advance_to(-1), "");
+  EXPECT_NE(motion.advance_to(std::numeric_limits<double>::quiet_NaN()), "");
+  world.drag.linear = 1;
+  EXPECT_NE(motion.advance_to(1), "");
+}
+
+}  // namespace
+}  // namespace continuo
