@@ -1,0 +1,62 @@
+// continuo/bodies/fast_motion.hpp
+// Many bodies in real time: fixed steps cut into substeps, contacts as soft constraints with friction, rolling
+// resistance and warm starting, impacts located within the substep and reversed with the energy that restitution
+// leaves.
+//
+//   FastMotion motion(world, {.step = 1.0 / 60});
+//   motion.advance();                                   // one step
+//
+// What is approximate: contacts that last are soft, a pile yields by some thousandths of a radius; friction and resting
+// are as good as the few iterations of a step. What is not: free flight follows its parabola, and an impact faster than
+// gravity acts in a substep happens at its instant, whatever the speed: nothing tunnels, a cradle's balls pass on
+// theirs.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+template <class Real>
+struct FastOptions {
+  Real step = Real(1) / Real(60);
+  int substeps = 4;             // more are stiffer and cost as much more
+  Real hertz = Real(120);       // of a contact; a quarter of the rate of substeps at most
+  Real damping = Real(10);      // ratio: 1 is critical; overdamped contacts do not jump
+  Real fastest_push = Real(4);  // with which overlapping bodies part, length per time
+};
+
+struct FastStatistics {
+  std::size_t steps = 0, lists = 0, contacts = 0, colours = 0, impacts = 0;
+};
+
+template <class Real, int Dim>
+class FastMotion {
+ public:
+  /// The world is moved; what is changed in it between steps is seen, but bodies that come or go need a `refresh`.
+  explicit FastMotion(World<Real, Dim>& world, const FastOptions<Real>& options = {});
+  FastMotion(FastMotion&&) noexcept;
+  FastMotion& operator=(FastMotion&&) noexcept;
+  ~FastMotion();
+
+  /// One step. Empty, or what went wrong: the world is then as it was before the step.
+  std::string advance();
+  void refresh();
+
+  /// The deepest overlap of two bodies, or of one and a wall, now.
+  Real deepest_overlap() const;
+  const FastStatistics& statistics() const;
+
+ private:
+  class Stepper;
+  std::unique_ptr<Stepper> stepper_;
+};
+
+extern template class FastMotion<float, 2>;
+extern template class FastMotion<float, 3>;
+extern template class FastMotion<double, 2>;
+extern template class FastMotion<double, 3>;
+
+}  // namespace continuo
