@@ -1,0 +1,228 @@
+// Spheres, ours and Bullet's, in turn in one process: an elastic gas (exact motion) and a heap that falls into a box
+// (fast motion). What is compared is the time; what each makes of the physics stands beside it.
+//   against_bullet [REPEATS]
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <btBulletDynamicsCommon.h>
+
+#include <continuo/bodies/exact_motion.hpp>
+#include <continuo/bodies/fast_motion.hpp>
+
+namespace continuo::bench {
+namespace {
+
+double processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// A scene: balls of radius 1/2 and density 1 in a box.
+struct Scene {
+  std::vector<Vector<double, 3>> position, velocity;
+  Vector<double, 3> gravity{}, upper{};
+  Material<double> material{};
+  double duration = 0, step = 1.0 / 60;
+};
+
+Scene gas(int count, double edge, double duration) {
+  Scene scene{.upper = {{edge, edge, edge}}, .material = {1, 0, 0}, .duration = duration};
+  std::mt19937 engine(1);
+  std::normal_distribution<double> normal;
+  const int side = static_cast<int>(std::ceil(std::cbrt(count)));
+  for (int i = 0; i < count; ++i) {
+    const double spacing = edge / side;
+    scene.position.push_back(
+        {{(i % side + 0.5) * spacing, (i / side % side + 0.5) * spacing, (i / side / side + 0.5) * spacing}});
+    Vector<double, 3> v{{normal(engine), normal(engine), normal(engine)}};
+    scene.velocity.push_back(v * (5 / length(v)));
+  }
+  return scene;
+}
+
+Scene heap(int count) {
+  const double edge = 40 * std::sqrt(count / 10000.0);
+  const int side = static_cast<int>(std::lround(edge * 0.9));
+  Scene scene{.gravity = {{0, 0, -9.81}}, .upper = {{edge, edge, 1e4}}, .material = {0, 0.5, 0}, .duration = 10};
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> jitter(-0.02, 0.02);
+  for (int i = 0; i < count; ++i) {
+    const double spacing = edge / side;
+    scene.position.push_back({{(i % side + 0.5) * spacing + jitter(engine),
+                               (i / side % side + 0.5) * spacing + jitter(engine), 1 + 1.1 * (i / side / side)}});
+    scene.velocity.push_back({});
+  }
+  return scene;
+}
+
+struct Result {
+  double seconds = std::numeric_limits<double>::infinity();
+  double energy = 0;   // kinetic, at the end over that at the beginning; or itself where that is 0
+  double overlap = 0;  // the deepest at the end
+};
+
+double deepest_overlap(const std::vector<Vector<double, 3>>& x) {
+  double deepest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double square = squared(x[i] - x[j]);
+      if (square < 1) deepest = std::max(deepest, 1 - std::sqrt(square));
+    }
+  return deepest;
+}
+
+template <class Real>
+World<Real, 3> world_of(const Scene& scene) {
+  const auto as = [](const Vector<double, 3>& v) {
+    return Vector<Real, 3>{{static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])}};
+  };
+  const Material<Real> material{static_cast<Real>(scene.material.restitution),
+                                static_cast<Real>(scene.material.friction), 0};
+  World<Real, 3> world;
+  world.gravity = as(scene.gravity);
+  world.add_container({}, as(scene.upper), material);
+  for (std::size_t i = 0; i < scene.position.size(); ++i)
+    world.add({.position = as(scene.position[i]), .velocity = as(scene.velocity[i]), .material = material});
+  return world;
+}
+
+template <class Real>
+Result judged(const Scene& scene, const World<Real, 3>& before, const World<Real, 3>& after, double seconds) {
+  std::vector<Vector<double, 3>> x;
+  for (const auto& at : after.position) x.push_back({{at[0], at[1], at[2]}});
+  const double start = kinetic_energy(before), end = kinetic_energy(after);
+  static_cast<void>(scene);
+  return {seconds, start > 0 ? end / start : end, deepest_overlap(x)};
+}
+
+Result by_exact_motion(const Scene& scene) {
+  const World<double, 3> before = world_of<double>(scene);
+  World<double, 3> world = before;
+  const double begin = processor_seconds();
+  ExactMotion<double, 3> motion(world);
+  if (const std::string error = motion.advance_to(scene.duration); !error.empty()) std::puts(error.c_str());
+  return judged(scene, before, world, processor_seconds() - begin);
+}
+
+template <class Real>
+Result by_fast_motion(const Scene& scene) {
+  const World<Real, 3> before = world_of<Real>(scene);
+  World<Real, 3> world = before;
+  const double begin = processor_seconds();
+  FastMotion<Real, 3> motion(world);
+  for (int i = 0; i < std::lround(scene.duration / scene.step); ++i)
+    if (const std::string error = motion.advance(); !error.empty()) std::puts(error.c_str());
+  return judged(scene, before, world, processor_seconds() - begin);
+}
+
+/// Ten iterations, steps of 1/60, sleeping off; planes for the box.
+Result by_bullet(const Scene& scene) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broad_phase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broad_phase, &solver, &configuration);
+  world.getSolverInfo().m_numIterations = 10;
+  const auto as = [](const Vector<double, 3>& v) {
+    return btVector3(static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2]));
+  };
+  world.setGravity(as(scene.gravity));
+  std::vector<std::unique_ptr<btCollisionShape>> shapes;
+  std::vector<std::unique_ptr<btMotionState>> states;
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+  const auto add = [&](btCollisionShape* shape, double mass, const btVector3& at, const btVector3& velocity) {
+    btVector3 inertia(0, 0, 0);
+    if (mass > 0) shape->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+    states.push_back(std::make_unique<btDefaultMotionState>(btTransform(btQuaternion::getIdentity(), at)));
+    btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(mass), states.back().get(), shape, inertia);
+    info.m_restitution = static_cast<btScalar>(scene.material.restitution);
+    info.m_friction = static_cast<btScalar>(scene.material.friction);
+    bodies.push_back(std::make_unique<btRigidBody>(info));
+    bodies.back()->setLinearVelocity(velocity);
+    bodies.back()->setActivationState(DISABLE_DEACTIVATION);
+    world.addRigidBody(bodies.back().get());
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {1, -1}) {
+      btVector3 normal(0, 0, 0);
+      normal[axis] = static_cast<btScalar>(side);
+      shapes.push_back(std::make_unique<btStaticPlaneShape>(
+          normal, side > 0 ? btScalar(0) : static_cast<btScalar>(-scene.upper[static_cast<std::size_t>(axis)])));
+      add(shapes.back().get(), 0, btVector3(0, 0, 0), btVector3(0, 0, 0));
+    }
+  shapes.push_back(std::make_unique<btSphereShape>(btScalar(0.5)));
+  const double mass = volume<double, 3>(Sphere<double>{0.5});
+  for (std::size_t i = 0; i < scene.position.size(); ++i)
+    add(shapes.back().get(), mass, as(scene.position[i]), as(scene.velocity[i]));
+  const auto energy = [&] {
+    double sum = 0;
+    for (const auto& body : bodies)
+      if (body->getInvMass() > 0)
+        sum += mass / 2 * body->getLinearVelocity().length2() + 0.1 * mass / 2 * body->getAngularVelocity().length2();
+    return sum;
+  };
+  const double start = energy(), begin = processor_seconds();
+  for (int i = 0; i < std::lround(scene.duration / scene.step); ++i)
+    world.stepSimulation(static_cast<btScalar>(scene.step), 0, static_cast<btScalar>(scene.step));
+  const double seconds = processor_seconds() - begin, end = energy();
+  std::vector<Vector<double, 3>> x;
+  for (const auto& body : bodies) {
+    const btVector3 at = body->getWorldTransform().getOrigin();
+    if (body->getInvMass() > 0) x.push_back({{at.x(), at.y(), at.z()}});
+  }
+  for (const auto& body : bodies) world.removeRigidBody(body.get());
+  return {seconds, start > 0 ? end / start : end, deepest_overlap(x)};
+}
+
+void print(const char* scene, const char* solver, const Result& result, const Result& peer) {
+  std::printf("| %s | %s | %.3g s | **%.3f** (1/%.1f) | %.6g | %.4f |\n", scene, solver, result.seconds,
+              result.seconds / peer.seconds, peer.seconds / result.seconds, result.energy, result.overlap);
+  std::fflush(stdout);
+}
+
+template <class Run>
+void take_less(Result& least, Run&& run) {
+  const Result result = run();
+  if (result.seconds < least.seconds) least = result;
+}
+
+}  // namespace
+}  // namespace continuo::bench
+
+int main(int count, char** arguments) {
+  using namespace continuo::bench;
+  const int repeats = count > 1 ? std::max(1, std::atoi(arguments[1])) : 2;
+  std::puts(
+      "| Scene | Solver | Time | Part of Bullet's | Kinetic energy | Deepest overlap |\n|---|---|---|---|---|---|");
+  {
+    const Scene scene = gas(1000, 20, 60);
+    Result ours, theirs;
+    for (int i = 0; i < repeats; ++i) {
+      take_less(ours, [&] { return by_exact_motion(scene); });
+      take_less(theirs, [&] { return by_bullet(scene); });
+    }
+    print("gas of 1,000, 60 s", "exact", ours, theirs);
+    print("gas of 1,000, 60 s", "bullet", theirs, theirs);
+  }
+  {
+    const Scene scene = heap(10000);
+    Result single, full, theirs;
+    for (int i = 0; i < repeats; ++i) {
+      take_less(single, [&] { return by_fast_motion<float>(scene); });
+      take_less(full, [&] { return by_fast_motion<double>(scene); });
+      take_less(theirs, [&] { return by_bullet(scene); });
+    }
+    print("heap of 10,000, 600 steps", "fast, float", single, theirs);
+    print("heap of 10,000, 600 steps", "fast, double", full, theirs);
+    print("heap of 10,000, 600 steps", "bullet", theirs, theirs);
+  }
+}
