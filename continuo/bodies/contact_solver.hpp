@@ -48,25 +48,27 @@ struct PairVelocities {
   Vector<Real, Dim> v_a, v_b;
   Spin<Real, Dim> spin_a, spin_b;
 
-  void store(SolverBody<Real, Dim>& a, SolverBody<Real, Dim>& b) const {
+  [[gnu::always_inline]] void store(SolverBody<Real, Dim>& a, SolverBody<Real, Dim>& b) const {
     a.v = v_a;
     a.spin = spin_a;
     b.v = v_b;
     b.spin = spin_b;
   }
-  void push(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b, const Vector<Real, Dim>& impulse) {
+  [[gnu::always_inline]] void push(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b,
+                                   const Vector<Real, Dim>& impulse) {
     v_a -= impulse * a.inverse_mass;
     v_b += impulse * b.inverse_mass;
   }
   /// An impulse on b where it touches, its opposite on a.
-  void rub(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b, const Vector<Real, Dim>& normal,
-           const Vector<Real, Dim>& impulse) {
+  [[gnu::always_inline]] void rub(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b,
+                                  const Vector<Real, Dim>& normal, const Vector<Real, Dim>& impulse) {
     push(a, b, impulse);
     const Spin<Real, Dim> twist = moment(normal, impulse);
     spin_a -= twist * (a.radius * a.inverse_inertia);
     spin_b -= twist * (b.radius * b.inverse_inertia);
   }
-  void roll(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b, const Spin<Real, Dim>& impulse) {
+  [[gnu::always_inline]] void roll(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b,
+                                   const Spin<Real, Dim>& impulse) {
     spin_a -= impulse * a.inverse_inertia;
     spin_b += impulse * b.inverse_inertia;
   }
@@ -83,8 +85,8 @@ Vector<Real, Size> clamped(const Vector<Real, Size>& impulse, const Real& most) 
 /// Begins with the impulses of the last substep: all contacts do before any is solved, for each must see what the
 /// others carry. b is the wall's stand-in, at rest, where there is one. `normal` points from a to b.
 template <class Real, int Dim>
-void warm_start(Contact<Real, Dim>& contact, SolverBody<Real, Dim>& a, SolverBody<Real, Dim>& b,
-                const Vector<Real, Dim>& normal) {
+[[gnu::always_inline]] inline void warm_start(Contact<Real, Dim>& contact, SolverBody<Real, Dim>& a,
+                                              SolverBody<Real, Dim>& b, const Vector<Real, Dim>& normal) {
   PairVelocities<Real, Dim> pair{a.v, b.v, a.spin, b.spin};
   // What friction did along the normal of then is not along that of now.
   contact.friction_impulse -= normal * dot(contact.friction_impulse, normal);
@@ -95,8 +97,9 @@ void warm_start(Contact<Real, Dim>& contact, SolverBody<Real, Dim>& a, SolverBod
 }
 
 template <class Real, int Dim>
-void solve_contact(Contact<Real, Dim>& contact, SolverBody<Real, Dim>& a, SolverBody<Real, Dim>& b,
-                   const Vector<Real, Dim>& normal, const Real& separation, const ContactStep<Real>& step) {
+[[gnu::always_inline]] inline void solve_contact(Contact<Real, Dim>& contact, SolverBody<Real, Dim>& a,
+                                                 SolverBody<Real, Dim>& b, const Vector<Real, Dim>& normal,
+                                                 const Real& separation, const ContactStep<Real>& step) {
   PairVelocities<Real, Dim> pair{a.v, b.v, a.spin, b.spin};
   if (contact.rolling_resistance > Real(0)) {
     const Real inertia = 1 / (a.inverse_inertia + b.inverse_inertia);

@@ -121,7 +121,7 @@ class FastMotion<Real, Dim>::Stepper {
   void substep(const Real& t, const Real& h) {
     if (has_other_forces_) accelerate(t);
     for (Body& body : bodies_) body.impacts = 0, body.in_contact = false;
-    make_impacts(h);
+    if (may_strike(h)) make_impacts(h);
     for (Body& body : bodies_) body.v += body.acceleration * h;
     ContactStep<Real> step{h, softness(std::min(options_.hertz, Real(0.25) / h), options_.damping, h),
                            options_.fastest_push, true};
@@ -188,8 +188,7 @@ class FastMotion<Real, Dim>::Stepper {
     const Real approach = dot(a.v - b.v, normal);
     // Too fast for a soft contact: struck already, or it will be at the beginning of the next substep.
     if (has_struck(a, b, -approach, separation) ||
-        counts(approach, length(a.acceleration) + length(b.acceleration), contact.restitution,
-               b.radius > Real(0) ? std::min(a.radius, b.radius) : a.radius, step.h))
+        counts(approach, contact.restitution, b.radius > Real(0) ? std::min(a.radius, b.radius) : a.radius, step.h))
       return forget(contact);
     solve_contact(contact, a, b, normal, separation, step);
     const bool touches = contact.normal_impulse > Real(0);
@@ -229,9 +228,21 @@ class FastMotion<Real, Dim>::Stepper {
 
   /// What gravity alone brings about in a substep is no impact; nor is, without restitution, what moves it by less than
   /// half a radius.
-  static bool counts(const Real& speed, const Real& gravity, const Real& restitution, const Real& radius,
-                     const Real& h) {
-    return restitution > Real(0) ? speed > 2 * gravity * h : speed * h > radius / 2;
+  bool counts(const Real& speed, const Real& restitution, const Real& radius, const Real& h) const {
+    return restitution > Real(0) ? speed > 4 * greatest_acceleration_ * h : speed * h > radius / 2;
+  }
+
+  /// Without restitution only what moves by half a radius in a substep strikes; most worlds at most times have neither.
+  bool may_strike(const Real& h) {
+    greatest_acceleration_ = Real(0);
+    Real fastest(0);
+    for (const Body& body : bodies_) {
+      greatest_acceleration_ = std::max(greatest_acceleration_, squared(body.acceleration));
+      fastest = std::max(fastest, squared(body.v) / (body.radius * body.radius));
+    }
+    using std::sqrt;
+    greatest_acceleration_ = sqrt(greatest_acceleration_);
+    return pairs_.has_restitution() || sqrt(fastest) * h > Real(0.2);  // of two that meet, and what gravity adds
   }
 
   void make_impacts(const Real& h) {
@@ -257,8 +268,7 @@ class FastMotion<Real, Dim>::Stepper {
     const Body &a = bodies_[i], &b = bodies_[j];
     const V rate = b.v - a.v, pull = b.acceleration - a.acceleration;
     const Real speed = length(rate) + length(pull) * h;
-    const Real g = length(a.acceleration) + length(b.acceleration);
-    if (!counts(speed, g, restitution, std::min(a.radius, b.radius), h)) return;
+    if (!counts(speed, restitution, std::min(a.radius, b.radius), h)) return;
     const V apart = b.x - a.x + rate * from + pull * (from * from / 2), rate_now = rate + pull * from;
     const Real reach = a.radius + b.radius;
     if (squared(apart) > (reach + speed * h) * (reach + speed * h)) return;
@@ -266,7 +276,7 @@ class FastMotion<Real, Dim>::Stepper {
                                   : time_to_touch(apart, rate_now, pull, reach, Real(h - from));
     if (!(from + wait < h)) return;
     const V then = apart + rate_now * wait + pull * (wait * wait / 2), v_then = rate_now + pull * wait;
-    if (!counts(Real(-dot(v_then, then) / reach), g, restitution, std::min(a.radius, b.radius), h)) return;
+    if (!counts(Real(-dot(v_then, then) / reach), restitution, std::min(a.radius, b.radius), h)) return;
     queue_.push({from + wait, i, j, a.impacts, b.impacts, restitution, friction});
   }
   void foresee_wall(std::uint32_t i, std::uint32_t w, const Real& restitution, const Real& friction, const Real& from,
@@ -277,7 +287,7 @@ class FastMotion<Real, Dim>::Stepper {
     const Real s = wall_gap(a, wall) + (speed - pull * from / 2) * from;
     const Real wait = time_to_close(s, speed, pull);
     if (!(from + wait < h)) return;
-    if (!counts(Real(-(speed + pull * wait)), length(a.acceleration), restitution, a.radius, h)) return;
+    if (!counts(Real(-(speed + pull * wait)), restitution, a.radius, h)) return;
     queue_.push({from + wait, i, static_cast<std::uint32_t>(bodies_.size()) + w, a.impacts, 0, restitution, friction});
   }
 
@@ -333,6 +343,7 @@ class FastMotion<Real, Dim>::Stepper {
   std::vector<Body> bodies_;
   PairList<Real, Dim> pairs_;
   bool has_other_forces_ = false;
+  Real greatest_acceleration_ = Real(0);
   std::vector<V> x_, v_, force_;
   std::priority_queue<Impact> queue_;
 };

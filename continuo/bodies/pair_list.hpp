@@ -35,6 +35,8 @@ class PairList {
   const std::vector<Contact<Real, Dim>>& wall_contacts() const { return wall_contacts_; }
   std::size_t walls() const { return walls_; }
   std::size_t lists() const { return lists_; }
+  /// Whether any contact bounces.
+  bool has_restitution() const { return has_restitution_; }
 
   const Material<Real>& material(const World<Real, Dim>& world, std::size_t place) const {
     return world.material[order_[place]];
@@ -66,6 +68,8 @@ class PairList {
     list_pairs(world, bodies, widest);
     list_walls(world, bodies);
     recall();
+    const auto bounces = [](const Contact<Real, Dim>& contact) { return contact.restitution > Real(0); };
+    has_restitution_ = std::ranges::any_of(pairs_.contacts, bounces) || std::ranges::any_of(wall_contacts_, bounces);
   }
 
   /// visit(place, material) for the bodies that the one at place i may meet if it moves by `way` from where it is.
@@ -221,6 +225,7 @@ class PairList {
   std::vector<char> is_far_;
   Real median_ = Real(1), usual_ = Real(0);
   std::size_t walls_ = 0, lists_ = 0;
+  bool has_restitution_ = false;
   SortedCells<Real, Dim> cells_;
   ColouredContacts<Real, Dim> pairs_;
   std::vector<Contact<Real, Dim>> wall_contacts_;
