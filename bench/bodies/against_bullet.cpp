@@ -28,7 +28,7 @@ double processor_seconds() {
 
 /// A scene: balls of radius 1/2 and density 1 in a box.
 struct Scene {
-  std::vector<Vector<double, 3>> position, velocity;
+  std::vector<Vector<double, 3>> position{}, velocity{};
   Vector<double, 3> gravity{}, upper{};
   Material<double> material{};
   double duration = 0, step = 1.0 / 60;
