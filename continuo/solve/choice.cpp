@@ -18,8 +18,8 @@ constexpr std::size_t large = 100;
 
 Choice choose_method(const SystemTraits& system) {
   const bool strict = system.rtol < (system.algebraic ? high_order_of_algebraic_below : high_order_below);
-  // A sparse matrix costs little enough for the fewer steps of a high order to be worth it, a band less than the rest of
-  // a step.
+  // A sparse matrix costs little enough for the fewer steps of a high order to be worth it, a band less than the rest
+  // of a step.
   const bool few_matrices = system.size > large && !system.banded && !(system.sparse && strict);
   if (system.algebraic && few_matrices)
     return {"bdf",
