@@ -3,12 +3,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/studies/flow.hpp>
+#include <continuo/studies/lobatto.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 
 namespace continuo::studies {
@@ -46,14 +48,15 @@ Extent extent_of(const std::vector<X>& states) {
   return extent;
 }
 
-/// The time between two points of the section that are alike; 0 where there are none.
-double time_to_return(const std::vector<SectionPoint>& points, const Extent& extent) {
+/// The time between the last point of the section and one before that is alike to this part of the motion's size; 0
+/// where there is none.
+double time_to_return(std::span<const SectionPoint> points, const Extent& extent, double part) {
   for (std::size_t turns = 1; turns <= most_turns && turns < points.size(); ++turns) {
     const SectionPoint& last = points.back();
     const SectionPoint& before = points[points.size() - 1 - turns];
     bool alike = true;
     for (std::size_t i = 0; i < last.x.size(); ++i)
-      alike = alike && std::abs(last.x[i] - before.x[i]) <= return_part * extent.size(i);
+      alike = alike && std::abs(last.x[i] - before.x[i]) <= part * extent.size(i);
     if (alike) return last.t - before.t;
   }
   return 0;
@@ -78,17 +81,84 @@ ParametricSystem over_one_period(const ParametricSystem& system, double period) 
   return scaled;
 }
 
+/// M = dx(T)/dx(0) has the multiplier 1 along the orbit, in the direction of f. The others are those of the return to
+/// the section x_s = level, dP = (1 - f e_s^T / f_s) M without row and column s: what is known to be 1 does not cost
+/// the small ones their digits, of which a relaxation oscillation has none to spare.
 std::vector<std::complex<double>> multipliers_of(const ParametricSystem& system, const X& x0, double period,
-                                                 Options<X> run) {
+                                                 std::size_t section, Options<X> run) {
+  constexpr double rtol = 1e-12;
   const std::size_t n = system.size;
+  run.rtol = rtol;
+  run.atol = 1e-3 * rtol;
   const auto end = run_flow(with_variations(system), system.constants, variational_start(system, x0), {0, period}, run);
-  if (!end.outcome) return {};
-  std::vector<double> rows(n * n);
-  for (std::size_t c = 0; c < n; ++c)
-    for (std::size_t i = 0; i < n; ++i) rows[i * n + c] = end.final_state()[n * (1 + c) + i];
-  auto values = eigenvalues(rows, n).values;
+  X f(n);
+  system.derivative(0, x0, system.constants, f);
+  if (!end.outcome || f[section] == 0) return {};
+  const auto entry = [&](std::size_t i, std::size_t c) { return end.final_state()[n * (1 + c) + i]; };
+  std::vector<double> rows;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t c = 0; c < n; ++c)
+      if (i != section && c != section) rows.push_back(entry(i, c) - f[i] / f[section] * entry(section, c));
+  auto values = eigenvalues(rows, n - 1).values;
+  values.emplace_back(1);
   std::ranges::sort(values, [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
   return values;
+}
+
+/// Whether all but the one along the orbit are inside the unit circle by at least `margin`.
+bool attracts(std::vector<std::complex<double>> multipliers, double margin) {
+  const auto shift = std::ranges::min_element(multipliers, {},
+                                              [](const std::complex<double>& value) { return std::abs(value - 1.0); });
+  if (shift == multipliers.end()) return false;
+  multipliers.erase(shift);
+  return std::ranges::all_of(multipliers, [&](const auto& value) { return std::abs(value) < 1 - margin; });
+}
+
+/// A run over one period as a solution over s = t / T.
+BoundaryValueSolution over_one_period(const ParametricSystem& system, const Solution<X>& turn, double period) {
+  BoundaryValueSolution orbit;
+  orbit.size = system.size;
+  orbit.parameters = {period};
+  for (const double t : turn.t) orbit.mesh.push_back(t / period);
+  X slope(system.size);
+  const auto add = [&](double s) {
+    const X x = turn(s * period);
+    system.derivative(0, x, system.constants, slope);
+    orbit.points.insert(orbit.points.end(), x.begin(), x.end());
+    for (const double f : slope) orbit.slopes.push_back(period * f);
+  };
+  for (std::size_t k = 0; k + 1 < orbit.mesh.size(); ++k)
+    for (std::size_t j = 0; j + 1 < lobatto4.stages; ++j)
+      add(orbit.mesh[k] + lobatto4.c[j] * (orbit.mesh[k + 1] - orbit.mesh[k]));
+  add(orbit.mesh.back());
+  return orbit;
+}
+
+/// The orbit by following the motion, where it attracts: jumps that are thousands of times shorter than the period
+/// leave Newton's iteration on all of it at once too little to converge in, but do not disturb who runs along. Empty
+/// period where two returns in a row do not agree, or nothing says that they would from elsewhere.
+PeriodicOrbit by_following(const ParametricSystem& system, const X& start, const Extent& extent, std::size_t section,
+                           double level, double period, Options<X> run) {
+  constexpr double rtol = 1e-12, alike = 1e-9, attraction = 0.01;
+  PeriodicOrbit found;
+  const auto crossings = poincare_section(
+      system, start, section, {.level = level, .duration = 4.5 * period, .rtol = rtol, .interrupt = run.interrupt});
+  const std::span<const SectionPoint> points = crossings.points;
+  if (!crossings.outcome || points.size() < 3) return found;
+  const double last = time_to_return(points, extent, alike);
+  const double before = time_to_return(points.first(points.size() - 1), extent, alike);
+  if (last == 0 || !(std::abs(last - before) <= alike * last)) return found;
+  found.multipliers = multipliers_of(system, points.back().x, last, section, run);
+  found.stable = attracts(found.multipliers, attraction);
+  if (!found.stable) return found;
+  run.rtol = rtol;
+  run.atol = 1e-3 * rtol;
+  run.save = Save<X>::dense();
+  const auto turn = run_flow(system, system.constants, points.back().x, {0, last}, run);
+  if (!turn.outcome) return found;
+  found.orbit = over_one_period(system, turn, last);
+  found.period = last;
+  return found;
 }
 
 }  // namespace
@@ -154,7 +224,7 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
                                            .interrupt = options.interrupt,
                                            .progress = after(options.settle + options.duration)});
   if (!crossings.outcome) return without_orbit(crossings.outcome);
-  const double period = time_to_return(crossings.points, extent);
+  const double period = time_to_return(crossings.points, extent, return_part);
   if (period == 0)
     return without_orbit({}, fmt::format("the motion does not come back to where it was within a time of {}; it may "
                                          "need longer to settle, or have no period",
@@ -166,7 +236,9 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
   dense.save = Save<X>::dense();
   const auto turn = run_flow(system, system.constants, start, {0, period}, dense);
   if (!turn.outcome) return without_orbit(turn.outcome);
-  BoundaryValueOptions solving{.tolerance = options.tolerance, .interrupt = options.interrupt};
+  // The steps of the run are a good mesh: what needs many times as many points is not found by more of them.
+  BoundaryValueOptions solving{
+      .tolerance = options.tolerance, .most_intervals = 4000 + 8 * turn.t.size(), .interrupt = options.interrupt};
   for (const double t : turn.t) solving.mesh.push_back(t / period);
   const BoundaryValueProblem problem{over_one_period(system, period),
                                      {0, 1},
@@ -178,7 +250,11 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
   result.orbit = solve_boundary_values(
       problem, [&](double s, std::span<double> x) { std::ranges::copy(turn(s * period), x.begin()); }, solving);
   result.outcome = result.orbit.outcome;
+  to_end.progress = {};
   if (!result.outcome) {
+    if (PeriodicOrbit followed = by_following(system, start, extent, section, level, period, to_end);
+        followed.period > 0)
+      return followed;
     result.outcome.hint =
         "the motion comes back, but no single orbit could be solved for: a system that keeps its energy has one for "
         "each "
@@ -186,14 +262,8 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
     return result;
   }
   result.period = result.orbit.parameters[0];
-  to_end.progress = {};
-  result.multipliers = multipliers_of(system, result.orbit(0), result.period, to_end);
-  // One multiplier is 1, of a shift along the orbit: that nearest to it.
-  auto others = result.multipliers;
-  const auto shift =
-      std::ranges::min_element(others, {}, [](const std::complex<double>& value) { return std::abs(value - 1.0); });
-  if (shift != others.end()) others.erase(shift);
-  result.stable = std::ranges::all_of(others, [](const auto& value) { return std::abs(value) < 1; });
+  result.multipliers = multipliers_of(system, result.orbit(0), result.period, section, to_end);
+  result.stable = attracts(result.multipliers, 0);
   return result;
 }
 

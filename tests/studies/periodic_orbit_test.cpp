@@ -53,6 +53,35 @@ TEST(PeriodicOrbit, VanDerPol) {
   }
 }
 
+// Jumps a million times shorter than the period: found whatever it looks first, and to eight digits by a section at
+// another place and another tolerance. What attracts so strongly leaves nothing of a neighbour's distance.
+TEST(PeriodicOrbit, ARelaxationOscillation) {
+  const auto section =
+      poincare_section(van_der_pol(1000), {2, 0}, 0, {.level = 1.5, .settle = 3000, .duration = 4000, .rtol = 1e-11});
+  ASSERT_GE(section.points.size(), 2u);
+  const double period = section.points.back().t - section.points[section.points.size() - 2].t;
+  EXPECT_NEAR(period, 1614.4011258, 1e-8 * period);
+  for (const double duration : {4000.0, 5000.0}) {
+    const auto found = find_periodic_orbit(van_der_pol(1000), {2, 0}, {.settle = 3000, .duration = duration});
+    ASSERT_TRUE(found.outcome) << describe(found.outcome);
+    EXPECT_NEAR(found.period, period, 1e-8 * period);
+    ASSERT_EQ(found.multipliers.size(), 2u);
+    EXPECT_EQ(found.multipliers[0].real(), 1);
+    EXPECT_LT(std::abs(found.multipliers[1]), 1e-4);
+    EXPECT_TRUE(found.stable);
+    EXPECT_NEAR(found.orbit(0)[0], found.orbit(1)[0], 1e-7);
+  }
+}
+
+// Every orbit of a pendulum comes back, and none stands by itself.
+TEST(PeriodicOrbit, AFamilyIsNoOrbit) {
+  const auto pendulum = [](double, Values x, Values, std::span<double> out) {
+    out[0] = x[1], out[1] = -std::sin(x[0]);
+  };
+  const auto found = find_periodic_orbit(parametric_system(2, pendulum), {1, 0}, {.settle = 10, .duration = 50});
+  EXPECT_FALSE(found.outcome);
+}
+
 TEST(PeriodicOrbit, WhatHasNone) {
   const auto sink = [](double, Values x, Values, std::span<double> out) { out[0] = -x[0]; };
   const auto rest = find_periodic_orbit(parametric_system(1, sink), {1});
