@@ -28,9 +28,9 @@ namespace continuo {
 
 template <class Real>
 struct ExactOptions {
-  std::optional<Real> contact_time{};  // without one: a hundred-thousandth of the time in which a body falls its
-                                       // radius, or flies it where there is no gravity
-  std::size_t most_events = std::numeric_limits<std::size_t>::max();  // in one call of advance_to
+  std::optional<Real> contact_time{};     // without one: a hundred-thousandth of the time in which a body falls its
+                                          // radius, or flies it where there is no gravity
+  std::size_t most_events = 100'000'000;  // in one call of advance_to, which then says so: some minutes
 };
 
 struct ExactStatistics {
