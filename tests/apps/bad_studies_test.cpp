@@ -212,8 +212,9 @@ TEST(Fit, CtrlCKeepsWhatWasFound) {
   const Result result = folder.run("fit long.sim a.csv b.csv --param k,c --starts 100000",
                                    "timeout --foreground --preserve-status --signal INT 3");
   EXPECT_EQ(result.exit, 130) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("k "), HasSubstr("c "), HasSubstr("starts agree"),
-                                HasSubstr("interrupted: the best there was until then")));
+  // How many of the starts were done by then is the machine's matter.
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("k "), HasSubstr("c "), HasSubstr("interrupted: the best there was until then")));
 }
 
 TEST(Run, OtherRowsAreNoOtherMotion) {
