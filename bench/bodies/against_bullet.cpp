@@ -96,11 +96,10 @@ World<Real, 3> world_of(const Scene& scene) {
 }
 
 template <class Real>
-Result judged(const Scene& scene, const World<Real, 3>& before, const World<Real, 3>& after, double seconds) {
+Result judged(const World<Real, 3>& before, const World<Real, 3>& after, double seconds) {
   std::vector<Vector<double, 3>> x;
   for (const auto& at : after.position) x.push_back({{at[0], at[1], at[2]}});
   const double start = kinetic_energy(before), end = kinetic_energy(after);
-  static_cast<void>(scene);
   return {seconds, start > 0 ? end / start : end, deepest_overlap(x)};
 }
 
@@ -110,7 +109,7 @@ Result by_exact_motion(const Scene& scene) {
   const double begin = processor_seconds();
   ExactMotion<double, 3> motion(world);
   if (const std::string error = motion.advance_to(scene.duration); !error.empty()) std::puts(error.c_str());
-  return judged(scene, before, world, processor_seconds() - begin);
+  return judged(before, world, processor_seconds() - begin);
 }
 
 template <class Real>
@@ -121,7 +120,7 @@ Result by_fast_motion(const Scene& scene) {
   FastMotion<Real, 3> motion(world);
   for (int i = 0; i < std::lround(scene.duration / scene.step); ++i)
     if (const std::string error = motion.advance(); !error.empty()) std::puts(error.c_str());
-  return judged(scene, before, world, processor_seconds() - begin);
+  return judged(before, world, processor_seconds() - begin);
 }
 
 /// Ten iterations, steps of 1/60, sleeping off; planes for the box.

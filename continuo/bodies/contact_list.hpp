@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <continuo/bodies/solver_body.hpp>
@@ -55,8 +54,6 @@ class SortedCells {
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t i = 0; i < x.size(); ++i) order[next[cell[i]]++] = static_cast<std::uint32_t>(i);
   }
-
-  Real edge() const { return edge_; }
 
   /// visit(first, last) for the places of bodies whose cells meet the box from `lower` to `upper`, row by row.
   template <class Visit>
@@ -126,8 +123,8 @@ struct ColouredContacts {
 };
 
 /// Orders contacts by colour, greedily: the lowest colour that neither body has. Bodies that never move are shared
-/// freely. What more than 63 neighbours leave over goes to a last colour whose contacts do share bodies: `serial` says
-/// which.
+/// freely. What more than 63 neighbours leave over goes to a 64th colour, whose contacts do share bodies: that one is
+/// for one after the other.
 template <class Real, int Dim>
 ColouredContacts<Real, Dim> coloured(std::vector<Contact<Real, Dim>> contacts, std::size_t bodies,
                                      std::span<const SolverBody<Real, Dim>> body) {

@@ -32,7 +32,7 @@ class ExactMotion<Real, Dim>::Flight {
       Ball& ball = balls_[i];
       ball.x = world_.position[i];
       ball.v = world_.velocity[i];
-      ball.t = ball.last_collision = now_;
+      ball.t = now_;
       ball.last_collision = -never;
       ball.radius = world_.radius[i];
       ball.is_fixed = world_.is_fixed(i);

@@ -304,17 +304,17 @@ class FastMotion<Real, Dim>::Stepper {
       const Real distance = length(apart);
       const V normal = distance > Real(0) ? apart * (1 / distance) : any_direction();
       if (dot(b.v - a.v, normal) < Real(0)) collide(mover(a), mover(b), normal, material);
-      after_impact(impact.b, impact.time, h);
+      after_impact(impact.b, impact.time);
     } else {
       Body stand_in{};
       const Wall<Real, Dim>& wall = world_.walls()[impact.b - bodies_.size()];
       if (dot(a.v, wall.normal) < Real(0)) collide(mover(a), mover(stand_in), V(-wall.normal), material);
     }
-    after_impact(impact.a, impact.time, h);
+    after_impact(impact.a, impact.time);
     foresee_all(impact.a, impact.time, h);
     if (impact.b < bodies_.size()) foresee_all(impact.b, impact.time, h);
   }
-  void after_impact(std::uint32_t i, const Real& time, const Real&) {
+  void after_impact(std::uint32_t i, const Real& time) {
     go(bodies_[i], Real(-time));
     ++bodies_[i].impacts;
   }

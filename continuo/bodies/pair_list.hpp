@@ -82,7 +82,7 @@ class PairList {
       visit(j, combined(material(world, i), material(world, j)));
     };
     const Real out = body.radius + way + usual_;
-    for_each_in_box(V(body.x - all(out)), V(body.x + all(out)), bodies, meet);
+    for_each_in_box(V(body.x - all(out)), V(body.x + all(out)), meet);
     for (const std::uint32_t j : far_) meet(j);
   }
 
@@ -114,7 +114,7 @@ class PairList {
   }
 
   template <class Visit>
-  void for_each_in_box(const V& lower, const V& upper, const std::vector<Body>&, Visit&& visit) const {
+  void for_each_in_box(const V& lower, const V& upper, Visit&& visit) const {
     cells_.for_each_row(lower, upper, [&](std::uint32_t first, std::uint32_t last) {
       for (std::uint32_t j = first; j < last; ++j)
         if (!is_far_[j]) visit(j);
@@ -135,18 +135,18 @@ class PairList {
     const auto consider = [&](std::uint32_t a, std::uint32_t b) {
       const Real near = bodies[a].radius + bodies[b].radius + reach_[a] + reach_[b];
       if (squared(bodies[b].x - bodies[a].x) < near * near && world.collide(order_[a], order_[b]))
-        found.push_back(contact(bodies, a, b, combined(material(world, a), material(world, b))));
+        found.push_back(contact(a, b, combined(material(world, a), material(world, b)), bodies[a], bodies[b]));
     };
     for (std::uint32_t k = 0; k < bodies.size(); ++k) {
       if (is_far_[k]) continue;
       const Real out = bodies[k].radius + reach_[k] + widest;
-      for_each_in_box(V(bodies[k].x - all(out)), V(bodies[k].x + all(out)), bodies, [&](std::uint32_t j) {
+      for_each_in_box(V(bodies[k].x - all(out)), V(bodies[k].x + all(out)), [&](std::uint32_t j) {
         if (j > k) consider(k, j);
       });
     }
     for (const std::uint32_t k : far_) {
       const Real out = bodies[k].radius + reach_[k] + widest;
-      for_each_in_box(V(bodies[k].x - all(out)), V(bodies[k].x + all(out)), bodies,
+      for_each_in_box(V(bodies[k].x - all(out)), V(bodies[k].x + all(out)),
                       [&](std::uint32_t j) { consider(std::min(j, k), std::max(j, k)); });
       for (const std::uint32_t j : far_)
         if (j > k) consider(k, j);
@@ -162,22 +162,14 @@ class PairList {
         const Real gap = dot(wall.normal, bodies[k].x) - wall.offset - bodies[k].radius;
         if (gap > reach_[k] || !(bodies[k].inverse_mass > Real(0))) continue;
         const Material<Real> both = combined(material(world, k), wall.material);
-        const Real inverse = bodies[k].inverse_mass,
-                   turn = bodies[k].radius * bodies[k].radius * bodies[k].inverse_inertia;
-        Contact<Real, Dim> found{.a = k, .b = w};
-        found.restitution = both.restitution;
-        found.friction = both.friction;
-        found.rolling_resistance = both.rolling_resistance;
-        found.normal_mass = 1 / inverse;
-        found.tangent_mass = 1 / (inverse + turn);
-        wall_contacts_.push_back(found);
+        wall_contacts_.push_back(contact(k, w, both, bodies[k], Body{}));
       }
     }
   }
 
-  static Contact<Real, Dim> contact(const std::vector<Body>& bodies, std::uint32_t a, std::uint32_t b,
-                                    const Material<Real>& both) {
-    const Body &p = bodies[a], &q = bodies[b];
+  /// Between p and q; of a wall, q is a stand-in that nothing moves.
+  static Contact<Real, Dim> contact(std::uint32_t a, std::uint32_t b, const Material<Real>& both, const Body& p,
+                                    const Body& q) {
     const Real inverse = p.inverse_mass + q.inverse_mass;
     Contact<Real, Dim> found{.a = a, .b = b};
     found.restitution = both.restitution;
