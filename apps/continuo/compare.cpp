@@ -105,10 +105,8 @@ ExitCode compare(const CompareOptions& options) {
   print(table_of(comparison));
   const ExitCode exit = exit_of(comparison);
   if (!options.plot.empty()) {
-    if (const auto failure = results::draw(figure_of(*prepared.program, comparison), options.plot)) {
-      say(*failure);
+    if (!written(results::draw(figure_of(*prepared.program, comparison), options.plot)))
       return exit == done ? usage : exit;
-    }
   }
   return exit;
 }

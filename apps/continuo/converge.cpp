@@ -37,10 +37,7 @@ struct ConvergeOptions {
 };
 
 ExitCode draw(const results::Figure& figure, const std::string& path, ExitCode exit) {
-  if (path.empty()) return exit;
-  const auto failure = results::draw(figure, path);
-  if (!failure) return exit;
-  say(*failure);
+  if (path.empty() || written(results::draw(figure, path))) return exit;
   return exit == done ? usage : exit;
 }
 

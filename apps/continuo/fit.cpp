@@ -320,10 +320,7 @@ ExitCode fit(const FitOptions& options) {
   }
   print(table_of(*request, found));
   if (!options.plot.empty()) {
-    if (const auto failure = results::draw(figure_of(*request, found), options.plot)) {
-      say(*failure);
-      return usage;
-    }
+    if (!written(results::draw(figure_of(*request, found), options.plot))) return usage;
   }
   return found.least.interrupted ? interrupted : done;
 }

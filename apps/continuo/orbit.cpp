@@ -97,10 +97,8 @@ ExitCode show_section(const Studied& studied, const OrbitOptions& options) {
   }
   if (options.out.empty() || options.out == "-") {
     print(csv);
-  } else if (const auto failure = results::write_file(options.out, csv)) {
-    say(*failure);
+  } else if (!written(results::write_file(options.out, csv)))
     return usage;
-  }
   say(fmt::format("{} passes through {}", section.points.size(), options.section));
   return section.outcome ? done : ended(section.outcome);
 }
@@ -156,10 +154,7 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
   }
   print(text);
   if (options.plot.empty()) return done;
-  if (const auto failure = results::draw(figure_of(model, found), options.plot)) {
-    say(*failure);
-    return usage;
-  }
+  if (!written(results::draw(figure_of(model, found), options.plot))) return usage;
   return done;
 }
 

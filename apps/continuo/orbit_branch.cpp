@@ -206,16 +206,11 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
     const std::string csv = csv_of(branches, studied, range.name);
     if (options.out == "-") {
       print(csv);
-    } else if (const auto failure = results::write_file(options.out, csv)) {
-      say(*failure);
+    } else if (!written(results::write_file(options.out, csv)))
       return usage;
-    }
   }
   if (!options.plot.empty()) {
-    if (const auto failure = results::draw(figure_of(branches, model, *component, range.name), options.plot)) {
-      say(*failure);
-      return usage;
-    }
+    if (!written(results::draw(figure_of(branches, model, *component, range.name), options.plot))) return usage;
   }
   return interrupt_flag() ? interrupted : done;
 }

@@ -175,10 +175,7 @@ ExitCode phase(const PhaseOptions& options) {
   }();
   print(summary_of(model, portrait, plane));
   if (!options.plot.empty()) {
-    if (const auto failure = results::draw(figure_of(model, portrait, plane), options.plot)) {
-      say(*failure);
-      return usage;
-    }
+    if (!written(results::draw(figure_of(model, portrait, plane), options.plot))) return usage;
   }
   return portrait.complete ? done : interrupted;
 }

@@ -35,12 +35,6 @@ struct RunRequest {
   bool data_to_standard_output() const { return json || motion == "-" || events == "-" || manifest == "-"; }
 };
 
-/// False, after saying why, where a file could not be written.
-bool written(const std::optional<std::string>& failure) {
-  if (failure) say(*failure);
-  return !failure;
-}
-
 /// Beside a table stands the manifest that its first line points to.
 std::string manifest_file(const RunRequest& request) {
   if (!request.manifest.empty()) return request.manifest;

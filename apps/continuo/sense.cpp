@@ -152,13 +152,9 @@ ExitCode sense(const SenseOptions& options) {
     exit = run.outcome.ending == Ending::interrupted ? interrupted : numerical_failure;
     say(run.problem.empty() ? describe(run.outcome) : fmt::format("at t = {}: {}", run.outcome.t, run.problem));
   }
-  const auto told = [&](const std::optional<std::string>& failure) {
-    if (!failure) return;
-    say(*failure);
-    if (exit == done) exit = usage;
-  };
-  if (!options.output.empty()) told(write(model, run, *influences, options.output));
-  if (!options.plot.empty()) told(results::draw(figure_of(model, run, *influences), options.plot));
+  bool fine = options.output.empty() || written(write(model, run, *influences, options.output));
+  if (!options.plot.empty()) fine = written(results::draw(figure_of(model, run, *influences), options.plot)) && fine;
+  if (!fine && exit == done) exit = usage;
   return exit;
 }
 

@@ -231,10 +231,8 @@ ExitCode stability(const StabilityOptions& options) {
   ExitCode exit = go_on ? done : interrupted;
   if (!options.plot.empty()) {
     const std::string title = with_model ? studied->prepared.program->model.name : "Regions of absolute stability";
-    if (const auto failure = results::draw(figure_of(regions, confirmed, spectrum, title), options.plot)) {
-      say(*failure);
-      if (exit == done) exit = usage;
-    }
+    if (!written(results::draw(figure_of(regions, confirmed, spectrum, title), options.plot)) && exit == done)
+      exit = usage;
   }
   return exit;
 }

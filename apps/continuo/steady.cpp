@@ -122,10 +122,7 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
   }
   if (interrupt_flag()) return interrupted;
   if (options.plot.empty()) return done;
-  if (const auto failure = results::draw({.title = model.name, .panels = {std::move(panel)}}, options.plot)) {
-    say(*failure);
-    return usage;
-  }
+  if (!written(results::draw({.title = model.name, .panels = {std::move(panel)}}, options.plot))) return usage;
   return done;
 }
 

@@ -11,6 +11,11 @@ void say(std::string_view message) {
   fmt::print(stderr, "continuo: {}\n", message);
 }
 
+bool written(const std::optional<std::string>& failure) {
+  if (failure) say(*failure);
+  return !failure;
+}
+
 void print(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
   std::fflush(stdout);  // in order with the messages

@@ -1,12 +1,17 @@
 // apps/continuo/terminal.hpp
 // What people read: messages on standard error, colours only on a terminal and never against NO_COLOR.
 #pragma once
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace continuo::app {
 
 /// "continuo: MESSAGE" on standard error.
 void say(std::string_view message);
+
+/// False, after saying why, where a file could not be written or a picture not be drawn.
+bool written(const std::optional<std::string>& failure);
 
 /// Text that is data: standard output.
 void print(std::string_view text);
