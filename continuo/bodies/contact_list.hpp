@@ -1,8 +1,6 @@
-// continuo/bodies/contact_list.hpp
-// Pairs that may touch before the list is made again: those nearer than `skin`. The list holds until a body has moved
-// half of that (L. Verlet, Phys. Rev. 159 (1967) 98-103). Bodies are sorted by cells first, so that neighbours in space
-// are neighbours in memory, and pairs are coloured: no two of a colour share a body, so that a colour can be solved in
-// any order, by lanes or threads, to the same bits.
+// The contacts of a step: of the pairs that are listed those that may touch in it, coloured and packed. No two contacts
+// of a colour share a body that moves, so lanes and threads may solve them in any order, to the same bits. Impulses
+// outlive the step: they are kept by the places of the two bodies, and are the start of the next.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,145 +11,264 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/solver_body.hpp>
+#include <continuo/bodies/contact_solver.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
 
-/// A pair or, with b = wall, a body and a wall. Impulses are those of the last substep, for the next to start from.
-template <class Real, int Dim>
-struct Contact {
-  std::uint32_t a = 0, b = 0;
-  Real normal_impulse{}, restitution{}, friction{}, rolling_resistance{};
-  Real normal_mass{}, tangent_mass{};  // effective: what resists along the normal, across it
-  Vector<Real, Dim> friction_impulse{};
-  Spin<Real, Dim> rolling_impulse{};
+inline constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
+
+/// What the bodies at places 0, 1, ... may touch: entries first[k] ... first[k + 1] - 1 are those of k, in rising
+/// order. A pair of two that move stands with the lower place, one with a fixed body with the other.
+struct ContactRows {
+  struct Entry {
+    std::uint32_t other;           // a place, or the number of a wall
+    std::uint32_t lane = nowhere;  // in the packs of its kind, where it is solved
+  };
+  std::vector<std::uint32_t> first{0};
+  std::vector<Entry> entries{};
+
+  std::size_t rows() const { return first.size() - 1; }
+  std::span<const Entry> row(std::size_t k) const { return {entries.data() + first[k], entries.data() + first[k + 1]}; }
+  std::span<Entry> row(std::size_t k) { return {entries.data() + first[k], entries.data() + first[k + 1]}; }
+  void clear() {
+    first.assign(1, 0);
+    entries.clear();
+  }
+  void end_row() { first.push_back(static_cast<std::uint32_t>(entries.size())); }
 };
 
-/// Bodies sorted by cell, and the cells of a dense grid over all of them.
+/// The impulses of a contact between steps.
 template <class Real, int Dim>
-class SortedCells {
+struct KeptImpulse {
+  std::uint32_t other;
+  Real normal;
+  Vector<Real, Dim> friction;  // on `other`
+};
+template <class Real, int Dim>
+struct KeptImpulses {
+  std::vector<std::uint32_t> first{0};
+  std::vector<KeptImpulse<Real, Dim>> entries{};
+  std::vector<Spin<Real, Dim>> rolling{};  // of the same contacts; empty where nothing resists rolling
+
+  std::size_t find(std::uint32_t k, std::uint32_t other) const {
+    if (k + 1 < first.size())
+      for (std::size_t i = first[k]; i < first[k + 1]; ++i)
+        if (entries[i].other == other) return i;
+    return nowhere;
+  }
+  void clear() {
+    first.assign(1, 0);
+    entries.clear();
+    rolling.clear();
+  }
+  void end_row() { first.push_back(static_cast<std::uint32_t>(entries.size())); }
+};
+
+/// How near two must be to be solved in a step: as near as they may come.
+template <class Real>
+struct ActiveReach {
+  Real step{};   // of time
+  Real extra{};  // beside what their velocities say
+};
+
+template <class Real, int Dim>
+class ContactList {
  public:
   using V = Vector<Real, Dim>;
+  static constexpr std::size_t width = lanes_at_once<Real>;
 
-  /// order[k] is the body at place k, cell by cell; `edge` is enlarged where the grid would need too many cells.
-  void sort(std::span<const V> x, Real edge, std::vector<std::uint32_t>& order) {
-    lower_ = upper_ = x.empty() ? V{} : x[0];
-    for (const V& at : x)
-      for (std::size_t axis = 0; axis < V::size(); ++axis) {
-        lower_[axis] = std::min(lower_[axis], at[axis]);
-        upper_[axis] = std::max(upper_[axis], at[axis]);
-      }
-    choose_counts(edge, x.size());
-    std::vector<std::uint32_t> cell(x.size());
-    first_.assign(total_ + 1, 0);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      cell[i] = static_cast<std::uint32_t>(number(coordinates(x[i])));
-      ++first_[cell[i] + 1];
-    }
-    for (std::size_t c = 0; c < total_; ++c) first_[c + 1] += first_[c];
-    order.resize(x.size());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < x.size(); ++i) order[next[cell[i]]++] = static_cast<std::uint32_t>(i);
+  ContactRows pairs, walls;
+  ColouredPacks<Real, Dim> between_movers, with_fixed, with_wall;
+
+  /// act(kind, packs) for the three kinds, in the order in which they are solved: walls last, they yield least.
+  template <class Act>
+  void for_each_kind(Act&& act) {
+    act(std::integral_constant<ContactKind, ContactKind::between_movers>{}, between_movers);
+    act(std::integral_constant<ContactKind, ContactKind::with_fixed>{}, with_fixed);
+    act(std::integral_constant<ContactKind, ContactKind::with_wall>{}, with_wall);
   }
 
-  /// visit(first, last) for the places of bodies whose cells meet the box from `lower` to `upper`, row by row.
-  template <class Visit>
-  void for_each_row(const V& lower, const V& upper, Visit&& visit) const {
-    const auto from = coordinates(lower), to = coordinates(upper);
-    auto at = from;
-    for (;;) {
-      auto end = at;
-      end[0] = to[0];
-      visit(first_[number(at)], first_[number(end) + 1]);
-      std::size_t axis = 1;
-      while (axis < at.size() && at[axis] == to[axis]) {
-        at[axis] = from[axis];
-        ++axis;
-      }
-      if (axis == at.size()) return;
-      ++at[axis];
-    }
+  /// Takes the impulses out of the packs.
+  void keep() {
+    keep(pairs, kept_pairs_, [&](std::uint32_t lane) { return lane & fixed_bit ? &with_fixed : &between_movers; });
+    keep(walls, kept_walls_, [&](std::uint32_t) { return &with_wall; });
+  }
+
+  /// Packs what may touch; place_before[k] is where the body at k was when impulses were kept (empty: at k).
+  template <class MaterialOf>
+  void activate(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> world_walls,
+                const MaterialOf& material_of, bool has_rare, const ActiveReach<Real>& reach,
+                std::span<const std::uint32_t> place_before) {
+    taken_.assign(bodies.size(), 0);
+    between_movers.count.fill(0), with_fixed.count.fill(0), with_wall.count.fill(0);
+    colour_pairs(bodies, reach);
+    colour_walls(bodies, world_walls, reach);
+    for_each_kind([&](auto, auto& packs) { packs.make_room(bodies, has_rare); });
+    const auto before = [&](std::uint32_t k) { return place_before.empty() ? k : place_before[k]; };
+    fill_pairs(bodies, material_of, before);
+    fill_walls(bodies, world_walls, material_of, before);
+  }
+
+  std::size_t active() const {
+    std::size_t sum = 0;
+    for (const auto* packs : {&between_movers, &with_fixed, &with_wall})
+      for (const std::uint32_t count : packs->count) sum += count;
+    return sum;
   }
 
  private:
-  using Coordinates = std::array<std::size_t, static_cast<std::size_t>(Dim)>;
+  static constexpr std::uint32_t fixed_bit = 1u << 31;  // of an entry's lane: its packs are those with fixed bodies
 
-  void choose_counts(Real edge, std::size_t bodies) {
-    const double most = 8.0 * static_cast<double>(bodies) + 64;
-    for (edge_ = edge;; edge_ *= 2) {
-      double cells = 1;
-      for (std::size_t axis = 0; axis < V::size(); ++axis) {
-        const double along = std::floor(static_cast<double>((upper_[axis] - lower_[axis]) / edge_)) + 1;
-        cells *= along;
-        if (cells <= most) count_[axis] = static_cast<std::size_t>(along);
+  template <class PacksOf>
+  void keep(const ContactRows& rows, KeptImpulses<Real, Dim>& kept, const PacksOf& packs_of) {
+    kept.clear();
+    if (const std::size_t most = active(); kept.entries.capacity() < most) kept.entries.reserve(most + most / 16);
+    for (std::size_t k = 0; k < rows.rows(); ++k) {
+      for (const ContactRows::Entry& entry : rows.row(k)) {
+        if (entry.lane == nowhere) continue;
+        auto& packs = *packs_of(entry.lane);
+        const std::size_t p = (entry.lane & ~fixed_bit) / width, lane = entry.lane % width;
+        const ContactPack<Real, Dim>& pack = packs.packs[p];
+        if (!(pack.normal_impulse.lane[lane] > Real(0))) continue;
+        kept.entries.push_back({entry.other, pack.normal_impulse.lane[lane], in_lane(pack.friction_impulse, lane)});
+        if (const auto* rare = packs.rare_of(p)) kept.rolling.push_back(in_lane(rare->rolling_impulse, lane));
       }
-      if (cells <= most) {
-        total_ = static_cast<std::size_t>(cells);
-        return;
+      kept.end_row();
+    }
+  }
+  template <int Size>
+  static Vector<Real, Size> in_lane(const Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
+    Vector<Real, Size> v;
+    for (std::size_t axis = 0; axis < v.size(); ++axis) v[axis] = stored[axis].lane[lane];
+    return v;
+  }
+  template <int Size>
+  static void put_in_lane(const Vector<Real, Size>& v, Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
+    for (std::size_t axis = 0; axis < v.size(); ++axis) stored[axis].lane[lane] = v[axis];
+  }
+
+  static Real come_closer(const V& rate, const ActiveReach<Real>& reach) {
+    using std::abs;
+    Real sum(0);
+    for (std::size_t axis = 0; axis < V::size(); ++axis) sum += abs(rate[axis]);
+    return sum * reach.step + reach.extra;
+  }
+
+  /// The lowest colour that neither has, for now in the place of the lane.
+  std::uint32_t colour(std::uint64_t used, ColouredPacks<Real, Dim>& packs) {
+    const auto c = static_cast<std::uint32_t>(
+        std::min<std::size_t>(static_cast<std::size_t>(std::countr_one(used)), packs.most_colours - 1));
+    ++packs.count[c];
+    return c;
+  }
+  void colour_pairs(const SolverBodies<Real, Dim>& bodies, const ActiveReach<Real>& reach) {
+    for (std::uint32_t k = 0; k < pairs.rows(); ++k) {
+      const V x = bodies.x(k), v = bodies.v(k);
+      const Real radius = bodies.radius(k);
+      for (ContactRows::Entry& entry : pairs.row(k)) {
+        const std::uint32_t j = entry.other;
+        const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
+        entry.lane = nowhere;
+        if (!(squared(bodies.x(j) - x) < near * near)) continue;
+        if (bodies.moves(j)) {
+          entry.lane = colour(taken_[k] | taken_[j], between_movers);
+          taken_[j] |= std::uint64_t{1} << entry.lane;
+          taken_[k] |= std::uint64_t{1} << entry.lane;
+        } else {
+          entry.lane = colour_alone(k, with_fixed) | fixed_bit;
+        }
       }
     }
   }
-  Coordinates coordinates(const V& x) const {
-    Coordinates at{};
-    for (std::size_t axis = 0; axis < V::size(); ++axis) {
-      const Real cells = (x[axis] - lower_[axis]) / edge_;
-      at[axis] = cells > Real(0) ? static_cast<std::size_t>(std::min(cells, static_cast<Real>(count_[axis] - 1))) : 0;
+  // Contacts with what does not move share colours with no other kind: counting how many a body has is enough.
+  std::uint32_t colour_alone(std::uint32_t k, ColouredPacks<Real, Dim>& packs) {
+    if (alone_of_ != k) alone_of_ = k, alone_ = 0;
+    return colour((std::uint64_t{1} << std::min<std::uint32_t>(alone_++, 63)) - 1, packs);
+  }
+  void colour_walls(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> world_walls,
+                    const ActiveReach<Real>& reach) {
+    alone_of_ = nowhere;
+    for (std::uint32_t k = 0; k < walls.rows(); ++k)
+      for (ContactRows::Entry& entry : walls.row(k)) {
+        const Wall<Real, Dim>& wall = world_walls[entry.other];
+        const Real gap = dot(wall.normal, bodies.x(k)) - wall.offset - bodies.radius(k);
+        entry.lane = gap < come_closer(bodies.v(k), reach) ? colour_alone(k, with_wall) : nowhere;
+      }
+    alone_of_ = nowhere;
+  }
+
+  /// The next lane of that colour; it is filled but for the impulses and the normal.
+  template <class Next>
+  static std::uint32_t next_lane(ColouredPacks<Real, Dim>& packs, Next& next, std::uint32_t colour, std::uint32_t a,
+                                 std::uint32_t b, const Material<Real>& both) {
+    const std::uint32_t number = next[colour]++, lanes = static_cast<std::uint32_t>(width);
+    const std::uint32_t p = packs.first[colour] + (packs.is_shared(colour) ? number : number / lanes);
+    const std::uint32_t lane = packs.is_shared(colour) ? 0 : number % lanes;
+    packs.packs[p].a[lane] = a;
+    packs.packs[p].b[lane] = b;
+    packs.packs[p].friction.lane[lane] = both.friction;
+    if (RarePack<Real, Dim>* rare = packs.rare_of(p)) {
+      rare->restitution.lane[lane] = both.restitution;
+      rare->rolling_resistance.lane[lane] = both.rolling_resistance;
     }
-    return at;
+    return p * lanes + lane;
   }
-  std::size_t number(const Coordinates& at) const {
-    std::size_t n = 0;
-    for (std::size_t axis = at.size(); axis-- > 0;) n = n * count_[axis] + at[axis];
-    return n;
+  void recall(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, const KeptImpulses<Real, Dim>& kept,
+              std::size_t found, const Real& direction) {
+    const std::size_t p = lane_number / width, lane = lane_number % width;
+    const bool is_new = found == nowhere;
+    packs.packs[p].normal_impulse.lane[lane] = is_new ? Real(0) : kept.entries[found].normal;
+    put_in_lane(is_new ? V{} : V(kept.entries[found].friction * direction), packs.packs[p].friction_impulse, lane);
+    if (RarePack<Real, Dim>* rare = packs.rare_of(p))
+      put_in_lane(is_new || kept.rolling.empty() ? Spin<Real, Dim>{} : Spin<Real, Dim>(kept.rolling[found] * direction),
+                  rare->rolling_impulse, lane);
   }
 
-  V lower_{}, upper_{};
-  Real edge_ = Real(1);
-  Coordinates count_{};
-  std::size_t total_ = 0;
-  std::vector<std::uint32_t> first_;
+  template <class MaterialOf, class Before>
+  void fill_pairs(const SolverBodies<Real, Dim>& bodies, const MaterialOf& material_of, const Before& before) {
+    (void)bodies;
+    std::array<std::uint32_t, ColouredPacks<Real, Dim>::most_colours> next{}, next_fixed{};
+    for (std::uint32_t k = 0; k < pairs.rows(); ++k) {
+      const std::uint32_t k_before = before(k);
+      for (ContactRows::Entry& entry : pairs.row(k)) {
+        if (entry.lane == nowhere) continue;
+        const bool is_fixed = (entry.lane & fixed_bit) != 0;
+        auto& packs = is_fixed ? with_fixed : between_movers;
+        const Material<Real> both = combined<Real>(material_of(k), material_of(entry.other));
+        const std::uint32_t lane =
+            next_lane(packs, is_fixed ? next_fixed : next, entry.lane & ~fixed_bit, k, entry.other, both);
+        const std::uint32_t other_before = before(entry.other);
+        Real direction(1);
+        std::size_t found = kept_pairs_.find(k_before, other_before);
+        if (found == nowhere) {
+          direction = Real(-1);  // the other way round then
+          found = kept_pairs_.find(other_before, k_before);
+        }
+        recall(packs, lane, kept_pairs_, found, direction);
+        entry.lane = lane | (is_fixed ? fixed_bit : 0u);
+      }
+    }
+  }
+  template <class MaterialOf, class Before>
+  void fill_walls(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> world_walls,
+                  const MaterialOf& material_of, const Before& before) {
+    std::array<std::uint32_t, ColouredPacks<Real, Dim>::most_colours> next{};
+    for (std::uint32_t k = 0; k < walls.rows(); ++k)
+      for (ContactRows::Entry& entry : walls.row(k)) {
+        if (entry.lane == nowhere) continue;
+        const Wall<Real, Dim>& wall = world_walls[entry.other];
+        const Material<Real> both = combined<Real>(material_of(k), wall.material);
+        const std::uint32_t lane = next_lane(with_wall, next, entry.lane, k, bodies.wall(entry.other), both);
+        put_in_lane(V(-wall.normal), with_wall.packs[lane / width].normal, lane % width);
+        recall(with_wall, lane, kept_walls_, kept_walls_.find(before(k), entry.other), Real(1));
+        entry.lane = lane;
+      }
+  }
+
+  KeptImpulses<Real, Dim> kept_pairs_, kept_walls_;
+  std::vector<std::uint64_t> taken_;
+  std::uint32_t alone_of_ = nowhere, alone_ = 0;
 };
-
-/// Contacts colour by colour: those of colour c are first[c] ... first[c + 1] - 1.
-template <class Real, int Dim>
-struct ColouredContacts {
-  std::vector<Contact<Real, Dim>> contacts;
-  std::vector<std::size_t> first{0};
-
-  std::size_t colours() const { return first.size() - 1; }
-};
-
-/// Orders contacts by colour, greedily: the lowest colour that neither body has. Bodies that never move are shared
-/// freely. What more than 63 neighbours leave over goes to a 64th colour, whose contacts do share bodies: that one is
-/// for one after the other.
-template <class Real, int Dim>
-ColouredContacts<Real, Dim> coloured(std::vector<Contact<Real, Dim>> contacts, std::size_t bodies,
-                                     std::span<const SolverBody<Real, Dim>> body) {
-  constexpr std::size_t most = 64;
-  std::vector<std::uint64_t> taken(bodies, 0);
-  std::vector<std::uint8_t> colour(contacts.size());
-  std::array<std::size_t, most + 1> count{};
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const auto [a, b] = std::pair(contacts[i].a, contacts[i].b);
-    std::uint64_t used = 0;
-    if (body[a].inverse_mass > 0) used |= taken[a];
-    if (body[b].inverse_mass > 0) used |= taken[b];
-    const auto c = std::min<std::size_t>(static_cast<std::size_t>(std::countr_one(used)), most - 1);
-    colour[i] = static_cast<std::uint8_t>(c);
-    taken[a] |= std::uint64_t{1} << c;
-    taken[b] |= std::uint64_t{1} << c;
-    ++count[c + 1];
-  }
-  ColouredContacts<Real, Dim> result;
-  std::size_t used_colours = most;
-  while (used_colours > 0 && count[used_colours] == 0) --used_colours;
-  for (std::size_t c = 0; c < most; ++c) count[c + 1] += count[c];
-  result.first.assign(count.begin(), count.begin() + static_cast<std::ptrdiff_t>(used_colours) + 1);
-  result.contacts.resize(contacts.size());
-  auto next = count;
-  for (std::size_t i = 0; i < contacts.size(); ++i) result.contacts[next[colour[i]]++] = contacts[i];
-  return result;
-}
 
 }  // namespace continuo

@@ -1,6 +1,5 @@
-// continuo/bodies/contact_solver.hpp
-// One contact of two spheres, or of a sphere and a wall, as a soft constraint on velocities: E. Catto, "Soft
-// constraints" (GDC 2011) and "Solver2D" (2024), sequential impulses with bias, relaxation and warm starting.
+// Contacts of two spheres, or of a sphere and a wall, as soft constraints on velocities, several at once: E. Catto,
+// "Soft constraints" (GDC 2011) and "Solver2D" (2024), sequential impulses with bias, relaxation and warm starting.
 //
 // With s the separation and v the normal velocity, a substep of h wants v = -s / h where the two are apart (they may
 // close the gap and no more), and where they overlap the impulse of a spring of angular frequency w and damping ratio
@@ -10,14 +9,16 @@
 //   a1 = 2 z + h w, a2 = h w a1, rate = w / a1, scale_of_mass = a2 / (1 + a2), scale_of_impulse = 1 / (1 + a2),
 //
 // which is stable at any stiffness. Between spheres the arms lie along the normal: a normal impulse turns nothing, and
-// what resists across the normal is a number, 1/m1 + 1/m2 + r1^2/J1 + r2^2/J2.
+// what resists across the normal is a number, 1/m1 + 1/m2 + r1^2/J1 + r2^2/J2. Friction acts across the normal, so the
+// normal velocity is the same before and after it and both impulses are added at once.
 #pragma once
-#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <utility>
 
-#include <continuo/bodies/contact_list.hpp>
+#include <continuo/bodies/contact_packs.hpp>
 
 namespace continuo {
 
@@ -38,100 +39,195 @@ template <class Real>
 struct ContactStep {
   Real h{};
   Softness<Real> soft{};
-  Real fastest_push{};    // with which an overlap is undone at most
-  bool with_bias = true;  // false: relaxation, which takes out the velocity that undoing an overlap gave
+  Real fastest_push{};      // with which an overlap is undone at most
+  bool may_strike = false;  // impacts were looked for: what they are for is no business of a soft contact
+  Real greatest_acceleration{};
 };
 
-/// The velocities of two that touch, in registers while impulses are added.
+/// What a contact may do: b a body that moves, one that is fixed, or a wall, whose normal stands.
+enum class ContactKind { between_movers, with_fixed, with_wall };
+enum class ContactPass { push, relax };  // undo overlaps; take out the velocity that this gave
+
+/// An impulse on b where it touches, its opposite on a; `rub` is the part of it across the normal.
 template <class Real, int Dim>
-struct PairVelocities {
-  Vector<Real, Dim> v_a, v_b;
-  Spin<Real, Dim> spin_a, spin_b;
-
-  [[gnu::always_inline]] void store(SolverBody<Real, Dim>& a, SolverBody<Real, Dim>& b) const {
-    a.v = v_a;
-    a.spin = spin_a;
-    b.v = v_b;
-    b.spin = spin_b;
-  }
-  [[gnu::always_inline]] void push(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b,
-                                   const Vector<Real, Dim>& impulse) {
-    v_a -= impulse * a.inverse_mass;
-    v_b += impulse * b.inverse_mass;
-  }
-  /// An impulse on b where it touches, its opposite on a.
-  [[gnu::always_inline]] void rub(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b,
-                                  const Vector<Real, Dim>& normal, const Vector<Real, Dim>& impulse) {
-    push(a, b, impulse);
-    const Spin<Real, Dim> twist = moment(normal, impulse);
-    spin_a -= twist * (a.radius * a.inverse_inertia);
-    spin_b -= twist * (b.radius * b.inverse_inertia);
-  }
-  [[gnu::always_inline]] void roll(const SolverBody<Real, Dim>& a, const SolverBody<Real, Dim>& b,
-                                   const Spin<Real, Dim>& impulse) {
-    spin_a -= impulse * a.inverse_inertia;
-    spin_b += impulse * b.inverse_inertia;
-  }
-};
+void add_impulse(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const Vector<ContactLanes<Real>, Dim>& normal,
+                 const Vector<ContactLanes<Real>, Dim>& impulse, const Vector<ContactLanes<Real>, Dim>& rub) {
+  a.v -= impulse * a.inverse_mass;
+  b.v += impulse * b.inverse_mass;
+  const Spin<ContactLanes<Real>, Dim> twist = moment(normal, rub);
+  a.rim -= twist * a.mobility;
+  b.rim -= twist * b.mobility;
+}
+template <class Real>
+ContactLanes<Real> inverse_or_zero(const ContactLanes<Real>& x) {
+  return select(x > ContactLanes<Real>(Real(0)), ContactLanes<Real>(Real(1)) / x, ContactLanes<Real>(Real(0)));
+}
+/// A torque's impulse on b, its opposite on a: the rim moves by impulse r / J.
+template <class Real, int Dim>
+void add_roll(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a,
+              const ContactLanes<Real>& radius_b, const Spin<ContactLanes<Real>, Dim>& impulse) {
+  a.rim -= impulse * (a.mobility * inverse_or_zero<Real>(radius_a));
+  b.rim += impulse * (b.mobility * inverse_or_zero<Real>(radius_b));
+}
 
 /// `impulse` no longer than `most`.
-template <class Real, int Size>
-Vector<Real, Size> clamped(const Vector<Real, Size>& impulse, const Real& most) {
+template <class Number, int Size>
+Vector<Number, Size> clamped(const Vector<Number, Size>& impulse, const Number& most) {
   using std::sqrt;
-  const Real square = squared(impulse);
-  return square > most * most ? impulse * (most / sqrt(square)) : impulse;
+  const Number square = squared(impulse);
+  return impulse * select(square > most * most, most / sqrt(square), Number(1));
 }
 
-/// Begins with the impulses of the last substep: all contacts do before any is solved, for each must see what the
-/// others carry. b is the wall's stand-in, at rest, where there is one. `normal` points from a to b.
-template <class Real, int Dim>
-[[gnu::always_inline]] inline void warm_start(Contact<Real, Dim>& contact, SolverBody<Real, Dim>& a,
-                                              SolverBody<Real, Dim>& b, const Vector<Real, Dim>& normal) {
-  PairVelocities<Real, Dim> pair{a.v, b.v, a.spin, b.spin};
-  // What friction did along the normal of then is not along that of now.
-  contact.friction_impulse -= normal * dot(contact.friction_impulse, normal);
-  pair.push(a, b, normal * contact.normal_impulse);
-  pair.rub(a, b, normal, contact.friction_impulse);
-  if (contact.rolling_resistance > Real(0)) pair.roll(a, b, contact.rolling_impulse);
-  pair.store(a, b);
+template <class Real>
+ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLanes<Real>& b) {
+  return select(b > ContactLanes<Real>(Real(0)), min(a, b), a);  // a wall has none
 }
 
-template <class Real, int Dim>
-[[gnu::always_inline]] inline void solve_contact(Contact<Real, Dim>& contact, SolverBody<Real, Dim>& a,
-                                                 SolverBody<Real, Dim>& b, const Vector<Real, Dim>& normal,
-                                                 const Real& separation, const ContactStep<Real>& step) {
-  PairVelocities<Real, Dim> pair{a.v, b.v, a.spin, b.spin};
-  if (contact.rolling_resistance > Real(0)) {
-    const Real inertia = 1 / (a.inverse_inertia + b.inverse_inertia);
-    const Spin<Real, Dim> before = contact.rolling_impulse;
-    const Real radius = b.radius > Real(0) ? std::min(a.radius, b.radius) : a.radius;
-    contact.rolling_impulse = clamped(Spin<Real, Dim>(before - (pair.spin_b - pair.spin_a) * inertia),
-                                      Real(contact.rolling_resistance * radius * contact.normal_impulse));
-    pair.roll(a, b, contact.rolling_impulse - before);
-  }
-  if (contact.friction > Real(0) && contact.normal_impulse > Real(0)) {
-    const Vector<Real, Dim> rate =
-        pair.v_b - turning(pair.spin_b, normal * b.radius) - pair.v_a - turning(pair.spin_a, normal * a.radius);
-    const Vector<Real, Dim> slip = rate - normal * dot(rate, normal), before = contact.friction_impulse;
-    contact.friction_impulse = clamped(Vector<Real, Dim>(before - slip * contact.tangent_mass),
-                                       Real(contact.friction * contact.normal_impulse));
-    pair.rub(a, b, normal, contact.friction_impulse - before);
+/// Where the two are now, and the impulses of the last substep to begin with: all contacts do so before any is solved,
+/// for each must see what the others carry.
+template <ContactKind kind, class Real, int Dim>
+void begin(ContactPack<Real, Dim>& pack, RarePack<Real, Dim>* rare, SolverBodies<Real, Dim>& bodies) {
+  using L = ContactLanes<Real>;
+  using std::sqrt;
+  const auto place_a = load_places(bodies, pack.a), place_b = load_places(bodies, pack.b);
+  const Vector<L, Dim> apart = place_b.x - place_a.x;
+  Vector<L, Dim> normal = loaded(pack.normal);
+  if constexpr (kind == ContactKind::with_wall) {
+    pack.separation = dot(apart, normal) - place_a.radius;
   } else {
-    contact.friction_impulse = {};
+    const L distance = sqrt(squared(apart));
+    const auto are_apart = distance > L(Real(0));
+    normal = apart * select(are_apart, L(Real(1)) / distance, L(Real(0)));
+    normal[0] = select(are_apart, normal[0], L(Real(1)));  // any direction will do
+    store(normal, pack.normal);
+    pack.separation = distance - (place_a.radius + place_b.radius);
   }
-  Softness<Real> soft{};
-  Real bias(0);
-  if (separation > Real(0)) {
-    bias = separation / step.h;
-  } else if (step.with_bias) {
-    soft = step.soft;
-    bias = std::max(Real(soft.rate * separation), Real(-step.fastest_push));
+  // What friction did along the normal of then is not along that of now.
+  Vector<L, Dim> rub = loaded(pack.friction_impulse);
+  rub -= normal * dot(rub, normal);
+  store(rub, pack.friction_impulse);
+  auto a = load_motions(bodies, pack.a), b = load_motions(bodies, pack.b);
+  add_impulse<Real, Dim>(a, b, normal, normal * L(pack.normal_impulse) + rub, rub);
+  if (rare) add_roll<Real, Dim>(a, b, place_a.radius, place_b.radius, loaded(rare->rolling_impulse));
+  store_motions(a, bodies, pack.a);
+  if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
+}
+
+template <class Real, int Dim>
+void resist_rolling(RarePack<Real, Dim>& rare, const ContactLanes<Real>& normal_impulse, LaneMotions<Real, Dim>& a,
+                    LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b) {
+  using L = ContactLanes<Real>;
+  const L one_a = inverse_or_zero<Real>(radius_a), one_b = inverse_or_zero<Real>(radius_b);
+  const L inertia = inverse_or_zero<Real>(a.mobility * one_a * one_a + b.mobility * one_b * one_b);
+  const Spin<L, Dim> before = loaded(rare.rolling_impulse);
+  const Spin<L, Dim> impulse =
+      clamped(Spin<L, Dim>(before - (b.rim * one_b - a.rim * one_a) * inertia),
+              L(L(rare.rolling_resistance) * smaller_radius<Real>(radius_a, radius_b) * normal_impulse));
+  store(impulse, rare.rolling_impulse);
+  add_roll<Real, Dim>(a, b, radius_a, radius_b, impulse - before);
+}
+
+/// Too fast for a soft contact: it has struck in this substep and parts, or it will at the beginning of the next.
+/// What gravity alone brings about in a substep is no impact; nor is, without restitution, what moves it by less than
+/// half a radius.
+template <class Real, int Dim>
+typename ContactLanes<Real>::Mask is_for_impacts(const ContactPack<Real, Dim>& pack,
+                                                 const ContactLanes<Real>& restitution,
+                                                 const SolverBodies<Real, Dim>& bodies,
+                                                 const ContactLanes<Real>& separation,
+                                                 const ContactLanes<Real>& parting, const ContactLanes<Real>& radius,
+                                                 const ContactStep<Real>& step) {
+  using L = ContactLanes<Real>;
+  const L zero(Real(0));
+  if (!step.may_strike) return typename L::Mask(false);
+  std::array<Real, lanes_at_once<Real>> struck{};
+  for (std::size_t lane = 0; lane < struck.size(); ++lane) {
+    const auto of = [&](std::uint32_t i) { return i < bodies.size() ? bodies.impacts[i] : 0u; };
+    struck[lane] = of(pack.a[lane]) + of(pack.b[lane]) > 0 ? Real(1) : Real(0);
   }
-  const Real speed = dot(pair.v_b - pair.v_a, normal), so_far = contact.normal_impulse;
-  const Real wanted = so_far - contact.normal_mass * soft.of_mass * (speed + bias) - soft.of_impulse * so_far;
-  contact.normal_impulse = std::max(wanted, Real(0));
-  pair.push(a, b, normal * (contact.normal_impulse - so_far));
-  pair.store(a, b);
+  const auto has_struck = (L(struck) > zero) & (separation < zero) & (parting > zero);
+  const L approach = -parting;
+  const auto bounces = restitution > zero;
+  return has_struck | (bounces & (approach > L(4 * step.greatest_acceleration * step.h))) |
+         ((!bounces) & (approach * L(step.h) > radius * L(Real(0.5))));
+}
+
+template <ContactKind kind, class Real, int Dim>
+void mark_touched(const ContactPack<Real, Dim>& pack, SolverBodies<Real, Dim>& bodies) {
+  for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
+    if (!(pack.normal_impulse.lane[lane] > Real(0))) continue;  // never so of a stand-in
+    bodies.touched[pack.a[lane]] = 1;
+    if (kind == ContactKind::between_movers) bodies.touched[pack.b[lane]] = 1;
+  }
+}
+
+template <ContactKind kind, ContactPass pass, bool is_plain, class Real, int Dim>
+void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* rare, SolverBodies<Real, Dim>& bodies,
+           const ContactStep<Real>& step) {
+  using L = ContactLanes<Real>;
+  const L zero(Real(0)), one(Real(1));
+  auto a = load_motions(bodies, pack.a), b = load_motions(bodies, pack.b);
+  const Vector<L, Dim> normal = loaded(pack.normal);
+  const L so_far = pack.normal_impulse;
+  L separation = pack.separation, radius_a, radius_b;
+  if (pass == ContactPass::relax || !is_plain) {
+    const auto place_a = load_places(bodies, pack.a), place_b = load_places(bodies, pack.b);
+    radius_a = place_a.radius;
+    radius_b = place_b.radius;
+    if (pass == ContactPass::relax) separation = dot(place_b.x - place_a.x, normal) - (radius_a + radius_b);
+  }
+  if constexpr (!is_plain)
+    if (rare) resist_rolling(*rare, so_far, a, b, radius_a, radius_b);
+
+  const Vector<L, Dim> between = b.v - a.v;
+  const L speed = dot(between, normal), inverse = a.inverse_mass + b.inverse_mass;
+  const Vector<L, Dim> slip = between - turning(Spin<L, Dim>(a.rim + b.rim), normal) - normal * speed;
+  const Vector<L, Dim> friction_before = loaded(pack.friction_impulse);
+  Vector<L, Dim> friction =
+      clamped(Vector<L, Dim>(friction_before - slip * (one / (inverse + a.mobility + b.mobility))),
+              L(L(pack.friction) * so_far));
+
+  const auto is_open = separation > zero;
+  L bias = select(is_open, separation * L(1 / step.h), zero), of_mass = one, of_impulse = zero;
+  if constexpr (pass == ContactPass::push) {
+    bias = select(is_open, bias, max(separation * L(step.soft.rate), L(-step.fastest_push)));
+    of_mass = select(is_open, one, L(step.soft.of_mass));
+    of_impulse = select(is_open, zero, L(step.soft.of_impulse));
+  }
+  L normal_impulse = max(so_far - (speed + bias) * of_mass / inverse - of_impulse * so_far, zero);
+  L change = normal_impulse - so_far;
+  Vector<L, Dim> rub = friction - friction_before;
+  if constexpr (!is_plain) {
+    const L restitution = rare ? L(rare->restitution) : zero;
+    const auto leave = is_for_impacts<Real, Dim>(pack, restitution, bodies, separation, speed,
+                                                 smaller_radius<Real>(radius_a, radius_b), step);
+    const auto forget = [&](L& value) { value = select(leave, zero, value); };
+    forget(normal_impulse), forget(change);
+    for (std::size_t axis = 0; axis < rub.size(); ++axis) forget(friction[axis]), forget(rub[axis]);
+  }
+  pack.normal_impulse = normal_impulse;
+  store(friction, pack.friction_impulse);
+  add_impulse<Real, Dim>(a, b, normal, rub + normal * change, rub);
+  store_motions(a, bodies, pack.a);
+  if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
+  if constexpr (pass == ContactPass::push) mark_touched<kind>(pack, bodies);
+}
+
+// Loops over packs. Everything is inlined into them, for a call would send registers full of lanes through memory.
+
+template <ContactKind kind, class Real, int Dim>
+[[gnu::flatten]] void begin_packs(ColouredPacks<Real, Dim>& packs, std::size_t from, std::size_t to,
+                                  SolverBodies<Real, Dim>& bodies) {
+  for (std::size_t p = from; p < to; ++p) begin<kind>(packs.packs[p], packs.rare_of(p), bodies);
+}
+template <ContactKind kind, ContactPass pass, class Real, int Dim>
+[[gnu::flatten]] void solve_packs(ColouredPacks<Real, Dim>& packs, std::size_t from, std::size_t to,
+                                  SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& step) {
+  if (packs.rare.empty() && !step.may_strike) {
+    for (std::size_t p = from; p < to; ++p) solve<kind, pass, true>(packs.packs[p], packs.rare_of(p), bodies, step);
+  } else {
+    for (std::size_t p = from; p < to; ++p) solve<kind, pass, false>(packs.packs[p], packs.rare_of(p), bodies, step);
+  }
 }
 
 }  // namespace continuo

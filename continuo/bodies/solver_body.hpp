@@ -1,21 +1,80 @@
-// continuo/bodies/solver_body.hpp
-// A body as the fast motion holds it while it steps: what a contact touches side by side.
+// Bodies as the fast motion holds them while it steps: what a contact reads and writes lies side by side, four numbers
+// at a time, so that lanes load and store it whole.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <continuo/bodies/vector.hpp>
+#include <continuo/numerics/lanes.hpp>
 
 namespace continuo {
 
+template <class Real>
+using Quad = std::array<Real, 4>;
+
+/// How many contacts are solved at once: what a register of 16 bytes holds, which every machine of this family has.
+template <class Real>
+inline constexpr std::size_t lanes_at_once = 16 / sizeof(Real);
+
+/// Instead of the spin w, the velocity r w of the rim: then r is in no formula of a contact between spheres.
+template <class Real>
+struct alignas(4 * sizeof(Real)) BodyMotion {
+  Quad<Real> linear{};  // velocity, and last the inverse of the mass
+  Quad<Real> rim{};     // radius times spin, and last radius^2 over the moment of inertia
+};
+template <class Real>
+struct alignas(4 * sizeof(Real)) BodyPlace {
+  Quad<Real> x_and_radius{};
+};
+
+template <int Size, class Real>
+Vector<Real, Size> vector_of(const Quad<Real>& quad) {
+  Vector<Real, Size> v;
+  for (std::size_t axis = 0; axis < v.size(); ++axis) v[axis] = quad[axis];
+  return v;
+}
+template <class Real, int Size>
+void put(const Vector<Real, Size>& v, Quad<Real>& quad) {
+  for (std::size_t axis = 0; axis < v.size(); ++axis) quad[axis] = v[axis];
+}
+
+/// Behind the bodies stand the walls, as bodies that nothing moves, and then stand-ins for lanes without a contact.
 template <class Real, int Dim>
-struct SolverBody {
-  Vector<Real, Dim> x{}, v{};
-  Spin<Real, Dim> spin{};
-  Real radius{}, inverse_mass{}, inverse_inertia{};
-  Vector<Real, Dim> acceleration{};
-  Vector<Real, Dim> x_of_list{};  // where it was when the pairs were listed
-  std::uint32_t impacts = 0;      // of this substep
-  bool in_contact = false;        // in this substep
+struct SolverBodies {
+  using V = Vector<Real, Dim>;
+
+  std::vector<BodyMotion<Real>> motion{};
+  std::vector<BodyPlace<Real>> place{};
+  std::vector<std::uint8_t> touched{};   // by a contact that lasts, in this substep
+  std::vector<std::uint32_t> impacts{};  // of this substep; empty where nothing can strike
+  std::vector<V> accelerations{};        // empty where gravity is the only force
+  V gravity{};
+
+  std::size_t size() const { return touched.size(); }
+  void resize(std::size_t bodies, std::size_t walls) {
+    const std::size_t all = bodies + walls + 2 * lanes_at_once<Real>;
+    if (touched.size() == bodies && motion.size() == all) return;
+    touched.assign(bodies, 0);
+    motion.assign(all, {});
+    place.assign(all, {});
+  }
+  std::uint32_t wall(std::size_t number) const { return static_cast<std::uint32_t>(size() + number); }
+  /// Two for each lane; they are apart, have mass, and never move.
+  std::uint32_t stand_in(std::size_t number) const {
+    return static_cast<std::uint32_t>(motion.size() - 2 * lanes_at_once<Real> + number);
+  }
+
+  V x(std::size_t k) const { return vector_of<Dim>(place[k].x_and_radius); }
+  V v(std::size_t k) const { return vector_of<Dim>(motion[k].linear); }
+  Real radius(std::size_t k) const { return place[k].x_and_radius[3]; }
+  Real inverse_mass(std::size_t k) const { return motion[k].linear[3]; }
+  bool moves(std::size_t k) const { return inverse_mass(k) > Real(0); }
+  V acceleration(std::size_t k) const {
+    if (!accelerations.empty()) return accelerations[k];
+    return moves(k) ? gravity : V{};
+  }
 };
 
 }  // namespace continuo

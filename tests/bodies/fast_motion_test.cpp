@@ -151,6 +151,53 @@ TEST(FastMotion, AHeapComesToRest) {
   EXPECT_LT(kinetic_energy(world), 0.05);
 }
 
+// A rolling ball, of inertia 2/5 m r^2, slows by c m g r of torque: (1 + 2/5) m a = c m g. A disc: (1 + 1/2).
+template <int Dim>
+void rolls_ever_slower(double factor) {
+  World<double, Dim> world;
+  world.gravity[static_cast<std::size_t>(Dim - 1)] = -9.81;
+  ASSERT_EQ(world.add_wall({}), "");
+  BodyDefinition<double, Dim> ball;
+  ball.position[static_cast<std::size_t>(Dim - 1)] = 0.5;
+  ball.velocity[0] = 3;
+  ball.spin[Dim == 2 ? 0 : 1] = Dim == 2 ? -6 : 6;
+  ball.material.rolling_resistance = 0.05;
+  ASSERT_TRUE(world.add(ball));
+  run(world, 2.0);
+  EXPECT_NEAR(world.velocity[0][0], 3 - 0.05 * 9.81 / factor * 2, 0.01);
+  run(world, 10.0);
+  EXPECT_NEAR(world.velocity[0][0], 0, 1e-3);
+}
+TEST(FastMotion, RollingResistanceSlowsDown) {
+  rolls_ever_slower<3>(1.4);
+  rolls_ever_slower<2>(1.5);
+}
+
+// More small balls round a large one than there are colours, and a large one that is fixed: they fall on it from all
+// sides, drawn by a force towards its centre, and come to rest on it.
+TEST(FastMotion, ManyTouchOne) {
+  for (const bool is_fixed : {true, false}) {
+    World<float, 3> world;
+    ASSERT_TRUE(world.add({.shape = Sphere<float>{3.0f}, .mass = 1e4f, .fixed = is_fixed}));
+    const int balls = 150;
+    for (int i = 0; i < balls; ++i) {  // a spiral on the sphere: nearly even
+      const float z = 1 - (2 * static_cast<float>(i) + 1) / balls, angle = 2.399963f * static_cast<float>(i);
+      const float out = std::sqrt(1 - z * z);
+      ASSERT_TRUE(world.add({.shape = Sphere<float>{0.3f},
+                             .position = Vector<float, 3>{{out * std::cos(angle), out * std::sin(angle), z}} * 3.5f}));
+    }
+    world.force_laws.push_back([](const World<float, 3>& w, float, auto x, auto v, auto force) {
+      for (std::size_t i = 1; i < w.size(); ++i) force[i] += w.mass[i] * ((x[0] - x[i]) * 3.0f + (v[0] - v[i]) * 0.5f);
+    });
+    FastMotion<float, 3> motion(world);
+    for (int step = 0; step < 600; ++step) ASSERT_EQ(motion.advance(), "");
+    EXPECT_LT(motion.deepest_overlap(), 0.003f);
+    EXPECT_GT(motion.statistics().contacts, 100u);
+    EXPECT_LT(length(world.position[0]), 1e-3f);
+    EXPECT_LT(kinetic_energy(world), 0.01f);
+  }
+}
+
 TEST(FastMotion, SaysWhatItCannotDo) {
   World<double, 2> world;
   ASSERT_TRUE(world.add({}));
