@@ -19,9 +19,10 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
+#include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
@@ -31,6 +32,7 @@ struct ExactOptions {
   std::optional<Real> contact_time{};     // without one: a hundred-thousandth of the time in which a body falls its
                                           // radius, or flies it where there is no gravity
   std::size_t most_events = 100'000'000;  // in one call of advance_to, which then says so: some minutes
+  std::size_t contact_events = 0;         // so many of a call are kept, see contact_events.hpp
 };
 
 struct ExactStatistics {
@@ -39,6 +41,9 @@ struct ExactStatistics {
   std::size_t crossings = 0;        // of cells
   std::size_t outdated = 0;         // predictions made again
 };
+
+template <class Real, int Dim>
+class ExactEngine;
 
 template <class Real, int Dim>
 class ExactMotion {
@@ -57,10 +62,14 @@ class ExactMotion {
   void refresh();
 
   const ExactStatistics& statistics() const;
+  /// What happened in the last call of advance_to, and how many more there were than `contact_events`.
+  std::span<const ContactEvent<Real, Dim>> contact_events() const;
+  std::size_t lost_contact_events() const;
 
  private:
-  class Flight;
-  std::unique_ptr<Flight> flight_;
+  World<Real, Dim>* world_;
+  ExactOptions<Real> options_;
+  std::unique_ptr<ExactEngine<Real, Dim>> engine_;
 };
 
 extern template class ExactMotion<float, 2>;

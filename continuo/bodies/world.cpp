@@ -5,6 +5,7 @@
 
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/world.hpp>
+#include <continuo/methods/compensated_sum.hpp>
 
 namespace continuo {
 
@@ -125,10 +126,12 @@ std::string World<Real, Dim>::add_container(const V& lower, const V& upper, cons
 
 template <class Real, int Dim>
 Real kinetic_energy(const World<Real, Dim>& world) {
-  Real sum(0);
+  Real sum(0), rest(0);  // of very many bodies, rounding would look like a loss
   for (std::size_t i = 0; i < world.size(); ++i) {
     if (world.is_fixed(i)) continue;
-    sum += squared(world.velocity[i]) / world.inverse_mass[i] + squared(world.spin[i]) / world.inverse_inertia[i];
+    detail::add_compensated(
+        Real(squared(world.velocity[i]) / world.inverse_mass[i] + squared(world.spin[i]) / world.inverse_inertia[i]),
+        sum, rest);
   }
   return sum / 2;
 }

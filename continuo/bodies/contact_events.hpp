@@ -1,0 +1,64 @@
+// continuo/bodies/contact_events.hpp
+// Who touched whom, where, when and how hard: what a motion notes while it advances, for the caller to read after it.
+//
+//   ExactMotion motion(world, {.contact_events = 1000});
+//   motion.advance_to(1);
+//   for (const ContactEvent<double, 3>& event : motion.contact_events()) ...
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/body.hpp>
+
+namespace continuo {
+
+enum class ContactChange : std::uint8_t {
+  impact,  // begins and ends in an instant
+  begin,   // of a contact that lasts
+  end
+};
+
+template <class Real, int Dim>
+struct ContactEvent {
+  static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
+
+  ContactChange change = ContactChange::impact;
+  BodyHandle a{}, b{};                  // b means nothing where there is a wall
+  std::uint32_t wall = no_wall;         // its number in world.walls()
+  Vector<Real, Dim> point{}, normal{};  // normal: from a to b, or into the wall
+  Real impulse{};                       // along the normal: of an impact; of a contact that ends, since it began
+  Real time{};
+
+  bool with_wall() const { return wall != no_wall; }
+};
+
+/// The events of one call, the first `most`; those beyond are counted.
+template <class Real, int Dim>
+class ContactLog {
+ public:
+  explicit ContactLog(std::size_t most = 0) : most_(most) {}
+
+  bool is_kept() const { return most_ > 0; }
+  void clear() {
+    events_.clear();
+    lost_ = 0;
+  }
+  void add(const ContactEvent<Real, Dim>& event) {
+    if (events_.size() < most_) {
+      events_.push_back(event);
+    } else if (most_ > 0) {
+      ++lost_;
+    }
+  }
+  std::span<const ContactEvent<Real, Dim>> events() const { return events_; }
+  std::size_t lost() const { return lost_; }
+
+ private:
+  std::size_t most_, lost_ = 0;
+  std::vector<ContactEvent<Real, Dim>> events_;
+};
+
+}  // namespace continuo

@@ -1,0 +1,261 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <continuo/bodies/event_queue.hpp>
+#include <continuo/bodies/exact_engine.hpp>
+#include <continuo/bodies/flights.hpp>
+#include <continuo/bodies/impulse.hpp>
+#include <continuo/bodies/resting.hpp>
+
+namespace continuo {
+
+namespace {
+
+template <class Real, int Dim>
+Real usual_contact_time(const World<Real, Dim>& world) {
+  using std::sqrt;
+  Real smallest = std::numeric_limits<Real>::infinity(), fastest(0);
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    smallest = std::min(smallest, world.radius[i]);
+    fastest = std::max(fastest, length(world.velocity[i]));
+  }
+  const Real g = length(world.gravity);
+  if (g > Real(0)) return Real(1e-5) * sqrt(2 * smallest / g);
+  return fastest > Real(0) ? Real(1e-5) * smallest / fastest : Real(0);
+}
+
+template <class Real, int Dim>
+class EventDriven final : public ExactEngine<Real, Dim> {
+ public:
+  using V = Vector<Real, Dim>;
+  using S = Spin<Real, Dim>;
+
+  EventDriven(World<Real, Dim>& world, const ExactOptions<Real>& options)
+      : ExactEngine<Real, Dim>(options),
+        world_(world),
+        options_(options),
+        contact_time_(options.contact_time ? *options.contact_time : usual_contact_time(world)),
+        flights_(world) {
+    sort();
+    for (std::uint32_t i = 0; i < flights_.paths.size(); ++i) predict(i);
+  }
+
+  std::string advance_to(const Real& t) override {
+    std::size_t events = 0;
+    while (queue_.time() <= t) {
+      if (++events > options_.most_events) {
+        synchronize(flights_.now);
+        return "more events than `most_events`: bodies may be caught between others";
+      }
+      flights_.now = std::max(flights_.now, queue_.time());
+      handle(queue_.first());
+      if (crossings_since_sort_ > 4 * flights_.paths.size()) sort();
+    }
+    synchronize(t);
+    return {};
+  }
+
+  using ExactEngine<Real, Dim>::statistics;
+  using ExactEngine<Real, Dim>::contacts;
+
+ private:
+  /// Brings the bodies into the order of their cells. Nothing but places changes.
+  void sort() {
+    crossings_since_sort_ = 0;
+    auto& plans = flights_.plans;
+    auto& grid = flights_.grid;
+    const std::size_t n = plans.size();
+    std::vector<std::uint32_t> order(n), place(n), numbers(n);
+    std::iota(order.begin(), order.end(), 0u);
+    std::vector<std::size_t> key(n);
+    for (std::size_t i = 0; i < n; ++i)
+      key[i] = plans[i].is_large ? std::numeric_limits<std::size_t>::max() : grid.list_of(plans[i].cell);
+    std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(key[i], plans[i].number); });
+    for (std::uint32_t k = 0; k < n; ++k) place[order[k]] = k;
+    const auto arrange = [&](auto& values) {
+      auto old = values;
+      for (std::size_t k = 0; k < n; ++k) values[k] = old[order[k]];
+    };
+    arrange(flights_.paths), arrange(plans), arrange(flights_.marks);
+    for (auto& plan : plans)
+      if (plan.partner < first_wall) plan.partner = place[plan.partner];
+    flights_.large.clear();
+    grid = CellGrid<Real, Dim>(grid.edge(), n);
+    for (std::size_t k = 0; k < n; ++k) numbers[k] = plans[k].number;
+    queue_ = EventQueue<Real>(std::move(numbers));
+    for (std::uint32_t k = 0; k < n; ++k) {
+      schedule(k);
+      if (plans[k].is_large) {
+        flights_.large.push_back(k);
+      } else {
+        grid.insert(k, plans[k].cell);
+      }
+    }
+  }
+
+  void synchronize(const Real& t) {
+    for (std::size_t i = 0; i < flights_.paths.size(); ++i) {
+      Path<Real, Dim> at = flights_.paths[i];
+      Plan<Real, Dim>& plan = flights_.plans[i];
+      Flights<Real, Dim>::advance(at, plan.acceleration, t);
+      world_.position[plan.number] = at.x;
+      world_.velocity[plan.number] = at.v;
+      world_.spin[plan.number] = plan.spin;
+      turn_to(plan, t);
+    }
+    world_.time = flights_.now = t;
+  }
+  /// Its orientation, before its spin changes.
+  void turn_to(Plan<Real, Dim>& plan, const Real& t) {
+    if (plan.spin != S{} && t > plan.spun_to)
+      world_.orientation[plan.number] = turned(world_.orientation[plan.number], plan.spin, Real(t - plan.spun_to));
+    plan.spun_to = t;
+  }
+
+  void schedule(std::uint32_t i) {
+    queue_.set(i, std::min(flights_.plans[i].collision_time, flights_.plans[i].crossing_time));
+  }
+  void predict(std::uint32_t i) {
+    flights_.predict(i);
+    schedule(i);
+  }
+
+  void handle(std::uint32_t i) {
+    const Plan<Real, Dim>& plan = flights_.plans[i];
+    const std::uint32_t j = plan.partner;
+    if (plan.crossing_time <= plan.collision_time) return cross(i);
+    if (j >= first_wall && j < look_again) return hit_wall(i, j - first_wall);
+    if (j == look_again || flights_.marks[j].collisions != plan.collisions_of_partner) {
+      ++statistics.outdated;
+      return predict(i);
+    }
+    plan.number < flights_.plans[j].number ? hit(i, j) : hit(j, i);
+  }
+
+  void cross(std::uint32_t i) {
+    ++statistics.crossings;
+    ++crossings_since_sort_;
+    Plan<Real, Dim>& plan = flights_.plans[i];
+    flights_.grid.remove(i, plan.cell);
+    flights_.move_to_now(i);
+    if (!flights_.grid.has_cell(flights_.paths[i].x)) {  // it has left where cells have numbers
+      plan.is_large = true;
+      flights_.large.push_back(i);
+      return predict(i);
+    }
+    plan.cell[plan.axis] += plan.direction;
+    flights_.grid.insert(i, plan.cell);
+    if (plan.partner == look_again) return predict(i);
+    flights_.look_ahead(i);
+    schedule(i);
+  }
+
+  bool is_held(std::uint32_t i) const { return flights_.now - flights_.plans[i].last_collision < contact_time_; }
+  void bring(std::uint32_t i) {
+    flights_.move_to_now(i);
+    turn_to(flights_.plans[i], flights_.now);
+  }
+  Mover<Real, Dim> mover(std::uint32_t i) {
+    Path<Real, Dim>& path = flights_.paths[i];
+    Plan<Real, Dim>& plan = flights_.plans[i];
+    return {path.v, plan.spin, path.radius, plan.inverse_mass, plan.inverse_inertia};
+  }
+
+  void hit(std::uint32_t i, std::uint32_t j) {
+    ++statistics.collisions;
+    bring(i);
+    bring(j);
+    const Path<Real, Dim>&a = flights_.paths[i], &b = flights_.paths[j];
+    Material<Real> material = combined(flights_.plans[i].material, flights_.plans[j].material);
+    if (is_held(i) || is_held(j)) material.restitution = Real(1);
+    const V apart = b.x - a.x;
+    const Real distance = length(apart);
+    V normal = distance > Real(0) ? apart * (1 / distance) : V{};
+    if (!(distance > Real(0))) normal[0] = Real(1);
+    Real impulse(0);
+    if (dot(b.v - a.v, normal) < Real(0)) impulse = collide(mover(i), mover(j), normal, material);
+    note_collision(i);
+    note_collision(j);
+    if (contacts.is_kept())
+      contacts.add({.a = handle_of(i),
+                    .b = handle_of(j),
+                    .point = a.x + normal * a.radius,
+                    .normal = normal,
+                    .impulse = impulse,
+                    .time = flights_.now});
+    predict(i);
+    predict(j);
+  }
+
+  void hit_wall(std::uint32_t i, std::uint32_t w) {
+    ++statistics.wall_collisions;
+    const Wall<Real, Dim>& wall = world_.walls()[w];
+    bring(i);
+    Material<Real> material = combined(flights_.plans[i].material, wall.material);
+    if (is_held(i)) material.restitution = Real(1);
+    V no_velocity{};
+    S no_spin{};
+    const Mover<Real, Dim> of_wall{no_velocity, no_spin, Real(0), Real(0), Real(0)};
+    Real impulse(0);
+    if (dot(flights_.paths[i].v, wall.normal) < Real(0))
+      impulse = collide(mover(i), of_wall, V(-wall.normal), material);
+    note_collision(i);
+    if (contacts.is_kept() && impulse > Real(0)) note_wall(i, w, ContactChange::impact, impulse);
+    if (rest_on_walls(flights_, i, w, contact_time_) && contacts.is_kept())
+      for (std::uint32_t k = 0; k < flights_.plans[i].support_count; ++k)
+        note_wall(i, flights_.plans[i].supports[k], ContactChange::begin, Real(0));
+    predict(i);
+  }
+
+  /// Its path is another one now; what it lay on it lies on no more, until it touches it again.
+  void note_collision(std::uint32_t i) {
+    Plan<Real, Dim>& plan = flights_.plans[i];
+    ++flights_.marks[i].collisions;
+    plan.last_collision = flights_.now;
+    if (flights_.marks[i].act != Act::rests) return;
+    if (contacts.is_kept()) {
+      const auto forces = support_forces(flights_, i);
+      for (std::uint32_t k = 0; k < plan.support_count; ++k)
+        note_wall(i, plan.supports[k], ContactChange::end, Real(forces[k] * (flights_.now - plan.rests_since)));
+    }
+    flights_.marks[i].act = Act::falls;
+    plan.acceleration = world_.gravity;
+  }
+
+  BodyHandle handle_of(std::uint32_t i) const { return world_.handle(flights_.plans[i].number); }
+  void note_wall(std::uint32_t i, std::uint32_t w, ContactChange change, const Real& impulse) {
+    const V normal = -world_.walls()[w].normal;
+    const Path<Real, Dim>& path = flights_.paths[i];
+    contacts.add({.change = change,
+                  .a = handle_of(i),
+                  .wall = w,
+                  .point = path.x + normal * path.radius,
+                  .normal = normal,
+                  .impulse = impulse,
+                  .time = flights_.now});
+  }
+
+  World<Real, Dim>& world_;
+  ExactOptions<Real> options_;
+  Real contact_time_;
+  Flights<Real, Dim> flights_;
+  EventQueue<Real> queue_;
+  std::size_t crossings_since_sort_ = 0;
+};
+
+}  // namespace
+
+template <class Real, int Dim>
+std::unique_ptr<ExactEngine<Real, Dim>> event_driven(World<Real, Dim>& world, const ExactOptions<Real>& options) {
+  return std::make_unique<EventDriven<Real, Dim>>(world, options);
+}
+
+template std::unique_ptr<ExactEngine<float, 2>> event_driven(World<float, 2>&, const ExactOptions<float>&);
+template std::unique_ptr<ExactEngine<float, 3>> event_driven(World<float, 3>&, const ExactOptions<float>&);
+template std::unique_ptr<ExactEngine<double, 2>> event_driven(World<double, 2>&, const ExactOptions<double>&);
+template std::unique_ptr<ExactEngine<double, 3>> event_driven(World<double, 3>&, const ExactOptions<double>&);
+
+}  // namespace continuo

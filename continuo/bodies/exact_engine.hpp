@@ -1,0 +1,27 @@
+// continuo/bodies/exact_engine.hpp
+// What the exact motion hands its work to: one engine for parabolas, one for whatever paths other forces make.
+#pragma once
+#include <memory>
+#include <string>
+
+#include <continuo/bodies/contact_events.hpp>
+#include <continuo/bodies/exact_motion.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class ExactEngine {
+ public:
+  explicit ExactEngine(const ExactOptions<Real>& options) : contacts(options.contact_events) {}
+  virtual ~ExactEngine() = default;
+  virtual std::string advance_to(const Real& t) = 0;
+
+  ExactStatistics statistics{};
+  ContactLog<Real, Dim> contacts;
+};
+
+/// From event to event on parabolas: event_driven.cpp.
+template <class Real, int Dim>
+std::unique_ptr<ExactEngine<Real, Dim>> event_driven(World<Real, Dim>& world, const ExactOptions<Real>& options);
+
+}  // namespace continuo

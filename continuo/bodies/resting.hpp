@@ -1,0 +1,97 @@
+// continuo/bodies/resting.hpp
+// When a body that bounces on walls lies still on them: a flight shorter than the contact time is none. From then on it
+// moves along the walls that carry it, accelerated by what they leave of gravity, until something hits it.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <continuo/bodies/flights.hpp>
+
+namespace continuo {
+
+/// Lets body i rest on wall `hit`, which it has just met, and on whatever others it touches, where it would leave none
+/// of them for `contact_time`. False where it flies on.
+template <class Real, int Dim>
+bool rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t hit, const Real& contact_time) {
+  using V = Vector<Real, Dim>;
+  const World<Real, Dim>& world = flights.world;
+  Path<Real, Dim>& path = flights.paths[i];
+  Plan<Real, Dim>& plan = flights.plans[i];
+  const auto speed = [&](std::uint32_t w) { return dot(path.v, world.walls()[w].normal); };
+  // Near enough to touch: what it could rise within the contact time, or what rounding makes of a place.
+  const auto touches = [&](std::uint32_t w, const Real& press) {
+    const Wall<Real, Dim>& wall = world.walls()[w];
+    const Real along = dot(wall.normal, path.x), gap = along - wall.offset - path.radius;
+    const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * (std::abs(along) + std::abs(wall.offset));
+    return w == hit || gap < std::max(Real(contact_time * contact_time * press), rounding);
+  };
+  const auto leaves = [&](std::uint32_t w, const Real& press) { return !(2 * speed(w) < contact_time * press); };
+  const Real press_on_hit = -dot(world.gravity, world.walls()[hit].normal);
+  if (!(press_on_hit > Real(0)) || leaves(hit, press_on_hit)) return false;
+
+  // One wall after the other, the one that gravity presses on most first: each takes its part of what is left of
+  // gravity across those before.
+  std::array<V, static_cast<std::size_t>(Dim)> across{};
+  V pull = world.gravity;
+  const Real least = length(world.gravity) * 16 * std::numeric_limits<Real>::epsilon();
+  plan.support_count = 0;
+  while (plan.support_count < Dim) {
+    std::uint32_t next = nobody;
+    Real most = least;
+    for (std::uint32_t w = 0; w < world.walls().size(); ++w) {
+      const Real press = -dot(pull, world.walls()[w].normal);
+      if (!(press > most) || leaves(w, press) || !touches(w, press)) continue;
+      if (Flights<Real, Dim>::is_support(plan, w)) continue;
+      most = press;
+      next = w;
+    }
+    if (next == nobody) break;
+    V direction = world.walls()[next].normal;
+    for (std::uint32_t k = 0; k < plan.support_count; ++k) direction -= across[k] * dot(direction, across[k]);
+    const Real part = length(direction);
+    if (!(part > Real(1e-3))) break;  // as good as parallel to one it rests on
+    direction *= 1 / part;
+    across[plan.support_count] = direction;
+    plan.supports[plan.support_count++] = next;
+    pull -= direction * dot(pull, direction);
+    path.v -= direction * dot(path.v, direction);
+  }
+  if (plan.support_count == 0) return false;
+  plan.acceleration = pull;
+  plan.rests_since = flights.now;
+  flights.marks[i].act = Act::rests;
+  return true;
+}
+
+/// With which force each wall carries body i that rests: mass * (acceleration - gravity) = sum of forces along normals.
+template <class Real, int Dim>
+std::array<Real, static_cast<std::size_t>(Dim)> support_forces(const Flights<Real, Dim>& flights, std::uint32_t i) {
+  constexpr auto size = static_cast<std::size_t>(Dim);
+  const Plan<Real, Dim>& plan = flights.plans[i];
+  const std::size_t count = plan.support_count;
+  const auto normal = [&](std::size_t k) { return flights.world.walls()[plan.supports[k]].normal; };
+  const Vector<Real, Dim> carried = (plan.acceleration - flights.world.gravity) * (1 / plan.inverse_mass);
+  std::array<std::array<Real, size>, size> m{};  // normal equations, positive definite: no pivots needed
+  std::array<Real, size> force{};
+  for (std::size_t k = 0; k < count; ++k) {
+    force[k] = dot(normal(k), carried);
+    for (std::size_t l = 0; l < count; ++l) m[k][l] = dot(normal(k), normal(l));
+  }
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t row = k + 1; row < count; ++row) {
+      const Real factor = m[row][k] / m[k][k];
+      for (std::size_t l = k; l < count; ++l) m[row][l] -= factor * m[k][l];
+      force[row] -= factor * force[k];
+    }
+  for (std::size_t k = count; k-- > 0;) {
+    for (std::size_t l = k + 1; l < count; ++l) force[k] -= m[k][l] * force[l];
+    force[k] /= m[k][k];
+  }
+  return force;
+}
+
+}  // namespace continuo

@@ -1,0 +1,89 @@
+// What motions report of contacts against what mechanics says they must add up to.
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <continuo/bodies/exact_motion.hpp>
+
+namespace continuo {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// The momentum of a gas changes by the impulses of the walls and nothing else; each body's by those on it.
+TEST(ContactEvents, ImpulsesAreTheChangeOfMomentum) {
+  World<double, 3> world;
+  const Material<double> material{.restitution = 0.9, .friction = 0};
+  ASSERT_EQ(world.add_container({}, {{6, 6, 6}}, material), "");
+  std::mt19937 engine(4);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 64; ++i)
+    ASSERT_TRUE(world.add({.position = {{1 + 1.3 * (i % 4), 1 + 1.3 * (i / 4 % 4), 1 + 1.3 * (i / 16)}},
+                           .velocity = {{normal(engine), normal(engine), normal(engine)}},
+                           .mass = 1 + std::abs(normal(engine)),
+                           .material = material}));
+  const World<double, 3> before = world;
+  ExactMotion motion(world, {.contact_events = 100000});
+  ASSERT_EQ(motion.advance_to(5), "");
+  EXPECT_EQ(motion.contact_events().size(), motion.statistics().collisions + motion.statistics().wall_collisions);
+  EXPECT_EQ(motion.lost_contact_events(), 0u);
+  EXPECT_GT(motion.statistics().collisions, 200u);
+  std::vector<Vector<double, 3>> gained(world.size());
+  double last = 0;
+  for (const ContactEvent<double, 3>& event : motion.contact_events()) {
+    EXPECT_EQ(event.change, ContactChange::impact);
+    EXPECT_GE(event.time, last);
+    last = event.time;
+    EXPECT_GT(event.impulse, 0);
+    gained[world.index(event.a)] -= event.normal * event.impulse;
+    if (!event.with_wall()) gained[world.index(event.b)] += event.normal * event.impulse;
+    // A wall is touched where it is: here, in a face of the box.
+    if (event.with_wall()) {
+      EXPECT_NEAR(dot(world.walls()[event.wall].normal, event.point), world.walls()[event.wall].offset, 20 * epsilon);
+    }
+  }
+  // Some tens of impulses of size 10, rounded each.
+  for (std::size_t i = 0; i < world.size(); ++i)
+    EXPECT_LT(length(world.mass[i] * (world.velocity[i] - before.velocity[i]) - gained[i]), 100 * 10 * epsilon) << i;
+}
+
+// A ball that comes to rest on the floor presses on it with its weight until another one hits it.
+TEST(ContactEvents, RestBeginsAndEndsWithTheWeight) {
+  World<double, 2> world;
+  world.gravity = {{0, -10}};
+  ASSERT_EQ(world.add_wall({}), "");
+  const auto low = world.add({.position = {{0, 0.5}}, .mass = 3, .material = {.restitution = 0, .friction = 0}});
+  ASSERT_TRUE(
+      world.add({.position = {{-5, 0.5}}, .velocity = {{1, 0}}, .material = {.restitution = 1, .friction = 0}}));
+  ExactMotion motion(world, {.contact_events = 100});
+  ASSERT_EQ(motion.advance_to(6), "");
+  double begun = -1, ended = -1, impulse = 0;
+  for (const auto& event : motion.contact_events()) {
+    if (event.a != low.handle || !event.with_wall()) continue;
+    if (event.change == ContactChange::begin && begun < 0) begun = event.time;
+    if (event.change == ContactChange::end && ended < 0) ended = event.time, impulse = event.impulse;
+  }
+  EXPECT_EQ(begun, 0);
+  EXPECT_NEAR(ended, 4, 1e-4);  // the other one flies a little, as long as it bounces
+  EXPECT_NEAR(impulse, 3 * 10 * ended, 1e-9);
+}
+
+TEST(ContactEvents, AreBounded) {
+  World<double, 2> world;
+  world.gravity = {{0, -10}};
+  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add({.position = {{0, 1}}, .material = {.restitution = 1}}));
+  ExactMotion motion(world, {.contact_events = 3});
+  ASSERT_EQ(motion.advance_to(10), "");
+  EXPECT_EQ(motion.contact_events().size(), 3u);
+  EXPECT_EQ(motion.lost_contact_events() + 3, motion.statistics().wall_collisions);
+  ASSERT_EQ(motion.advance_to(10), "");  // of each call its own
+  EXPECT_TRUE(motion.contact_events().empty());
+}
+
+}  // namespace
+}  // namespace continuo
