@@ -111,6 +111,7 @@ class World {
     ignored_[a] |= 1u << b;
     ignored_[b] |= 1u << a;
   }
+  std::uint32_t group(std::size_t i) const { return group_[i]; }
   bool has_ignored_groups() const { return ignored_ != std::array<std::uint32_t, 32>{}; }
   bool collide(std::size_t i, std::size_t j) const {
     return (ignored_[group_[i]] >> group_[j] & 1u) == 0 && (inverse_mass[i] > 0 || inverse_mass[j] > 0);

@@ -1,0 +1,111 @@
+// continuo/bodies/queries.hpp
+// What is where: rays, regions and neighbours in a world as it is when the index is built, in O(N log N); each question
+// then costs O(log N) where few bodies answer it.
+//
+//   const Queries queries(world);
+//   const auto hit = queries.first_hit({.origin = {{0, 0, 10}}, .direction = {{0, 0, -1}}});
+//   if (!hit.error.empty()) ...                 // the question made no sense
+//   else if (!hit.value.empty()) use(hit.value.front().body, hit.value.front().distance)
+//
+// Bodies lie in a tree of boxes, halved along the longest edge by the middle body; that bodies differ in size or some
+// are far away from all others costs nothing. Bodies whose place is not finite are nowhere.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+struct Ray {
+  Vector<Real, Dim> origin{}, direction{};  // of any length but 0
+  Real reach = std::numeric_limits<Real>::infinity();
+};
+
+/// What a question is about: bodies of the groups whose bit is set, and walls.
+struct QueryFilter {
+  std::uint32_t groups = ~std::uint32_t{0};
+  bool walls = true;
+};
+
+/// A body, or the wall of a number in world.walls().
+template <class Real, int Dim>
+struct RayHit {
+  static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
+  BodyHandle body{};
+  std::uint32_t wall = no_wall;
+  Real distance{};                      // along the ray; 0 where it starts inside the body or behind the wall
+  Vector<Real, Dim> point{}, normal{};  // of the surface; against the ray where it starts inside
+  bool is_wall() const { return wall != no_wall; }
+};
+
+template <class Real>
+struct Neighbour {
+  BodyHandle body{};
+  Real distance{};  // to its surface, below 0 inside
+};
+
+struct Overlap {
+  std::vector<BodyHandle> bodies{};
+  std::vector<std::uint32_t> walls{};
+};
+
+/// The answer, or why there is none: what is asked must be finite, a direction not 0, no region inside out.
+template <class Value>
+struct Answer {
+  Value value{};
+  std::string error{};
+  explicit operator bool() const { return error.empty(); }
+};
+
+template <class Real, int Dim>
+class Queries {
+ public:
+  using V = Vector<Real, Dim>;
+
+  explicit Queries(const World<Real, Dim>& world);
+
+  /// The nearest hit, if any: one element or none. Of equal distances bodies come before walls, lower numbers first.
+  Answer<std::vector<RayHit<Real, Dim>>> first_hit(const Ray<Real, Dim>& ray, const QueryFilter& filter = {}) const;
+  /// All of them, the nearest first.
+  Answer<std::vector<RayHit<Real, Dim>>> all_hits(const Ray<Real, Dim>& ray, const QueryFilter& filter = {}) const;
+  /// What a ball, or a box with its faces along the axes, touches. In the order of the world.
+  Answer<Overlap> in_sphere(const V& centre, const Real& radius, const QueryFilter& filter = {}) const;
+  Answer<Overlap> in_box(const V& lower, const V& upper, const QueryFilter& filter = {}) const;
+  /// The `count` bodies whose surfaces are nearest, or as many as there are; the nearest first.
+  Answer<std::vector<Neighbour<Real>>> nearest(const V& point, std::size_t count, const QueryFilter& filter = {}) const;
+
+ private:
+  struct Item {
+    V x{};
+    Real radius{};
+    std::uint32_t number = 0, group = 0;
+    BodyHandle body{};
+  };
+  struct Box {
+    V lower{}, upper{};  // of whole bodies
+  };
+
+  void build(std::size_t node, std::size_t first, std::size_t last);
+  template <class Enter, class Visit>
+  void walk(Enter&& enter, Visit&& visit, std::size_t node, std::size_t first, std::size_t last) const;
+  template <class Enter, class Visit>
+  void walk(Enter&& enter, Visit&& visit) const;
+  template <class Take>
+  void wall_hits(const Ray<Real, Dim>& ray, Take&& take) const;
+
+  std::vector<Item> items_;
+  std::vector<Box> boxes_;  // of node k are 2 k + 1 and 2 k + 2 the halves
+  std::vector<Wall<Real, Dim>> walls_;
+};
+
+extern template class Queries<float, 2>;
+extern template class Queries<float, 3>;
+extern template class Queries<double, 2>;
+extern template class Queries<double, 3>;
+
+}  // namespace continuo
