@@ -110,6 +110,25 @@ class ContactList {
     fill_walls(bodies, world_walls, material_of, before);
   }
 
+  /// visit(k, other, is_wall, impulse) for the contacts that pressed in the last substep.
+  template <class Visit>
+  void for_each_touching(Visit&& visit) const {
+    const auto impulse = [](const ColouredPacks<Real, Dim>& packs, std::uint32_t lane) {
+      return packs.packs[(lane & ~fixed_bit) / width].normal_impulse.lane[lane % width];
+    };
+    const auto visit_rows = [&](const ContactRows& rows, bool is_wall) {
+      for (std::uint32_t k = 0; k < rows.rows(); ++k)
+        for (const ContactRows::Entry& entry : rows.row(k)) {
+          if (entry.lane == nowhere) continue;
+          const auto& packs = is_wall ? with_wall : entry.lane & fixed_bit ? with_fixed : between_movers;
+          if (const Real pressed = impulse(packs, entry.lane); pressed > Real(0))
+            visit(k, entry.other, is_wall, pressed);
+        }
+    };
+    visit_rows(pairs, false);
+    visit_rows(walls, true);
+  }
+
   std::size_t active() const {
     std::size_t sum = 0;
     for (const auto* packs : {&between_movers, &with_fixed, &with_wall})

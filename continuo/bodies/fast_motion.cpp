@@ -9,6 +9,7 @@
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/impacts.hpp>
+#include <continuo/bodies/touch_log.hpp>
 
 namespace continuo {
 
@@ -17,7 +18,10 @@ class FastMotion<Real, Dim>::Stepper {
  public:
   using V = Vector<Real, Dim>;
 
-  Stepper(World<Real, Dim>& world, const FastOptions<Real>& options) : world_(world), options_(options) { refresh(); }
+  Stepper(World<Real, Dim>& world, const FastOptions<Real>& options)
+      : log(options.contact_events), world_(world), options_(options) {
+    refresh();
+  }
 
   void refresh() {
     list_ = {};
@@ -38,6 +42,7 @@ class FastMotion<Real, Dim>::Stepper {
     if (list_.is_outdated(bodies_, step_reach())) make_list();
     activate();
     const Real h = options_.step / static_cast<Real>(options_.substeps);
+    log.clear();
     for (int k = 0; k < options_.substeps; ++k) substep(world_.time + h * static_cast<Real>(k), h);
     Real sum(0);
     for (std::size_t k = 0; k < bodies_.size(); ++k)
@@ -46,6 +51,7 @@ class FastMotion<Real, Dim>::Stepper {
     if (sum != Real(0)) return "a body's motion is no longer finite: a force or a mass is too large for the step";
     store();
     world_.time += options_.step;
+    if (log.is_kept()) note_touching();
     ++statistics.steps;
     statistics.lists = list_.lists();
     statistics.contacts = contacts_.active();
@@ -68,8 +74,29 @@ class FastMotion<Real, Dim>::Stepper {
   }
 
   FastStatistics statistics{};
+  ContactLog<Real, Dim> log;
 
  private:
+  void note_touching() {
+    const auto handle = [&](std::uint32_t k) { return world_.handle(list_.order()[k]); };
+    contacts_.for_each_touching([&](std::uint32_t k, std::uint32_t other, bool is_wall, const Real& impulse) {
+      ContactEvent<Real, Dim> event{.a = handle(k)};
+      event.impulse = impulse * static_cast<Real>(options_.substeps);
+      if (is_wall) {
+        event.wall = other;
+        event.normal = -world_.walls()[other].normal;
+      } else {
+        event.b = handle(other);
+        if (event.b.slot < event.a.slot) std::swap(event.a, event.b);
+        const V apart = world_.position_of(event.b) - world_.position_of(event.a);
+        if (const Real distance = length(apart); distance > Real(0)) event.normal = apart * (1 / distance);
+      }
+      event.point = world_.position_of(event.a) + event.normal * world_.radius[world_.index(event.a)];
+      touches_.touch(event);
+    });
+    touches_.end_step(world_.time, log);
+  }
+
   /// The bodies from the world, in the order of the list.
   void load() {
     const std::vector<std::uint32_t>& order = list_.order();
@@ -168,7 +195,7 @@ class FastMotion<Real, Dim>::Stepper {
     look_for_impacts(step);
     if (step.may_strike) {
       bodies_.impacts.assign(bodies_.size(), 0);
-      statistics.impacts += impacts_.make(world_, list_, contacts_, bodies_, step, options_.step);
+      statistics.impacts += impacts_.make(world_, list_, contacts_, bodies_, step, options_.step, t, log);
     }
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       put(V(bodies_.v(k) + bodies_.acceleration(k) * h), bodies_.motion[k].linear);
@@ -208,6 +235,7 @@ class FastMotion<Real, Dim>::Stepper {
   PairList<Real, Dim> list_;
   ContactList<Real, Dim> contacts_;
   Impacts<Real, Dim> impacts_;
+  TouchLog<Real, Dim> touches_;
   bool has_other_forces_ = false, may_bounce_ = false, may_resist_ = false;
   std::vector<std::uint32_t> place_before_;
   std::vector<V> x_, v_, force_;
@@ -237,6 +265,15 @@ Real FastMotion<Real, Dim>::deepest_overlap() const {
 template <class Real, int Dim>
 const FastStatistics& FastMotion<Real, Dim>::statistics() const {
   return stepper_->statistics;
+}
+
+template <class Real, int Dim>
+std::span<const ContactEvent<Real, Dim>> FastMotion<Real, Dim>::contact_events() const {
+  return stepper_->log.events();
+}
+template <class Real, int Dim>
+std::size_t FastMotion<Real, Dim>::lost_contact_events() const {
+  return stepper_->log.lost();
 }
 
 template class FastMotion<float, 2>;

@@ -13,8 +13,10 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 
+#include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
@@ -22,10 +24,11 @@ namespace continuo {
 template <class Real>
 struct FastOptions {
   Real step = Real(1) / Real(60);
-  int substeps = 4;             // more are stiffer and cost as much more
-  Real hertz = Real(120);       // of a contact; a quarter of the rate of substeps at most
-  Real damping = Real(10);      // ratio: 1 is critical; overdamped contacts do not jump
-  Real fastest_push = Real(4);  // with which overlapping bodies part, length per time
+  int substeps = 4;                // more are stiffer and cost as much more
+  Real hertz = Real(120);          // of a contact; a quarter of the rate of substeps at most
+  Real damping = Real(10);         // ratio: 1 is critical; overdamped contacts do not jump
+  Real fastest_push = Real(4);     // with which overlapping bodies part, length per time
+  std::size_t contact_events = 0;  // so many of a step are kept, see contact_events.hpp
 };
 
 struct FastStatistics {
@@ -48,6 +51,11 @@ class FastMotion {
   /// The deepest overlap of two bodies, or of one and a wall, now.
   Real deepest_overlap() const;
   const FastStatistics& statistics() const;
+  /// What happened in the last step: impacts at their instants; what lasts begins and ends with a step, and its impulse
+  /// is that of the last substep times their number, summed over the steps. And how many more there were than asked
+  /// for.
+  std::span<const ContactEvent<Real, Dim>> contact_events() const;
+  std::size_t lost_contact_events() const;
 
  private:
   class Stepper;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <continuo/bodies/collision_time.hpp>
+#include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/impulse.hpp>
 #include <continuo/bodies/pair_list.hpp>
 
@@ -21,11 +22,12 @@ class Impacts {
  public:
   using V = Vector<Real, Dim>;
 
-  /// Of a substep of `h`; paths of a step of `step` are looked at beyond the list. Gives how many there were.
+  /// Of a substep of `h` from `begin` on; paths of a step of `step` are looked at beyond the list. Gives how many there
+  /// were.
   std::size_t make(const World<Real, Dim>& world, const PairList<Real, Dim>& list,
                    const ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies,
-                   const ContactStep<Real>& substep, const Real& step) {
-    const Making making{world, list, bodies, substep, step};
+                   const ContactStep<Real>& substep, const Real& step, const Real& begin, ContactLog<Real, Dim>& log) {
+    const Making making{world, list, bodies, substep, step, begin, log};
     for (std::uint32_t k = 0; k < bodies.size(); ++k) {
       for (const auto& entry : contacts.pairs.row(k)) foresee(making, k, entry.other, Real(0));
       for (const auto& entry : contacts.walls.row(k)) foresee_wall(making, k, entry.other, Real(0));
@@ -48,7 +50,8 @@ class Impacts {
     const PairList<Real, Dim>& list;
     SolverBodies<Real, Dim>& bodies;
     const ContactStep<Real>& substep;
-    Real step;
+    Real step, begin;  // begin: of the substep
+    ContactLog<Real, Dim>& log;
 
     const Material<Real>& material(std::uint32_t k) const { return world.material[list.order()[k]]; }
   };
@@ -115,17 +118,34 @@ class Impacts {
       V normal = apart * (distance > Real(0) ? 1 / distance : Real(0));
       if (!(distance > Real(0))) normal[0] = Real(1);
       const Material<Real> both = combined(making.material(impact.a), making.material(impact.b));
-      if (dot(b.v - a.v, normal) < Real(0)) collide(a.mover(), b.mover(), normal, both);
+      if (dot(b.v - a.v, normal) < Real(0)) note(making, impact, normal, collide(a.mover(), b.mover(), normal, both));
       put_back(bodies, impact.b, b, impact.time);
     } else {
       State stand_in{};
       const Wall<Real, Dim>& wall = making.world.walls()[impact.b - bodies.size()];
       const Material<Real> both = combined(making.material(impact.a), wall.material);
-      if (dot(a.v, wall.normal) < Real(0)) collide(a.mover(), stand_in.mover(), V(-wall.normal), both);
+      if (dot(a.v, wall.normal) < Real(0))
+        note(making, impact, V(-wall.normal), collide(a.mover(), stand_in.mover(), V(-wall.normal), both));
     }
     put_back(bodies, impact.a, a, impact.time);
     foresee_all(making, impact.a, impact.time);
     if (impact.b < bodies.size()) foresee_all(making, impact.b, impact.time);
+  }
+  static void note(const Making& making, const Impact& impact, const V& normal, const Real& impulse) {
+    if (!making.log.is_kept()) return;
+    const auto& bodies = making.bodies;
+    const auto handle = [&](std::uint32_t k) { return making.world.handle(making.list.order()[k]); };
+    ContactEvent<Real, Dim> event{.a = handle(impact.a),
+                                  .point = bodies.x(impact.a) + normal * bodies.radius(impact.a),
+                                  .normal = normal,
+                                  .impulse = impulse,
+                                  .time = making.begin + impact.time};
+    if (impact.b < bodies.size()) {
+      event.b = handle(impact.b);
+    } else {
+      event.wall = static_cast<std::uint32_t>(impact.b - bodies.size());
+    }
+    making.log.add(event);
   }
   /// A body that an impact made faster may get further than its pairs were listed for: then it looks itself.
   void foresee_all(const Making& making, std::uint32_t i, const Real& from) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <continuo/bodies/exact_motion.hpp>
+#include <continuo/bodies/fast_motion.hpp>
 
 namespace continuo {
 namespace {
@@ -70,6 +71,56 @@ TEST(ContactEvents, RestBeginsAndEndsWithTheWeight) {
   EXPECT_EQ(begun, 0);
   EXPECT_NEAR(ended, 4, 1e-4);  // the other one flies a little, as long as it bounces
   EXPECT_NEAR(impulse, 3 * 10 * ended, 1e-9);
+}
+
+// The same of the fast motion: an elastic ball strikes at the times of a fall, with twice its momentum. A collision is
+// located on the parabola between steps, so that only the ulps of some bounces are lost.
+TEST(ContactEvents, OfTheFastMotionTellOfImpacts) {
+  World<double, 2> world;
+  world.gravity = {{0, -10}};
+  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add({.position = {{0, 5.5}}, .mass = 2, .material = {.restitution = 1, .friction = 0}}));
+  FastMotion motion(world, {.contact_events = 10});
+  std::vector<double> times;
+  for (int step = 0; step < 600; ++step) {
+    ASSERT_EQ(motion.advance(), "");
+    for (const auto& event : motion.contact_events()) {
+      EXPECT_EQ(event.change, ContactChange::impact);
+      EXPECT_NEAR(event.impulse, 2 * 2 * 10, 1e-9);
+      EXPECT_NEAR(event.point[1], 0, 1e-9);
+      times.push_back(event.time);
+    }
+  }
+  ASSERT_EQ(times.size(), 5u);  // after 1, 3, 5, 7 and 9 s
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], 1 + 2 * static_cast<double>(i), 1e-9);
+}
+
+// Two balls, one on the other: as long as they lie, each contact passes on the weight of what is above. The soft
+// contacts settle in the first tenth of a second; what they overshoot there is given back, but for the momentum of the
+// end.
+TEST(ContactEvents, OfTheFastMotionTellOfWeight) {
+  World<double, 3> world;
+  world.gravity = {{0, 0, -10}};
+  ASSERT_EQ(world.add_wall({}), "");
+  const auto low = world.add({.position = {{0, 0, 0.5}}, .mass = 3, .material = {.friction = 0}});
+  const auto high = world.add({.position = {{0, 0, 1.5}}, .mass = 2, .material = {.friction = 0}});
+  FastMotion motion(world, {.contact_events = 10});
+  int begun = 0;
+  for (int step = 0; step < 120; ++step) {
+    ASSERT_EQ(motion.advance(), "");
+    for (const auto& event : motion.contact_events()) begun += event.change == ContactChange::begin ? 1 : 0;
+  }
+  EXPECT_EQ(begun, 2);
+  world.velocity[world.index(low.handle)] = {{0, 100, 0}};  // pulled away from below, and both lifted
+  world.velocity[world.index(high.handle)] = {{0, 0, 100}};
+  world.position[world.index(low.handle)][2] += 0.1;
+  world.position[world.index(high.handle)][2] += 1;
+  ASSERT_EQ(motion.advance(), "");
+  ASSERT_EQ(motion.contact_events().size(), 2u);
+  for (const auto& event : motion.contact_events()) {
+    EXPECT_EQ(event.change, ContactChange::end);
+    EXPECT_NEAR(event.impulse, (event.with_wall() ? 5 : 2) * 10 * 2.0, 0.01 * 100);
+  }
 }
 
 TEST(ContactEvents, AreBounded) {
