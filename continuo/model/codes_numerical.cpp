@@ -136,9 +136,9 @@ the state unless it names another of the same kind: --atol "h = 1 [um]". With NA
 one state, without it that of all.)"},
     Code{
         "E361", "there are no sensitivities of this",
-        R"(Sensitivities follow a motion from its start, so the conditions must stand there. Where a model has equations
-`0 = ...`, events that change its state or mode cannot be followed. A parameter that decides how many equations there
-are, and the guess of an algebraic unknown, are nothing to differentiate by.)"},
+        R"(Where a model has equations `0 = ...`, events that change its state or mode cannot be followed. A parameter that
+decides how many equations there are, the guess of an algebraic unknown, and the value at the start of a state that
+conditions at several times determine are nothing to differentiate by.)"},
 };
 
 }  // namespace

@@ -61,7 +61,8 @@ class Part {
     const model::Model& model = request_.program->model;
     SensitivityRequest request{.experiment = request_.experiment, .times = times};
     request.experiment.parameters = fixed(request_, data_);
-    request.experiment.to = times.back();
+    // Conditions at several times need the whole interval.
+    if (!model.needs_boundary_solver()) request.experiment.to = times.back();
     request.experiment.rtol = std::min(request_.experiment.rtol.value_or(model.run.rtol.value_or(greatest_rtol_of_fit)),
                                        greatest_rtol_of_fit);
     for (std::size_t u = 0; u < p.size(); ++u) {
@@ -214,6 +215,26 @@ std::string why_not(const Problem& problem, std::span<const double> p, std::vect
   return "the runs give no finite numbers";
 }
 
+/// Which measurement lies before the model's start, or behind its end where conditions stand there; empty: none.
+std::string outside(const FitRequest& request, double start) {
+  const model::Model& model = request.program->model;
+  for (const FitData& data : request.data) {
+    const Measurements& measured = data.measurements;
+    const double end = model.needs_boundary_solver() ? request.experiment.to.value_or(model.run.to->value)
+                                                     : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < measured.times.size(); ++i) {
+      const double t = measured.times[i];
+      if (t < start)
+        return fmt::format("{}:{}: the time {} is before the model's start at {}", measured.file, measured.lines[i], t,
+                           start);
+      if (t > end)
+        return fmt::format("{}:{}: the time {} is behind the model's end at {}", measured.file, measured.lines[i], t,
+                           end);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> quantities_of(const model::Model& model) {
@@ -235,15 +256,8 @@ Fit fit(const FitRequest& request) {
   }
   const std::vector<double> variables =
       model::start_values(model, request.experiment.parameters, request.experiment.from);
-  for (const FitData& data : request.data) {
-    const std::size_t early = static_cast<std::size_t>(
-        std::ranges::find_if(data.measurements.times, [&](double t) { return t >= variables[0]; }) -
-        data.measurements.times.begin());
-    if (early == 0) continue;
-    result.problem = fmt::format("{}:{}: the time {} is before the model's start at {}", data.measurements.file,
-                                 data.measurements.lines[0], data.measurements.times[0], variables[0]);
-    return result;
-  }
+  result.problem = outside(request, variables[0]);
+  if (!result.problem.empty()) return result;
   Problem problem(request);
   LeastSquares least;
   for (const FitUnknown& unknown : request.unknowns) {

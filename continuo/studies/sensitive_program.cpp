@@ -90,6 +90,7 @@ void SensitiveProgram::add_equations() {
       for (std::size_t i = 0; i < n_; ++i) nodes.push_back(variation(graph, nodes[i], k));
     rates_.push_back(own_.tape_of(nodes));
   }
+  if (model.needs_boundary_solver()) return;  // there are no initial values
   for (std::size_t k = 0; k < count(); ++k) {
     for (std::size_t i = 0; i < n_; ++i) {
       const Influence& influence = influences_[k];
@@ -233,6 +234,24 @@ std::shared_ptr<const model::Tape> SensitiveProgram::along(const std::vector<Nod
     for (std::size_t k = 0; k < count(); ++k) nodes.push_back(variation(graphs.model.graph, node, k));
   }
   return graphs.tape_of(nodes);
+}
+
+std::shared_ptr<const model::Tape> SensitiveProgram::along(NodeId quantity, std::span<const std::uint32_t> by) const {
+  model::ModelProgram graphs(own_.model);
+  graphs.tables = own_.tables;
+  Graph& graph = graphs.model.graph;
+  const NodeId node = program_->with_inputs(graph, quantity);
+  std::vector<NodeId> nodes{node};
+  for (std::size_t k = 0; k < count(); ++k) nodes.push_back(variation(graph, node, k));
+  for (const std::uint32_t variable : by) nodes.push_back(model::differentiate(graph, node, variable));
+  return graphs.tape_of(nodes);
+}
+
+std::vector<double> SensitiveProgram::moves_of(NodeId constant, const std::vector<double>& variables) const {
+  model::ModelProgram graphs(own_.model);
+  std::vector<NodeId> nodes;
+  for (std::size_t k = 0; k < count(); ++k) nodes.push_back(by_parameters(graphs.model.graph, constant, k));
+  return model::evaluate(graphs.model, nodes, variables);
 }
 
 }  // namespace continuo::studies::detail

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -84,10 +85,14 @@ class SensitiveProgram {
   /// Made at the first call: only stiff methods ask.
   const Jacobians& jacobians() const;
 
-  /// S at the start; `rates` is x' there.
+  /// S at the start, where the model has one; `rates` is x' there.
   std::vector<double> start(const std::vector<double>& variables, const std::vector<double>& rates) const;
   /// A tape of each quantity q of the model and dq/dx S + dq/dp by every influence, one after the other.
   std::shared_ptr<const model::Tape> along(const std::vector<model::NodeId>& quantities) const;
+  /// A tape of one quantity q, dq/dx S + dq/dp by every influence, then dq/dv of each of these variables.
+  std::shared_ptr<const model::Tape> along(model::NodeId quantity, std::span<const std::uint32_t> by) const;
+  /// d/dp by every influence of a number that depends on parameters alone.
+  std::vector<double> moves_of(model::NodeId constant, const std::vector<double>& variables) const;
   /// Numbers that depend on parameters alone.
   std::vector<double> evaluate(const std::vector<model::NodeId>& nodes, const std::vector<double>& variables) const;
 

@@ -6,6 +6,7 @@
 
 #include <continuo/methods/automatic.hpp>
 #include <continuo/solve/choice.hpp>
+#include <continuo/studies/boundary_sensitivity.hpp>
 #include <continuo/studies/sensitive_integration.hpp>
 #include <continuo/studies/sensitivity.hpp>
 
@@ -70,9 +71,7 @@ bool changes_something(const model::Block& block) {
 
 std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::span<const Influence> influences) {
   if (model.needs_boundary_solver())
-    return model::error("E361", model.boundary.front().span,
-                        "no sensitivities of a model whose conditions stand at several times",
-                        "this makes it a boundary-value problem", "they follow a motion from its start");
+    if (auto refused = detail::no_boundary_sensitivity(model, influences)) return refused;
   for (const Influence& influence : influences) {
     if (influence.kind == Influence::Kind::initial) {
       const model::State& state = model.states[influence.index];
@@ -124,6 +123,8 @@ const std::vector<Influence>& SensitivityStudy::influences() const {
 
 SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   const model::Model& model = program().model;
+  if (model.needs_boundary_solver() && !no_sensitivity(model, influences()))
+    return detail::boundary_sensitivity(program_, request);
   SensitivityRun run;
   run.states = model.states.size();
   run.influences = influences().size();

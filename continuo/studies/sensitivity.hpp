@@ -56,7 +56,8 @@ struct SensitivityRun {
 };
 
 struct SensitivityRequest {
-  /// Its method and its step have no part: the method is chosen by tolerance and size.
+  /// Its method and its step have no part: the method is chosen by tolerance and size; collocation where conditions
+  /// stand at several times.
   model::Experiment experiment{};
   /// Rows at these times, ascending, and nowhere else; empty: as the model's `run` says, both sides of events too.
   std::vector<double> times{};

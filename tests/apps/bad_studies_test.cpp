@@ -104,7 +104,7 @@ TEST(BadStudies, ConditionsAtSeveralTimesAreRefusedByWhatFollowsAStart) {
   folder.write("boundary.sim", "param k = 4\nx'' = -k*x\nx(0) = 1\nx(1) = 0\nrun 0..1\n");
   for (const std::string& study : studies) {
     const Result result = folder.run(asked(study, "boundary.sim"));
-    if (study == studies[0]) {
+    if (study == studies[0] || study.starts_with("sense") || study.starts_with("fit")) {
       EXPECT_EQ(result.exit, 0) << result.err;
       continue;
     }

@@ -35,9 +35,34 @@ TEST(Sense, SaysWhichNameIsWrong) {
   EXPECT_THAT(shell.run("sense decay.sim --initial y").err, HasSubstr("there is no state `y`"));
   EXPECT_THAT(shell.run("sense decay.sim --param a -o /no/such/folder/s.csv").err, HasSubstr("cannot write"));
   shell.write("boundary.sim", "param a = 1\nx'' = a\nx(0) = 0\nx(1) = 1\nrun 0..1\n");
-  const Result boundary = shell.run("sense boundary.sim --param a");
+  const Result boundary = shell.run("sense boundary.sim --initial \"x'\"");
   EXPECT_EQ(boundary.exit, 2);
-  EXPECT_THAT(boundary.err, HasSubstr("boundary.sim:3"));
+  EXPECT_THAT(boundary.err, AllOf(HasSubstr("boundary.sim:3"), HasSubstr("no initial value of its own")));
+}
+
+// x = a t^2/2 + (1 - a/2) t: at t = 0.5 it is 0.5 - a/8, and its derivative by a is -1/8.
+TEST(Sense, SolvesConditionsAtSeveralTimes) {
+  Shell shell;
+  shell.write("boundary.sim", "param a = 1\nx'' = a\nx(0) = 0\nx(1) = 1\nrun 0..1 output 0.5\n");
+  const Result result = shell.run("sense boundary.sim --param a -o -");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("-0.125"));
+  const Result shortened = shell.run("sense boundary.sim --param a --until 0.5");
+  EXPECT_EQ(shortened.exit, 1);
+  EXPECT_THAT(shortened.err, AllOf(HasSubstr("error[E245]"), HasSubstr("boundary.sim:4")));
+}
+
+TEST(Fit, FindsAParameterOfConditionsAtSeveralTimes) {  // a = 3 in the same
+  Shell shell;
+  shell.write("boundary.sim", "param a = 1\nx'' = a\nx(0) = 0\nx(1) = 1\nrun 0..1 tol 1e-10\n");
+  shell.write("points.csv", "t,x\n0.25,-0.03125\n0.5,0.125\n0.75,0.46875\n");
+  const Result result = shell.run("fit boundary.sim points.csv --param a");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("a = 3 "));
+  shell.write("late.csv", "t,x\n0.25,-0.03125\n0.5,0.125\n1.5,0.46875\n");
+  const Result late = shell.run("fit boundary.sim late.csv --param a");
+  EXPECT_NE(late.exit, 0);
+  EXPECT_THAT(late.err, HasSubstr("late.csv:4: the time 1.5 is behind the model's end at 1"));
 }
 
 TEST(Fit, FindsAParameterFromTwoFiles) {  // x = exp(-0.5 t), and the double of it

@@ -158,9 +158,45 @@ TEST(Sensitivity, OfAlgebraicEquations) {
   EXPECT_NEAR(end[3], std::exp(-1.5) * (1 - 1.5), 1e-8);
 }
 
+// Collocation with polynomials of degree 4 is exact for what follows, or its residual is below 1e-10.
+// x = a t^2/2 + c t, c = (1 - a T^2/2)/T: the time of a condition moves with T.
+TEST(Sensitivity, OfConditionsAtSeveralTimes) {
+  const auto program = program_of("param a = 3, T = 0.8\nx'' = a\nx(0) = 0\nx(T) = 1\nrun 0..1 tol 1e-10\n");
+  const SensitivityRun run =
+      SensitivityStudy(program, {parameter(*program, "a"), parameter(*program, "T")}).run({.times = {0, 0.3, 1}});
+  ASSERT_TRUE(run.good());
+  const double T = 0.8, by_T = -1 / (T * T) - 1.5;
+  for (std::size_t row = 0; row < 3; ++row) {
+    const double t = run.times[row];
+    EXPECT_NEAR(run.value(row, 0), 1.5 * t * t + (1 - 1.5 * T * T) / T * t, 1e-12);
+    EXPECT_NEAR(run.sensitivity(row, 0, 0), t * t / 2 - T / 2 * t, 1e-12);
+    EXPECT_NEAR(run.sensitivity(row, 1, 0), t - T / 2, 1e-12);
+    EXPECT_NEAR(run.sensitivity(row, 0, 1), by_T * t, 1e-12);
+    EXPECT_NEAR(run.sensitivity(row, 1, 1), by_T, 1e-12);
+  }
+}
+
+// x = a + C exp(-t) with x(0) = b x(T): C = a (b - 1)/(1 - b exp(-T)), dC/dT = -a (b - 1) b exp(-T)/(1 - b exp(-T))^2.
+TEST(Sensitivity, OfConditionsThatReadOtherTimes) {
+  const auto program = program_of("param a = 2, b = 0.5, T = 1\nx' = a - x\nx(0) = b*x(T)\nrun 0..2 tol 1e-10\n");
+  const SensitivityRun run =
+      SensitivityStudy(program, {parameter(*program, "a"), parameter(*program, "b"), parameter(*program, "T")})
+          .run({.times = {0, 1.5}});
+  ASSERT_TRUE(run.good());
+  const double q = std::exp(-1.0), below = 1 - 0.5 * q;
+  const double by_a = -0.5 / below, by_b = 2 * (1 - q) / (below * below), by_T = 2 * 0.5 * 0.5 * q / (below * below);
+  for (std::size_t row = 0; row < 2; ++row) {
+    const double decay = std::exp(-run.times[row]);
+    EXPECT_NEAR(run.sensitivity(row, 0, 0), 1 + by_a * decay, 1e-9);
+    EXPECT_NEAR(run.sensitivity(row, 0, 1), by_b * decay, 1e-9);
+    EXPECT_NEAR(run.sensitivity(row, 0, 2), by_T * decay, 1e-9);
+  }
+}
+
 TEST(Sensitivity, RefusesWhatHasNone) {
   const auto boundary = program_of("param a = 1\nx'' = a\nx(0) = 0\nx(1) = 1\nrun 0..1\n");
-  EXPECT_EQ(no_sensitivity(boundary->model, std::vector{parameter(*boundary, "a")})->code, "E361");
+  const std::vector<Influence> initial{{Influence::Kind::initial, 1}};
+  EXPECT_EQ(no_sensitivity(boundary->model, initial)->code, "E361");
   const auto family =
       program_of("param N = 2\nfor i in 1..N { x[i]' = -x[i] }\nfor i in 1..N { x[i](0) = 1 }\nrun 0..1\n");
   EXPECT_EQ(no_sensitivity(family->model, std::vector{parameter(*family, "N")})->code, "E361");
