@@ -27,13 +27,14 @@ TEST(Lyapunov, OfALinearSystemTheyAreTheRealParts) {  // eigenvalues -0.1 +- 2i 
 /// J. C. Sprott, "Chaos and Time-Series Analysis" (2003): 0.9056, 0, -14.5723; their sum is the trace, -41/3, at any
 /// time.
 TEST(Lyapunov, Lorenz) {
-  const auto found = lyapunov_exponents(lorenz(28), {1, 1, 1}, {.duration = 400});
+  const auto found = lyapunov_exponents(lorenz(28), {1, 1, 1}, {.duration = 5000});
   ASSERT_TRUE(found.outcome) << describe(found.outcome);
   EXPECT_NEAR(found.exponents[0] + found.exponents[1] + found.exponents[2], -41.0 / 3, 1e-5);
-  EXPECT_NEAR(found.exponents[0], 0.9056, 4 * found.spread[0]);  // four standard errors
-  EXPECT_LT(found.spread[0], 0.05);                              // else four of them would say nothing
-  EXPECT_NEAR(found.exponents[1], 0, 4 * found.spread[1] + 1e-3);
-  EXPECT_NEAR(found.exponents[2], -14.5723, 4 * found.spread[2]);
+  // One per cent; four standard errors are less, or it would be luck.
+  for (const double spread : found.spread) EXPECT_LT(4 * spread, 0.01 * 0.9056);
+  EXPECT_NEAR(found.exponents[0], 0.9056, 0.01 * 0.9056);
+  EXPECT_NEAR(found.exponents[1], 0, 0.01 * 0.9056);
+  EXPECT_NEAR(found.exponents[2], -14.5723, 0.01 * 14.5723);
 }
 
 }  // namespace
