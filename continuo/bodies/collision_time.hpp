@@ -11,6 +11,19 @@
 
 namespace continuo {
 
+namespace detail {
+
+/// Whether two that touch approach: by more than rounding makes of a motion along each other, which would be found
+/// again and again. What is left out parts after b^2 / |rate|^2, less than an ulp of an ulp deeper.
+template <class Real, int Dim>
+bool approaches(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate) {
+  constexpr Real tiny = 8 * std::numeric_limits<Real>::epsilon();
+  const Real b = dot(apart, rate);
+  return b < Real(0) && b * b > tiny * tiny * squared(apart) * squared(rate);
+}
+
+}  // namespace detail
+
 /// The first t >= 0 at which a point that is `apart` and moves at `rate` comes within `reach` of the origin; infinity
 /// where it never does. What is within reach already collides at once if it approaches, and never if it parts: rounding
 /// that leaves two spheres an ulp inside each other does no harm (M. Bannerman, S. Strobl, A. Formella, T. Poschel,
@@ -22,7 +35,7 @@ Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate
   const Real b = dot(apart, rate);
   if (!(b < Real(0))) return never;
   const Real c = squared(apart) - reach * reach;
-  if (c <= Real(0)) return Real(0);
+  if (c <= Real(0)) return detail::approaches(apart, rate) ? Real(0) : never;
   const Real square = b * b - squared(rate) * c;
   return square < Real(0) ? never : c / (sqrt(square) - b);
 }
@@ -36,10 +49,11 @@ Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate
   const auto gap = [&](const Real& t) {
     return squared(apart + rate * t + acceleration * (t * t / 2)) - reach * reach;
   };
-  const auto approaches = [&](const Real& t) {
-    return dot(apart + rate * t + acceleration * (t * t / 2), rate + acceleration * t) < Real(0);
-  };
-  if (!(gap(Real(0)) > Real(0)) && approaches(Real(0))) return Real(0);
+  if (!(gap(Real(0)) > Real(0))) {
+    if (detail::approaches(apart, rate)) return Real(0);
+    // At rest on each other, and pressed together.
+    if (!detail::approaches(apart, Vector<Real, Dim>(-rate)) && dot(apart, acceleration) < Real(0)) return Real(0);
+  }
   std::array<double, bernstein::count> values{};
   for (std::size_t k = 0; k < values.size(); ++k)
     values[k] = static_cast<double>(gap(horizon * static_cast<Real>(bernstein::nodes[k])));

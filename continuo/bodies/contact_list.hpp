@@ -41,9 +41,14 @@ struct ContactRows {
 /// The impulses of a contact between steps.
 template <class Real, int Dim>
 struct KeptImpulse {
-  std::uint32_t other;
-  Real normal;
-  Vector<Real, Dim> friction;  // on `other`
+  std::uint32_t other = 0;
+  Real normal{};
+  Vector<Real, Dim> friction{};  // on `other`
+
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(other), archive(normal), archive(friction);
+  }
 };
 template <class Real, int Dim>
 struct KeptImpulses {
@@ -51,6 +56,17 @@ struct KeptImpulses {
   std::vector<KeptImpulse<Real, Dim>> entries{};
   std::vector<Spin<Real, Dim>> rolling{};  // of the same contacts; empty where nothing resists rolling
 
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(first), archive(entries), archive(rolling);
+  }
+  /// Of `bodies`, with others below `others`.
+  bool fits(std::size_t bodies, std::size_t others) const {
+    bool fits = !first.empty() && first.front() == 0 && first.back() == entries.size() && first.size() <= bodies + 1 &&
+                std::ranges::is_sorted(first) && (rolling.empty() || rolling.size() == entries.size());
+    for (const auto& entry : entries) fits = fits && entry.other < others;
+    return fits;
+  }
   std::size_t find(std::uint32_t k, std::uint32_t other) const {
     if (k + 1 < first.size())
       for (std::size_t i = first[k]; i < first[k + 1]; ++i)
@@ -108,6 +124,15 @@ class ContactList {
     const auto before = [&](std::uint32_t k) { return place_before.empty() ? k : place_before[k]; };
     fill_pairs(bodies, material_of, before);
     fill_walls(bodies, world_walls, material_of, before);
+  }
+
+  /// What `keep` takes, to and fro.
+  template <class Archive>
+  void transfer_kept(Archive& archive) {
+    archive(kept_pairs_), archive(kept_walls_);
+  }
+  bool kept_fits(std::size_t bodies, std::size_t world_walls) const {
+    return kept_pairs_.fits(bodies, bodies) && kept_walls_.fits(bodies, world_walls);
   }
 
   /// visit(k, other, is_wall, impulse) for the contacts that pressed in the last substep.

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include <continuo/bodies/event_queue.hpp>
 #include <continuo/bodies/exact_engine.hpp>
+#include <continuo/bodies/flight_bytes.hpp>
 #include <continuo/bodies/flights.hpp>
 #include <continuo/bodies/impulse.hpp>
 #include <continuo/bodies/resting.hpp>
@@ -17,13 +19,16 @@ namespace {
 template <class Real, int Dim>
 Real usual_contact_time(const World<Real, Dim>& world) {
   using std::sqrt;
-  Real smallest = std::numeric_limits<Real>::infinity(), fastest(0);
+  Real smallest = std::numeric_limits<Real>::infinity(), fastest(0), farthest(0);
   for (std::size_t i = 0; i < world.size(); ++i) {
     smallest = std::min(smallest, world.radius[i]);
     fastest = std::max(fastest, length(world.velocity[i]));
+    farthest = std::max(farthest, length(world.position[i]));
   }
   const Real g = length(world.gravity);
-  if (g > Real(0)) return Real(1e-5) * sqrt(2 * smallest / g);
+  // A flight rises by g t^2 / 8, which the digits of a place must show.
+  const Real visible = 16 * std::numeric_limits<Real>::epsilon() * farthest;
+  if (g > Real(0)) return std::max(Real(1e-5) * sqrt(2 * smallest / g), sqrt(8 * visible / g));
   return fastest > Real(0) ? Real(1e-5) * smallest / fastest : Real(0);
 }
 
@@ -58,10 +63,45 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     return {};
   }
 
+  void save(ByteWriter& writer) override {
+    writer(contact_time_), writer(flights_.grid.edge());
+    for (const std::uint32_t k : places()) {
+      Plan<Real, Dim> plan = flights_.plans[k];
+      if (plan.partner < first_wall) plan.partner = flights_.plans[plan.partner].number;
+      transfer_flight(writer, flights_.paths[k], plan, flights_.marks[k]);
+    }
+  }
+  void load(ByteReader& reader) override {
+    Real edge{};
+    reader(contact_time_), reader(edge);
+    reader.expect(contact_time_ >= Real(0) && edge > Real(0) && edge < std::numeric_limits<Real>::infinity(),
+                  "a contact time or cells of no size");
+    const std::vector<std::uint32_t> place = places();
+    for (std::uint32_t i = 0; i < place.size() && reader.ok(); ++i) {
+      Path<Real, Dim>& path = flights_.paths[place[i]];
+      Plan<Real, Dim>& plan = flights_.plans[place[i]];
+      Mark& mark = flights_.marks[place[i]];
+      transfer_flight(reader, path, plan, mark);
+      if (const char* fault = fault_of_flight(world_, path, plan, mark))
+        reader.fail("body " + std::to_string(i) + ": " + fault);
+    }
+    if (!reader.ok()) return;
+    for (auto& plan : flights_.plans)
+      if (plan.partner < first_wall) plan.partner = place[plan.partner];
+    flights_.grid = CellGrid<Real, Dim>(edge, place.size());
+    sort();
+  }
+
   using ExactEngine<Real, Dim>::statistics;
   using ExactEngine<Real, Dim>::contacts;
 
  private:
+  /// Where the body of each number is.
+  std::vector<std::uint32_t> places() const {
+    std::vector<std::uint32_t> place(flights_.plans.size());
+    for (std::uint32_t k = 0; k < place.size(); ++k) place[flights_.plans[k].number] = k;
+    return place;
+  }
   /// Brings the bodies into the order of their cells. Nothing but places changes.
   void sort() {
     crossings_since_sort_ = 0;
@@ -153,6 +193,59 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     schedule(i);
   }
 
+  // Where bodies are squeezed between others, or wedged in by friction, collisions of one instant may never end. Where
+  // one that loses energy has had so many that no free body has, it bounces no more, and then it moves no more.
+  static constexpr std::uint8_t many_at_once = 64, most_at_once = 128;
+
+  std::uint8_t at_once(std::uint32_t i) const {
+    const Plan<Real, Dim>& plan = flights_.plans[i];
+    return plan.last_collision == flights_.now ? plan.at_once : std::uint8_t{0};
+  }
+  static bool loses(const Material<Real>& material) {
+    return material.restitution < Real(1) || material.friction > Real(0);
+  }
+  Material<Real> at_this_instant(Material<Real> material, std::uint32_t i, std::uint32_t j) const {
+    const bool is_squeezed = loses(material) && std::max(at_once(i), at_once(j)) >= many_at_once;
+    if (is_squeezed) {
+      material.restitution = Real(0);
+    } else if (is_held(i) || is_held(j)) {
+      material.restitution = Real(1);
+    }
+    return material;
+  }
+  bool is_caught(const Material<Real>& material, std::uint32_t i) const {
+    return loses(material) && at_once(i) >= most_at_once;
+  }
+  /// It lies where it is, carried by all round it, until something hits it.
+  void freeze(std::uint32_t i) {
+    if (flights_.marks[i].act == Act::is_fixed) return;
+    flights_.paths[i].v = flights_.plans[i].acceleration = {};
+    flights_.plans[i].spin = {};
+    flights_.plans[i].support_count = 0;
+    flights_.plans[i].rests_since = flights_.now;
+    flights_.marks[i].act = Act::rests;
+  }
+  bool is_still(std::uint32_t i) const {
+    return flights_.marks[i].act == Act::is_fixed ||
+           (flights_.marks[i].act == Act::rests && flights_.plans[i].support_count == 0);
+  }
+  /// Two that are caught go on as one, or not at all where one is held fast.
+  void stop(std::uint32_t i, std::uint32_t j) {
+    const bool is_held_fast = is_still(i) || is_still(j);
+    note_collision(i);
+    note_collision(j);
+    if (is_held_fast) {
+      freeze(i);
+      freeze(j);
+      return;
+    }
+    const Mover<Real, Dim> a = mover(i), b = mover(j);
+    const V change = b.velocity - a.velocity;
+    a.velocity += change * (a.inverse_mass / (a.inverse_mass + b.inverse_mass));
+    b.velocity = a.velocity;
+    a.spin = b.spin = {};
+  }
+
   bool is_held(std::uint32_t i) const { return flights_.now - flights_.plans[i].last_collision < contact_time_; }
   void bring(std::uint32_t i) {
     flights_.move_to_now(i);
@@ -169,17 +262,22 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     bring(i);
     bring(j);
     const Path<Real, Dim>&a = flights_.paths[i], &b = flights_.paths[j];
-    Material<Real> material = combined(flights_.plans[i].material, flights_.plans[j].material);
-    if (is_held(i) || is_held(j)) material.restitution = Real(1);
+    const Material<Real> own = combined(flights_.plans[i].material, flights_.plans[j].material);
+    const Material<Real> material = at_this_instant(own, i, j);
     const V apart = b.x - a.x;
     const Real distance = length(apart);
     V normal = distance > Real(0) ? apart * (1 / distance) : V{};
     if (!(distance > Real(0))) normal[0] = Real(1);
     Real impulse(0);
     if (dot(b.v - a.v, normal) < Real(0)) impulse = collide(mover(i), mover(j), normal, material);
-    note_collision(i);
-    note_collision(j);
-    if (contacts.is_kept())
+    if (is_caught(own, i) || is_caught(own, j)) {
+      stop(i, j);
+    } else {
+      part_where_pressed(i, j, normal);
+      note_collision(i);
+      note_collision(j);
+    }
+    if (contacts.is_kept() && impulse > Real(0))
       contacts.add({.a = handle_of(i),
                     .b = handle_of(j),
                     .point = a.x + normal * a.radius,
@@ -190,21 +288,36 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     predict(j);
   }
 
+  /// On a sphere nobody rests for good: the path would be no parabola. No flight is shorter than the contact time,
+  /// then, and what lies bounces by less than one sees.
+  void part_where_pressed(std::uint32_t i, std::uint32_t j, const V& normal) {
+    const Real press = dot(flights_.plans[i].acceleration - flights_.plans[j].acceleration, normal);
+    const Mover<Real, Dim> a = mover(i), b = mover(j);
+    const Real missing = press * contact_time_ / 2 - dot(b.velocity - a.velocity, normal);
+    if (!(press > Real(0)) || !(missing > Real(0))) return;
+    const Real impulse = missing / (a.inverse_mass + b.inverse_mass);
+    a.velocity -= normal * (impulse * a.inverse_mass);
+    b.velocity += normal * (impulse * b.inverse_mass);
+  }
+
   void hit_wall(std::uint32_t i, std::uint32_t w) {
     ++statistics.wall_collisions;
     const Wall<Real, Dim>& wall = world_.walls()[w];
     bring(i);
-    Material<Real> material = combined(flights_.plans[i].material, wall.material);
-    if (is_held(i)) material.restitution = Real(1);
+    const Material<Real> own = combined(flights_.plans[i].material, wall.material);
+    const Material<Real> material = at_this_instant(own, i, i);
     V no_velocity{};
     S no_spin{};
     const Mover<Real, Dim> of_wall{no_velocity, no_spin, Real(0), Real(0), Real(0)};
     Real impulse(0);
     if (dot(flights_.paths[i].v, wall.normal) < Real(0))
       impulse = collide(mover(i), of_wall, V(-wall.normal), material);
+    const bool caught = is_caught(own, i);
     note_collision(i);
     if (contacts.is_kept() && impulse > Real(0)) note_wall(i, w, ContactChange::impact, impulse);
-    if (rest_on_walls(flights_, i, w, contact_time_) && contacts.is_kept())
+    if (caught) {
+      freeze(i);
+    } else if (rest_on_walls(flights_, i, w, contact_time_) && contacts.is_kept())
       for (std::uint32_t k = 0; k < flights_.plans[i].support_count; ++k)
         note_wall(i, flights_.plans[i].supports[k], ContactChange::begin, Real(0));
     predict(i);
@@ -214,6 +327,8 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   void note_collision(std::uint32_t i) {
     Plan<Real, Dim>& plan = flights_.plans[i];
     ++flights_.marks[i].collisions;
+    plan.at_once = plan.last_collision == flights_.now ? static_cast<std::uint8_t>(std::min(254, int{plan.at_once}) + 1)
+                                                       : std::uint8_t{0};
     plan.last_collision = flights_.now;
     if (flights_.marks[i].act != Act::rests) return;
     if (contacts.is_kept()) {

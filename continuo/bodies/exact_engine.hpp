@@ -15,6 +15,8 @@ class ExactEngine {
   explicit ExactEngine(const ExactOptions<Real>& options) : contacts(options.contact_events) {}
   virtual ~ExactEngine() = default;
   virtual std::string advance_to(const Real& t) = 0;
+  virtual void save(ByteWriter& writer) = 0;
+  virtual void load(ByteReader& reader) = 0;
 
   ExactStatistics statistics{};
   ContactLog<Real, Dim> contacts;

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include <continuo/bodies/exact_engine.hpp>
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/forces.hpp>
@@ -42,6 +44,22 @@ std::span<const ContactEvent<Real, Dim>> ExactMotion<Real, Dim>::contact_events(
 template <class Real, int Dim>
 std::size_t ExactMotion<Real, Dim>::lost_contact_events() const {
   return engine_->contacts.lost();
+}
+
+template <class Real, int Dim>
+void ExactMotion<Real, Dim>::save(ByteWriter& writer) const {
+  writer(engine_->statistics);
+  engine_->save(writer);
+}
+template <class Real, int Dim>
+void ExactMotion<Real, Dim>::load(ByteReader& reader) {
+  ExactStatistics statistics;
+  reader(statistics);
+  auto engine = event_driven(*world_, options_);
+  engine->load(reader);
+  if (!reader.ok()) return;
+  engine_ = std::move(engine);
+  engine_->statistics = statistics;
 }
 
 template class ExactMotion<float, 2>;

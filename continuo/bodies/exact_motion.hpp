@@ -12,7 +12,9 @@
 //
 // Where restitution is below 1, collisions can pile up without end (inelastic collapse). A body that collides twice
 // within `contact_time` keeps its energy the second time (S. Luding, S. McNamara, Granular Matter 1 (1998) 113-128),
-// and one that would leave a wall for less than that stays on it.
+// and one that would leave a wall for less than that stays on it. On spheres, where a body that stays would move on no
+// parabola, it bounces for that long at least: a heap at rest is many small flights, which the fast motion is better
+// at.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +24,7 @@
 #include <span>
 #include <string>
 
+#include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/world.hpp>
 
@@ -40,6 +43,11 @@ struct ExactStatistics {
   std::size_t wall_collisions = 0;  //
   std::size_t crossings = 0;        // of cells
   std::size_t outdated = 0;         // predictions made again
+
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(collisions), archive(wall_collisions), archive(crossings), archive(outdated);
+  }
 };
 
 template <class Real, int Dim>
@@ -65,6 +73,10 @@ class ExactMotion {
   /// What happened in the last call of advance_to, and how many more there were than `contact_events`.
   std::span<const ContactEvent<Real, Dim>> contact_events() const;
   std::size_t lost_contact_events() const;
+
+  /// For snapshot.hpp: what is to be known beside the world to go on to the same bits.
+  void save(ByteWriter& writer) const;
+  void load(ByteReader& reader);
 
  private:
   World<Real, Dim>* world_;

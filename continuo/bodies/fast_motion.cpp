@@ -37,7 +37,7 @@ class FastMotion<Real, Dim>::Stepper {
     if (options_.substeps < 1) return "a step has at least one substep";
     if (world_.size() != bodies_.size() || world_.walls().size() != list_.walls()) refresh();
     load();
-    contacts_.keep();
+    if (!std::exchange(is_restored_, false)) contacts_.keep();
     place_before_.clear();
     if (list_.is_outdated(bodies_, step_reach())) make_list();
     activate();
@@ -71,6 +71,53 @@ class FastMotion<Real, Dim>::Stepper {
       }
     }
     return deepest;
+  }
+
+  /// Whatever outlives a step and is not in the world. The list is made again, from where the bodies were then.
+  void save(ByteWriter& writer) const {
+    const bool is_listed = list_.x_of_list().size() == world_.size() && list_.walls() == world_.walls().size();
+    writer(is_listed);
+    if (!is_listed) return;
+    std::vector<V> x(world_.size());
+    std::vector<Real> reach(world_.size());
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      x[list_.order()[k]] = list_.x_of_list()[k];
+      reach[list_.order()[k]] = list_.reach_of_list()[k];
+    }
+    writer(x), writer(reach);
+    ContactList<Real, Dim> contacts = contacts_;
+    if (!is_restored_) contacts.keep();
+    contacts.transfer_kept(writer);
+    writer(touches_);
+  }
+  void load(ByteReader& reader) {
+    bool is_listed = false;
+    reader(is_listed);
+    std::vector<V> x;
+    std::vector<Real> reach;
+    ContactList<Real, Dim> contacts;
+    TouchLog<Real, Dim> touches;
+    if (is_listed) {
+      reader(x), reader(reach);
+      contacts.transfer_kept(reader);
+      reader(touches);
+      reader.expect(x.size() == world_.size() && reach.size() == x.size(), "a list of other bodies");
+      for (std::size_t i = 0; i < x.size() && reader.ok(); ++i)
+        reader.expect(is_finite(x[i]) && reach[i] >= Real(0), "a list that is not finite");
+      reader.expect(contacts.kept_fits(world_.size(), world_.walls().size()), "contacts of other bodies");
+    }
+    if (!reader.ok()) return;
+    refresh();
+    touches_ = std::move(touches);
+    if (!is_listed) return;
+    std::swap(world_.position, x);
+    list_.sort(world_, place_before_);
+    load();
+    contacts_ = std::move(contacts);
+    list_within([&](std::size_t k) { return reach[list_.order()[k]]; });
+    std::swap(world_.position, x);
+    load();
+    is_restored_ = true;
   }
 
   FastStatistics statistics{};
@@ -146,9 +193,12 @@ class FastMotion<Real, Dim>::Stepper {
     list_.sort(world_, place_before_);
     load();
     // Pairs are listed for as long as nobody has come further than this.
-    const auto reach = [once = step_reach(), this](std::size_t k) {
+    list_within([once = step_reach(), this](std::size_t k) {
       return std::max(Real(0.15) * bodies_.radius(k), Real(1.25) * once(k));
-    };
+    });
+  }
+  template <class Reach>
+  void list_within(const Reach& reach) {
     list_.list(world_, bodies_, reach, contacts_.pairs, contacts_.walls);
     may_bounce_ = any_material([](const Material<Real>& material) { return material.restitution > Real(0); });
     may_resist_ = any_material([](const Material<Real>& material) { return material.rolling_resistance > Real(0); });
@@ -236,6 +286,7 @@ class FastMotion<Real, Dim>::Stepper {
   ContactList<Real, Dim> contacts_;
   Impacts<Real, Dim> impacts_;
   TouchLog<Real, Dim> touches_;
+  bool is_restored_ = false;  // the impulses of the last step have been kept already
   bool has_other_forces_ = false, may_bounce_ = false, may_resist_ = false;
   std::vector<std::uint32_t> place_before_;
   std::vector<V> x_, v_, force_;
@@ -274,6 +325,15 @@ std::span<const ContactEvent<Real, Dim>> FastMotion<Real, Dim>::contact_events()
 template <class Real, int Dim>
 std::size_t FastMotion<Real, Dim>::lost_contact_events() const {
   return stepper_->log.lost();
+}
+
+template <class Real, int Dim>
+void FastMotion<Real, Dim>::save(ByteWriter& writer) const {
+  stepper_->save(writer);
+}
+template <class Real, int Dim>
+void FastMotion<Real, Dim>::load(ByteReader& reader) {
+  stepper_->load(reader);
 }
 
 template class FastMotion<float, 2>;

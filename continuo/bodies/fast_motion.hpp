@@ -16,6 +16,7 @@
 #include <span>
 #include <string>
 
+#include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/world.hpp>
 
@@ -56,6 +57,10 @@ class FastMotion {
   /// for.
   std::span<const ContactEvent<Real, Dim>> contact_events() const;
   std::size_t lost_contact_events() const;
+
+  /// For snapshot.hpp: what is to be known beside the world to go on to the same bits.
+  void save(ByteWriter& writer) const;
+  void load(ByteReader& reader);
 
  private:
   class Stepper;

@@ -80,6 +80,7 @@ struct Plan {
   std::uint32_t number = 0, partner = nobody, collisions_of_partner = 0;
   std::array<std::uint32_t, static_cast<std::size_t>(Dim)> supports{};  // the walls it rests on
   std::uint8_t support_count = 0;
+  std::uint8_t at_once = 0;  // so many collisions before the last, at the same instant; no more than 255
   bool is_large = false;
   std::int8_t direction = 0;  // of the crossing, along the axis
   std::uint8_t axis = 0;

@@ -94,6 +94,10 @@ class PairList {
     for (const std::uint32_t j : far_) meet(j);
   }
 
+  /// Where the body at place k was when it was listed, and how far it may go from there.
+  const std::vector<V>& x_of_list() const { return x_of_list_; }
+  const std::vector<Real>& reach_of_list() const { return reach_; }
+
   std::size_t memory() const {
     return order_.capacity() * 4 + far_.capacity() * 4 + reach_.capacity() * sizeof(Real) +
            x_of_list_.capacity() * sizeof(V) + is_far_.capacity() + cells_.memory();

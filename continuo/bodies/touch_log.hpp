@@ -46,6 +46,21 @@ class TouchLog {
     now_.clear();
   }
 
+  template <class Archive>
+  void transfer(Archive& archive) {
+    auto count = static_cast<std::uint64_t>(before_.size());
+    archive(count);
+    if constexpr (Archive::reads) {
+      if (count > archive.left()) return archive.fail("a list longer than the bytes that are left");
+      before_.resize(static_cast<std::size_t>(count));
+    }
+    for (auto& [of, event] : before_) {
+      archive(of), archive(event.a.slot), archive(event.a.generation), archive(event.b.slot);
+      archive(event.b.generation), archive(event.wall), archive(event.point), archive(event.normal);
+      archive(event.impulse);
+    }
+  }
+
  private:
   using Key = std::array<std::uint32_t, 5>;
   using Touch = std::pair<Key, ContactEvent<Real, Dim>>;

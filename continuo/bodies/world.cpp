@@ -20,15 +20,6 @@ bool is_part(const Real& value) {
   return value >= Real(0) && value < std::numeric_limits<Real>::infinity();
 }
 
-template <class Real>
-std::string fault_of(const Material<Real>& material) {
-  if (!(material.restitution >= Real(0) && material.restitution <= Real(1)))
-    return "restitution must be between 0 (no bounce) and 1 (no loss)";
-  if (!is_part(material.friction)) return "friction must be 0 or more, and finite";
-  if (!is_part(material.rolling_resistance)) return "rolling_resistance must be 0 or more, and finite";
-  return {};
-}
-
 template <class Real, int Dim>
 std::string fault_of(const BodyDefinition<Real, Dim>& definition) {
   const auto* sphere = std::get_if<Sphere<Real>>(&definition.shape);
@@ -45,6 +36,15 @@ std::string fault_of(const BodyDefinition<Real, Dim>& definition) {
 }
 
 }  // namespace
+
+template <class Real>
+std::string fault_of(const Material<Real>& material) {
+  if (!(material.restitution >= Real(0) && material.restitution <= Real(1)))
+    return "restitution must be between 0 (no bounce) and 1 (no loss)";
+  if (!is_part(material.friction)) return "friction must be 0 or more, and finite";
+  if (!is_part(material.rolling_resistance)) return "rolling_resistance must be 0 or more, and finite";
+  return {};
+}
 
 template <class Real, int Dim>
 typename World<Real, Dim>::Added World<Real, Dim>::add(const BodyDefinition<Real, Dim>& definition) {
@@ -154,6 +154,8 @@ Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world) {
   return sum;
 }
 
+template std::string fault_of(const Material<float>&);
+template std::string fault_of(const Material<double>&);
 template class World<float, 2>;
 template class World<float, 3>;
 template class World<double, 2>;

@@ -66,6 +66,10 @@ template <class Real, int Dim>
 using ForceLaw = std::function<void(const World<Real, Dim>& world, Real t, std::span<const Vector<Real, Dim>> x,
                                     std::span<const Vector<Real, Dim>> v, std::span<Vector<Real, Dim>> force)>;
 
+/// What is wrong with it; empty where nothing is.
+template <class Real>
+std::string fault_of(const Material<Real>& material);
+
 template <class Real, int Dim>
 class World {
   static_assert(Dim == 2 || Dim == 3);
@@ -131,6 +135,7 @@ class World {
   bool is_fixed(std::size_t i) const { return inverse_mass[i] == Real(0); }
 
  private:
+  friend struct SnapshotAccess;  // snapshot.cpp
   static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
   struct Slot {
     std::uint32_t index = nowhere, generation = 0;

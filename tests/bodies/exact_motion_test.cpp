@@ -258,6 +258,21 @@ TEST(ExactMotion, TheOrderOfBodiesDoesNotMatter) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT(length(a.position[i] - b.position[a.size() - 1 - i]), 1e-6) << i;
 }
 
+// A ball that is set down on a fixed one stays on it, by bounces of the contact time: they reach up to g tc^2 / 8.
+TEST(ExactMotion, ABallLiesOnAFixedSphere) {
+  World<double, 2> world;
+  world.gravity = {{0, -10}};
+  ASSERT_TRUE(world.add({.fixed = true, .material = {.restitution = 0, .friction = 0}}));
+  ASSERT_TRUE(world.add({.position = {{0, 1}}, .material = {.restitution = 0, .friction = 0}}));
+  ExactMotion motion(world, {.contact_time = 1e-3});
+  for (int k = 1; k <= 100; ++k) {
+    ASSERT_EQ(motion.advance_to(0.01 * k), "");
+    EXPECT_GT(world.position[1][1], 1 - 1e-12);
+    EXPECT_LT(world.position[1][1], 1 + 10 * 1e-6 / 8 * 1.001);
+  }
+  EXPECT_LT(motion.statistics().collisions, 1200u);  // a thousand flights, and some in the beginning
+}
+
 // Where one looks makes no difference to where one gets: advance_to leaves the prediction alone.
 TEST(ExactMotion, LookingDoesNotDisturb) {
   World<double, 3> a = gas<3>(200, 12, elastic), b = a;

@@ -1,0 +1,155 @@
+// continuo/bodies/bytes.hpp
+// Values as bytes and back: little-endian on every machine, numbers by their bits. What is read is not trusted: a
+// reader that has met something wrong says where, gives zeros from then on, and never allocates more than the bytes
+// could hold.
+#pragma once
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/vector.hpp>
+
+namespace continuo {
+
+using Bytes = std::vector<std::byte>;
+
+namespace detail {
+
+template <std::size_t Size>
+using UnsignedOf = std::conditional_t<
+    Size == 1, std::uint8_t,
+    std::conditional_t<Size == 2, std::uint16_t, std::conditional_t<Size == 4, std::uint32_t, std::uint64_t>>>;
+
+/// A value of several parts says so by `template <class Archive> void transfer(Archive&)`, for both ways.
+template <class T, class Archive>
+concept Transferable = requires(T& value, Archive& archive) { value.transfer(archive); };
+
+template <class T>
+concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+}  // namespace detail
+
+class ByteWriter {
+ public:
+  static constexpr bool reads = false;
+
+  template <detail::Number T>
+  void operator()(const T& value) {
+    const auto bits = std::bit_cast<detail::UnsignedOf<sizeof(T)>>(value);
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      bytes_.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(bits) >> (8 * i) & 0xff));
+  }
+  template <class T, std::size_t Size>
+  void operator()(const std::array<T, Size>& values) {
+    for (const T& value : values) (*this)(value);
+  }
+  template <class Real, int Size>
+  void operator()(const Vector<Real, Size>& v) {
+    (*this)(v.components);
+  }
+  template <class T>
+  void operator()(const std::vector<T>& values) {
+    (*this)(static_cast<std::uint64_t>(values.size()));
+    for (const T& value : values) (*this)(value);
+  }
+  template <class T>
+    requires detail::Transferable<T, ByteWriter>
+  void operator()(const T& value) {
+    const_cast<T&>(value).transfer(*this);  // a writer only reads it
+  }
+
+  const Bytes& bytes() const { return bytes_; }
+  Bytes take() { return std::move(bytes_); }
+
+ private:
+  Bytes bytes_;
+};
+
+class ByteReader {
+ public:
+  static constexpr bool reads = true;
+
+  explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <detail::Number T>
+  void operator()(T& value) {
+    value = T{};
+    if (!takes(sizeof(T))) return;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < sizeof(T); ++i) bits |= std::to_integer<std::uint64_t>(bytes_[at_ + i]) << (8 * i);
+    at_ += sizeof(T);
+    if constexpr (std::is_same_v<T, bool>) {
+      if (bits > 1) fail("a truth value that is neither 0 nor 1");
+      value = bits == 1;
+    } else {
+      value = std::bit_cast<T>(static_cast<detail::UnsignedOf<sizeof(T)>>(bits));
+    }
+  }
+  template <class T, std::size_t Size>
+  void operator()(std::array<T, Size>& values) {
+    for (T& value : values) (*this)(value);
+  }
+  template <class Real, int Size>
+  void operator()(Vector<Real, Size>& v) {
+    (*this)(v.components);
+  }
+  template <class T>
+  void operator()(std::vector<T>& values) {
+    std::uint64_t count = 0;
+    (*this)(count);
+    values.clear();
+    if (count > left()) return fail("a list longer than the bytes that are left");  // an element has one at least
+    for (std::uint64_t i = 0; i < count && ok(); ++i) (*this)(values.emplace_back());
+  }
+  template <class T>
+    requires detail::Transferable<T, ByteReader>
+  void operator()(T& value) {
+    value.transfer(*this);
+  }
+
+  bool ok() const { return error_.empty(); }
+  const std::string& error() const { return error_; }
+  std::size_t position() const { return at_; }
+  std::size_t left() const { return bytes_.size() - at_; }
+  /// The first fault counts.
+  void fail(const std::string& what) {
+    if (ok()) error_ = "byte " + std::to_string(at_) + ": " + what;
+  }
+  void expect(bool is_right, const char* what) {
+    if (!is_right) fail(what);
+  }
+  std::span<const std::byte> take(std::uint64_t count) {
+    if (!takes(count)) return {};
+    at_ += static_cast<std::size_t>(count);
+    return bytes_.subspan(at_ - static_cast<std::size_t>(count), static_cast<std::size_t>(count));
+  }
+
+ private:
+  bool takes(std::uint64_t count) {
+    if (!ok()) return false;
+    if (count <= left()) return true;
+    fail("the bytes end too early");
+    return false;
+  }
+
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+  std::string error_;
+};
+
+/// FNV-1a, 64 bits (G. Fowler, L. Noll, K.-P. Vo): finds what went wrong by accident.
+inline std::uint64_t checksum(std::span<const std::byte> bytes) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const std::byte byte : bytes) hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 1099511628211u;
+  return hash;
+}
+
+}  // namespace continuo

@@ -1,0 +1,59 @@
+// continuo/bodies/flight_bytes.hpp
+// One body's flight as bytes: what is not in the world. Partners are told by number, since places change.
+#pragma once
+#include <cstdint>
+
+#include <continuo/bodies/bytes.hpp>
+#include <continuo/bodies/flights.hpp>
+
+namespace continuo {
+
+template <class Archive, class Real, int Dim>
+void transfer_flight(Archive& archive, Path<Real, Dim>& path, Plan<Real, Dim>& plan, Mark& mark) {
+  archive(path.x), archive(path.v), archive(path.t);
+  archive(plan.collision_time), archive(plan.crossing_time), archive(plan.last_collision), archive(plan.spun_to);
+  archive(plan.rests_since), archive(plan.acceleration), archive(plan.cell), archive(plan.partner);
+  archive(plan.collisions_of_partner), archive(plan.supports), archive(plan.support_count), archive(plan.is_large);
+  archive(plan.direction), archive(plan.axis);
+  std::uint32_t collisions = mark.collisions;
+  auto act = static_cast<std::uint8_t>(mark.act);
+  archive(collisions), archive(act);
+  if constexpr (Archive::reads) {
+    mark.collisions = collisions & 0x3fffffffu;
+    mark.act = static_cast<Act>(act & 3u);
+    archive.expect(collisions < std::uint32_t{1} << 30 && act <= static_cast<std::uint8_t>(Act::is_fixed),
+                   "a body that moves in no known way");
+  }
+}
+
+/// What is wrong with a flight that was read; nullptr where nothing is.
+template <class Real, int Dim>
+const char* fault_of_flight(const World<Real, Dim>& world, const Path<Real, Dim>& path, const Plan<Real, Dim>& plan,
+                            const Mark& mark) {
+  constexpr Real never = Plan<Real, Dim>::never;
+  const auto is_number = [](const Real& value) { return value - value == Real(0); };
+  if (!is_finite(path.x) || !is_finite(path.v) || !is_finite(plan.acceleration) || !is_number(path.t) ||
+      !is_number(plan.spun_to) || !is_number(plan.rests_since))
+    return "a flight that is not finite";
+  if (!(plan.collision_time > -never) || !(plan.crossing_time > -never) || !(plan.last_collision < never))
+    return "an event at no time";
+  if ((mark.act == Act::is_fixed) != world.is_fixed(plan.number)) return "a flight of a body that does not move";
+  if (mark.act == Act::is_fixed && (plan.collision_time < never || plan.crossing_time < never))
+    return "an event of a body that does not move";
+  const bool is_body = plan.partner < first_wall, is_wall = !is_body && plan.partner < look_again;
+  if (plan.partner == nobody ? plan.collision_time < never
+                             : (is_body && (plan.partner >= world.size() || plan.partner == plan.number)) ||
+                                   (is_wall && plan.partner - first_wall >= world.walls().size()))
+    return "a collision with nobody";
+  if (plan.crossing_time < never &&
+      (plan.is_large || plan.axis >= Dim || (plan.direction != 1 && plan.direction != -1)))
+    return "a crossing to nowhere";
+  for (const std::int64_t cell : plan.cell)
+    if (cell > std::int64_t{1} << 60 || cell < -(std::int64_t{1} << 60)) return "a cell too far away";
+  if (plan.support_count > Dim) return "more supports than there can be";
+  for (std::size_t k = 0; k < plan.support_count; ++k)
+    if (plan.supports[k] >= world.walls().size()) return "a support that is no wall";
+  return nullptr;
+}
+
+}  // namespace continuo

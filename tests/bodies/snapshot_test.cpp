@@ -1,0 +1,174 @@
+// Worlds as bytes: what goes on from them goes on to the same bits, and bytes that are wrong are said to be.
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <continuo/bodies/snapshot.hpp>
+
+namespace continuo {
+namespace {
+
+/// Balls of several sizes and materials over a floor between walls, some fixed, some removed again, with groups.
+template <class Real, int Dim>
+World<Real, Dim> crowd(unsigned seed, bool has_springs) {
+  World<Real, Dim> world;
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<Real> uniform(-1, 1);
+  Vector<Real, Dim> upper;
+  for (std::size_t axis = 0; axis < upper.size(); ++axis) upper[axis] = Real(axis + 1 == upper.size() ? 100 : 8);
+  EXPECT_EQ(world.add_container({}, upper, {.restitution = Real(0.3)}), "");
+  world.gravity[upper.size() - 1] = Real(-9.81);
+  BodyHandle last{};
+  for (int i = 0; i < 60; ++i) {
+    BodyDefinition<Real, Dim> ball{.shape = Sphere<Real>{Real(0.3) + Real(0.15) * uniform(engine)}};
+    ball.position[0] = Real(1 + i % 7);
+    ball.position[1] = Real(Dim == 2 ? 1 + i / 7 : 1 + i / 7 % 3 * 2);
+    if (Dim == 3) ball.position[2] = Real(1 + i / 21);
+    for (std::size_t axis = 0; axis < upper.size(); ++axis) ball.velocity[axis] = 3 * uniform(engine);
+    for (std::size_t axis = 0; axis < ball.spin.size(); ++axis) ball.spin[axis] = uniform(engine);
+    ball.material = {.restitution = Real(i % 3) / 4, .friction = Real(0.4), .rolling_resistance = Real(i % 2) / 50};
+    ball.fixed = i % 13 == 0;
+    ball.group = static_cast<std::uint32_t>(i % 5);
+    const auto added = world.add(ball);
+    EXPECT_TRUE(added) << added.error;
+    if (i % 9 == 8) world.remove(last);
+    if (has_springs && i % 4 == 1)
+      world.springs.push_back({.a = added.handle, .b = last, .rest_length = 1, .stiffness = 3});
+    if (has_springs && i == 30) world.springs.push_back({.a = added.handle, .b = upper, .stiffness = 2, .damping = 1});
+    last = added.handle;
+  }
+  world.ignore(2, 3);
+  return world;
+}
+
+template <class Real, int Dim>
+void expect_equal(const World<Real, Dim>& a, const World<Real, Dim>& b) {
+  EXPECT_EQ(snapshot(a), snapshot(b));  // every bit of a world is in it
+}
+
+template <class Real, int Dim>
+void exact_goes_on() {
+  // A long contact time: a heap of 60 that rattles within a millisecond.
+  const ExactOptions<Real> options{.contact_time = Real(1e-3), .contact_events = 100000};
+  World<Real, Dim> world = crowd<Real, Dim>(5, false), again;
+  ExactMotion<Real, Dim> motion(world, options), motion_again(again, options);
+  ASSERT_EQ(motion.advance_to(1), "");
+  const Bytes bytes = snapshot(world, motion);
+  ASSERT_EQ(restore(bytes, again, motion_again), "");
+  expect_equal(world, again);
+  EXPECT_EQ(snapshot(again, motion_again), bytes);
+  ASSERT_EQ(motion.advance_to(1.5), "");
+  ASSERT_EQ(motion_again.advance_to(1.5), "");
+  expect_equal(world, again);
+  EXPECT_EQ(snapshot(again, motion_again), snapshot(world, motion));
+  EXPECT_EQ(motion.statistics().collisions, motion_again.statistics().collisions);
+  ASSERT_EQ(motion.contact_events().size(), motion_again.contact_events().size());
+  EXPECT_GT(motion.contact_events().size(), 10u);
+  for (std::size_t i = 0; i < motion.contact_events().size(); ++i)
+    EXPECT_EQ(motion.contact_events()[i].impulse, motion_again.contact_events()[i].impulse);
+  // What would have been, had nothing been saved.
+  World<Real, Dim> undisturbed = crowd<Real, Dim>(5, false);
+  ExactMotion<Real, Dim> alone(undisturbed, {.contact_time = Real(1e-3)});
+  ASSERT_EQ(alone.advance_to(1), "");
+  ASSERT_EQ(alone.advance_to(1.5), "");
+  expect_equal(undisturbed, again);
+}
+TEST(Snapshot, ExactMotionGoesOnToTheSameBits) {
+  exact_goes_on<double, 3>();
+  exact_goes_on<double, 2>();
+  exact_goes_on<float, 3>();
+  exact_goes_on<float, 2>();
+}
+
+template <class Real, int Dim>
+void fast_goes_on() {
+  World<Real, Dim> world = crowd<Real, Dim>(6, true), again, undisturbed = world;
+  FastMotion<Real, Dim> motion(world, {.contact_events = 1000}), motion_again(again, {.contact_events = 1000});
+  FastMotion<Real, Dim> alone(undisturbed);
+  for (int i = 0; i < 90; ++i) {
+    ASSERT_EQ(motion.advance(), "");
+    ASSERT_EQ(alone.advance(), "");
+  }
+  ASSERT_EQ(restore(snapshot(world, motion), again, motion_again), "");
+  expect_equal(world, again);
+  EXPECT_EQ(snapshot(world, motion), snapshot(again, motion_again));
+  for (int i = 0; i < 60; ++i) {
+    ASSERT_EQ(motion.advance(), "");
+    ASSERT_EQ(alone.advance(), "");
+    ASSERT_EQ(motion_again.advance(), "");
+    ASSERT_EQ(motion.contact_events().size(), motion_again.contact_events().size()) << i;
+  }
+  expect_equal(world, again);
+  expect_equal(undisturbed, again);
+}
+TEST(Snapshot, FastMotionGoesOnToTheSameBits) {
+  fast_goes_on<double, 3>();
+  fast_goes_on<double, 2>();
+  fast_goes_on<float, 3>();
+  fast_goes_on<float, 2>();
+}
+
+TEST(Snapshot, HandlesSurvive) {
+  World<double, 3> world;
+  const auto a = world.add({}), b = world.add({.position = {{5, 0, 0}}});
+  ASSERT_TRUE(world.remove(a.handle));
+  World<double, 3> again;
+  ASSERT_EQ(restore(snapshot(world), again), "");
+  EXPECT_FALSE(again.contains(a.handle));
+  ASSERT_TRUE(again.contains(b.handle));
+  EXPECT_EQ(again.position_of(b.handle)[0], 5);
+  EXPECT_EQ(again.add({}).handle, world.add({}).handle);
+}
+
+TEST(Snapshot, SaysWhatIsWrongAndLeavesTheWorldAlone) {
+  World<double, 3> world = crowd<double, 3>(7, true);
+  const Bytes before = snapshot(world);
+  World<double, 2> flat;
+  World<float, 3> single;
+  EXPECT_NE(restore(before, flat), "");
+  EXPECT_NE(restore(before, single), "");
+  EXPECT_NE(restore({}, world), "");
+  ExactMotion motion(world);
+  EXPECT_NE(restore(before, world, motion), "");  // without a motion
+  World<double, 3> with_law;
+  with_law.force_laws.emplace_back();
+  EXPECT_NE(restore(before, with_law), "");
+  EXPECT_EQ(snapshot(world), before);
+}
+
+// Any byte changed, and any part cut off, is found; with the checksum put right again nothing crashes, and what is
+// taken moves or says why not.
+TEST(Snapshot, CorruptBytesAreRefused) {
+  World<double, 2> world = crowd<double, 2>(8, false);
+  ExactMotion motion(world, {.contact_time = 1e-3});
+  ASSERT_EQ(motion.advance_to(1), "");
+  const Bytes bytes = snapshot(world, motion);
+  World<double, 2> again;
+  ExactMotion motion_again(again, {.most_events = 2000});
+  std::mt19937 engine(9);
+  for (int k = 0; k < 300; ++k) {
+    Bytes wrong = bytes;
+    const std::size_t at = engine() % wrong.size();
+    wrong[at] ^= static_cast<std::byte>(1 + engine() % 255);
+    EXPECT_EQ(restore(wrong, again, motion_again).substr(0, 5), "byte ") << at;
+    wrong = bytes;
+    wrong.resize(engine() % wrong.size());
+    EXPECT_EQ(restore(wrong, again, motion_again).substr(0, 5), "byte ");
+    EXPECT_EQ(again.size(), 0u);
+  }
+  for (int k = 0; k < 300; ++k) {
+    Bytes wrong(bytes.begin(), bytes.end() - 8);
+    for (int n = 0; n < 3; ++n) wrong[20 + engine() % (wrong.size() - 20)] = static_cast<std::byte>(engine() % 256);
+    ByteWriter sum;
+    sum(checksum(wrong));
+    wrong.insert(wrong.end(), sum.bytes().begin(), sum.bytes().end());
+    if (restore(wrong, again, motion_again).empty()) (void)motion_again.advance_to(again.time + 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace continuo
