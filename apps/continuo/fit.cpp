@@ -175,9 +175,10 @@ class Request {
     const auto side = [](const std::string& number, double none) {
       return number.empty() ? std::optional(none) : model::cell_number(number);
     };
-    const auto low = side(setting->second.substr(0, dots), -INFINITY);
-    const auto high = dots == std::string::npos ? std::nullopt : side(setting->second.substr(dots + 2), INFINITY);
-    if (!low || !high || !(*low < *high)) {
+    const double low = side(setting->second.substr(0, dots), -INFINITY).value_or(NAN);
+    const double high =
+        dots == std::string::npos ? NAN : side(setting->second.substr(dots + 2), INFINITY).value_or(NAN);
+    if (!(low < high)) {  // or one is no number
       say(fmt::format("`{}` is not NAME=LOW..HIGH", text));
       return false;
     }
@@ -185,8 +186,8 @@ class Request {
     for (studies::FitUnknown& unknown : request_.unknowns) {
       names.push_back(name_of(model_, unknown.influence));
       if (names.back() != setting->first) continue;
-      unknown.low = *low;
-      unknown.high = *high;
+      unknown.low = low;
+      unknown.high = high;
       return true;
     }
     say(no_such("unknown", setting->first, names));

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <continuo/studies/sensitive_system.hpp>
 
 namespace continuo::studies::detail {
@@ -140,8 +142,8 @@ std::vector<double> SensitiveEvents::time_moves(std::size_t event, std::span<con
     const double along = values[guard.along + k];
     moves[k] = along == 0 ? 0 : -along / rate;
     if (!std::isfinite(moves[k]) && problem_.empty())
-      problem_ = "`" + std::string(plain_.name(event + inputs_)) +
-                 "` is not crossed with a slope: the motion has no derivative there";
+      problem_ = fmt::format("`{}` is not crossed with a slope: the motion has no derivative there",
+                             plain_.name(event + inputs_));
   }
   return moves;
 }
