@@ -1,13 +1,22 @@
-# continuo_room(NAME [ROOMS ...] [PARTS ...]): one library for a folder of continuo/, static when it has sources.
-# The target is continuo_NAME, Continuo::NAME to those who find the package.
+# continuo_room(NAME [FUZZED] [ROOMS ...] [PARTS ...]): one library for a folder of continuo/, static when it has
+# sources. The target is continuo_NAME, Continuo::NAME to those who find the package. FUZZED: it reads what others wrote,
+# and counts its branches for the fuzzer where the sanitizers are on.
 function(continuo_room name)
-  cmake_parse_arguments(room "" "" "ROOMS;PARTS" ${ARGN})
+  cmake_parse_arguments(room "FUZZED" "" "ROOMS;PARTS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/continuo/${name}/*.cpp)
   list(TRANSFORM room_ROOMS PREPEND continuo_)
   if(sources)
     add_library(continuo_${name} STATIC ${sources})
     set(scope PUBLIC)
     target_link_libraries(continuo_${name} PRIVATE $<BUILD_INTERFACE:continuo_flags>)
+    set(headers continuo_headers)
+    if(room_FUZZED AND CONTINUO_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+      target_compile_options(continuo_${name} PRIVATE -fsanitize=fuzzer-no-link)
+      set(headers continuo_fuzzed_headers)
+    endif()
+    if(fmt::fmt IN_LIST room_PARTS)  # as the precompiled headers have
+      continuo_reuse_headers(continuo_${name} ${headers})
+    endif()
   else()
     add_library(continuo_${name} INTERFACE)
     set(scope INTERFACE)

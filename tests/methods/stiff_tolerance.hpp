@@ -3,8 +3,11 @@
 // Brusselator on a line. bench/stiff prints the whole table (docs/benchmarks_stiff.md); the tests take of it what runs
 // in seconds.
 #pragma once
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <bench/stiff/brusselator_sparse.hpp>
 #include <bench/stiff/measure.hpp>
@@ -12,24 +15,57 @@
 #include <gtest/gtest.h>
 
 #include <continuo/solve/solve.hpp>
+#include <continuo/studies/named_solve.hpp>
 
 namespace continuo::promises {
 
-template <class M, class Problem, class System = Problem>
-void expect_tolerance_kept(int strictest_power) {
+/// run(rtol, atol) is the solution of Problem by some method.
+template <class Problem, class Run>
+void expect_tolerance_kept_by(int strictest_power, const Run& run) {
   for (const int power : bench::tolerances_asked) {
     if (power > strictest_power) return;
     const double rtol = std::pow(10, -power);
-    System system;
-    auto start = system.start();
-    using X = decltype(start);
-    const auto solution =
-        solve(system, start, {0.0, Problem::duration}, M{},
-              {.rtol = rtol, .atol = rtol * bench::absolute_part<Problem>, .save = Save<X>::only_end()});
+    const auto solution = run(rtol, rtol * bench::absolute_part<Problem>);
     ASSERT_TRUE(solution.outcome) << Problem::name << ' ' << rtol << ' ' << describe(solution.outcome);
     const auto answer = bench::judged<Problem>(solution.final_state(), rtol, solution.statistics.evaluations);
     EXPECT_LE(answer.tolerances, bench::most_tolerances) << Problem::name << ' ' << rtol;
   }
+}
+
+/// By the methods as the studies have them, compiled once for all systems.
+template <class M, class Problem>
+void expect_tolerance_kept(int strictest_power) {
+  using X = typename Problem::State;
+  const auto state = [](std::span<const double> values) {
+    X x{};
+    std::ranges::copy(values, x.begin());
+    return x;
+  };
+  auto system = studies::named_system<double>(Problem::size, [state](double t, std::span<const double> x, auto dxdt) {
+    X slope{};
+    Problem{}(t, state(x), slope);
+    std::ranges::copy(slope, dxdt.begin());
+  });
+  system.given_jacobian = [state](double t, std::span<const double> x, std::span<double> rows) {
+    Problem{}.jacobian(t, state(x), rows);
+  };
+  const auto start = Problem::start();
+  expect_tolerance_kept_by<Problem>(strictest_power, [&](double rtol, double atol) {
+    return studies::named_solve<double>(M::name, system, {start.begin(), start.end()}, {0.0, Problem::duration},
+                                        {.rtol = rtol, .atol = atol, .save = Save<std::vector<double>>::only_end()});
+  });
+}
+
+/// With the sparse Jacobian.
+template <class M>
+void expect_tolerance_kept_on_a_line(int strictest_power) {
+  expect_tolerance_kept_by<bench::BrusselatorLine<>>(strictest_power, [](double rtol, double atol) {
+    bench::SparseBrusselator system;
+    auto start = system.start();
+    using X = decltype(start);
+    return solve(system, start, {0.0, bench::BrusselatorLine<>::duration}, M{},
+                 {.rtol = rtol, .atol = atol, .save = Save<X>::only_end()});
+  });
 }
 
 /// A method of order p needs steps ~ tolerance^(1/p): of order 2, tens of millions at 1e-11.
@@ -62,8 +98,7 @@ TYPED_TEST_P(StiffTolerance, IsKeptToTheLimitsOfDouble) {
   expect_tolerance_kept<TypeParam, bench::VanDerPol<>>(strictest);
   expect_tolerance_kept<TypeParam, bench::VanDerPolScaled<>>(TypeParam::order == 1 ? 3 : strictest);
   expect_tolerance_kept<TypeParam, bench::Pollution<>>(strictest);
-  using Line = bench::BrusselatorLine<>;
-  expect_tolerance_kept<TypeParam, Line, bench::SparseBrusselator>(TypeParam::order == 1 ? 3 : strictest);
+  expect_tolerance_kept_on_a_line<TypeParam>(TypeParam::order == 1 ? 3 : strictest);
 }
 
 REGISTER_TYPED_TEST_SUITE_P(StiffTolerance, IsKeptOnAnOrbitWithJumps, IsKeptToTheLimitsOfDouble);
