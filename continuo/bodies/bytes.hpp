@@ -126,6 +126,7 @@ class ByteReader {
   void expect(bool is_right, const char* what) {
     if (!is_right) fail(what);
   }
+  void expect_end() { expect(left() == 0, "bytes after the end"); }
   std::span<const std::byte> take(std::uint64_t count) {
     if (!takes(count)) return {};
     at_ += static_cast<std::size_t>(count);

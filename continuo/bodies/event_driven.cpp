@@ -60,6 +60,9 @@ class EventDriven final : public ExactEngine<Real, Dim> {
       if (crossings_since_sort_ > 4 * flights_.paths.size()) sort();
     }
     synchronize(t);
+    for (std::size_t i = 0; i < world_.size(); ++i)
+      if (!is_finite(world_.position[i]) || !is_finite(world_.velocity[i]))
+        return "a body's motion is no longer finite: a speed or gravity is too large for the numbers";
     return {};
   }
 

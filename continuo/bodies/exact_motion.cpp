@@ -57,6 +57,7 @@ void ExactMotion<Real, Dim>::load(ByteReader& reader) {
   reader(statistics);
   auto engine = event_driven(*world_, options_);
   engine->load(reader);
+  reader.expect_end();
   if (!reader.ok()) return;
   engine_ = std::move(engine);
   engine_->statistics = statistics;

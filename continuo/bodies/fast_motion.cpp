@@ -106,6 +106,7 @@ class FastMotion<Real, Dim>::Stepper {
         reader.expect(is_finite(x[i]) && reach[i] >= Real(0), "a list that is not finite");
       reader.expect(contacts.kept_fits(world_.size(), world_.walls().size()), "contacts of other bodies");
     }
+    reader.expect_end();
     if (!reader.ok()) return;
     refresh();
     touches_ = std::move(touches);

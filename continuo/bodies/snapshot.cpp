@@ -220,7 +220,10 @@ Bytes snapshot(const World<Real, Dim>& world, const FastMotion<Real, Dim>& motio
 
 template <class Real, int Dim>
 std::string restore(std::span<const std::byte> bytes, World<Real, Dim>& world) {
-  return read(bytes, world, [&](ByteReader&, Of, World<Real, Dim>& found) { world = std::move(found); });
+  return read(bytes, world, [&](ByteReader& reader, Of of, World<Real, Dim>& found) {
+    if (of == Of::world) reader.expect_end();
+    if (reader.ok()) world = std::move(found);
+  });
 }
 
 namespace {

@@ -89,14 +89,14 @@ void fast_goes_on() {
   World<Real, Dim> world = crowd<Real, Dim>(6, true), again, undisturbed = world;
   FastMotion<Real, Dim> motion(world, {.contact_events = 1000}), motion_again(again, {.contact_events = 1000});
   FastMotion<Real, Dim> alone(undisturbed);
-  for (int i = 0; i < 90; ++i) {
+  for (int i = 0; i < 40; ++i) {
     ASSERT_EQ(motion.advance(), "");
     ASSERT_EQ(alone.advance(), "");
   }
   ASSERT_EQ(restore(snapshot(world, motion), again, motion_again), "");
   expect_equal(world, again);
   EXPECT_EQ(snapshot(world, motion), snapshot(again, motion_again));
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 20; ++i) {
     ASSERT_EQ(motion.advance(), "");
     ASSERT_EQ(alone.advance(), "");
     ASSERT_EQ(motion_again.advance(), "");

@@ -1,0 +1,192 @@
+// continuo/bodies/recording.hpp
+// A run as a file, to be played again: frames of places and orientations at instants of the caller's choice, and with
+// the first, and wherever bodies have come or gone since, the whole world as a snapshot.
+//
+//   std::ofstream file("run.continuo", std::ios::binary);
+//   Recorder<double, 3> recorder(file);
+//   for (...) { motion.advance(); recorder.add(world); }
+//   recorder.finish();                                     // writes the index
+//
+//   const auto recording = Recording<double, 3>::read(bytes_of_the_file);
+//   if (!recording.error.empty()) ...
+//   const auto frame = recording.frame(17);                // frame.time, frame.position[i]
+//
+// A block is its kind, its size, its bytes and their checksum. The last one is the index; a file that ends without it,
+// because the run did not, is read as far as its blocks are whole.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <ostream>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/snapshot.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+struct Frame {
+  Real time{};
+  std::uint64_t scene = 0;  // Recording::scenes[scene] is the world these are the bodies of, by index
+  std::vector<Vector<Real, Dim>> position{};
+  std::vector<Orientation<Real, Dim>> orientation{};
+
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(time), archive(scene), archive(position), archive(orientation);
+  }
+};
+
+namespace detail {
+
+enum class Block : std::uint8_t { scene, frame, index };
+
+struct RecordingHeader {
+  static constexpr std::array<char, 8> expected{'c', 'o', 'n', 't', 'i', 'r', 'e', 'c'};
+  std::array<char, 8> name = expected;
+  std::uint32_t version = 1;
+  std::uint8_t real = 0, dim = 0;
+
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(name), archive(version), archive(real), archive(dim);
+  }
+};
+struct RecordingIndex {
+  std::vector<std::uint64_t> scenes{}, frames{};  // where their blocks begin
+
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(scenes), archive(frames);
+  }
+};
+
+}  // namespace detail
+
+template <class Real, int Dim>
+class Recorder {
+ public:
+  /// The stream must be binary and stay; whether writing went well is for the caller to ask of it.
+  explicit Recorder(std::ostream& out) : out_(out) {
+    detail::RecordingHeader header;
+    header.real = sizeof(Real);
+    header.dim = Dim;
+    ByteWriter writer;
+    writer(header);
+    write(writer.bytes());
+  }
+
+  void add(const World<Real, Dim>& world) {
+    std::vector<BodyHandle> bodies(world.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i] = world.handle(i);
+    if (index_.scenes.empty() || bodies != bodies_) {
+      bodies_ = std::move(bodies);
+      index_.scenes.push_back(at_);
+      write_block(detail::Block::scene, snapshot(world));
+    }
+    ByteWriter writer;
+    writer(Frame<Real, Dim>{world.time, index_.scenes.size() - 1, world.position, world.orientation});
+    index_.frames.push_back(at_);
+    write_block(detail::Block::frame, writer.bytes());
+  }
+  void finish() {
+    ByteWriter writer;
+    writer(index_);
+    write_block(detail::Block::index, writer.bytes());
+    out_.flush();
+  }
+
+ private:
+  void write_block(detail::Block kind, const Bytes& bytes) {
+    ByteWriter head, tail;
+    head(kind), head(static_cast<std::uint64_t>(bytes.size()));
+    tail(checksum(bytes));
+    write(head.bytes());
+    write(bytes);
+    write(tail.bytes());
+  }
+  void write(const Bytes& bytes) {
+    out_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    at_ += bytes.size();
+  }
+
+  std::ostream& out_;
+  std::uint64_t at_ = 0;
+  std::vector<BodyHandle> bodies_;
+  detail::RecordingIndex index_;
+};
+
+template <class Real, int Dim>
+struct Recording {
+  std::string error{};    // why nothing can be played; else all below is as the file says
+  bool is_whole = false;  // false where the run ended before its recording did
+  std::vector<World<Real, Dim>> scenes{};
+  std::vector<Frame<Real, Dim>> frames{};
+
+  const Frame<Real, Dim>& frame(std::size_t i) const { return frames[i]; }
+  /// The last frame not after t; the first where all are.
+  const Frame<Real, Dim>& at(const Real& t) const {
+    const auto after = std::ranges::upper_bound(frames, t, {}, &Frame<Real, Dim>::time);
+    return after == frames.begin() ? frames.front() : *(after - 1);
+  }
+
+  static Recording read(std::span<const std::byte> bytes) {
+    Recording recording;
+    ByteReader reader(bytes);
+    detail::RecordingHeader header;
+    reader(header);
+    reader.expect(header.name == detail::RecordingHeader::expected, "this is no recording");
+    reader.expect(header.version == 1, "a recording of another version");
+    reader.expect(header.real == sizeof(Real) && header.dim == Dim, "numbers or dimensions of another kind");
+    detail::RecordingIndex found;
+    while (reader.ok() && !recording.is_whole && reader.left() > 0) {
+      const std::uint64_t begin = reader.position();
+      detail::Block kind{};
+      std::uint64_t size = 0, sum = 0;
+      reader(kind), reader(size);
+      const std::span<const std::byte> block = reader.take(size);
+      reader(sum);
+      if (!reader.ok()) break;  // cut off here
+      reader.expect(sum == checksum(block), "the checksum does not fit the block before");
+      reader.expect(kind <= detail::Block::index, "a block of no known kind");
+      if (reader.ok()) recording.take(reader, kind, block, begin, found);
+      if (!reader.ok()) return {.error = reader.error()};
+    }
+    if (recording.frames.empty())
+      return {.error = reader.ok() ? "byte " + std::to_string(bytes.size()) + ": not one frame" : reader.error()};
+    return recording;
+  }
+
+ private:
+  void take(ByteReader& outer, detail::Block kind, std::span<const std::byte> block, std::uint64_t begin,
+            detail::RecordingIndex& found) {
+    ByteReader reader(block);
+    if (kind == detail::Block::scene) {
+      found.scenes.push_back(begin);
+      if (const std::string why = restore(block, scenes.emplace_back()); !why.empty())
+        outer.fail("the block before, " + why);
+    } else if (kind == detail::Block::frame) {
+      found.frames.push_back(begin);
+      Frame<Real, Dim>& frame = frames.emplace_back();
+      reader(frame);
+      reader.expect(reader.left() == 0, "a frame that goes on after its end");
+      reader.expect(!scenes.empty() && frame.scene == scenes.size() - 1, "a frame of no scene before it");
+      reader.expect(scenes.empty() || (frame.position.size() == scenes.back().size() &&
+                                       frame.orientation.size() == frame.position.size()),
+                    "a frame of other bodies");
+      reader.expect(frames.size() == 1 || frame.time >= frames[frames.size() - 2].time, "a frame before the last");
+    } else {
+      detail::RecordingIndex index;
+      reader(index);
+      reader.expect(index.scenes == found.scenes && index.frames == found.frames, "an index of other blocks");
+      is_whole = true;
+    }
+    if (!reader.ok()) outer.fail("the block before, " + reader.error());
+  }
+};
+
+}  // namespace continuo
