@@ -5,6 +5,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(Ceres REQUIRED)
 find_package(xsimd REQUIRED)
+find_package(TBB REQUIRED)
 if(NOT TARGET xtl)
   # The distribution's xsimd names xtl (for complex numbers, which we do not use) without requiring it.
   add_library(xtl INTERFACE IMPORTED)

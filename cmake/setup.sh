@@ -12,6 +12,7 @@ packages_to_build=(
   "libudunits2-dev        -            physical units"
   "libxsimd-dev           -            vector instructions"
   "libsuitesparse-dev     -            sparse linear systems"
+  "libtbb-dev             -            threads"
   "libeigen3-dev          -            eigenvalues of matrices"
   "libceres-dev           -            least squares, and dual numbers"
   "gnuplot-nox            gnuplot      plots"

@@ -9,8 +9,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include <continuo/bodies/contact_rows.hpp>
 #include <continuo/bodies/contact_solver.hpp>
 #include <continuo/bodies/world.hpp>
 
@@ -18,25 +20,13 @@ namespace continuo {
 
 inline constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
 
-/// What the bodies at places 0, 1, ... may touch: entries first[k] ... first[k + 1] - 1 are those of k, in rising
-/// order. A pair of two that move stands with the lower place, one with a fixed body with the other.
-struct ContactRows {
-  struct Entry {
-    std::uint32_t other;           // a place, or the number of a wall
-    std::uint32_t lane = nowhere;  // in the packs of its kind, where it is solved
-  };
-  std::vector<std::uint32_t> first{0};
-  std::vector<Entry> entries{};
-
-  std::size_t rows() const { return first.size() - 1; }
-  std::span<const Entry> row(std::size_t k) const { return {entries.data() + first[k], entries.data() + first[k + 1]}; }
-  std::span<Entry> row(std::size_t k) { return {entries.data() + first[k], entries.data() + first[k + 1]}; }
-  void clear() {
-    first.assign(1, 0);
-    entries.clear();
-  }
-  void end_row() { first.push_back(static_cast<std::uint32_t>(entries.size())); }
+/// What a body may touch: another body's place, or that of a wall's stand-in. Rows are in rising order, walls last; a
+/// pair of two that move stands with the lower place, one with a fixed body with the other.
+struct ContactEntry {
+  std::uint32_t other;
+  std::uint32_t lane = nowhere;  // in the packs of its kind, where it is solved
 };
+using ContactRows = Rows<ContactEntry>;
 
 /// The impulses of a contact between steps.
 template <class Real, int Dim>
@@ -51,34 +41,38 @@ struct KeptImpulse {
   }
 };
 template <class Real, int Dim>
-struct KeptImpulses {
-  std::vector<std::uint32_t> first{0};
-  std::vector<KeptImpulse<Real, Dim>> entries{};
+struct KeptImpulses : Rows<KeptImpulse<Real, Dim>> {
+  using Base = Rows<KeptImpulse<Real, Dim>>;
   std::vector<Spin<Real, Dim>> rolling{};  // of the same contacts; empty where nothing resists rolling
 
   template <class Archive>
   void transfer(Archive& archive) {
-    archive(first), archive(entries), archive(rolling);
+    archive(this->first), archive(this->entries), archive(rolling);
   }
   /// Of `bodies`, with others below `others`.
   bool fits(std::size_t bodies, std::size_t others) const {
-    bool fits = !first.empty() && first.front() == 0 && first.back() == entries.size() && first.size() <= bodies + 1 &&
-                std::ranges::is_sorted(first) && (rolling.empty() || rolling.size() == entries.size());
-    for (const auto& entry : entries) fits = fits && entry.other < others;
+    const auto& starts = this->first;
+    bool fits = !starts.empty() && starts.front() == 0 && starts.back() == this->entries.size() &&
+                starts.size() <= bodies + 1 && std::ranges::is_sorted(starts) &&
+                (rolling.empty() || rolling.size() == this->entries.size());
+    for (const auto& entry : this->entries) fits = fits && entry.other < others;
     return fits;
   }
   std::size_t find(std::uint32_t k, std::uint32_t other) const {
-    if (k + 1 < first.size())
-      for (std::size_t i = first[k]; i < first[k + 1]; ++i)
-        if (entries[i].other == other) return i;
+    if (k < this->rows())
+      for (std::size_t i = this->first[k]; i < this->first[k + 1]; ++i)
+        if (this->entries[i].other == other) return i;
     return nowhere;
   }
   void clear() {
-    first.assign(1, 0);
-    entries.clear();
+    Base::clear();
     rolling.clear();
   }
-  void end_row() { first.push_back(static_cast<std::uint32_t>(entries.size())); }
+  void append(const KeptImpulses& more) {
+    Base::append(more);
+    rolling.insert(rolling.end(), more.rolling.begin(), more.rolling.end());
+  }
+  std::size_t memory() const { return Base::memory() + rolling.capacity() * sizeof(Spin<Real, Dim>); }
 };
 
 /// How near two must be to be solved in a step: as near as they may come.
@@ -94,7 +88,7 @@ class ContactList {
   using V = Vector<Real, Dim>;
   static constexpr std::size_t width = lanes_at_once<Real>;
 
-  ContactRows pairs, walls;
+  ContactRows rows;
   ColouredPacks<Real, Dim> between_movers, with_fixed, with_wall;
 
   /// act(kind, packs) for the three kinds, in the order in which they are solved: walls last, they yield least.
@@ -106,54 +100,64 @@ class ContactList {
   }
 
   /// Takes the impulses out of the packs.
-  void keep() {
-    keep(pairs, kept_pairs_, [&](std::uint32_t lane) { return lane & fixed_bit ? &with_fixed : &between_movers; });
-    keep(walls, kept_walls_, [&](std::uint32_t) { return &with_wall; });
+  void keep(Team& team) {
+    make_rows(team, rows.rows(), kept_, [&](std::uint32_t k, KeptImpulses<Real, Dim>& part) {
+      for (const ContactEntry& entry : rows.row(k)) {
+        if (entry.lane == nowhere) continue;
+        auto& packs = packs_of(entry);
+        const std::size_t p = (entry.lane & ~fixed_bit) / width, lane = entry.lane % width;
+        const ContactPack<Real, Dim>& pack = packs.packs[p];
+        if (!(pack.normal_impulse.lane[lane] > Real(0))) continue;
+        part.entries.push_back({entry.other, pack.normal_impulse.lane[lane], in_lane(pack.friction_impulse, lane)});
+        if (const auto* rare = packs.rare_of(p)) part.rolling.push_back(in_lane(rare->rolling_impulse, lane));
+      }
+    });
+    kept_.fit();
   }
 
-  /// Packs what may touch; place_before[k] is where the body at k was when impulses were kept (empty: at k).
+  /// Packs what may touch. material_of(k) is that of the body or the wall at place k, which is asked for only where
+  /// they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept (empty: at k).
   template <class MaterialOf>
-  void activate(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> world_walls,
+  void activate(Team& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
                 const MaterialOf& material_of, bool has_rare, const ActiveReach<Real>& reach,
                 std::span<const std::uint32_t> place_before) {
-    taken_.assign(bodies.size(), 0);
     between_movers.count.fill(0), with_fixed.count.fill(0), with_wall.count.fill(0);
-    colour_pairs(bodies, reach);
-    colour_walls(bodies, world_walls, reach);
+    colour(bodies, walls, reach);
     for_each_kind([&](auto, auto& packs) { packs.make_room(bodies, has_rare); });
-    const auto before = [&](std::uint32_t k) { return place_before.empty() ? k : place_before[k]; };
-    fill_pairs(bodies, material_of, before);
-    fill_walls(bodies, world_walls, material_of, before);
+    const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
+    team.for_each(0, rows.rows(), 512, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k)
+        fill_row(static_cast<std::uint32_t>(k), bodies, walls, material_of, before);
+    });
   }
 
   /// What `keep` takes, to and fro.
   template <class Archive>
   void transfer_kept(Archive& archive) {
-    archive(kept_pairs_), archive(kept_walls_);
+    archive(kept_);
   }
-  bool kept_fits(std::size_t bodies, std::size_t world_walls) const {
-    return kept_pairs_.fits(bodies, bodies) && kept_walls_.fits(bodies, world_walls);
-  }
+  bool kept_fits(std::size_t bodies, std::size_t world_walls) const { return kept_.fits(bodies, bodies + world_walls); }
 
   /// visit(k, other, is_wall, impulse) for the contacts that pressed in the last substep.
   template <class Visit>
   void for_each_touching(Visit&& visit) const {
-    const auto impulse = [](const ColouredPacks<Real, Dim>& packs, std::uint32_t lane) {
-      return packs.packs[(lane & ~fixed_bit) / width].normal_impulse.lane[lane % width];
-    };
-    const auto visit_rows = [&](const ContactRows& rows, bool is_wall) {
-      for (std::uint32_t k = 0; k < rows.rows(); ++k)
-        for (const ContactRows::Entry& entry : rows.row(k)) {
-          if (entry.lane == nowhere) continue;
-          const auto& packs = is_wall ? with_wall : entry.lane & fixed_bit ? with_fixed : between_movers;
-          if (const Real pressed = impulse(packs, entry.lane); pressed > Real(0))
-            visit(k, entry.other, is_wall, pressed);
-        }
-    };
-    visit_rows(pairs, false);
-    visit_rows(walls, true);
+    for (std::uint32_t k = 0; k < rows.rows(); ++k)
+      for (const ContactEntry& entry : rows.row(k)) {
+        if (entry.lane == nowhere) continue;
+        const std::uint32_t lane = entry.lane & ~fixed_bit;
+        const Real pressed = packs_of(entry).packs[lane / width].normal_impulse.lane[lane % width];
+        const auto bodies = static_cast<std::uint32_t>(rows.rows());
+        const bool is_wall = entry.other >= bodies;
+        if (pressed > Real(0)) visit(k, is_wall ? entry.other - bodies : entry.other, is_wall, pressed);
+      }
   }
 
+  std::size_t memory() const {
+    std::size_t sum = rows.memory() + kept_.memory();
+    for (const auto* packs : {&between_movers, &with_fixed, &with_wall})
+      sum += packs->packs.capacity() * sizeof(packs->packs[0]) + packs->rare.capacity() * sizeof(packs->rare[0]);
+    return sum;
+  }
   std::size_t active() const {
     std::size_t sum = 0;
     for (const auto* packs : {&between_movers, &with_fixed, &with_wall})
@@ -164,22 +168,12 @@ class ContactList {
  private:
   static constexpr std::uint32_t fixed_bit = 1u << 31;  // of an entry's lane: its packs are those with fixed bodies
 
-  template <class PacksOf>
-  void keep(const ContactRows& rows, KeptImpulses<Real, Dim>& kept, const PacksOf& packs_of) {
-    kept.clear();
-    if (const std::size_t most = active(); kept.entries.capacity() < most) kept.entries.reserve(most + most / 16);
-    for (std::size_t k = 0; k < rows.rows(); ++k) {
-      for (const ContactRows::Entry& entry : rows.row(k)) {
-        if (entry.lane == nowhere) continue;
-        auto& packs = *packs_of(entry.lane);
-        const std::size_t p = (entry.lane & ~fixed_bit) / width, lane = entry.lane % width;
-        const ContactPack<Real, Dim>& pack = packs.packs[p];
-        if (!(pack.normal_impulse.lane[lane] > Real(0))) continue;
-        kept.entries.push_back({entry.other, pack.normal_impulse.lane[lane], in_lane(pack.friction_impulse, lane)});
-        if (const auto* rare = packs.rare_of(p)) kept.rolling.push_back(in_lane(rare->rolling_impulse, lane));
-      }
-      kept.end_row();
-    }
+  const ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry) const {
+    if (entry.other >= rows.rows()) return with_wall;
+    return entry.lane & fixed_bit ? with_fixed : between_movers;
+  }
+  ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry) {
+    return const_cast<ColouredPacks<Real, Dim>&>(std::as_const(*this).packs_of(entry));
   }
   template <int Size>
   static Vector<Real, Size> in_lane(const Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
@@ -199,120 +193,102 @@ class ContactList {
     return sum * reach.step + reach.extra;
   }
 
-  /// The lowest colour that neither has, for now in the place of the lane.
-  std::uint32_t colour(std::uint64_t used, ColouredPacks<Real, Dim>& packs) {
-    const auto c = static_cast<std::uint32_t>(
-        std::min<std::size_t>(static_cast<std::size_t>(std::countr_one(used)), packs.most_colours - 1));
-    ++packs.count[c];
-    return c;
+  // Until the packs have room, an entry's lane holds its colour and its number among those of that colour.
+  static constexpr std::uint32_t colour_shift = 25;
+
+  /// The lowest colour that neither has.
+  static std::uint32_t lowest_free(std::uint64_t used) {
+    const auto last = static_cast<int>(ColouredPacks<Real, Dim>::most_colours) - 1;
+    return static_cast<std::uint32_t>(std::min(std::countr_one(used), last));
   }
-  void colour_pairs(const SolverBodies<Real, Dim>& bodies, const ActiveReach<Real>& reach) {
-    for (std::uint32_t k = 0; k < pairs.rows(); ++k) {
+  static std::uint32_t number(ColouredPacks<Real, Dim>& packs, std::uint32_t colour) {
+    return colour << colour_shift | packs.count[colour]++;
+  }
+  void colour(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
+              const ActiveReach<Real>& reach) {
+    constexpr std::uint32_t last = ColouredPacks<Real, Dim>::most_colours - 1;
+    std::vector<std::uint64_t> taken(bodies.size(), 0);  // the colours of what has the body as one of two that move
+    for (std::uint32_t k = 0; k < rows.rows(); ++k) {
       const V x = bodies.x(k), v = bodies.v(k);
       const Real radius = bodies.radius(k);
-      for (ContactRows::Entry& entry : pairs.row(k)) {
+      std::uint32_t fixed = 0, at_walls = 0;  // each of these has a colour of its own
+      for (ContactEntry& entry : rows.row(k)) {
         const std::uint32_t j = entry.other;
-        const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
         entry.lane = nowhere;
+        if (j >= bodies.size()) {
+          const Wall<Real, Dim>& wall = walls[j - bodies.size()];
+          if (dot(wall.normal, x) - wall.offset - radius < come_closer(v, reach))
+            entry.lane = number(with_wall, std::min(at_walls++, last));
+          continue;
+        }
+        const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
         if (!(squared(bodies.x(j) - x) < near * near)) continue;
         if (bodies.moves(j)) {
-          entry.lane = colour(taken_[k] | taken_[j], between_movers);
-          taken_[j] |= std::uint64_t{1} << entry.lane;
-          taken_[k] |= std::uint64_t{1} << entry.lane;
+          const std::uint32_t free = lowest_free(taken[k] | taken[j]);
+          taken[j] |= std::uint64_t{1} << free;
+          taken[k] |= std::uint64_t{1} << free;
+          entry.lane = number(between_movers, free);
         } else {
-          entry.lane = colour_alone(k, with_fixed) | fixed_bit;
+          entry.lane = number(with_fixed, std::min(fixed++, last)) | fixed_bit;
         }
       }
     }
   }
-  // Contacts with what does not move share colours with no other kind: counting how many a body has is enough.
-  std::uint32_t colour_alone(std::uint32_t k, ColouredPacks<Real, Dim>& packs) {
-    if (alone_of_ != k) alone_of_ = k, alone_ = 0;
-    return colour((std::uint64_t{1} << std::min<std::uint32_t>(alone_++, 63)) - 1, packs);
-  }
-  void colour_walls(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> world_walls,
-                    const ActiveReach<Real>& reach) {
-    alone_of_ = nowhere;
-    for (std::uint32_t k = 0; k < walls.rows(); ++k)
-      for (ContactRows::Entry& entry : walls.row(k)) {
-        const Wall<Real, Dim>& wall = world_walls[entry.other];
-        const Real gap = dot(wall.normal, bodies.x(k)) - wall.offset - bodies.radius(k);
-        entry.lane = gap < come_closer(bodies.v(k), reach) ? colour_alone(k, with_wall) : nowhere;
-      }
-    alone_of_ = nowhere;
-  }
 
-  /// The next lane of that colour; it is filled but for the impulses and the normal.
-  template <class Next>
-  static std::uint32_t next_lane(ColouredPacks<Real, Dim>& packs, Next& next, std::uint32_t colour, std::uint32_t a,
-                                 std::uint32_t b, const Material<Real>& both) {
-    const std::uint32_t number = next[colour]++, lanes = static_cast<std::uint32_t>(width);
+  /// The lane of a numbered contact, filled but for the impulses and the normal.
+  template <class MaterialOf>
+  static std::uint32_t fill(ColouredPacks<Real, Dim>& packs, std::uint32_t numbered, std::uint32_t a, std::uint32_t b,
+                            const MaterialOf& material_of) {
+    const std::uint32_t colour = numbered >> colour_shift, number = numbered & ((1u << colour_shift) - 1);
+    const std::uint32_t lanes = static_cast<std::uint32_t>(width);
     const std::uint32_t p = packs.first[colour] + (packs.is_shared(colour) ? number : number / lanes);
     const std::uint32_t lane = packs.is_shared(colour) ? 0 : number % lanes;
     packs.packs[p].a[lane] = a;
     packs.packs[p].b[lane] = b;
-    packs.packs[p].friction.lane[lane] = both.friction;
     if (RarePack<Real, Dim>* rare = packs.rare_of(p)) {
+      const Material<Real> both = combined<Real>(material_of(a), material_of(b));
+      rare->friction.lane[lane] = both.friction;
       rare->restitution.lane[lane] = both.restitution;
       rare->rolling_resistance.lane[lane] = both.rolling_resistance;
     }
     return p * lanes + lane;
   }
-  void recall(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, const KeptImpulses<Real, Dim>& kept,
-              std::size_t found, const Real& direction) {
+  void recall(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, std::uint32_t a, std::uint32_t b) {
     const std::size_t p = lane_number / width, lane = lane_number % width;
-    const bool is_new = found == nowhere;
-    packs.packs[p].normal_impulse.lane[lane] = is_new ? Real(0) : kept.entries[found].normal;
-    put_in_lane(is_new ? V{} : V(kept.entries[found].friction * direction), packs.packs[p].friction_impulse, lane);
-    if (RarePack<Real, Dim>* rare = packs.rare_of(p))
-      put_in_lane(is_new || kept.rolling.empty() ? Spin<Real, Dim>{} : Spin<Real, Dim>(kept.rolling[found] * direction),
-                  rare->rolling_impulse, lane);
+    Real direction(1), normal(0);
+    V friction{};
+    Spin<Real, Dim> rolling{};
+    std::size_t found = kept_.find(a, b);
+    if (found == nowhere) {
+      direction = Real(-1);  // the other way round then
+      found = kept_.find(b, a);
+    }
+    if (found != nowhere) {
+      normal = kept_.entries[found].normal;
+      friction = kept_.entries[found].friction * direction;
+      if (!kept_.rolling.empty()) rolling = kept_.rolling[found] * direction;
+    }
+    packs.packs[p].normal_impulse.lane[lane] = normal;
+    put_in_lane(friction, packs.packs[p].friction_impulse, lane);
+    if (RarePack<Real, Dim>* rare = packs.rare_of(p)) put_in_lane(rolling, rare->rolling_impulse, lane);
   }
 
   template <class MaterialOf, class Before>
-  void fill_pairs(const SolverBodies<Real, Dim>& bodies, const MaterialOf& material_of, const Before& before) {
-    (void)bodies;
-    std::array<std::uint32_t, ColouredPacks<Real, Dim>::most_colours> next{}, next_fixed{};
-    for (std::uint32_t k = 0; k < pairs.rows(); ++k) {
-      const std::uint32_t k_before = before(k);
-      for (ContactRows::Entry& entry : pairs.row(k)) {
-        if (entry.lane == nowhere) continue;
-        const bool is_fixed = (entry.lane & fixed_bit) != 0;
-        auto& packs = is_fixed ? with_fixed : between_movers;
-        const Material<Real> both = combined<Real>(material_of(k), material_of(entry.other));
-        const std::uint32_t lane =
-            next_lane(packs, is_fixed ? next_fixed : next, entry.lane & ~fixed_bit, k, entry.other, both);
-        const std::uint32_t other_before = before(entry.other);
-        Real direction(1);
-        std::size_t found = kept_pairs_.find(k_before, other_before);
-        if (found == nowhere) {
-          direction = Real(-1);  // the other way round then
-          found = kept_pairs_.find(other_before, k_before);
-        }
-        recall(packs, lane, kept_pairs_, found, direction);
-        entry.lane = lane | (is_fixed ? fixed_bit : 0u);
-      }
+  void fill_row(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
+                const MaterialOf& material_of, const Before& before) {
+    for (ContactEntry& entry : rows.row(k)) {
+      if (entry.lane == nowhere) continue;
+      auto& packs = packs_of(entry);
+      const std::uint32_t bit = &packs == &with_fixed ? fixed_bit : 0, j = entry.other;
+      const std::uint32_t lane = fill(packs, entry.lane & ~bit, k, j, material_of);
+      if (j >= bodies.size())
+        put_in_lane(V(-walls[j - bodies.size()].normal), packs.packs[lane / width].normal, lane % width);
+      recall(packs, lane, before(k), before(j));
+      entry.lane = lane | bit;
     }
   }
-  template <class MaterialOf, class Before>
-  void fill_walls(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> world_walls,
-                  const MaterialOf& material_of, const Before& before) {
-    std::array<std::uint32_t, ColouredPacks<Real, Dim>::most_colours> next{};
-    for (std::uint32_t k = 0; k < walls.rows(); ++k)
-      for (ContactRows::Entry& entry : walls.row(k)) {
-        if (entry.lane == nowhere) continue;
-        const Wall<Real, Dim>& wall = world_walls[entry.other];
-        const Material<Real> both = combined<Real>(material_of(k), wall.material);
-        const std::uint32_t lane = next_lane(with_wall, next, entry.lane, k, bodies.wall(entry.other), both);
-        put_in_lane(V(-wall.normal), with_wall.packs[lane / width].normal, lane % width);
-        recall(with_wall, lane, kept_walls_, kept_walls_.find(before(k), entry.other), Real(1));
-        entry.lane = lane;
-      }
-  }
 
-  KeptImpulses<Real, Dim> kept_pairs_, kept_walls_;
-  std::vector<std::uint64_t> taken_;
-  std::uint32_t alone_of_ = nowhere, alone_ = 0;
+  KeptImpulses<Real, Dim> kept_;
 };
 
 }  // namespace continuo

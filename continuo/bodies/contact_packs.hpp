@@ -15,14 +15,14 @@ struct ContactPack {
   using L = StoredLanes<Real>;
   LaneIndices<Real> a{}, b{};
   Vector<L, Dim> normal{};  // from a to b
-  L separation{}, normal_impulse{}, friction{};
+  L separation{}, normal_impulse{};
   Vector<L, Dim> friction_impulse{};
 };
-/// What few worlds have.
+/// What few worlds have: several materials, bounces, rolling resistance.
 template <class Real, int Dim>
 struct RarePack {
   using L = StoredLanes<Real>;
-  L restitution{}, rolling_resistance{};
+  L friction{}, restitution{}, rolling_resistance{};
   Spin<L, Dim> rolling_impulse{};
 };
 
@@ -33,7 +33,7 @@ struct ColouredPacks {
   static constexpr std::size_t most_colours = 64;
 
   std::vector<ContactPack<Real, Dim>> packs{};
-  std::vector<RarePack<Real, Dim>> rare{};  // empty where nothing bounces or resists rolling
+  std::vector<RarePack<Real, Dim>> rare{};  // empty where all are alike, and neither bounce nor resist
   std::array<std::uint32_t, most_colours + 1> first{};
   std::array<std::uint32_t, most_colours> count{};  // of contacts
   std::size_t colours = 0;
@@ -53,7 +53,10 @@ struct ColouredPacks {
       if (count[c] > 0) colours = c + 1;
     }
     const std::size_t total = first[most_colours];
-    if (packs.capacity() < total) packs.reserve(total + total / 16);  // half as much again would be most of the memory
+    if (packs.capacity() < total) {
+      packs = {};  // nothing in them is needed, and half as much again would be a good part of all memory
+      packs.reserve(total + total / 64);
+    }
     packs.resize(total);
     rare.resize(has_rare ? total : 0);
     for (std::size_t c = 0; c < colours; ++c) {

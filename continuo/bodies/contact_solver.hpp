@@ -42,6 +42,7 @@ struct ContactStep {
   Real fastest_push{};      // with which an overlap is undone at most
   bool may_strike = false;  // impacts were looked for: what they are for is no business of a soft contact
   Real greatest_acceleration{};
+  Real friction{};  // where all have the same
 };
 
 /// What a contact may do: b a body that moves, one that is fixed, or a wall, whose normal stands.
@@ -127,6 +128,23 @@ void resist_rolling(RarePack<Real, Dim>& rare, const ContactLanes<Real>& normal_
   add_roll<Real, Dim>(a, b, radius_a, radius_b, impulse - before);
 }
 
+/// Soft spheres touch in a patch, which resists spinning about the normal by a torque of 3 pi / 16 friction times its
+/// radius times the normal force (Hertz's pressure; K. L. Johnson, "Contact Mechanics", 1985, 7.4). The radius is that
+/// of a sphere of radius r pressed in by 0.0025 r, as those within a pile are: sqrt(0.0025) r.
+template <class Real>
+void resist_spinning(const ContactLanes<Real>& force, const Vector<ContactLanes<Real>, 3>& normal,
+                     LaneMotions<Real, 3>& a, LaneMotions<Real, 3>& b, const ContactLanes<Real>& radius_a,
+                     const ContactLanes<Real>& radius_b) {
+  using L = ContactLanes<Real>;
+  const L one_a = inverse_or_zero<Real>(radius_a), one_b = inverse_or_zero<Real>(radius_b);
+  const L inertia = inverse_or_zero<Real>(a.mobility * one_a * one_a + b.mobility * one_b * one_b);
+  const L most = force * smaller_radius<Real>(radius_a, radius_b) * L(Real(3 * std::numbers::pi / 16 * 0.05));
+  const L stops = dot(a.rim * one_a - b.rim * one_b, normal) * inertia;
+  const L torque = max(min(stops, most), -most);
+  a.rim -= normal * (torque * a.mobility * one_a);
+  b.rim += normal * (torque * b.mobility * one_b);
+}
+
 /// Too fast for a soft contact: it has struck in this substep and parts, or it will at the beginning of the next.
 /// What gravity alone brings about in a substep is no impact; nor is, without restitution, what moves it by less than
 /// half a radius.
@@ -182,10 +200,12 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
   const Vector<L, Dim> between = b.v - a.v;
   const L speed = dot(between, normal), inverse = a.inverse_mass + b.inverse_mass;
   const Vector<L, Dim> slip = between - turning(Spin<L, Dim>(a.rim + b.rim), normal) - normal * speed;
+  L coefficient(step.friction);
+  if constexpr (!is_plain)
+    if (rare) coefficient = rare->friction;
   const Vector<L, Dim> friction_before = loaded(pack.friction_impulse);
-  Vector<L, Dim> friction =
-      clamped(Vector<L, Dim>(friction_before - slip * (one / (inverse + a.mobility + b.mobility))),
-              L(L(pack.friction) * so_far));
+  Vector<L, Dim> friction = clamped(
+      Vector<L, Dim>(friction_before - slip * (one / (inverse + a.mobility + b.mobility))), L(coefficient * so_far));
 
   const auto is_open = separation > zero;
   L bias = select(is_open, separation * L(1 / step.h), zero), of_mass = one, of_impulse = zero;
@@ -208,6 +228,8 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
   pack.normal_impulse = normal_impulse;
   store(friction, pack.friction_impulse);
   add_impulse<Real, Dim>(a, b, normal, rub + normal * change, rub);
+  if constexpr (pass == ContactPass::relax && Dim == 3)
+    resist_spinning<Real>(coefficient * normal_impulse, normal, a, b, radius_a, radius_b);
   store_motions(a, bodies, pack.a);
   if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
   if constexpr (pass == ContactPass::push) mark_touched<kind>(pack, bodies);
@@ -215,16 +237,37 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
 
 // Loops over packs. Everything is inlined into them, for a call would send registers full of lanes through memory.
 
+/// Asks for the bodies of a pack that is soon to come: they lie where they lie.
+template <class Real, int Dim>
+void prefetch(const ColouredPacks<Real, Dim>& packs, std::size_t p, std::size_t to,
+              const SolverBodies<Real, Dim>& bodies) {
+  constexpr std::size_t ahead = 4;
+  if (p + ahead >= to) return;
+  const ContactPack<Real, Dim>& pack = packs.packs[p + ahead];
+  for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
+    __builtin_prefetch(&bodies.motion[pack.a[lane]]);
+    __builtin_prefetch(&bodies.motion[pack.b[lane]]);
+    __builtin_prefetch(&bodies.place[pack.a[lane]]);
+    __builtin_prefetch(&bodies.place[pack.b[lane]]);
+  }
+}
+
 template <ContactKind kind, class Real, int Dim>
 [[gnu::flatten]] void begin_packs(ColouredPacks<Real, Dim>& packs, std::size_t from, std::size_t to,
                                   SolverBodies<Real, Dim>& bodies) {
-  for (std::size_t p = from; p < to; ++p) begin<kind>(packs.packs[p], packs.rare_of(p), bodies);
+  for (std::size_t p = from; p < to; ++p) {
+    prefetch(packs, p, to, bodies);
+    begin<kind>(packs.packs[p], packs.rare_of(p), bodies);
+  }
 }
 template <ContactKind kind, ContactPass pass, class Real, int Dim>
 [[gnu::flatten]] void solve_packs(ColouredPacks<Real, Dim>& packs, std::size_t from, std::size_t to,
                                   SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& step) {
   if (packs.rare.empty() && !step.may_strike) {
-    for (std::size_t p = from; p < to; ++p) solve<kind, pass, true>(packs.packs[p], packs.rare_of(p), bodies, step);
+    for (std::size_t p = from; p < to; ++p) {
+      prefetch(packs, p, to, bodies);
+      solve<kind, pass, true>(packs.packs[p], packs.rare_of(p), bodies, step);
+    }
   } else {
     for (std::size_t p = from; p < to; ++p) solve<kind, pass, false>(packs.packs[p], packs.rare_of(p), bodies, step);
   }

@@ -18,6 +18,7 @@
 
 #include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/contact_events.hpp>
+#include <continuo/bodies/integrator.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
@@ -25,21 +26,26 @@ namespace continuo {
 template <class Real>
 struct FastOptions {
   Real step = Real(1) / Real(60);
-  int substeps = 4;                // more are stiffer and cost as much more
-  Real hertz = Real(120);          // of a contact; a quarter of the rate of substeps at most
-  Real damping = Real(10);         // ratio: 1 is critical; overdamped contacts do not jump
-  Real fastest_push = Real(4);     // with which overlapping bodies part, length per time
-  std::size_t contact_events = 0;  // so many of a step are kept, see contact_events.hpp
+  int substeps = 4;                                         // more are stiffer and cost as much more
+  Real hertz = Real(120);                                   // of a contact; a quarter of the rate of substeps at most
+  Real damping = Real(10);                                  // ratio: 1 is critical; overdamped contacts do not jump
+  Real fastest_push = Real(4);                              // with which overlapping bodies part, length per time
+  std::size_t contact_events = 0;                           // so many of a step are kept, see contact_events.hpp
+  Integrator integrator = Integrator::semi_implicit_euler;  // of forces, see integrator.hpp
+  Real sleep_after = Real(0);     // so long slower than the next, bodies fall asleep, see sleep.hpp; 0: never
+  Real sleep_speed = Real(0.05);  // of centre and rim
+  int threads = 1;                // at most; the results are the same to the last bit for any number
 };
 
 struct FastStatistics {
-  std::size_t steps = 0, lists = 0, contacts = 0, colours = 0, impacts = 0;
+  std::size_t steps = 0, lists = 0, contacts = 0, colours = 0, impacts = 0, asleep = 0;
 };
 
 template <class Real, int Dim>
 class FastMotion {
  public:
-  /// The world is moved; what is changed in it between steps is seen, but bodies that come or go need a `refresh`.
+  /// The world is moved; what is changed in it between steps is seen, but bodies that come or go need a `refresh`,
+  /// which wakes all.
   explicit FastMotion(World<Real, Dim>& world, const FastOptions<Real>& options = {});
   FastMotion(FastMotion&&) noexcept;
   FastMotion& operator=(FastMotion&&) noexcept;
@@ -57,6 +63,8 @@ class FastMotion {
   /// for.
   std::span<const ContactEvent<Real, Dim>> contact_events() const;
   std::size_t lost_contact_events() const;
+  /// Bytes held beside the world: bodies as contacts need them, pairs, contacts.
+  std::size_t memory() const;
 
   /// For snapshot.hpp: what is to be known beside the world to go on to the same bits.
   void save(ByteWriter& writer) const;

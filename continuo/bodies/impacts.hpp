@@ -29,8 +29,13 @@ class Impacts {
                    const ContactStep<Real>& substep, const Real& step, const Real& begin, ContactLog<Real, Dim>& log) {
     const Making making{world, list, bodies, substep, step, begin, log};
     for (std::uint32_t k = 0; k < bodies.size(); ++k) {
-      for (const auto& entry : contacts.pairs.row(k)) foresee(making, k, entry.other, Real(0));
-      for (const auto& entry : contacts.walls.row(k)) foresee_wall(making, k, entry.other, Real(0));
+      for (const ContactEntry& entry : contacts.rows.row(k)) {
+        if (entry.other < bodies.size()) {
+          foresee(making, k, entry.other, Real(0));
+        } else {
+          foresee_wall(making, k, entry.other - static_cast<std::uint32_t>(bodies.size()), Real(0));
+        }
+      }
     }
     std::size_t struck = 0, left = 64 * bodies.size();  // a bound for what never ends: balls squeezed between others
     for (; !queue_.empty() && left > 0; --left) {

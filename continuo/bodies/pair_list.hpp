@@ -50,20 +50,18 @@ class PairList {
       std::nth_element(radii.begin(), middle, radii.end());
       median_ = *middle;
     }
-    cells_.sort(world.position, Real(2.3) * median_, order_);
+    cells_.sort(world.position, Real(2.6) * median_, order_);
     place_before.resize(bodies);
     for (std::size_t k = 0; k < bodies; ++k) place_before[k] = place_of[order_[k]];
   }
 
   /// Lists what may touch while body k moves by reach(k) at most.
   template <class Reach>
-  void list(const World<Real, Dim>& world, const Bodies& bodies, const Reach& reach, ContactRows& pairs,
-            ContactRows& walls) {
+  void list(Team& team, const World<Real, Dim>& world, const Bodies& bodies, const Reach& reach, ContactRows& rows) {
     ++lists_;
     walls_ = world.walls().size();
     reach_.resize(bodies.size());
     x_of_list_.resize(bodies.size());
-    is_far_.assign(bodies.size(), 0);
     far_.clear();
     usual_ = Real(0);
     bool all_move = true;
@@ -72,15 +70,18 @@ class PairList {
       x_of_list_[k] = bodies.x(k);
       reach_[k] = bodies.moves(k) ? reach(k) : Real(0);
       // What reaches far, larger or faster than cells are made for, looks for others itself and is not looked for.
-      if (bodies.radius(k) + reach_[k] > 4 * median_) {
-        is_far_[k] = 1;
+      if (is_far(bodies, k)) {
         far_.push_back(static_cast<std::uint32_t>(k));
       } else {
         usual_ = std::max(usual_, bodies.radius(k) + reach_[k]);
       }
     }
-    list_pairs(world, bodies, all_move, pairs);
-    list_walls(world, bodies, walls);
+    make_rows(team, bodies.size(), rows, [&](std::uint32_t k, ContactRows& part) {
+      if (!bodies.moves(k)) return;
+      list_bodies(world, bodies, all_move, k, part);
+      list_walls(world, bodies, k, part);
+    });
+    rows.fit();
   }
 
   /// visit(place) for the bodies that the one at place i may meet if it moves by `way` from where it is.
@@ -90,7 +91,9 @@ class PairList {
     const auto meet = [&](std::uint32_t j) {
       if (j != i && world.collide(order_[i], order_[j])) visit(j);
     };
-    for_each_in_box(bodies.x(i), bodies.radius(i) + way + usual_, 0, meet);
+    for_each_in_box(bodies.x(i), bodies.radius(i) + way + usual_, 0, [&](std::uint32_t j) {
+      if (!is_far(bodies, j)) meet(j);
+    });
     for (const std::uint32_t j : far_) meet(j);
   }
 
@@ -100,72 +103,54 @@ class PairList {
 
   std::size_t memory() const {
     return order_.capacity() * 4 + far_.capacity() * 4 + reach_.capacity() * sizeof(Real) +
-           x_of_list_.capacity() * sizeof(V) + is_far_.capacity() + cells_.memory();
+           x_of_list_.capacity() * sizeof(V) + cells_.memory();
   }
 
  private:
+  bool is_far(const Bodies& bodies, std::size_t k) const { return bodies.radius(k) + reach_[k] > 4 * median_; }
   /// Those at places from `from` on whose cells meet the box round x.
   template <class Visit>
   void for_each_in_box(const V& x, const Real& out, std::uint32_t from, Visit&& visit) const {
     V corner;
     for (std::size_t axis = 0; axis < V::size(); ++axis) corner[axis] = out;
     cells_.for_each_row(x - corner, x + corner, [&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t j = std::max(first, from); j < last; ++j)
-        if (!is_far_[j]) visit(j);
+      for (std::uint32_t j = std::max(first, from); j < last; ++j) visit(j);
     });
   }
 
-  void list_pairs(const World<Real, Dim>& world, const Bodies& bodies, bool all_move, ContactRows& pairs) const {
-    pairs.clear();
-    for (std::uint32_t k = 0; k < bodies.size(); ++k) {
-      if (!bodies.moves(k)) {
-        pairs.end_row();
-        continue;
-      }
-      const V x = bodies.x(k);
-      const Real out = bodies.radius(k) + reach_[k];
-      const auto consider = [&](std::uint32_t j) {
-        const Real near = out + bodies.radius(j) + reach_[j];
-        if (squared(bodies.x(j) - x) < near * near && (j > k || !bodies.moves(j)) && j != k &&
-            world.collide(order_[k], order_[j]))
-          pairs.entries.push_back({.other = j});
-      };
-      // What reaches far, or those at lower places that it would find, are found from both sides and kept from one.
-      for_each_in_box(x, out + usual_, all_move && !is_far_[k] ? k + 1 : 0, consider);
-      for (const std::uint32_t j : far_) consider(j);
-      if (!far_.empty())
-        std::ranges::sort(pairs.entries.begin() + pairs.first.back(), pairs.entries.end(), {},
-                          &ContactRows::Entry::other);
-      pairs.end_row();
-    }
-    fit(pairs);
+  void list_bodies(const World<Real, Dim>& world, const Bodies& bodies, bool all_move, std::uint32_t k,
+                   ContactRows& part) const {
+    const std::size_t begin = part.entries.size();
+    const V x = bodies.x(k);
+    const Real out = bodies.radius(k) + reach_[k], most = (out + usual_) * (out + usual_);
+    const auto consider = [&](std::uint32_t j) {
+      const Real near = out + bodies.radius(j) + reach_[j];
+      if (squared(bodies.x(j) - x) < near * near && (j > k || !bodies.moves(j)) && j != k &&
+          world.collide(order_[k], order_[j]))
+        part.entries.push_back({.other = j});
+    };
+    // What reaches far, or those at lower places that it would find, are found from both sides and kept from one.
+    for_each_in_box(x, out + usual_, all_move && !is_far(bodies, k) ? k + 1 : 0, [&](std::uint32_t j) {
+      if (squared(bodies.x(j) - x) < most && !is_far(bodies, j)) consider(j);
+    });
+    for (const std::uint32_t j : far_) consider(j);
+    if (!far_.empty())
+      std::ranges::sort(part.entries.begin() + static_cast<std::ptrdiff_t>(begin), part.entries.end(), {},
+                        &ContactEntry::other);
   }
 
-  void list_walls(const World<Real, Dim>& world, const Bodies& bodies, ContactRows& walls) const {
-    walls.clear();
-    for (std::uint32_t k = 0; k < bodies.size(); ++k) {
-      if (bodies.moves(k)) {
-        const V x = bodies.x(k);
-        const Real out = bodies.radius(k) + reach_[k];
-        for (std::uint32_t w = 0; w < world.walls().size(); ++w) {
-          const Wall<Real, Dim>& wall = world.walls()[w];
-          if (dot(wall.normal, x) - wall.offset <= out) walls.entries.push_back({.other = w});
-        }
-      }
-      walls.end_row();
+  void list_walls(const World<Real, Dim>& world, const Bodies& bodies, std::uint32_t k, ContactRows& part) const {
+    const V x = bodies.x(k);
+    const Real out = bodies.radius(k) + reach_[k];
+    for (std::size_t w = 0; w < world.walls().size(); ++w) {
+      const Wall<Real, Dim>& wall = world.walls()[w];
+      if (dot(wall.normal, x) - wall.offset <= out) part.entries.push_back({.other = bodies.wall(w)});
     }
-    fit(walls);
-  }
-  /// What the doubling of a vector leaves over would be a good part of all memory.
-  static void fit(ContactRows& rows) {
-    if (rows.entries.capacity() > rows.entries.size() + rows.entries.size() / 4) rows.entries.shrink_to_fit();
-    if (rows.first.capacity() > rows.first.size() + rows.first.size() / 4) rows.first.shrink_to_fit();
   }
 
   std::vector<std::uint32_t> order_, far_;
   std::vector<Real> reach_;
   std::vector<V> x_of_list_;
-  std::vector<std::uint8_t> is_far_;
   Real median_ = Real(1), usual_ = Real(0);
   std::size_t walls_ = 0, lists_ = 0;
   SortedCells<Real, Dim> cells_;

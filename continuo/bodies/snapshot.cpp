@@ -127,7 +127,7 @@ struct SnapshotAccess {
     if (!archive.ok()) return;
     const std::size_t n = world.position.size();
     bool are_as_many = true;
-    world.for_each_array([&](const auto& values) { are_as_many = are_as_many && values.size() == n; });
+    world.for_each_array(world, [&](const auto& values) { are_as_many = are_as_many && values.size() == n; });
     if (!are_as_many) return archive.fail("bodies of which some parts are missing");
     archive.expect(is_number(world.time) && is_finite(world.gravity), "a time or gravity that is not finite");
     for (const Real& value : {world.attraction.constant, world.attraction.softening, world.attraction.opening,

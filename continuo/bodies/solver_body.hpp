@@ -66,6 +66,11 @@ struct SolverBodies {
     return static_cast<std::uint32_t>(motion.size() - 2 * lanes_at_once<Real> + number);
   }
 
+  std::size_t memory() const {
+    return motion.capacity() * sizeof(motion[0]) + place.capacity() * sizeof(place[0]) + touched.capacity() +
+           impacts.capacity() * sizeof(impacts[0]) + accelerations.capacity() * sizeof(V);
+  }
+
   V x(std::size_t k) const { return vector_of<Dim>(place[k].x_and_radius); }
   V v(std::size_t k) const { return vector_of<Dim>(motion[k].linear); }
   Real radius(std::size_t k) const { return place[k].x_and_radius[3]; }

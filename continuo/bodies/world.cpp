@@ -1,5 +1,7 @@
 // continuo/bodies/world.cpp
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -89,7 +91,7 @@ bool World<Real, Dim>::remove(BodyHandle body) {
   slots_[body.slot].index = nowhere;
   ++slots_[body.slot].generation;
   free_slots_.push_back(body.slot);
-  for_each_array([&](auto& values) {
+  for_each_array(*this, [&](auto& values) {
     values[i] = values[last];
     values.pop_back();
   });
@@ -156,6 +158,20 @@ Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world) {
 
 template std::string fault_of(const Material<float>&);
 template std::string fault_of(const Material<double>&);
+template <class Real, int Dim>
+std::uint64_t state_hash(const World<Real, Dim>& world) {
+  std::uint64_t hash = 14695981039346656037u;
+  const auto add = [&](const auto& value) {
+    std::array<unsigned char, sizeof(value)> bytes{};
+    std::memcpy(bytes.data(), &value, sizeof(value));
+    for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211u;
+  };
+  add(world.time);
+  for (std::size_t i = 0; i < world.size(); ++i)
+    add(world.position[i]), add(world.orientation[i]), add(world.velocity[i]), add(world.spin[i]);
+  return hash;
+}
+
 template class World<float, 2>;
 template class World<float, 3>;
 template class World<double, 2>;
@@ -173,5 +189,10 @@ template Spin<float, 2> angular_momentum(const World<float, 2>&);
 template Spin<float, 3> angular_momentum(const World<float, 3>&);
 template Spin<double, 2> angular_momentum(const World<double, 2>&);
 template Spin<double, 3> angular_momentum(const World<double, 3>&);
+
+template std::uint64_t state_hash(const World<float, 2>&);
+template std::uint64_t state_hash(const World<float, 3>&);
+template std::uint64_t state_hash(const World<double, 2>&);
+template std::uint64_t state_hash(const World<double, 3>&);
 
 }  // namespace continuo

@@ -122,6 +122,17 @@ class World {
   }
 
   std::size_t size() const { return position.size(); }
+  /// Room for so many bodies: without it, arrays that grow take up to twice what they hold.
+  void reserve(std::size_t bodies) {
+    for_each_array(*this, [&](auto& array) { array.reserve(bodies); });
+    slots_.reserve(bodies);
+  }
+  /// Bytes held for bodies.
+  std::size_t memory() const {
+    std::size_t sum = slots_.capacity() * sizeof(Slot) + free_slots_.capacity() * sizeof(std::uint32_t);
+    for_each_array(*this, [&](const auto& array) { sum += array.capacity() * sizeof(array[0]); });
+    return sum;
+  }
 
   // By index: body i has position[i], ... . An index holds until a body is removed; a handle for ever.
   std::vector<V> position, velocity, constant_force;
@@ -140,10 +151,11 @@ class World {
   struct Slot {
     std::uint32_t index = nowhere, generation = 0;
   };
-  template <class Act>
-  void for_each_array(Act&& act) {
-    act(position), act(velocity), act(constant_force), act(orientation), act(spin), act(radius), act(mass),
-        act(inverse_mass), act(inverse_inertia), act(material), act(group_), act(slot_of_);
+  template <class Self, class Act>
+  static void for_each_array(Self& self, Act&& act) {
+    act(self.position), act(self.velocity), act(self.constant_force), act(self.orientation), act(self.spin),
+        act(self.radius), act(self.mass), act(self.inverse_mass), act(self.inverse_inertia), act(self.material),
+        act(self.group_), act(self.slot_of_);
   }
 
   std::vector<std::uint32_t> group_, slot_of_;
@@ -163,6 +175,11 @@ template <class Real, int Dim>
 Vector<Real, Dim> momentum(const World<Real, Dim>& world);
 template <class Real, int Dim>
 Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world);
+
+/// Of time and of every body's position, orientation, velocity and spin, to the last bit: two runs that are the same
+/// have the same (FNV-1a; G. Fowler, L. C. Noll, K.-P. Vo).
+template <class Real, int Dim>
+std::uint64_t state_hash(const World<Real, Dim>& world);
 
 extern template class World<float, 2>;
 extern template class World<float, 3>;

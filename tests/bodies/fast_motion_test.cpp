@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
@@ -85,37 +87,50 @@ TEST(FastMotion, SlidesUntilItRolls) {
   slides_until_it_rolls<2>(2.0 / 3);
 }
 
-// A ball at 1 km/s against one of a centimetre, from everywhere: none comes out behind it on its old path.
+// 10,000 balls at 1 km/s, which come 4 m in a substep, against one of a centimetre that is fixed, and against walls,
+// from everywhere: none comes out behind. Half of them bounce.
 TEST(FastMotion, NothingPassesThrough) {
   std::mt19937 engine(3);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(0, 1);
-  for (int shot = 0; shot < 2000; ++shot) {
+  for (int shot = 0; shot < 10000; ++shot) {
     Vector<double, 3> direction{{normal(engine), normal(engine), normal(engine)}};
     direction *= 1 / length(direction);
+    Vector<double, 3> aside{{normal(engine), normal(engine), normal(engine)}};
+    aside -= direction * dot(aside, direction);
+    aside *= 0.019 * uniform(engine) / length(aside);  // of the 0.02 at which it would pass by
     World<double, 3> world;
     const Material<double> material{.restitution = shot % 2 ? 1.0 : 0.0, .friction = 0};
-    ASSERT_TRUE(world.add({.shape = Sphere<double>{0.01}, .material = material}));
+    ASSERT_TRUE(world.add({.shape = Sphere<double>{0.01}, .fixed = true, .material = material}));
     ASSERT_TRUE(world.add({.shape = Sphere<double>{0.01},
-                           .position = direction * -(5 + 20 * uniform(engine)),
+                           .position = aside - direction * (5 + 20 * uniform(engine)),
                            .velocity = direction * 1000.0,
                            .material = material}));
-    run(world, 0.1);
-    // Equal masses in a central collision: all, or without restitution half, of the velocity is handed on.
-    EXPECT_NEAR(dot(world.velocity[0], direction), shot % 2 ? 1000 : 500, 1e-6) << shot;
+    run(world, 0.05);
+    // What is left is turned away by twice the angle of incidence, or without restitution goes along the surface, but
+    // for the speed with which a soft contact parts the two at most, `fastest_push`.
+    const double sine = length(aside) / 0.02, expected = shot % 2 ? 2 * sine * sine - 1 : sine * sine;
+    EXPECT_NEAR(dot(world.velocity[1], direction), 1000 * expected, shot % 2 ? 1e-6 : 4.0) << shot;
   }
 }
-
 TEST(FastMotion, NothingPassesThroughAWall) {
-  World<double, 3> world;
-  ASSERT_EQ(world.add_container({{-1, -1, -1}}, {{1, 1, 1}}, elastic), "");
-  ASSERT_TRUE(world.add({.shape = Sphere<double>{0.01}, .velocity = {{1000, 700, -431}}, .material = elastic}));
-  const double energy = kinetic_energy(world);
-  for (int i = 0; i < 20; ++i) {
-    run(world, 0.1);
-    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(world.position[0][axis]), 0.99 + 1e-9);
+  std::mt19937 engine(4);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int shot = 0; shot < 10000; ++shot) {
+    World<double, 3> world;
+    const Material<double> material{.restitution = shot % 2 ? 1.0 : 0.0, .friction = 0};
+    ASSERT_EQ(world.add_container({{-1, -1, -1}}, {{1, 1, 1}}, material), "");
+    Vector<double, 3> v{{normal(engine), normal(engine), normal(engine)}};
+    v *= 1000 / length(v);
+    const Vector<double, 3> x{{uniform(engine), uniform(engine), uniform(engine)}};
+    ASSERT_TRUE(world.add({.shape = Sphere<double>{0.01}, .position = x * 0.9, .velocity = v, .material = material}));
+    run(world, 0.05);
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(world.position[0][axis]), 0.99 + 1e-9) << shot;
+    if (shot % 2) {
+      EXPECT_NEAR(length(world.velocity[0]), 1000, 1e-6) << shot;
+    }
   }
-  EXPECT_NEAR(kinetic_energy(world) / energy, 1, 1e-9);
 }
 
 // Contacts that last act on two bodies by equal and opposite impulses.
@@ -135,20 +150,67 @@ TEST(FastMotion, KeepsMomentumAndAngularMomentum) {
   EXPECT_LT(length(momentum(world) - p), 1e-11);
 }
 
+template <class Real>
+World<Real, 3> heap(int count, int side, std::uint32_t seed) {
+  World<Real, 3> world;
+  world.reserve(static_cast<std::size_t>(count));
+  world.gravity = {{0, 0, Real(-9.81)}};
+  EXPECT_EQ(
+      world.add_container({}, {{static_cast<Real>(1.15 * side + 0.25), static_cast<Real>(1.15 * side + 0.25), 1000}}),
+      "");
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-0.1, 0.1);
+  for (int i = 0; i < count; ++i) {
+    const double x = 0.7 + 1.15 * (i % side) + uniform(engine), y = 0.7 + 1.15 * (i / side % side) + uniform(engine);
+    const double z = 1.0 + 1.2 * (i / side / side);
+    EXPECT_TRUE(world.add({.position = {{static_cast<Real>(x), static_cast<Real>(y), static_cast<Real>(z)}}}));
+  }
+  return world;
+}
+
 // A heap comes to rest without sinking in: 200 balls, the deepest overlap a hundredth of a radius.
 TEST(FastMotion, AHeapComesToRest) {
-  World<double, 3> world;
-  world.gravity = {{0, 0, -9.81}};
-  ASSERT_EQ(world.add_container({{0, 0, 0}}, {{6, 6, 100}}), "");
-  std::mt19937 engine(5);
-  std::uniform_real_distribution<double> uniform(-0.1, 0.1);
-  for (int i = 0; i < 200; ++i)
-    ASSERT_TRUE(world.add({.position = {{0.7 + 1.15 * (i % 5) + uniform(engine),
-                                         0.7 + 1.15 * (i / 5 % 5) + uniform(engine), 1.0 + 1.2 * (i / 25)}}}));
+  World<double, 3> world = heap<double>(200, 5, 5);
   FastMotion<double, 3> motion(world);
   for (int step = 0; step < 600; ++step) ASSERT_EQ(motion.advance(), "");
   EXPECT_LT(motion.deepest_overlap(), 0.005);
   EXPECT_LT(kinetic_energy(world), 0.05);
+}
+
+// More threads than the machine may have, so that loops are really cut in so many parts. Bounces, rolling resistance, a
+// fixed ball and a force take the ways that a plain heap does not.
+TEST(FastMotion, IsTheSameForAnyNumberOfThreads) {
+  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, 8);
+  for (const bool is_plain : {true, false}) {
+    std::uint64_t expected = 0;
+    for (const int threads : {1, 2, 4, 7}) {
+      World<float, 3> world = heap<float>(4000, 20, 1);
+      if (!is_plain) {
+        world.material[17] = {.restitution = 0.5f, .friction = 0.3f, .rolling_resistance = 0.1f};
+        ASSERT_TRUE(world.add({.shape = Sphere<float>{2.0f}, .position = {{5, 5, 2}}, .fixed = true}));
+        world.drag.linear = 0.01f;
+      }
+      FastMotion<float, 3> motion(world, {.threads = threads});
+      for (int step = 0; step < 60; ++step) ASSERT_EQ(motion.advance(), "");
+      EXPECT_GT(motion.statistics().contacts, 4000u);
+      if (threads == 1) expected = state_hash(world);
+      EXPECT_EQ(state_hash(world), expected) << threads;
+    }
+  }
+}
+
+// World and motion together, while balls lie on each other.
+TEST(FastMotion, HoldsAtMost400BytesASphere) {
+  const int count = 4000;
+  World<float, 3> world = heap<float>(count, 20, 1);
+  FastMotion<float, 3> motion(world);
+  std::size_t most = 0;
+  for (int step = 0; step < 200; ++step) {
+    ASSERT_EQ(motion.advance(), "");
+    most = std::max(most, motion.memory());
+  }
+  EXPECT_GT(motion.statistics().contacts, 2u * count);
+  EXPECT_LE(most + world.memory(), 400u * count) << most / count << " + " << world.memory() / count;
 }
 
 // A rolling ball, of inertia 2/5 m r^2, slows by c m g r of torque: (1 + 2/5) m a = c m g. A disc: (1 + 1/2).

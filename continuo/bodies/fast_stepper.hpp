@@ -1,0 +1,398 @@
+// A step of the fast motion, from the world to the world.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/fast_motion.hpp>
+#include <continuo/bodies/forces.hpp>
+#include <continuo/bodies/impacts.hpp>
+#include <continuo/bodies/sleep.hpp>
+#include <continuo/bodies/touch_log.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class FastMotion<Real, Dim>::Stepper {
+ public:
+  using V = Vector<Real, Dim>;
+
+  Stepper(World<Real, Dim>& world, const FastOptions<Real>& options)
+      : log(options.contact_events), world_(world), options_(options), team_(options.threads) {
+    renew();
+  }
+
+  void renew() {
+    team_.run([&] { refresh(); });
+  }
+  void refresh() {
+    list_ = {};
+    contacts_ = {};
+    sleep_ = {};
+    list_.begin(world_);
+    load();
+    make_list();
+  }
+
+  std::string advance() {
+    std::string error;
+    team_.run([&] { error = step(); });
+    return error;
+  }
+
+  std::string step() {
+    if (!(options_.step > Real(0)) || !(options_.step < std::numeric_limits<Real>::infinity()))
+      return "the step must be greater than 0, and finite";
+    if (options_.substeps < 1) return "a step has at least one substep";
+    if (world_.size() != bodies_.size() || world_.walls().size() != list_.walls()) refresh();
+    is_other_at_rest_ |= sleep_.wake_changed(world_);
+    load();
+    if (!std::exchange(is_restored_, false)) contacts_.keep(team_);
+    if (is_other_at_rest_ || list_.is_outdated(bodies_, step_reach())) make_list();
+    while (sleep_.wake_near(bodies_, contacts_.rows, list_.order(), options_.step)) make_list();
+    activate();
+    place_before_ = {};  // not needed most of the time
+    const Real h = options_.step / static_cast<Real>(options_.substeps);
+    log.clear();
+    for (int k = 0; k < options_.substeps; ++k)
+      if (!substep(world_.time + h * static_cast<Real>(k), h))
+        return "the equations of implicit Euler could not be solved: a smaller step may help";
+    if (!all_finite()) return "a body's motion is no longer finite: a force or a mass is too large for the step";
+    store();
+    world_.time += options_.step;
+    if (log.is_kept()) note_touching();
+    if (options_.sleep_after > Real(0))
+      is_other_at_rest_ =
+          sleep_.settle(world_, contacts_, list_.order(), options_.step, options_.sleep_after, options_.sleep_speed);
+    ++statistics.steps;
+    statistics.asleep = sleep_.asleep();
+    statistics.lists = list_.lists();
+    statistics.contacts = contacts_.active();
+    statistics.colours = contacts_.between_movers.colours;
+    return {};
+  }
+
+  Real deepest_overlap() const {
+    Real deepest(0);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      for (const ContactEntry& entry : contacts_.rows.row(k)) {
+        if (entry.other < bodies_.size()) {
+          const Real distance = length(bodies_.x(entry.other) - bodies_.x(k));
+          deepest = std::max(deepest, bodies_.radius(k) + bodies_.radius(entry.other) - distance);
+        } else {
+          const Wall<Real, Dim>& wall = world_.walls()[entry.other - bodies_.size()];
+          deepest = std::max(deepest, bodies_.radius(k) + wall.offset - dot(wall.normal, bodies_.x(k)));
+        }
+      }
+    }
+    return deepest;
+  }
+
+  /// Whatever outlives a step and is not in the world. The list is made again, from where the bodies were then.
+  void save(ByteWriter& writer) const {
+    const bool is_listed = list_.x_of_list().size() == world_.size() && list_.walls() == world_.walls().size();
+    writer(is_listed);
+    if (!is_listed) return;
+    std::vector<V> x(world_.size());
+    std::vector<Real> reach(world_.size());
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      x[list_.order()[k]] = list_.x_of_list()[k];
+      reach[list_.order()[k]] = list_.reach_of_list()[k];
+    }
+    writer(x), writer(reach);
+    ContactList<Real, Dim> contacts = contacts_;
+    Team alone(1);
+    if (!is_restored_) contacts.keep(alone);
+    contacts.transfer_kept(writer);
+    writer(touches_), writer(sleep_), writer(is_other_at_rest_);
+  }
+  void load(ByteReader& reader) {
+    bool is_listed = false;
+    reader(is_listed);
+    std::vector<V> x;
+    std::vector<Real> reach;
+    ContactList<Real, Dim> contacts;
+    TouchLog<Real, Dim> touches;
+    Sleep<Real, Dim> sleep;
+    bool is_other_at_rest = false;
+    if (is_listed) {
+      reader(x), reader(reach);
+      contacts.transfer_kept(reader);
+      reader(touches), reader(sleep), reader(is_other_at_rest);
+      reader.expect(x.size() == world_.size() && reach.size() == x.size(), "a list of other bodies");
+      for (std::size_t i = 0; i < x.size() && reader.ok(); ++i)
+        reader.expect(is_finite(x[i]) && reach[i] >= Real(0), "a list that is not finite");
+      reader.expect(contacts.kept_fits(world_.size(), world_.walls().size()), "contacts of other bodies");
+      reader.expect(sleep.fits(world_.size()), "the sleep of other bodies");
+    }
+    reader.expect_end();
+    if (!reader.ok()) return;
+    refresh();
+    touches_ = std::move(touches);
+    sleep_ = std::move(sleep);
+    if (!is_listed) return;
+    std::swap(world_.position, x);
+    list_.sort(world_, place_before_);
+    load();
+    contacts_ = std::move(contacts);
+    list_within([&](std::size_t k) { return reach[list_.order()[k]]; });
+    std::swap(world_.position, x);
+    load();
+    place_before_ = {};
+    is_other_at_rest_ = is_other_at_rest;
+    is_restored_ = true;
+  }
+
+  std::size_t memory() const {
+    return bodies_.memory() + list_.memory() + contacts_.memory() + place_before_.capacity() * sizeof(std::uint32_t) +
+           (x_.capacity() + v_.capacity() + force_.capacity()) * sizeof(V) + inverse_mass_.capacity() * sizeof(Real) +
+           sleep_.memory();
+  }
+
+  FastStatistics statistics{};
+  ContactLog<Real, Dim> log;
+
+ private:
+  void note_touching() {
+    const auto handle = [&](std::uint32_t k) { return world_.handle(list_.order()[k]); };
+    contacts_.for_each_touching([&](std::uint32_t k, std::uint32_t other, bool is_wall, const Real& impulse) {
+      ContactEvent<Real, Dim> event{.a = handle(k)};
+      event.impulse = impulse * static_cast<Real>(options_.substeps);
+      if (is_wall) {
+        event.wall = other;
+        event.normal = -world_.walls()[other].normal;
+      } else {
+        event.b = handle(other);
+        if (event.b.slot < event.a.slot) std::swap(event.a, event.b);
+        const V apart = world_.position_of(event.b) - world_.position_of(event.a);
+        if (const Real distance = length(apart); distance > Real(0)) event.normal = apart * (1 / distance);
+      }
+      event.point = world_.position_of(event.a) + event.normal * world_.radius[world_.index(event.a)];
+      touches_.touch(event);
+    });
+    touches_.end_step(world_.time, log);
+  }
+
+  /// act(k) for all bodies, several at once.
+  template <class Act>
+  void for_each_body(Act&& act) {
+    team_.for_each(0, bodies_.size(), 1024, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k) act(k);
+    });
+  }
+  /// act(kind, packs, from, to) for all packs, colour by colour, those of a colour several at once.
+  template <class Act>
+  void for_each_pack(Act&& act) {
+    contacts_.for_each_kind([&](auto kind, auto& packs) {
+      if (team_.is_alone()) return act(kind, packs, 0, packs.packs.size());
+      for (std::size_t c = 0; c < packs.colours; ++c) {
+        const std::size_t size = packs.first[c + 1] - packs.first[c];
+        team_.for_each(packs.first[c], packs.first[c + 1], packs.is_shared(c) ? size : 64,
+                       [&](std::size_t from, std::size_t to) { act(kind, packs, from, to); });
+      }
+    });
+  }
+  bool all_finite() const {
+    Real sum(0);
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+      for (std::size_t axis = 0; axis < V::size(); ++axis)
+        sum += Real(0) * (bodies_.place[k].x_and_radius[axis] + bodies_.motion[k].linear[axis]);
+    return sum == Real(0);
+  }
+
+  /// The bodies from the world, in the order of the list.
+  void load() {
+    const std::vector<std::uint32_t>& order = list_.order();
+    bodies_.resize(order.size(), world_.walls().size());
+    bodies_.gravity = world_.gravity;
+    for_each_body([&](std::size_t k) {
+      const std::size_t i = order[k];
+      const Real radius = world_.radius[i];
+      BodyMotion<Real>& motion = bodies_.motion[k];
+      BodyPlace<Real>& place = bodies_.place[k];
+      put(world_.position[i], place.x_and_radius);
+      place.x_and_radius[3] = radius;
+      put(world_.velocity[i], motion.linear);
+      put(Spin<Real, Dim>(world_.spin[i] * radius), motion.rim);
+      const bool is_asleep = sleep_.is_asleep(i);  // then it is like a fixed one
+      motion.linear[3] = is_asleep ? Real(0) : world_.inverse_mass[i];
+      motion.rim[3] = is_asleep ? Real(0) : radius * radius * world_.inverse_inertia[i];
+    });
+    for (std::size_t w = 0; w < world_.walls().size(); ++w)
+      put(V(world_.walls()[w].normal * world_.walls()[w].offset), bodies_.place[bodies_.wall(w)].x_and_radius);
+    for (std::size_t lane = 0; lane < 2 * lanes_at_once<Real>; ++lane) {
+      bodies_.place[bodies_.stand_in(lane)].x_and_radius[0] = static_cast<Real>(lane % 2);
+      bodies_.motion[bodies_.stand_in(lane)].linear[3] = Real(1);
+    }
+    has_other_forces_ = !only_gravity(world_);
+    if (!has_other_forces_) bodies_.accelerations.clear();
+  }
+  void store() {
+    const std::vector<std::uint32_t>& order = list_.order();
+    for_each_body([&](std::size_t k) {
+      if (!bodies_.moves(k)) return;
+      const std::size_t i = order[k];
+      const Spin<Real, Dim> spin = vector_of<Spin<Real, Dim>::size()>(bodies_.motion[k].rim) * (1 / bodies_.radius(k));
+      world_.orientation[i] = turned(world_.orientation[i], spin, options_.step);
+      world_.position[i] = bodies_.x(k);
+      world_.velocity[i] = bodies_.v(k);
+      world_.spin[i] = spin;
+    });
+  }
+
+  /// How far a body may come in one step.
+  auto step_reach() const {
+    return [this, dt = options_.step](std::size_t k) {
+      return length(bodies_.v(k)) * dt + length(bodies_.acceleration(k)) * dt * dt / 2;
+    };
+  }
+  void make_list() {
+    const std::vector<std::uint32_t> earlier = std::move(place_before_);
+    list_.sort(world_, place_before_);
+    if (!earlier.empty())
+      for (std::uint32_t& place : place_before_) place = earlier[place];
+    is_other_at_rest_ = false;
+    load();
+    // Pairs are listed for as long as nobody has come further than this.
+    list_within([once = step_reach(), this](std::size_t k) {
+      return std::max(Real(0.2) * bodies_.radius(k), Real(1.25) * once(k));
+    });
+  }
+  template <class Reach>
+  void list_within(const Reach& reach) {
+    list_.list(team_, world_, bodies_, reach, contacts_.rows);
+  }
+
+  template <class Is>
+  bool any_material(const Is& is) const {
+    return std::ranges::any_of(world_.material, is) ||
+           std::ranges::any_of(world_.walls(), is, &Wall<Real, Dim>::material);
+  }
+
+  void activate() {
+    using std::sqrt;
+    const Real dt = options_.step;
+    Real fastest(0), widest(0);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      fastest = std::max(fastest, squared(bodies_.v(k)));
+      widest = std::max(widest, bodies_.radius(k));
+    }
+    const Real pull = length(world_.gravity);
+    const Real extra = std::min(Real(0.1) * widest, Real(sqrt(fastest) * dt)) + pull * dt * dt;
+    const auto material_of = [this, &order = list_.order()](std::uint32_t k) -> const Material<Real>& {
+      return k < order.size() ? world_.material[order[k]] : world_.walls()[k - order.size()].material;
+    };
+    const Material<Real> first = bodies_.size() > 0 ? world_.material[0] : Material<Real>{};
+    friction_ = combined(first, first).friction;
+    may_bounce_ = any_material([](const Material<Real>& material) { return material.restitution > Real(0); });
+    const bool has_rare = may_bounce_ || any_material([&](const Material<Real>& material) {
+                            return material.rolling_resistance > Real(0) || material.friction != first.friction;
+                          });
+    contacts_.activate(team_, bodies_, world_.walls(), material_of, has_rare, ActiveReach<Real>{dt, extra},
+                       place_before_);
+  }
+
+  /// Accelerations by all forces at time t; with h, at the end of a step of that. False where that could not be solved.
+  bool accelerate(const Real& t, const Real& h) {
+    const std::vector<std::uint32_t>& order = list_.order();
+    x_.resize(bodies_.size()), v_.resize(bodies_.size()), force_.resize(bodies_.size());
+    inverse_mass_.resize(bodies_.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::size_t i = order[k];
+      x_[i] = bodies_.x(k), v_[i] = bodies_.v(k), inverse_mass_[i] = bodies_.inverse_mass(k);
+    }
+    const bool is_solved = h == Real(0) || forces_at_end<Real, Dim>(world_, t, h, x_, v_, inverse_mass_, force_);
+    if (h == Real(0)) forces<Real, Dim>(world_, t, x_, v_, force_);
+    bodies_.accelerations.resize(bodies_.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+      bodies_.accelerations[k] = force_[order[k]] * bodies_.inverse_mass(k);
+    return is_solved;
+  }
+  /// Whether gravity and the constant force are all that acts.
+  bool is_steady(std::size_t k) const {
+    if (!has_other_forces_ || !bodies_.moves(k)) return true;
+    const std::size_t i = list_.order()[k];
+    return bodies_.acceleration(k) ==
+           (world_.mass[i] * world_.gravity + world_.constant_force[i]) * bodies_.inverse_mass(k);
+  }
+
+  bool substep(const Real& t, const Real& h) {
+    const IntegratorRule rule = rule_of(options_.integrator);
+    if (has_other_forces_ && !accelerate(t, rule.solves_equations ? h : Real(0))) return false;
+    ContactStep<Real> step{.h = h,
+                           .soft = softness(std::min(options_.hertz, Real(0.25) / h), options_.damping, h),
+                           .fastest_push = options_.fastest_push,
+                           .friction = friction_};
+    look_for_impacts(step);
+    if (step.may_strike) {
+      bodies_.impacts.assign(bodies_.size(), 0);
+      statistics.impacts += impacts_.make(world_, list_, contacts_, bodies_, step, options_.step, t, log);
+    }
+    for_each_body([&](std::size_t k) {
+      put(V(bodies_.v(k) + bodies_.acceleration(k) * h), bodies_.motion[k].linear);
+      bodies_.touched[k] = 0;
+    });
+    for_each_pack([&](auto kind, auto& packs, std::size_t from, std::size_t to) {
+      begin_packs<kind()>(packs, from, to, bodies_);
+    });
+    for_each_pack([&](auto kind, auto& packs, std::size_t from, std::size_t to) {
+      solve_packs<kind(), ContactPass::push>(packs, from, to, bodies_, step);
+    });
+    const Real lag = static_cast<Real>(rule.lag) * h, steady_lag = static_cast<Real>(rule.steady_lag) * h;
+    for_each_body([&](std::size_t k) {
+      V v = bodies_.v(k);
+      if (!bodies_.touched[k]) v -= bodies_.acceleration(k) * (is_steady(k) ? steady_lag : lag);
+      put(V(bodies_.x(k) + v * h), bodies_.place[k].x_and_radius);
+    });
+    for_each_pack([&](auto kind, auto& packs, std::size_t from, std::size_t to) {
+      solve_packs<kind(), ContactPass::relax>(packs, from, to, bodies_, step);
+    });
+    if (has_other_forces_ && rule.ends_with_correction) correct(t, h);
+    return true;
+  }
+
+  /// The mean of the accelerations at the beginning and at the end is what changed the velocity.
+  void correct(const Real& t, const Real& h) {
+    const std::vector<V> before = bodies_.accelerations;
+    accelerate(t + h, Real(0));
+    for_each_body([&](std::size_t k) {
+      if (bodies_.touched[k]) return;
+      put(V(bodies_.v(k) + (bodies_.accelerations[k] - before[k]) * (h / 2)), bodies_.motion[k].linear);
+    });
+  }
+
+  /// Without restitution only what moves by half a radius in a substep strikes; most worlds at most times have
+  /// neither.
+  void look_for_impacts(ContactStep<Real>& step) const {
+    using std::sqrt;
+    Real pull(0), fastest(0);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      pull = std::max(pull, squared(bodies_.acceleration(k)));
+      fastest = std::max(fastest, squared(bodies_.v(k)) / (bodies_.radius(k) * bodies_.radius(k)));
+    }
+    step.greatest_acceleration = sqrt(pull);
+    step.may_strike = may_bounce_ || sqrt(fastest) * step.h > Real(0.2);  // of two that meet, and what gravity adds
+  }
+
+  World<Real, Dim>& world_;
+  FastOptions<Real> options_;
+  Team team_;
+  SolverBodies<Real, Dim> bodies_;
+  PairList<Real, Dim> list_;
+  ContactList<Real, Dim> contacts_;
+  Impacts<Real, Dim> impacts_;
+  TouchLog<Real, Dim> touches_;
+  bool is_restored_ = false;  // the impulses of the last step have been kept already
+  bool has_other_forces_ = false, may_bounce_ = false;
+  Real friction_ = Real(0);
+  std::vector<std::uint32_t> place_before_;
+  std::vector<V> x_, v_, force_;
+  std::vector<Real> inverse_mass_;
+  Sleep<Real, Dim> sleep_;
+  bool is_other_at_rest_ = false;  // than when pairs were listed
+};
+
+}  // namespace continuo

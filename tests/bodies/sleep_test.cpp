@@ -1,0 +1,141 @@
+// What rests falls asleep, and wakes when something comes to it.
+#include <cmath>
+#include <cstddef>
+
+#include <gtest/gtest.h>
+
+#include <continuo/bodies/fast_motion.hpp>
+#include <continuo/bodies/snapshot.hpp>
+
+namespace continuo {
+namespace {
+
+const FastOptions<double> with_sleep{.sleep_after = 0.5};
+
+World<double, 3> stack_of(int count) {
+  World<double, 3> world;
+  world.gravity = {{0, 0, -9.81}};
+  EXPECT_EQ(world.add_wall({}), "");
+  for (int i = 0; i < count; ++i) EXPECT_TRUE(world.add({.position = {{0, 0, 0.5 + i}}}));
+  return world;
+}
+void run(FastMotion<double, 3>& motion, double duration) {
+  for (int i = 0; i < std::lround(duration * 60); ++i) ASSERT_EQ(motion.advance(), "");
+}
+
+TEST(Sleep, AStackFallsAsleepAndStaysAsleep) {
+  World<double, 3> world = stack_of(5);
+  FastMotion<double, 3> motion(world, with_sleep);
+  run(motion, 2);
+  EXPECT_EQ(motion.statistics().asleep, 5u);
+  EXPECT_EQ(kinetic_energy(world), 0);
+  const auto hash = world.position;
+  run(motion, 10);
+  EXPECT_EQ(motion.statistics().asleep, 5u);
+  EXPECT_EQ(world.position, hash);
+  EXPECT_EQ(motion.statistics().contacts, 0u);
+}
+
+TEST(Sleep, NothingSleepsUnlessAsked) {
+  World<double, 3> world = stack_of(2);
+  FastMotion<double, 3> motion(world);
+  run(motion, 5);
+  EXPECT_EQ(motion.statistics().asleep, 0u);
+}
+
+// Neither does what swings: a pendulum is slow at its ends, but not for long.
+TEST(Sleep, WhatSwingsStaysAwake) {
+  World<double, 3> world;
+  const auto ball = world.add({.position = {{2, 0, 0}}, .mass = 1});
+  world.springs.push_back({.a = ball.handle, .b = Vector<double, 3>{}, .rest_length = 1, .stiffness = 1});
+  FastMotion<double, 3> motion(world, with_sleep);
+  run(motion, 20);
+  EXPECT_EQ(motion.statistics().asleep, 0u);
+  EXPECT_NEAR(kinetic_energy(world) + potential_energy(world), 0.5, 0.01);
+}
+
+// The one that hits a sleeping one hands on its momentum as if that were awake: with equal masses, all of it.
+TEST(Sleep, AHitWakes) {
+  World<double, 3> world;
+  const Material<double> elastic{.restitution = 1, .friction = 0};
+  ASSERT_TRUE(world.add({.material = elastic}));
+  FastMotion<double, 3> motion(world, with_sleep);
+  run(motion, 1);
+  ASSERT_EQ(motion.statistics().asleep, 1u);
+  ASSERT_TRUE(world.add({.position = {{-10, 0, 0}}, .velocity = {{5, 0, 0}}, .material = elastic}));
+  run(motion, 1);  // the new one wakes all; it falls asleep again before it is hit
+  EXPECT_EQ(motion.statistics().asleep, 1u);
+  run(motion, 2);
+  EXPECT_EQ(motion.statistics().asleep, 1u);  // now it is the other
+  EXPECT_EQ(world.velocity[1], (Vector<double, 3>{}));
+  EXPECT_NEAR(world.velocity[0][0], 5, 1e-9);
+}
+
+TEST(Sleep, ABallOnAStackWakesAllOfIt) {
+  World<double, 3> world = stack_of(3);
+  ASSERT_TRUE(world.add({.position = {{0, 0, 30}}, .mass = 5}));
+  FastMotion<double, 3> motion(world, with_sleep);
+  run(motion, 1.5);
+  EXPECT_EQ(motion.statistics().asleep, 3u);
+  run(motion, 1.0);  // it falls for 2.3 s
+  EXPECT_EQ(motion.statistics().asleep, 0u);
+  run(motion, 8);
+  EXPECT_EQ(kinetic_energy(world), 0);
+}
+
+TEST(Sleep, WhatIsChangedWakes) {
+  const auto sleeping = [] {
+    World<double, 3> world = stack_of(1);
+    FastMotion<double, 3> motion(world, with_sleep);
+    run(motion, 1);
+    EXPECT_EQ(motion.statistics().asleep, 1u);
+    return world;
+  };
+  const auto height_after = [&](auto&& change) {
+    World<double, 3> world = sleeping();
+    FastMotion<double, 3> motion(world, with_sleep);
+    run(motion, 1);
+    EXPECT_EQ(motion.statistics().asleep, 1u);
+    change(world);
+    run(motion, 0.25);
+    EXPECT_EQ(motion.statistics().asleep, 0u);
+    return world.position[0][2];
+  };
+  EXPECT_GT(height_after([](auto& world) { world.velocity[0][2] = 3; }), 0.6);
+  EXPECT_GT(height_after([](auto& world) { world.position[0][2] = 3; }), 2);
+  EXPECT_GT(height_after([](auto& world) { world.constant_force[0] = {{0, 0, 12}}; }), 0.6);
+  EXPECT_GT(height_after([](auto& world) { world.gravity = {{0, 0, 9.81}}; }), 0.6);
+}
+
+// A restored world sleeps on, and wakes to the same bits.
+TEST(Sleep, IsPartOfASnapshot) {
+  World<double, 3> world = stack_of(3);
+  ASSERT_TRUE(world.add({.position = {{0, 0, 30}}, .mass = 5}));
+  FastMotion<double, 3> motion(world, with_sleep);
+  run(motion, 1.5);
+  ASSERT_EQ(motion.statistics().asleep, 3u);
+  World<double, 3> other = world;
+  FastMotion<double, 3> again(other, with_sleep);
+  const auto bytes = snapshot(world, motion);
+  ASSERT_EQ(restore(bytes, other, again), "");
+  ASSERT_EQ(again.advance(), "");
+  ASSERT_EQ(motion.advance(), "");
+  EXPECT_EQ(again.statistics().asleep, 3u);
+  run(motion, 3), run(again, 3);
+  EXPECT_EQ(state_hash(other), state_hash(world));
+}
+
+// Taking out the lowest of a stack lets the others fall.
+TEST(Sleep, RemovalWakes) {
+  World<double, 3> world = stack_of(3);
+  FastMotion<double, 3> motion(world, with_sleep);
+  run(motion, 1);
+  ASSERT_EQ(motion.statistics().asleep, 3u);
+  ASSERT_TRUE(world.remove(world.handle(0)));
+  run(motion, 3);
+  EXPECT_EQ(motion.statistics().asleep, 2u);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(world.position[i][2], 1.6);
+}
+
+}  // namespace
+}  // namespace continuo
