@@ -26,4 +26,8 @@ class ExactEngine {
 template <class Real, int Dim>
 std::unique_ptr<ExactEngine<Real, Dim>> event_driven(World<Real, Dim>& world, const ExactOptions<Real>& options);
 
+/// From contact to contact on whatever paths forces make, by an error-controlled method: forced_flight.cpp.
+template <class Real, int Dim>
+std::unique_ptr<ExactEngine<Real, Dim>> forced_flight(World<Real, Dim>& world, const ExactOptions<Real>& options);
+
 }  // namespace continuo

@@ -6,6 +6,15 @@
 
 namespace continuo {
 
+namespace {
+
+template <class Real, int Dim>
+std::unique_ptr<ExactEngine<Real, Dim>> engine_for(World<Real, Dim>& world, const ExactOptions<Real>& options) {
+  return only_gravity(world) ? event_driven(world, options) : forced_flight(world, options);
+}
+
+}  // namespace
+
 template <class Real, int Dim>
 ExactMotion<Real, Dim>::ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options)
     : world_(&world), options_(options) {
@@ -20,16 +29,17 @@ ExactMotion<Real, Dim>::~ExactMotion() = default;
 
 template <class Real, int Dim>
 std::string ExactMotion<Real, Dim>::advance_to(const Real& t) {
-  if (!only_gravity(*world_)) return "exact collisions need gravity as the only force; other forces go by steps";
   if (!(t >= world_->time) || !(t - t == Real(0)))
     return "the time to advance to must be finite and not before the present";
+  if (only_gravity(*world_) != was_parabolic_) refresh();
   engine_->contacts.clear();
   return engine_->advance_to(t);
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::refresh() {
   const ExactStatistics so_far = engine_ ? engine_->statistics : ExactStatistics{};
-  engine_ = event_driven(*world_, options_);
+  was_parabolic_ = only_gravity(*world_);
+  engine_ = engine_for(*world_, options_);
   engine_->statistics = so_far;
 }
 template <class Real, int Dim>
@@ -55,10 +65,11 @@ template <class Real, int Dim>
 void ExactMotion<Real, Dim>::load(ByteReader& reader) {
   ExactStatistics statistics;
   reader(statistics);
-  auto engine = event_driven(*world_, options_);
+  auto engine = engine_for(*world_, options_);
   engine->load(reader);
   reader.expect_end();
   if (!reader.ok()) return;
+  was_parabolic_ = only_gravity(*world_);
   engine_ = std::move(engine);
   engine_->statistics = statistics;
 }

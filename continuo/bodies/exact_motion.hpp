@@ -7,6 +7,10 @@
 // when its time comes. B. Lubachevsky, "How to simulate billiards and similar systems", J. Comp. Phys. 94 (1991)
 // 255-283.
 //
+// Under other forces an error-controlled method (dop853) moves all bodies together between contacts, which are located
+// on its dense output to neighbouring times; impulses are as exact as before. What is approximate then is the path, by
+// `tolerance`.
+//
 // Several collisions at one instant are resolved one after the other, pairs of lower numbers first, until nobody
 // approaches: Newton's cradle sends out as many as came in.
 //
@@ -35,7 +39,8 @@ struct ExactOptions {
   std::optional<Real> contact_time{};     // without one: a hundred-thousandth of the time in which a body falls its
                                           // radius, or flies it where there is no gravity
   std::size_t most_events = 100'000'000;  // in one call of advance_to, which then says so: some minutes
-  std::size_t contact_events = 0;         // so many of a call are kept, see contact_events.hpp
+  Real tolerance = Real(1e-10);    // of a path under other forces than gravity: relative, and in units of a radius
+  std::size_t contact_events = 0;  // so many of a call are kept, see contact_events.hpp
 };
 
 struct ExactStatistics {
@@ -56,8 +61,7 @@ class ExactEngine;
 template <class Real, int Dim>
 class ExactMotion {
  public:
-  /// The world is moved; it must not be changed but through this, or `refresh` must follow. Forces but gravity are not
-  /// for this motion: see `only_gravity`.
+  /// The world is moved; it must not be changed but through this, or `refresh` must follow.
   explicit ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options = {});
   ExactMotion(ExactMotion&&) noexcept;
   ExactMotion& operator=(ExactMotion&&) noexcept;
@@ -80,6 +84,7 @@ class ExactMotion {
 
  private:
   World<Real, Dim>* world_;
+  bool was_parabolic_ = true;
   ExactOptions<Real> options_;
   std::unique_ptr<ExactEngine<Real, Dim>> engine_;
 };
