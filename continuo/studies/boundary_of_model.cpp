@@ -18,7 +18,6 @@ namespace continuo::studies {
 
 namespace {
 
-using model::Diagnostic;
 using model::Experiment;
 using model::Model;
 using model::ModelProgram;
