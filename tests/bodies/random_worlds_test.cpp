@@ -100,7 +100,7 @@ void try_one(unsigned seed, Tally& tally) {
   World<Real, Dim> world = random_world<Real, Dim>(numbers, tally.refused);
   World<Real, Dim> fast = world;
   ASSERT_TRUE(all_finite(world));
-  ExactMotion<Real, Dim> motion(world, {.most_events = only_gravity(world) ? 300u : 15u});
+  ExactMotion<Real, Dim> motion(world, {.most_events = only_gravity(world) ? 150u : 4u});
   const std::string error = motion.advance_to(Real(0.25));
   ++(error.empty() ? tally.moved : tally.stopped);
   if (error.empty()) {
@@ -108,7 +108,7 @@ void try_one(unsigned seed, Tally& tally) {
   }
 
   FastMotion<Real, Dim> steps(fast);
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 2; ++k) {
     const std::string why = steps.advance();
     if (why.empty()) {
       EXPECT_TRUE(all_finite(fast)) << seed;
