@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <ctime>
 #include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
 
+#include <bench/processor_time.hpp>
 #include <bench/reference/end_values.hpp>
 
 namespace continuo::bench {
@@ -48,14 +48,9 @@ double end_error(const std::array<double, Problem::size>& x) {
 /// others may have the processor in between, and of a long run not even the least of many times is free of that.
 template <class Run>
 double timed(Run&& run) {
-  const auto now = [] {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  };
-  const double begin = now();
+  const double begin = processor_seconds();
   const auto result = run();
-  const double end = now();
+  const double end = processor_seconds();
   volatile double sink = result[0];
   static_cast<void>(sink);
   return end - begin;

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include <bench/processor_time.hpp>
 #include <btBulletDynamicsCommon.h>
 
 #include <continuo/bodies/exact_motion.hpp>
@@ -19,12 +19,6 @@
 
 namespace continuo::bench {
 namespace {
-
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// A scene: balls of radius 1/2 and density 1 in a box.
 struct Scene {

@@ -5,21 +5,16 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <numbers>
 #include <random>
 #include <string>
+
+#include <bench/processor_time.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 
 namespace continuo::bench {
 namespace {
-
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// Balls of radius 1/2 on a grid in a box that they fill to `packing`, at speed 5 in random directions.
 template <int Dim>

@@ -3,11 +3,12 @@
 //   fast_against_exact
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <random>
 #include <string>
 #include <vector>
+
+#include <bench/processor_time.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
@@ -16,9 +17,7 @@ namespace continuo::bench {
 namespace {
 
 double processor_milliseconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+  return 1e3 * processor_seconds();
 }
 
 template <int Dim>
