@@ -67,16 +67,23 @@ TEST(FastMotion, NewtonsCradleSendsOutAsManyAsCameIn) {
   }
 }
 
+/// A body of radius 1/2 that touches the floor.
+template <int Dim>
+World<double, Dim> on_the_floor(BodyDefinition<double, Dim> body) {
+  World<double, Dim> world;
+  world.gravity[static_cast<std::size_t>(Dim - 1)] = -9.81;
+  EXPECT_EQ(world.add_wall({}), "");
+  body.position[static_cast<std::size_t>(Dim - 1)] = 0.5;
+  EXPECT_TRUE(world.add(body));
+  return world;
+}
+
 // Friction turns sliding into rolling; from then on a ball has 5/7 of its speed, a disc 2/3, whatever the friction.
 template <int Dim>
 void slides_until_it_rolls(double part) {
-  World<double, Dim> world;
-  world.gravity[static_cast<std::size_t>(Dim - 1)] = -9.81;
-  ASSERT_EQ(world.add_wall({}), "");
   BodyDefinition<double, Dim> ball;
-  ball.position[static_cast<std::size_t>(Dim - 1)] = 0.5;
   ball.velocity[0] = 3;
-  ASSERT_TRUE(world.add(ball));
+  World<double, Dim> world = on_the_floor(ball);
   run(world, 2.0);
   EXPECT_NEAR(world.velocity[0][0], part * 3, 0.01 * 3);
   EXPECT_NEAR(length(world.spin[0]) * 0.5, part * 3, 0.01 * 3);
@@ -216,15 +223,11 @@ TEST(FastMotion, HoldsAtMost400BytesASphere) {
 // A rolling ball, of inertia 2/5 m r^2, slows by c m g r of torque: (1 + 2/5) m a = c m g. A disc: (1 + 1/2).
 template <int Dim>
 void rolls_ever_slower(double factor) {
-  World<double, Dim> world;
-  world.gravity[static_cast<std::size_t>(Dim - 1)] = -9.81;
-  ASSERT_EQ(world.add_wall({}), "");
   BodyDefinition<double, Dim> ball;
-  ball.position[static_cast<std::size_t>(Dim - 1)] = 0.5;
   ball.velocity[0] = 3;
   ball.spin[Dim == 2 ? 0 : 1] = Dim == 2 ? -6 : 6;
   ball.material.rolling_resistance = 0.05;
-  ASSERT_TRUE(world.add(ball));
+  World<double, Dim> world = on_the_floor(ball);
   run(world, 2.0);
   EXPECT_NEAR(world.velocity[0][0], 3 - 0.05 * 9.81 / factor * 2, 0.01);
   run(world, 10.0);

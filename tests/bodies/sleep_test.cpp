@@ -71,9 +71,15 @@ TEST(Sleep, AHitWakes) {
   EXPECT_NEAR(world.velocity[0][0], 5, 1e-9);
 }
 
-TEST(Sleep, ABallOnAStackWakesAllOfIt) {
+/// Which it will hit after 2.3 s.
+World<double, 3> ball_above_a_stack() {
   World<double, 3> world = stack_of(3);
-  ASSERT_TRUE(world.add({.position = {{0, 0, 30}}, .mass = 5}));
+  EXPECT_TRUE(world.add({.position = {{0, 0, 30}}, .mass = 5}));
+  return world;
+}
+
+TEST(Sleep, ABallOnAStackWakesAllOfIt) {
+  World<double, 3> world = ball_above_a_stack();
   FastMotion<double, 3> motion(world, with_sleep);
   run(motion, 1.5);
   EXPECT_EQ(motion.statistics().asleep, 3u);
@@ -84,15 +90,8 @@ TEST(Sleep, ABallOnAStackWakesAllOfIt) {
 }
 
 TEST(Sleep, WhatIsChangedWakes) {
-  const auto sleeping = [] {
+  const auto height_after = [](auto&& change) {
     World<double, 3> world = stack_of(1);
-    FastMotion<double, 3> motion(world, with_sleep);
-    run(motion, 1);
-    EXPECT_EQ(motion.statistics().asleep, 1u);
-    return world;
-  };
-  const auto height_after = [&](auto&& change) {
-    World<double, 3> world = sleeping();
     FastMotion<double, 3> motion(world, with_sleep);
     run(motion, 1);
     EXPECT_EQ(motion.statistics().asleep, 1u);
@@ -109,8 +108,7 @@ TEST(Sleep, WhatIsChangedWakes) {
 
 // A restored world sleeps on, and wakes to the same bits.
 TEST(Sleep, IsPartOfASnapshot) {
-  World<double, 3> world = stack_of(3);
-  ASSERT_TRUE(world.add({.position = {{0, 0, 30}}, .mass = 5}));
+  World<double, 3> world = ball_above_a_stack();
   FastMotion<double, 3> motion(world, with_sleep);
   run(motion, 1.5);
   ASSERT_EQ(motion.statistics().asleep, 3u);
