@@ -26,12 +26,12 @@ namespace continuo {
 template <class Real>
 struct FastOptions {
   Real step = Real(1) / Real(60);
-  int substeps = 4;                                         // more are stiffer and cost as much more
-  Real hertz = Real(120);                                   // of a contact; a quarter of the rate of substeps at most
-  Real damping = Real(10);                                  // ratio: 1 is critical; overdamped contacts do not jump
-  Real fastest_push = Real(4);                              // with which overlapping bodies part, length per time
-  std::size_t contact_events = 0;                           // so many of a step are kept, see contact_events.hpp
-  Integrator integrator = Integrator::semi_implicit_euler;  // of forces, see integrator.hpp
+  int substeps = 4;                // more are stiffer and cost as much more
+  Real hertz = Real(120);          // of a contact; a quarter of the rate of substeps at most
+  Real damping = Real(10);         // ratio: 1 is critical; overdamped contacts do not jump
+  Real fastest_push = Real(4);     // with which overlapping bodies part, length per time
+  std::size_t contact_events = 0;  // so many of a step are kept, see contact_events.hpp
+  ForceIntegrator integrator = ForceIntegrator::semi_implicit_euler;  // of forces, see integrator.hpp
   Real sleep_after = Real(0);     // so long slower than the next, bodies fall asleep, see sleep.hpp; 0: never
   Real sleep_speed = Real(0.05);  // of centre and rim
   int threads = 1;                // at most; the results are the same to the last bit for any number

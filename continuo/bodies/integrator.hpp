@@ -22,7 +22,7 @@
 
 namespace continuo {
 
-enum class Integrator { semi_implicit_euler, implicit_euler, central_difference, explicit_euler };
+enum class ForceIntegrator { semi_implicit_euler, implicit_euler, central_difference, explicit_euler };
 
 /// Once the velocity is v0 + h a, the place is x0 + h (velocity - lag h a); steady_lag where a does not change.
 struct IntegratorRule {
@@ -30,15 +30,15 @@ struct IntegratorRule {
   bool ends_with_correction;  // v1 += h (a1 - a0) / 2
   bool solves_equations;      // a is that of the end
 };
-constexpr IntegratorRule rule_of(Integrator integrator) {
+constexpr IntegratorRule rule_of(ForceIntegrator integrator) {
   switch (integrator) {
-    case Integrator::implicit_euler:
+    case ForceIntegrator::implicit_euler:
       return {0, 0.5, false, true};
-    case Integrator::central_difference:
+    case ForceIntegrator::central_difference:
       return {0.5, 0.5, true, false};
-    case Integrator::explicit_euler:
+    case ForceIntegrator::explicit_euler:
       return {1, 1, false, false};
-    case Integrator::semi_implicit_euler:
+    case ForceIntegrator::semi_implicit_euler:
       break;
   }
   return {0, 0.5, false, false};

@@ -26,7 +26,7 @@ double distance(const World<double, 2>& world) {
 }
 
 /// The greater of the errors of distance and rate after time 3, in steps of h.
-double error_of(Integrator integrator, double h) {
+double error_of(ForceIntegrator integrator, double h) {
   World<double, 2> world = pair_on_a_spring();
   FastMotion<double, 2> motion(world, {.step = h, .substeps = 1, .integrator = integrator});
   for (int i = 0; i < std::lround(3 / h); ++i) EXPECT_EQ(motion.advance(), "");
@@ -35,20 +35,20 @@ double error_of(Integrator integrator, double h) {
 }
 
 // Halving h divides the error by 2^order; the next term is h times smaller, 1/600 here.
-TEST(Integrator, HasItsOrder) {
+TEST(ForceIntegrator, HasItsOrder) {
   struct Case {
-    Integrator integrator;
+    ForceIntegrator integrator;
     double order;
   };
-  for (const Case& one : {Case{Integrator::semi_implicit_euler, 1}, Case{Integrator::implicit_euler, 1},
-                          Case{Integrator::explicit_euler, 1}, Case{Integrator::central_difference, 2}}) {
+  for (const Case& one : {Case{ForceIntegrator::semi_implicit_euler, 1}, Case{ForceIntegrator::implicit_euler, 1},
+                          Case{ForceIntegrator::explicit_euler, 1}, Case{ForceIntegrator::central_difference, 2}}) {
     const double h = 1.0 / 600, order = std::log2(error_of(one.integrator, h) / error_of(one.integrator, h / 2));
     EXPECT_NEAR(order, one.order, 0.03) << static_cast<int>(one.integrator);
   }
 }
 
 /// The greatest stretch of the spring in so many steps.
-double greatest_swing(Integrator integrator, double h, int steps) {
+double greatest_swing(ForceIntegrator integrator, double h, int steps) {
   World<double, 2> world = pair_on_a_spring();
   FastMotion<double, 2> motion(world, {.step = h, .substeps = 1, .integrator = integrator});
   double greatest = 0;
@@ -61,8 +61,8 @@ double greatest_swing(Integrator integrator, double h, int steps) {
 
 // Below h = 2 / omega the swing is bounded: the quadratic form that the methods keep, x^2 - h x v + v^2 / omega^2 or
 // x^2 (1 - (h omega)^2 / 4) + v^2 / omega^2, bounds it by 0.5 / sqrt(1 - (h omega / 2)^2). Above, it grows.
-TEST(Integrator, IsStableUpToTwoOverOmega) {
-  for (const Integrator integrator : {Integrator::semi_implicit_euler, Integrator::central_difference}) {
+TEST(ForceIntegrator, IsStableUpToTwoOverOmega) {
+  for (const ForceIntegrator integrator : {ForceIntegrator::semi_implicit_euler, ForceIntegrator::central_difference}) {
     for (const double part : {0.5, 0.9, 0.97}) {
       const double bound = 0.5 / std::sqrt(1 - part * part);
       EXPECT_LE(greatest_swing(integrator, part * 2 / omega, 3000), bound * (1 + 1e-9)) << part;
@@ -72,17 +72,17 @@ TEST(Integrator, IsStableUpToTwoOverOmega) {
 }
 
 // Explicit Euler multiplies the swing by sqrt(1 + (h omega)^2) in each step, implicit Euler divides it by as much.
-TEST(Integrator, EulersGrowAndDamp) {
+TEST(ForceIntegrator, EulersGrowAndDamp) {
   for (const double h : {0.05, 0.5, 5.0}) {
     const int steps = h < 0.1 ? 20 : 3;
-    for (const Integrator integrator : {Integrator::explicit_euler, Integrator::implicit_euler}) {
-      if (h > 1 && integrator == Integrator::explicit_euler) continue;  // the spring would turn over
+    for (const ForceIntegrator integrator : {ForceIntegrator::explicit_euler, ForceIntegrator::implicit_euler}) {
+      if (h > 1 && integrator == ForceIntegrator::explicit_euler) continue;  // the spring would turn over
       World<double, 2> world = pair_on_a_spring();
       FastMotion<double, 2> motion(world, {.step = h, .substeps = 1, .integrator = integrator});
       for (int i = 0; i < steps; ++i) ASSERT_EQ(motion.advance(), "");
       const double stretch = distance(world) - 4, rate = world.velocity[1][0] - world.velocity[0][0];
       const double factor =
-          std::pow(1 + h * h * omega * omega, (integrator == Integrator::explicit_euler ? 0.5 : -0.5) * steps);
+          std::pow(1 + h * h * omega * omega, (integrator == ForceIntegrator::explicit_euler ? 0.5 : -0.5) * steps);
       EXPECT_NEAR(std::hypot(stretch, rate / omega), 0.5 * factor, 1e-7 * factor) << h;
     }
   }
@@ -90,7 +90,7 @@ TEST(Integrator, EulersGrowAndDamp) {
 
 // A chain of 30 stiff springs under gravity, far above the limit of the explicit methods: implicit Euler brings it to
 // its equilibrium, where spring i carries all that hangs below it.
-TEST(Integrator, ImplicitEulerHasNoLimit) {
+TEST(ForceIntegrator, ImplicitEulerHasNoLimit) {
   World<double, 3> world;
   world.gravity = {{0, 0, -10}};
   const int links = 30;
@@ -106,7 +106,7 @@ TEST(Integrator, ImplicitEulerHasNoLimit) {
     above = ball.handle;
   }
   // The highest omega is 2 sqrt(k/m) = 2000: semi-implicit Euler needs steps below 1/1000.
-  FastMotion<double, 3> motion(world, {.step = 0.05, .substeps = 1, .integrator = Integrator::implicit_euler});
+  FastMotion<double, 3> motion(world, {.step = 0.05, .substeps = 1, .integrator = ForceIntegrator::implicit_euler});
   for (int i = 0; i < 400; ++i) ASSERT_EQ(motion.advance(), "") << i;
   double z = 0;
   for (int i = 0; i < links; ++i) {
@@ -116,16 +116,16 @@ TEST(Integrator, ImplicitEulerHasNoLimit) {
 }
 
 // Throws and constant forces are followed exactly, by all but explicit Euler, which is late by h a / 2.
-TEST(Integrator, FollowsParabolas) {
-  for (const Integrator integrator : {Integrator::semi_implicit_euler, Integrator::implicit_euler,
-                                      Integrator::central_difference, Integrator::explicit_euler}) {
+TEST(ForceIntegrator, FollowsParabolas) {
+  for (const ForceIntegrator integrator : {ForceIntegrator::semi_implicit_euler, ForceIntegrator::implicit_euler,
+                                           ForceIntegrator::central_difference, ForceIntegrator::explicit_euler}) {
     World<double, 2> world;
     world.gravity = {{0, -10}};
     ASSERT_TRUE(world.add({.velocity = {{1, 2}}, .mass = 2}));
     world.constant_force[0] = {{4, 0}};
     FastMotion<double, 2> motion(world, {.step = 0.1, .substeps = 1, .integrator = integrator});
     for (int i = 0; i < 10; ++i) ASSERT_EQ(motion.advance(), "");
-    const double late = integrator == Integrator::explicit_euler ? 0.1 / 2 : 0;
+    const double late = integrator == ForceIntegrator::explicit_euler ? 0.1 / 2 : 0;
     EXPECT_NEAR(world.position[0][0], 1 + 2.0 / 2 - 2 * late, 1e-7);
     EXPECT_NEAR(world.position[0][1], 2 - 10.0 / 2 + 10 * late, 1e-7);
   }
