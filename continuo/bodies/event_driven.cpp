@@ -131,16 +131,21 @@ class EventDriven final : public ExactEngine<Real, Dim> {
       Flights<Real, Dim>::advance(at, plan.acceleration, t);
       world_.position[plan.number] = at.x;
       world_.velocity[plan.number] = at.v;
-      world_.spin[plan.number] = plan.spin;
       turn_to(plan, t);
+      world_.spin[plan.number] = spin_at(plan, t);
     }
     world_.time = flights_.now = t;
   }
-  /// Its orientation, before its spin changes.
+  static S spin_at(const Plan<Real, Dim>& plan, const Real& t) {
+    return plan.spin + plan.spin_rate * (t - plan.spun_since);
+  }
+  /// Its orientation. A spin that changes evenly turns by its mean.
   void turn_to(Plan<Real, Dim>& plan, const Real& t) {
-    if (plan.spin != S{} && t > plan.spun_to)
-      world_.orientation[plan.number] = turned(world_.orientation[plan.number], plan.spin, Real(t - plan.spun_to));
+    const Real from = plan.spun_to;
     plan.spun_to = t;
+    if (!(t > from) || (plan.spin == S{} && plan.spin_rate == S{})) return;
+    auto& orientation = world_.orientation[plan.number];
+    orientation = turned(orientation, spin_at(plan, Real(from + (t - from) / 2)), Real(t - from));
   }
 
   void schedule(std::uint32_t i) {
@@ -156,11 +161,20 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     const std::uint32_t j = plan.partner;
     if (plan.crossing_time <= plan.collision_time) return cross(i);
     if (j >= first_wall && j < look_again) return hit_wall(i, j - first_wall);
+    if (plan.path_end <= flights_.now) return go_on(i);
     if (j == look_again || flights_.marks[j].collisions != plan.collisions_of_partner) {
       ++statistics.outdated;
       return predict(i);
     }
     plan.number < flights_.plans[j].number ? hit(i, j) : hit(j, i);
+  }
+
+  /// It slips no more, or rolls no more, or otherwise: on another path until the next time.
+  void go_on(std::uint32_t i) {
+    bring(i);
+    ++flights_.marks[i].collisions;
+    go_on_along(flights_, i, contact_time_);
+    predict(i);
   }
 
   void cross(std::uint32_t i) {
@@ -208,7 +222,8 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   void freeze(std::uint32_t i) {
     if (flights_.marks[i].act == Act::is_fixed) return;
     flights_.paths[i].v = flights_.plans[i].acceleration = {};
-    flights_.plans[i].spin = {};
+    flights_.plans[i].spin = flights_.plans[i].spin_rate = {};
+    flights_.plans[i].path_end = Flights<Real, Dim>::never;
     flights_.plans[i].support_count = 0;
     flights_.plans[i].rests_since = flights_.now;
     flights_.marks[i].act = Act::rests;
@@ -236,8 +251,11 @@ class EventDriven final : public ExactEngine<Real, Dim> {
 
   bool is_held(std::uint32_t i) const { return flights_.now - flights_.plans[i].last_collision < contact_time_; }
   void bring(std::uint32_t i) {
+    Plan<Real, Dim>& plan = flights_.plans[i];
     flights_.move_to_now(i);
-    turn_to(flights_.plans[i], flights_.now);
+    turn_to(plan, flights_.now);
+    plan.spin = spin_at(plan, flights_.now);
+    plan.spun_since = flights_.now;
   }
   Mover<Real, Dim> mover(std::uint32_t i) {
     Path<Real, Dim>& path = flights_.paths[i];
@@ -326,6 +344,8 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     }
     flights_.marks[i].act = Act::falls;
     plan.acceleration = world_.gravity;
+    plan.spin_rate = {};
+    plan.path_end = Flights<Real, Dim>::never;
   }
 
   BodyHandle handle_of(std::uint32_t i) const { return world_.handle(flights_.plans[i].number); }

@@ -14,7 +14,8 @@ void transfer_flight(Archive& archive, Path<Real, Dim>& path, Plan<Real, Dim>& p
   archive(plan.collision_time), archive(plan.crossing_time), archive(plan.last_collision), archive(plan.spun_to);
   archive(plan.rests_since), archive(plan.acceleration), archive(plan.cell), archive(plan.partner);
   archive(plan.collisions_of_partner), archive(plan.supports), archive(plan.support_count), archive(plan.is_large);
-  archive(plan.direction), archive(plan.axis);
+  archive(plan.direction), archive(plan.axis), archive(plan.spin_rate), archive(plan.path_end);
+  archive(plan.spin), archive(plan.spun_since);
   std::uint32_t collisions = mark.collisions;
   auto act = static_cast<std::uint8_t>(mark.act);
   archive(collisions), archive(act);
@@ -32,11 +33,15 @@ const char* fault_of_flight(const World<Real, Dim>& world, const Path<Real, Dim>
                             const Mark& mark) {
   constexpr Real never = Plan<Real, Dim>::never;
   const auto is_number = [](const Real& value) { return value - value == Real(0); };
-  if (!is_finite(path.x) || !is_finite(path.v) || !is_finite(plan.acceleration) || !is_number(path.t) ||
-      !is_number(plan.spun_to) || !is_number(plan.rests_since))
+  if (!is_finite(path.x) || !is_finite(path.v) || !is_finite(plan.acceleration) || !is_finite(plan.spin_rate) ||
+      !is_number(path.t) || !is_number(plan.spun_to) || !is_number(plan.rests_since) || !is_finite(plan.spin) ||
+      !is_number(plan.spun_since))
     return "a flight that is not finite";
-  if (!(plan.collision_time > -never) || !(plan.crossing_time > -never) || !(plan.last_collision < never))
+  if (!(plan.collision_time > -never) || !(plan.crossing_time > -never) || !(plan.last_collision < never) ||
+      !(plan.path_end > -never))
     return "an event at no time";
+  if (plan.path_end < never && (mark.act != Act::rests || plan.support_count != 1))
+    return "a path that ends in the air";
   if ((mark.act == Act::is_fixed) != world.is_fixed(plan.number)) return "a flight of a body that does not move";
   if (mark.act == Act::is_fixed && (plan.collision_time < never || plan.crossing_time < never))
     return "an event of a body that does not move";

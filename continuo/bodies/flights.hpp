@@ -71,10 +71,11 @@ struct Mark {
 template <class Real, int Dim>
 struct Plan {
   static constexpr Real never = std::numeric_limits<Real>::infinity();
-  Real collision_time = never, crossing_time = never, last_collision = -never, spun_to{}, rests_since{};
+  Real collision_time = never, crossing_time = never, last_collision = -never, spun_to{}, spun_since{}, rests_since{};
+  Real path_end = never;  // when it is accelerated otherwise, though nothing hits it: see rolling.hpp
   Real inverse_mass{}, inverse_inertia{};
   Vector<Real, Dim> acceleration{};
-  Spin<Real, Dim> spin{};
+  Spin<Real, Dim> spin{}, spin_rate{};  // at the time spun_since; the orientation is of spun_to
   Material<Real> material{};
   typename CellGrid<Real, Dim>::Cell cell{};
   std::uint32_t number = 0, partner = nobody, collisions_of_partner = 0;
@@ -127,8 +128,9 @@ class Flights {
   /// When body i crosses into another cell and whom it meets first. Brings it to the present.
   void predict(std::uint32_t i) {
     Plan<Real, Dim>& plan = plans[i];
-    plan.collision_time = plan.crossing_time = never;
-    plan.partner = nobody;
+    plan.crossing_time = never;
+    plan.collision_time = plan.path_end;
+    plan.partner = plan.path_end < never ? look_again : nobody;
     if (marks[i].act == Act::is_fixed) return;
     move_to_now(i);
     predict_crossing(i);
@@ -171,7 +173,7 @@ class Flights {
     path = {world.position[i], world.velocity[i], now, world.radius[i]};
     marks[i].act = world.is_fixed(i) ? Act::is_fixed : Act::falls;
     plan.number = i;
-    plan.spun_to = now;
+    plan.spun_to = plan.spun_since = now;
     plan.inverse_mass = world.inverse_mass[i];
     plan.inverse_inertia = world.inverse_inertia[i];
     plan.acceleration = world.is_fixed(i) ? V{} : world.gravity;

@@ -10,8 +10,24 @@
 #include <limits>
 
 #include <continuo/bodies/flights.hpp>
+#include <continuo/bodies/rolling.hpp>
 
 namespace continuo {
+
+/// Body i rests: how it goes on from here along what carries it. In a groove or a corner, on several walls, it slides.
+template <class Real, int Dim>
+void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& contact_time) {
+  using V = Vector<Real, Dim>;
+  Plan<Real, Dim>& plan = flights.plans[i];
+  if (plan.support_count != 1) return;
+  const Wall<Real, Dim>& wall = flights.world.walls()[plan.supports[0]];
+  const V& gravity = flights.world.gravity;
+  const Real press = -dot(gravity, wall.normal);
+  const V pull = gravity + wall.normal * press;
+  const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * length(gravity);
+  move_along(flights.paths[i], plan, wall.normal, combined(plan.material, wall.material),
+             length(pull) > rounding ? pull : V{}, press, flights.now, contact_time);
+}
 
 /// Lets body i rest on wall `hit`, which it has just met, and on whatever others it touches, where it would leave none
 /// of them for `contact_time`. False where it flies on.
@@ -64,6 +80,7 @@ bool rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t h
   plan.acceleration = pull;
   plan.rests_since = flights.now;
   flights.marks[i].act = Act::rests;
+  go_on_along(flights, i, contact_time);
   return true;
 }
 
