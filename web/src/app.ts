@@ -1,0 +1,250 @@
+// Puts the page together: its parts, its keys, its address.
+import { fromHash, galleryName, toHash } from "./address";
+import { ControlPanel } from "./controls/panel";
+import { icon, iconButton, make, setText } from "./dom";
+import { Editor } from "./editor/editor";
+import { openGallery } from "./gallery";
+import { headingElement } from "./heading";
+import { listenToKeys, openHelp, type Action } from "./keyboard";
+import { Messages } from "./messages";
+import { PlotPanel } from "./plots/panel";
+import { savePicture } from "./plots/export";
+import { specFromText } from "./plots/specs";
+import type { ModelMessage } from "./protocol";
+import { SceneView } from "./scene/view";
+import type { Session } from "./session";
+import { ThemeChoice } from "./theme";
+import { Transport } from "./transport";
+
+export class App {
+  readonly scene: SceneView;
+  private readonly plots: PlotPanel;
+  private readonly controls: ControlPanel;
+  private readonly editor: Editor;
+  private readonly transport: Transport;
+  private readonly theme: ThemeChoice;
+  private readonly messages: Messages;
+  private readonly heading = make("div", { class: "heading-place" });
+  private readonly modelName = make("span", { class: "model-name" });
+  private readonly root: HTMLElement;
+  private readonly actions: Action[];
+  private hashTimer = 0;
+  private hashDone = false;
+
+  constructor(
+    private readonly session: Session,
+    host: HTMLElement,
+    readonly embedded: boolean,
+  ) {
+    this.theme = new ThemeChoice((theme) => session.tell("theme", theme));
+    this.root = make("div", { class: `app ${embedded ? "embed" : ""} ${session.live ? "" : "recorded"}`, "data-tab": "controls" });
+    host.replaceChildren(this.root);
+    this.scene = new SceneView(session, this.theme.theme, () => this.remember());
+    this.plots = new PlotPanel(session, this.theme.theme);
+    this.plots.changed = () => this.remember();
+    this.controls = new ControlPanel(session);
+    this.editor = new Editor(session);
+    this.transport = new Transport(session);
+    this.messages = new Messages(session, (line, column) => {
+      this.showEditor(true);
+      this.editor.goTo(line, column);
+    });
+    this.actions = this.makeActions();
+    this.layOut();
+    this.listen();
+  }
+
+  private layOut(): void {
+    const gallery = make("button", { type: "button", class: "gallery-button", title: "Gallery (g)", "aria-keyshortcuts": "g", onclick: () => openGallery(this.session) }, icon("gallery"), this.modelName);
+    const top = make(
+      "header",
+      { class: "top" },
+      gallery,
+      this.transport.element,
+      make(
+        "div",
+        { class: "tools" },
+        iconButton("text", "The model's text", "e", () => this.toggleEditor()),
+        iconButton("picture", "Save the scene as PNG", "", () => this.saveScene()),
+        iconButton("share", "Copy the address with parameters and view", "", () => void this.share()),
+        iconButton("big", "Larger letters, for a projector", "b", () => this.toggleBig()),
+        iconButton("theme", "Light or dark", "t", () => this.theme.toggle()),
+        iconButton("help", "Help", "?", () => this.help()),
+      ),
+    );
+    const tabs = make("nav", { class: "tabs", "aria-label": "Parts of the page" });
+    for (const [tab, words] of [["controls", "Controls"], ["plots", "Plots"], ["model", "Model"]] as const) {
+      const button = make("button", { type: "button", "aria-pressed": tab === "controls" ? "true" : "false", onclick: () => {
+        this.root.dataset["tab"] = tab;
+        for (const each of tabs.children) each.setAttribute("aria-pressed", String(each === button));
+        this.plots.invalidate();
+      } }, words);
+      tabs.append(button);
+    }
+    const handle = make("div", { class: "handle", role: "separator", "aria-orientation": "horizontal", title: "Drag to share the room between scene and plots" });
+    const middle = make("main", { class: "middle" }, this.heading, this.scene.element, handle, this.plots.element);
+    this.makeHandle(handle, middle);
+    const parts = this.embedded ? [top, this.messages.element, this.scene.element] : [top, this.messages.element, this.editor.element, middle, tabs, this.controls.element];
+    this.root.append(...parts);
+  }
+
+  private makeHandle(handle: HTMLElement, middle: HTMLElement): void {
+    handle.addEventListener("pointerdown", (event) => {
+      handle.setPointerCapture(event.pointerId);
+      const move = (moved: PointerEvent): void => {
+        const box = middle.getBoundingClientRect();
+        const share = Math.min(0.85, Math.max(0.12, (box.bottom - moved.clientY) / box.height));
+        middle.style.setProperty("--plots", `${100 * share}%`);
+      };
+      handle.addEventListener("pointermove", move);
+      handle.addEventListener("pointerup", () => handle.removeEventListener("pointermove", move), { once: true });
+    });
+  }
+
+  private listen(): void {
+    const { session } = this;
+    session.on("model", (model) => this.open(model));
+    session.on("state", () => this.remember());
+    listenToKeys(this.actions, (key, shift, down) => this.controls.key(key, shift, down), () => this.scene.hand.letGo());
+    addEventListener("hashchange", () => this.applyHash());
+  }
+
+  private open(model: ModelMessage): void {
+    document.title = `${model.name} – Continuo`;
+    setText(this.modelName, this.session.live ? "Gallery" : model.name);
+    this.heading.replaceChildren(headingElement(model.name, model.heading));
+    this.root.classList.toggle("bare", model.drawing.length === 0 && !model.bodies);
+    this.root.classList.toggle("small-gallery", model.gallery.length === 0);
+    if (!this.hashDone) {
+      this.hashDone = true;
+      const wanted = fromHash(location.hash).model;
+      if (this.session.live && wanted && wanted !== galleryName(model) && model.gallery.some(({ name }) => name === wanted)) {
+        this.hashDone = false;  // the rest of the address is that model's
+        this.session.send({ do: "open", model: wanted });
+        return;
+      }
+      this.applyHash();
+    } else {
+      this.written = "";
+    }
+  }
+
+  private written = "";
+
+  /** Takes parameters, method and view from the address. */
+  private applyHash(): void {
+    const { model } = this.session;
+    if (!model || location.hash === this.written) return;
+    const shared = fromHash(location.hash);
+    if (this.session.live) {
+      for (const { name, value } of model.parameters) {
+        const wanted = shared.parameters[name];
+        if (wanted !== undefined && wanted !== value) this.session.send({ do: "set", parameter: name, value: wanted });
+      }
+      for (const { name } of model.inputs) if (shared.inputs[name] !== undefined) this.session.send({ do: "input", name, value: shared.inputs[name] });
+      const known = (name: string): boolean => model.methods.some((method) => method.name === name);
+      if (shared.method && known(shared.method.name)) this.session.send({ do: "method", ...shared.method });
+      if (shared.ghost && known(shared.ghost.name)) this.session.send({ do: "ghost", ...shared.ghost });
+      if (shared.speed !== undefined) this.session.send({ do: "speed", value: shared.speed });
+    }
+    for (const [index, text] of shared.plots.entries()) {
+      const spec = specFromText(text, model.columns, `shared${index}`);
+      if (spec && !this.plots.customPlots.includes(text)) this.plots.add(spec);
+    }
+    if (shared.view) this.scene.stage.view = shared.view;
+  }
+
+  /** Writes what the address carries, a little later: browsers limit how often. */
+  private remember(): void {
+    if (this.embedded || this.hashTimer || !this.hashDone) return;
+    this.hashTimer = window.setTimeout(() => {
+      this.hashTimer = 0;
+      const { model, state } = this.session;
+      if (!model || !this.session.live) return;
+      const hash = `#${toHash(model, state, this.scene.stage.automatic ? null : this.scene.stage.view, this.plots.customPlots)}`;
+      if (hash === this.written) return;
+      this.written = hash;
+      history.replaceState(null, "", hash === "#" ? location.pathname + location.search : hash);
+    }, 600);
+  }
+
+  private async share(): Promise<void> {
+    await navigator.clipboard?.writeText(location.href).catch(() => undefined);
+    this.session.said({ say: "message", severity: "note", code: null, text: "The address of this page is copied: it carries the parameters and the view.", hint: null, line: null, column: null });
+  }
+
+  private saveScene(): void {
+    const background = getComputedStyle(this.scene.element).backgroundColor;
+    savePicture(`${this.session.model?.name ?? "scene"}.png`, this.scene.picture(background));
+  }
+
+  private toggleEditor(): void {
+    const shown = this.root.classList.contains("editing");
+    this.showEditor(!shown);
+    if (!shown) this.editor.focus();
+  }
+
+  private showEditor(shown: boolean): void {
+    this.root.classList.toggle("editing", shown);
+    if (shown) this.root.dataset["tab"] = "model";
+    this.scene.stage.invalidate();
+  }
+
+  private toggleBig(): void {
+    document.documentElement.classList.toggle("big");
+    this.plots.restyle();
+    this.scene.stage.invalidate();
+  }
+
+  private help(): void {
+    const keys = (this.session.model?.inputs ?? []).flatMap(({ key, name }) => (key ? [{ key, words: `${name}: held to its largest value, with Shift to its smallest` }] : []));
+    openHelp(this.actions, keys);
+  }
+
+  private makeActions(): Action[] {
+    const { session } = this;
+    const send = (name: "step" | "back" | "reset" | "until_event" | "undo" | "restore") => () => session.send({ do: name });
+    const { stage, hand } = this.scene;
+    const arrow = (key: string, right: number, up: number, words: string, group: Action["group"], otherwise?: () => void): Action => ({
+      keys: [key], words, group,
+      run: () => {
+        if (hand.holdsByKey) hand.shift(0.04 * right, 0.04 * up);
+        else otherwise?.();
+      },
+    });
+    const turn = (key: string, right: number, up: number, words = ""): Action => ({ keys: [`Shift+${key}`], also: ["Shift+Arrows"], words, group: "Scene", run: () => stage.turnOrPan(right, up) });
+    return [
+      { keys: ["Space"], words: "play, pause", group: "Time", run: () => this.transport.toggle() },
+      arrow("ArrowRight", 1, 0, "one step on", "Time", send("step")),
+      arrow("ArrowLeft", -1, 0, "one step back", "Time", send("back")),
+      { keys: ["n"], words: "run until the next event", group: "Time", run: send("until_event") },
+      { keys: ["r", "Home"], words: "reset to the start", group: "Time", run: send("reset") },
+      { keys: ["["], words: "slower", group: "Time", run: () => this.transport.change(-1) },
+      { keys: ["]"], words: "faster", group: "Time", run: () => this.transport.change(1) },
+      { keys: ["f"], words: "the whole scene", group: "Scene", run: () => this.scene.fit() },
+      { keys: ["+", "="], words: "nearer", group: "Scene", run: () => stage.zoom(1.25) },
+      { keys: ["-"], words: "farther", group: "Scene", run: () => stage.zoom(0.8) },
+      turn("ArrowLeft", -0.1, 0, "move the picture; in space turn it"),
+      turn("ArrowRight", 0.1, 0),
+      turn("ArrowUp", 0, 0.1),
+      turn("ArrowDown", 0, -0.1),
+      { keys: ["d"], words: "select the next thing that can be dragged", group: "Scene", run: () => void hand.selectNext() },
+      { ...arrow("ArrowUp", 0, 1, "drag what is selected", "Scene"), also: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"] },
+      arrow("ArrowDown", 0, -1, "", "Scene"),
+      { keys: ["x"], words: "the grid", group: "Scene", run: () => {
+        this.scene.gridShown = !this.scene.gridShown;
+        stage.invalidate();
+      } },
+      { keys: ["u"], words: "undo the last change", group: "Page", run: send("undo") },
+      { keys: ["p"], words: "parameters as in the file", group: "Page", run: send("restore") },
+      { keys: ["c"], words: "to the sliders", group: "Page", run: () => this.controls.focusFirstSlider() },
+      { keys: ["m"], words: "to the choice of the method", group: "Page", run: () => this.controls.focusMethod() },
+      { keys: ["h"], words: "ghost: a second method beside the first", group: "Page", run: () => this.controls.toggleGhost() },
+      { keys: ["e"], words: "the model's text (Ctrl-Enter runs it, Esc leaves it)", group: "Page", run: () => this.toggleEditor() },
+      { keys: ["g"], words: "the gallery", group: "Page", run: () => openGallery(session) },
+      { keys: ["b"], words: "larger letters", group: "Page", run: () => this.toggleBig() },
+      { keys: ["t"], words: "light or dark", group: "Page", run: () => this.theme.toggle() },
+      { keys: ["?"], words: "this help", group: "Page", run: () => this.help() },
+    ];
+  }
+}

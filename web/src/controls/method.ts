@@ -1,0 +1,101 @@
+// The choice of a method with its step or its tolerance.
+import { make } from "../dom";
+import { formatNumber, parseNumber } from "../format";
+import type { Choice, ModelMessage } from "../protocol";
+
+export interface Chosen {
+  method: string | null;
+  numbers: { step?: number; rtol?: number };
+}
+
+export class MethodChoice {
+  readonly element = make("div", { class: "method" });
+  opened = (): void => {};
+  private readonly list: HTMLSelectElement;
+  private readonly number = make("input", { class: "number", type: "text", inputmode: "decimal", autocomplete: "off" });
+  private readonly what = make("span", { class: "name" });
+  private readonly row: HTMLElement;
+  private shown: Choice | null;
+  private busyUntil = 0;
+
+  constructor(
+    private readonly model: ModelMessage,
+    private readonly optional: boolean,
+    private readonly change: (chosen: Chosen) => void,
+  ) {
+    const { methods, experiment } = model;
+    this.shown = optional ? null : { method: experiment.method, step: experiment.step, rtol: experiment.rtol };
+    const group = (title: string, fixed: boolean): HTMLOptGroupElement =>
+      make("optgroup", { label: title }, ...methods.filter((method) => method.fixed === fixed).map(({ name, title: text }) => make("option", { value: name, title: text }, readable(name, text))));
+    this.list = make("select", { "aria-label": optional ? "Method of the ghost" : "Method" }, optional ? make("option", { value: "" }, "none") : null, group("with a fixed step", true), group("that choose their steps", false));
+    this.list.addEventListener("change", () => this.choose());
+    this.number.addEventListener("change", () => this.choose());
+    const halve = make("button", { type: "button", class: "small", title: "Half of it", "aria-label": "Half", onclick: () => this.scale(0.5) }, "÷2");
+    const double = make("button", { type: "button", class: "small", title: "Twice as much", "aria-label": "Twice", onclick: () => this.scale(2) }, "×2");
+    this.row = make("div", { class: "method-number" }, this.what, this.number, halve, double);
+    this.element.append(this.list, this.row);
+    this.display();
+  }
+
+  show(choice: Choice | null): void {
+    if (performance.now() < this.busyUntil || document.activeElement === this.number) return;
+    this.shown = choice ? { method: choice.method, step: choice.step, rtol: choice.rtol } : null;
+    this.display();
+  }
+
+  focus(): void {
+    this.list.focus();
+  }
+
+  /** A ghost comes, by the first of the two classical choices that differs from the method in use, or goes. */
+  toggle(): void {
+    this.opened();
+    const other = this.model.experiment.method === "rk4" ? "explicit_euler" : "rk4";
+    this.list.value = this.list.value === "" ? (this.model.methods.some(({ name }) => name === other) ? other : (this.model.methods[0]?.name ?? "")) : "";
+    this.choose();
+  }
+
+  private get fixed(): boolean {
+    return this.model.methods.find(({ name }) => name === this.list.value)?.fixed ?? false;
+  }
+
+  private display(): void {
+    this.list.value = this.shown?.method ?? "";
+    this.displayNumber(this.fixed ? this.shown?.step : this.shown?.rtol);
+  }
+
+  private displayNumber(value: number | null | undefined): void {
+    this.row.hidden = this.list.value === "";
+    this.what.textContent = this.fixed ? "step" : "tolerance";
+    this.number.setAttribute("aria-label", this.fixed ? "Step" : "Relative tolerance");
+    if (document.activeElement !== this.number) this.number.value = formatNumber(value ?? this.usual, 6);
+  }
+
+  private get usual(): number {
+    const { experiment } = this.model;
+    if (!this.fixed) return experiment.rtol ?? 1e-6;
+    return experiment.step ?? Number(((experiment.to - experiment.from) / 500).toPrecision(1));
+  }
+
+  private scale(factor: number): void {
+    const value = parseNumber(this.number.value);
+    if (!(value > 0)) return;
+    this.number.value = formatNumber(Number((value * factor).toPrecision(6)), 6);
+    this.choose();
+  }
+
+  private choose(): void {
+    const method = this.list.value || null;
+    const before = this.shown?.method === method;
+    const value = before ? parseNumber(this.number.value) : ((this.fixed ? this.shown?.step : this.shown?.rtol) ?? this.usual);
+    const valid = value > 0 ? value : this.usual;
+    this.shown = method ? { method, step: this.fixed ? valid : (this.shown?.step ?? null), rtol: this.fixed ? (this.shown?.rtol ?? null) : valid } : null;
+    this.displayNumber(valid);
+    this.busyUntil = performance.now() + 400;
+    this.change({ method, numbers: method ? (this.fixed ? { step: valid } : { rtol: valid }) : {} });
+    if (!this.optional || method) this.opened();
+  }
+}
+
+/** A title is a name for people where it is short; else the name itself. */
+export const readable = (name: string, title: string): string => (title && title.length <= 34 ? title : name.replaceAll("_", " "));

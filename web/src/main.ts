@@ -1,0 +1,18 @@
+import "uplot/dist/uPlot.min.css";
+import "./style/base.css";
+import "./style/layout.css";
+import "./style/parts.css";
+import "./style/small.css";
+import { App } from "./app";
+import { findRecording, Player } from "./recording";
+import { Session } from "./session";
+import { Server, socketAddress } from "./source";
+
+const recording = findRecording(document);
+const session = new Session(recording ? new Player(recording) : new Server(socketAddress(location)));
+const embedded = new URLSearchParams(location.search).has("embed");
+const app = new App(session, document.getElementById("app")!, embedded);
+session.start();
+
+/** For those who script the page from its console, and for the tests. */
+Object.assign(window, { continuo: { session, app } });

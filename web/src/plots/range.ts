@@ -1,0 +1,51 @@
+// The ranges of a plot's axes: calm while the numbers move, and never spoilt by one that is not finite.
+
+export type Range = [number, number];
+
+/** The smallest and largest finite value of a piece of an array, null where there is none. */
+export function finiteRange(values: ArrayLike<number>, begin: number, end: number): Range | null {
+  let low = Infinity;
+  let high = -Infinity;
+  for (let i = begin; i < end; ++i) {
+    const value = values[i]!;
+    if (!(Math.abs(value) < Infinity)) continue;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low <= high ? [low, high] : null;
+}
+
+/** The data's range with a margin; around a constant, a little on both sides. */
+export function padded([low, high]: Range, margin = 0.06): Range {
+  const span = high - low;
+  if (span > 1e-9 * Math.max(Math.abs(low), Math.abs(high))) return [low - margin * span, high + margin * span];
+  const around = Math.abs(high) > 0 ? 0.1 * Math.abs(high) : 1;
+  return [low - around, high + around];
+}
+
+/** Grows at once, shrinks only when the data fill less than a third. */
+export function calm(before: Range | null, data: Range): Range {
+  const wanted = padded(data);
+  if (!before) return wanted;
+  const span = before[1] - before[0];
+  if (data[0] >= before[0] && data[1] <= before[1] && wanted[1] - wanted[0] > 0.35 * span) return before;
+  if (wanted[1] - wanted[0] <= 0.35 * span) return wanted;
+  return [data[0] < before[0] ? wanted[0] : before[0], data[1] > before[1] ? wanted[1] : before[1]];
+}
+
+/** The window of time: from the start while the run is shorter than the window, following its newest rows afterwards. */
+export function timeWindow(first: number, last: number, length: number): Range {
+  if (!Number.isFinite(first) || !Number.isFinite(last)) return [0, Number.isFinite(length) ? length : 1];
+  if (!Number.isFinite(length)) return last > first ? [first, last] : [first, first + 1];
+  return last - first <= length ? [first, first + length] : [last - length, last];
+}
+
+/** Both ranges widened so that a unit is as long on both axes of a plot of the given size. */
+export function equalScales(x: Range, y: Range, width: number, height: number): [Range, Range] {
+  const unit = Math.max((x[1] - x[0]) / width, (y[1] - y[0]) / height);
+  const around = ([low, high]: Range, size: number): Range => {
+    const middle = (low + high) / 2;
+    return [middle - (unit * size) / 2, middle + (unit * size) / 2];
+  };
+  return [around(x, width), around(y, height)];
+}

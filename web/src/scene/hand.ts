@@ -1,0 +1,172 @@
+// The hand in the scene: finds what is under the pointer, drags what may be dragged, picks what is clicked.
+import * as three from "three";
+import type { Session } from "../session";
+import { numberOf, pointOf } from "./fit";
+import { pickSphere } from "./spheres";
+import type { Stage } from "./stage";
+
+/** An item of the drawing or a body of the world. */
+export interface Thing {
+  kind: "item" | "body";
+  index: number;
+}
+
+export interface Surroundings {
+  session: Session;
+  stage: Stage;
+  /** The positions of all bodies, three numbers each. */
+  bodies(): { places: ArrayLike<number>; radius: (index: number) => number } | null;
+  select(thing: Thing | null): void;
+}
+
+const nearPixels = 10;
+
+export class Hand {
+  private held: { thing: Thing; through: three.Vector3; offset: three.Vector3; moved: boolean; id: number; x: number; y: number } | null = null;
+  private next: number[] | null = null;
+  private queued = 0;
+  private selected: Thing | null = null;
+  private nudge: [number, number, number] | null = null;
+
+  constructor(private readonly around: Surroundings) {
+    const { canvas } = around.stage;
+    canvas.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    for (const name of ["pointerup", "pointercancel"] as const) canvas.addEventListener(name, (event) => this.up(event));
+  }
+
+  /** The next thing that may be dragged, for those who use keys. */
+  selectNext(): Thing | null {
+    const drawing = this.around.session.model?.drawing ?? [];
+    const places = drawing.flatMap((item, index) => (item.drag ? [index] : []));
+    if (places.length === 0) return null;
+    const now = this.selected?.kind === "item" ? places.indexOf(this.selected.index) : -1;
+    this.selected = now + 1 < places.length ? { kind: "item", index: places[now + 1]! } : null;
+    this.around.select(this.selected);
+    return this.selected;
+  }
+
+  get holdsByKey(): boolean {
+    return this.selected?.kind === "item" && (this.around.session.model?.drawing[this.selected.index]?.drag ?? false);
+  }
+
+  /** Drags the selected thing by parts of the picture. */
+  shift(right: number, up: number): void {
+    const { session, stage } = this.around;
+    if (!this.selected || !session.model || !session.frame) return;
+    this.nudge ??= pointOf(session.model.drawing[this.selected.index]!, session.frame.scene, "at");
+    this.nudge[0] += right * stage.seenHeight;
+    this.nudge[1] += up * stage.seenHeight;
+    session.send({ do: "drag", item: this.selected.index, to: this.nudge.slice(0, session.model.dimension) });
+  }
+
+  letGo(): void {
+    if (!this.nudge) return;
+    this.nudge = null;
+    this.around.session.send({ do: "release" });
+  }
+
+  /** A new model has other things. */
+  forget(): void {
+    this.held = null;
+    this.selected = null;
+    this.nudge = null;
+    this.around.stage.movable = true;
+  }
+
+  private place(event: PointerEvent): [number, number] {
+    const box = this.around.stage.canvas.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  private find(x: number, y: number): { thing: Thing; at: three.Vector3; drag: boolean } | null {
+    const { session, stage } = this.around;
+    const { model, frame } = session;
+    if (!model || !frame) return null;
+    const ray = stage.ray(x, y);
+    const pixel = stage.seenHeight / stage.height;
+    const eye = stage.camera.position.distanceTo(stage.target) || 1;
+    const least = (distance: number): number => nearPixels * pixel * (stage.isFlat ? 1 : distance / eye);
+    const candidates = model.drawing.flatMap((item, index) => (item.shape === "ball" || item.shape === "box" || item.drag ? [index] : []));
+    const places = new Float64Array(3 * candidates.length);
+    candidates.forEach((item, i) => places.set(pointOf(model.drawing[item]!, frame.scene, "at"), 3 * i));
+    const sizeOf = (i: number): number => {
+      const item = model.drawing[candidates[i]!]!;
+      if (item.shape === "box") return Math.max(numberOf(item, frame.scene, "size", 1, 0), numberOf(item, frame.scene, "size", 1, 1)) / 2;
+      return Math.max(Math.abs(numberOf(item, frame.scene, "radius", 0)), item.drag ? 1.6 * least(eye) : 0);
+    };
+    const origin = ray.origin.toArray();
+    const direction = ray.direction.toArray();
+    const item = pickSphere(places, sizeOf, origin, direction, least);
+    if (item >= 0) {
+      const index = candidates[item]!;
+      return { thing: { kind: "item", index }, at: new three.Vector3(...pointOf(model.drawing[index]!, frame.scene, "at")), drag: model.drawing[index]!.drag };
+    }
+    const bodies = this.around.bodies();
+    const body = bodies ? pickSphere(bodies.places, bodies.radius, origin, direction, (distance) => least(distance) / 3) : -1;
+    if (!bodies || body < 0) return null;
+    return { thing: { kind: "body", index: body }, at: new three.Vector3(bodies.places[3 * body], bodies.places[3 * body + 1], bodies.places[3 * body + 2]), drag: true };
+  }
+
+  private down(event: PointerEvent): void {
+    const { session, stage } = this.around;
+    if (event.button !== 0 || !event.isPrimary) return;
+    const [x, y] = this.place(event);
+    const found = this.find(x, y);
+    stage.movable = !(found?.drag && session.live);
+    if (!found) {
+      if (this.selected) this.around.select((this.selected = null));
+      return;
+    }
+    const point = stage.onPlane(x, y, found.at) ?? found.at.clone();
+    this.held = { thing: found.thing, through: found.at, offset: found.at.clone().sub(point), moved: false, id: event.pointerId, x, y };
+    if (found.drag && session.live) stage.canvas.setPointerCapture(event.pointerId);
+  }
+
+  private move(event: PointerEvent): void {
+    const { stage } = this.around;
+    const [x, y] = this.place(event);
+    const held = this.held;
+    if (!held) {
+      if (event.pointerType === "mouse" && event.buttons === 0) stage.canvas.style.cursor = this.find(x, y)?.drag ? "grab" : "";
+      return;
+    }
+    if (event.pointerId !== held.id) return;
+    if (!held.moved && Math.hypot(x - held.x, y - held.y) < 4) return;
+    held.moved = true;
+    if (!stage.canvas.hasPointerCapture(held.id)) return;
+    stage.canvas.style.cursor = "grabbing";
+    const point = stage.onPlane(x, y, held.through);
+    if (!point) return;
+    this.next = point.add(held.offset).toArray().slice(0, stage.isFlat ? 2 : 3);
+    this.queued ||= requestAnimationFrame(() => this.send());
+  }
+
+  private send(): void {
+    this.queued = 0;
+    if (!this.held || !this.next) return;
+    const { kind, index } = this.held.thing;
+    this.around.session.send(kind === "item" ? { do: "drag", item: index, to: this.next } : { do: "drag", body: index, to: this.next });
+    this.next = null;
+  }
+
+  private up(event: PointerEvent): void {
+    const held = this.held;
+    const { session, stage } = this.around;
+    if (!held || event.pointerId !== held.id) return;
+    if (this.queued) {
+      cancelAnimationFrame(this.queued);
+      this.send();
+    }
+    this.held = null;
+    if (held.moved) {
+      if (stage.canvas.hasPointerCapture(held.id)) session.send({ do: "release" });
+    } else {
+      this.selected = held.thing;
+      if (held.thing.kind === "body") session.send({ do: "pick", body: held.thing.index });
+      this.around.select(held.thing);
+    }
+    stage.movable = true;
+    stage.canvas.style.cursor = "";
+  }
+}

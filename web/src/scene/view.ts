@@ -1,0 +1,237 @@
+// The scene of the page: joins the stage, the drawing, the bodies and the labels with the session.
+import { make, setText } from "../dom";
+import { formatNumber } from "../format";
+import type { Theme } from "../palette";
+import type { Frame, ModelMessage } from "../protocol";
+import type { Session } from "../session";
+import { BodiesView, radiusOf } from "./bodies";
+import { Drawing, itemColors } from "./drawing";
+import { boundsOfBodies, boundsOfItems, Interest, numberOf, pointOf, union } from "./fit";
+import { drawGrid } from "./grid";
+import { Hand, type Thing } from "./hand";
+import { Labels } from "./labels";
+import { Stage } from "./stage";
+
+export class SceneView {
+  readonly element: HTMLElement;
+  readonly stage: Stage;
+  readonly hand: Hand;
+  gridShown = true;
+  private readonly grid = make("canvas", { class: "grid", "aria-hidden": "true" });
+  private readonly labels = new Labels();
+  private readonly card = make("div", { class: "card", role: "status", hidden: true });
+  private drawing: Drawing | null = null;
+  private ghost: Drawing | null = null;
+  private bodies: BodiesView | null = null;
+  private ghostTrails: Drawing["trails"] = [];
+  private interest = new Interest(false);
+  private selected: Thing | null = null;
+  private firstFrame = true;
+  private theme: Theme;
+  private lastPicture = 0;
+
+  constructor(
+    private readonly session: Session,
+    theme: Theme,
+    moved: () => void,
+  ) {
+    this.theme = theme;
+    this.element = make("div", { class: "scene", tabindex: 0, "aria-label": "Scene" });
+    this.element.append(this.grid);
+    this.stage = new Stage(this.element, () => this.beforeDrawing(), moved);
+    this.stage.canvas.setAttribute("role", "img");
+    this.element.append(this.stage.canvas, this.labels.element, this.card);
+    this.hand = new Hand({
+      session,
+      stage: this.stage,
+      bodies: () => (this.bodies ? { places: this.bodies.spheres.places, radius: radiusOf(this.bodies.bodies) } : null),
+      select: (thing) => this.select(thing),
+    });
+    this.stage.canvas.addEventListener("dblclick", () => this.fit());
+    session.on("model", (model) => this.open(model));
+    session.on("frame", (frame) => this.show(frame));
+    session.on("rewound", (t) => this.forgetFrom(t));
+    session.on("values", ({ values }) => this.tellBody(values));
+    session.on("theme", (now) => {
+      this.theme = now;
+      if (session.model) this.build(session.model);
+      if (session.frame) this.show(session.frame);
+    });
+    session.on("state", (state) => {
+      if (!state.ghost && this.ghost) this.dropGhost();
+    });
+  }
+
+  /** Whether there is anything to show. */
+  get empty(): boolean {
+    const model = this.session.model;
+    return !model || (model.drawing.length === 0 && !model.bodies);
+  }
+
+  fit(): void {
+    this.stage.automatic = true;
+    this.stage.invalidate();
+  }
+
+  /** The scene as it stands, with its grid, as an image. */
+  picture(background: string): HTMLCanvasElement {
+    const { canvas } = this.stage;
+    this.stage.draw();
+    const whole = make("canvas", { width: canvas.width, height: canvas.height });
+    const context = whole.getContext("2d")!;
+    context.fillStyle = background;
+    context.fillRect(0, 0, whole.width, whole.height);
+    if (this.stage.isFlat && this.gridShown) context.drawImage(this.grid, 0, 0, whole.width, whole.height);
+    context.drawImage(canvas, 0, 0);
+    return whole;
+  }
+
+  private open(model: ModelMessage): void {
+    this.stage.setDimension(model.dimension);
+    this.stage.canvas.setAttribute("aria-label", `Moving picture of ${model.name}`);
+    this.interest = new Interest(!model.bodies && !model.drawing.some((item) => item.shape === "trail"));
+    this.firstFrame = true;
+    this.hand.forget();
+    this.select(null);
+    this.clear();
+    this.build(model);
+  }
+
+  private clear(): void {
+    for (const part of [this.drawing, this.ghost, this.bodies]) {
+      if (!part) continue;
+      this.stage.scene.remove(part.group);
+      part.dispose();
+    }
+    this.drawing = this.ghost = this.bodies = null;
+    this.ghostTrails = [];
+  }
+
+  private build(model: ModelMessage): void {
+    const trails = this.drawing?.trails ?? [];
+    const ghostTrails = this.ghost?.trails ?? [];
+    this.clear();
+    this.ghostTrails = ghostTrails;
+    this.drawing = new Drawing(model.drawing, this.theme, this.stage.isFlat, false, trails);
+    this.stage.scene.add(this.drawing.group);
+    this.labels.build(model.drawing, itemColors(model.drawing, this.theme));
+  }
+
+  private dropGhost(): void {
+    if (!this.ghost) return;
+    this.stage.scene.remove(this.ghost.group);
+    this.ghost.dispose();
+    this.ghost = null;
+    this.ghostTrails = [];
+    this.stage.invalidate();
+  }
+
+  private forgetFrom(t: number): void {
+    this.drawing?.forgetFrom(t);
+    this.ghost?.forgetFrom(t);
+  }
+
+  private show(frame: Frame): void {
+    const model = this.session.model;
+    if (!model || !this.drawing) return;
+    const bounds = boundsOfItems(model.drawing, frame.scene, this.stage.isFlat ? 1 : 2);
+    if (frame.positions && model.bodies) {
+      this.showBodies(model.bodies, frame.positions, frame.orientations);
+      union(bounds, boundsOfBodies(frame.positions, model.bodies.dimension, radiusOf(model.bodies)));
+      if (model.bodies.containers.length > 0) this.bodies?.includeContainers(bounds);
+    }
+    this.interest.see(bounds);
+    if (this.firstFrame && this.stage.automatic) this.stage.approach(this.interest.wanted(), 1);
+    this.firstFrame = false;
+    const size = this.stage.seenHeight;
+    this.drawing.update(frame.scene, frame.t, size);
+    if (frame.ghostScene) {
+      if (!this.ghost) {
+        this.ghost = new Drawing(model.drawing, this.theme, this.stage.isFlat, true, this.ghostTrails);
+        this.stage.scene.add(this.ghost.group);
+      }
+      this.ghost.update(frame.ghostScene, frame.t, size);
+    }
+    if (this.selected) this.tellItem();
+    this.stage.invalidate();
+  }
+
+  private showBodies(bodies: NonNullable<ModelMessage["bodies"]>, positions: Float32Array, orientations: Float32Array | null): void {
+    const count = positions.length / bodies.dimension;
+    if (!this.bodies || this.bodies.spheres.count !== count) {
+      if (this.bodies) {
+        this.stage.scene.remove(this.bodies.group);
+        this.bodies.dispose();
+      }
+      const seen = boundsOfBodies(positions, bodies.dimension, radiusOf(bodies));
+      const size = Math.max(1, ...[0, 1, 2].map((axis) => seen.upper[axis]! - seen.lower[axis]!).filter(Number.isFinite));
+      this.bodies = new BodiesView({ ...bodies, count }, this.theme, false, size);
+      this.stage.scene.add(this.bodies.group);
+    }
+    this.bodies.update(positions, orientations);
+  }
+
+  /** Just before a picture: camera, grid and labels take their places. */
+  private beforeDrawing(): void {
+    const now = performance.now();
+    const passed = Math.min(0.1, (now - this.lastPicture) / 1000);
+    this.lastPicture = now;
+    if (this.stage.automatic && this.stage.approach(this.interest.wanted(), 1 - Math.exp(-8 * passed), this.interest.following)) {
+      requestAnimationFrame(() => this.stage.invalidate());
+    }
+    const { model, frame } = this.session;
+    if (!model || !frame) return;
+    const pixelsPerUnit = this.stage.height / this.stage.seenHeight;
+    this.labels.update(frame.scene, (point) => this.stage.project(point), pixelsPerUnit);
+    this.grid.hidden = !this.stage.isFlat || !this.gridShown;
+    if (this.grid.hidden) return;
+    const style = getComputedStyle(this.element);
+    const color = (name: string): string => style.getPropertyValue(name).trim();
+    const floors = model.drawing
+      .filter((item) => item.shape === "floor")
+      .map((item) => ({ height: numberOf(item, frame.scene, "at", 0), color: item.color ?? null }));
+    const { x, y } = this.stage.target;
+    const height = this.stage.seenHeight;
+    drawGrid(this.grid, { centre: [x, y], height, width: (height * this.stage.width) / this.stage.height }, floors, {
+      line: color("--grid"), axis: color("--grid-axis"), text: color("--muted"), floor: color("--floor"), floorLine: color("--floor-line"),
+    });
+  }
+
+  private select(thing: Thing | null): void {
+    this.selected = thing;
+    this.card.hidden = thing === null;
+    if (!thing) return;
+    this.card.replaceChildren();
+    if (thing.kind === "item") this.tellItem();
+    else this.card.append(make("b", {}, `Body ${thing.index + 1}`));
+  }
+
+  private tellItem(): void {
+    const { model, frame } = this.session;
+    if (!model || !frame || this.selected?.kind !== "item") return;
+    const item = model.drawing[this.selected.index];
+    if (!item) return;
+    const point = pointOf(item, frame.scene, "at").slice(0, model.dimension).map((number) => formatNumber(number, 4));
+    const words = `${item.label ?? item.shape} at (${point.join(", ")})${item.drag ? " · drag it, or move it with the arrow keys" : ""}`;
+    setText(this.card, words);
+  }
+
+  private tellBody(values: Record<string, number>): void {
+    if (this.selected?.kind !== "body") return;
+    const rows = Object.entries(values).map(([name, value]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, formatNumber(value, 5))));
+    this.card.replaceChildren(make("b", {}, `Body ${this.selected.index + 1}`), make("table", {}, make("tbody", {}, ...rows)));
+  }
+
+  /** Pictures drawn so far: tests and the measurement of the rate read it. */
+  get drawn(): number {
+    return this.stage.drawn;
+  }
+
+  /** Where a point of the model is on the page. */
+  onPage(point: [number, number, number]): { x: number; y: number } {
+    const box = this.stage.canvas.getBoundingClientRect();
+    const { x, y } = this.stage.project(point);
+    return { x: box.left + x, y: box.top + y };
+  }
+
+}

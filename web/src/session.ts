@@ -1,0 +1,140 @@
+// What the page knows of the run, and who wants to hear of changes. The one place that messages pass through.
+import { History } from "./history";
+import type { Command, Diagnostic, EventMessage, Frame, ModelMessage, Say, SolverMessage, StateMessage } from "./protocol";
+import type { Link, Listener, Source } from "./source";
+
+export interface Changes {
+  link: Link;
+  model: ModelMessage;
+  state: StateMessage;
+  frame: Frame;
+  event: EventMessage;
+  message: SolverMessage;
+  checked: { id: number; diagnostics: Diagnostic[] };
+  saved: string;
+  values: { t: number; values: Record<string, number> };
+  cursor: number | null;
+  rewound: number;
+  theme: "light" | "dark";
+}
+
+type Handlers = { [Name in keyof Changes]: ((what: Changes[Name]) => void)[] };
+
+export class Session implements Listener {
+  model: ModelMessage | null = null;
+  state: StateMessage | null = null;
+  frame: Frame | null = null;
+  history = new History(0);
+  events: EventMessage[] = [];
+  /** Where the pointer is in a plot: every view shows this instant. */
+  cursor: number | null = null;
+  private readonly handlers: Handlers = {
+    link: [], model: [], state: [], frame: [], event: [], message: [], checked: [], saved: [], values: [], cursor: [], rewound: [], theme: [],
+  };
+
+  private run = -1;
+
+  constructor(private readonly source: Source) {}
+
+  get live(): boolean {
+    return this.source.live;
+  }
+
+  on<Name extends keyof Changes>(name: Name, handler: (what: Changes[Name]) => void): void {
+    this.handlers[name].push(handler);
+  }
+
+  tell<Name extends keyof Changes>(name: Name, what: Changes[Name]): void {
+    for (const handler of this.handlers[name]) handler(what);
+  }
+
+  start(): void {
+    this.source.start(this);
+  }
+
+  send(command: Command): void {
+    this.source.send(command);
+  }
+
+  /** The instant that is shown: under the pointer, else that of the picture. */
+  get shownTime(): number {
+    return this.cursor ?? this.frame?.t ?? this.state?.t ?? 0;
+  }
+
+  setCursor(t: number | null): void {
+    if (t === this.cursor) return;
+    this.cursor = t;
+    this.tell("cursor", t);
+  }
+
+  linked(link: Link): void {
+    this.tell("link", link);
+  }
+
+  said(message: Say): void {
+    switch (message.say) {
+      case "model": {
+        const same = this.model !== null && sameModel(this.model, message);
+        this.model = message;
+        this.beginAnew(message.run);
+        if (!same) {
+          this.frame = null;
+          this.cursor = null;
+          this.tell("model", message);
+        }
+        break;
+      }
+      case "state":
+        if (this.state?.ghost && !message.ghost) this.history.forgetGhost();
+        this.state = message;
+        this.tell("state", message);
+        break;
+      case "event":
+        this.events.push(message);
+        if (this.events.length > 5000) this.events.splice(0, 1000);
+        this.tell("event", message);
+        break;
+      case "message":
+        this.tell("message", message);
+        break;
+      case "checked":
+        this.tell("checked", message);
+        break;
+      case "saved":
+        this.tell("saved", message.path);
+        break;
+      case "values":
+        this.tell("values", message);
+        break;
+      case "pong":
+        break;
+    }
+  }
+
+  arrived(frame: Frame): void {
+    if (frame.run !== this.run) this.beginAnew(frame.run);
+    if (frame.rewound) {
+      const from = frame.rowTimes[0] ?? frame.t;
+      this.events = this.events.filter((event) => event.t < from);
+      this.tell("rewound", from);
+    }
+    this.history.append(frame);
+    this.frame = frame;
+    this.tell("frame", frame);
+  }
+
+  /** The same model from its start again. */
+  private beginAnew(run: number): void {
+    this.run = run;
+    this.history = new History(this.model?.columns.length ?? 0);
+    this.events = [];
+    this.tell("rewound", -Infinity);
+  }
+}
+
+/** Whether a page built for one model serves the other: then only the run is another. */
+function sameModel(a: ModelMessage, b: ModelMessage): boolean {
+  const essence = ({ run, undo, gallery, parameters, inputs, ...rest }: ModelMessage): string =>
+    JSON.stringify([rest, parameters.map(({ value, ...each }) => each), inputs.map(({ value, ...each }) => each)]);
+  return essence(a) === essence(b);
+}

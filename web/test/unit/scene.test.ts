@@ -1,0 +1,84 @@
+import { expect, test } from "vitest";
+import { spring, springPoints, rope, ropePoints, Trail } from "../../src/scene/curves";
+import { boundsOfItems, gridStep, heightFor, Interest } from "../../src/scene/fit";
+import { pickSphere } from "../../src/scene/spheres";
+import { itemColors } from "../../src/scene/drawing";
+import { curveColors } from "../../src/palette";
+import type { Item } from "../../src/protocol";
+
+const item = (shape: Item["shape"], numbers: Item["numbers"]): Item => ({ shape, numbers, drag: false });
+
+test("the bounds hold balls with their radius, boxes, both ends of springs, and the floor", () => {
+  const items = [item("floor", { at: [0] }), item("ball", { at: [1, 2], radius: 3 }), item("spring", { at: [4, 0], to: [1, 2] })];
+  const bounds = boundsOfItems(items, Float32Array.of(0, 5, 10, 1, -7));
+  expect(bounds.lower.slice(0, 2)).toEqual([-7, 0]);
+  expect(bounds.upper.slice(0, 2)).toEqual([6, 11]);
+});
+
+test("what is not finite is left out of the picture", () => {
+  const bounds = boundsOfItems([item("ball", { at: [0, 1] }), item("ball", { at: [2, 3] })], Float32Array.of(1, 2, Infinity, NaN));
+  expect(bounds.lower.slice(0, 2)).toEqual([1, 2]);
+  expect(heightFor(bounds, 1)).toBe(1);
+});
+
+test("a car on its road is followed, a planet on its orbit is shown whole", () => {
+  const at = (x: number) => boundsOfItems([item("box", { at: [0, 1] })], Float32Array.of(x, 0));
+  const car = new Interest(true);
+  const planet = new Interest(false);
+  for (let x = 0; x <= 100; ++x) for (const interest of [car, planet]) interest.see(at(x));
+  expect(car.wanted().lower[0]).toBeGreaterThan(90);
+  expect(planet.wanted().lower[0]).toBeLessThan(0);
+});
+
+test("springs and ropes begin and end where they are fixed", () => {
+  for (const flat of [true, false]) {
+    const coil = new Float32Array(3 * springPoints(9));
+    spring(coil, [1, 2, 0], [4, 6, 0], 9, 0.5, flat);
+    expect([...coil.slice(0, 3)]).toEqual([1, 2, 0]);
+    expect([...coil.slice(-3)]).toEqual([4, 6, 0]);
+    expect(coil.every(Number.isFinite)).toBe(true);
+  }
+  const line = new Float32Array(3 * ropePoints);
+  rope(line, [0, 0, 0], [2, 0, 0], 1, [0, -1, 0]);
+  expect(line.filter((_, i) => i % 3 === 1).every((y) => y === 0)).toBe(true);  // taut
+  rope(line, [0, 0, 0], [2, 0, 0], 2.2, [0, -1, 0]);
+  let length = 0;
+  for (let i = 3; i < line.length; i += 3) length += Math.hypot(line[i]! - line[i - 3]!, line[i + 1]! - line[i - 2]!);
+  expect(Math.abs(length - 2.2)).toBeLessThan(0.03);  // the next term of the parabola's length is -32/5*s^4/c^3 = -0.018
+});
+
+test("a trail shows the time asked for, forgets what is taken back, and stays bounded", () => {
+  const trail = new Trail(100);
+  for (let i = 0; i <= 1000; ++i) trail.add(i, [i, 0, 0]);
+  expect(trail.times.length).toBeLessThanOrEqual(100);
+  expect(trail.times.at(-1)).toBe(1000);
+  trail.forgetFrom(990);
+  expect(trail.times.at(-1)!).toBeLessThan(990);
+  const [begin, end] = trail.range(980, 10);
+  for (let i = begin; i < end; ++i) expect(trail.times[i]! >= 970 && trail.times[i]! <= 980).toBe(true);
+});
+
+test("the front sphere is picked, a near miss counts only where nothing is hit", () => {
+  const places = [0, 0, 0, 0, 0, 5, 3, 0, 0];
+  const pick = (x: number, reach: number) => pickSphere(places, () => 1, [x, 0, 20], [0, 0, -1], () => reach);
+  expect(pick(0, 0)).toBe(1);
+  expect(pick(3.5, 0)).toBe(2);
+  expect(pick(4.5, 0)).toBe(-1);
+  expect(pick(4.5, 2)).toBe(2);
+});
+
+test("grid lines stand at 1, 2 or 5 times a power of ten", () => {
+  expect(gridStep(10, 5)).toBe(2);
+  expect(gridStep(0.7, 7)).toBeCloseTo(0.1, 12);
+  expect(gridStep(4.9e6, 10)).toBe(5e5);
+  expect(gridStep(0, 5)).toBe(1);
+});
+
+test("a few balls have colours of their own, many have one, a trail has its ball's", () => {
+  const balls = (count: number) => Array.from({ length: count }, (_, i) => item("ball", { at: [2 * i, 2 * i + 1] }));
+  expect(new Set(itemColors(balls(3), "light")).size).toBe(3);
+  expect(new Set(itemColors(balls(40), "light")).size).toBe(1);
+  const [, second, trail] = itemColors([...balls(2), item("trail", { at: [2, 3] })], "dark");
+  expect(trail).toBe(second);
+  expect(curveColors.dark).toContain(second);
+});
