@@ -13,6 +13,8 @@
 
 #include <continuo/model/check_derivatives.hpp>
 #include <continuo/model/diagnostic.hpp>
+#include <continuo/model/simulate.hpp>
+#include <continuo/model/world.hpp>
 #include <continuo/results/derivatives.hpp>
 
 namespace continuo::app {
@@ -28,6 +30,15 @@ std::string counted(std::size_t count, std::string_view noun) {
 }
 
 void print_verdict(const std::string& path, const model::Model& model) {
+  if (model.has_world()) {
+    const std::size_t bodies = model.world->bodies.size();
+    const std::size_t states = model.world->first_measure - model.world->body_states();
+    print(fmt::format(
+        "{}: in order; {}, {}, {}, {}, {}\n", path, bodies == 1 ? "1 body" : fmt::format("{} bodies", bodies),
+        counted(states, "state"), counted(model.parameters.size(), "parameter"),
+        counted(model.events.size() + model.schedule.size(), "event"), counted(model.checks.size(), "check")));
+    return;
+  }
   print(fmt::format("{}: in order; {}, {}, {}, {}\n", path, counted(model.states.size(), "state"),
                     counted(model.parameters.size(), "parameter"),
                     counted(model.events.size() + model.schedule.size(), "event"),
@@ -37,6 +48,11 @@ void print_verdict(const std::string& path, const model::Model& model) {
 /// What --jacobian adds to the verdict.
 ExitCode compare_derivatives(const CheckRequest& request, const model::Loaded& loaded) {
   std::vector<model::Diagnostic> problems;
+  if (loaded.model->has_world()) {
+    fmt::print(stderr, "{}",
+               model::render(model::no_study_of_worlds(*loaded.model), loaded.source, {.color = colors_wanted()}));
+    return wrong_model;
+  }
   const auto report =
       model::check_derivatives(model::compile(*loaded.model), {.interrupt = &interrupt_flag()}, problems);
   if (request.json) {

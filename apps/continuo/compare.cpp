@@ -89,7 +89,7 @@ ExitCode exit_of(const Comparison& comparison) {
 
 ExitCode compare(const CompareOptions& options) {
   if (!drawable(options.plot)) return usage;
-  Prepared prepared = prepare(options.experiment);
+  Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   const Comparison comparison = studies::compare(prepared.program, {.methods = options.methods,
                                                                     .steps = options.steps,

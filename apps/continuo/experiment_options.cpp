@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <utility>
 
@@ -131,11 +132,16 @@ void show(std::span<const model::Diagnostic> diagnostics, const model::Source& s
   if (!diagnostics.empty()) fmt::print(stderr, "{}", model::render(diagnostics, source, {.color = colors_wanted()}));
 }
 
-Prepared prepare(const ExperimentOptions& options) {
+Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
   if (!readable(options.file))
     return {.exit = usage, .loaded = {model::Source("", ""), {}, {}}, .program = {}, .experiment = {}};
   Prepared prepared{.exit = done, .loaded = load_model(options.file), .program = {}, .experiment = {}};
   if (!prepared.loaded) {
+    prepared.exit = wrong_model;
+    return prepared;
+  }
+  if (worlds == Worlds::refused && prepared.loaded.model->has_world()) {
+    show(std::array{model::no_study_of_worlds(*prepared.loaded.model)}, prepared.loaded.source);
     prepared.exit = wrong_model;
     return prepared;
   }

@@ -49,7 +49,9 @@ struct Prepared {
   std::shared_ptr<const model::ModelProgram> program;
   model::Experiment experiment;
 };
-Prepared prepare(const ExperimentOptions& options);
+/// Verbs that study equations refuse a world of bodies.
+enum class Worlds { refused, welcome };
+Prepared prepare(const ExperimentOptions& options, Worlds worlds = Worlds::refused);
 
 /// "spring.sim:3": where something of the model stands.
 std::string place_text(const Prepared& prepared, const model::Span& span);

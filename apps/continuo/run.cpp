@@ -96,7 +96,7 @@ bool all_can_be_written(const RunRequest& request) {
 
 ExitCode run(const RunRequest& request) {
   if (!all_can_be_written(request)) return usage;
-  Prepared prepared = prepare(request.experiment);
+  Prepared prepared = prepare(request.experiment, Worlds::welcome);
   const model::Source& source = prepared.loaded.source;
   if (prepared.exit != done) {
     if (request.json) print_no_run(prepared.loaded.diagnostics, source);

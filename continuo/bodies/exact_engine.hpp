@@ -28,6 +28,7 @@ std::unique_ptr<ExactEngine<Real, Dim>> event_driven(World<Real, Dim>& world, co
 
 /// From contact to contact on whatever paths forces make, by an error-controlled method: forced_flight.cpp.
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> forced_flight(World<Real, Dim>& world, const ExactOptions<Real>& options);
+std::unique_ptr<ExactEngine<Real, Dim>> forced_flight(World<Real, Dim>& world, const ExactOptions<Real>& options,
+                                                      Companions<Real, Dim>* companions);
 
 }  // namespace continuo

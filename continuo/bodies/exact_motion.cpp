@@ -6,18 +6,21 @@
 
 namespace continuo {
 
-namespace {
-
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> engine_for(World<Real, Dim>& world, const ExactOptions<Real>& options) {
-  return only_gravity(world) ? event_driven(world, options) : forced_flight(world, options);
+std::unique_ptr<ExactEngine<Real, Dim>> ExactMotion<Real, Dim>::engine_for_world() const {
+  if (!companions_ && only_gravity(*world_)) return event_driven(*world_, options_);
+  return forced_flight(*world_, options_, companions_);
 }
-
-}  // namespace
 
 template <class Real, int Dim>
 ExactMotion<Real, Dim>::ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options)
     : world_(&world), options_(options) {
+  refresh();
+}
+template <class Real, int Dim>
+ExactMotion<Real, Dim>::ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options,
+                                    Companions<Real, Dim>& companions)
+    : world_(&world), companions_(&companions), options_(options) {
   refresh();
 }
 template <class Real, int Dim>
@@ -39,7 +42,7 @@ template <class Real, int Dim>
 void ExactMotion<Real, Dim>::refresh() {
   const ExactStatistics so_far = engine_ ? engine_->statistics : ExactStatistics{};
   was_parabolic_ = only_gravity(*world_);
-  engine_ = engine_for(*world_, options_);
+  engine_ = engine_for_world();
   engine_->statistics = so_far;
 }
 template <class Real, int Dim>
@@ -65,7 +68,7 @@ template <class Real, int Dim>
 void ExactMotion<Real, Dim>::load(ByteReader& reader) {
   ExactStatistics statistics;
   reader(statistics);
-  auto engine = engine_for(*world_, options_);
+  auto engine = engine_for_world();
   engine->load(reader);
   reader.expect_end();
   if (!reader.ok()) return;

@@ -22,11 +22,13 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/contact_events.hpp>
@@ -34,12 +36,25 @@
 
 namespace continuo {
 
+/// Quantities beside the bodies with a rate of their own, such as the states of equations: they move together with the
+/// bodies, as one system, by the same method. The law adds to the forces and sets the rates.
+template <class Real, int Dim>
+struct Companions {
+  using V = Vector<Real, Dim>;
+  std::vector<Real> state;
+  std::function<void(Real t, std::span<const V> x, std::span<const V> v, std::span<const Real> state,
+                     std::span<V> force, std::span<Real> rate)>
+      law;
+  Real absolute_tolerance = Real(1e-13);
+};
+
 template <class Real>
 struct ExactOptions {
   std::optional<Real> contact_time{};     // without one: a hundred-thousandth of the time in which a body falls its
                                           // radius, or flies it where there is no gravity
   std::size_t most_events = 100'000'000;  // in one call of advance_to, which then says so: some minutes
   Real tolerance = Real(1e-10);    // of a path under other forces than gravity: relative, and in units of a radius
+  Real step = Real(0);             // greater than 0: such paths by the classical Runge-Kutta method in steps of this
   std::size_t contact_events = 0;  // so many of a call are kept, see contact_events.hpp
 };
 
@@ -63,6 +78,8 @@ class ExactMotion {
  public:
   /// The world is moved; it must not be changed but through this, or `refresh` must follow.
   explicit ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options = {});
+  /// The companions must live as long; what changes in them needs a `refresh`.
+  ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options, Companions<Real, Dim>& companions);
   ExactMotion(ExactMotion&&) noexcept;
   ExactMotion& operator=(ExactMotion&&) noexcept;
   ~ExactMotion();
@@ -83,7 +100,10 @@ class ExactMotion {
   void load(ByteReader& reader);
 
  private:
+  std::unique_ptr<ExactEngine<Real, Dim>> engine_for_world() const;
+
   World<Real, Dim>* world_;
+  Companions<Real, Dim>* companions_ = nullptr;
   bool was_parabolic_ = true;
   ExactOptions<Real> options_;
   std::unique_ptr<ExactEngine<Real, Dim>> engine_;

@@ -13,6 +13,7 @@
 #include <continuo/bodies/impulse.hpp>
 #include <continuo/bodies/queries.hpp>
 #include <continuo/methods/dop853.hpp>
+#include <continuo/methods/rk4.hpp>
 #include <continuo/solve/integrator.hpp>
 
 namespace continuo {
@@ -27,19 +28,23 @@ struct Candidate {
   bool overlaps = false;  // when it was listed: then what is watched is whether they approach
 };
 
-/// All places and then all velocities, fixed bodies too, as one state.
+/// All places and then all velocities, fixed bodies too, and last what moves with the bodies, as one state.
 template <class Real, int Dim>
 class Flow {
  public:
   using V = Vector<Real, Dim>;
   using X = std::vector<Real>;
 
-  explicit Flow(const World<Real, Dim>& world) : world_(&world), x_(world.size()), v_(world.size()), f_(world.size()) {}
+  Flow(const World<Real, Dim>& world, const Companions<Real, Dim>* companions)
+      : world_(&world), companions_(companions), x_(world.size()), v_(world.size()), f_(world.size()) {
+    if (companions) rate_.resize(companions->state.size());
+  }
 
   void operator()(Real t, const X& state, X& rate) {
     unpack(state);
-    forces<Real, Dim>(*world_, t, x_, v_, f_);
-    const std::size_t n = x_.size();
+    const std::size_t n = x_.size(), bodies = 2 * n * V::size();
+    all_forces(t, x_, v_, std::span(state).subspan(bodies));
+    std::ranges::copy(rate_, rate.begin() + static_cast<std::ptrdiff_t>(bodies));
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t axis = 0; axis < V::size(); ++axis) {
         rate[i * V::size() + axis] = world_->is_fixed(i) ? Real(0) : v_[i][axis];
@@ -48,7 +53,8 @@ class Flow {
   }
   X pack() const {
     const std::size_t n = world_->size();
-    X state(2 * n * V::size());
+    X state(2 * n * V::size() + rate_.size());
+    if (companions_) std::ranges::copy(companions_->state, state.end() - static_cast<std::ptrdiff_t>(rate_.size()));
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t axis = 0; axis < V::size(); ++axis) {
         state[i * V::size() + axis] = world_->position[i][axis];
@@ -66,15 +72,26 @@ class Flow {
       }
   }
   std::vector<V> accelerations(Real t) {
-    forces<Real, Dim>(*world_, t, world_->position, world_->velocity, f_);
+    all_forces(t, world_->position, world_->velocity,
+               companions_ ? std::span<const Real>(companions_->state) : std::span<const Real>());
     std::vector<V> a(f_);
     for (std::size_t i = 0; i < a.size(); ++i) a[i] *= world_->inverse_mass[i];
     return a;
   }
 
  private:
+  void all_forces(Real t, std::span<const V> x, std::span<const V> v, std::span<const Real> beside) {
+    forces<Real, Dim>(*world_, t, x, v, f_);
+    if (!companions_) return;
+    companions_->law(t, x, v, beside, f_, rate_);
+    for (std::size_t i = 0; i < f_.size(); ++i)
+      if (world_->is_fixed(i)) f_[i] = {};
+  }
+
   const World<Real, Dim>* world_;
+  const Companions<Real, Dim>* companions_;
   std::vector<V> x_, v_, f_;
+  X rate_;  // of the companions
 };
 
 /// The events of a stretch: a candidate touches (or, where it overlapped, approaches); or, last, a body has come as far
@@ -136,8 +153,12 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   using S = Spin<Real, Dim>;
   using X = std::vector<Real>;
 
-  ForcedFlight(World<Real, Dim>& world, const ExactOptions<Real>& options)
-      : ExactEngine<Real, Dim>(options), world_(world), options_(options), last_(world.size(), -never) {
+  ForcedFlight(World<Real, Dim>& world, const ExactOptions<Real>& options, Companions<Real, Dim>* companions)
+      : ExactEngine<Real, Dim>(options),
+        world_(world),
+        companions_(companions),
+        options_(options),
+        last_(world.size(), -never) {
     contact_time_ = options.contact_time ? *options.contact_time : usual_contact_time();
   }
 
@@ -167,7 +188,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   Real usual_contact_time() {
     using std::sqrt;
     Real smallest = never, pull(0);
-    for (const V& a : Flow<Real, Dim>(world_).accelerations(world_.time)) pull = std::max(pull, length(a));
+    for (const V& a : Flow<Real, Dim>(world_, companions_).accelerations(world_.time)) pull = std::max(pull, length(a));
     for (const Real& radius : world_.radius) smallest = std::min(smallest, radius);
     const Real by_force = pull > Real(0) && pull < never ? Real(1e-5) * sqrt(2 * smallest / pull) : Real(0);
     return std::max(by_force, continuo::usual_contact_time(world_));
@@ -186,12 +207,27 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     resolve();
     for (Candidate& at : candidates_) at.overlaps = !(gap(at) > Real(0));
 
-    Flow<Real, Dim> flow(world_);
+    Flow<Real, Dim> flow(world_, companions_);
     const Real least = 64 * std::numeric_limits<Real>::epsilon(), tolerance = std::max(options_.tolerance, least);
     Options<X> how{.rtol = tolerance, .atol = tolerance * median};
     how.max_steps = options_.most_events;
+    if (companions_) {
+      how.rtol_each.assign(flow.pack().size(), how.rtol);
+      how.atol_each.assign(how.rtol_each.size(), how.atol);
+      std::fill(how.atol_each.end() - static_cast<std::ptrdiff_t>(companions_->state.size()), how.atol_each.end(),
+                companions_->absolute_tolerance);
+    }
+    if (options_.step > Real(0)) {
+      how.step = options_.step;
+      return follow(t, flow, Rk4{}, how, reach);
+    }
     how.first_step = std::min(step_, Real(t - world_.time));
-    Integrator integrator(flow, flow.pack(), Interval<Real>{world_.time, t}, Dop853{}, how,
+    return follow(t, flow, Dop853{}, how, reach);
+  }
+
+  template <class Method>
+  std::string follow(const Real& t, Flow<Real, Dim>& flow, Method method, const Options<X>& how, const Real& reach) {
+    Integrator integrator(flow, flow.pack(), Interval<Real>{world_.time, t}, method, how,
                           Watch<Real, Dim>(world_, candidates_, reach));
     while (integrator.advance()) step_ = integrator.step_size();
     if (!succeeded(integrator.outcome().ending))
@@ -199,6 +235,11 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
              std::string(to_string(integrator.outcome().ending));
     const Real duration = integrator.t() - world_.time;
     Flow<Real, Dim>::unpack(integrator.x(), world_.position, world_.velocity);
+    if (companions_) {
+      const X& end = integrator.x();
+      std::copy(end.end() - static_cast<std::ptrdiff_t>(companions_->state.size()), end.end(),
+                companions_->state.begin());
+    }
     for (std::size_t i = 0; i < world_.size(); ++i)
       if (world_.spin[i] != S{}) world_.orientation[i] = turned(world_.orientation[i], world_.spin[i], duration);
     world_.time = integrator.t();
@@ -254,7 +295,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
       for (const Candidate& at : touching) is_over = !strike(at, before, round > 64, round > 128) && is_over;
       if (is_over) break;
     }
-    const std::vector<V> a = Flow<Real, Dim>(world_).accelerations(world_.time);
+    const std::vector<V> a = Flow<Real, Dim>(world_, companions_).accelerations(world_.time);
     for (const Candidate& at : touching) part_where_pressed(at, a);
   }
   bool strike(const Candidate& at, const std::vector<Real>& before, bool is_squeezed, bool is_caught) {
@@ -309,6 +350,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   }
 
   World<Real, Dim>& world_;
+  Companions<Real, Dim>* companions_;
   ExactOptions<Real> options_;
   Real contact_time_{}, step_{};
   std::vector<Real> last_;  // when each body collided last
@@ -318,13 +360,18 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
 }  // namespace
 
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> forced_flight(World<Real, Dim>& world, const ExactOptions<Real>& options) {
-  return std::make_unique<ForcedFlight<Real, Dim>>(world, options);
+std::unique_ptr<ExactEngine<Real, Dim>> forced_flight(World<Real, Dim>& world, const ExactOptions<Real>& options,
+                                                      Companions<Real, Dim>* companions) {
+  return std::make_unique<ForcedFlight<Real, Dim>>(world, options, companions);
 }
 
-template std::unique_ptr<ExactEngine<float, 2>> forced_flight(World<float, 2>&, const ExactOptions<float>&);
-template std::unique_ptr<ExactEngine<float, 3>> forced_flight(World<float, 3>&, const ExactOptions<float>&);
-template std::unique_ptr<ExactEngine<double, 2>> forced_flight(World<double, 2>&, const ExactOptions<double>&);
-template std::unique_ptr<ExactEngine<double, 3>> forced_flight(World<double, 3>&, const ExactOptions<double>&);
+template std::unique_ptr<ExactEngine<float, 2>> forced_flight(World<float, 2>&, const ExactOptions<float>&,
+                                                              Companions<float, 2>*);
+template std::unique_ptr<ExactEngine<float, 3>> forced_flight(World<float, 3>&, const ExactOptions<float>&,
+                                                              Companions<float, 3>*);
+template std::unique_ptr<ExactEngine<double, 2>> forced_flight(World<double, 2>&, const ExactOptions<double>&,
+                                                               Companions<double, 2>*);
+template std::unique_ptr<ExactEngine<double, 3>> forced_flight(World<double, 3>&, const ExactOptions<double>&,
+                                                               Companions<double, 3>*);
 
 }  // namespace continuo

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <continuo/model/ast_expression.hpp>
+#include <continuo/model/ast_world.hpp>
 #include <continuo/solve/direction.hpp>
 
 namespace continuo::model::ast {
@@ -286,7 +287,7 @@ struct Check {
 
 struct Statement {
   using Node = std::variant<Parameters, Lets, Outputs, Energies, Input, Table, Equation, Unknown, Condition, Guess,
-                            Family, Mode, Start, When, At, Every, Initially, Run, Plot, Draw, Check>;
+                            Family, Mode, Start, When, At, Every, Initially, Run, Plot, Draw, Check, World, Force>;
   Node node;
   Span span;
 };

@@ -27,12 +27,13 @@ struct Unit {
   Span span;
 };
 
-/// A name where it is used or defined: `h`, `h''`, `u[i-1]'`, `a[i, j]`.
+/// A name where it is used or defined: `h`, `h''`, `u[i-1]'`, `a[i, j]`; of a body also `ball.x`, `grain[3].y'`.
 struct Name {
   std::string text;
   int primes = 0;
   std::vector<Expression> indices;
-  Span span;  // with primes and indices
+  Span span;           // with primes, indices and member
+  std::string member;  // what stands after the point; empty for none
 };
 
 // ---------------------------------------------------------------------------------------------------------------

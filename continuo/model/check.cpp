@@ -44,7 +44,9 @@ void Checker::declare() {
   declare_top_level();
   Scope scope;
   find_time_unit();
+  declare_world();
   walk(tree_.statements, scope, false);
+  declare_measures();
   lay_out();
 }
 
@@ -53,13 +55,16 @@ void Checker::fill() {
   make_parameters();
   make_inputs();
   for (std::size_t i = 0; i < conditions_.size(); ++i) condition_value(i);
+  measure_world();
   name_states();
+  make_world();
   make_unknowns();
   for (std::size_t i = 0; i < definitions_.size(); ++i) defined(i, definitions_[i].text->name);
   make_run();
   make_conditions();
   make_equations();
   pair_up();
+  make_forces();
   make_quantities();
   if (start_) model_.start_mode = mode_named(start_->mode).value_or(0);
   make_events();
@@ -69,6 +74,7 @@ void Checker::fill() {
   append_unknowns();
   check_method_fits();
   mark_structural();
+  if (world_.text) model_.world = std::make_shared<const WorldDescription>(std::move(world_.made));
 }
 
 void Checker::nothing_to_simulate() {

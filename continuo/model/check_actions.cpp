@@ -66,6 +66,11 @@ std::optional<Assign> Checker::assignment(const ast::Assignment& text, Scope& sc
     }
     return std::nullopt;
   }
+  if (symbol->kind == Symbol::Kind::body) {
+    fail("E252", target.span, fmt::format("`{}` cannot be assigned", *key), "it is a body",
+         fmt::format("assign what of it changes: {0}.x := ..., {0}.x' := ...", *key));
+    return std::nullopt;
+  }
   if (symbol->kind != Symbol::Kind::base) {
     fail("E252", target.span, fmt::format("`{}` cannot be assigned", *key), "only states change at an event",
          fmt::format("make it a state: {0}' = 0 and {0}(0) = ... instead of its definition", *key));

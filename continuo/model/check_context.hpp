@@ -22,6 +22,7 @@
 #include <continuo/model/check_equations.hpp>
 #include <continuo/model/table.hpp>
 #include <continuo/model/unit_check.hpp>
+#include <continuo/model/world.hpp>
 
 namespace continuo::model::detail {
 
@@ -80,10 +81,11 @@ struct Base {
   std::size_t first = 0;                  // index of its first state
   Span span;                              // where its highest derivative stands first
   std::vector<std::size_t> conditions{};  // into Checker::conditions, those at the start
+  bool in_world = false;                  // of a body or a measure of the world: it has no equation
 };
 
 struct Symbol {
-  enum class Kind : unsigned char { definition, base, unknown, table };
+  enum class Kind : unsigned char { definition, base, unknown, table, body };
   Kind kind;
   std::size_t index;
   Span span;
@@ -123,6 +125,48 @@ struct ConditionText {
   Progress progress = Progress::untouched;
 };
 
+/// What a number of the world may be.
+enum class Sort : unsigned char { any, positive, not_negative, fraction };
+
+struct BodyText {
+  const ast::WorldBody* text;  // null: of a pattern
+  Scope scope;
+  Span span;
+  std::string name;
+  std::size_t base;  // its first
+};
+struct PatternText {
+  const ast::WorldBodies* text;
+  Scope scope;
+  Span span;
+  std::vector<long> counts;
+  std::size_t first, count;  // of its bodies
+};
+/// Numbers that are held to their sort all at once.
+struct ToJudge {
+  NodeId node;
+  Sort sort;
+  Span span;
+  std::string what;
+};
+struct WorldAtWork {
+  const ast::World* text = nullptr;
+  Span span{};
+  int dimension = 2;
+  std::vector<Placed<ast::WorldItem>> items{};  // families written out
+  std::vector<BodyText> bodies{};
+  std::vector<PatternText> patterns{};
+  std::vector<Placed<ast::Force>> forces{};
+  std::vector<std::string> groups{""};  // by number
+  MaterialDescription material{};
+  std::vector<ToJudge> to_judge{};
+  Measured length = Measured::unknown(), mass = Measured::unknown();
+  WorldDescription made{};
+  bool bodies_are_made = false;
+
+  std::size_t axes() const { return static_cast<std::size_t>(dimension); }
+};
+
 class Checker {
  public:
   Checker(const ast::Model& tree, const Source& source, const CheckOptions& options);
@@ -152,6 +196,8 @@ class Checker {
   void walk_other(const ast::Start& start, Scope& scope, Span span);
   void walk_other(const ast::Run& run, Scope& scope, Span span);
   void walk_other(const ast::Guess& node, Scope& scope, Span span) { guesses_.push_back({&node, scope, span}); }
+  void walk_other(const ast::World&, Scope&, Span) {}  // declare_world has read it
+  void walk_other(const ast::Force& node, Scope& scope, Span span) { world_.forces.push_back({&node, scope, span}); }
   void walk_other(const ast::Check& node, Scope& scope, Span span) { checks_.push_back({&node, scope, span}); }
   void walk_other(const ast::Plot& node, Scope& scope, Span span) { plots_.push_back({&node, scope, span}); }
   void walk_other(const ast::Draw& node, Scope& scope, Span span) { draws_.push_back({&node, scope, span}); }
@@ -301,6 +347,48 @@ class Checker {
   };
   void note_assignments(const Block& block, Taken& taken);
 
+  void declare_world();  // check_world.cpp
+  void declare_world_items(const std::vector<ast::WorldItem>& items, Scope& scope);
+  void declare_body(const std::string& name, const std::vector<long>& indices, Span span);
+  void declare_pattern(const ast::WorldBodies& bodies, Scope& scope, Span span);
+  void declare_measures();
+  void add_world_base(const std::string& name, const std::string& family, int order, Span span);
+  void measure_world();
+  Measured stated_length();
+  Value member(const ast::Name& name, Scope& scope);
+  Value own_of_body(const ast::Name& name, std::size_t body);
+  void refuse_equation_of_body(const ast::Name& name);
+
+  void make_world();  // check_world_items.cpp
+  void read_world_setting(const ast::WorldSetting& setting, Scope& scope);
+  void read_world_mode(const ast::WorldSetting& setting, Scope& scope);
+  void read_wall(const ast::WorldWall& wall, Scope& scope, Span span);
+  void read_container(const ast::WorldContainer& container, Scope& scope, Span span);
+  void read_spring(const ast::WorldSpring& spring, Scope& scope, Span span);
+  void read_springs(const ast::WorldSprings& springs, Scope& scope, Span span);
+  void add_spring(SpringDescription spring, const ast::WorldAttributes& attributes, Scope& scope);
+  void read_ignore(const ast::WorldIgnore& ignore, Span span);
+  MaterialDescription material_of(const ast::WorldAttributes& attributes, Scope& scope);
+  NodeId world_number(const ast::Expression& expression, Scope& scope, const Measured& wanted, std::string_view what,
+                      Sort sort);
+  NodePoint world_point(const ast::Expression& expression, Scope& scope, const Measured& wanted, std::string_view what,
+                        bool parameters_only = true);
+  std::vector<Term> components(const ast::Expression& expression, Scope& scope, std::size_t count);
+  std::optional<std::size_t> body_named(const ast::Name& name, Scope& scope);
+  void make_forces();
+  void judge_world();
+
+  void make_body(BodyText& body);  // check_world_bodies.cpp
+  void make_pattern(PatternText& pattern);
+  BodyDescription description_of(const ast::WorldAttributes& attributes, Scope& scope);
+  void set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, NodeId angle,
+                 const NodePoint& spin);
+  void place_grid(PatternText& pattern, const NodePoint& velocity);
+  void place_random(PatternText& pattern, const NodePoint& velocity);
+  void place_stack(PatternText& pattern, const NodePoint& velocity);
+  std::uint32_t group_of(const ast::WorldAttributes& attributes);
+  NodePoint velocity_of(const ast::WorldAttributes& attributes, Scope& scope);
+
   void make_run();  // check_run.cpp
   void run_times(const ast::Run& run);
   void run_output(const ast::Run& run);
@@ -347,6 +435,7 @@ class Checker {
   std::vector<Placed<ast::Check>> checks_;
   std::vector<Placed<ast::Plot>> plots_;
   std::vector<Placed<ast::Draw>> draws_;
+  WorldAtWork world_;
   const ast::Run* run_ = nullptr;
   Span run_span_{};
   const ast::Start* start_ = nullptr;

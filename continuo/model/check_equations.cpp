@@ -54,6 +54,9 @@ void Checker::solve_mode(std::size_t mode) {
     if (equation.scope.mode != Scope::no_mode && equation.scope.mode != static_cast<int>(mode)) continue;
     work.equations.push_back(read_equation(equation));
   }
+  for (std::size_t i = 0; i < bases_.size(); ++i) {
+    if (bases_[i].in_world) work.by[i] = 0;  // moved by forces
+  }
   sort_out_algebraic(work);
   solve_one_by_one(work);
   solve_coupled(work);

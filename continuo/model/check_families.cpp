@@ -76,10 +76,11 @@ std::string indexed(std::string_view name, const std::vector<long>& indices) {
 }
 
 std::optional<std::string> Checker::key_of(const ast::Name& name, Scope& scope) {
-  if (name.indices.empty()) return name.text;
+  const std::string member = name.member.empty() ? std::string() : "." + name.member;
+  if (name.indices.empty()) return name.text + member;
   const auto indices = indices_of(name, scope);
   if (!indices) return std::nullopt;
-  return indexed(name.text, *indices);
+  return indexed(name.text, *indices) + member;
 }
 
 bool Checker::count_written_out(Span span) {

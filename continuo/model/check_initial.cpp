@@ -95,7 +95,7 @@ void Checker::missing_conditions() {
   std::set<std::string> said;
   for (std::size_t b = 0; b < bases_.size(); ++b) {
     const Base& base = bases_[b];
-    if (without_equation_.contains(b) || lost_.contains(base.family)) continue;
+    if (base.in_world || without_equation_.contains(b) || lost_.contains(base.family)) continue;
     std::vector<std::string> missing, needed;
     for (int k = 0; k < base.order; ++k) {
       const std::size_t state = base.first + static_cast<std::size_t>(k);

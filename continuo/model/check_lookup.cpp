@@ -41,10 +41,16 @@ Value Checker::lookup(const ast::Name& name, Scope& scope) {
       if (scope.indices[i].name == name.text) return of_number(static_cast<double>(scope.indices[i].value));
     }
   }
+  if (!name.member.empty()) return member(name, scope);
   const auto key = key_of(name, scope);
   if (!key) return bad();
   const Symbol* symbol = find(*key, scope.mode);
   if (!symbol) return builtin(name, *key, scope);
+  if (symbol->kind == Symbol::Kind::body) {
+    fail("E224", name.span, fmt::format("`{}` is a body, not a number", *key), {},
+         fmt::format("say what of it: {0}.x, {0}.x', {0}.radius, ...", *key));
+    return bad();
+  }
   if (symbol->kind == Symbol::Kind::definition) {
     const Definition& definition = definitions_[symbol->index];
     if (name.primes > 0) {
@@ -92,6 +98,12 @@ Value Checker::builtin(const ast::Name& name, const std::string& key, Scope& sco
 
 Value Checker::total_energy(Span span, Scope& scope) {
   Value total;
+  if (world_.text) {  // kinetic and potential
+    const std::size_t first = bases_[find("world.kinetic", Scope::no_mode)->index].first;
+    const NodeId kinetic = model_.graph.variable(model_.layout.states + static_cast<std::uint32_t>(first));
+    const NodeId potential = model_.graph.variable(model_.layout.states + static_cast<std::uint32_t>(first + 1));
+    total = {model_.graph.add(kinetic, potential), measures_[first]};
+  }
   for (std::size_t i = 0; i < definitions_.size(); ++i) {
     if (definitions_[i].kind != Definition::Kind::energy) continue;
     const ast::Name& name = definitions_[i].text->name;
@@ -162,6 +174,10 @@ Value Checker::derivative(const ast::Name& name, std::size_t index) {
     const std::size_t state = base.first + static_cast<std::size_t>(name.primes);
     return {model_.graph.variable(model_.layout.states + static_cast<std::uint32_t>(state)),
             state_measure(index, name.primes)};
+  }
+  if (base.in_world) {
+    refuse_equation_of_body(name);
+    return bad();
   }
   if (name.primes == base.order) {
     highest_.push_back(static_cast<std::uint32_t>(index));

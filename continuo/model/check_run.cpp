@@ -57,6 +57,25 @@ bool has_units_inside(const ast::Expression& expression) {
       expression.node);
 }
 
+bool has_units_in_world(const std::vector<ast::WorldItem>& items) {
+  const auto in = [](const std::optional<ast::Expression>& value) { return value && has_units_inside(*value); };
+  return std::ranges::any_of(items, [&](const ast::WorldItem& item) {
+    return std::visit(
+        [&](const auto& node) {
+          if constexpr (requires { node.attributes; }) {
+            if (std::ranges::any_of(node.attributes, [](const auto& one) { return has_units_inside(one.value); }))
+              return true;
+          }
+          if constexpr (requires { node.value; }) return in(node.value);
+          if constexpr (requires { node.offset; }) return has_units_inside(node.offset);
+          if constexpr (requires { node.lower; }) return in(node.lower) || in(node.upper);
+          if constexpr (requires { node.body; }) return has_units_in_world(node.body);
+          return false;
+        },
+        item.node);
+  });
+}
+
 /// Units in declarations, equations and initial values; those of the experiment alone do not make a model with units.
 bool has_units(const std::vector<ast::Statement>& statements) {
   const auto defined = [](const std::vector<ast::Definition>& items) {
@@ -76,6 +95,10 @@ bool has_units(const std::vector<ast::Statement>& statements) {
             return has_units_inside(node.value);
           } else if constexpr (std::is_same_v<T, ast::Unknown>) {
             return has_units_inside(node.guess);
+          } else if constexpr (std::is_same_v<T, ast::Force>) {
+            return has_units_inside(node.value);
+          } else if constexpr (std::is_same_v<T, ast::World>) {
+            return has_units_in_world(node.items);
           } else if constexpr (std::is_same_v<T, ast::Family> || std::is_same_v<T, ast::Mode>) {
             return has_units(node.body);
           } else {
@@ -139,6 +162,11 @@ void Checker::make_run() {
 
 /// What a method for x'' = a(t, x) asks of the model; known when the equations are solved.
 void Checker::check_method_fits() {
+  if (world_.text && run_ && run_->method) {
+    fail("E264", run_->method->span, "a world is moved by its own mode", {},
+         "write `mode exact` or `mode fast step 1/60` in the world");
+    return;
+  }
   if (!model_.run.method || !is_second_order(*model_.run.method) || errors_ > 0) return;
   const Span span = run_->method->span;
   if (!model_.all_paired) {

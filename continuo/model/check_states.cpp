@@ -6,6 +6,7 @@
 
 #include <continuo/model/check_families.hpp>
 #include <continuo/model/check_functions.hpp>
+#include <continuo/model/format.hpp>
 #include <continuo/model/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -47,6 +48,7 @@ const ast::Name* explicit_left(const ast::Equation& equation) {
 
 /// A variable with a derivative of at least this order; the first sight of it decides its place.
 std::optional<std::size_t> Checker::see_base(const ast::Name& name, Scope& scope, int order) {
+  if (!name.member.empty()) return std::nullopt;  // of a body: it is there, or the lookup says so
   const auto indices = indices_of(name, scope);
   if (!indices) return std::nullopt;
   const std::string key = indexed(name.text, *indices);
@@ -109,6 +111,10 @@ void Checker::see_primes(const ast::Expression& expression, Scope& scope) {
 /// On the walk: what an equation determines comes in the order of the text.
 void Checker::see_equation(const ast::Equation& equation, Scope& scope) {
   if (const ast::Name* left = explicit_left(equation)) {
+    if (!left->member.empty()) {
+      equations_.pop_back();
+      return refuse_equation_of_body(*left);
+    }
     see_base(*left, scope, left->primes);
   } else {
     see_primes(equation.left, scope);
@@ -117,6 +123,11 @@ void Checker::see_equation(const ast::Equation& equation, Scope& scope) {
 }
 
 void Checker::see_condition(const ast::Condition& condition, Scope& scope, Span span) {
+  if (const ast::Name& name = condition.name; !name.member.empty()) {
+    fail("E226", name.span, fmt::format("the start of `{}` stands in the world", to_text(name)), {},
+         fmt::format("write it there: body {} at (0, 0) velocity (0, 0)", name.text));
+    return;
+  }
   if (const auto base = see_base(condition.name, scope, 0)) conditions_.push_back({&condition, scope, span, *base});
 }
 
@@ -166,8 +177,14 @@ void Checker::name_states() {
       const auto variable = model_.layout.states + static_cast<std::uint32_t>(model_.states.size());
       if (k > 0) hold_to_chain(b, k);
       const Measured measured = state_measure(b, k);
-      model_.states.push_back({base.name, k, with_primes(base.name, k), variable,
-                               measured.is_known() ? to_text(measured.unit) : std::string(), NodeId{}, base.span});
+      model_.states.push_back({.base = base.name,
+                               .primes = k,
+                               .column = with_primes(base.name, k),
+                               .variable = variable,
+                               .unit = measured.is_known() ? to_text(measured.unit) : std::string(),
+                               .initial = NodeId{},
+                               .span = base.span,
+                               .in_world = base.in_world});
     }
   }
 }

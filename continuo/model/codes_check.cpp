@@ -79,6 +79,36 @@ A list of values must have as many as its param has members.)"},
         "E222", "this must not change with time",
         R"(Sizes of families, indices, tolerances: numbers, params and lets made of these. The values of params, initial values
 and times of events may depend on params, too, and follow them. States, inputs and t change with time.)"},
+    Code{"E223", "there is no such body",
+         R"(Bodies are declared in the world, one by one or by a pattern, whose members are counted from 1:
+
+  world {
+    body ball at (0, 10) radius 0.5
+    bodies grain grid 10 x 20 from (1, 1) spacing (1.1, 1.1)      # grain[1] to grain[200]
+  }
+
+Capitals matter.)"},
+    Code{"E224", "there is no such member",
+         R"(Of a body in the plane there are ball.x, ball.x', ball.y, ball.y', ball.angle, ball.angle', ball.radius and
+ball.mass; in space ball.z, ball.z' and the spin ball.spin_x, ball.spin_y, ball.spin_z instead of the angle. Of the
+world there are world.kinetic, world.potential, world.momentum_x, ... and world.collisions. A body itself is no number.)"},
+    Code{
+        "E225", "this cannot be in a world",
+        R"(Radius, mass and density are greater than 0, restitution goes from 0 (no bounce) to 1 (no loss), friction is 0 or
+more; a spring has a stiffness and two ends; the lower corner of a container comes first. Bodies at random are placed
+where they touch no other: a box holds them up to about a half of the plane or a third of space.)"},
+    Code{
+        "E226", "bodies are moved by forces",
+        R"(A body has no equation and no initial value of its own. Its start stands in the world, and what moves it is a force:
+
+  world { body ball at (0, 10) velocity (1, 0) mass 2 }
+  force on ball = (-k*ball.x, 0)
+
+Forces may use parameters, t, inputs, positions and velocities of bodies and the states of equations; equations may use
+positions and velocities of bodies. What the world measures (world.kinetic) is for outputs and checks.)"},
+    Code{
+        "E227", "the dimension is wrong",
+        R"(A world has 2 or 3 dimensions, 2 where it does not say `dimension 3`, and all its points as many numbers.)"},
     Code{"E230", "an equation is missing",
          R"(Every variable with a derivative needs one equation for its highest one:
 
@@ -151,14 +181,16 @@ bogacki_shampine3, dormand_prince5, tsitouras5, dop853, verner7, verner9 and man
          R"(The run ends after it begins; steps, output intervals, periods and tolerances are greater than zero.)"},
     Code{
         "E262", "said twice",
-        R"(A model has one `run` and one `start in`. Other experiments are options of the command: --until, --method, --step.)"},
+        R"(A model has one `run`, one `start in` and one `world`. Other experiments are options of the command: --until,
+--method, --step.)"},
     Code{
         "E263", "the number of tolerances is wrong",
         R"(abs takes one tolerance for all states or one for each, in the order in which `continuo info` lists them.)"},
     Code{
         "E264", "the method does not fit the model",
         R"(velocity_verlet and central_difference are for x'' = a(t, x): every state must be a position or its velocity, and
-both in units that fit (x in m, x' in m/s, time in s). The others are general.)"},
+both in units that fit (x in m, x' in m/s, time in s). The others are general. A world of bodies is moved by its mode,
+exact or fast.)"},
     Code{"E270", "a file is not there", R"(Files of tables and inputs are found relative to the folder of the model.)"},
     Code{"E271", "a table is wanted, or not",
          R"(table NAME from "file.csv" is read by interp(NAME, x), and by nothing else.)"},
@@ -183,6 +215,8 @@ k*(x + 1), not k(x + 1).)"},
         "E292", "a method loses its order",
         R"(A warning: velocity_verlet and central_difference take accelerations that depend on time and positions only. With
 friction or a Coriolis force they still run, at lower order.)"},
+    Code{"E293", "a group of bodies that nothing ignores",
+         R"(A warning: bodies of a group collide like all others unless the world says `ignore GROUP with GROUP`.)"},
 };
 
 }  // namespace

@@ -92,6 +92,15 @@ began too far away.
 
 Fix: guess x = ... gives the search a place to begin, as a function of t; `guess x' = ...` too. A greater tolerance asks
 for less.)"},
+    Code{
+        "E323", "a world of bodies does not fit here",
+        R"(Bodies collide, which no study of equations can see: `continuo run`, `verify` and `compare` move a world, `check`
+and `info` read it. It has no equations `0 = ...` beside it and no conditions at several times.)"},
+    Code{"E324", "the bodies cannot be moved on",
+         R"(The motion of the world ended before the run did; the message says why. What was computed is kept.
+
+A force or a start that is no number, a spring too stiff for the step (take a smaller one, or `mode exact`), bodies that
+collide without end between others that press them (take `mode fast`).)"},
     Code{"E330", "there is no such method", R"(`continuo methods` lists the methods with their order and use.)"},
     Code{
         "E331", "the method needs a step",
@@ -108,6 +117,11 @@ Fix: take a method for first-order equations, such as rk4 or tsitouras5.)"},
         "E333", "the experiment cannot be run",
         R"(The run statement, or what replaced parts of it, makes no sense: an end before the start, a step or an interval
 that is not positive, a number of tolerances that is not that of the states.)"},
+    Code{
+        "E334", "there is no such method for bodies",
+        R"(A world is moved `exact`, from collision to collision, where under forces the paths between are integrated by `dop853`
+to a tolerance or by `rk4` with a step; or `fast` in steps, its forces by semi_implicit_euler, implicit_euler,
+central_difference or explicit_euler. Each of these names may stand behind --method.)"},
     Code{"E340", "there is no such parameter",
          R"(--set takes the names of parameters, with their index where they have one: --set k=5 --set m[2]=3.
 `continuo info FILE` lists them. Initial values are set through the parameter they use.)"},

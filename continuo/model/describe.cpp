@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <continuo/model/describe.hpp>
+#include <continuo/model/world.hpp>
 
 namespace continuo::model {
 
@@ -19,7 +20,8 @@ class Writer {
 
   std::string text() && {
     title();
-    equations();
+    if (model_.has_world()) world(*model_.world);
+    if (model_.states.size() > 0 && !std::ranges::all_of(model_.states, &State::in_world)) equations();
     states();
     parameters();
     inputs();
@@ -90,16 +92,58 @@ class Writer {
     if (!first.empty()) line("{}", first);
   }
 
+  std::string number(NodeId node, std::span<const double> variables) const {
+    return fmt::format("{:.6g}", evaluate(model_, node, variables));
+  }
+  std::string point(const std::vector<NodeId>& nodes, std::span<const double> variables) const {
+    std::vector<std::string> numbers;
+    for (const NodeId node : nodes) numbers.push_back(number(node, variables));
+    return fmt::format("({})", fmt::join(numbers, ", "));
+  }
+
+  void world(const WorldDescription& world) {
+    const std::vector<double> start = start_values(model_);
+    const auto axes = static_cast<std::ptrdiff_t>(world.dimension);
+    const auto of = [&](const NodePoint& p) { return point({p.begin(), p.begin() + axes}, start); };
+    line("\nWorld of {} dimensions, {}", world.dimension,
+         world.mode.fast ? "moved fast, by " + world.mode.integrator : "moved exactly");
+    line("  gravity {}", of(world.gravity));
+    if (world.attraction.valid()) line("  attraction {}", number(world.attraction, start));
+    if (world.drag_linear.valid())
+      line("  drag linear {} quadratic {}", number(world.drag_linear, start), number(world.drag_quadratic, start));
+    if (!world.springs.empty()) line("  {} springs", world.springs.size());
+    section(fmt::format("Bodies ({})", world.bodies.size()), world.bodies, [&](const BodyDescription& body) -> Row {
+      std::vector<NodeId> at;
+      for (int axis = 0; axis < world.dimension; ++axis)
+        at.push_back(model_.states[body.first_state + 2 * static_cast<std::size_t>(axis)].initial);
+      return {body.name, "at " + point(at, start), "radius " + number(body.radius, start),
+              body.fixed ? "fixed" : "mass " + number(body.mass, start)};
+    });
+    section("Walls", world.walls, [&](const WallDescription& wall) -> Row {
+      return {wall.name, of(wall.normal), "at " + number(wall.offset, start)};
+    });
+    section("Forces", world.forces, [&](const ForceDescription& force) -> Row {
+      Row row{"on " + world.bodies[force.body].name};
+      for (int axis = 0; axis < world.dimension; ++axis)
+        row.push_back(expression(force.components[static_cast<std::size_t>(axis)]));
+      return row;
+    });
+  }
+
   void equations() {
     line("\nEquations, of first order");
-    const std::size_t count = model_.states.size() - model_.unknowns.size(),
-                      shown = std::min(count, options_.most_listed);
+    std::vector<std::size_t> of_equations;
+    for (std::size_t i = 0; i + model_.unknowns.size() < model_.states.size(); ++i) {
+      if (!model_.states[i].in_world) of_equations.push_back(i);
+    }
+    const std::size_t count = of_equations.size(), shown = std::min(count, options_.most_listed);
     for (std::size_t m = 0; m < model_.modes.size(); ++m) {
       const Mode& mode = model_.modes[m];
       const bool starts = m == model_.start_mode;
       if (model_.modes.size() > 1) line("  mode {}{}", mode.name, starts ? ", where the run starts" : "");
       std::vector<Row> rows;
-      for (std::size_t i = 0; i < shown; ++i) {
+      for (std::size_t k = 0; k < shown; ++k) {
+        const std::size_t i = of_equations[k];
         rows.push_back({"(" + model_.states[i].column + ")'", "= " + expression(mode.derivatives[i])});
       }
       table(rows, count - shown);
@@ -109,7 +153,10 @@ class Writer {
 
   void states() {
     const std::vector<double> start = start_values(model_);
-    const std::span differential(model_.states.data(), model_.states.size() - model_.unknowns.size());
+    std::vector<State> differential;
+    for (std::size_t i = 0; i + model_.unknowns.size() < model_.states.size(); ++i) {
+      if (!model_.states[i].in_world) differential.push_back(model_.states[i]);
+    }
     section(fmt::format("States ({})", differential.size()), differential, [&](const State& s) -> Row {
       return {s.column, in_brackets(s.unit), "starts at " + with_value(s.initial, start[s.variable])};
     });

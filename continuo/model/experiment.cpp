@@ -8,6 +8,7 @@
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/model_system.hpp>
 #include <continuo/model/suggest.hpp>
+#include <continuo/model/world.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/solve/choice.hpp>
 
@@ -28,8 +29,12 @@ class Planner {
     check_parameters();
     plan_.variables = start_values(model_, experiment_.parameters, experiment_.from);
     set_interval();
-    set_accuracy();
-    set_method();
+    if (model_.has_world()) {
+      set_world();
+    } else {
+      set_accuracy();
+      set_method();
+    }
     set_output();
     if (problems_.size() > before) return std::nullopt;
     return std::move(plan_);
@@ -136,6 +141,35 @@ class Planner {
          experiment_.method.has_value());
   }
 
+  /// Bodies are moved by the mode of their world, or by what a caller names instead.
+  void set_world() {
+    constexpr double usual_tolerance = 1e-10;
+    const WorldMode& mode = model_.world->mode;
+    const auto number = [&](NodeId node) {
+      return node.valid() ? std::optional(evaluate(model_, node, plan_.variables)) : std::nullopt;
+    };
+    plan_.method = experiment_.method.value_or(mode.fast ? "fast" : "exact");
+    plan_.reason = experiment_.method ? "it was asked for" : "the world names it";
+    const std::vector<std::string> names = world_methods();
+    if (std::ranges::find(names, plan_.method) == names.end()) {
+      const std::string near = did_you_mean(plan_.method, names);
+      return fail("E334", fmt::format("there is no method `{}` for bodies", plan_.method),
+                  near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : near, true);
+    }
+    plan_.rtol = experiment_.rtol.value_or(number(mode.tolerance).value_or(run_.rtol.value_or(usual_tolerance)));
+    plan_.atol = {plan_.rtol};
+    if (!(plan_.rtol > 0)) fail("E333", "a tolerance is not positive", "give a positive one, such as --tol 1e-9", true);
+    if (plan_.method == "exact" || plan_.method == "dop853") return;
+    const auto step = experiment_.step ? experiment_.step : mode.step.valid() ? number(mode.step) : value(run_.step);
+    if (!step)
+      return fail("E331", fmt::format("`{}` takes steps, and nothing says how long", plan_.method),
+                  "write `mode fast step 1/60` in the world, or give --step", experiment_.method.has_value());
+    plan_.step = *step;
+    if (!(*step > 0) || !std::isfinite(*step))
+      fail("E333", fmt::format("a step of {} leads nowhere", *step), "give a positive step",
+           experiment_.step.has_value());
+  }
+
   Choice choice() const {
     if (experiment_.method) return {*experiment_.method, "it was asked for"};
     if (run_.method) return {*run_.method, "the model names it"};
@@ -183,6 +217,12 @@ class Planner {
 
   void set_output() {
     using Kind = OutputPlan::Kind;
+    if (model_.has_world() && !run_.output) {  // motions from collision to collision have no steps to show
+      constexpr double usual_rows = 200;
+      plan_.output = Kind::every;
+      plan_.interval = (plan_.to - plan_.from) / usual_rows;
+      if (!(plan_.interval > 0)) plan_.interval = 1;
+    }
     if (experiment_.output_steps) return;
     if (experiment_.output) {
       plan_.output = Kind::every;
@@ -213,6 +253,11 @@ class Planner {
 };
 
 }  // namespace
+
+std::vector<std::string> world_methods() {
+  return {"exact",         "dop853", "rk4", "fast", "semi_implicit_euler", "implicit_euler", "central_difference",
+          "explicit_euler"};
+}
 
 std::optional<Plan> plan(const Model& model, const Experiment& experiment, std::vector<Diagnostic>& problems) {
   return Planner(model, experiment, problems).plan();

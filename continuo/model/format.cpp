@@ -189,6 +189,7 @@ std::string to_text(const ast::Expression& expression) {
 std::string to_text(const ast::Name& name) {
   std::string text = name.text;
   if (!name.indices.empty()) text += "[" + joined(name.indices) + "]";
+  if (!name.member.empty()) text += "." + name.member;
   return text + std::string(static_cast<std::size_t>(name.primes), '\'');
 }
 

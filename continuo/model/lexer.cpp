@@ -59,7 +59,7 @@ constexpr std::array signs = {
     Sign{",", TokenKind::comma},       Sign{";", TokenKind::semicolon},      Sign{":", TokenKind::colon},
     Sign{"=", TokenKind::define},      Sign{"+", TokenKind::plus},           Sign{"-", TokenKind::minus},
     Sign{"*", TokenKind::star},        Sign{"/", TokenKind::slash},          Sign{"^", TokenKind::caret},
-    Sign{"<", TokenKind::less},        Sign{">", TokenKind::greater},
+    Sign{"<", TokenKind::less},        Sign{">", TokenKind::greater},        Sign{".", TokenKind::dot},
 };
 
 // What other languages and word processors write; read as the sign of ours after the message.

@@ -32,6 +32,7 @@ enum class TokenKind {
   semicolon,
   colon,
   dots,    // ..
+  dot,     // . before the member of a body: ball.x
   define,  // =
   assign,  // :=
   plus,

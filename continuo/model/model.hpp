@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -87,6 +88,7 @@ struct State {
   NodeId initial;          // of parameters; re-evaluated when one changes
   Span span;               // of its initial condition
   bool algebraic = false;  // the unknown of an equation `0 = ...`: `initial` is a guess, it stands after the others
+  bool in_world = false;   // of a body, or a measure of the world: it has no equation
 };
 
 /// One right-hand side per state, in the states' order and in their units per unit of time; for an algebraic state what
@@ -294,6 +296,9 @@ struct TableFile {
   Span span;
 };
 
+/// `world { ... }`: world.hpp.
+struct WorldDescription;
+
 /// The text of the model and the name it came by.
 struct Text {
   std::string path, content;
@@ -322,7 +327,7 @@ struct Model {
   bool accelerations_depend_on_velocities = false;  // then such methods lose their order: a warning
 
   std::vector<Quantity> lets, outputs, energies;
-  NodeId total_energy;  // the sum of `energies`; not valid without any
+  NodeId total_energy;  // the sum of `energies` and of the world's; not valid without any
   std::vector<When> events;
   std::vector<Scheduled> schedule;
   std::vector<EventOrder> event_order;
@@ -337,8 +342,11 @@ struct Model {
   std::vector<Unknown> unknowns;
   std::vector<AlgebraicEquation> algebraic;  // of every mode
 
+  std::shared_ptr<const WorldDescription> world;  // null where the model has no bodies
+
   bool needs_boundary_solver() const { return !boundary.empty(); }
   bool needs_dae_solver() const { return !algebraic.empty(); }
+  bool has_world() const { return world != nullptr; }
 };
 
 /// By name, `npos` where there is none: "h'" for states, "k" or "m[3]" for parameters.

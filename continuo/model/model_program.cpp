@@ -2,10 +2,12 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 
 #include <continuo/model/model_program.hpp>
+#include <continuo/model/world.hpp>
 
 namespace continuo::model {
 
@@ -112,6 +114,14 @@ void place_watched(ModelProgram& program) {
     const NodeId size = graph.apply(Op::absolute, energy.node);
     program.energy_scale = program.energy_scale.valid() ? graph.add(program.energy_scale, size) : size;
   }
+  if (program.model.has_world()) {
+    const WorldDescription& world = *program.model.world;
+    for (std::size_t k = 0; k < 2; ++k) {  // kinetic, potential
+      const auto variable = static_cast<std::uint32_t>(program.model.layout.states + world.first_measure + k);
+      const NodeId size = graph.apply(Op::absolute, graph.variable(variable));
+      program.energy_scale = program.energy_scale.valid() ? graph.add(program.energy_scale, size) : size;
+    }
+  }
   for (const Check& check : program.model.checks) {
     if (check.measure != Measure::always) continue;
     program.always.push_back(graph.subtract(check.node, check.value));
@@ -131,11 +141,12 @@ void place_tables(ModelProgram& program) {
 }  // namespace
 
 ModelProgram::ModelProgram(Model model_) : model(std::move(model_)), families(model.layout.size) {
-  std::map<std::pair<std::string_view, int>, std::uint32_t> numbers;
+  std::map<std::tuple<std::string_view, std::string_view, int>, std::uint32_t> numbers;
   for (const State& state : model.states) {
-    const std::size_t bracket = state.base.find('[');
-    if (bracket == std::string::npos) continue;
-    const std::pair name(std::string_view(state.base).substr(0, bracket), state.primes);
+    const std::string_view base = state.base;
+    const std::size_t bracket = base.find('['), end = base.find(']');
+    if (bracket == std::string_view::npos || end == std::string_view::npos) continue;
+    const std::tuple name(base.substr(0, bracket), base.substr(end), state.primes);  // grain[3].x: of all .x
     families[state.variable] = numbers.try_emplace(name, static_cast<std::uint32_t>(numbers.size() + 1)).first->second;
   }
 }

@@ -37,6 +37,11 @@ constexpr std::array habits = {
     Habit{"def", "name an expression with `let`"},
     Habit{"event", "an event is written: when h falls through 0 { ... }"},
     Habit{"simulate", "write `run 0..10`"},
+    Habit{"body", "bodies stand in a world: world { body ball at (0, 10) radius 0.5 }"},
+    Habit{"bodies", "bodies stand in a world: world { bodies gas random 100 in (0, 0) to (20, 20) }"},
+    Habit{"spring", "springs between bodies stand in a world: world { spring ball to anchor stiffness 40 }"},
+    Habit{"wall", "walls stand in a world: world { wall (0, 1) at 0 }"},
+    Habit{"container", "a container stands in a world: world { container (0, 0) to (20, 20) }"},
     Habit{"while", "an event is written: when h falls through 0 { ... }"},
     Habit{"method", "this is a part of the run statement: end its line with a comma to go on, or write it there"},
     Habit{"tol", "this is a part of the run statement: end its line with a comma to go on, or write it there"},
@@ -139,7 +144,9 @@ Statement Parser::parse_statement(Context context) {
     const TokenKind next = look(1).kind;
     const bool as_name = next == TokenKind::define || next == TokenKind::prime || next == TokenKind::open_index ||
                          (next == TokenKind::open_round && !look(1).after_space && word != "check");
-    if (is_reserved(word) && word != "if" && word != "not" && word != "sum" && as_name) {
+    if (at_world_word(context)) {
+      node = parse_world_or_force();
+    } else if (is_reserved(word) && word != "if" && word != "not" && word != "sum" && as_name) {
       parse_identifier("a name");  // says what is wrong
     } else if (std::find(words.begin(), words.end(), word) != words.end()) {
       require_allowed(word, context);

@@ -1,8 +1,8 @@
 // continuo/model/parser_core.hpp
 // The recursive descent behind parser.hpp, one class over several sources: statements (parser.cpp), definitions
 // (parser_definitions.cpp), expressions (parser_expressions.cpp, parser_values.cpp), events and their actions
-// (parser_events.cpp), run, plot, draw and check (parser_settings.cpp). The reading of tokens and what happens after an
-// error is parser_core.cpp.
+// (parser_events.cpp), run, plot, draw and check (parser_settings.cpp), worlds (parser_world.cpp). The reading of
+// tokens and what happens after an error is parser_core.cpp.
 #pragma once
 #include <cstddef>
 #include <deque>
@@ -183,11 +183,31 @@ class Parser {
   ast::DrawItem parse_draw_item();
   ast::Shape parse_shape();
   ast::Expression parse_point();
+  ast::Expression parse_point_with_unit();
   void parse_attributes(ast::Shape& shape, std::span<const std::string_view> known);
   ast::Check parse_check();
   ast::Measure parse_measure();
   ast::Moment parse_moment();
   ast::AtEvent parse_event_reference(bool after);
+
+  // --- worlds (parser_world.cpp)
+  bool at_world_word(Context context);
+  ast::Statement::Node parse_world_or_force();
+  ast::World parse_world();
+  ast::Force parse_force();
+  ast::WorldItem parse_world_item();
+  ast::WorldSetting parse_world_setting(ast::Identifier word);
+  ast::WorldWall parse_world_wall();
+  ast::WorldContainer parse_world_container();
+  ast::WorldBodies parse_world_bodies();
+  ast::WorldSpring parse_world_spring();
+  ast::WorldSprings parse_world_springs();
+  ast::WorldFix parse_world_fix();
+  ast::WorldIgnore parse_world_ignore();
+  ast::WorldFamily parse_world_family();
+  std::optional<ast::Identifier> parse_name_of_wall();
+  ast::WorldAttributes parse_world_attributes(std::string_view of, std::span<const std::string_view> known);
+  ast::Expression parse_world_value(std::string_view word);
 
   const Source& source_;
   Lexer lexer_;

@@ -107,6 +107,12 @@ ast::Name Parser::parse_indices_and_primes(const Token& token, int* height) {
     } while (accept(TokenKind::comma));
     close_index(open);
   }
+  if (at(TokenKind::dot) && !current().after_space) {
+    advance();
+    if (!at(TokenKind::name) || current().after_space)
+      unexpected(fmt::format("what of `{}` is meant, as in {}.x", name.text, name.text));
+    name.member = spelled(advance());
+  }
   while (at(TokenKind::prime) && !current().after_space) {
     const Token prime = advance();
     if (++name.primes > most_primes) {

@@ -34,7 +34,10 @@ struct Happened {
   std::string name;
   std::string mark;  // the text of a `mark` among its actions; empty for none
   double t;
-  std::vector<double> before, after;
+  std::vector<double> before, after;  // both empty for a contact
+  std::optional<double> impulse{};    // of a contact of bodies: along the normal
+
+  bool is_contact() const { return impulse.has_value(); }
 };
 
 /// The sum of the energies; `drift` is the largest |E - first| of the run, relative to |first| where that is

@@ -98,7 +98,10 @@ class Judge {
     return evaluate(model_, check.node, variables);
   }
 
-  bool matches(const Moment& moment, const Happened& event) const { return event.name.starts_with(moment.event); }
+  /// Contacts of bodies are meant only where they are named.
+  bool matches(const Moment& moment, const Happened& event) const {
+    return event.name.starts_with(moment.event) && !(moment.event.empty() && event.is_contact());
+  }
 
   std::size_t count_events(const Moment& moment) const {
     return static_cast<std::size_t>(
@@ -139,6 +142,11 @@ class Judge {
       const Happened* event = find_event(check.moment);
       if (event == nullptr) {
         message = fmt::format("there were only {} such events", count_events(check.moment));
+        return false;
+      }
+      if (check.measure == Measure::event_time) return true;
+      if (event->is_contact()) {
+        message = "the state at a contact is not kept; take a time a little before or after it";
         return false;
       }
       place(variables, event->t, check.moment.after ? event->after : event->before);

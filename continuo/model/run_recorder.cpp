@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <continuo/model/run_recorder.hpp>
+#include <continuo/model/world.hpp>
 
 namespace continuo::model {
 
@@ -13,8 +14,12 @@ std::vector<NodeId> quantity_nodes(const Model& model) {
   std::vector<NodeId> nodes;
   for (const Quantity& output : model.outputs) nodes.push_back(output.node);
   for (const Quantity& energy : model.energies) nodes.push_back(energy.node);
-  if (!model.energies.empty()) nodes.push_back(model.total_energy);
+  if (model.total_energy.valid()) nodes.push_back(model.total_energy);
   return nodes;
+}
+
+std::string energy_unit(const Model& model) {
+  return model.has_world() ? model.world->energy_unit : model.energies[0].unit;
 }
 
 std::vector<Column> columns_of(const Model& model) {
@@ -33,7 +38,7 @@ RunRecorder::RunRecorder(const ModelProgram& program, const Plan& plan, bool kee
       times_(plan),
       every_step_(plan.output == OutputPlan::Kind::steps),
       keep_rows_(keep_rows),
-      has_energy_(!program.model.energies.empty()) {
+      has_energy_(program.model.total_energy.valid()) {
   const Model& model = program.model;
   motion_.columns = columns_of(model);
   motion_.states = model.states.size();
@@ -70,7 +75,7 @@ void RunRecorder::watch(double t, const X& x) {
   watched_(t, x, watched_values_);
   if (!any_) {
     for (const double value : watched_values_) extremes_.push_back({value, value, t, t});
-    if (has_energy_) energy_ = {watched_values_[0], watched_values_[0], 0, program_.model.energies[0].unit};
+    if (has_energy_) energy_ = {watched_values_[0], watched_values_[0], 0, energy_unit(program_.model)};
   }
   any_ = true;
   for (std::size_t k = 0; k < watched_values_.size(); ++k) {
@@ -121,6 +126,14 @@ void RunRecorder::happening(double t, std::span<const Name> names, const X& befo
   if (!keep_rows_ || (names.empty() && before == after)) return;
   if (last_row_ != t) add_row(t, before);
   if (before != after) add_row(t, after);
+}
+
+void RunRecorder::sample_until(double t, const X& x) {
+  for (; next_sample_ < samples_.size() && samples_[next_sample_].t <= t; ++next_sample_) samples_[next_sample_].x = x;
+}
+
+void RunRecorder::contact(double t, std::string name, double impulse) {
+  events_.push_back({.name = std::move(name), .mark = {}, .t = t, .before = {}, .after = {}, .impulse = impulse});
 }
 
 void RunRecorder::finish(double t, const X& x) {

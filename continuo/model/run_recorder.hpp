@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <continuo/model/evaluation.hpp>
@@ -44,6 +45,11 @@ class RunRecorder {
     std::string event, mark;
   };
   void happening(double t, std::span<const Name> names, const X& before, const X& after);
+  /// Where nothing is interpolated: extremes at t, and samples up to t.
+  void look(double t, const X& x) { watch(t, x); }
+  void sample_until(double t, const X& x);
+  /// Of bodies; before and after are not kept.
+  void contact(double t, std::string name, double impulse);
   void finish(double t, const X& x);
 
   std::span<const SampledState> samples() const { return samples_; }

@@ -9,6 +9,7 @@
 #include <continuo/model/run_checks.hpp>
 #include <continuo/model/run_recorder.hpp>
 #include <continuo/model/simulate.hpp>
+#include <continuo/model/world.hpp>
 
 namespace continuo::model {
 
@@ -16,6 +17,7 @@ namespace {
 
 /// Models that no integration from the start can run.
 std::optional<Diagnostic> no_integration(const Model& model) {
+  if (model.has_world()) return no_study_of_worlds(model);
   if (!model.needs_boundary_solver()) return std::nullopt;
   return error("E321", model.boundary.front().span, "conditions at different times cannot be integrated from the start",
                "this makes it a boundary-value problem",
@@ -55,6 +57,12 @@ bool is_positive_period(const Model& model, const Plan& plan, std::vector<Diagno
 }
 
 }  // namespace
+
+Diagnostic no_study_of_worlds(const Model& model) {
+  return error("E323", model.world->span, "a world of bodies is not integrated like equations",
+               "its bodies collide, and no study of equations can see that",
+               "`continuo run`, `verify` and `compare` move it");
+}
 
 std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
                              std::vector<Diagnostic>& problems) {

@@ -122,7 +122,10 @@ std::string run_json(const model::Run& run) {
   Json state = Json::object(), events = Json::array();
   const auto values = run.final_state();
   for (std::size_t i = 0; i < values.size(); ++i) state[run.motion.columns[1 + i].name] = values[i];
-  for (const model::Happened& event : run.events) events.push_back({{"name", event.name}, {"t", event.t}});
+  for (const model::Happened& event : run.events) {
+    events.push_back({{"name", event.name}, {"t", event.t}});
+    if (event.impulse) events.back()["impulse"] = *event.impulse;
+  }
   json["state"] = std::move(state);
   json["events"] = std::move(events);
   json["statistics"] = statistics_of(run.statistics);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/model/world.hpp>
 #include <continuo/results/csv.hpp>
 #include <continuo/results/summary.hpp>
 
@@ -57,18 +58,30 @@ void append_states(const model::Run& run, std::string& text) {
 }
 
 struct EventCount {
-  std::string_view name;
+  std::string name;
   std::size_t count;
   double first, last;
 };
+
+/// Of contacts between many bodies: `gas meets wall`, not each of its members.
+std::string shown_name(const model::Happened& event) {
+  std::string name;
+  bool inside = false;
+  for (const char c : event.name) {
+    inside = (inside || (c == '[' && event.is_contact())) && c != ']';
+    if (!inside && !(c == ']' && event.is_contact())) name += c;
+  }
+  return name;
+}
 
 /// In the order of their first firing.
 std::vector<EventCount> count_events(const model::Run& run) {
   std::vector<EventCount> counts;
   for (const model::Happened& event : run.events) {
-    const auto found = std::ranges::find(counts, std::string_view(event.name), &EventCount::name);
+    std::string name = shown_name(event);
+    const auto found = std::ranges::find(counts, name, &EventCount::name);
     if (found == counts.end()) {
-      counts.push_back({event.name, 1, event.t, event.t});
+      counts.push_back({std::move(name), 1, event.t, event.t});
     } else {
       ++found->count;
       found->last = event.t;
@@ -177,7 +190,16 @@ std::string range_of(std::span<const double> each, double one) {
   return least == most ? short_number(least) : fmt::format("{}..{}", short_number(least), short_number(most));
 }
 
-void append_cost(const model::Run& run, std::string& text) {
+void append_cost_of_world(const model::Model& model, const model::Run& run, std::string& text) {
+  const std::size_t collisions = model.world->first_measure + model::world_measures(model.world->dimension).size() - 1;
+  const std::string control = run.plan.step > 0 ? fmt::format(", step {}", short_number(run.plan.step)) : "";
+  fmt::format_to(std::back_inserter(text), "cost    {} collisions, {} by {}{}\n",
+                 short_number(run.final_state()[collisions]), duration(run.statistics.seconds), run.plan.method,
+                 control);
+}
+
+void append_cost(const model::Model& model, const model::Run& run, std::string& text) {
+  if (model.has_world()) return append_cost_of_world(model, run, text);
   const Statistics& s = run.statistics;
   const std::string control = run.plan.step > 0 ? fmt::format("step {}", short_number(run.plan.step))
                                                 : fmt::format("tol {}", range_of(run.plan.rtol_each, run.plan.rtol));
@@ -213,7 +235,7 @@ std::string summary(const model::Model& model, const model::Run& run, bool as_wr
   append_energy(run, text);
   append_checks(run, as_written, text);
   append_error(run, text);
-  append_cost(run, text);
+  append_cost(model, run, text);
   append_note(run, text);
   return text;
 }

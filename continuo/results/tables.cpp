@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -19,7 +21,9 @@ std::optional<std::string> write_motion(const model::Run& run, const std::string
 
 std::optional<std::string> write_events(const model::Run& run, const std::string& path,
                                         std::string_view manifest_hash) {
+  const bool contacts = std::ranges::any_of(run.events, &model::Happened::is_contact);
   std::vector<std::string> names{"event", "t"};
+  if (contacts) names.emplace_back("impulse");
   for (const char* side : {"before ", "after "}) {
     for (std::size_t i = 1; i <= run.motion.states; ++i) names.push_back(side + run.motion.columns[i].name);
   }
@@ -28,8 +32,10 @@ std::optional<std::string> write_events(const model::Run& run, const std::string
   std::vector<double> values;
   for (const model::Happened& event : run.events) {
     values.assign(1, event.t);
+    if (contacts) values.push_back(event.impulse.value_or(std::nan("")));
     values.insert(values.end(), event.before.begin(), event.before.end());
     values.insert(values.end(), event.after.begin(), event.after.end());
+    values.resize(names.size() - 1, std::nan(""));  // of a contact the states are not kept
     csv.row(event.name, values);
   }
   return out.close();

@@ -13,7 +13,7 @@ namespace continuo::results {
 /// Each returns what went wrong, if anything; "-" is standard output.
 std::optional<std::string> write_motion(const model::Run& run, const std::string& path, std::string_view manifest_hash);
 
-/// `event,t`, then `before h` for each state, then `after h`.
+/// `event,t`, where bodies met `impulse`, then `before h` for each state, then `after h`.
 std::optional<std::string> write_events(const model::Run& run, const std::string& path, std::string_view manifest_hash);
 
 }  // namespace continuo::results

@@ -13,6 +13,7 @@
 #include <continuo/studies/boundary_of_model.hpp>
 #include <continuo/studies/boundary_problem_of_model.hpp>
 #include <continuo/studies/boundary_value.hpp>
+#include <continuo/worlds/simulate_world.hpp>
 
 namespace continuo::studies {
 
@@ -120,6 +121,7 @@ BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, 
 
 model::Simulated run_model(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
                            std::size_t solution) {
+  if (program->model.has_world()) return worlds::simulate_world(program, experiment);
   if (!program->model.needs_boundary_solver()) return model::simulate(program, experiment);
   BoundaryRuns solved = solve_boundary(program, experiment);
   model::Simulated simulated{std::nullopt, std::move(solved.diagnostics)};

@@ -8,6 +8,7 @@
 
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/compare.hpp>
+#include <continuo/worlds/simulate_world.hpp>
 
 namespace continuo::studies {
 namespace {
@@ -29,6 +30,7 @@ std::string_view reference_method(const model::ModelProgram& program, const Comp
     const MethodInfo* info = find_method(name);
     return info != nullptr && info->implicit;
   };
+  if (program.model.has_world()) return "exact";
   const bool stiff = program.model.needs_dae_solver() || std::ranges::any_of(request.methods, is_implicit);
   if (!stiff) return "verner9";
   return find_method("radau") != nullptr ? "radau" : "bdf";
@@ -88,7 +90,7 @@ Contender contend(const std::shared_ptr<const model::ModelProgram>& program, con
   Contender contender{.method = *experiment.method,
                       .step = experiment.step,
                       .tolerance = experiment.rtol,
-                      .simulated = model::simulate(program, experiment),
+                      .simulated = worlds::simulate_any(program, experiment),
                       .final_error = std::nan(""),
                       .largest_error = std::nan(""),
                       .times = {},
@@ -107,7 +109,7 @@ std::string Contender::label() const {
 Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, const CompareRequest& request) {
   const model::Experiment common = with_common_rows(*program, request.experiment);
   Comparison comparison{
-      .reference = model::simulate(program, for_reference(common, reference_method(*program, request))),
+      .reference = worlds::simulate_any(program, for_reference(common, reference_method(*program, request))),
       .contenders = {}};
   if (!comparison.reference.run || !succeeded(comparison.reference.run->outcome.ending)) return comparison;
 

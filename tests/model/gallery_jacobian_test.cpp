@@ -32,10 +32,16 @@ struct GalleryModel {
   friend void PrintTo(const GalleryModel& model, std::ostream* out) { *out << model.path; }
 };
 
+/// Bodies have no equations.
+bool has_world(const std::filesystem::path& path) {
+  const Loaded loaded = load(path);
+  return loaded && loaded.model->has_world();
+}
+
 std::vector<GalleryModel> gallery() {
   std::vector<GalleryModel> all;
   for (const auto& entry : std::filesystem::directory_iterator(CONTINUO_SOURCE_DIR "/models"))
-    if (entry.path().extension() == ".sim") all.push_back({entry.path().string()});
+    if (entry.path().extension() == ".sim" && !has_world(entry.path())) all.push_back({entry.path().string()});
   std::ranges::sort(all, {}, &GalleryModel::path);
   return all;
 }

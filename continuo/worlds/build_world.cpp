@@ -1,0 +1,131 @@
+// continuo/worlds/build_world.cpp
+#include <vector>
+
+#include <continuo/worlds/build_world.hpp>
+
+namespace continuo::worlds {
+
+namespace {
+
+using model::NodeId;
+
+/// Asked for one after the other, computed together: bodies of a pattern share most of their expressions.
+class Values {
+ public:
+  Values(const model::Model& model, std::span<const double> variables) : model_(model), variables_(variables) {}
+
+  void want(NodeId node) { nodes_.push_back(node.valid() ? node : NodeId{0}); }
+  template <std::size_t Size>
+  void want(const std::array<NodeId, Size>& nodes, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) want(nodes[i]);
+  }
+  void want(const model::MaterialDescription& m) { want(m.restitution), want(m.friction), want(m.rolling); }
+  void compute() { values_ = evaluate(model_, nodes_, variables_); }
+
+  double next() { return values_[next_++]; }
+  template <int Dim>
+  Vector<double, Dim> next_point() {
+    Vector<double, Dim> point;
+    for (std::size_t i = 0; i < point.size(); ++i) point[i] = next();
+    return point;
+  }
+  Material<double> next_material() {
+    Material<double> material;
+    material.restitution = next();
+    material.friction = next();
+    material.rolling_resistance = next();
+    return material;
+  }
+
+ private:
+  const model::Model& model_;
+  std::span<const double> variables_;
+  std::vector<NodeId> nodes_;
+  std::vector<double> values_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+template <int Dim>
+BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> variables) {
+  const model::WorldDescription& text = *model.world;
+  constexpr std::size_t axes = Dim;
+  Values values(model, variables);
+  values.want(text.gravity, axes);
+  for (const NodeId node : {text.attraction, text.softening, text.opening, text.drag_linear, text.drag_quadratic})
+    values.want(node);
+  for (const auto& body : text.bodies) values.want(body.radius), values.want(body.mass), values.want(body.material);
+  for (const auto& wall : text.walls)
+    values.want(wall.normal, axes), values.want(wall.offset), values.want(wall.material);
+  for (const auto& spring : text.springs) {
+    if (spring.b == model::no_body) values.want(spring.point, axes);
+    values.want(spring.stiffness), values.want(spring.length), values.want(spring.damping);
+  }
+  values.compute();
+
+  BuiltWorld<Dim> built;
+  World<double, Dim>& world = built.world;
+  world.time = variables[model::Layout::time];
+  world.gravity = values.next_point<Dim>();
+  const auto next_or = [&](NodeId node) {
+    const double value = values.next();
+    return node.valid() ? value : 0;
+  };
+  world.attraction.constant = next_or(text.attraction);
+  world.attraction.softening = next_or(text.softening);
+  world.attraction.opening = next_or(text.opening);
+  world.drag.linear = next_or(text.drag_linear);
+  world.drag.quadratic = next_or(text.drag_quadratic);
+  world.reserve(text.bodies.size());
+  for (const auto& body : text.bodies) {
+    const double* state = variables.data() + model.layout.states + body.first_state;
+    BodyDefinition<double, Dim> definition;
+    definition.shape = Sphere<double>{values.next()};
+    definition.mass = values.next();
+    definition.material = values.next_material();
+    definition.fixed = body.fixed;
+    definition.group = body.group;
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      definition.position[axis] = *state++;
+      definition.velocity[axis] = *state++;
+    }
+    if constexpr (Dim == 2) definition.orientation[0] = *state++;
+    for (std::size_t k = 0; k < definition.spin.size(); ++k) definition.spin[k] = *state++;
+    const auto added = world.add(definition);
+    if (!added && built.error.empty()) built.error = "`" + body.name + "`: " + added.error;
+    if (!added) return built;
+  }
+  for (const auto& wall : text.walls) {
+    Wall<double, Dim> made;
+    made.normal = values.next_point<Dim>();
+    made.offset = values.next();
+    made.material = values.next_material();
+    // A wall is written where normal . x = offset, of any length of the normal.
+    made.offset /= length(made.normal);
+    if (std::string error = world.add_wall(made); !error.empty()) {
+      built.error = "`" + wall.name + "`: " + error;
+      return built;
+    }
+  }
+  for (const auto& spring : text.springs) {
+    Spring<double, Dim> made;
+    made.a = world.handle(spring.a);
+    if (spring.b == model::no_body) {
+      made.b = values.next_point<Dim>();
+    } else {
+      made.b = world.handle(spring.b);
+    }
+    made.stiffness = values.next();
+    made.rest_length = values.next();
+    made.damping = values.next();
+    world.springs.push_back(made);
+  }
+  for (const auto& [a, b] : text.ignored) world.ignore(a, b);
+  return built;
+}
+
+template BuiltWorld<2> build_world(const model::Model&, std::span<const double>);
+template BuiltWorld<3> build_world(const model::Model&, std::span<const double>);
+
+}  // namespace continuo::worlds

@@ -1,0 +1,390 @@
+// continuo/worlds/world_run.cpp
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <continuo/bodies/exact_motion.hpp>
+#include <continuo/bodies/fast_motion.hpp>
+#include <continuo/bodies/snapshot.hpp>
+#include <continuo/methods/dop853.hpp>
+#include <continuo/solve/integrator.hpp>
+#include <continuo/worlds/beside.hpp>
+#include <continuo/worlds/build_world.hpp>
+#include <continuo/worlds/world_run.hpp>
+
+namespace continuo::worlds {
+
+namespace {
+
+std::optional<ForceIntegrator> integrator_named(std::string_view name) {
+  if (name == "semi_implicit_euler") return ForceIntegrator::semi_implicit_euler;
+  if (name == "implicit_euler") return ForceIntegrator::implicit_euler;
+  if (name == "central_difference") return ForceIntegrator::central_difference;
+  if (name == "explicit_euler") return ForceIntegrator::explicit_euler;
+  return std::nullopt;
+}
+
+template <int Dim>
+Point point_of(const Vector<double, Dim>& v) {
+  Point point{};
+  for (std::size_t i = 0; i < v.size(); ++i) point[i] = v[i];
+  return point;
+}
+template <int Dim>
+Vector<double, Dim> vector_of(const Point& point) {
+  Vector<double, Dim> v;
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = point[i];
+  return v;
+}
+
+template <int Dim>
+class Moving final : public WorldRun {
+ public:
+  using V = Vector<double, Dim>;
+
+  Moving(std::shared_ptr<const model::ModelProgram> program, WorldOptions options, std::span<const double> variables)
+      : program_(std::move(program)),
+        options_(std::move(options)),
+        variables_(variables.begin(), variables.end()),
+        beside_(*program_, variables),
+        start_(variables[model::Layout::time]) {
+    const auto first = variables.begin() + static_cast<std::ptrdiff_t>(model().layout.states);
+    state_.assign(first, first + static_cast<std::ptrdiff_t>(model().states.size()));
+    const auto z = state_.begin() + static_cast<std::ptrdiff_t>(beside_.first());
+    companions_.state.assign(z, z + static_cast<std::ptrdiff_t>(beside_.states()));
+    companions_.absolute_tolerance = options_.tolerance * 1e-3;
+    companions_.law = [this](double t, std::span<const V> x, std::span<const V> v, std::span<const double> z_now,
+                             std::span<V> force,
+                             std::span<double> rate) { beside_(world_, t, x, v, z_now, force, rate); };
+  }
+
+  /// Empty, or why the world cannot be as its parameters say. Bodies keep their places.
+  std::string build() {
+    BuiltWorld<Dim> built = build_world<Dim>(model(), variables_);
+    if (!built.error.empty()) return built.error;
+    if (world_.size() > 0) {
+      built.world.position = world_.position, built.world.velocity = world_.velocity;
+      built.world.orientation = world_.orientation, built.world.spin = world_.spin;
+      built.world.time = world_.time;
+    }
+    world_ = std::move(built.world);
+    note_shapes();
+    make_motion();
+    return {};
+  }
+
+  int dimension() const override { return Dim; }
+  double time() const override { return world_.time; }
+  double step() const override { return is_free() ? 0 : options_.step; }
+
+  std::string advance_to(double t) override {
+    contacts_.clear();
+    lost_ = 0;
+    if (is_free()) return t > world_.time ? exact_advance(t) : std::string();
+    // A step more only where it brings more than rounding.
+    while (world_.time < t - 1e-9 * options_.step) {
+      if (std::string error = exact_ ? exact_step() : fast_step(); !error.empty()) return error;
+    }
+    return {};
+  }
+
+  const std::vector<BodyShape>& bodies() const override { return bodies_; }
+  const std::vector<WallShape>& walls() const override { return walls_; }
+  const std::vector<SpringShape>& springs() const override { return springs_; }
+  Point position(std::size_t i) const override { return point_of<Dim>(world_.position[i]); }
+  Point velocity(std::size_t i) const override { return point_of<Dim>(world_.velocity[i]); }
+  Point spin(std::size_t i) const override {
+    if constexpr (Dim == 2) {
+      return {0, 0, world_.spin[i][0]};
+    } else {
+      return point_of<Dim>(world_.spin[i]);
+    }
+  }
+  std::array<double, 4> orientation(std::size_t i) const override {
+    if constexpr (Dim == 2) {
+      const double half = world_.orientation[i][0] / 2;
+      return {std::cos(half), 0, 0, std::sin(half)};
+    } else {
+      return world_.orientation[i].components;
+    }
+  }
+  double kinetic_energy() const override { return continuo::kinetic_energy(world_); }
+  double potential_energy() const override { return continuo::potential_energy(world_); }
+  const std::vector<Contact>& contacts() const override { return contacts_; }
+  std::size_t lost_contacts() const override { return lost_; }
+
+  const std::vector<double>& state() override {
+    const std::size_t per_body = model::WorldDescription::states_of_body(Dim);
+    for (std::size_t i = 0; i < world_.size(); ++i)
+      write_body<Dim>(state_.data() + i * per_body, world_.position[i], world_.velocity[i], world_.orientation[i],
+                      world_.spin[i]);
+    std::ranges::copy(companions_.state, state_.begin() + static_cast<std::ptrdiff_t>(beside_.first()));
+    double* measure = state_.data() + model().world->first_measure;
+    *measure++ = kinetic_energy();
+    *measure++ = potential_energy();
+    for (const double component : momentum(world_).components) *measure++ = component;
+    *measure = static_cast<double>(collisions());
+    return state_;
+  }
+
+  void set_state(std::span<const double> state) override {
+    const double* at = state.data();
+    for (std::size_t i = 0; i < world_.size(); ++i) {
+      for (std::size_t axis = 0; axis < V::size(); ++axis) {
+        world_.position[i][axis] = *at++;
+        world_.velocity[i][axis] = *at++;
+      }
+      if constexpr (Dim == 2) world_.orientation[i][0] = *at++;
+      for (std::size_t k = 0; k < world_.spin[i].size(); ++k) world_.spin[i][k] = *at++;
+    }
+    for (double& z : companions_.state) z = *at++;
+    renew();
+  }
+  void set_body(std::size_t body, const Point& position, const Point& velocity) override {
+    world_.position[body] = vector_of<Dim>(position);
+    world_.velocity[body] = vector_of<Dim>(velocity);
+    renew();
+  }
+
+  std::string set(std::uint32_t variable, double value) override {
+    const std::vector<double> before = variables_;
+    const model::Layout& layout = model().layout;
+    const bool is_parameter = variable >= layout.parameters && variable < layout.inputs;
+    variables_[variable] = value;
+    beside_.set(variable, value);
+    if (!is_parameter) {
+      renew();
+      return {};
+    }
+    set_.push_back(variable);
+    for (const std::size_t i : model().parameter_order) {
+      const model::Parameter& parameter = model().parameters[i];
+      if (parameter.independent || std::ranges::find(set_, parameter.variable) != set_.end()) continue;
+      variables_[parameter.variable] = evaluate(model(), parameter.expression, variables_);
+      beside_.set(parameter.variable, variables_[parameter.variable]);
+    }
+    std::string error = build();
+    if (!error.empty()) {
+      variables_ = before;
+      set_.pop_back();
+      for (const model::Parameter& parameter : model().parameters)
+        beside_.set(parameter.variable, variables_[parameter.variable]);
+    }
+    return error;
+  }
+
+  std::span<const double> variables() override {
+    variables_[model::Layout::time] = world_.time;
+    std::ranges::copy(state(), variables_.begin() + static_cast<std::ptrdiff_t>(model().layout.states));
+    return variables_;
+  }
+  std::size_t mode() const override { return beside_.mode(); }
+  void go(std::size_t mode) override {
+    beside_.go(mode);
+    renew();
+  }
+
+  Snapshot snapshot() const override {
+    return {.bodies = exact_ ? continuo::snapshot(world_, *exact_) : continuo::snapshot(world_, *fast_),
+            .equations = companions_.state,
+            .variables = variables_,
+            .time = world_.time,
+            .start = start_,
+            .steps = steps_,
+            .collisions = collisions(),
+            .mode = beside_.mode()};
+  }
+  std::string restore(const Snapshot& saved) override {
+    if (saved.equations.size() != companions_.state.size() || saved.variables.size() != variables_.size())
+      return "a snapshot of another model";
+    std::string error =
+        exact_ ? continuo::restore(saved.bodies, world_, *exact_) : continuo::restore(saved.bodies, world_, *fast_);
+    if (!error.empty()) return error;
+    companions_.state = saved.equations;
+    start_ = saved.start;
+    steps_ = saved.steps;
+    collisions_apart_ = saved.collisions - counted();
+    for (std::uint32_t i = model().layout.parameters; i < model().layout.samples; ++i) {
+      if (variables_[i] != saved.variables[i]) beside_.set(i, saved.variables[i]);
+    }
+    variables_ = saved.variables;
+    beside_.go(saved.mode);
+    contacts_.clear();
+    note_shapes();
+    return {};
+  }
+
+ private:
+  const model::Model& model() const { return program_->model; }
+
+  void note_shapes() {
+    const model::WorldDescription& text = *model().world;
+    bodies_.clear(), walls_.clear(), springs_.clear();
+    for (std::size_t i = 0; i < world_.size(); ++i)
+      bodies_.push_back({text.bodies[i].name, world_.radius[i], world_.mass[i], world_.is_fixed(i)});
+    for (std::size_t w = 0; w < world_.walls().size(); ++w) {
+      const Wall<double, Dim>& wall = world_.walls()[w];
+      walls_.push_back({text.walls[w].name, point_of<Dim>(wall.normal), wall.offset});
+    }
+    for (std::size_t k = 0; k < world_.springs.size(); ++k) {
+      const auto* end = std::get_if<V>(&world_.springs[k].b);
+      springs_.push_back({text.springs[k].a, text.springs[k].b, end ? point_of<Dim>(*end) : Point{}});
+    }
+  }
+
+  void make_motion() {
+    const std::size_t before = exact_ || fast_ ? collisions() : 0;
+    exact_.reset();
+    fast_.reset();
+    start_ = world_.time;
+    steps_ = 0;
+    choose_motion();
+    collisions_apart_ = before - counted();
+  }
+  void choose_motion() {
+    const model::WorldMode& mode = model().world->mode;
+    const auto number = [&](model::NodeId node, double otherwise) {
+      return node.valid() ? evaluate(model(), node, variables_) : otherwise;
+    };
+    if (options_.method == "exact" || options_.method == "dop853" || options_.method == "rk4") {
+      ExactOptions<double> options{.tolerance = options_.tolerance, .contact_events = options_.most_contacts};
+      if (mode.contact_time.valid()) options.contact_time = evaluate(model(), mode.contact_time, variables_);
+      if (options_.method == "rk4") options.step = options_.step;
+      if (beside_.is_empty()) {
+        exact_.emplace(world_, options);
+      } else {
+        exact_.emplace(world_, options, companions_);
+      }
+      return;
+    }
+    FastOptions<double> options{.step = options_.step, .substeps = mode.substeps};
+    options.hertz = number(mode.hertz, options.hertz);
+    options.sleep_after = number(mode.sleep_after, options.sleep_after);
+    options.sleep_speed = number(mode.sleep_speed, options.sleep_speed);
+    options.threads = mode.threads;
+    options.contact_events = options_.most_contacts;
+    options.integrator = *integrator_named(options_.method == "fast" ? mode.integrator : options_.method);
+    world_.force_laws.clear();
+    if (beside_.has_forces()) {
+      world_.force_laws.push_back(
+          [this](const World<double, Dim>& world, double t, std::span<const V> x, std::span<const V> v,
+                 std::span<V> force) { beside_(world, t, x, v, companions_.state, force, {}); });
+    }
+    fast_.emplace(world_, options);
+  }
+  void renew() {
+    if (exact_) exact_->refresh();
+  }
+
+  /// No steps of its own: it can end anywhere.
+  bool is_free() const { return options_.method == "exact" || options_.method == "dop853"; }
+
+  std::string exact_advance(double t) {
+    std::string error = exact_->advance_to(t);
+    note(*exact_);
+    return error;
+  }
+  std::string exact_step() {
+    ++steps_;
+    return exact_advance(start_ + static_cast<double>(steps_) * options_.step);
+  }
+  std::string fast_step() {
+    const double from = world_.time;
+    if (std::string error = move_equations(from, from + options_.step / 2); !error.empty()) return error;
+    if (std::string error = fast_->advance(); !error.empty()) return error;
+    ++steps_;
+    world_.time = start_ + static_cast<double>(steps_) * options_.step;  // a million steps do not drift
+    note(*fast_);
+    return move_equations(from + options_.step / 2, world_.time);
+  }
+  /// With the bodies where they are.
+  std::string move_equations(double from, double to) {
+    if (companions_.state.empty()) return {};
+    using X = std::vector<double>;
+    const auto rates = [this](double t, const X& z, X& rate) {
+      beside_(world_, t, world_.position, world_.velocity, z, {}, rate);
+    };
+    Options<X> options{.rtol = std::max(options_.tolerance, 1e-13), .atol = companions_.absolute_tolerance};
+    options.save = Save<X>::only_end();
+    Integrator integrator(rates, companions_.state, Interval<double>{from, to}, Dop853{}, options);
+    while (integrator.advance()) {
+    }
+    if (!succeeded(integrator.outcome().ending))
+      return "the equations beside the bodies: " + describe(integrator.outcome());
+    companions_.state = integrator.x();
+    return {};
+  }
+
+  template <class Motion>
+  void note(const Motion& motion) {
+    lost_ += motion.lost_contact_events();
+    for (const ContactEvent<double, Dim>& event : motion.contact_events()) {
+      if (contacts_.size() >= options_.most_contacts) {
+        ++lost_;
+        continue;
+      }
+      contacts_.push_back({.change = event.change,
+                           .a = world_.index(event.a),
+                           .b = event.with_wall() ? model::no_body : world_.index(event.b),
+                           .wall = event.with_wall() ? event.wall : model::no_body,
+                           .point = point_of<Dim>(event.point),
+                           .impulse = event.impulse,
+                           .time = event.time});
+    }
+  }
+  /// Since the world began, whatever motions have moved it.
+  std::size_t collisions() const { return counted() + collisions_apart_; }
+  std::size_t counted() const {
+    if (exact_) return exact_->statistics().collisions + exact_->statistics().wall_collisions;
+    return fast_->statistics().impacts;
+  }
+
+  std::shared_ptr<const model::ModelProgram> program_;
+  WorldOptions options_;
+  std::vector<double> variables_;
+  std::vector<std::uint32_t> set_;  // parameters that were set
+  Beside<Dim> beside_;
+  World<double, Dim> world_;
+  Companions<double, Dim> companions_;  // the equations
+  std::optional<ExactMotion<double, Dim>> exact_;
+  std::optional<FastMotion<double, Dim>> fast_;
+  double start_;                      // of the steps
+  std::uint64_t steps_ = 0;           // since then
+  std::size_t collisions_apart_ = 0;  // to be added to what the motion has counted
+  std::vector<BodyShape> bodies_;
+  std::vector<WallShape> walls_;
+  std::vector<SpringShape> springs_;
+  std::vector<Contact> contacts_;
+  std::size_t lost_ = 0;
+  std::vector<double> state_;
+};
+
+template <int Dim>
+StartedWorld start(std::shared_ptr<const model::ModelProgram> program, const WorldOptions& options,
+                   std::span<const double> variables) {
+  auto run = std::make_unique<Moving<Dim>>(std::move(program), options, variables);
+  std::string error = run->build();
+  if (!error.empty()) return {nullptr, std::move(error)};
+  return {std::move(run), {}};
+}
+
+}  // namespace
+
+WorldOptions options_of(const model::Plan& plan) {
+  return {.method = plan.method, .step = plan.step, .tolerance = plan.rtol};
+}
+
+std::string WorldRun::name_of(const Contact& contact) const {
+  const std::string& other = contact.b == model::no_body ? walls()[contact.wall].name : bodies()[contact.b].name;
+  return bodies()[contact.a].name + (contact.change == ContactChange::end ? " leaves " : " meets ") + other;
+}
+
+StartedWorld start_world(std::shared_ptr<const model::ModelProgram> program, const WorldOptions& options,
+                         std::span<const double> variables) {
+  const int dimension = program->model.world->dimension;
+  if (dimension == 2) return start<2>(std::move(program), options, variables);
+  return start<3>(std::move(program), options, variables);
+}
+
+}  // namespace continuo::worlds

@@ -1,0 +1,142 @@
+// continuo/worlds/world_run.hpp
+// The world of a model in motion: advanced as far as wanted, looked at, pushed, saved. One type for both dimensions and
+// all modes.
+//
+//   auto started = start_world(program, {.method = "exact"}, start_values(program->model));
+//   if (!started.run) std::cerr << started.error;
+//   WorldRun& run = *started.run;
+//   if (const std::string error = run.advance_to(1.5); !error.empty()) ...
+//   for (std::size_t i = 0; i < run.bodies().size(); ++i) draw(run.position(i), run.bodies()[i].radius);
+//
+// Equations beside the bodies move with them. In the exact mode all is one system, integrated by one method. In the
+// fast mode they take turns: half a step of the equations with the bodies where they are, a step of the bodies with the
+// equations' states as they are, half a step of the equations (G. Strang, "On the construction and comparison of
+// difference schemes", SIAM J. Num. Anal. 5 (1968)). That is of order 2 where the bodies are moved by the central
+// difference, of order 1 by the Euler methods.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/bodies/bytes.hpp>
+#include <continuo/bodies/contact_events.hpp>
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/model/world.hpp>
+
+namespace continuo::worlds {
+
+/// z is 0 in the plane.
+using Point = std::array<double, 3>;
+
+/// What does not change while it moves.
+struct BodyShape {
+  std::string name;
+  double radius, mass;
+  bool fixed;
+};
+/// normal . x >= offset is free; the normal has the length 1.
+struct WallShape {
+  std::string name;
+  Point normal;
+  double offset;
+};
+struct SpringShape {
+  std::size_t a, b;  // bodies; b is model::no_body where it ends at the point
+  Point point;
+};
+
+/// Two that met, or parted after a contact that lasted.
+struct Contact {
+  ContactChange change;
+  std::size_t a, b;  // bodies; b is model::no_body where it was a wall
+  std::size_t wall;  // which, then
+  Point point;
+  double impulse;  // along the normal; of a contact that lasted at its end
+  double time;
+};
+
+struct WorldOptions {
+  std::string method = "exact";   // one of model::world_methods()
+  double step = 0;                // of methods with steps
+  double tolerance = 1e-10;       // of paths under forces, exact
+  std::size_t most_contacts = 0;  // so many of one advance are kept
+};
+WorldOptions options_of(const model::Plan& plan);
+
+/// A world at an instant, with all that is needed to go on to the same bits.
+struct Snapshot {
+  Bytes bodies;
+  std::vector<double> equations, variables;
+  double time = 0, start = 0;  // start: of the steps
+  std::uint64_t steps = 0;
+  std::size_t collisions = 0;
+  std::size_t mode = 0;
+};
+
+class WorldRun {
+ public:
+  WorldRun() = default;
+  WorldRun(const WorldRun&) = delete;
+  WorldRun& operator=(const WorldRun&) = delete;
+  virtual ~WorldRun() = default;
+
+  virtual int dimension() const = 0;
+  virtual double time() const = 0;
+  /// Empty, or what went wrong; the world is then where it got to. With steps, to the first end of a step that is not
+  /// before t.
+  virtual std::string advance_to(double t) = 0;
+  /// 0 without steps.
+  virtual double step() const = 0;
+
+  virtual const std::vector<BodyShape>& bodies() const = 0;
+  virtual const std::vector<WallShape>& walls() const = 0;
+  virtual const std::vector<SpringShape>& springs() const = 0;
+
+  virtual Point position(std::size_t body) const = 0;
+  virtual Point velocity(std::size_t body) const = 0;
+  /// About the axes; in the plane its third component.
+  virtual Point spin(std::size_t body) const = 0;
+  /// A unit quaternion (w, x, y, z).
+  virtual std::array<double, 4> orientation(std::size_t body) const = 0;
+  virtual double kinetic_energy() const = 0;
+  virtual double potential_energy() const = 0;
+  /// Of the last advance, and how many more there were than `most_contacts`.
+  virtual const std::vector<Contact>& contacts() const = 0;
+  virtual std::size_t lost_contacts() const = 0;
+  /// "ball meets floor", "ball leaves floor".
+  std::string name_of(const Contact& contact) const;
+
+  /// The model's states: of bodies, of equations, measures of the world.
+  virtual const std::vector<double>& state() = 0;
+  /// Bodies and equations are put where it says; measures are ignored.
+  virtual void set_state(std::span<const double> state) = 0;
+  /// Puts one body elsewhere: dragged by a hand.
+  virtual void set_body(std::size_t body, const Point& position, const Point& velocity) = 0;
+  /// A parameter or an input, by its place in the flat space (`Parameter::variable`); what follows from it follows.
+  /// Empty, or why the world cannot be so.
+  virtual std::string set(std::uint32_t variable, double value) = 0;
+  /// The register file: t, states, parameters, inputs.
+  virtual std::span<const double> variables() = 0;
+  /// Of the equations.
+  virtual std::size_t mode() const = 0;
+  virtual void go(std::size_t mode) = 0;
+
+  virtual Snapshot snapshot() const = 0;
+  /// Of this same run; empty, or what is wrong with it.
+  virtual std::string restore(const Snapshot& snapshot) = 0;
+};
+
+struct StartedWorld {
+  std::unique_ptr<WorldRun> run;  // null where it cannot begin
+  std::string error;
+};
+/// `variables` is a register file as `start_values` gives it. The program must have a world.
+StartedWorld start_world(std::shared_ptr<const model::ModelProgram> program, const WorldOptions& options,
+                         std::span<const double> variables);
+
+}  // namespace continuo::worlds

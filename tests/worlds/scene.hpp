@@ -1,0 +1,45 @@
+// Worlds from texts.
+#pragma once
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <continuo/model/check.hpp>
+#include <continuo/model/parser.hpp>
+#include <continuo/worlds/simulate_world.hpp>
+#include <continuo/worlds/world_run.hpp>
+
+namespace continuo::worlds {
+
+inline std::shared_ptr<const model::ModelProgram> program_of(const std::string& text) {
+  const model::Source source("scene.sim", text);
+  model::ParseResult parsed = model::parse(source);
+  EXPECT_FALSE(has_errors(parsed.diagnostics)) << render(parsed.diagnostics, source);
+  model::Checked checked = check(parsed.model, source);
+  EXPECT_FALSE(has_errors(checked.diagnostics)) << render(checked.diagnostics, source);
+  return checked.model ? model::compile(std::move(*checked.model)) : nullptr;
+}
+
+inline std::unique_ptr<WorldRun> started(const std::string& text, const WorldOptions& options = {}) {
+  const auto program = program_of(text);
+  StartedWorld world = start_world(program, options, start_values(program->model));
+  EXPECT_TRUE(world.run) << world.error;
+  return std::move(world.run);
+}
+
+inline model::Run run_of(const std::string& text, const model::Experiment& experiment = {}) {
+  const auto program = program_of(text);
+  model::Simulated simulated = simulate_world(program, experiment);
+  EXPECT_TRUE(simulated.run) << render(simulated.diagnostics, model::Source("scene.sim", text));
+  return std::move(simulated.run).value();
+}
+
+inline double last(const model::Run& run, const std::string& column) {
+  for (std::size_t i = 0; i < run.motion.columns.size(); ++i)
+    if (run.motion.columns[i].name == column) return run.motion.row(run.motion.rows() - 1)[i];
+  ADD_FAILURE() << "no column " << column;
+  return 0;
+}
+
+}  // namespace continuo::worlds

@@ -1,0 +1,109 @@
+// A world that is driven step by step: what the live view and co-simulation hold in their hands.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <tests/worlds/scene.hpp>
+
+namespace continuo::worlds {
+namespace {
+
+constexpr const char* bouncing = R"(
+param g = 10, e = 1
+world {
+  gravity (0, -g)
+  wall ground (0, 1) at 0
+  material restitution e friction 0
+  body ball at (0, 5.5) radius 0.5 mass 2
+  body post at (9, 0) radius 1 fixed
+  spring ball to (0, 5.5) stiffness 0
+}
+run 0..10
+)";
+
+TEST(WorldRun, ShowsWhatIsThere) {
+  const auto run = started(bouncing);
+  EXPECT_EQ(run->dimension(), 2);
+  ASSERT_EQ(run->bodies().size(), 2u);
+  EXPECT_EQ(run->bodies()[0].name, "ball");
+  EXPECT_EQ(run->bodies()[0].radius, 0.5);
+  EXPECT_EQ(run->bodies()[0].mass, 2);
+  EXPECT_TRUE(run->bodies()[1].fixed);
+  ASSERT_EQ(run->walls().size(), 1u);
+  EXPECT_EQ(run->walls()[0].name, "ground");
+  EXPECT_EQ(run->walls()[0].normal, (Point{0, 1, 0}));
+  ASSERT_EQ(run->springs().size(), 1u);
+  EXPECT_EQ(run->springs()[0].point, (Point{0, 5.5, 0}));
+  EXPECT_EQ(run->position(0), (Point{0, 5.5, 0}));
+  EXPECT_EQ(run->orientation(0), (std::array<double, 4>{1, 0, 0, 0}));
+}
+
+TEST(WorldRun, ReportsContactsOfTheLastAdvance) {
+  const auto run = started(R"(
+world {
+  gravity (0, -10)
+  wall ground (0, 1) at 0
+  material restitution 1 friction 0
+  body ball at (0, 5.5) mass 2
+})",
+                           {.most_contacts = 10});
+  ASSERT_EQ(run->advance_to(0.5), "");
+  EXPECT_THAT(run->contacts(), testing::IsEmpty());
+  ASSERT_EQ(run->advance_to(1.5), "");
+  ASSERT_THAT(run->contacts(), testing::SizeIs(1));
+  const Contact& contact = run->contacts()[0];
+  EXPECT_EQ(run->name_of(contact), "ball meets ground");
+  EXPECT_NEAR(contact.time, 1, 1e-12);      // from a height of 5 m at 10 m/s^2
+  EXPECT_NEAR(contact.impulse, 40, 1e-10);  // 2 kg turned from -10 to 10 m/s
+  EXPECT_NEAR(run->position(0)[1], 0.5 + 10 * 0.5 - 5 * 0.25, 1e-12);
+  EXPECT_NEAR(run->kinetic_energy(), 25, 1e-10);
+}
+
+TEST(WorldRun, GoesOnToTheSameBitsFromASnapshot) {
+  for (const char* method : {"exact", "fast"}) {
+    const auto run = started(bouncing, {.method = method, .step = 0.01});
+    ASSERT_EQ(run->advance_to(1.23), "");
+    const Snapshot saved = run->snapshot();
+    ASSERT_EQ(run->advance_to(4), "");
+    const std::vector<double> once = run->state();
+    ASSERT_EQ(run->restore(saved), "");
+    EXPECT_EQ(run->time(), saved.time);
+    ASSERT_EQ(run->advance_to(4), "");
+    EXPECT_EQ(run->state(), once) << method;
+  }
+}
+
+TEST(WorldRun, CanBePushed) {
+  const auto run = started(bouncing);
+  ASSERT_EQ(run->advance_to(0.25), "");
+  run->set_body(0, {1, 20, 0}, {3, 0, 0});
+  ASSERT_EQ(run->advance_to(1.25), "");
+  EXPECT_NEAR(run->position(0)[0], 4, 1e-10);
+  EXPECT_NEAR(run->position(0)[1], 15, 1e-10);
+}
+
+TEST(WorldRun, FollowsItsParameters) {
+  const auto program = program_of(bouncing);
+  auto world = start_world(program, {}, start_values(program->model));
+  WorldRun& run = *world.run;
+  const auto parameter = [&](const char* name) {
+    return program->model.parameters[find_parameter(program->model, name)].variable;
+  };
+  ASSERT_EQ(run.set(parameter("g"), 0), "");
+  ASSERT_EQ(run.advance_to(3), "");
+  EXPECT_EQ(run.position(0)[1], 5.5);
+  EXPECT_THAT(run.set(parameter("e"), 2), testing::HasSubstr("restitution"));  // refused
+  ASSERT_EQ(run.set(parameter("g"), 10), "");
+  ASSERT_EQ(run.advance_to(5), "");
+  EXPECT_NEAR(run.position(0)[1], 5.5, 1e-9);  // down and up again in 2 s with e = 1
+}
+
+TEST(WorldRun, StopsAtTheEndOfAStepInTheFastMode) {
+  const auto run = started(bouncing, {.method = "fast", .step = 1.0 / 60});
+  ASSERT_EQ(run->advance_to(1), "");
+  EXPECT_EQ(run->time(), 1);  // 60 steps, counted and not added up
+  ASSERT_EQ(run->advance_to(1.001), "");
+  EXPECT_EQ(run->time(), 61.0 / 60);
+}
+
+}  // namespace
+}  // namespace continuo::worlds
