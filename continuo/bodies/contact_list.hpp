@@ -122,7 +122,10 @@ class ContactList {
                 const MaterialOf& material_of, bool has_rare, const ActiveReach<Real>& reach,
                 std::span<const std::uint32_t> place_before) {
     between_movers.count.fill(0), with_fixed.count.fill(0), with_wall.count.fill(0);
-    colour(bodies, walls, reach);
+    team.for_each(0, rows.rows(), 256, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k) choose(static_cast<std::uint32_t>(k), bodies, walls, reach);
+    });
+    colour(bodies);
     for_each_kind([&](auto, auto& packs) { packs.make_room(bodies, has_rare); });
     const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
     team.for_each(0, rows.rows(), 512, [&](std::size_t from, std::size_t to) {
@@ -204,26 +207,36 @@ class ContactList {
   static std::uint32_t number(ColouredPacks<Real, Dim>& packs, std::uint32_t colour) {
     return colour << colour_shift | packs.count[colour]++;
   }
-  void colour(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
+  /// Which entries of row k may touch: their lane is no longer `nowhere`.
+  void choose(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
               const ActiveReach<Real>& reach) {
+    const V x = bodies.x(k), v = bodies.v(k);
+    const Real radius = bodies.radius(k);
+    for (ContactEntry& entry : rows.row(k)) {
+      const std::uint32_t j = entry.other;
+      bool may_touch = false;
+      if (j >= bodies.size()) {
+        const Wall<Real, Dim>& wall = walls[j - bodies.size()];
+        may_touch = dot(wall.normal, x) - wall.offset - radius < come_closer(v, reach);
+      } else {
+        const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
+        may_touch = squared(bodies.x(j) - x) < near * near;
+      }
+      entry.lane = may_touch ? 0 : nowhere;
+    }
+  }
+  /// Colours depend on those before: by one thread.
+  void colour(const SolverBodies<Real, Dim>& bodies) {
     constexpr std::uint32_t last = ColouredPacks<Real, Dim>::most_colours - 1;
     std::vector<std::uint64_t> taken(bodies.size(), 0);  // the colours of what has the body as one of two that move
     for (std::uint32_t k = 0; k < rows.rows(); ++k) {
-      const V x = bodies.x(k), v = bodies.v(k);
-      const Real radius = bodies.radius(k);
       std::uint32_t fixed = 0, at_walls = 0;  // each of these has a colour of its own
       for (ContactEntry& entry : rows.row(k)) {
+        if (entry.lane == nowhere) continue;
         const std::uint32_t j = entry.other;
-        entry.lane = nowhere;
         if (j >= bodies.size()) {
-          const Wall<Real, Dim>& wall = walls[j - bodies.size()];
-          if (dot(wall.normal, x) - wall.offset - radius < come_closer(v, reach))
-            entry.lane = number(with_wall, std::min(at_walls++, last));
-          continue;
-        }
-        const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
-        if (!(squared(bodies.x(j) - x) < near * near)) continue;
-        if (bodies.moves(j)) {
+          entry.lane = number(with_wall, std::min(at_walls++, last));
+        } else if (bodies.moves(j)) {
           const std::uint32_t free = lowest_free(taken[k] | taken[j]);
           taken[j] |= std::uint64_t{1} << free;
           taken[k] |= std::uint64_t{1} << free;

@@ -1,22 +1,29 @@
 // Loops whose turns may run at once. What a turn writes no other turn reads or writes, so the results are the same to
 // the last bit for any number of threads.
+//
+// A step has hundreds of loops of some microseconds, too short to begin and end a parallel loop of the library for
+// each. So the threads come once a step and take blocks of loop after loop from one ticket, as in Box2D v3 (E. Catto,
+// "Simulation Islands", 2023). The caller can do every block alone: nothing waits for a thread that never comes.
 #pragma once
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <memory>
+#include <thread>
+#include <type_traits>
+#include <utility>
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
 
 namespace continuo {
 
 class Team {
  public:
   /// At most so many threads, the caller's among them.
-  explicit Team(int threads) {
+  explicit Team(int threads) : threads_(static_cast<std::size_t>(std::max(threads, 1))) {
     if (threads > 1) arena_ = std::make_unique<oneapi::tbb::task_arena>(threads);
   }
   bool is_alone() const { return !arena_; }
@@ -24,37 +31,94 @@ class Team {
   /// Loops within `act` are shared out.
   template <class Act>
   void run(Act&& act) {
-    if (is_alone()) {
-      act();
-    } else {
-      arena_->execute([&] { act(); });
-    }
+    if (is_alone()) return act();
+    arena_->execute([&] {
+      oneapi::tbb::task_group helpers;
+      is_open_.store(true, std::memory_order_release);
+      for (std::size_t i = 1; i < threads_; ++i) helpers.run(Helper(*this));
+      std::exception_ptr error;
+      try {
+        act();
+      } catch (...) {
+        error = std::current_exception();
+      }
+      is_open_.store(false, std::memory_order_release);
+      helpers.wait();
+      if (error) std::rethrow_exception(error);
+    });
   }
 
   /// act(from, to) for parts of first ... last - 1 that are no shorter than `shortest`, which should be some
-  /// microseconds of work. Each thread has the same part every time: what it needs is in its cache.
+  /// microseconds of work.
   template <class Act>
   void for_each(std::size_t first, std::size_t last, std::size_t shortest, Act&& act) {
-    if (is_alone() || last - first < 2 * shortest) {
-      if (first < last) act(first, last);
-      return;
+    if (first >= last) return;
+    const std::size_t blocks = std::min((last - first) / std::max(shortest, std::size_t{1}), 4 * threads_);
+    if (blocks < 2 || !is_open_.load(std::memory_order_relaxed)) return act(first, last);
+    using Plain = std::remove_reference_t<Act>;
+    loop_ = {[](const void* context, std::size_t from, std::size_t to) {
+               (*const_cast<Plain*>(static_cast<const Plain*>(context)))(from, to);
+             },
+             std::addressof(act), first, last, std::min<std::size_t>(blocks, 0xffff)};
+    done_.store(0, std::memory_order_relaxed);
+    ticket_.store(++number_of_loop_ << 32 | static_cast<std::uint64_t>(loop_.blocks) << 16, std::memory_order_release);
+    while (take_block()) {
     }
-    // The library orders these accesses too, but not where a sanitizer sees it.
-    turns_.fetch_add(1, std::memory_order_release);
-    oneapi::tbb::parallel_for(
-        oneapi::tbb::blocked_range<std::size_t>(first, last, shortest),
-        [&](const oneapi::tbb::blocked_range<std::size_t>& part) {
-          (void)turns_.load(std::memory_order_acquire);
-          act(part.begin(), part.end());
-          turns_.fetch_add(1, std::memory_order_release);
-        },
-        oneapi::tbb::static_partitioner{});
-    (void)turns_.load(std::memory_order_acquire);
+    for (int idle = 0; done_.load(std::memory_order_acquire) != loop_.blocks; ++idle) wait(idle);
+    if (has_failed_.exchange(false)) std::rethrow_exception(std::exchange(error_, nullptr));
   }
 
  private:
+  struct Loop {
+    void (*act)(const void* context, std::size_t from, std::size_t to) = nullptr;
+    const void* context = nullptr;
+    std::size_t first = 0, last = 0, blocks = 0;
+  };
+
+  /// A task that is handed on in sight of the thread sanitizer, which does not look into the library.
+  class Helper {
+   public:
+    explicit Helper(Team& team) { team_.store(&team, std::memory_order_release); }
+    Helper(const Helper& other) : Helper(*other.team_.load(std::memory_order_relaxed)) {}
+    void operator()() const { team_.load(std::memory_order_acquire)->help(); }
+
+   private:
+    std::atomic<Team*> team_;
+  };
+
+  void help() {
+    for (int idle = 0; is_open_.load(std::memory_order_acquire); ++idle) take_block() ? void(idle = 0) : wait(idle);
+  }
+  /// The next block of the loop that is under way; false where none is left. Who has a block keeps its loop under way,
+  /// so that what is read of it below is of this loop: the ticket carries its number, and an old one is worth nothing.
+  bool take_block() {
+    std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
+    const std::uint64_t blocks = ticket >> 16 & 0xffff, next = ticket & 0xffff;
+    if (next >= blocks) return false;
+    if (!ticket_.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel, std::memory_order_relaxed))
+      return true;
+    const std::size_t size = loop_.last - loop_.first;
+    try {
+      loop_.act(loop_.context, loop_.first + size * next / blocks, loop_.first + size * (next + 1) / blocks);
+    } catch (...) {
+      if (!has_failed_.exchange(true)) error_ = std::current_exception();
+    }
+    done_.fetch_add(1, std::memory_order_release);
+    return true;
+  }
+  /// A loop ends within microseconds; where there are more threads than processors, another needs this one.
+  static void wait(int idle) {
+    if (idle > 200) std::this_thread::yield();
+  }
+
+  std::size_t threads_;
   std::unique_ptr<oneapi::tbb::task_arena> arena_;
-  std::atomic<std::size_t> turns_ = 0;
+  Loop loop_;
+  std::uint64_t number_of_loop_ = 0;
+  alignas(64) std::atomic<std::uint64_t> ticket_ = 0;  // of the loop: its number, its blocks, the next of them
+  alignas(64) std::atomic<std::size_t> done_ = 0;
+  std::atomic<bool> is_open_ = false, has_failed_ = false;
+  std::exception_ptr error_;
 };
 
 }  // namespace continuo
