@@ -12,7 +12,7 @@ export interface Shared {
   plots: string[];
 }
 
-const methodText = ({ method, step, rtol }: Choice, fixed: boolean): string => `${method},${fixed ? `step=${step}` : `rtol=${rtol}`}`;
+const methodText = ({ method, step, rtol }: Choice): string => `${method},${step !== null ? `step=${step}` : `rtol=${rtol}`}`;
 
 function methodOf(text: string): { name: string; step?: number; rtol?: number } | undefined {
   const [name, number] = text.split(",");
@@ -30,11 +30,10 @@ export function toHash(model: ModelMessage, state: StateMessage | null, view: re
   if (state) {
     for (const { name, value } of model.parameters) if (name in state.parameters && state.parameters[name] !== value) hash.set(`p.${name}`, String(state.parameters[name]));
     for (const { name, value, from_file } of model.inputs) if (!from_file && name in state.inputs && state.inputs[name] !== value) hash.set(`i.${name}`, String(state.inputs[name]));
-    const fixed = (choice: Choice): boolean => model.methods.find(({ name }) => name === choice.method)?.fixed ?? false;
     const { experiment } = model;
-    const same = state.method === experiment.method && (fixed(state) ? state.step === experiment.step : state.rtol === experiment.rtol);
-    if (!same) hash.set("method", methodText(state, fixed(state)));
-    if (state.ghost) hash.set("ghost", methodText(state.ghost, fixed(state.ghost)));
+    const same = state.method === experiment.method && (state.step !== null ? state.step === experiment.step : state.rtol === experiment.rtol);
+    if (!same) hash.set("method", methodText(state));
+    if (state.ghost) hash.set("ghost", methodText(state.ghost));
     if (state.target !== 1) hash.set("speed", String(state.target));
   }
   if (view) hash.set("view", view.map((number) => Number(number.toPrecision(5))).join(","));

@@ -56,7 +56,12 @@ export function icon(name: string): SVGSVGElement {
 /** A button that shows a sign and says in words, with its key, what it does. */
 export function iconButton(name: string, title: string, key: string, action: () => void): HTMLButtonElement {
   const hint = key ? `${title} (${key})` : title;
-  return make("button", { type: "button", class: "icon", title: hint, "aria-label": title, "aria-keyshortcuts": key || null, onclick: action }, icon(name));
+  const press = (event: MouseEvent): void => {
+    action();
+    // After a click of the mouse the space bar is play and pause again, not this button.
+    if (event.detail > 0 && event.currentTarget instanceof HTMLElement) event.currentTarget.blur();
+  };
+  return make("button", { type: "button", class: "icon", title: hint, "aria-label": title, "aria-keyshortcuts": key || null, onclick: press }, icon(name));
 }
 
 /** Offers `data` as a file. */

@@ -33,7 +33,9 @@ export class Messages {
 
   private add(message: SolverMessage, goTo: (line: number, column: number) => void, kind = ""): void {
     const { severity, code, text, hint, line, column } = message;
-    for (const old of [...this.element.children]) if (old.querySelector(".what")?.textContent === text) old.remove();
+    const same = [...this.element.children].filter((old) => old.querySelector(".what")?.textContent === text);
+    if (same.length > 0 && kind === "ended") return;  // the error said it already
+    for (const old of same) old.remove();
     const row: HTMLElement = make(
       "div",
       { class: `message ${severity} ${kind}`, role: severity === "error" ? "alert" : null },

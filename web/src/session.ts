@@ -33,6 +33,7 @@ export class Session implements Listener {
   };
 
   private run = -1;
+  private eventsInFrames = 0;
 
   constructor(private readonly source: Source) {}
 
@@ -91,7 +92,7 @@ export class Session implements Listener {
         break;
       case "event":
         this.events.push(message);
-        if (this.events.length > 5000) this.events.splice(0, 1000);
+        if (this.events.length > 5000) this.eventsInFrames = Math.max(0, this.eventsInFrames - this.events.splice(0, 1000).length);
         this.tell("event", message);
         break;
       case "message":
@@ -112,12 +113,16 @@ export class Session implements Listener {
   }
 
   arrived(frame: Frame): void {
+    // Events are told at once, frames a little later: those told since the last frame belong to this one's time.
+    const fresh = this.events.splice(this.eventsInFrames).filter(({ t }) => frame.lookingBack || t <= frame.t);
     if (frame.run !== this.run) this.beginAnew(frame.run);
     if (frame.rewound) {
       const from = frame.rowTimes[0] ?? frame.t;
       this.events = this.events.filter((event) => event.t < from);
       this.tell("rewound", from);
     }
+    this.events.push(...fresh);
+    this.eventsInFrames = this.events.length;
     this.history.append(frame);
     this.frame = frame;
     this.tell("frame", frame);
@@ -128,6 +133,7 @@ export class Session implements Listener {
     this.run = run;
     this.history = new History(this.model?.columns.length ?? 0);
     this.events = [];
+    this.eventsInFrames = 0;
     this.tell("rewound", -Infinity);
   }
 }

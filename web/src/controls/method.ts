@@ -13,7 +13,7 @@ export class MethodChoice {
   opened = (): void => {};
   private readonly list: HTMLSelectElement;
   private readonly number = make("input", { class: "number", type: "text", inputmode: "decimal", autocomplete: "off" });
-  private readonly what = make("span", { class: "name" });
+  private readonly what = make("select", { "aria-label": "Step or tolerance" }, make("option", { value: "step" }, "step"), make("option", { value: "rtol" }, "tolerance"));
   private readonly row: HTMLElement;
   private shown: Choice | null;
   private busyUntil = 0;
@@ -30,6 +30,10 @@ export class MethodChoice {
     this.list = make("select", { "aria-label": optional ? "Method of the ghost" : "Method" }, optional ? make("option", { value: "" }, "none") : null, group("with a fixed step", true), group("that choose their steps", false));
     this.list.addEventListener("change", () => this.choose());
     this.number.addEventListener("change", () => this.choose());
+    this.what.addEventListener("change", () => {
+      this.displayNumber(this.byStep ? this.shown?.step : this.shown?.rtol);
+      this.choose();
+    });
     const halve = make("button", { type: "button", class: "small", title: "Half of it", "aria-label": "Half", onclick: () => this.scale(0.5) }, "÷2");
     const double = make("button", { type: "button", class: "small", title: "Twice as much", "aria-label": "Twice", onclick: () => this.scale(2) }, "×2");
     this.row = make("div", { class: "method-number" }, this.what, this.number, halve, double);
@@ -59,21 +63,27 @@ export class MethodChoice {
     return this.model.methods.find(({ name }) => name === this.list.value)?.fixed ?? false;
   }
 
+  /** A method that chooses its steps can be held to one as well. */
+  private get byStep(): boolean {
+    return this.what.value === "step";
+  }
+
   private display(): void {
     this.list.value = this.shown?.method ?? "";
-    this.displayNumber(this.fixed ? this.shown?.step : this.shown?.rtol);
+    this.what.value = this.fixed || (this.shown?.step ?? null) !== null ? "step" : "rtol";
+    this.displayNumber(this.byStep ? this.shown?.step : this.shown?.rtol);
   }
 
   private displayNumber(value: number | null | undefined): void {
     this.row.hidden = this.list.value === "";
-    this.what.textContent = this.fixed ? "step" : "tolerance";
-    this.number.setAttribute("aria-label", this.fixed ? "Step" : "Relative tolerance");
+    this.what.disabled = this.fixed;
+    this.number.setAttribute("aria-label", this.byStep ? "Step" : "Relative tolerance");
     if (document.activeElement !== this.number) this.number.value = formatNumber(value ?? this.usual, 6);
   }
 
   private get usual(): number {
     const { experiment } = this.model;
-    if (!this.fixed) return experiment.rtol ?? 1e-6;
+    if (!this.byStep) return experiment.rtol ?? 1e-6;
     return experiment.step ?? Number(((experiment.to - experiment.from) / 500).toPrecision(1));
   }
 
@@ -87,12 +97,13 @@ export class MethodChoice {
   private choose(): void {
     const method = this.list.value || null;
     const before = this.shown?.method === method;
-    const value = before ? parseNumber(this.number.value) : ((this.fixed ? this.shown?.step : this.shown?.rtol) ?? this.usual);
-    const valid = value > 0 ? value : this.usual;
-    this.shown = method ? { method, step: this.fixed ? valid : (this.shown?.step ?? null), rtol: this.fixed ? (this.shown?.rtol ?? null) : valid } : null;
-    this.displayNumber(valid);
+    if (!before) this.what.value = this.fixed ? "step" : "rtol";
+    const typed = before ? parseNumber(this.number.value) : ((this.byStep ? this.shown?.step : this.shown?.rtol) ?? this.usual);
+    const value = typed > 0 ? typed : this.usual;
+    this.shown = method ? { method, step: this.byStep ? value : null, rtol: this.byStep ? null : value } : null;
+    this.displayNumber(value);
     this.busyUntil = performance.now() + 400;
-    this.change({ method, numbers: method ? (this.fixed ? { step: valid } : { rtol: valid }) : {} });
+    this.change({ method, numbers: method ? (this.byStep ? { step: value } : { rtol: value }) : {} });
     if (!this.optional || method) this.opened();
   }
 }

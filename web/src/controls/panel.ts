@@ -70,13 +70,18 @@ export class ControlPanel {
       parts.push(section("Inputs", ...rows));
     }
     if (model.parameters.length > 0) {
-      const rows = model.parameters.map((parameter) => {
+      // Lists of start values and the like: at hand, not in the way.
+      const plain = model.parameters.filter(({ min, max }) => min === null || max === null);
+      const folded = plain.length > 5 ? make("details", { class: "more" }, make("summary", {}, `${plain.length} without a range`)) : null;
+      const rows: HTMLElement[] = [];
+      for (const parameter of model.parameters) {
         const again = parameter.structural ? make("small", { title: "The run begins anew where this changes" }, " ↻") : null;
         const row = new QuantityRow(parameter, (value) => session.send({ do: "set", parameter: parameter.name, value }), again);
         this.parameters.set(parameter.name, row);
-        return row.element;
-      });
-      parts.push(section("Parameters", make("div", { class: "section-buttons" }, this.undo, this.restore), ...rows));
+        if (folded && plain.includes(parameter)) folded.append(row.element);
+        else rows.push(row.element);
+      }
+      parts.push(section("Parameters", make("div", { class: "section-buttons" }, this.undo, this.restore), ...rows, folded));
     }
     this.method = new MethodChoice(model, false, (choice) => choice.method !== null && session.send({ do: "method", name: choice.method, ...choice.numbers }));
     this.ghost = new MethodChoice(model, true, (choice) => session.send({ do: "ghost", name: choice.method, ...choice.numbers }));

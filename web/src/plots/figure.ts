@@ -238,15 +238,19 @@ export class Figure {
     ctx.strokeStyle = this.look.event;
     ctx.fillStyle = this.look.event;
     ctx.lineWidth = ratio;
-    ctx.globalAlpha = seen.length > 40 ? 0.35 : 0.8;
+    // Many events are a row of ticks: lines would cover the curves.
+    const lines = seen.length <= 30;
+    ctx.globalAlpha = lines ? 0.8 : 0.45;
     ctx.font = `${0.68 * this.look.rem * ratio}px ${this.look.font.replace(/^\S+\s/, "")}`;
     for (const { t, mark } of seen) {
       const x = Math.round(u.valToPos(t, "x", true)) + 0.5;
       ctx.setLineDash([3 * ratio, 4 * ratio]);
-      ctx.beginPath();
-      ctx.moveTo(x, top);
-      ctx.lineTo(x, top + height);
-      ctx.stroke();
+      if (lines) {
+        ctx.beginPath();
+        ctx.moveTo(x, top);
+        ctx.lineTo(x, top + height);
+        ctx.stroke();
+      }
       ctx.beginPath();
       ctx.moveTo(x - 3.5 * ratio, top);
       ctx.lineTo(x + 3.5 * ratio, top);

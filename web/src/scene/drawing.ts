@@ -40,9 +40,10 @@ export function itemColors(items: readonly Item[], theme: Theme): string[] {
   });
   return colors.map((color, index) => {
     if (color !== "") return color;
-    const at = items[index]!.numbers["at"];
-    const ball = items.findIndex((item) => item.shape !== "trail" && String(item.numbers["at"]) === String(at));
-    return ball >= 0 && colors[ball] !== "" ? colors[ball]! : palette[1]!;
+    // A trail is that of the ball before it, or of the next one.
+    const before = items.slice(0, index).findLastIndex((item) => item.shape === "ball");
+    const ball = before >= 0 ? before : items.findIndex((item) => item.shape === "ball");
+    return ball >= 0 ? colors[ball]! : palette[1]!;
   });
 }
 

@@ -122,6 +122,16 @@ export function heightFor(bounds: Bounds, aspect: number, margin = 1.16): number
   return height > 0 && Number.isFinite(height) ? height : 1;
 }
 
+/**
+ * The height at the picture's centre. Where the picture is higher than the scene, as over a long road, what is left over
+ * goes above a floor rather than below it.
+ */
+export function centreHeight(bounds: Bounds, height: number, floor: number | null): number {
+  const middle = centre(bounds, 1);
+  if (floor === null || bounds.lower[1] < floor - 0.02 * height) return middle;
+  return Math.max(middle, floor + height * (0.5 - 0.14));
+}
+
 /** Distances between grid lines: 1, 2 or 5 times a power of ten, about `count` of them in `span`. */
 export function gridStep(span: number, count: number): number {
   const raw = span / Math.max(1, count);

@@ -27,6 +27,8 @@ export class Hand {
   private queued = 0;
   private selected: Thing | null = null;
   private nudge: [number, number, number] | null = null;
+  private nudgedAt = -Infinity;
+  private nudging = false;
 
   constructor(private readonly around: Surroundings) {
     const { canvas } = around.stage;
@@ -54,15 +56,20 @@ export class Hand {
   shift(right: number, up: number): void {
     const { session, stage } = this.around;
     if (!this.selected || !session.model || !session.frame) return;
-    this.nudge ??= pointOf(session.model.drawing[this.selected.index]!, session.frame.scene, "at");
+    // Presses in quick succession go on from one another, not from a picture that is older than the last.
+    if (!this.nudge || performance.now() - this.nudgedAt > 400) {
+      this.nudge = pointOf(session.model.drawing[this.selected.index]!, session.frame.scene, "at");
+    }
+    this.nudgedAt = performance.now();
+    this.nudging = true;
     this.nudge[0] += right * stage.seenHeight;
     this.nudge[1] += up * stage.seenHeight;
     session.send({ do: "drag", item: this.selected.index, to: this.nudge.slice(0, session.model.dimension) });
   }
 
   letGo(): void {
-    if (!this.nudge) return;
-    this.nudge = null;
+    if (!this.nudging) return;
+    this.nudging = false;
     this.around.session.send({ do: "release" });
   }
 
@@ -71,6 +78,7 @@ export class Hand {
     this.held = null;
     this.selected = null;
     this.nudge = null;
+    this.nudging = false;
     this.around.stage.movable = true;
   }
 

@@ -1,7 +1,7 @@
 // Renderer, camera and the ways to move it. Draws only when something has changed.
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { centre, extent, heightFor, type Bounds } from "./fit";
+import { centre, centreHeight, extent, heightFor, type Bounds } from "./fit";
 
 const fov = 35;
 
@@ -9,6 +9,8 @@ export class Stage {
   readonly scene = new three.Scene();
   readonly canvas: HTMLCanvasElement;
   camera: three.OrthographicCamera | three.PerspectiveCamera;
+  /** Where the floor of a scene in the plane is, if it has one. */
+  floor: number | null = null;
   /** The picture follows the scene until a person moves it. */
   automatic = true;
   /** Pictures drawn so far. */
@@ -117,7 +119,11 @@ export class Stage {
     const target = this.controls.target;
     if (this.camera instanceof three.OrthographicCamera) {
       const height = heightFor(bounds, aspect);
-      this.viewHeight *= (height / (this.viewHeight / this.camera.zoom)) ** part / this.camera.zoom;
+      const seen = this.viewHeight / this.camera.zoom;
+      // What grows must not leave the picture; what shrinks may take its time.
+      if (height > seen) part = 1;
+      this.viewHeight = seen * (height / seen) ** part;
+      goal.y = centreHeight(bounds, this.viewHeight, this.floor);
       this.camera.zoom = 1;
       target.lerp(goal, follow ? 1 : part);
       this.camera.position.set(target.x, target.y, 100);
@@ -127,6 +133,7 @@ export class Stage {
     const radius = Math.max(1e-9, Math.hypot(extent(bounds, 0), extent(bounds, 1), extent(bounds, 2)) / 2);
     const wanted = (0.86 * radius) / Math.sin(((fov / 2) * Math.PI) / 180) / Math.min(1, aspect);
     const way = this.camera.position.clone().sub(target);
+    if (wanted > way.length()) part = 1;
     const distance = way.length() * (wanted / way.length()) ** part;
     target.lerp(goal, follow ? 1 : part);
     this.camera.position.copy(target).addScaledVector(way.normalize(), distance);

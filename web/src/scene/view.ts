@@ -141,6 +141,8 @@ export class SceneView {
       if (model.bodies.containers.length > 0) this.bodies?.includeContainers(bounds);
     }
     this.interest.see(bounds);
+    const floor = model.drawing.find((item) => item.shape === "floor");
+    this.stage.floor = floor ? numberOf(floor, frame.scene, "at", 0) : null;
     if (this.firstFrame && this.stage.automatic) this.stage.approach(this.interest.wanted(), 1);
     this.firstFrame = false;
     const size = this.stage.seenHeight;

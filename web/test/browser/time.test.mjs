@@ -1,0 +1,81 @@
+// Play, pause, step, back, reset, until the next event, looking back; speed.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { button, model, now, open, picture, serve, until } from "./harness.mjs";
+
+test("the transport does what its buttons say", async (t) => {
+  const { url } = await serve(t, model("bouncing_ball"));
+  const tab = await open(t, url);
+  const going = await until(tab, ({ t: time, state }) => state.playing && time > 0.5, "it plays by itself");
+  await button(tab, "Pause").click();
+  const paused = await until(tab, ({ state }) => !state.playing, "it pauses");
+  assert.ok(paused.t >= going.t);
+  await tab.waitForTimeout(300);
+  assert.equal((await now(tab)).t, paused.t, "a pause stands still");
+
+  await button(tab, "One step on").click();
+  const stepped = await until(tab, ({ t: time }) => time > paused.t, "a step goes on");
+  await button(tab, "One step back").click();
+  await until(tab, ({ t: time }) => time < stepped.t, "and back");
+
+  await button(tab, "Run until the next event").click();
+  const event = await until(tab, ({ t: time, state }) => !state.playing && time > 1.4, "it runs to the impact");
+  assert.ok(Math.abs(event.t - 10 / 7) < 1e-6, `the first impact is at 10/7 s, not at ${event.t}`);
+  assert.ok(event.events >= 1, "and the event is marked");
+
+  await button(tab, "Reset to the start").click();
+  const reset = await until(tab, ({ t: time }) => time === 0, "a reset goes to the start");
+  assert.equal(reset.scene[2], 10, "the ball is at its height again");
+  await tab.keyboard.press("Space");
+  await until(tab, ({ state, t: time }) => state.playing && time > 0.1, "the space bar plays");
+});
+
+test("time holds, and the speed changes it", async (t) => {
+  const { url } = await serve(t, model("spring_pendulum"));
+  const tab = await open(t, url);
+  const rate = async () => {
+    // Both clocks are read where the frames arrive.
+    const read = () => tab.evaluate(() => new Promise((resolve) => {
+      const { session } = globalThis.continuo;
+      let done = false;
+      session.on("frame", (frame) => {
+        if (!done) resolve([frame.t, performance.now() / 1000]);
+        done = true;
+      });
+    }));
+    const a = await read();
+    await tab.waitForTimeout(1500);
+    const b = await read();
+    return (b[0] - a[0]) / (b[1] - a[1]);
+  };
+  await until(tab, ({ t: time }) => time > 0.5, "it plays");
+  const real = await rate();
+  assert.ok(Math.abs(real - 1) < 0.1, `real time, not ${real}`);
+  await tab.getByLabel("Speed, times real time").selectOption("0.25");
+  await until(tab, ({ state }) => state.target === 0.25, "the speed is taken");
+  const slow = await rate();
+  assert.ok(Math.abs(slow - 0.25) < 0.06, `a quarter of it, not ${slow}`);
+  assert.match(await tab.locator(".reached").textContent(), /reached 0\.2\d*×/);
+});
+
+test("a plot looks back, and every view shows that instant", async (t) => {
+  const { url } = await serve(t, model("spring_pendulum"));
+  const tab = await open(t, url);
+  await until(tab, ({ t: time }) => time > 2, "it plays");
+  await button(tab, "Pause").click();
+  const paused = await until(tab, ({ state }) => !state.playing, "it pauses");
+  const over = tab.locator('[data-plot="energy"] .u-over');
+  const box = await over.boundingBox();
+  // The window is the run of 10 s: a tenth of its width is 1 s.
+  await tab.mouse.click(box.x + 0.1 * box.width, box.y + box.height / 2);
+  const back = await until(tab, ({ lookingBack, t: time }) => lookingBack && Math.abs(time - 1) < 0.15, "a click looks back");
+  assert.ok(back.last >= paused.t - 1e-6, "and the newer rows stay");
+  const shown = Number((await tab.locator(".values td.number").first().textContent()).replace("−", "-"));
+  assert.ok(Math.abs(shown - back.t) < 0.15, "the table of values shows that time");
+  const exact = await tab.evaluate(() => {
+    const { session } = globalThis.continuo;
+    return [session.history.valueAt(0, session.frame.t), session.frame.scene[2]];
+  });
+  assert.ok(Math.abs(exact[0] - exact[1]) < 1e-3, "the scene and the rows agree there");
+  await picture(tab, "looking_back");
+});
