@@ -216,7 +216,7 @@ class ContactList {
       const std::uint32_t j = entry.other;
       bool may_touch = false;
       if (j >= bodies.size()) {
-        const Wall<Real, Dim>& wall = walls[j - bodies.size()];
+        const Wall<Real, Dim> wall = facing(walls[j - bodies.size()], x);
         may_touch = dot(wall.normal, x) - wall.offset - radius < come_closer(v, reach);
       } else {
         const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
@@ -295,7 +295,8 @@ class ContactList {
       const std::uint32_t bit = &packs == &with_fixed ? fixed_bit : 0, j = entry.other;
       const std::uint32_t lane = fill(packs, entry.lane & ~bit, k, j, material_of);
       if (j >= bodies.size())
-        put_in_lane(V(-walls[j - bodies.size()].normal), packs.packs[lane / width].normal, lane % width);
+        put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), packs.packs[lane / width].normal,
+                    lane % width);
       recall(packs, lane, before(k), before(j));
       entry.lane = lane | bit;
     }

@@ -308,8 +308,8 @@ class EventDriven final : public ExactEngine<Real, Dim> {
 
   void hit_wall(std::uint32_t i, std::uint32_t w) {
     ++statistics.wall_collisions;
-    const Wall<Real, Dim>& wall = world_.walls()[w];
     bring(i);
+    const Wall<Real, Dim> wall = facing(world_.walls()[w], flights_.paths[i].x);
     const Material<Real> own = combined(flights_.plans[i].material, wall.material);
     const Material<Real> material = at_this_instant(own, i, i);
     V no_velocity{};
@@ -350,8 +350,8 @@ class EventDriven final : public ExactEngine<Real, Dim> {
 
   BodyHandle handle_of(std::uint32_t i) const { return world_.handle(flights_.plans[i].number); }
   void note_wall(std::uint32_t i, std::uint32_t w, ContactChange change, const Real& impulse) {
-    const V normal = -world_.walls()[w].normal;
     const Path<Real, Dim>& path = flights_.paths[i];
+    const V normal = -facing(world_.walls()[w], path.x).normal;
     contacts.add({.change = change,
                   .a = handle_of(i),
                   .wall = w,

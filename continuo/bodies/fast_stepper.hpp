@@ -83,7 +83,7 @@ class FastMotion<Real, Dim>::Stepper {
           const Real distance = length(bodies_.x(entry.other) - bodies_.x(k));
           deepest = std::max(deepest, bodies_.radius(k) + bodies_.radius(entry.other) - distance);
         } else {
-          const Wall<Real, Dim>& wall = world_.walls()[entry.other - bodies_.size()];
+          const Wall<Real, Dim> wall = facing(world_.walls()[entry.other - bodies_.size()], bodies_.x(k));
           deepest = std::max(deepest, bodies_.radius(k) + wall.offset - dot(wall.normal, bodies_.x(k)));
         }
       }
@@ -163,7 +163,7 @@ class FastMotion<Real, Dim>::Stepper {
       event.impulse = impulse * static_cast<Real>(options_.substeps);
       if (is_wall) {
         event.wall = other;
-        event.normal = -world_.walls()[other].normal;
+        event.normal = -facing(world_.walls()[other], bodies_.x(k)).normal;
       } else {
         event.b = handle(other);
         if (event.b.slot < event.a.slot) std::swap(event.a, event.b);

@@ -204,7 +204,7 @@ class Flights {
   void predict_wall(std::uint32_t i, std::uint32_t w) {
     const Path<Real, Dim>& path = paths[i];
     Plan<Real, Dim>& plan = plans[i];
-    const Wall<Real, Dim>& wall = world.walls()[w];
+    const Wall<Real, Dim> wall = facing(world.walls()[w], path.x);
     const Real gap = dot(wall.normal, path.x) - wall.offset - path.radius;
     const Real wait = time_to_close(gap, dot(wall.normal, path.v), dot(wall.normal, plan.acceleration));
     if (now + wait < plan.collision_time) {

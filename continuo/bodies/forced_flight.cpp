@@ -131,7 +131,7 @@ class Watch {
  private:
   Real guard(const Candidate& at) const {
     if (at.wall != no_wall) {
-      const Wall<Real, Dim>& wall = world_->walls()[at.wall];
+      const Wall<Real, Dim> wall = facing(world_->walls()[at.wall], begin_[at.a]);
       if (at.overlaps) return dot(wall.normal, v_[at.a]);
       return dot(wall.normal, x_[at.a]) - wall.offset - world_->radius[at.a];
     }
@@ -263,13 +263,13 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
 
   Real gap(const Candidate& at) const {
     if (at.wall != no_wall) {
-      const Wall<Real, Dim>& wall = world_.walls()[at.wall];
+      const Wall<Real, Dim> wall = facing(world_.walls()[at.wall], world_.position[at.a]);
       return dot(wall.normal, world_.position[at.a]) - wall.offset - world_.radius[at.a];
     }
     return length(V(world_.position[at.b] - world_.position[at.a])) - world_.radius[at.a] - world_.radius[at.b];
   }
   V normal(const Candidate& at) const {
-    if (at.wall != no_wall) return -world_.walls()[at.wall].normal;
+    if (at.wall != no_wall) return -facing(world_.walls()[at.wall], world_.position[at.a]).normal;
     V n = world_.position[at.b] - world_.position[at.a];
     const Real distance = length(n);
     if (distance > Real(0)) return n * (1 / distance);

@@ -101,10 +101,12 @@ class Impacts {
   }
   void foresee_wall(const Making& making, std::uint32_t i, std::uint32_t w, const Real& from) {
     const auto& bodies = making.bodies;
-    const Wall<Real, Dim>& wall = making.world.walls()[w];
-    const Real pull = dot(bodies.acceleration(i), wall.normal), speed = dot(bodies.v(i), wall.normal) + pull * from;
-    const Real gap = dot(wall.normal, bodies.x(i)) - wall.offset - bodies.radius(i);
-    const Real wait = time_to_close(Real(gap + (speed - pull * from / 2) * from), speed, pull);
+    const V acceleration = bodies.acceleration(i);
+    // Where it really is: a body that has struck is kept where its new path began, which nothing has seen.
+    const V x = bodies.x(i) + bodies.v(i) * from + acceleration * (from * from / 2);
+    const Wall<Real, Dim> wall = facing(making.world.walls()[w], x);
+    const Real pull = dot(acceleration, wall.normal), speed = dot(bodies.v(i), wall.normal) + pull * from;
+    const Real wait = time_to_close(Real(dot(wall.normal, x) - wall.offset - bodies.radius(i)), speed, pull);
     if (!(from + wait < making.substep.h)) return;
     const Real restitution = combined(making.material(i), wall.material).restitution;
     if (!counts(making, Real(-(speed + pull * wait)), restitution, bodies.radius(i))) return;
@@ -127,7 +129,7 @@ class Impacts {
       put_back(bodies, impact.b, b, impact.time);
     } else {
       State stand_in{};
-      const Wall<Real, Dim>& wall = making.world.walls()[impact.b - bodies.size()];
+      const Wall<Real, Dim> wall = facing(making.world.walls()[impact.b - bodies.size()], bodies.x(impact.a));
       const Material<Real> both = combined(making.material(impact.a), wall.material);
       if (dot(a.v, wall.normal) < Real(0))
         note(making, impact, V(-wall.normal), collide(a.mover(), stand_in.mover(), V(-wall.normal), both));

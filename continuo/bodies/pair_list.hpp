@@ -143,7 +143,7 @@ class PairList {
     const V x = bodies.x(k);
     const Real out = bodies.radius(k) + reach_[k];
     for (std::size_t w = 0; w < world.walls().size(); ++w) {
-      const Wall<Real, Dim>& wall = world.walls()[w];
+      const Wall<Real, Dim> wall = facing(world.walls()[w], x);
       if (dot(wall.normal, x) - wall.offset <= out) part.entries.push_back({.other = bodies.wall(w)});
     }
   }

@@ -165,15 +165,15 @@ template <class Real, int Dim>
 template <class Take>
 void Queries<Real, Dim>::wall_hits(const Ray<Real, Dim>& ray, Take&& take) const {
   for (std::uint32_t w = 0; w < walls_.size(); ++w) {
-    const Real gap = dot(walls_[w].normal, ray.origin) - walls_[w].offset;
-    const Real approach = -dot(walls_[w].normal, ray.direction);
+    const Wall<Real, Dim> wall = facing(walls_[w], ray.origin);
+    const Real gap = dot(wall.normal, ray.origin) - wall.offset, approach = -dot(wall.normal, ray.direction);
     const Real distance = gap <= Real(0) ? Real(0) : gap / approach;
     if (gap > Real(0) && !(approach > Real(0))) continue;
     if (distance <= ray.reach && is_number(distance))
       take(RayHit<Real, Dim>{.wall = w,
                              .distance = distance,
                              .point = ray.origin + ray.direction * distance,
-                             .normal = gap > Real(0) ? walls_[w].normal : V(-ray.direction)});
+                             .normal = gap > Real(0) ? wall.normal : V(-ray.direction)});
   }
 }
 
@@ -265,8 +265,10 @@ Answer<Overlap> Queries<Real, Dim>::in_sphere(const V& centre, const Real& radiu
         if (takes(filter, item.group) && length(item.x - centre) <= radius + item.radius) found.push_back(&item);
       });
   Answer<Overlap> answer{{in_order(found), {}}, {}};
-  for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w)
-    if (dot(walls_[w].normal, centre) - walls_[w].offset <= radius) answer.value.walls.push_back(w);
+  for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w) {
+    const Wall<Real, Dim> wall = facing(walls_[w], centre);
+    if (dot(wall.normal, centre) - wall.offset <= radius) answer.value.walls.push_back(w);
+  }
   return answer;
 }
 
@@ -288,10 +290,11 @@ Answer<Overlap> Queries<Real, Dim>::in_box(const V& lower, const V& upper, const
       });
   Answer<Overlap> answer{{in_order(found), {}}, {}};
   for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w) {
+    const Wall<Real, Dim> wall = facing(walls_[w], V((lower + upper) * Real(0.5)));
     Real deepest(0);  // the corner that the wall's normal points away from
     for (std::size_t axis = 0; axis < V::size(); ++axis)
-      deepest += walls_[w].normal[axis] * (walls_[w].normal[axis] > Real(0) ? lower[axis] : upper[axis]);
-    if (deepest <= walls_[w].offset) answer.value.walls.push_back(w);
+      deepest += wall.normal[axis] * (wall.normal[axis] > Real(0) ? lower[axis] : upper[axis]);
+    if (deepest <= wall.offset) answer.value.walls.push_back(w);
   }
   return answer;
 }

@@ -20,7 +20,7 @@ void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& conta
   using V = Vector<Real, Dim>;
   Plan<Real, Dim>& plan = flights.plans[i];
   if (plan.support_count != 1) return;
-  const Wall<Real, Dim>& wall = flights.world.walls()[plan.supports[0]];
+  const Wall<Real, Dim> wall = facing(flights.world.walls()[plan.supports[0]], flights.paths[i].x);
   const V& gravity = flights.world.gravity;
   const Real press = -dot(gravity, wall.normal);
   const V pull = gravity + wall.normal * press;
@@ -37,16 +37,17 @@ bool rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t h
   const World<Real, Dim>& world = flights.world;
   Path<Real, Dim>& path = flights.paths[i];
   Plan<Real, Dim>& plan = flights.plans[i];
-  const auto speed = [&](std::uint32_t w) { return dot(path.v, world.walls()[w].normal); };
+  const auto wall_at = [&](std::uint32_t w) { return facing(world.walls()[w], path.x); };
+  const auto speed = [&](std::uint32_t w) { return dot(path.v, wall_at(w).normal); };
   // Near enough to touch: what it could rise within the contact time, or what rounding makes of a place.
   const auto touches = [&](std::uint32_t w, const Real& press) {
-    const Wall<Real, Dim>& wall = world.walls()[w];
+    const Wall<Real, Dim> wall = wall_at(w);
     const Real along = dot(wall.normal, path.x), gap = along - wall.offset - path.radius;
     const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * (std::abs(along) + std::abs(wall.offset));
     return w == hit || gap < std::max(Real(contact_time * contact_time * press), rounding);
   };
   const auto leaves = [&](std::uint32_t w, const Real& press) { return !(2 * speed(w) < contact_time * press); };
-  const Real press_on_hit = -dot(world.gravity, world.walls()[hit].normal);
+  const Real press_on_hit = -dot(world.gravity, wall_at(hit).normal);
   if (!(press_on_hit > Real(0)) || leaves(hit, press_on_hit)) return false;
 
   // One wall after the other, the one that gravity presses on most first: each takes its part of what is left of
@@ -59,14 +60,14 @@ bool rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t h
     std::uint32_t next = nobody;
     Real most = least;
     for (std::uint32_t w = 0; w < world.walls().size(); ++w) {
-      const Real press = -dot(pull, world.walls()[w].normal);
+      const Real press = -dot(pull, wall_at(w).normal);
       if (!(press > most) || leaves(w, press) || !touches(w, press)) continue;
       if (Flights<Real, Dim>::is_support(plan, w)) continue;
       most = press;
       next = w;
     }
     if (next == nobody) break;
-    V direction = world.walls()[next].normal;
+    V direction = wall_at(next).normal;
     for (std::uint32_t k = 0; k < plan.support_count; ++k) direction -= across[k] * dot(direction, across[k]);
     const Real part = length(direction);
     if (!(part > Real(1e-3))) break;  // as good as parallel to one it rests on
@@ -90,7 +91,9 @@ std::array<Real, static_cast<std::size_t>(Dim)> support_forces(const Flights<Rea
   constexpr auto size = static_cast<std::size_t>(Dim);
   const Plan<Real, Dim>& plan = flights.plans[i];
   const std::size_t count = plan.support_count;
-  const auto normal = [&](std::size_t k) { return flights.world.walls()[plan.supports[k]].normal; };
+  const auto normal = [&](std::size_t k) {
+    return facing(flights.world.walls()[plan.supports[k]], flights.paths[i].x).normal;
+  };
   const Vector<Real, Dim> carried = (plan.acceleration - flights.world.gravity) * (1 / plan.inverse_mass);
   std::array<std::array<Real, size>, size> m{};  // normal equations, positive definite: no pivots needed
   std::array<Real, size> force{};

@@ -41,7 +41,7 @@ void transfer(Archive& archive, BodyHandle& body) {
 
 template <class Archive, class Real, int Dim>
 void transfer(Archive& archive, Wall<Real, Dim>& wall) {
-  archive(wall.normal), archive(wall.offset);
+  archive(wall.normal), archive(wall.offset), archive(wall.thin);
   transfer(archive, wall.material);
   if constexpr (Archive::reads) {
     archive.expect(std::abs(length(wall.normal) - 1) < Real(1e-3), "a wall whose normal is no unit");

@@ -25,7 +25,8 @@
 
 namespace continuo {
 
-/// The points x with normal . x >= offset are free; a body touches where normal . x - radius = offset.
+/// The points x with normal . x >= offset are free; a body touches where normal . x - radius = offset. A thin one has
+/// two sides: free are all points but those of the plane itself, and a body stays on the side where its centre is.
 template <class Real, int Dim>
 struct Wall {
   Vector<Real, Dim> normal = [] {
@@ -35,7 +36,17 @@ struct Wall {
   }();
   Real offset = Real(0);
   Material<Real> material{};
+  bool thin = false;
 };
+/// The wall as one at x has it before it.
+template <class Real, int Dim>
+Wall<Real, Dim> facing(Wall<Real, Dim> wall, const Vector<Real, Dim>& x) {
+  if (wall.thin && dot(wall.normal, x) < wall.offset) {
+    wall.normal = -wall.normal;
+    wall.offset = -wall.offset;
+  }
+  return wall;
+}
 
 /// Pulls two bodies, or one body to a point, together with stiffness * (distance - rest_length) + damping * its rate.
 template <class Real, int Dim>

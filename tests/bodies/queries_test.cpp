@@ -197,5 +197,24 @@ TEST(Queries, RefuseWhatMakesNoSense) {
   EXPECT_EQ(queries.first_hit({.origin = {{-5, 0}}, .direction = {{1e308, 0}}}).value.size(), 1u);
 }
 
+// A thin wall is hit from either side, and touched only where it is.
+TEST(Queries, AThinWallHasTwoSides) {
+  World<double, 2> world;
+  ASSERT_EQ(world.add_wall({.normal = {{1, 0}}, .offset = 2, .thin = true}), "");
+  const Queries queries(world);
+  for (const double from : {0.0, 5.0}) {
+    const double towards = from < 2 ? 1 : -1;
+    const auto hit = queries.first_hit({.origin = {{from, 1}}, .direction = {{towards, 0}}});
+    ASSERT_EQ(hit.value.size(), 1u);
+    EXPECT_DOUBLE_EQ(hit.value[0].distance, std::abs(from - 2));
+    EXPECT_EQ(hit.value[0].normal[0], -towards);
+    EXPECT_TRUE(queries.first_hit({.origin = {{from, 1}}, .direction = {{-towards, 0}}}).value.empty());
+    EXPECT_TRUE(queries.in_sphere({{from, 0}}, 1.5).value.walls.empty());
+    EXPECT_EQ(queries.in_sphere({{from, 0}}, 3.5).value.walls.size(), 1u);
+    EXPECT_TRUE(queries.in_box({{from, 0}}, {{from + 1, 1}}).value.walls.empty());
+  }
+  EXPECT_EQ(queries.in_box({{1, 0}}, {{3, 1}}).value.walls.size(), 1u);
+}
+
 }  // namespace
 }  // namespace continuo
