@@ -15,6 +15,7 @@ packages_to_build=(
   "libtbb-dev             -            threads"
   "libeigen3-dev          -            eigenvalues of matrices"
   "libceres-dev           -            least squares, and dual numbers"
+  "libnetcdf-dev          -            motions of many bodies, for xarray"
   "gnuplot-nox            gnuplot      plots"
 )
 packages_to_test=(

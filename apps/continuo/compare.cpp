@@ -12,6 +12,7 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
+#include <continuo/model/world.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
@@ -35,7 +36,7 @@ std::string control_of(const Contender& contender) {
   return contender.tolerance ? fmt::format("tol = {}", results::short_number(*contender.tolerance)) : "";
 }
 
-std::string line_of(const Contender& contender) {
+std::string line_of(const model::Model& model, const Contender& contender) {
   const std::string head = fmt::format("{:<20} {:<14}", contender.method, control_of(contender));
   if (!contender.simulated.run) {
     const auto& problems = contender.simulated.diagnostics;
@@ -45,16 +46,22 @@ std::string line_of(const Contender& contender) {
   const std::string drift = run.energy ? fmt::format("{:.2e}", run.energy->drift) : "-";
   return fmt::format(
       "{} {:>12.2e} {:>12.2e} {:>12} {:>12} {:>10}{}\n", head, contender.final_error, contender.largest_error, drift,
-      run.statistics.evaluations, results::duration(run.statistics.seconds),
+      model.has_world() ? collisions_of(*model.world, run.final_state())
+                        : static_cast<double>(run.statistics.evaluations),
+      results::duration(run.statistics.seconds),
       succeeded(run.outcome.ending)
           ? ""
           : fmt::format("  {} at t = {}", to_string(run.outcome.ending), results::short_number(run.final_time())));
 }
 
-std::string table_of(const Comparison& comparison) {
+std::string table_of(const model::Model& model, const Comparison& comparison) {
   std::string text = fmt::format("{:<20} {:<14} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "method", "", "final error",
-                                 "largest", "energy drift", "evaluations", "time");
-  for (const Contender& contender : comparison.contenders) text += line_of(contender);
+                                 "largest", "energy drift", model.has_world() ? "collisions" : "evaluations", "time");
+  for (const Contender& contender : comparison.contenders) text += line_of(model, contender);
+  if (model.has_world())
+    return text +
+           fmt::format("errors against exact at tol {}: of places by the farthest, of velocities by the fastest\n",
+                       studies::reference_rtol);
   return text + fmt::format("errors against {} at tol {}, relative to each state's largest value\n",
                             comparison.reference.run->plan.method, studies::reference_rtol);
 }
@@ -102,7 +109,7 @@ ExitCode compare(const CompareOptions& options) {
     say("there is no reference run to compare with");
     return numerical_failure;
   }
-  print(table_of(comparison));
+  print(table_of(prepared.program->model, comparison));
   const ExitCode exit = exit_of(comparison);
   if (!options.plot.empty()) {
     if (!written(results::draw(figure_of(*prepared.program, comparison), options.plot)))
@@ -116,7 +123,8 @@ ExitCode compare(const CompareOptions& options) {
 void add_compare(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo compare models/mass_spring.sim --methods euler,semi_implicit_euler,rk4 --step 0.1,0.05\n"
-      "  continuo compare models/kepler.sim --methods dop853,tsitouras5 --tol 1e-6,1e-9 --plot methods.svg\n";
+      "  continuo compare models/kepler.sim --methods dop853,tsitouras5 --tol 1e-6,1e-9 --plot methods.svg\n"
+      "  continuo compare models/chain.sim --methods exact,central_difference,explicit_euler --step 0.005\n";
   CLI::App* verb = add_verb(app, "compare", "Runs a model by several methods and steps: errors and cost", examples);
   auto options = std::make_shared<CompareOptions>();
   add_experiment(*verb, options->experiment);

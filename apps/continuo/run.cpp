@@ -17,6 +17,7 @@
 #include <continuo/model/diagnostic.hpp>
 #include <continuo/model/simulate.hpp>
 #include <continuo/results/json.hpp>
+#include <continuo/results/netcdf.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
@@ -50,7 +51,11 @@ bool write_files(const RunRequest& request, const model::ModelProgram& program, 
   bool fine = true;
   if (!request.motion.empty() || !request.events.empty()) {
     const std::string hash = results::manifest_hash(model, run, CONTINUO_VERSION);
-    if (!request.motion.empty()) fine = written(results::write_motion(run, request.motion, hash)) && fine;
+    if (results::is_netcdf(request.motion)) {
+      fine = written(results::write_netcdf(model, run, request.motion, hash)) && fine;
+    } else if (!request.motion.empty()) {
+      fine = written(results::write_motion(run, request.motion, hash)) && fine;
+    }
     if (!request.events.empty()) fine = written(results::write_events(run, request.events, hash)) && fine;
   }
   if (!manifest_path.empty()) {
@@ -132,15 +137,18 @@ void add_run(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo run models/bouncing_ball.sim                      the motion in a few lines\n"
       "  continuo run ball.sim -o ball.csv --plot ball.svg          every row, and a picture\n"
+      "  continuo run gas.sim -o gas.nc                             the same for xarray, bodies as arrays\n"
       "  continuo run ball.sim --set g=1.62 --until 20              on the Moon, for longer\n"
       "  continuo run orbit.sim --method rk4 --step 0.01 --events apsides.csv\n"
+      "  continuo run scene.sim --method fast --step 0.01           a world of bodies, in steps\n"
       "  continuo run ball.sim -o - | head                          rows to another program\n"
       "  continuo run ball.sim --json                               outcome, state, events, cost\n";
   CLI::App* verb = add_verb(app, "run", "Runs a model and shows, plots or writes its motion", examples);
   auto request = std::make_shared<RunRequest>();
   add_experiment(*verb, request->experiment);
   add_method(*verb, request->experiment);
-  verb->add_option("-o,--out", request->motion, "Every row as CSV (- for standard output)")->type_name("FILE");
+  verb->add_option("-o,--out", request->motion, "Every row, as CSV (- for standard output) or .nc (netCDF)")
+      ->type_name("FILE");
   verb->add_option("--events", request->events, "Every event as CSV, with the states before and after")
       ->type_name("FILE");
   verb->add_option("--plot", request->plot, "A picture, .svg or .png")->type_name("FILE");

@@ -70,7 +70,9 @@ void move_along(Path<Real, Dim>& path, Plan<Real, Dim>& plan, const Vector<Real,
       path.v = acceleration = {};
       plan.spin -= moment(normal, turning(plan.spin, normal));  // what is about the normal goes on
     }
-    if (!(length(acceleration - pull) > rub)) {
+    // Resistance at that limit asks for all of the friction, to rounding; without a pull nothing slips downhill.
+    const Real most = rub * (1 + 16 * std::numeric_limits<Real>::epsilon());
+    if (!(length(acceleration - pull) > most) || pull == V{}) {
       plan.acceleration = acceleration;
       plan.spin_rate = moment(normal, acceleration) * (1 / r);
       plan.path_end = now + course.duration;

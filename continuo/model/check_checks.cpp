@@ -38,7 +38,8 @@ void Checker::check_event_name(const std::string& begin, Span span) {
   for (const Scheduled& event : model_.schedule) names.push_back(event.name);
   const auto fits = [&](const std::string& name) { return name.starts_with(begin); };
   if (std::ranges::any_of(names, fits)) return;
-  if (world_.text && begin.find(" meets ") != std::string::npos) return;  // contacts are named as they happen
+  // Contacts are named as they happen.
+  if (world_.text && (begin.find(" meets") != std::string::npos || begin.find(" leaves") != std::string::npos)) return;
   const std::string near = did_you_mean(begin, names);
   fail("E281", span, fmt::format("no event begins with \"{}\"", begin), {},
        !near.empty()   ? near

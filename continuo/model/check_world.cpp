@@ -9,16 +9,7 @@
 #include <continuo/model/format.hpp>
 #include <continuo/model/suggest.hpp>
 
-namespace continuo::model {
-
-std::vector<std::string> world_measures(int dimension) {
-  std::vector<std::string> names{"kinetic", "potential", "momentum_x", "momentum_y"};
-  if (dimension == 3) names.emplace_back("momentum_z");
-  names.emplace_back("collisions");
-  return names;
-}
-
-namespace detail {
+namespace continuo::model::detail {
 
 namespace {
 
@@ -273,5 +264,4 @@ Value Checker::own_of_body(const ast::Name& name, std::size_t body) {
   return bad();
 }
 
-}  // namespace detail
-}  // namespace continuo::model
+}  // namespace continuo::model::detail

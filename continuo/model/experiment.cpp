@@ -254,11 +254,6 @@ class Planner {
 
 }  // namespace
 
-std::vector<std::string> world_methods() {
-  return {"exact",         "dop853", "rk4", "fast", "semi_implicit_euler", "implicit_euler", "central_difference",
-          "explicit_euler"};
-}
-
 std::optional<Plan> plan(const Model& model, const Experiment& experiment, std::vector<Diagnostic>& problems) {
   return Planner(model, experiment, problems).plan();
 }

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -95,6 +96,9 @@ struct WorldDescription {
 
 /// What a world tells of itself: `world.kinetic`, `world.potential`, `world.momentum_x`, ..., `world.collisions`.
 std::vector<std::string> world_measures(int dimension);
+
+/// So many there were until the model was in this state.
+double collisions_of(const WorldDescription& world, std::span<const double> state);
 
 /// What can stand in place of the mode of a world: `exact`, and its paths by `dop853` or `rk4` with a step; `fast` with
 /// the integrator that the world names, or by the name of one.

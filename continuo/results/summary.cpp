@@ -191,11 +191,10 @@ std::string range_of(std::span<const double> each, double one) {
 }
 
 void append_cost_of_world(const model::Model& model, const model::Run& run, std::string& text) {
-  const std::size_t collisions = model.world->first_measure + model::world_measures(model.world->dimension).size() - 1;
   const std::string control = run.plan.step > 0 ? fmt::format(", step {}", short_number(run.plan.step)) : "";
   fmt::format_to(std::back_inserter(text), "cost    {} collisions, {} by {}{}\n",
-                 short_number(run.final_state()[collisions]), duration(run.statistics.seconds), run.plan.method,
-                 control);
+                 short_number(collisions_of(*model.world, run.final_state())), duration(run.statistics.seconds),
+                 run.plan.method, control);
 }
 
 void append_cost(const model::Model& model, const model::Run& run, std::string& text) {

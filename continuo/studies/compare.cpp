@@ -2,10 +2,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <continuo/model/world.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/compare.hpp>
 #include <continuo/worlds/simulate_world.hpp>
@@ -15,9 +17,25 @@ namespace {
 
 constexpr double grid_intervals = 500;  // rows where the model asks for steps: the same times for all
 
-/// Rows must stand at the same times for all.
-model::Experiment with_common_rows(const model::ModelProgram& program, model::Experiment experiment) {
+/// Rows must stand at the same times for all. Bodies that are moved in steps have theirs at the ends of steps: at
+/// multiples of the longest.
+model::Experiment with_common_rows(const model::ModelProgram& program, const CompareRequest& request) {
   std::vector<model::Diagnostic> problems;
+  model::Experiment experiment = request.experiment;
+  if (program.model.has_world()) {
+    std::vector<double> steps = request.steps;
+    if (steps.empty()) {
+      experiment.method = "fast";
+      const auto fast = model::plan(program.model, experiment, problems);
+      if (fast) steps.push_back(fast->step);
+    }
+    experiment.method = "exact";
+    const auto plan = model::plan(program.model, experiment, problems);
+    if (!plan || steps.empty()) return experiment;
+    const double longest = std::ranges::max(steps), wanted = (plan->to - plan->from) / grid_intervals;
+    experiment.output = longest * std::max(1.0, std::round(wanted / longest));
+    return experiment;
+  }
   const auto plan = model::plan(program.model, experiment, problems);
   if (plan && plan->output == model::OutputPlan::Kind::steps) {
     experiment.output = std::abs(plan->to - plan->from) / grid_intervals;
@@ -47,6 +65,23 @@ model::Experiment for_reference(model::Experiment experiment, std::string_view m
   return experiment;
 }
 
+/// Places are measured by the largest of all bodies, velocities too, ...; what the world tells of itself is no state.
+void share_sizes(const model::Model& model, std::vector<double>& sizes) {
+  std::map<std::pair<std::string_view, int>, double> largest;
+  const auto kind_of = [](const model::State& state) {
+    const std::string_view member = std::string_view(state.base).substr(state.base.rfind('.') + 1);
+    return std::pair(member.size() == 1 ? std::string_view("place") : member.substr(0, 4), state.primes);
+  };
+  const std::size_t bodies = model.world->body_states();
+  for (std::size_t i = 0; i < bodies; ++i) {
+    double& size = largest[kind_of(model.states[i])];
+    size = std::max(size, sizes[i]);
+  }
+  for (std::size_t i = 0; i < bodies; ++i) sizes[i] = largest[kind_of(model.states[i])];
+  std::fill(sizes.begin() + static_cast<std::ptrdiff_t>(model.world->first_measure), sizes.end(),
+            std::numeric_limits<double>::infinity());
+}
+
 /// The largest absolute value of each state.
 std::vector<double> sizes_of(const model::Motion& motion) {
   std::vector<double> sizes(motion.states, 0.0);
@@ -67,17 +102,21 @@ double error_between(std::span<const double> x, std::span<const double> exact, s
   return worst;
 }
 
-/// Errors at the times that stand in both runs. Output times are the same numbers in both; those of events differ by
-/// their error and are passed over. Of equal times, the last row: the state after an event.
-void judge(const model::Motion& reference, Contender& contender) {
-  const auto sizes = sizes_of(reference);
+/// Errors at the times that stand in both runs. Output times are the same numbers in both (of bodies to rounding: ends
+/// of steps); those of events differ by their error and are passed over. Of equal times, the last row: the state after
+/// an event.
+void judge(const model::Model& model, const model::Motion& reference, Contender& contender) {
+  auto sizes = sizes_of(reference);
+  if (model.has_world()) share_sizes(model, sizes);
+  const double last = reference.time(reference.rows() - 1);
+  const double slack = model.has_world() ? 1e-12 * std::max(std::abs(last), std::abs(reference.time(0))) : 0;
   const model::Motion& motion = contender.simulated.run->motion;
   for (std::size_t i = 0, j = 0; i < motion.rows(); ++i) {
     const double t = motion.time(i);
     if (i + 1 < motion.rows() && motion.time(i + 1) == t) continue;
-    while (j < reference.rows() && reference.time(j) < t) ++j;
-    while (j + 1 < reference.rows() && reference.time(j + 1) == t) ++j;
-    if (j == reference.rows() || reference.time(j) != t) continue;
+    while (j < reference.rows() && reference.time(j) < t - slack) ++j;
+    while (j + 1 < reference.rows() && reference.time(j + 1) <= t + slack) ++j;
+    if (j == reference.rows() || std::abs(reference.time(j) - t) > slack) continue;
     contender.times.push_back(t);
     contender.errors.push_back(error_between(motion.state(i), reference.state(j), sizes));
   }
@@ -95,7 +134,7 @@ Contender contend(const std::shared_ptr<const model::ModelProgram>& program, con
                       .largest_error = std::nan(""),
                       .times = {},
                       .errors = {}};
-  if (contender.simulated.run) judge(reference, contender);
+  if (contender.simulated.run) judge(program->model, reference, contender);
   return contender;
 }
 
@@ -107,7 +146,7 @@ std::string Contender::label() const {
 }
 
 Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, const CompareRequest& request) {
-  const model::Experiment common = with_common_rows(*program, request.experiment);
+  const model::Experiment common = with_common_rows(*program, request);
   Comparison comparison{
       .reference = worlds::simulate_any(program, for_reference(common, reference_method(*program, request))),
       .contenders = {}};
@@ -117,9 +156,11 @@ Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, co
   for (const std::string& method : request.methods) {
     model::Experiment experiment = common;
     experiment.method = method;
-    if (request.steps.empty() && request.tolerances.empty()) {
+    const bool stepless = program->model.has_world() && (method == "exact" || method == "dop853");
+    if (stepless || (request.steps.empty() && request.tolerances.empty())) {
       comparison.contenders.push_back(contend(program, motion, experiment));
     }
+    if (stepless) continue;
     for (const double step : request.steps) {
       experiment.step = step;
       experiment.rtol.reset();

@@ -44,6 +44,25 @@ struct Ball {
 using Shapes = testing::Types<Disc, Ball>;
 TYPED_TEST_SUITE(Rolling, Shapes);
 
+// Rolling resistance beyond what friction can transmit holds back like that limit, by mu g.
+TYPED_TEST(Rolling, ResistanceBeyondFrictionStopsLikeFriction) {
+  constexpr int dim = TypeParam::dim;
+  constexpr double v0 = 3, stops = v0 / (mu * g);
+  auto world = table<dim>();
+  Vector<double, dim> velocity{};
+  velocity[0] = v0;
+  Spin<double, dim> spin{};
+  spin[dim == 2 ? 0 : 1] = dim == 2 ? -v0 / r : v0 / r;  // it rolls already
+  ASSERT_TRUE(world.add({.position = at_height<dim>(r),
+                         .velocity = velocity,
+                         .spin = spin,
+                         .material = {.restitution = 0, .friction = mu, .rolling_resistance = 1}}));
+  ExactMotion motion(world);
+  ASSERT_EQ(motion.advance_to(stops + 1), "");
+  EXPECT_NEAR(world.position[0][0], v0 * stops / 2, 1e-9);
+  EXPECT_EQ(world.velocity[0][0], 0);
+}
+
 // Slip v0 at first, which friction eats at mu g (1 + 1/c); what is left of the speed is v0 / (1 + c).
 TYPED_TEST(Rolling, FrictionTurnsSlidingIntoRolling) {
   constexpr int dim = TypeParam::dim;

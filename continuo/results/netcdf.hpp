@@ -1,0 +1,27 @@
+// continuo/results/netcdf.hpp
+// A run as a netCDF-4 file, for xarray and its like:
+//
+//   if (auto failure = write_netcdf(model, run, "gas.nc", hash)) fmt::print(stderr, "{}\n", *failure);
+//   >>> xarray.open_dataset("gas.nc").position.sel(component="x")          # (time, body)
+//
+// Dimensions: time; where the model has a world also body and component. Variables: time, position and velocity (time,
+// body, component), angle and spin, radius and mass (body), and one (time) for every other column of the table, by its
+// name. Each has `units` where the model says some (CF conventions 1.8).
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <continuo/model/model.hpp>
+#include <continuo/model/run.hpp>
+
+namespace continuo::results {
+
+/// By its name: the path ends in .nc.
+bool is_netcdf(std::string_view path);
+
+/// What went wrong, if anything.
+std::optional<std::string> write_netcdf(const model::Model& model, const model::Run& run, const std::string& path,
+                                        std::string_view manifest_hash);
+
+}  // namespace continuo::results
