@@ -105,12 +105,18 @@ void Checker::declare_pattern(const ast::WorldBodies& bodies, Scope& scope, Span
   }
   for (std::size_t k = 1; k <= pattern.count && count_written_out(span); ++k) {
     declare_body(bodies.name.text, {static_cast<long>(k)}, bodies.name.span);
-    if (world_.bodies.size() < pattern.first + k) return;  // a taken name, said already
+    if (world_.bodies.size() < pattern.first + k) return;  // a taken name, or too many: said already
   }
   world_.patterns.push_back(std::move(pattern));
 }
 
 void Checker::declare_body(const std::string& name, const std::vector<long>& indices, Span span) {
+  constexpr std::size_t most_bodies = 50'000;  // each is six or nine states with names of their own
+  if (world_.bodies.size() >= most_bodies) {
+    fail("E221", world_.span, "the world is too large", fmt::format("more than {} bodies", most_bodies),
+         "take fewer, or build it in C++, where millions are fine: docs/bodies.md");
+    return;
+  }
   const std::string key = indexed(name, indices);
   if (name == "world") {
     fail("E214", span, "`world` has a meaning of its own", "world.kinetic is the energy of all bodies",

@@ -14,7 +14,9 @@ using Point = std::array<double, 3>;
 class Cells {
  public:
   Cells(const RandomPlacement& wanted, double edge) : wanted_(wanted) {
-    constexpr double most = 200;  // along an axis
+    // Along an axis: not many more cells than bodies.
+    const double most =
+        std::ceil(std::pow(4 * static_cast<double>(wanted.count), 1 / static_cast<double>(wanted.dimension)));
     for (std::size_t axis = 0; axis < wanted.dimension; ++axis) {
       const double size = wanted.upper[axis] - wanted.lower[axis];
       counts_[axis] = static_cast<long>(std::clamp(std::floor(size / edge), 1.0, most));
@@ -79,7 +81,7 @@ std::vector<Point> place_at_random(const RandomPlacement& wanted, Random& random
   for (std::size_t axis = 0; axis < wanted.dimension; ++axis) {
     if (!(wanted.upper[axis] - wanted.lower[axis] >= 2 * wanted.radius)) return places;
   }
-  constexpr std::size_t most_tries = 10'000;  // for one body
+  constexpr std::size_t most_tries = 2'000;  // for one body
   Cells cells(wanted, 2 * wanted.radius);
   while (places.size() < wanted.count) {
     bool found = false;
