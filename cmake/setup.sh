@@ -21,6 +21,7 @@ packages_to_build=(
 packages_to_test=(
   "libgtest-dev           -            unit tests"
   "libgmock-dev           -            unit tests"
+  "chromium               chromium     the live view's page, tested in a browser"
   "libboost-dev           -            numbers of 113 bits, and the peer in bench/"
   "clang-19               clang++-19   the second compiler, with sanitizers"
   "libclang-rt-19-dev     -            sanitizers and the fuzzer"

@@ -17,6 +17,7 @@ export function openGallery(session: Session): void {
         onclick: () => {
           close();
           session.send({ do: "open", model: name });
+          session.send({ do: "play" });
         },
       },
       make("b", {}, name.replaceAll("_", " ")),

@@ -34,6 +34,9 @@ export function parseHeading(comment: string): Heading {
   return { title: first?.text ?? "", watch: watch?.text ?? null, paragraphs: split.filter((each) => each !== watch) };
 }
 
+/** Words between backquotes are code. */
+const spans = (text: string): (Node | string)[] => text.split("`").map((part, index) => (index % 2 === 1 ? make("code", {}, part) : part));
+
 /** The band above the scene. */
 export function headingElement(name: string, comment: string): HTMLElement {
   const { title, watch, paragraphs } = parseHeading(comment);
@@ -42,8 +45,8 @@ export function headingElement(name: string, comment: string): HTMLElement {
   return make(
     "section",
     { class: "heading", "aria-label": "What to see" },
-    make("h1", {}, title || name),
-    lead ? make("p", { class: "watch" }, lead) : null,
-    more.length > 0 ? make("details", {}, make("summary", {}, "More"), ...more.map(({ text, code }) => make(code ? "pre" : "p", {}, text))) : null,
+    make("h1", {}, ...spans(title || name)),
+    lead ? make("p", { class: "watch" }, ...spans(lead)) : null,
+    more.length > 0 ? make("details", {}, make("summary", {}, "More"), ...more.map(({ text, code }) => (code ? make("pre", {}, text) : make("p", {}, ...spans(text))))) : null,
   );
 }

@@ -55,8 +55,12 @@ export function boundsOfItems(items: readonly Item[], scene: Float32Array, up: 1
     if (item.shape === "floor") continue;
     const [x, y, z] = pointOf(item, scene, "at");
     if (item.shape === "box") {
-      const half = Math.hypot(numberOf(item, scene, "size", 1, 0), numberOf(item, scene, "size", 1, 1)) / 2;
-      include(bounds, x, y, z, half);
+      const [width, height, angle] = [numberOf(item, scene, "size", 1, 0), numberOf(item, scene, "size", 1, 1), numberOf(item, scene, "angle", 0)];
+      const [c, s] = [Math.abs(Math.cos(angle)), Math.abs(Math.sin(angle))];
+      const right = (c * width + s * height) / 2;
+      const above = (s * width + c * height) / 2;
+      include(bounds, x - right, y - above, z);
+      include(bounds, x + right, y + above, z);
     } else {
       include(bounds, x, y, z, item.shape === "ball" ? Math.abs(numberOf(item, scene, "radius", 0)) : 0);
     }
