@@ -1,7 +1,10 @@
 import "uplot/dist/uPlot.min.css";
 import "./style/base.css";
 import "./style/layout.css";
-import "./style/parts.css";
+import "./style/top.css";
+import "./style/plots.css";
+import "./style/controls.css";
+import "./style/text.css";
 import "./style/small.css";
 import { App } from "./app";
 import { findRecording, Player } from "./recording";
