@@ -31,7 +31,7 @@ export function parseHeading(comment: string): Heading {
     return at > 0 ? [{ text: paragraph.text.slice(0, at).trim(), code: false }, { text: paragraph.text.slice(at), code: false }] : [paragraph];
   });
   const watch = split.find(({ text, code }) => !code && /^(Watch|See)\b/.test(text)) ?? null;
-  return { title: first?.text ?? "", watch: watch?.text ?? null, paragraphs: split.filter((each) => each !== watch) };
+  return { title: first?.text ?? "", watch: watch?.text.replace(/\s*Try:$/, "") ?? null, paragraphs: split.filter((each) => each !== watch) };
 }
 
 /** Words between backquotes are code. */

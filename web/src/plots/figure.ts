@@ -240,6 +240,7 @@ export class Figure {
     ctx.strokeStyle = this.look.event;
     ctx.fillStyle = this.look.event;
     ctx.lineWidth = ratio;
+    ctx.textAlign = "left";
     // Many events are a row of ticks: lines would cover the curves.
     const lines = seen.length <= 30;
     ctx.globalAlpha = lines ? 0.8 : 0.45;
