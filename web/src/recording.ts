@@ -80,7 +80,7 @@ export class Player implements Source {
   constructor(private readonly recording: Recording) {
     for (const data of framesOf(recording.frames)) {
       const frame = decodeFrame(data, recording.model);
-      if (typeof frame !== "string") this.frames.push(frame);
+      if (typeof frame !== "string") this.frames.push({ ...frame, run: recording.model.run });
     }
     this.t = this.first;
   }

@@ -76,7 +76,7 @@ export class MethodChoice {
 
   private displayNumber(value: number | null | undefined): void {
     this.row.hidden = this.list.value === "";
-    this.what.disabled = this.fixed;
+    this.what.disabled = this.fixed || this.list.disabled;
     this.number.setAttribute("aria-label", this.byStep ? "Step" : "Relative tolerance");
     if (document.activeElement !== this.number) this.number.value = formatNumber(value ?? this.usual, 6);
   }
