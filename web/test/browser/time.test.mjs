@@ -22,6 +22,11 @@ test("the transport does what its buttons say", async (t) => {
   const event = await until(tab, ({ t: time, state }) => !state.playing && time > 1.4, "it runs to the impact");
   assert.ok(Math.abs(event.t - 10 / 7) < 1e-6, `the first impact is at 10/7 s, not at ${event.t}`);
   assert.ok(event.events >= 1, "and the event is marked");
+  const worst = await tab.evaluate(() => {
+    const { history } = globalThis.continuo.session;
+    return Math.max(...[...history.t.subarray(0, history.length)].map((at, row) => Math.abs(history.columns[0][row] - (10 - 4.9 * at * at))));
+  });
+  assert.ok(worst < 1e-5, `each row on the way lies on the parabola; a float32 of 10 is right to 5e-7: ${worst}`);
 
   await button(tab, "Reset to the start").click();
   const reset = await until(tab, ({ t: time }) => time === 0, "a reset goes to the start");
