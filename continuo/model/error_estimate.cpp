@@ -33,7 +33,7 @@ std::vector<double> differences(std::span<const double> a, std::span<const doubl
 }  // namespace
 
 ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                             const Run& run) {
+                             const Run& run, const RunAgain& again) {
   ErrorEstimate estimate;
   Experiment strict = experiment;
   strict.estimate_error = false;
@@ -41,8 +41,10 @@ ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program,
   double factor = 1;
   if (run.plan.step > 0) {
     strict.step = run.plan.step / 2;
-    const double power = std::exp2(find_method(run.plan.method)->order);
-    factor = power / (power - 1);
+    if (!again) {
+      const double power = std::exp2(find_method(run.plan.method)->order);
+      factor = power / (power - 1);
+    }
   } else {
     strict.rtol = std::max(run.plan.rtol / stricter, least_rtol);
     strict.rtol_of.clear();
@@ -52,7 +54,7 @@ ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program,
     for (const double atol : run.plan.atol) strict.atol.push_back(atol / stricter);
     strict.atol_of.clear();
   }
-  const Simulated second = simulate(program, strict);
+  const Simulated second = again ? again(strict) : simulate(program, strict);
   if (!second.run || second.run->outcome.ending != run.outcome.ending) {
     estimate.message = second.run ? describe(second.run->outcome) : "the second run could not begin";
     return estimate;

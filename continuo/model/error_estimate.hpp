@@ -4,6 +4,7 @@
 //
 //   const ErrorEstimate estimate = estimate_error(program, experiment, run);
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,12 +12,16 @@
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/model_program.hpp>
 #include <continuo/model/run.hpp>
+#include <continuo/model/simulate.hpp>
 
 namespace continuo::model {
+
+/// How the second run is made where not by `simulate`; then what half a step changes is the estimate.
+using RunAgain = std::function<Simulated(const Experiment& strict)>;
 
 /// One more run, a hundred times as strict; by a fixed step, with half the step and Richardson's factor 2^p / (2^p -
 /// 1). The method and everything else stay as they were.
 ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                             const Run& run);
+                             const Run& run, const RunAgain& again = {});
 
 }  // namespace continuo::model

@@ -156,6 +156,9 @@ class Planner {
       return fail("E334", fmt::format("there is no method `{}` for bodies", plan_.method),
                   near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : near, true);
     }
+    if (!experiment_.rtol_of.empty() || !experiment_.atol_of.empty() || !experiment_.atol.empty() || !run_.atol.empty())
+      return fail("E333", "a world of bodies has one tolerance, a relative one", "give --tol 1e-9 alone",
+                  asks_for_tolerance());
     plan_.rtol = experiment_.rtol.value_or(number(mode.tolerance).value_or(run_.rtol.value_or(usual_tolerance)));
     plan_.atol = {plan_.rtol};
     if (!(plan_.rtol > 0)) fail("E333", "a tolerance is not positive", "give a positive one, such as --tol 1e-9", true);

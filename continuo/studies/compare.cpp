@@ -59,7 +59,8 @@ model::Experiment for_reference(model::Experiment experiment, std::string_view m
   experiment.method = method;
   experiment.rtol = reference_rtol;
   experiment.step.reset();
-  experiment.atol = {reference_rtol};
+  experiment.atol.clear();
+  if (method != "exact") experiment.atol = {reference_rtol};  // bodies have a relative one only
   experiment.rtol_of.clear();
   experiment.atol_of.clear();
   return experiment;

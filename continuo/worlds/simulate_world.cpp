@@ -297,7 +297,13 @@ model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>
     simulated.diagnostics.push_back(model::error("E324", model.world->span, "the world cannot begin", started.error));
     return simulated;
   }
-  return Simulation(program, experiment, std::move(*planned), std::move(started.run)).go();
+  simulated = Simulation(program, experiment, std::move(*planned), std::move(started.run)).go();
+  if (experiment.estimate_error && succeeded(simulated.run->outcome.ending))
+    simulated.run->error = estimate_error(program, experiment, *simulated.run, [&](model::Experiment strict) {
+      strict.atol.clear();  // bodies have a relative one only
+      return simulate_world(program, strict);
+    });
+  return simulated;
 }
 
 model::Simulated simulate_any(const std::shared_ptr<const model::ModelProgram>& program,

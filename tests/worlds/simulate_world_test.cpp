@@ -1,5 +1,6 @@
 // Worlds in the language: runs, events, equations beside the bodies.
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -119,6 +120,53 @@ run 0..2
     return std::abs(last(run_of(text, {.method = "rk4", .step = step}), "ball.x") - std::cos(4.0));
   };
   EXPECT_NEAR(std::log2(error(0.02) / error(0.01)), 4, 0.2);  // order 4; cos(omega t), omega = 2
+}
+
+TEST(SimulateWorld, EstimatesItsErrorByAStricterRun) {
+  struct Case {
+    double omega;
+    model::Experiment experiment;
+  };
+  // The exact path begins anew at each row, every 0.05: only a fast swing has steps that the tolerance decides.
+  for (const auto& [omega, experiment] :
+       {Case{100, {.rtol = 1e-6, .estimate_error = true}},
+        Case{2, {.method = "central_difference", .step = 0.01, .estimate_error = true}}}) {
+    const model::Run run = run_of("world { body ball at (1, 0) mass 1; spring ball to (0, 0) length 0 stiffness " +
+                                      std::to_string(omega * omega) + " }\nrun 0..10",
+                                  experiment);
+    ASSERT_TRUE(run.error);
+    ASSERT_EQ(run.error->message, "");
+    const double error = std::abs(last(run, "ball.x") - std::cos(10 * omega));
+    // Against a tolerance of a hundredth it is the error to some per cent, against half a step 3/4 of it.
+    EXPECT_GT(run.error->at_end[0], error / 2);
+    EXPECT_LT(run.error->at_end[0], error * 1.1);
+    EXPECT_EQ(run.error->largest.size(), run.motion.states);
+  }
+}
+
+TEST(SimulateWorld, ReadsInputsFromFiles) {
+  const std::string path = testing::TempDir() + "push.csv";
+  std::ofstream(path) << "t,F\n0,0\n1,2\n1.5,2\n";
+  for (const char* between : {"linear", "step"}) {
+    const bool linear = std::string_view(between) == "linear";
+    const model::Run run = run_of("world { body ball at (0, 0) mass 1 }\ninput F = 0 from \"" + path + "\" " + between +
+                                  "\nforce on ball = (F, 0)\nrun 0..1.5");
+    // F = 2 t up to 1 and 2 from there, or 2 from 1 on.
+    EXPECT_NEAR(last(run, "ball.x'"), linear ? 2 : 1, 1e-8) << between;
+    EXPECT_NEAR(last(run, "ball.x"), linear ? 1.0 / 3 + 0.5 + 0.25 : 0.25, 1e-8) << between;
+  }
+}
+
+TEST(SimulateWorld, PushesFamilies) {
+  const model::Run run = run_of(R"(
+world { bodies ball grid 3 from (0, 0) spacing (5, 0) mass 2 }
+for i in 1..3 { force on ball[i] = (0, 2*i) }
+force on ball[3] = (0, -6)
+run 0..1
+)");
+  for (const int i : {1, 2})
+    EXPECT_NEAR(last(run, "ball[" + std::to_string(i) + "].y"), i / 2.0, 1e-9);  // a t^2 / 2, a = i
+  EXPECT_NEAR(last(run, "ball[3].y"), 0, 1e-12);                                 // two forces add up to none
 }
 
 TEST(SimulateWorld, MakesPatterns) {
