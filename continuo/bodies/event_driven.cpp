@@ -40,6 +40,10 @@ class EventDriven final : public ExactEngine<Real, Dim> {
         synchronize(flights_.now);
         return "more events than `most_events`: bodies may be caught between others";
       }
+      if (events % 1024 == 0 && options_.is_interrupted()) {
+        synchronize(flights_.now);
+        return "interrupted";
+      }
       flights_.now = std::max(flights_.now, queue_.time());
       handle(queue_.first());
       if (crossings_since_sort_ > 4 * flights_.paths.size()) sort();

@@ -20,6 +20,7 @@
 // parabola, it bounces for that long at least: a heap at rest is many small flights, which the fast motion is better
 // at.
 #pragma once
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -56,6 +57,9 @@ struct ExactOptions {
   Real tolerance = Real(1e-10);    // of a path under other forces than gravity: relative, and in units of a radius
   Real step = Real(0);             // greater than 0: such paths by the classical Runge-Kutta method in steps of this
   std::size_t contact_events = 0;  // so many of a call are kept, see contact_events.hpp
+  const std::atomic<bool>* interrupt = nullptr;  // once it is true, advance_to ends early and says so
+
+  bool is_interrupted() const { return interrupt != nullptr && interrupt->load(); }
 };
 
 struct ExactStatistics {

@@ -167,6 +167,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     std::size_t events = 0;
     while (world_.time < t) {
       if (++events > options_.most_events) return "more events than `most_events`: bodies may be caught between others";
+      if (options_.is_interrupted()) return "interrupted";
       if (std::string fault = fly(t); !fault.empty()) return fault;
     }
     return {};
@@ -211,6 +212,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     const Real least = 64 * std::numeric_limits<Real>::epsilon(), tolerance = std::max(options_.tolerance, least);
     Options<X> how{.rtol = tolerance, .atol = tolerance * median};
     how.max_steps = options_.most_events;
+    how.interrupt = options_.interrupt;
     if (companions_) {
       how.rtol_each.assign(flow.pack().size(), how.rtol);
       how.atol_each.assign(how.rtol_each.size(), how.atol);

@@ -101,9 +101,11 @@ class Simulation {
     return next;
   }
 
+  bool is_interrupted() const { return experiment_.interrupt != nullptr && experiment_.interrupt->load(); }
+
   /// To the next instant that somebody asks for.
   void advance() {
-    if (experiment_.interrupt != nullptr && experiment_.interrupt->load()) return end(Ending::interrupted);
+    if (is_interrupted()) return end(Ending::interrupted);
     double to = std::min({end_time_, next_row(), next_scheduled()});
     if (next_sample_ < samples_.size()) to = std::min(to, samples_[next_sample_]);
     if (any_guard_) {
@@ -120,6 +122,7 @@ class Simulation {
     }
     note_contacts();
     arrive();
+    if (!error.empty() && is_interrupted()) return end(Ending::interrupted);
     if (!error.empty()) {
       error_ = std::move(error);
       end(Ending::invalid_input);
@@ -292,6 +295,7 @@ model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>
     planned->variables[input.variable] = input.table.value(planned->from);
   WorldOptions options = options_of(*planned);
   options.most_contacts = contacts_of_one_look;
+  options.interrupt = experiment.interrupt;
   StartedWorld started = start_world(program, options, planned->variables);
   if (!started.run) {
     simulated.diagnostics.push_back(model::error("E324", model.world->span, "the world cannot begin", started.error));

@@ -84,6 +84,7 @@ class Moving final : public WorldRun {
     if (is_free()) return t > world_.time ? exact_advance(t) : std::string();
     // A step more only where it brings more than rounding.
     while (world_.time < t - 1e-9 * options_.step) {
+      if (options_.interrupt != nullptr && options_.interrupt->load()) return "interrupted";
       if (std::string error = exact_ ? exact_step() : fast_step(); !error.empty()) return error;
     }
     return {};
@@ -248,7 +249,8 @@ class Moving final : public WorldRun {
       return node.valid() ? evaluate(model(), node, variables_) : otherwise;
     };
     if (options_.method == "exact" || options_.method == "dop853" || options_.method == "rk4") {
-      ExactOptions<double> options{.tolerance = options_.tolerance, .contact_events = options_.most_contacts};
+      ExactOptions<double> options{
+          .tolerance = options_.tolerance, .contact_events = options_.most_contacts, .interrupt = options_.interrupt};
       if (mode.contact_time.valid()) options.contact_time = evaluate(model(), mode.contact_time, variables_);
       if (options_.method == "rk4") options.step = options_.step;
       if (beside_.is_empty()) {

@@ -15,6 +15,7 @@
 // difference, of order 1 by the Euler methods.
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -61,10 +62,11 @@ struct Contact {
 };
 
 struct WorldOptions {
-  std::string method = "exact";   // one of model::world_methods()
-  double step = 0;                // of methods with steps
-  double tolerance = 1e-10;       // of paths under forces, exact
-  std::size_t most_contacts = 0;  // so many of one advance are kept
+  std::string method = "exact";                  // one of model::world_methods()
+  double step = 0;                               // of methods with steps
+  double tolerance = 1e-10;                      // of paths under forces, exact
+  const std::atomic<bool>* interrupt = nullptr;  // once it is true, an advance ends early and says so
+  std::size_t most_contacts = 0;                 // so many of one advance are kept
 };
 WorldOptions options_of(const model::Plan& plan);
 

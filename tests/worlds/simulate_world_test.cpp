@@ -1,7 +1,10 @@
 // Worlds in the language: runs, events, equations beside the bodies.
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <tests/worlds/scene.hpp>
@@ -226,6 +229,27 @@ TEST(SimulateWorld, KeepsWhatWasComputedWhenItIsInterrupted) {
   EXPECT_EQ(simulated.run->motion.rows(), 1u);
   ASSERT_EQ(simulated.diagnostics.size(), 1u);
   EXPECT_EQ(simulated.diagnostics[0].code, "E307");
+}
+
+/// A heap in the exact mode is very many small flights: one row can take minutes.
+TEST(SimulateWorld, IsInterruptedWithinARow) {
+  for (const char* mode : {"mode exact", "mode exact\ndrag linear 0.001", "mode fast step 1e-7"}) {
+    const auto program =
+        program_of(std::string("world { dimension 3; gravity (0, 0, -9.81); wall (0, 0, 1) at 0\n") + mode +
+                   "\nbodies grain grid 5 x 5 x 5 from (0, 0, 0.6) spacing (1.01, 1.01, 1.1) jitter "
+                   "0.004 }\nrun 0..1000 output 1000");
+    std::atomic<bool> interrupt = false;
+    std::thread hand([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      interrupt = true;
+    });
+    const model::Simulated simulated = simulate_world(program, {.interrupt = &interrupt});
+    hand.join();
+    ASSERT_TRUE(simulated.run) << mode;
+    EXPECT_EQ(simulated.run->outcome.ending, Ending::interrupted) << mode;
+    EXPECT_GT(simulated.run->final_time(), 0) << mode;
+    EXPECT_LT(simulated.run->final_time(), 1000) << mode;
+  }
 }
 
 TEST(SimulateWorld, SaysWhyItCannotGoOn) {
