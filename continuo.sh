@@ -12,11 +12,13 @@ root=.
 if [[ $self == */* ]]; then root=${self%/*}; fi
 build=$root/build
 stamp=$build/.built
+web=$root/web
+if [[ ! -d $web ]]; then web=$root/cmake; fi  # a clone without the page
 
 # Nothing newer than the last build: hand over at once. A folder's own time changes when a file comes or goes.
 if [[ ! -x $build/continuo || ! -e $stamp ]] ||
    [[ -n $(find "$root/continuo" "$root/apps" "$root/cmake" "$root/CMakeLists.txt" "$root/CMakePresets.json" \
-             -newer "$stamp" ! -name '*.md' -print -quit) ]]; then
+             "$web" -name node_modules -prune -o -newer "$stamp" ! -name '*.md' -print -quit) ]]; then
   # shellcheck source=cmake/setup.sh
   source "$root/cmake/setup.sh"
   setup_packages build

@@ -19,6 +19,14 @@ if(NOT TARGET udunits2)
   target_include_directories(udunits2 INTERFACE ${UDUNITS2_INCLUDE_DIR})
 endif()
 
+find_package(Threads REQUIRED)
+if(NOT TARGET boost_headers)
+  find_path(BOOST_INCLUDE_DIR boost/beast.hpp REQUIRED)  # Beast and Asio are all headers
+  add_library(boost_headers INTERFACE IMPORTED)
+  target_include_directories(boost_headers INTERFACE ${BOOST_INCLUDE_DIR})
+  target_compile_definitions(boost_headers INTERFACE BOOST_ERROR_CODE_HEADER_ONLY BOOST_ASIO_NO_DEPRECATED)
+endif()
+
 if(NOT TARGET klu)
   find_library(KLU_LIBRARY klu REQUIRED)
   find_path(KLU_INCLUDE_DIR suitesparse/klu.h REQUIRED)

@@ -16,13 +16,16 @@ packages_to_build=(
   "libeigen3-dev          -            eigenvalues of matrices"
   "libceres-dev           -            least squares, and dual numbers"
   "libnetcdf-dev          -            motions of many bodies, for xarray"
+  "libboost-dev           -            the live view's server"
+  "nodejs                 node         builds the live view's page"
+  "npm                    npm          builds the live view's page"
   "gnuplot-nox            gnuplot      plots"
 )
 packages_to_test=(
   "libgtest-dev           -            unit tests"
   "libgmock-dev           -            unit tests"
   "chromium               chromium     the live view's page, tested in a browser"
-  "libboost-dev           -            numbers of 113 bits, and the peer in bench/"
+  "python3                python3      the client of docs/protocol.md"
   "clang-19               clang++-19   the second compiler, with sanitizers"
   "libclang-rt-19-dev     -            sanitizers and the fuzzer"
   "lld-19                 ld.lld-19    its linker: six times as fast on sanitized programs"

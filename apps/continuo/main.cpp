@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::string_view examples =
     "  continuo run models/bouncing_ball.sim                     the motion in a few lines\n"
+    "  continuo view models/spring_pendulum.sim                  the motion live in the browser, to be touched\n"
     "  continuo run models/kepler.sim -o orbit.csv --plot orbit.svg\n"
     "  continuo compare models/mass_spring.sim --methods euler,rk4 --step 0.1,0.05\n"
     "  continuo new spring                                       a commented model to start from\n"
@@ -27,6 +28,7 @@ int command(int argc, char** argv) {
   app.require_subcommand(1);
   ExitCode exit = done;
   add_run(app, exit);
+  add_view(app, exit);
   add_check(app, exit);
   add_info(app, exit);
   add_verify(app, exit);

@@ -398,6 +398,7 @@ class Checker {
   void make_plots();  // check_views.cpp
   void make_drawings();
   void make_drawing(const std::vector<ast::DrawItem>& items, Scope& scope);
+  bool depends_on_states(const DrawArgument& point) const;
   DrawArgument draw_argument(const ast::Expression& expression, Scope& scope);
   Series series(const ast::Expression& expression, Scope& scope);
 

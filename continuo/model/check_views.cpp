@@ -1,5 +1,7 @@
 // continuo/model/check_views.cpp
 // Plots and drawings: expressions kept for those who show them.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <continuo/model/check_context.hpp>
@@ -63,6 +65,14 @@ DrawArgument Checker::draw_argument(const ast::Expression& expression, Scope& sc
   return argument;
 }
 
+bool Checker::depends_on_states(const DrawArgument& point) const {
+  const auto is_moved = [this](std::uint32_t variable) {
+    const std::uint32_t first = model_.layout.states;
+    return variable >= first && variable < first + model_.states.size() && !model_.states[variable - first].algebraic;
+  };
+  return std::ranges::any_of(variables_of(model_.graph, point.numbers), is_moved);
+}
+
 void Checker::make_drawings() {
   for (Placed<ast::Draw>& draw : draws_) make_drawing(draw.text->items, draw.scope);
 }
@@ -78,6 +88,10 @@ void Checker::make_drawing(const std::vector<ast::DrawItem>& items, Scope& scope
     for (const ast::Expression& argument : text.arguments) made.arguments.push_back(draw_argument(argument, scope));
     for (const ast::Attribute& attribute : text.attributes) {
       made.attributes.push_back({attribute.name.text, draw_argument(attribute.value, scope)});
+    }
+    if (is_dragged(made) && !depends_on_states(made.arguments.front())) {
+      fail("E265", item.span, "there is nothing to drag", "no state moves this point",
+           "drag is for a point that depends on the states of the model, as in ball (x, y) drag");
     }
     model_.drawing.push_back(std::move(made));
   }

@@ -191,6 +191,9 @@ bogacki_shampine3, dormand_prince5, tsitouras5, dop853, verner7, verner9 and man
         R"(velocity_verlet and central_difference are for x'' = a(t, x): every state must be a position or its velocity, and
 both in units that fit (x in m, x' in m/s, time in s). The others are general. A world of bodies is moved by its mode,
 exact or fast.)"},
+    Code{"E265", "there is nothing to drag",
+         R"(`drag` lets the mouse move the states that a point depends on: ball (x, y) drag, or for a pendulum
+ball (l*sin(theta), -l*cos(theta)) drag. A point that depends on none stays where it is.)"},
     Code{"E270", "a file is not there", R"(Files of tables and inputs are found relative to the folder of the model.)"},
     Code{"E271", "a table is wanted, or not",
          R"(table NAME from "file.csv" is read by interp(NAME, x), and by nothing else.)"},

@@ -34,8 +34,7 @@ std::string with_component(std::string message, const Outcome<double>& outcome) 
 
 }  // namespace
 
-Diagnostic failure(const Model& model, const Run& run) {
-  const Outcome<double>& outcome = run.outcome;
+Diagnostic failure(const Model& model, const Outcome<double>& outcome) {
   const std::string at = in_units(outcome.t, model.time_unit);
   const Span state = span_of_state(model, outcome.component);
   const auto make = [&](const char* code, std::string message, Span span) {

@@ -4,7 +4,7 @@
 
 namespace continuo::model {
 
-template void integrate_by<Tsitouras5Rodas5P>(Integration, RunRecorder&, Run&);
-template void integrate_by<Tsitouras5Bdf>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<Tsitouras5Rodas5P>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Tsitouras5Bdf>(Integration, Interval<double>);
 
 }  // namespace continuo::model

@@ -3,7 +3,7 @@
 
 namespace continuo::model {
 
-template void integrate_by<DormandPrinceNystrom8Radau>(Integration, RunRecorder&, Run&);
-template void integrate_by<DormandPrinceNystrom12Radau>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom8Radau>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom12Radau>(Integration, Interval<double>);
 
 }  // namespace continuo::model

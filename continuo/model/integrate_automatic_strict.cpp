@@ -4,6 +4,6 @@
 
 namespace continuo::model {
 
-template void integrate_by<Dop853Radau>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<Dop853Radau>(Integration, Interval<double>);
 
 }  // namespace continuo::model

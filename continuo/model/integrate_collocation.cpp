@@ -5,8 +5,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<Gauss4>(Integration, RunRecorder&, Run&);
-template void integrate_by<Radau5>(Integration, RunRecorder&, Run&);
-template void integrate_by<Radau>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<Gauss4>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Radau5>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Radau>(Integration, Interval<double>);
 
 }  // namespace continuo::model

@@ -6,8 +6,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<KenCarp4>(Integration, RunRecorder&, Run&);
-template void integrate_by<Kvaerno5>(Integration, RunRecorder&, Run&);
-template void integrate_by<TrBdf2>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<KenCarp4>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Kvaerno5>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<TrBdf2>(Integration, Interval<double>);
 
 }  // namespace continuo::model

@@ -6,8 +6,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<Dop853>(Integration, RunRecorder&, Run&);
-template void integrate_by<Verner7>(Integration, RunRecorder&, Run&);
-template void integrate_by<Verner9>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<Dop853>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Verner7>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Verner9>(Integration, Interval<double>);
 
 }  // namespace continuo::model

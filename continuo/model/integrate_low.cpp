@@ -8,10 +8,10 @@
 
 namespace continuo::model {
 
-template void integrate_by<ExplicitEuler>(Integration, RunRecorder&, Run&);
-template void integrate_by<Midpoint>(Integration, RunRecorder&, Run&);
-template void integrate_by<Heun>(Integration, RunRecorder&, Run&);
-template void integrate_by<Rk4>(Integration, RunRecorder&, Run&);
-template void integrate_by<Rk38>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<ExplicitEuler>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Midpoint>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Heun>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Rk4>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Rk38>(Integration, Interval<double>);
 
 }  // namespace continuo::model

@@ -6,8 +6,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<BogackiShampine3>(Integration, RunRecorder&, Run&);
-template void integrate_by<DormandPrince5>(Integration, RunRecorder&, Run&);
-template void integrate_by<Tsitouras5>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<BogackiShampine3>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<DormandPrince5>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Tsitouras5>(Integration, Interval<double>);
 
 }  // namespace continuo::model

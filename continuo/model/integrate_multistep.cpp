@@ -6,8 +6,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<Adams>(Integration, RunRecorder&, Run&);
-template void integrate_by<Bdf>(Integration, RunRecorder&, Run&);
-template void integrate_by<Rkc2>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<Adams>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Bdf>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Rkc2>(Integration, Interval<double>);
 
 }  // namespace continuo::model

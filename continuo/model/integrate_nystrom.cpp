@@ -6,8 +6,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<DormandPrinceNystrom12>(Integration, RunRecorder&, Run&);
-template void integrate_by<DormandPrinceNystrom6>(Integration, RunRecorder&, Run&);
-template void integrate_by<DormandPrinceNystrom8>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom12>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom6>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom8>(Integration, Interval<double>);
 
 }  // namespace continuo::model

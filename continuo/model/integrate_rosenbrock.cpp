@@ -6,8 +6,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<Rodas4>(Integration, RunRecorder&, Run&);
-template void integrate_by<Rodas5P>(Integration, RunRecorder&, Run&);
-template void integrate_by<Rosenbrock23>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<Rodas4>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Rodas5P>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Rosenbrock23>(Integration, Interval<double>);
 
 }  // namespace continuo::model

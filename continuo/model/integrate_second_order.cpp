@@ -6,8 +6,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<SemiImplicitEuler>(Integration, RunRecorder&, Run&);
-template void integrate_by<CentralDifference>(Integration, RunRecorder&, Run&);
-template void integrate_by<VelocityVerlet>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<SemiImplicitEuler>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<CentralDifference>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<VelocityVerlet>(Integration, Interval<double>);
 
 }  // namespace continuo::model

@@ -7,9 +7,9 @@
 
 namespace continuo::model {
 
-template void integrate_by<Bdf2>(Integration, RunRecorder&, Run&);
-template void integrate_by<ImplicitEuler>(Integration, RunRecorder&, Run&);
-template void integrate_by<ImplicitMidpoint>(Integration, RunRecorder&, Run&);
-template void integrate_by<Trapezoidal>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<Bdf2>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<ImplicitEuler>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<ImplicitMidpoint>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Trapezoidal>(Integration, Interval<double>);
 
 }  // namespace continuo::model

@@ -5,7 +5,7 @@
 
 namespace continuo::model {
 
-template void integrate_by<GeneralizedAlpha>(Integration, RunRecorder&, Run&);
-template void integrate_by<Newmark>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<GeneralizedAlpha>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Newmark>(Integration, Interval<double>);
 
 }  // namespace continuo::model

@@ -6,8 +6,8 @@
 
 namespace continuo::model {
 
-template void integrate_by<KahanLi8>(Integration, RunRecorder&, Run&);
-template void integrate_by<McLachlanAtela4>(Integration, RunRecorder&, Run&);
-template void integrate_by<Yoshida6>(Integration, RunRecorder&, Run&);
+template std::unique_ptr<Stepping> begin_integration_by<KahanLi8>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<McLachlanAtela4>(Integration, Interval<double>);
+template std::unique_ptr<Stepping> begin_integration_by<Yoshida6>(Integration, Interval<double>);
 
 }  // namespace continuo::model

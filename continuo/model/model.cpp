@@ -26,6 +26,10 @@ void set_all(const Model& model, const std::vector<Item>& items, NodeId Item::* 
 
 }  // namespace
 
+bool is_dragged(const DrawItem& item) {
+  return std::ranges::any_of(item.attributes, [](const DrawAttribute& attribute) { return attribute.name == "drag"; });
+}
+
 std::size_t find_state(const Model& model, std::string_view column) {
   return find_by(model.states, &State::column, column);
 }

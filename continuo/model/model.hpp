@@ -207,7 +207,7 @@ struct DrawArgument {
   std::vector<NodeId> numbers;
   std::string text;
 };
-/// `ball (0, h) radius 0.3 color "red"`.
+/// `ball (0, h) radius 0.3 color "red"`; `drag` stands without a value.
 struct DrawAttribute {
   std::string name;
   DrawArgument value;
@@ -218,6 +218,9 @@ struct DrawItem {
   std::vector<DrawAttribute> attributes;
   Span span;
 };
+
+/// Whether the mouse may move it: `ball (x, y) drag`.
+bool is_dragged(const DrawItem& item);
 
 /// When a check reads the motion. Events count from 1 among those whose name begins with `event`.
 struct Moment {

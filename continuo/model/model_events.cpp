@@ -35,7 +35,7 @@ ModelEvents::Entry ModelEvents::entry_of(const ModelProgram& program, const Sche
   return entry;
 }
 
-ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> variables, double from) {
+ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> variables, double from) : begin_(from) {
   const Model& model = program.model;
   // Inputs step first, so that the actions of the same instant see their new values.
   for (std::size_t i = 0; i < program.step_inputs.size(); ++i) {
@@ -59,6 +59,7 @@ ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> va
 
 double ModelEvents::next_time(std::size_t i, double t, bool inclusive) const {
   const Entry& entry = events_[i];
+  if (t == resumed_) inclusive = false;
   const auto past = [&](double time) { return inclusive ? time >= t : time > t; };
   double next = std::numeric_limits<double>::infinity();
   const auto found = inclusive ? std::ranges::lower_bound(entry.times, t) : std::ranges::upper_bound(entry.times, t);

@@ -3,6 +3,7 @@
 // asks for. Actions read the state from before the event and take effect together, a change of mode too.
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,16 @@ class ModelEvents {
   void guards(ModelSystem& system, double t, const X& x, std::span<double> values);
   EventResponse fire(ModelSystem& system, std::span<const std::size_t> fired, double t, const X& before, X& x);
 
+  /// When the run began.
+  double begin() const { return begin_; }
+  /// How often each `stop` of the model has been reached.
+  std::span<const std::size_t> stops() const { return stop_counts_; }
+  /// The run goes on from t: what was scheduled for that very instant has happened.
+  void resume(double t, std::span<const std::size_t> stops) {
+    resumed_ = t;
+    stop_counts_.assign(stops.begin(), stops.end());
+  }
+
   /// The author knows of it; steps of inputs are nobody's event.
   bool is_declared(std::size_t i) const { return events_[i].kind != Kind::input; }
   std::span<const Marked> marks() const { return marks_; }
@@ -69,6 +80,7 @@ class ModelEvents {
   void perform(const std::vector<ProgramAction>& actions, std::span<const double> values, double t, X& x,
                Effect& effect);
 
+  double begin_, resumed_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Entry> events_;
   std::vector<double> guard_values_;      // by Model::events
   std::vector<std::size_t> guard_place_;  // where in events_ each of Model::events stands

@@ -43,10 +43,34 @@ ModelDerivatives& ModelSystem::derivatives_of_f() {
   return *derivatives_of_f_;
 }
 
+void ModelSystem::set_all(std::span<const double> variables) {
+  const Layout& layout = program_->model.layout;
+  for (std::uint32_t i = layout.parameters; i < layout.samples; ++i) {
+    if (variables_[i] != variables[i]) set(i, variables[i]);
+  }
+}
+
+void ModelSystem::jacobian(double t, const X& x, std::span<double> rows) {
+  derivatives_of_f().jacobian(mode_, t, x, rows);
+  for (const std::size_t i : held_) std::ranges::fill(rows.subspan(i * x.size(), x.size()), 0.0);
+}
+
+void ModelSystem::jacobian_values(double t, const X& x, std::span<double> values) {
+  derivatives_of_f().jacobian_values(mode_, t, x, values);
+  const SparsePattern& pattern = jacobian_pattern();
+  for (const std::size_t i : held_) {
+    for (std::size_t column = 0; column < x.size(); ++column) {
+      const std::size_t entry = pattern.find(i, column);
+      if (entry < pattern.entries()) values[entry] = 0;
+    }
+  }
+}
+
 // An input that follows a table over time is a variable to the graph, so its change is measured: by a difference.
 void ModelSystem::time_derivative(double t, const X& x, X& dfdt) {
   if (program_->linear_inputs.empty()) {
     derivatives_of_f().time_derivative(mode_, t, x, dfdt);
+    for (const std::size_t i : held_) dfdt[i] = 0;
     return;
   }
   const double moved = t + std::sqrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));

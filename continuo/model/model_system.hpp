@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <continuo/model/evaluation.hpp>
@@ -27,12 +28,19 @@ class ModelSystem {
   /// `variables` is a whole register file as `start_values` gives it; the run begins in the model's start mode.
   ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<const double> variables);
 
-  void operator()(double t, const X& x, X& dxdt) { derivatives_[mode_](t, x, dxdt); }
+  void operator()(double t, const X& x, X& dxdt) {
+    derivatives_[mode_](t, x, dxdt);
+    for (const std::size_t i : held_) dxdt[i] = 0;
+  }
 
   std::size_t mode() const { return mode_; }
   void go(std::size_t mode) { mode_ = mode; }
   /// A parameter or an input.
   void set(std::uint32_t variable, double value);
+  /// Parameters and inputs as in this register file.
+  void set_all(std::span<const double> variables);
+  /// These states stand still from now on, whatever the equations say: somebody holds them.
+  void hold(std::vector<std::size_t> states) { held_ = std::move(states); }
 
   /// The guards that are active in the present mode; values[i] for Model::events[i], the others are left alone.
   void guards(double t, const X& x, std::span<double> values);
@@ -48,11 +56,9 @@ class ModelSystem {
   std::size_t pair_count(std::size_t) const { return model().pairs.size(); }
   PositionVelocity pair(std::size_t i, std::size_t) const { return model().pairs[i]; }
   /// df/dx, n*n row by row, and where it may differ from zero in any mode. The first call differentiates and compiles.
-  void jacobian(double t, const X& x, std::span<double> rows) { derivatives_of_f().jacobian(mode_, t, x, rows); }
+  void jacobian(double t, const X& x, std::span<double> rows);
   const SparsePattern& jacobian_pattern() { return derivatives_of_f().pattern(); }
-  void jacobian_values(double t, const X& x, std::span<double> values) {
-    derivatives_of_f().jacobian_values(mode_, t, x, values);
-  }
+  void jacobian_values(double t, const X& x, std::span<double> values);
   void time_derivative(double t, const X& x, X& dfdt);
   bool has_mass() const { return model().needs_dae_solver(); }
   double mass(std::size_t i) const { return model().states[i].algebraic ? 0 : 1; }
@@ -69,6 +75,7 @@ class ModelSystem {
   std::optional<ModelDerivatives> derivatives_of_f_;
   std::vector<Evaluation> derivatives_, guards_, event_blocks_, schedule_blocks_;
   std::vector<double> guard_values_;
+  std::vector<std::size_t> held_;
 };
 
 }  // namespace continuo::model

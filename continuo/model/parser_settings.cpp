@@ -16,13 +16,13 @@ using Words = std::span<const std::string_view>;
 constexpr std::array<std::string_view, 6> run_parts = {"output", "method", "step", "tol", "abs", "realtime"};
 
 constexpr std::array<std::string_view, 1> floor_attributes = {"color"};
-constexpr std::array<std::string_view, 3> ball_attributes = {"radius", "color", "label"};
+constexpr std::array<std::string_view, 4> ball_attributes = {"radius", "color", "label", "drag"};
 constexpr std::array<std::string_view, 4> spring_attributes = {"turns", "width", "color", "label"};
 constexpr std::array<std::string_view, 3> rod_attributes = {"width", "color", "label"};
 constexpr std::array<std::string_view, 4> rope_attributes = {"length", "width", "color", "label"};
 constexpr std::array<std::string_view, 3> arrow_attributes = {"scale", "color", "label"};
 constexpr std::array<std::string_view, 3> trail_attributes = {"length", "width", "color"};
-constexpr std::array<std::string_view, 4> box_attributes = {"size", "angle", "color", "label"};
+constexpr std::array<std::string_view, 5> box_attributes = {"size", "angle", "color", "label", "drag"};
 constexpr std::array<std::string_view, 2> text_attributes = {"size", "color"};
 
 struct ShapeRule {
@@ -201,7 +201,9 @@ void Parser::parse_attributes(ast::Shape& shape, Words known) {
     }
     ast::Attribute attribute;
     attribute.name = {word, advance().span};
-    if (word == "color" || word == "label") {
+    if (word == "drag") {  // a word alone
+      attribute.value = {ast::Text{}, attribute.name.span};
+    } else if (word == "color" || word == "label") {
       const Span span = current().span;
       attribute.value = {ast::Text{parse_text("a text in quotes")}, span};
     } else if (shape.kind == ast::ShapeKind::box && word == "size") {

@@ -76,6 +76,15 @@ std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& expe
   return planned;
 }
 
+Integration integration_of(const std::shared_ptr<const ModelProgram>& program, const Plan& plan,
+                           const Experiment& experiment) {
+  const Model& model = program->model;
+  const auto first = plan.variables.begin() + model.layout.states;
+  return {ModelSystem(program, plan.variables),
+          ModelSystem::X(first, first + static_cast<std::ptrdiff_t>(model.states.size())), options_of(plan, experiment),
+          ModelEvents(*program, plan.variables, plan.from)};
+}
+
 Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {
   Simulated simulated;
   const Model& model = program->model;
@@ -85,16 +94,10 @@ Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Exp
   Run run;
   run.plan = std::move(*planned);
   RunRecorder recorder(*program, run.plan, experiment.keep_rows, sample_times(model, run.plan), program->always);
-  ModelSystem system(program, run.plan.variables);
-  const auto first = run.plan.variables.begin() + model.layout.states;
-  ModelSystem::X x0(first, first + static_cast<std::ptrdiff_t>(model.states.size()));
-  ModelEvents events(*program, run.plan.variables, run.plan.from);
-  const std::string method = run.plan.method;
-  integrate(method, {std::move(system), std::move(x0), options_of(run.plan, experiment), std::move(events)}, recorder,
-            run);
+  integrate(run.plan.method, integration_of(program, run.plan, experiment), recorder, run);
   recorder.give(run);
   run.checks = judge(model, run, recorder);
-  if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(model, run));
+  if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(model, run.outcome));
   if (experiment.estimate_error && succeeded(run.outcome.ending)) run.error = estimate_error(program, experiment, run);
   simulated.run = std::move(run);
   return simulated;

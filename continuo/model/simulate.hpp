@@ -41,7 +41,7 @@ std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& expe
 Diagnostic no_study_of_worlds(const Model& model);
 
 /// What an ending that is no success says as a diagnostic: E30x, E310.
-Diagnostic failure(const Model& model, const Run& run);
+Diagnostic failure(const Model& model, const Outcome<double>& outcome);
 
 /// The values of expressions of the model at every row of the run: one list per expression.
 std::vector<std::vector<double>> values_along(const ModelProgram& program, const Run& run,

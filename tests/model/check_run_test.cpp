@@ -79,6 +79,13 @@ TEST(CheckRun, PlotsAndDrawingsAreKept) {
   EXPECT_EQ(model.graph.value(model.drawing[4].arguments[0].numbers[0]), 3);
 }
 
+TEST(CheckRun, WhatTheMouseMayMoveDependsOnStates) {
+  const Model model = good(decay + "run 0..3\ndraw { ball (0, sin(x)) drag; box (x, 1) }\n");
+  EXPECT_TRUE(is_dragged(model.drawing[0]));
+  EXPECT_FALSE(is_dragged(model.drawing[1]));
+  said(decay + "param k = 1\nrun 0..3\ndraw { ball (k, t) drag }\n", "E265");
+}
+
 TEST(CheckRun, AValueOutsideItsRangeIsAWarning) {
   const Loaded loaded = load_text("param k = 5 in 0..3\nx' = k\nx(0) = 0\n");
   EXPECT_TRUE(loaded);

@@ -207,7 +207,8 @@ TEST(Parsing, DrawingsHoldShapesWithAttributes) {
   const auto draw = only<ast::Draw>(
       "draw { floor 0; ball (0, h) radius 0.3 color \"red\" label \"m\"; spring (0, 0) to (x, y) turns 8\n"
       "rod (0, 0) (x, y); rope (0, 0, 1) (x, y, z); arrow (x, y) (x + v, y); trail (x, y) length 5\n"
-      "box (x, 0.7) size (4, 1.4) angle a; text (x, 3) \"car\"; for i in 1..N { ball (x[i], y[i]) radius r[i] } }");
+      "box (x, 0.7) drag size (4, 1.4) angle a; text (x, 3) \"car\"; for i in 1..N { ball (x[i], y[i]) radius r[i] } "
+      "}");
   ASSERT_EQ(draw.items.size(), 10U);
   const auto& ball = std::get<ast::Shape>(draw.items[1].node);
   EXPECT_EQ(ball.kind, ast::ShapeKind::ball);
@@ -216,7 +217,8 @@ TEST(Parsing, DrawingsHoldShapesWithAttributes) {
   EXPECT_EQ(ball.attributes[0].name.text, "radius");
   EXPECT_EQ(std::get<ast::Text>(ball.attributes[1].value.node).value, "red");
   EXPECT_EQ(std::get<ast::Shape>(draw.items[2].node).arguments.size(), 2U);
-  EXPECT_EQ(to_text(std::get<ast::Shape>(draw.items[7].node).attributes.at(0).value), "(4, 1.4)");
+  EXPECT_EQ(std::get<ast::Shape>(draw.items[7].node).attributes.at(0).name.text, "drag");
+  EXPECT_EQ(to_text(std::get<ast::Shape>(draw.items[7].node).attributes.at(1).value), "(4, 1.4)");
   EXPECT_EQ(std::get<ast::DrawFamily>(draw.items[9].node).body.size(), 1U);
 }
 

@@ -1,0 +1,48 @@
+// continuo/live/history.cpp
+#include <algorithm>
+#include <utility>
+
+#include <continuo/live/history.hpp>
+
+namespace continuo::live {
+
+std::size_t History::bytes_of(const Sample& sample) {
+  const auto of_instant = [](const model::Instant& instant) {
+    return instant.x.size() * sizeof(double) + instant.stops.size() * sizeof(std::size_t);
+  };
+  return sizeof(Sample) + of_instant(sample.main) + (sample.ghost ? of_instant(*sample.ghost) : 0);
+}
+
+void History::add(Sample sample) {
+  bytes_ += bytes_of(sample);
+  samples_.push_back(std::move(sample));
+  while (samples_.size() > 1 && (bytes_ > most_bytes_ || samples_.size() > most_samples_)) {
+    bytes_ -= bytes_of(samples_.front());
+    samples_.pop_front();
+  }
+}
+
+void History::clear() {
+  samples_.clear();
+  bytes_ = 0;
+}
+
+void History::forget_last() {
+  bytes_ -= bytes_of(samples_.back());
+  samples_.pop_back();
+}
+
+void History::cut_after(std::size_t i) {
+  while (samples_.size() > i + 1) forget_last();
+}
+
+void History::cut_from(double t) {
+  while (!samples_.empty() && samples_.back().main.t >= t) forget_last();
+}
+
+std::size_t History::index_at(double t) const {
+  const auto after = std::ranges::upper_bound(samples_, t, {}, [](const Sample& sample) { return sample.main.t; });
+  return after == samples_.begin() ? 0 : static_cast<std::size_t>(after - samples_.begin()) - 1;
+}
+
+}  // namespace continuo::live

@@ -1,0 +1,140 @@
+// continuo/live/live_model.cpp
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <continuo/live/live_model.hpp>
+
+namespace continuo::live {
+
+namespace {
+
+using model::NodeId;
+
+constexpr std::size_t most_default_curves = 8;
+
+class Preparation {
+ public:
+  explicit Preparation(model::Model model) : model_(std::move(model)) {}
+
+  LiveModel make() {
+    add_states();
+    for (const model::Quantity& let : model_.lets) add(let.name, let.unit, ColumnKind::let, let.node);
+    for (const model::Quantity& output : model_.outputs) add(output.name, output.unit, ColumnKind::output, output.node);
+    add_energies();
+    add_plots();
+    if (made_.energy) {
+      made_.drift = made_.columns.size();
+      made_.columns.push_back({"energy drift", "", ColumnKind::drift});
+    }
+    made_.columns.push_back({"distance", "", ColumnKind::distance});
+    for (const model::DrawItem& item : model_.drawing) draw(item);
+    measure_apart();
+    made_.program = model::compile(std::move(model_));
+    return std::move(made_);
+  }
+
+ private:
+  void add_states() {
+    for (const model::State& state : model_.states) {
+      column_of_[model_.graph.variable(state.variable)] = made_.columns.size();
+      made_.columns.push_back({state.column, state.unit, ColumnKind::state});
+    }
+  }
+
+  std::size_t add(const std::string& name, const std::string& unit, ColumnKind kind, NodeId node) {
+    const std::size_t column = made_.columns.size();
+    column_of_.emplace(node, column);
+    made_.columns.push_back({name, unit, kind});
+    made_.quantities.push_back(node);
+    return column;
+  }
+
+  void add_energies() {
+    for (const model::Quantity& energy : model_.energies)
+      add(energy.name, energy.unit, ColumnKind::energy, energy.node);
+    if (!model_.energies.empty())
+      made_.energy = add("energy", model_.energies.front().unit, ColumnKind::energy, model_.total_energy);
+  }
+
+  LiveCurve curve(const model::Series& series) {
+    const auto known = column_of_.find(series.node);
+    const std::size_t column =
+        known != column_of_.end() ? known->second : add(series.label, series.unit, ColumnKind::curve, series.node);
+    return {series.label, column, series.unit};
+  }
+
+  void add_plots() {
+    const NodeId time = model_.graph.variable(model::Layout::time);
+    for (const model::Plot& plot : model_.plots) {
+      LivePlot made;
+      for (const model::Series& series : plot.curves) made.curves.push_back(curve(series));
+      if (plot.against.node != time) made.against = curve(plot.against);
+      made_.plots.push_back(std::move(made));
+    }
+    if (!made_.plots.empty()) return;
+    LivePlot states;
+    for (std::size_t i = 0; i < std::min(most_default_curves, model_.states.size()); ++i)
+      states.curves.push_back({model_.states[i].column, i, model_.states[i].unit});
+    made_.plots.push_back(std::move(states));
+  }
+
+  SceneNumbers place(std::string name, const std::vector<NodeId>& nodes) {
+    SceneNumbers numbers{std::move(name), {}, nodes.size() > 1};
+    for (const NodeId node : nodes) {
+      numbers.places.push_back(made_.scene.size());
+      made_.scene.push_back(node);
+    }
+    return numbers;
+  }
+
+  void draw(const model::DrawItem& item) {
+    using model::Shape;
+    SceneItem made{.shape = item.shape, .label = {}, .color = {}, .text = {}, .numbers = {}, .grip = {}};
+    for (std::size_t i = 0; i < item.arguments.size(); ++i) {
+      const model::DrawArgument& argument = item.arguments[i];
+      if (argument.numbers.empty()) {
+        made.text = argument.text;
+        continue;
+      }
+      if (argument.numbers.size() == 3) made_.dimension = 3;
+      made.numbers.push_back(place(item.shape == Shape::floor ? "height" : i == 0 ? "at" : "to", argument.numbers));
+    }
+    for (const model::DrawAttribute& attribute : item.attributes) {
+      if (attribute.name == "color") {
+        made.color = attribute.value.text;
+      } else if (attribute.name == "label") {
+        made.label = attribute.value.text;
+      } else if (attribute.name != "drag") {
+        made.numbers.push_back(place(attribute.name, attribute.value.numbers));
+      }
+    }
+    if (is_dragged(item)) {
+      made.grip = made_.grips.size();
+      made_.grips.push_back(make_grip(model_, item.arguments.front().numbers));
+    }
+    made_.drawing.push_back(std::move(made));
+  }
+
+  /// Positions where there are any: a distance over velocities too would have no unit.
+  void measure_apart() {
+    for (const PositionVelocity& pair : model_.pairs) made_.apart.push_back(pair.position);
+    if (!made_.apart.empty()) return;
+    for (std::size_t i = 0; i < model_.states.size(); ++i) made_.apart.push_back(i);
+  }
+
+  model::Model model_;
+  LiveModel made_;
+  std::map<NodeId, std::size_t> column_of_;
+};
+
+}  // namespace
+
+LiveModel prepare(model::Model model, const std::set<std::string, std::less<>>& taken) {
+  for (model::Input& input : model.inputs) {
+    if (!input.key.empty() || taken.contains(input.name)) input.points.reset();
+  }
+  return Preparation(std::move(model)).make();
+}
+
+}  // namespace continuo::live

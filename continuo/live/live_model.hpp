@@ -1,0 +1,66 @@
+// continuo/live/live_model.hpp
+// What is shown of a model: the values that are plotted, the numbers of its drawing, the points that can be dragged.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <continuo/live/grip.hpp>
+#include <continuo/model/model_program.hpp>
+
+namespace continuo::live {
+
+enum class ColumnKind { state, let, output, energy, drift, curve, distance };
+
+/// A plotted value: the states, then `quantities`, then the drift of the energy (where there is one) and the ghost's
+/// distance.
+struct LiveColumn {
+  std::string name, unit;
+  ColumnKind kind;
+};
+
+struct LiveCurve {
+  std::string label;
+  std::size_t column;
+  std::string unit;
+};
+struct LivePlot {
+  std::vector<LiveCurve> curves;
+  std::optional<LiveCurve> against;  // nothing: t
+};
+
+/// Numbers of a drawn thing by the name of what they say: where they stand in the scene.
+struct SceneNumbers {
+  std::string name;
+  std::vector<std::size_t> places;
+  bool is_point;
+};
+struct SceneItem {
+  model::Shape shape;
+  std::string label, color, text;
+  std::vector<SceneNumbers> numbers;
+  std::optional<std::size_t> grip;  // of LiveModel::grips, where the mouse may move it
+};
+
+struct LiveModel {
+  std::shared_ptr<const model::ModelProgram> program;
+  std::vector<LiveColumn> columns;
+  std::vector<LivePlot> plots;
+  std::vector<SceneItem> drawing;
+  std::vector<model::NodeId> quantities, scene;
+  std::vector<Grip> grips;
+  std::vector<std::size_t> apart;            // the states in which a ghost's distance is measured
+  std::optional<std::size_t> energy, drift;  // columns
+  int dimension = 2;
+
+  const model::Model& model() const { return program->model; }
+  std::size_t distance() const { return columns.size() - 1; }
+};
+
+/// Inputs that somebody moves (those with a key, and `taken`) do not follow their files.
+LiveModel prepare(model::Model model, const std::set<std::string, std::less<>>& taken = {});
+
+}  // namespace continuo::live

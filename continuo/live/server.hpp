@@ -1,0 +1,65 @@
+// continuo/live/server.hpp
+// Shows a session to whoever has the address: HTTP for the page, WebSocket for the rest, one thread. Each client gets
+// the newest picture when it has read the last one; what it has not read does not pile up.
+//
+//   Server server({.page = page}, say);
+//   if (const std::string problem = server.listen(); !problem.empty()) ...;
+//   server.start();  open_browser(server.url());
+//   session.turn();                                 // server is the session's Audience
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <continuo/live/audience.hpp>
+#include <continuo/live/commands.hpp>
+
+namespace continuo::live {
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";
+  unsigned short port = 0;          // 0: any free one
+  std::string page{};               // the page, compressed by gzip; empty: none in this build
+  std::string model_path{};         // texts are checked as if they stood there: where files beside it are found
+  std::size_t most_clients = 64;    // connections at a time
+  double patience = 10, idle = 20;  // seconds: for a request to come; for a client that does not answer
+};
+
+/// What the server needs of who runs the model; called on the server's thread.
+struct ServerHooks {
+  std::function<bool(Command, std::uint64_t client)> command{};  // false: too much to do already
+  std::function<void(double pictures)> rate{};                   // a second: the most any client wants
+  std::function<void(std::size_t clients)> attached{};
+};
+
+class Server final : public Audience {
+ public:
+  using Say = std::function<void(const std::string&)>;
+
+  Server(ServerOptions options, Say say);
+  ~Server() override;
+
+  /// Empty, or why there is no listening there.
+  std::string listen();
+  void start(ServerHooks hooks);
+  /// Says goodbye to all and returns when the thread has ended.
+  void stop();
+
+  unsigned short port() const;
+  std::string url() const;
+  std::size_t clients() const;
+
+  // From any thread.
+  void see(std::shared_ptr<const Slice> slice) override;
+  void hear(Topic topic, std::string json) override;
+  void complain(std::uint64_t client, const std::string& problem);
+
+  struct Parts;  // server_parts.hpp
+
+ private:
+  std::shared_ptr<Parts> parts_;
+};
+
+}  // namespace continuo::live

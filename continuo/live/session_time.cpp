@@ -1,0 +1,177 @@
+// continuo/live/session_time.cpp
+// How the time that is shown advances.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <continuo/live/session.hpp>
+#include <continuo/model/simulate.hpp>
+
+namespace continuo::live {
+
+namespace {
+
+constexpr double part_for_steps = 0.9;     // of the time between two pictures
+constexpr double rows_of_a_run = 1000;     // at high speed: what a curve of the whole run should have at least
+constexpr double most_rows_at_once = 32;   // and a picture at most
+constexpr double longest_single_step = 1;  // second
+
+}  // namespace
+
+void Session::turn() {
+  const double wall = now_();
+  if (playing_) play_on(wall);
+  publish();
+  if ((state_changed_ || playing_) && wall - state_said_ >= 0.1) say_state();
+}
+
+void Session::play_on(double wall) {
+  if (!until_event_) clock_.forgive(wall, cursor_);
+  const double target = until_event_ ? std::numeric_limits<double>::infinity() : clock_.target(wall);
+  const double before = cursor_;
+  const Halt halt = go(target, wall + part_for_steps / rate_, until_event_);
+  if (clock_.speed() <= 0 || until_event_) stride_ = std::max((cursor_ - before) / most_rows_at_once, 0.0);
+  clock_.reached(wall, cursor_);
+  if (halt == Halt::event || halt == Halt::ended) {
+    playing_ = until_event_ = false;
+    state_changed_ = true;
+  }
+}
+
+/// Time between rows, where that is less than between pictures.
+double Session::sample_every(double target) {
+  if (!std::isfinite(target)) return stride_ > 0 ? stride_ : span_ / rows_of_a_run;
+  const double way = target - cursor_;
+  return way / std::clamp(std::ceil(way / (span_ / rows_of_a_run)), 1.0, most_rows_at_once);
+}
+
+bool Session::ask_for_step() {
+  if (main_over_) return false;
+  main_over_ = !main_->advance();
+  next_passed_ = 0;
+  return true;
+}
+
+/// The ghost comes along as far as `stop`, or as there is time for: then `stop` is there.
+void Session::lead_ghost(double& stop, double deadline) {
+  while (ghost_ && ghost_->t() < stop) {
+    if (!ghost_->advance() && ghost_->t() < stop) {
+      const Outcome<double>& outcome = ghost_->outcome();
+      if (!succeeded(outcome.ending)) say(failure(shown_->model(), outcome));
+      say_note("the ghost has come to its end: " + std::string(to_string(outcome.ending)));
+      ghost_.reset();
+      settings_.ghost.reset();
+      state_changed_ = true;
+      return;
+    }
+    if (now_() > deadline && ghost_->t() < stop) {
+      stop = ghost_->t();
+      return;
+    }
+  }
+}
+
+Session::Halt Session::go(double target, double deadline, bool to_event) {
+  constexpr unsigned look_at_clock_every = 8;
+  const double every = sample_every(target);
+  double next_sample = cursor_ + every, shown = cursor_;
+  Halt halt = Halt::target;
+  for (unsigned count = 1; cursor_ < target; ++count) {
+    if (count % look_at_clock_every == 0 && now_() > deadline) {
+      halt = Halt::deadline;
+      break;
+    }
+    const bool pending = next_passed_ < main_->passed().size();
+    if (!pending && main_->t() <= cursor_ && !ask_for_step()) {
+      halt = Halt::ended;
+      break;
+    }
+    double stop = std::min({target, next_sample, main_->t()});
+    if (next_passed_ < main_->passed().size()) stop = std::min(stop, main_->passed()[next_passed_].t);
+    lead_ghost(stop, deadline);
+    if (next_passed_ < main_->passed().size() && stop == main_->passed()[next_passed_].t) {
+      const Passed& passed = main_->passed()[next_passed_++];
+      cursor_ = shown = stop;
+      pass(passed);
+      if (to_event && !passed.names.empty()) return Halt::event;
+      continue;
+    }
+    cursor_ = std::max(cursor_, stop);
+    if (cursor_ >= next_sample && cursor_ > shown) {
+      emit(main_->instant_at(cursor_));
+      shown = cursor_;
+      next_sample = cursor_ + every;
+    }
+  }
+  if (cursor_ > shown) emit(main_->instant_at(cursor_));
+  if (halt == Halt::ended) end_run();
+  return halt;
+}
+
+void Session::pass(const Passed& passed) {
+  model::Instant after{.t = passed.t, .x = passed.after, .mode = passed.mode, .stops = passed.stops};
+  if (passed.before != passed.after) {
+    std::optional<model::Instant> ghost;
+    if (ghost_) ghost = ghost_->instant_at(passed.t);
+    add_row(passed.t, passed.before, ghost ? &*ghost : nullptr);
+  }
+  emit(std::move(after));
+  constexpr std::size_t most_at_once = 200;
+  for (const Passed::Name& name : passed.names) {
+    if (slice_->events.size() < most_at_once) slice_->events.push_back({passed.t, name.event, name.mark});
+  }
+}
+
+void Session::end_run() {
+  const Outcome<double>& outcome = main_->outcome();
+  playing_ = until_event_ = false;
+  state_changed_ = true;
+  if (outcome.ending == Ending::stopped_by_event) {
+    const std::string& text = main_->stop_text();
+    ended_ = text.empty() ? outcome.event : text;
+    return;
+  }
+  const model::Diagnostic problem = failure(shown_->model(), outcome);
+  ended_ = problem.message;
+  say(problem);
+}
+
+void Session::step() {
+  if (looking_) {
+    if (*looking_ + 1 < history_.size()) look_at(*looking_ + 1);
+    return;
+  }
+  playing_ = until_event_ = false;
+  state_changed_ = true;
+  if (main_->t() <= cursor_ && next_passed_ >= main_->passed().size() && !ask_for_step()) return;
+  const double target = main_->t();
+  if (target > cursor_) go(target, now_() + longest_single_step, true);
+  if (main_over_ && cursor_ >= main_->t() && next_passed_ >= main_->passed().size() && ended_.empty()) end_run();
+}
+
+void Session::play() {
+  if (looking_) leave_look();
+  if (!ended_.empty()) return say_note("this run has ended", "reset, go back, or change something");
+  playing_ = true;
+  until_event_ = false;
+  state_changed_ = true;
+  restart_clock();
+}
+
+void Session::pause() {
+  playing_ = until_event_ = false;
+  state_changed_ = true;
+}
+
+void Session::until_event() {
+  if (shown_->model().event_order.empty()) return say_note("this model has no events");
+  play();
+  until_event_ = playing_;
+}
+
+void Session::set_speed(double speed) {
+  clock_.set_speed(now_(), cursor_, std::clamp(speed, 0.0, 1e300));
+  state_changed_ = true;
+}
+
+}  // namespace continuo::live

@@ -1,0 +1,37 @@
+// continuo/live/settings.hpp
+// What somebody at the page may choose, and where the models come from.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <continuo/model/model.hpp>
+
+namespace continuo::live {
+
+/// What is not set is as the model says; a step takes the place of a tolerance and the other way round.
+struct MethodChoice {
+  std::optional<std::string> name{};
+  std::optional<double> step{}, rtol{};
+};
+
+/// What can be undone.
+struct Settings {
+  model::Overrides parameters{};
+  MethodChoice method{};
+  std::optional<MethodChoice> ghost{};
+};
+
+struct GalleryModel {
+  std::string name, title, path;
+};
+
+struct Place {
+  std::string path;                     // of the model that was named: the only file that is ever written
+  std::vector<GalleryModel> gallery{};  // what can be opened besides
+};
+
+/// The models of a folder by name, each with the first line of its heading.
+std::vector<GalleryModel> gallery_in(const std::string& folder);
+
+}  // namespace continuo::live

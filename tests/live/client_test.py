@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""The client of docs/protocol.md against `continuo view`: client_test.py COMMAND SOURCE_FOLDER."""
+import http.client
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+from urllib.parse import urlsplit
+
+command, root = sys.argv[1], sys.argv[2]
+sys.path.insert(0, os.path.join(root, "docs"))
+from protocol_client import Frame, View  # noqa: E402
+
+
+class Viewed:
+    """`continuo view` of a model, ended by Ctrl-C."""
+
+    def __init__(self, model, *options):
+        path = os.path.join(root, "models", model)
+        self.process = subprocess.Popen([command, "view", path, "--no-open", *options], stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True)
+        self.address = self.process.stdout.readline().strip()
+        assert self.address.startswith("http://"), self.process.stderr.read()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        self.said = self.process.communicate(timeout=20)[1]
+        assert self.process.returncode == 0, self.said
+
+
+def state(message):
+    return isinstance(message, dict) and message["say"] == "state"
+
+
+def rows_of(view, wanted, seconds=10):
+    """The first row that is as wanted."""
+    found = []
+
+    def has(message):
+        if isinstance(message, Frame):
+            found.extend(row for row in message.rows if wanted(row))
+        return bool(found)
+
+    view.until(has, seconds)
+    return found[0]
+
+
+class Protocol(unittest.TestCase):
+    def test_moves_and_obeys(self):
+        with Viewed("spring_pendulum.sim") as viewed:
+            view = View(viewed.address, origin="http://" + urlsplit(viewed.address).netloc)
+            model = view.until(lambda m: isinstance(m, dict) and m["say"] == "model")
+            self.assertEqual(model["name"], "SpringPendulum")
+            self.assertEqual(model["columns"][-1]["kind"], "distance")
+            self.assertTrue(any(item["drag"] for item in model["drawing"]))
+            self.assertIn("pendulum", [other["name"] for other in model["gallery"]])
+            first = view.until(lambda m: isinstance(m, Frame) and m.t > 0)  # it plays as soon as somebody looks
+            self.assertTrue(all(math.isfinite(value) for value in first.scene))
+            ball = next(i for i, item in enumerate(model["drawing"]) if item["drag"])
+            view.say("drag", item=ball, to=[1.5, -2])
+            held = rows_of(view, lambda row: abs(row["x"] - 1.5) < 1e-5 and abs(row["y"] + 2) < 1e-5)
+            self.assertEqual(held["x'"], 0)
+            view.say("release")
+            view.say("pause")
+            view.until(lambda m: state(m) and not m["playing"])
+            view.say("seek", t=0)
+            view.until(lambda m: isinstance(m, Frame) and m.looking_back)
+            view.say("set", parameter="k", value=20)
+            after = view.until(lambda m: state(m) and m["parameters"]["k"] == 20)
+            self.assertEqual(after["undo"], 1)
+            view.say("ghost", name="explicit_euler", step=0.02)
+            view.say("play")
+            view.until(lambda m: isinstance(m, Frame) and m.ghost_scene is not None)
+            view.say("check", id=7, text="x'' = -k*x\nx(0) = 1; x'(0) = 0\nrun 0..1\n")
+            checked = view.until(lambda m: isinstance(m, dict) and m["say"] == "checked")
+            self.assertEqual(checked["id"], 7)
+            self.assertEqual((checked["diagnostics"][0]["line"], checked["diagnostics"][0]["column"]), (1, 8))
+            view.say("open", model="bouncing_ball")
+            opened = view.until(lambda m: isinstance(m, dict) and m["say"] == "model")
+            self.assertEqual(opened["name"], "BouncingBall")
+            self.assertFalse(opened["saveable"])
+            view.say("until_event")
+            event = view.until(lambda m: isinstance(m, dict) and m["say"] == "event")
+            self.assertAlmostEqual(event["t"], 10 / 7, 9)
+            view.close()
+
+    def test_keeps_time(self):
+        with Viewed("pendulum.sim") as viewed:
+            view = View(viewed.address)
+            begin = view.until(lambda m: isinstance(m, Frame) and m.t > 0.2)
+            wall = time.monotonic()
+            end = view.until(lambda m: isinstance(m, Frame) and m.t > begin.t + 2)
+            # Two pictures of 17 ms, and what a busy machine keeps a process waiting.
+            self.assertAlmostEqual(end.t - begin.t, time.monotonic() - wall, delta=0.1)
+            view.close()
+
+    def test_serves_its_page_to_those_who_know(self):
+        with Viewed("pendulum.sim", "--page", os.path.join(root, "docs", "protocol.md")) as viewed:
+            parts = urlsplit(viewed.address)
+
+            def get(target, **headers):
+                connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=10)
+                connection.request("GET", target, headers=headers)
+                answer = connection.getresponse()
+                return answer.status, answer.read(), answer.headers
+
+            status, page, _ = get("/?" + parts.query)
+            self.assertEqual(status, 200)
+            with open(os.path.join(root, "docs", "protocol.md"), "rb") as file:
+                self.assertEqual(page, file.read())
+            self.assertEqual(get("/?" + parts.query, **{"Accept-Encoding": "gzip"})[2]["Content-Encoding"], "gzip")
+            for target in ("/", "/?token=0", "/live"):
+                self.assertIn(get(target)[0], (403, 404), target)
+            self.assertEqual(get("/?" + parts.query, Origin="http://evil.example")[0], 403)
+            self.assertEqual(get("/../../etc/passwd?" + parts.query)[0], 404)
+            with self.assertRaises(ConnectionError):
+                View(viewed.address, origin="http://evil.example")
+        self.assertEqual(viewed.said.count("another page"), 1)
+
+    def test_the_address_can_be_chosen(self):
+        with Viewed("pendulum.sim", "--listen", "127.0.0.2", "--paused") as viewed:
+            self.assertTrue(viewed.address.startswith("http://127.0.0.2:"))
+            view = View(viewed.address)
+            self.assertFalse(view.until(state)["playing"])
+            view.close()
+            port = urlsplit(viewed.address).port
+            taken = subprocess.run([command, "view", os.path.join(root, "models", "pendulum.sim"), "--no-open",
+                                    "--listen", "127.0.0.2", "--port", str(port)], capture_output=True, text=True,
+                                   timeout=20)
+            self.assertEqual(taken.returncode, 1)
+            self.assertIn("Address already in use", taken.stderr)
+
+    def test_what_cannot_be_shown_is_refused(self):
+        refused = subprocess.run([command, "view", os.path.join(root, "models", "blasius.sim"), "--no-open"],
+                                 capture_output=True, text=True, timeout=20)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("E321", refused.stderr)
+
+    def test_malformed_texts_are_answered_then_shown_out(self):
+        with Viewed("pendulum.sim", "--paused") as viewed:
+            view = View(viewed.address)
+            view.say("nonsense")
+            answer = view.until(lambda m: isinstance(m, dict) and m["say"] == "message")
+            self.assertEqual(answer["severity"], "error")
+            view.say("seek")
+            self.assertIn("needs t", view.until(lambda m: isinstance(m, dict) and m["say"] == "message")["text"])
+            for _ in range(120):
+                try:
+                    view.send(1, b"{")
+                except OSError:
+                    break
+            self.assertIsNone(view.until(lambda m: False))
+            View(viewed.address).close()  # others are let in
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1, warnings="ignore")

@@ -1,0 +1,203 @@
+// What the clock does to a session, and going back.
+#include <tests/live/spectator.hpp>
+
+namespace continuo::live {
+namespace {
+
+const std::string circle = "x'' = -x\nx(0) = 1;  x'(0) = 0\nenergy all = 1/2*x'^2 + 1/2*x^2\nrun 0..10 tol 1e-9\n";
+
+TEST(LiveTime, IsThatOfTheWall) {
+  Stage stage(circle);
+  const double begin = stage.wall;
+  stage.play(60);
+  EXPECT_NEAR(stage.session->shown_time(), stage.wall - begin, 1e-9);
+  EXPECT_NEAR(stage.session->clock().reached_speed(), 1, 1e-6);
+  EXPECT_FALSE(stage.session->clock().slow());
+  // Shown where it is, whatever the steps are: within the tolerance of the run.
+  EXPECT_NEAR(stage.state("x"), std::cos(stage.session->shown_time()), 1e-6);
+}
+
+TEST(LiveTime, RunsAtTheSpeedAskedFor) {
+  Stage stage(circle);
+  stage.session->set_speed(0.001);
+  stage.play(2);
+  EXPECT_NEAR(stage.session->shown_time(), 0.002, 1e-9);
+  stage.session->set_speed(50);
+  stage.run(2);
+  EXPECT_NEAR(stage.session->shown_time(), 100.002, 1e-6);
+}
+
+TEST(LiveTime, AStallOfTheMachineIsCaughtUpWith) {
+  Stage stage(circle);
+  const double begin = stage.wall;
+  stage.play(1);
+  stage.wall += 0.2;  // less than the largest debt
+  stage.run(1);
+  EXPECT_NEAR(stage.session->shown_time(), stage.wall - begin, 1e-9);
+}
+
+TEST(LiveTime, ADebtIsDroppedNotPaid) {
+  Stage stage(circle);
+  stage.play(1);
+  const double before = stage.session->shown_time();
+  stage.wall += 3600;  // the lid was closed
+  stage.run(1);
+  EXPECT_LT(stage.session->shown_time(), before + 1 + 2 * PacedClock::largest_debt);
+}
+
+// A step of 1e-4 and the clock looked at every 8 steps: with 8 ms for each look, simulated time passes at a tenth.
+TEST(LiveTime, ATooSlowMachineSlowsDownEvenlyAndSaysSo) {
+  Stage stage("x'' = -x\nx(0) = 1;  x'(0) = 0\nrun 0..10 method rk4 step 1e-4\n");
+  stage.cost = 8e-3;
+  stage.session->play();
+  double longest = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double begin = stage.wall;
+    stage.session->turn();
+    longest = std::max(longest, stage.wall - begin);
+  }
+  EXPECT_TRUE(stage.session->clock().slow());
+  EXPECT_NEAR(stage.session->clock().reached_speed(), 0.1, 0.05);  // looks besides those between steps cost as well
+  EXPECT_LT(longest, 0.1);                                         // a hand is answered that soon
+  const auto states = stage.audience.said("state");
+  EXPECT_TRUE(states.back()["slow"].get<bool>());
+  stage.cost = 0;
+  stage.run(2);
+  EXPECT_FALSE(stage.session->clock().slow());
+  EXPECT_NEAR(stage.session->clock().reached_speed(), 1, 1e-3);
+}
+
+TEST(LiveTime, UnlimitedIsAsFastAsCanBe) {
+  Stage stage(circle);
+  stage.cost = 1e-4;
+  stage.session->set_speed(0);
+  stage.play(0.5);
+  EXPECT_GT(stage.session->shown_time(), 10);
+}
+
+TEST(LiveTime, AStepIsOneStepOfTheMethod) {
+  Stage stage("mass_spring");  // semi-implicit Euler, step 0.1
+  stage.session->step();
+  EXPECT_DOUBLE_EQ(stage.session->shown_time(), 0.1);
+  EXPECT_DOUBLE_EQ(stage.state("x'"), -0.5);
+  EXPECT_DOUBLE_EQ(stage.state("x"), 4.95);
+  stage.session->step();
+  EXPECT_DOUBLE_EQ(stage.session->shown_time(), 0.2);
+  EXPECT_FALSE(stage.session->playing());
+}
+
+TEST(LiveTime, UntilTheNextEvent) {
+  Stage stage("bouncing_ball");
+  stage.session->until_event();
+  stage.run(0.2);
+  EXPECT_FALSE(stage.session->playing());
+  EXPECT_NEAR(stage.session->shown_time(), 10.0 / 7, 1e-9);
+  EXPECT_NEAR(stage.state("h'"), 0.9 * 14, 1e-8);  // after it
+  bool told = false;
+  for (const auto& slice : stage.audience.slices) {
+    for (const LiveEvent& event : slice->events) told = told || event.name.starts_with("h falls through 0");
+  }
+  EXPECT_TRUE(told);
+}
+
+TEST(LiveTime, RowsStandOnBothSidesOfAnEvent) {
+  Stage stage("bouncing_ball");
+  stage.play(2);
+  const std::size_t columns = stage.session->shown().columns.size(), speed = stage.column("h'");
+  int seen = 0;
+  for (const auto& slice : stage.audience.slices) {
+    for (std::size_t i = 1; i < slice->row_t.size(); ++i) {
+      if (slice->row_t[i] != slice->row_t[i - 1]) continue;
+      ++seen;
+      EXPECT_NEAR(slice->rows[(i - 1) * columns + speed], -14, 1e-5);
+      EXPECT_NEAR(slice->rows[i * columns + speed], 12.6, 1e-5);
+    }
+  }
+  EXPECT_EQ(seen, 1);
+}
+
+TEST(LiveHistory, GoesBackAndOnFromThere) {
+  Stage stage(circle);
+  stage.play(2);
+  const double last = stage.session->shown_time();
+  stage.session->seek(0.5);
+  const double then = stage.session->shown_time();
+  EXPECT_NEAR(then, 0.5, 1.0 / 60);
+  stage.session->turn();
+  EXPECT_TRUE(stage.audience.slices.back()->looking_back);
+  EXPECT_TRUE(stage.audience.slices.back()->row_t.empty());
+  stage.session->back();
+  EXPECT_LT(stage.session->shown_time(), then);
+  stage.session->step();
+  EXPECT_DOUBLE_EQ(stage.session->shown_time(), then);
+  EXPECT_DOUBLE_EQ(stage.session->history().last_time(), last);  // nothing is lost by looking
+  stage.play(1);
+  EXPECT_NEAR(stage.session->shown_time(), then + 1, 1e-9);
+  EXPECT_NEAR(stage.state("x"), std::cos(then + 1), 1e-6);
+  EXPECT_LT(stage.session->history().last_time(), last);
+}
+
+TEST(LiveHistory, GoesOnAfterAnImpactItLooksAt) {
+  Stage stage("bouncing_ball");
+  stage.play(3);
+  stage.session->seek(10.0 / 7 + 1e-9);
+  EXPECT_NEAR(stage.session->shown_time(), 10.0 / 7, 1e-9);
+  stage.play(5);
+  for (std::size_t i = 0; i < stage.session->history().size(); ++i)
+    EXPECT_GE(stage.session->history()[i].main.x[0], -1e-12);
+}
+
+TEST(LiveHistory, IsBounded) {
+  History history(100'000, 1000);
+  for (int i = 0; i < 5000; ++i)
+    history.add(
+        {.main = {.t = i * 0.1, .x = std::vector<double>(10), .mode = 0, .stops = {}}, .ghost = {}, .variables = {}});
+  EXPECT_LE(history.bytes(), 100'000U);
+  EXPECT_LE(history.size(), 1000U);
+  EXPECT_DOUBLE_EQ(history.last_time(), 499.9);
+  EXPECT_EQ(history.index_at(499.95), history.size() - 1);
+  EXPECT_EQ(history.index_at(0), 0U);
+  history.cut_from(499.9);
+  EXPECT_NEAR(history.last_time(), 499.8, 1e-9);
+}
+
+TEST(LiveTime, GoesOnBeyondTheRunOfTheText) {
+  Stage stage("bouncing_ball");
+  stage.session->set_speed(20);
+  stage.play(3);  // 60 s of a run of 30
+  EXPECT_NEAR(stage.session->shown_time(), 60, 1e-6);
+  EXPECT_FALSE(stage.session->has_ended());
+}
+
+TEST(LiveTime, AFailureOfTheSolverPausesAndSaysWhy) {
+  Stage stage("param k = 1\nx' = k*x^2\nx(0) = 1\nrun 0..3 tol 1e-8\n");  // x = 1/(1 - t)
+  stage.play(2);
+  EXPECT_FALSE(stage.session->playing());
+  EXPECT_TRUE(stage.session->has_ended());
+  EXPECT_NEAR(stage.session->shown_time(), 1, 1e-3);
+  const auto messages = stage.audience.said("message");
+  ASSERT_FALSE(messages.empty());
+  EXPECT_EQ(messages.back()["severity"], "error");
+  EXPECT_TRUE(messages.back()["code"].get<std::string>().starts_with("E30"));
+  EXPECT_NE(messages.back()["hint"], "");
+  stage.session->seek(0.5);
+  stage.session->set_parameter("k", -1);
+  const double from = stage.session->shown_time();
+  stage.play(1);
+  EXPECT_NEAR(stage.session->shown_time(), from + 1, 1e-9);
+  EXPECT_FALSE(stage.session->has_ended());
+}
+
+TEST(LiveTime, AStopOfTheTextEndsTheRun) {
+  Stage stage("x' = 1\nx(0) = 0\nwhen x rises through 1 { stop \"there\" }\nrun 0..3\n");
+  stage.play(2);
+  EXPECT_TRUE(stage.session->has_ended());
+  EXPECT_EQ(stage.audience.said("state").back()["ended"], "there");
+  EXPECT_NEAR(stage.session->shown_time(), 1, 1e-12);
+  stage.session->reset();
+  EXPECT_EQ(stage.session->shown_time(), 0);
+  EXPECT_FALSE(stage.session->has_ended());
+}
+
+}  // namespace
+}  // namespace continuo::live
