@@ -1,12 +1,91 @@
 // apps/continuo/recording.cpp
+#include <cmath>
+#include <filesystem>
+
+#include <apps/continuo/models.hpp>
+#include <apps/continuo/own_process.hpp>
+#include <apps/continuo/pictures.hpp>
+#include <apps/continuo/program.hpp>
+#include <apps/continuo/recorder.hpp>
 #include <apps/continuo/recording.hpp>
 #include <apps/continuo/terminal.hpp>
+#include <fmt/format.h>
+
+#include <continuo/live/gzip.hpp>
+#include <continuo/results/output_file.hpp>
 
 namespace continuo::app {
+namespace {
 
-ExitCode record(const RecordingRequest&, const ExperimentOptions&, const std::string&) {
-  say("not yet");
+constexpr std::string_view marker = "<!--recording-->";
+
+/// At a clock of its own, which moves from picture to picture and never within one.
+void play_to(double until, double rate, double& wall, live::Session& session) {
+  session.set_rate(rate);
+  session.play();
+  while (!session.has_ended() && session.shown_time() < until) {
+    wall += 1 / rate;
+    session.turn();
+  }
+  session.pause();
+  session.turn();
+}
+
+ExitCode write_page(const std::string& path, const std::string& compressed, const Recorder& recorder) {
+  std::string page = live::unzipped(compressed);
+  const std::size_t place = page.find(marker);
+  if (place == std::string::npos) {
+    say(page.empty() ? "this build has no page to replay a run: build with -DCONTINUO_PAGE=ON, or give --page FILE"
+                     : "the page has no place for a recording");
+    return usage;
+  }
+  page.replace(place, marker.size(), recorder.element());
+  return written(results::write_file(path, page)) ? done : usage;
+}
+
+ExitCode write_film(const std::string& path, double rate, const live::LiveModel& shown, const Recorder& recorder) {
+  const ScratchFolder scratch;
+  if (!scratch.exists()) {
+    say("cannot make a folder for the pictures of the film");
+    return usage;
+  }
+  const std::string folder = scratch.file("pictures");
+  if (const std::string problem = draw_pictures(folder, shown, recorder.scenes()); !problem.empty()) {
+    say(problem);
+    return usage;
+  }
+  const int exit = run_program(
+      {"ffmpeg", "-y", "-framerate", fmt::format("{}", rate), "-i", folder + "/%05d.png", "-pix_fmt", "yuv420p", path});
+  if (exit == 0) return done;
+  say(exit == -1 ? fmt::format("a film is made by ffmpeg, which is not installed; --record FOLDER writes pictures")
+                 : fmt::format("ffmpeg could not write {}", path));
   return usage;
+}
+
+}  // namespace
+
+ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std::string& page) {
+  const bool film = std::filesystem::path(request.pictures).extension() == ".mp4";
+  if (!writable(request.page) || (film && !writable(request.pictures))) return usage;
+  if (film && run_program({"ffmpeg", "-version"}) != 0) {
+    say("a film is made by ffmpeg, which is not installed; --record FOLDER writes pictures");
+    return usage;
+  }
+  double wall = 0;
+  Recorder recorder;
+  live::Session session([&wall] { return wall; }, recorder, {.path = request.model});
+  if (const ExitCode exit = set_up(session); exit != done) return exit;
+  recorder.begin();
+  session.reset();
+  session.turn();
+  play_to(request.until.value_or(session.planned_end()), request.rate, wall, session);
+  ExitCode exit = done;
+  if (!request.page.empty()) exit = write_page(request.page, page, recorder);
+  if (exit != done || request.pictures.empty()) return exit;
+  if (film) return write_film(request.pictures, request.rate, session.shown(), recorder);
+  const std::string problem = draw_pictures(request.pictures, session.shown(), recorder.scenes());
+  if (!problem.empty()) say(problem);
+  return problem.empty() ? done : usage;
 }
 
 }  // namespace continuo::app

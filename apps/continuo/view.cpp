@@ -105,13 +105,32 @@ ExitCode show_to_the_world(const ViewRequest& request, live::Session& session, l
   return done;
 }
 
+/// The model in the session, as the command line wants it.
+ExitCode open_session(const ViewRequest& request, live::Session& session) {
+  const model::Loaded loaded = session.open_file();
+  if (!loaded.diagnostics.empty()) fmt::print(stderr, "{}", loaded.text({.color = colors_wanted()}));
+  if (!loaded.model) return wrong_model;
+  if (!session.is_open()) {
+    fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
+    return usage;
+  }
+  if (!apply_options(request.experiment, session)) return usage;
+  if (request.speed) session.set_speed(*request.speed);
+  return done;
+}
+
 ExitCode view(ViewRequest& request) {
   if (!readable(request.experiment.file)) return usage;
   const auto page = page_of(request);
   if (!page) return usage;
   request.server.page = *page;
   request.server.model_path = request.experiment.file;
-  if (request.recording.wanted()) return record(request.recording, request.experiment, *page);
+  const auto set_up = [&](live::Session& session) { return open_session(request, session); };
+  if (request.recording.wanted()) {
+    request.recording.model = request.experiment.file;
+    request.recording.until = request.experiment.until;
+    return record(request.recording, set_up, *page);
+  }
   if (page->empty())
     say("this build has no page: build with -DCONTINUO_PAGE=ON (needs npm), or give --page FILE; the address serves "
         "docs/protocol.md all the same");
@@ -122,15 +141,7 @@ ExitCode view(ViewRequest& request) {
     say(problem);
     return usage;
   }
-  const model::Loaded loaded = session.open_file();
-  if (!loaded.diagnostics.empty()) fmt::print(stderr, "{}", loaded.text({.color = colors_wanted()}));
-  if (!loaded.model) return wrong_model;
-  if (!session.is_open()) {
-    fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
-    return usage;
-  }
-  if (!apply_options(request.experiment, session)) return usage;
-  if (request.speed) session.set_speed(*request.speed);
+  if (const ExitCode exit = set_up(session); exit != done) return exit;
   return show_to_the_world(request, session, server);
 }
 

@@ -51,6 +51,7 @@ void Client::close() {
   if (!open_ || closing_) return;
   closing_ = true;
   if (writing_) return;  // when that is written
+  open_ = false;
   stream_.async_close(wrong_ >= most_wrong ? websocket::close_code::policy_error : websocket::close_code::going_away,
                       [self = shared_from_this()](error_code) { self->end(); });
 }

@@ -3,6 +3,8 @@
 #include <exception>
 #include <utility>
 
+#include <pthread.h>
+
 #include <continuo/live/loop.hpp>
 
 namespace continuo::live {
@@ -19,6 +21,7 @@ Loop::~Loop() {
 
 void Loop::start() {
   thread_ = std::thread([this] { run(); });
+  pthread_setname_np(thread_.native_handle(), "session");
 }
 
 void Loop::stop() {

@@ -4,6 +4,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/strand.hpp>
 #include <fmt/format.h>
+#include <pthread.h>
 
 #include <continuo/live/client.hpp>
 #include <continuo/live/messages.hpp>
@@ -44,6 +45,7 @@ void Server::start(ServerHooks hooks) {
   parts_->hooks = std::move(hooks);
   parts_->accept();
   parts_->thread = std::thread([parts = parts_] { parts->io.run(); });
+  pthread_setname_np(parts_->thread.native_handle(), "server");
 }
 
 void Server::stop() {

@@ -68,6 +68,8 @@ class Session {
   bool playing() const { return playing_; }
   bool has_ended() const { return !ended_.empty(); }
   double shown_time() const { return looking_ ? history_[*looking_].main.t : cursor_; }
+  /// Where the run of the text ends; the view goes on.
+  double planned_end() const { return main_->plan().to; }
   const LiveModel& shown() const { return *shown_; }
   const History& history() const { return history_; }
   const PacedClock& clock() const { return clock_; }
@@ -115,7 +117,13 @@ class Session {
   void look_at(std::size_t i);
   void leave_look();
   void touch(std::optional<model::Instant> changed = std::nullopt);
+  struct Undo {
+    std::string what;
+    double wall;
+    Settings settings;
+  };
   void remember_for_undo(const std::string& what);
+  void keep_undo(Undo undo);
   void apply(const Settings& settings);
   void take_input_from_file();
   bool change_method(MethodChoice choice);
@@ -132,11 +140,6 @@ class Session {
   Settings settings_;
   std::map<std::string, double, std::less<>> inputs_;  // that somebody has moved
   std::set<std::string, std::less<>> taken_;           // inputs that no longer follow their files
-  struct Undo {
-    std::string what;
-    double wall;
-    Settings settings;
-  };
   std::vector<Undo> undo_;
 
   PacedClock clock_;

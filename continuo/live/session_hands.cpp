@@ -96,7 +96,11 @@ void Session::remember_for_undo(const std::string& what) {
     undo_.back().wall = wall;
     return;
   }
-  undo_.push_back({what, wall, settings_});
+  keep_undo({what, wall, settings_});
+}
+
+void Session::keep_undo(Undo undo) {
+  undo_.push_back(std::move(undo));
   if (undo_.size() > most_undo) undo_.erase(undo_.begin());
 }
 
@@ -206,7 +210,7 @@ void Session::take_method(MethodChoice choice) {
   leave_look();
   const Settings before = settings_;
   if (!change_method(std::move(choice))) return;
-  undo_.push_back({"method", now_(), before});
+  keep_undo({"method", now_(), before});
 }
 
 bool Session::change_method(MethodChoice choice) {
@@ -224,7 +228,7 @@ void Session::take_ghost(std::optional<MethodChoice> choice) {
   leave_look();
   const Settings before = settings_;
   if (!change_ghost(std::move(choice))) return;
-  undo_.push_back({"ghost", now_(), before});
+  keep_undo({"ghost", now_(), before});
 }
 
 bool Session::change_ghost(std::optional<MethodChoice> choice) {

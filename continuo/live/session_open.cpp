@@ -65,6 +65,11 @@ model::Experiment experiment_of(const MethodChoice& choice, const model::Overrid
 }  // namespace
 
 bool Session::begin(model::Model model, std::string path, std::string text) {
+  if (model.has_world()) {
+    problems_ = {no_study_of_worlds(model)};
+    say(problems_.front());
+    return false;
+  }
   const bool other = path != path_ || !shown_;
   auto shown = std::make_shared<const LiveModel>(prepare(std::move(model), taken_));
   const auto before = std::exchange(shown_, std::move(shown));

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """The client of docs/protocol.md against `continuo view`: client_test.py COMMAND SOURCE_FOLDER."""
+import base64
 import http.client
 import json
 import math
 import os
 import signal
+import struct
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 from urllib.parse import urlsplit
@@ -142,6 +145,41 @@ class Protocol(unittest.TestCase):
                                  capture_output=True, text=True, timeout=20)
         self.assertEqual(refused.returncode, 1)
         self.assertIn("E321", refused.stderr)
+
+    def test_a_page_that_replays(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page, out = os.path.join(folder, "page.html"), os.path.join(folder, "out.html")
+            with open(page, "w") as file:
+                file.write("<html><!--recording--></html>")
+            subprocess.run([command, "view", os.path.join(root, "models", "bouncing_ball.sim"), "--page", page, "--export",
+                            out, "--until", "3", "--fps", "20", "--set", "h0=5"], check=True, timeout=60)
+            with open(out) as file:
+                text = file.read()
+        start, end = "<html><script type=\"application/json\" id=\"recording\">", "</script></html>"
+        self.assertTrue(text.startswith(start) and text.endswith(end))
+        self.assertNotIn("<", text[len(start):-len(end)])
+        recording = json.loads(text[len(start):-len(end)])
+        data, frames = base64.b64decode(recording["frames"]), []
+        while data:
+            length, = struct.unpack_from("<I", data)
+            frames.append(Frame(data[4:4 + length], recording["model"]))
+            data = data[4 + length:]
+        self.assertEqual(frames[0].rows[0]["h"], 5)
+        self.assertAlmostEqual(frames[-1].t, 3, delta=0.051)
+        self.assertGreater(len(frames), 55)
+        times = [t for frame in frames for t in frame.row_t]
+        self.assertEqual(times, sorted(times))
+        self.assertAlmostEqual(recording["events"][0]["t"], math.sqrt(2 * 5 / 9.8), 9)
+
+    def test_pictures_without_a_browser(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for model in ("spring_pendulum", "car", "mass_spring_damper"):
+                out = os.path.join(folder, model)
+                subprocess.run([command, "view", os.path.join(root, "models", model + ".sim"), "--record", out, "--until",
+                                "1", "--fps", "4"], check=True, timeout=60)
+                self.assertIn(len(os.listdir(out)), (5, 6))
+                with open(os.path.join(out, "00003.png"), "rb") as file:
+                    self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
 
     def test_malformed_texts_are_answered_then_shown_out(self):
         with Viewed("pendulum.sim", "--paused") as viewed:
