@@ -38,6 +38,12 @@ std::optional<double> perhaps_number(const json& command, const char* part) {
   return found == command.end() || found->is_null() ? std::nullopt : std::optional(number(command, part));
 }
 
+std::size_t index(const json& command, const char* part) {
+  const double value = number(command, part);
+  if (!(value >= 0 && value < 1e9)) throw Unfit{std::string(part) + ", the number of a thing"};
+  return static_cast<std::size_t>(value);
+}
+
 MethodChoice method_of(const json& command) {
   return {
       .name = word(command, "name"), .step = perhaps_number(command, "step"), .rtol = perhaps_number(command, "rtol")};
@@ -51,9 +57,8 @@ void drag(Session& session, const json& command) {
     if (!coordinate.is_number()) throw Unfit{"to, two or three numbers"};
     point.push_back(coordinate.get<double>());
   }
-  const double item = number(command, "item");
-  if (!(item >= 0 && item < 1e9)) throw Unfit{"item, the number of a drawn thing"};
-  session.drag(static_cast<std::size_t>(item), point);
+  if (command.contains("body")) return session.drag_body(index(command, "body"), point);
+  session.drag(index(command, "item"), point);
 }
 
 using Doing = std::function<void(Session&, const json&)>;
@@ -84,6 +89,7 @@ const std::map<std::string, Doing, std::less<>>& doings() {
          }
        }},
       {"drag", drag},
+      {"pick", [](Session& s, const json& c) { s.pick(index(c, "body")); }},
       {"open", [](Session& s, const json& c) { s.open_gallery(word(c, "model")); }},
       {"run", [](Session& s, const json& c) { s.run_text(word(c, "text")); }},
       {"save", [](Session& s, const json& c) { s.save_text(word(c, "text")); }},
@@ -91,7 +97,7 @@ const std::map<std::string, Doing, std::less<>>& doings() {
   return all;
 }
 
-constexpr std::array<std::string_view, 4> of_the_server = {"check", "ping", "rate", "pick"};
+constexpr std::array<std::string_view, 3> of_the_server = {"check", "ping", "rate"};
 
 }  // namespace
 
@@ -124,7 +130,6 @@ std::optional<Asked> asked(const Command& command) {
     if (command.what == "check") return Asked{number(all, "id"), word(all, "text")};
     if (command.what == "ping") return Asked{number(all, "id"), {}};
     if (command.what == "rate") return Asked{number(all, "fps"), {}};
-    if (command.what == "pick") return Asked{number(all, "body"), {}};
   } catch (const Unfit&) {
   }
   return std::nullopt;

@@ -7,8 +7,9 @@
 namespace continuo::live {
 
 std::size_t History::bytes_of(const Sample& sample) {
-  const auto of_instant = [](const model::Instant& instant) {
-    return instant.x.size() * sizeof(double) + instant.stops.size() * sizeof(std::size_t);
+  const auto of_instant = [](const Instant& instant) {
+    const std::size_t world = instant.world ? instant.world->bodies.size() : 0;
+    return world + instant.x.size() * sizeof(double) + instant.stops.size() * sizeof(std::size_t);
   };
   return sizeof(Sample) + of_instant(sample.main) + (sample.ghost ? of_instant(*sample.ghost) : 0);
 }

@@ -7,13 +7,13 @@
 #include <optional>
 #include <vector>
 
-#include <continuo/model/stepping.hpp>
+#include <continuo/live/track.hpp>
 
 namespace continuo::live {
 
 struct Sample {
-  model::Instant main;
-  std::optional<model::Instant> ghost;
+  Instant main;
+  std::optional<Instant> ghost;
   std::shared_ptr<const std::vector<double>> variables;  // parameters and inputs as they were
   double first_energy = 0;                               // what the drift is measured from
 };

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <continuo/live/live_model.hpp>
+#include <continuo/model/world.hpp>
 
 namespace continuo::live {
 
@@ -36,7 +37,12 @@ class Preparation {
 
  private:
   void add_states() {
-    for (const model::State& state : model_.states) {
+    constexpr std::size_t many_bodies = 20;
+    const model::WorldDescription* world = model_.world.get();
+    const std::size_t first = world && world->bodies.size() > many_bodies ? world->body_states() : 0;
+    for (std::size_t i = first; i < model_.states.size(); ++i) {
+      const model::State& state = model_.states[i];
+      made_.plotted.push_back(i);
       column_of_[model_.graph.variable(state.variable)] = made_.columns.size();
       made_.columns.push_back({state.column, state.unit, ColumnKind::state});
     }
@@ -53,8 +59,12 @@ class Preparation {
   void add_energies() {
     for (const model::Quantity& energy : model_.energies)
       add(energy.name, energy.unit, ColumnKind::energy, energy.node);
-    if (!model_.energies.empty())
-      made_.energy = add("energy", model_.energies.front().unit, ColumnKind::energy, model_.total_energy);
+    if (model_.total_energy.valid())
+      made_.energy = add("energy", energy_unit(), ColumnKind::energy, model_.total_energy);
+  }
+
+  std::string energy_unit() const {
+    return model_.energies.empty() ? model_.world->energy_unit : model_.energies.front().unit;
   }
 
   LiveCurve curve(const model::Series& series) {
@@ -74,8 +84,8 @@ class Preparation {
     }
     if (!made_.plots.empty()) return;
     LivePlot states;
-    for (std::size_t i = 0; i < std::min(most_default_curves, model_.states.size()); ++i)
-      states.curves.push_back({model_.states[i].column, i, model_.states[i].unit});
+    for (std::size_t i = 0; i < std::min(most_default_curves, made_.plotted.size()); ++i)
+      states.curves.push_back({made_.columns[i].name, i, made_.columns[i].unit});
     made_.plots.push_back(std::move(states));
   }
 
@@ -118,6 +128,14 @@ class Preparation {
 
   /// Positions where there are any: a distance over velocities too would have no unit.
   void measure_apart() {
+    if (const model::WorldDescription* world = model_.world.get()) {
+      const std::size_t each = model::WorldDescription::states_of_body(world->dimension);
+      made_.dimension = std::max(made_.dimension, world->dimension);
+      for (std::size_t i = 0; i < world->body_states(); i += each) {
+        for (int k = 0; k < world->dimension; ++k) made_.apart.push_back(i + 2 * static_cast<std::size_t>(k));
+      }
+      return;
+    }
     for (const PositionVelocity& pair : model_.pairs) made_.apart.push_back(pair.position);
     if (!made_.apart.empty()) return;
     for (std::size_t i = 0; i < model_.states.size(); ++i) made_.apart.push_back(i);

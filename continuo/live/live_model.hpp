@@ -15,8 +15,9 @@ namespace continuo::live {
 
 enum class ColumnKind { state, let, output, energy, drift, curve, distance };
 
-/// A plotted value: the states, then `quantities`, then the drift of the energy (where there is one) and the ghost's
-/// distance.
+/// A plotted value: the states (of many bodies only those of equations and
+/// measures), then `quantities`, then the drift of the energy (where there is
+/// one) and the ghost's distance.
 struct LiveColumn {
   std::string name, unit;
   ColumnKind kind;
@@ -48,6 +49,7 @@ struct SceneItem {
 struct LiveModel {
   std::shared_ptr<const model::ModelProgram> program;
   std::vector<LiveColumn> columns;
+  std::vector<std::size_t> plotted;  // the states that are columns, the first of them
   std::vector<LivePlot> plots;
   std::vector<SceneItem> drawing;
   std::vector<model::NodeId> quantities, scene;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <continuo/live/messages.hpp>
+#include <continuo/model/world.hpp>
 #include <continuo/solve/catalogue.hpp>
 
 namespace continuo::live {
@@ -109,9 +110,48 @@ json inputs_of(const ModelWords& words) {
   return inputs;
 }
 
+json point_of(const worlds::Point& point, int dimension) {
+  json made = json::array({point[0], point[1]});
+  if (dimension == 3) made.push_back(point[2]);
+  return made;
+}
+
+json bodies_of(const worlds::WorldRun* world) {
+  if (!world) return nullptr;
+  constexpr std::size_t few = 1000;
+  json radius = json::array(), walls = json::array(), names = json::array();
+  for (const worlds::BodyShape& body : world->bodies()) {
+    radius.push_back(body.radius);
+    if (world->bodies().size() <= few) names.push_back(body.name);
+  }
+  for (const worlds::WallShape& wall : world->walls())
+    walls.push_back({{"normal", point_of(wall.normal, world->dimension())}, {"offset", wall.offset}});
+  json springs = json::array();
+  for (const worlds::SpringShape& spring : world->springs()) {
+    const bool to_body = spring.b != model::no_body;
+    springs.push_back({{"a", spring.a},
+                       {"b", to_body ? json(spring.b) : json(nullptr)},
+                       {"point", to_body ? json(nullptr) : point_of(spring.point, world->dimension())}});
+  }
+  return {{"count", world->bodies().size()},
+          {"dimension", world->dimension()},
+          {"radius", radius},
+          {"names", names},
+          {"walls", walls},
+          {"containers", json::array()},
+          {"springs", springs}};
+}
+
 /// Those that fit the model.
 json methods_of(const model::Model& model) {
   json methods = json::array();
+  if (model.has_world()) {
+    for (const std::string& name : model::world_methods()) {
+      const bool chooses = name == "exact" || name == "dop853";
+      methods.push_back({{"name", name}, {"title", name}, {"order", 0}, {"implicit", false}, {"fixed", !chooses}});
+    }
+    return methods;
+  }
   for (const MethodInfo& info : method_catalogue()) {
     if (info.second_order && !model.all_paired) continue;
     if (!info.implicit && model.needs_dae_solver()) continue;
@@ -167,7 +207,7 @@ std::string model_json(const ModelWords& words) {
                   {"columns", columns_of(words.shown)},
                   {"plots", plots_of(words.shown)},
                   {"drawing", drawing_of(words.shown)},
-                  {"bodies", nullptr},
+                  {"bodies", bodies_of(words.world)},
                   {"parameters", parameters_of(words)},
                   {"inputs", inputs_of(words)},
                   {"methods", methods_of(model)},
@@ -199,6 +239,23 @@ std::string state_json(const StateWords& words) {
                 {"rejected", words.statistics.rejected},
                 {"ended", words.ended.empty() ? json(nullptr) : json(words.ended)}});
   return text_of(state);
+}
+
+std::string picked_json(const worlds::WorldRun& world, std::size_t body) {
+  const worlds::BodyShape& shape = world.bodies()[body];
+  json values = {{"radius", shape.radius}, {"mass", shape.mass}};
+  const worlds::Point x = world.position(body), v = world.velocity(body), spin = world.spin(body);
+  static constexpr std::array<const char*, 3> axes = {"x", "y", "z"};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(world.dimension()); ++k) {
+    values[axes[k]] = number(x[k]);
+    values[std::string(axes[k]) + "'"] = number(v[k]);
+  }
+  if (world.dimension() == 2) {
+    values["spin"] = number(spin[2]);
+  } else {
+    for (std::size_t k = 0; k < 3; ++k) values[std::string("spin_") + axes[k]] = number(spin[k]);
+  }
+  return text_of({{"say", "values"}, {"t", world.time()}, {"body", body}, {"name", shape.name}, {"values", values}});
 }
 
 std::string event_json(const LiveEvent& event) {

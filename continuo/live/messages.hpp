@@ -14,6 +14,7 @@
 #include <continuo/model/diagnostic.hpp>
 #include <continuo/model/experiment.hpp>
 #include <continuo/solve/outcome.hpp>
+#include <continuo/worlds/world_run.hpp>
 
 namespace continuo::live {
 
@@ -26,6 +27,7 @@ struct ModelWords {
   bool saveable;
   std::span<const GalleryModel> gallery;
   const model::Plan& plan;
+  const worlds::WorldRun* world;  // null without bodies
   std::size_t undo;
 };
 std::string model_json(const ModelWords& words);
@@ -43,6 +45,8 @@ struct StateWords {
 };
 std::string state_json(const StateWords& words);
 
+/// A body, looked at closely.
+std::string picked_json(const worlds::WorldRun& world, std::size_t body);
 std::string event_json(const LiveEvent& event);
 std::string message_json(const model::Diagnostic& problem, const model::Source& source);
 /// Without a place in the text.

@@ -60,7 +60,9 @@ class Session {
   void take_ghost(std::optional<MethodChoice> choice);
   void undo();
   void drag(std::size_t item, std::span<const double> to);
+  void drag_body(std::size_t body, std::span<const double> to);
   void release();
+  void pick(std::size_t body);
   void open_gallery(const std::string& name);
   void run_text(const std::string& text);
   void save_text(const std::string& text);
@@ -91,22 +93,24 @@ class Session {
   // session_time.cpp
   void play_on(double wall);
   Halt go(double target, double deadline, bool to_event);
-  bool ask_for_step();
+  bool ask_for_step(double wanted);
   void lead_ghost(double& stop, double deadline);
-  void pass(const Passed& passed);
+  bool pass(const Passed& passed);
   void end_run();
   double sample_every(double target);
   void restart_clock() { clock_.start(now_(), cursor_); }
 
   // session_show.cpp
   void show_run();
-  void emit(model::Instant main);
-  void add_row(double t, const std::vector<double>& x, const model::Instant* ghost);
+  void emit(Instant main);
+  void add_row(double t, const std::vector<double>& x, const Instant* ghost);
   void append_values(double t, const std::vector<double>& x, double apart, std::vector<float>& row);
   void append_scene(double t, const std::vector<double>& x, std::vector<float>& scene);
   void use_variables(const std::shared_ptr<const std::vector<double>>& variables);
   double energy_of(double t, const std::vector<double>& x);
   void publish();
+  std::shared_ptr<const Bodies> bodies_of(const Sample& sample) const;
+  bool keeps_whole(double t) const;
   void rewind_to(double t);
   void say_model();
   void say_state();
@@ -116,7 +120,8 @@ class Session {
   // session_hands.cpp
   void look_at(std::size_t i);
   void leave_look();
-  void touch(std::optional<model::Instant> changed = std::nullopt);
+  void touch(std::optional<Instant> changed = std::nullopt);
+  void hold_body(std::optional<HeldBody> held);
   struct Undo {
     std::string what;
     double wall;
@@ -151,6 +156,7 @@ class Session {
   std::string ended_;
   double stride_ = 0;  // of samples, at unlimited speed
   History history_;
+  Sample newest_;  // of what has been shown, in the history or not
   std::optional<std::size_t> looking_;
 
   std::shared_ptr<const std::vector<double>> variables_, evaluated_;  // as they are; those of the evaluations
@@ -162,6 +168,7 @@ class Session {
 
   std::uint32_t run_ = 0;
   std::shared_ptr<Slice> slice_;
+  std::optional<HeldBody> held_body_;
   bool changed_ = false, state_changed_ = false;
   double state_said_ = -1e300;
 };

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/live/messages.hpp>
 #include <continuo/live/session.hpp>
 #include <continuo/model/simulate.hpp>
 
@@ -69,18 +70,20 @@ void Session::reset() {
 // ---- changes --------------------------------------------------------------------------------------------------------
 
 /// The run goes on with what stands in variables_ and held_ from the instant that is shown, or from `changed`.
-void Session::touch(std::optional<model::Instant> changed) {
-  const model::Instant instant = changed ? *changed : main_->instant_at(cursor_);
-  std::optional<model::Instant> ghost;
+void Session::touch(std::optional<Instant> changed) {
+  const Instant instant = changed ? *changed : main_->instant_at(cursor_);
+  std::optional<Instant> ghost;
   if (ghost_) {
     ghost = ghost_->instant_at(cursor_);
     if (changed) {  // the hand holds both
       ghost->mode = changed->mode;
+      ghost->moved = true;
       for (const std::size_t i : held_) ghost->x[i] = changed->x[i];
     }
     ghost_->go_on(*ghost, *variables_, held_);
   }
-  main_->go_on(instant, *variables_, held_);
+  if (const std::string problem = main_->go_on(instant, *variables_, held_); !problem.empty())
+    say(model::error("", {}, problem));
   next_passed_ = 0;
   main_over_ = false;
   ended_.clear();
@@ -190,8 +193,8 @@ void Session::move_input(const std::string& name, double value) {
 
 /// The program anew without the file, the run as it stands.
 void Session::take_input_from_file() {
-  const model::Instant instant = main_->instant_at(cursor_);
-  std::optional<model::Instant> ghost;
+  const Instant instant = main_->instant_at(cursor_);
+  std::optional<Instant> ghost;
   if (ghost_) ghost = ghost_->instant_at(cursor_);
   model::Loaded loaded = model::load(model::Source(path_, text_));
   if (!loaded.model) return;
@@ -216,7 +219,7 @@ void Session::take_method(MethodChoice choice) {
 bool Session::change_method(MethodChoice choice) {
   auto track = track_by(choice);
   if (!track) return false;
-  const model::Instant instant = main_->instant_at(cursor_);
+  const Instant instant = main_->instant_at(cursor_);
   track->go_on(instant, *variables_, held_);
   main_ = std::move(track);
   settings_.method = std::move(choice);
@@ -254,28 +257,57 @@ void Session::drag(std::size_t item, std::span<const double> to) {
   leave_look();
   held_ = grip.held();
   use_variables(variables_);
-  model::Instant instant = main_->instant_at(cursor_);
+  Instant instant = main_->instant_at(cursor_);
   std::vector<double> x = pull(grip, grips_[number], cursor_, instant.x, to);
   stop_at_guards(grip, instant.x, x);
   const bool moved = std::ranges::any_of(grip.positions, [&](std::size_t i) { return x[i] != instant.x[i]; });
   if (moved) instant.mode = shown_->model().start_mode;
+  instant.moved = true;
   instant.x = std::move(x);
   touch(std::move(instant));
 }
 
+void Session::hold_body(std::optional<HeldBody> held) {
+  held_body_ = held;
+  main_->hold(held);
+  if (ghost_) ghost_->hold(held);
+  if (!playing_) rewind_to(cursor_);
+  emit(main_->instant_at(cursor_));
+}
+
+void Session::drag_body(std::size_t body, std::span<const double> to) {
+  const worlds::WorldRun* world = main_->world();
+  if (!world || body >= world->bodies().size()) return say_note("there is no such body");
+  const bool finite = std::ranges::all_of(to, [](double v) { return std::isfinite(v); });
+  if (to.size() != static_cast<std::size_t>(world->dimension()) || !finite)
+    return say_note(fmt::format("a drag needs {} coordinates", world->dimension()));
+  leave_look();
+  HeldBody held{body, {}};
+  std::ranges::copy(to, held.to.begin());
+  hold_body(held);
+}
+
+void Session::pick(std::size_t body) {
+  const worlds::WorldRun* world = main_->world();
+  if (!world || body >= world->bodies().size()) return say_note("there is no such body");
+  audience_.hear(Topic::message, picked_json(*world, body));
+}
+
 void Session::release() {
+  if (held_body_) hold_body(std::nullopt);
   if (held_.empty()) return;
   held_.clear();
   touch();
 }
 
-/// A hand does not push through what an event would have turned back: where a guard whose event changes something
-/// would have fired, the way ends just before.
+/// A hand does not push through what an event would have turned back: where a guard whose event changes something would
+/// have fired, the way ends just before.
 void Session::stop_at_guards(const Grip& grip, const std::vector<double>& from, std::vector<double>& to) {
   constexpr int halvings = 50;
-  model::ModelSystem system = main_->system();
+  if (!main_->equations()) return;
+  model::ModelSystem system = main_->equations()->system();
   system.go(shown_->model().start_mode);
-  model::ModelEvents guards = main_->events();
+  model::ModelEvents guards = main_->equations()->events();
   std::vector<double> before(guards.size()), after(guards.size());
   guards.guards(system, cursor_, from, before);
   const auto fires = [&](const std::vector<double>& x) {

@@ -65,11 +65,6 @@ model::Experiment experiment_of(const MethodChoice& choice, const model::Overrid
 }  // namespace
 
 bool Session::begin(model::Model model, std::string path, std::string text) {
-  if (model.has_world()) {
-    problems_ = {no_study_of_worlds(model)};
-    say(problems_.front());
-    return false;
-  }
   const bool other = path != path_ || !shown_;
   auto shown = std::make_shared<const LiveModel>(prepare(std::move(model), taken_));
   const auto before = std::exchange(shown_, std::move(shown));
@@ -97,7 +92,8 @@ std::optional<model::Plan> Session::plan_by(const MethodChoice& choice) {
   // Who names an adaptive method means it to choose its steps, though the text gives one for another method.
   if (info && info->error_order > 0 && !choice.step && !choice.rtol)
     experiment.rtol = shown_->model().run.rtol.value_or(1e-6);
-  auto plan = plan_run(*shown_->program, experiment, problems);
+  auto plan = shown_->model().has_world() ? model::plan(shown_->model(), experiment, problems)
+                                          : plan_run(*shown_->program, experiment, problems);
   for (const model::Diagnostic& problem : problems) say(problem);
   if (!plan) {
     problems_ = std::move(problems);
@@ -112,7 +108,13 @@ std::optional<model::Plan> Session::plan_by(const MethodChoice& choice) {
 
 std::unique_ptr<Track> Session::track_by(const MethodChoice& choice) {
   const auto plan = plan_by(choice);
-  return plan ? std::make_unique<Track>(shown_->program, *plan) : nullptr;
+  if (!plan) return nullptr;
+  MadeTrack made = make_track(shown_->program, *plan);
+  if (!made.track) {
+    problems_ = {model::error("", {}, made.error)};
+    say(problems_.front());
+  }
+  return std::move(made.track);
 }
 
 bool Session::begin_run() {
@@ -135,8 +137,11 @@ bool Session::begin_run() {
   slice_ = std::make_shared<Slice>();
   ++run_;
   show_run();
-  const model::Instant start = main_->instant_at(cursor_);
+  held_body_.reset();
+  const Instant start = main_->instant_at(cursor_);
   first_energy_ = energy_of(cursor_, start.x);
+  if (main_->world() && !shown_->model().event_order.empty())
+    say_note("the events of the text are not looked for while bodies are viewed", "`continuo run` looks for them");
   say_model();
   emit(start);
   restart_clock();

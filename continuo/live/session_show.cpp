@@ -38,10 +38,10 @@ void Session::append_values(double t, const std::vector<double>& x, double apart
   for (const model::TableInput& input : shown_->program->step_inputs)
     quantities_.set(input.variable, input.table.value(t));
   if (!values_.empty()) quantities_(t, x, values_);
-  for (const double value : x) row.push_back(static_cast<float>(value));
+  for (const std::size_t i : shown_->plotted) row.push_back(static_cast<float>(x[i]));
   for (const double value : values_) row.push_back(static_cast<float>(value));
   if (shown_->drift) {
-    const double energy = values_[*shown_->energy - x.size()];
+    const double energy = values_[*shown_->energy - shown_->plotted.size()];
     row.push_back(static_cast<float>((energy - first_energy_) / std::abs(first_energy_)));
   }
   row.push_back(static_cast<float>(apart));
@@ -56,10 +56,10 @@ double Session::energy_of(double t, const std::vector<double>& x) {
   if (!shown_->energy) return 0;
   use_variables(variables_);
   quantities_(t, x, values_);
-  return values_[*shown_->energy - x.size()];
+  return values_[*shown_->energy - shown_->plotted.size()];
 }
 
-void Session::add_row(double t, const std::vector<double>& x, const model::Instant* ghost) {
+void Session::add_row(double t, const std::vector<double>& x, const Instant* ghost) {
   use_variables(variables_);
   double apart = std::numeric_limits<double>::quiet_NaN();
   if (ghost) {
@@ -77,16 +77,51 @@ void Session::add_row(double t, const std::vector<double>& x, const model::Insta
   changed_ = true;
 }
 
-void Session::emit(model::Instant main) {
-  std::optional<model::Instant> ghost;
-  if (ghost_) ghost = ghost_->instant_at(main.t);
+/// Of many bodies a moment is megabytes: some in a second are enough to go back to.
+bool Session::keeps_whole(double t) const {
+  constexpr std::size_t many = 10'000;  // states
+  constexpr double seconds = 0.25;
+  if (!main_->world() || history_.empty() || shown_->model().states.size() < many) return true;
+  return t >= history_.last_time() + seconds * std::max(clock_.speed(), 1e-9);
+}
+
+void Session::emit(Instant main) {
+  std::optional<Instant> ghost;
+  if (ghost_) ghost = ghost_->instant_at(main.t, main.world != nullptr);
   add_row(main.t, main.x, ghost ? &*ghost : nullptr);
-  history_.add({std::move(main), std::move(ghost), variables_, first_energy_});
+  const bool kept = !main_->world() || main.world;
+  newest_ = {std::move(main), std::move(ghost), variables_, first_energy_};
+  if (kept) history_.add(newest_);
+}
+
+std::shared_ptr<const Bodies> Session::bodies_of(const Sample& sample) const {
+  const worlds::WorldRun* run = main_->world();
+  if (!run) return nullptr;
+  auto bodies = std::make_shared<Bodies>();
+  const auto dimension = static_cast<std::size_t>(run->dimension());
+  const std::size_t count = run->bodies().size(), states = model::WorldDescription::states_of_body(run->dimension());
+  bodies->dimension = dimension;
+  bodies->position.reserve(count * dimension);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < dimension; ++k)
+      bodies->position.push_back(static_cast<float>(sample.main.x[i * states + 2 * k]));
+  }
+  constexpr std::size_t angle = 4;  // of x, x', y, y', angle, angle'
+  for (std::size_t i = 0; i < count; ++i) {
+    if (dimension == 2) {
+      bodies->orientation.push_back(static_cast<float>(sample.main.x[i * states + angle]));
+    } else if (!looking_) {  // how they stood is no state: of the past it is not
+                             // known
+      const auto [w, x, y, z] = run->orientation(i);
+      for (const double part : {x, y, z, w}) bodies->orientation.push_back(static_cast<float>(part));
+    }
+  }
+  return bodies;
 }
 
 void Session::publish() {
   if (!changed_ || history_.empty()) return;
-  const Sample& sample = looking_ ? history_[*looking_] : history_.back();
+  const Sample& sample = looking_ ? history_[*looking_] : newest_;
   use_variables(sample.variables);
   slice_->run = run_;
   slice_->looking_back = looking_.has_value();
@@ -95,6 +130,7 @@ void Session::publish() {
   slice_->target = clock_.speed();
   append_scene(sample.main.t, sample.main.x, slice_->scene);
   slice_->ghost = sample.ghost.has_value();
+  slice_->bodies = bodies_of(sample);
   if (sample.ghost) append_scene(sample.main.t, sample.ghost->x, slice_->ghost_scene);
   audience_.see(std::exchange(slice_, std::make_shared<Slice>()));
   changed_ = false;
@@ -123,6 +159,7 @@ std::string Session::model_json() const {
                            .saveable = path_ == place_.path,
                            .gallery = place_.gallery,
                            .plan = main_->plan(),
+                           .world = main_->world(),
                            .undo = undo_.size()});
 }
 
@@ -137,7 +174,7 @@ std::string Session::state_json() const {
   if (ghost_) words.ghost = &ghost_->plan();
   words.undo = undo_.size();
   const Sample* sample = looking_ ? &history_[*looking_] : history_.empty() ? nullptr : &history_.back();
-  words.mode = shown_->model().modes[sample ? sample->main.mode : 0].name;
+  if (!shown_->model().modes.empty()) words.mode = shown_->model().modes[sample ? sample->main.mode : 0].name;
   words.statistics = main_->statistics();
   words.ended = ended_;
   return live::state_json(words);

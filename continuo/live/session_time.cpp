@@ -45,9 +45,9 @@ double Session::sample_every(double target) {
   return way / std::clamp(std::ceil(way / (span_ / rows_of_a_run)), 1.0, most_rows_at_once);
 }
 
-bool Session::ask_for_step() {
+bool Session::ask_for_step(double wanted) {
   if (main_over_) return false;
-  main_over_ = !main_->advance();
+  main_over_ = !main_->advance(wanted);
   next_passed_ = 0;
   return true;
 }
@@ -55,7 +55,7 @@ bool Session::ask_for_step() {
 /// The ghost comes along as far as `stop`, or as there is time for: then `stop` is there.
 void Session::lead_ghost(double& stop, double deadline) {
   while (ghost_ && ghost_->t() < stop) {
-    if (!ghost_->advance() && ghost_->t() < stop) {
+    if (!ghost_->advance(stop) && ghost_->t() < stop) {
       const Outcome<double>& outcome = ghost_->outcome();
       if (!succeeded(outcome.ending)) say(failure(shown_->model(), outcome));
       say_note("the ghost has come to its end: " + std::string(to_string(outcome.ending)));
@@ -82,7 +82,7 @@ Session::Halt Session::go(double target, double deadline, bool to_event) {
       break;
     }
     const bool pending = next_passed_ < main_->passed().size();
-    if (!pending && main_->t() <= cursor_ && !ask_for_step()) {
+    if (!pending && main_->t() <= cursor_ && !ask_for_step(std::min(target, next_sample))) {
       halt = Halt::ended;
       break;
     }
@@ -91,35 +91,46 @@ Session::Halt Session::go(double target, double deadline, bool to_event) {
     lead_ghost(stop, deadline);
     if (next_passed_ < main_->passed().size() && stop == main_->passed()[next_passed_].t) {
       const Passed& passed = main_->passed()[next_passed_++];
-      cursor_ = shown = stop;
-      pass(passed);
-      if (to_event && !passed.names.empty()) return Halt::event;
+      cursor_ = stop;
+      if (pass(passed)) shown = stop;
+      if (to_event && !passed.names.empty()) {
+        if (cursor_ > shown) emit(main_->instant_at(cursor_));
+        return Halt::event;
+      }
       continue;
     }
     cursor_ = std::max(cursor_, stop);
     if (cursor_ >= next_sample && cursor_ > shown) {
-      emit(main_->instant_at(cursor_));
+      emit(main_->instant_at(cursor_, keeps_whole(cursor_)));
       shown = cursor_;
       next_sample = cursor_ + every;
     }
   }
-  if (cursor_ > shown) emit(main_->instant_at(cursor_));
+  if (cursor_ > shown) emit(main_->instant_at(cursor_, keeps_whole(cursor_)));
   if (halt == Halt::ended) end_run();
   return halt;
 }
 
-void Session::pass(const Passed& passed) {
-  model::Instant after{.t = passed.t, .x = passed.after, .mode = passed.mode, .stops = passed.stops};
-  if (passed.before != passed.after) {
-    std::optional<model::Instant> ghost;
-    if (ghost_) ghost = ghost_->instant_at(passed.t);
-    add_row(passed.t, passed.before, ghost ? &*ghost : nullptr);
-  }
-  emit(std::move(after));
+/// True where it left a row: contacts of bodies do not.
+bool Session::pass(const Passed& passed) {
   constexpr std::size_t most_at_once = 200;
   for (const Passed::Name& name : passed.names) {
     if (slice_->events.size() < most_at_once) slice_->events.push_back({passed.t, name.event, name.mark});
   }
+  changed_ = true;
+  if (passed.after.empty()) return false;
+  Instant after;
+  after.t = passed.t;
+  after.x = passed.after;
+  after.mode = passed.mode;
+  after.stops = passed.stops;
+  if (passed.before != passed.after) {
+    std::optional<Instant> ghost;
+    if (ghost_) ghost = ghost_->instant_at(passed.t);
+    add_row(passed.t, passed.before, ghost ? &*ghost : nullptr);
+  }
+  emit(std::move(after));
+  return true;
 }
 
 void Session::end_run() {
@@ -131,7 +142,8 @@ void Session::end_run() {
     ended_ = text.empty() ? outcome.event : text;
     return;
   }
-  const model::Diagnostic problem = failure(shown_->model(), outcome);
+  const model::Diagnostic problem =
+      main_->world() ? model::error("", {}, main_->stop_text()) : failure(shown_->model(), outcome);
   ended_ = problem.message;
   say(problem);
 }
@@ -143,7 +155,10 @@ void Session::step() {
   }
   playing_ = until_event_ = false;
   state_changed_ = true;
-  if (main_->t() <= cursor_ && next_passed_ >= main_->passed().size() && !ask_for_step()) return;
+  if (main_->t() <= cursor_ && next_passed_ >= main_->passed().size()) {
+    const double picture = clock_.speed() > 0 ? clock_.speed() / rate_ : span_ / rows_of_a_run;
+    if (!ask_for_step(cursor_ + picture)) return;
+  }
   const double target = main_->t();
   if (target > cursor_) go(target, now_() + longest_single_step, true);
   if (main_over_ && cursor_ >= main_->t() && next_passed_ >= main_->passed().size() && ended_.empty()) end_run();
@@ -164,7 +179,7 @@ void Session::pause() {
 }
 
 void Session::until_event() {
-  if (shown_->model().event_order.empty()) return say_note("this model has no events");
+  if (shown_->model().event_order.empty() && !main_->world()) return say_note("this model has no events");
   play();
   until_event_ = playing_;
 }

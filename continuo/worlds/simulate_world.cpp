@@ -73,7 +73,7 @@ class Simulation {
           model::error("E324", program_->model.world->span,
                        fmt::format("the bodies cannot be moved beyond t = {:.6g}: {}", run_.outcome.t, error_)));
     } else if (!succeeded(run_.outcome.ending)) {
-      simulated.diagnostics.push_back(failure(program_->model, run_));
+      simulated.diagnostics.push_back(failure(program_->model, run_.outcome));
     }
     simulated.run = std::move(run_);
     return simulated;

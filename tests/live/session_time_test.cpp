@@ -149,9 +149,12 @@ TEST(LiveHistory, GoesOnAfterAnImpactItLooksAt) {
 
 TEST(LiveHistory, IsBounded) {
   History history(100'000, 1000);
-  for (int i = 0; i < 5000; ++i)
-    history.add(
-        {.main = {.t = i * 0.1, .x = std::vector<double>(10), .mode = 0, .stops = {}}, .ghost = {}, .variables = {}});
+  for (int i = 0; i < 5000; ++i) {
+    Sample sample;
+    sample.main.t = i * 0.1;
+    sample.main.x.resize(10);
+    history.add(sample);
+  }
   EXPECT_LE(history.bytes(), 100'000U);
   EXPECT_LE(history.size(), 1000U);
   EXPECT_DOUBLE_EQ(history.last_time(), 499.9);
