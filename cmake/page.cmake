@@ -23,9 +23,7 @@ add_custom_command(
   COMMAND ${CMAKE_COMMAND} -E make_directory ${page_folder}
   COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/web/package.json ${PROJECT_SOURCE_DIR}/web/package-lock.json
           ${page_folder}
-  # `ci` wants the packages of every other system in the lock file too, though none of them is installed.
-  COMMAND sh -c "\"$1\" ci --no-audit --no-fund >log 2>&1 || \"$1\" install --no-save --no-audit --no-fund --loglevel=error" npm
-          ${CONTINUO_NPM}
+  COMMAND ${CONTINUO_NPM} ci --no-audit --no-fund --loglevel=error
   COMMAND ${CMAKE_COMMAND} -E touch ${page_folder}/installed
   DEPENDS ${PROJECT_SOURCE_DIR}/web/package.json ${PROJECT_SOURCE_DIR}/web/package-lock.json
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/web
