@@ -90,7 +90,7 @@ class Integrator {
   const Interval<Real>& interval() const { return interval_; }
   const Options<X>& options() const { return options_; }
 
-  /// x at a time of the last stretch, on the dense output.
+  /// x at a time of the last step, on the dense output; after an event still what was before it, but for t().
   void at(Real t, X& x) {
     if (t == t_) {
       x = x_;
@@ -244,7 +244,9 @@ class Integrator {
     if (!any_scheduled_) return;
     fired_.clear();
     add_scheduled();
-    if (!fired_.empty()) fire(observer);
+    if (fired_.empty()) return;
+    steps_.interpolant();  // while the state and f are those of the step: `at` promises it
+    fire(observer);
   }
 
   // x at an offset into the last step: by theta, which keeps what is lost in begin + offset.

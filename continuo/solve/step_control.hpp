@@ -43,7 +43,8 @@ class StepControl {
 
   System& system() { return system_; }
   const System& system() const { return system_; }
-  Real begin() const { return begin_; }
+  /// Of the last step, whatever has jumped since.
+  Real begin() const { return step_begin_; }
   Real end() const { return end_; }
   Real size() const { return h_; }
   const X& x_begin() const { return x_begin_; }
@@ -99,7 +100,7 @@ class StepControl {
     if (t == end_) {
       x = x_end_;
     } else {
-      interpolant()((t - begin_) / h_, x);
+      interpolant()((t - step_begin_) / h_, x);
     }
   }
 
@@ -122,7 +123,7 @@ class StepControl {
 
   void advance_to_end() {
     if (!jumped_) M::accept(work_);
-    begin_ = end_;
+    begin_ = step_begin_ = end_;
     std::swap(x_begin_, x_end_);
     interpolated_ = false;
   }
@@ -377,7 +378,8 @@ class StepControl {
   }
 
   System system_;
-  Real forward_, begin_, end_, h_{}, next_{};
+  Real forward_, begin_, end_, h_{}, next_{};  // begin_: of the next step, once there was a jump
+  Real step_begin_ = begin_;
   Real carried_{};  // of adaptive steps: what end_ lacks
   Real grid_;       // fixed steps are counted from here
   std::size_t grid_steps_ = 0, standing_ = 0;

@@ -48,6 +48,27 @@ TEST(BouncingBall, ImpactsMatchTheClosedForm) {
   EXPECT_GE(lowest(solution), -1e-12);
 }
 
+// An observer that looks only after a step sees the step, also where its end was an impact, or a kick at a set time
+// that no guard has looked at.
+TEST(BouncingBall, TheDenseOutputOfAStepOutlivesTheEventAtItsEnd) {
+  for (const bool kicked : {false, true}) {
+    Options<X> options{.rtol = 1e-10, .atol = 1e-12};
+    options.events = {kicked ? at<X>("kick", {0.4}, [](EventAction<X>& now) { now.x = {now.before[0], 3}; })
+                             : floor_event(0.7)};
+    Integrator integrator(Ball{9.81}, X{1, 0}, {0, 1}, Dop853{}, options);
+    const double end = kicked ? 0.4 : std::sqrt(2 / 9.81);
+    for (double begin = 0; begin < end - 1e-9; begin = integrator.t()) {
+      ASSERT_TRUE(integrator.advance());
+      for (const double part : {0.0, 0.25, 0.5, 0.75}) {
+        const double t = begin + part * (integrator.t() - begin);
+        X x{};
+        integrator.at(t, x);
+        EXPECT_NEAR(x[0], 1 - 9.81 / 2 * t * t, 1e-10) << kicked << " at " << t;  // the tolerance
+      }
+    }
+  }
+}
+
 TEST(BouncingBall, AccumulatingBouncesAreNamedWithTheirLimit) {
   const auto solution =
       solve(Ball{9.81}, X{1, 0}, {0, 10}, Dop853{}, {.rtol = 1e-10, .atol = 1e-12, .events = {floor_event(0.7)}});
