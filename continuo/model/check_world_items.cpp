@@ -343,7 +343,7 @@ void Checker::add_spring(SpringDescription spring, const ast::WorldAttributes& a
           spring.length.valid() ? g.apply(Op::hypotenuse, spring.length, apart) : g.apply(Op::absolute, apart);
     }
   }
-  world_.made.springs.push_back(std::move(spring));
+  world_.made.springs.push_back(spring);
 }
 
 void Checker::read_spring(const ast::WorldSpring& text, Scope& scope, Span span) {
@@ -363,7 +363,7 @@ void Checker::read_spring(const ast::WorldSpring& text, Scope& scope, Span span)
     if (!a || !spring.point[0].valid()) return;
   }
   spring.a = *a;
-  add_spring(std::move(spring), text.attributes, scope);
+  add_spring(spring, text.attributes, scope);
 }
 
 /// Between neighbours along each axis of a grid, or one and the next of a stack.

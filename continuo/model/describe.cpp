@@ -21,7 +21,7 @@ class Writer {
   std::string text() && {
     title();
     if (model_.has_world()) world(*model_.world);
-    if (model_.states.size() > 0 && !std::ranges::all_of(model_.states, &State::in_world)) equations();
+    if (!std::ranges::all_of(model_.states, &State::in_world)) equations();
     states();
     parameters();
     inputs();

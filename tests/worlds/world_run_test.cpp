@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <tests/worlds/scene.hpp>
 
+#include <continuo/model/load.hpp>
+
 namespace continuo::worlds {
 namespace {
 
@@ -35,6 +37,24 @@ TEST(WorldRun, ShowsWhatIsThere) {
   EXPECT_EQ(run->springs()[0].point, (Point{0, 5.5, 0}));
   EXPECT_EQ(run->position(0), (Point{0, 5.5, 0}));
   EXPECT_EQ(run->orientation(0), (std::array<double, 4>{1, 0, 0, 0}));
+}
+
+TEST(WorldRun, TakesWallsWithNormalsOfAnyLength) {
+  const auto run = started("world { wall slope (3, 4) at 25; container (0, 0) to (9, 8); body ball at (5, 5) }");
+  ASSERT_EQ(run->walls().size(), 5u);
+  EXPECT_NEAR(run->walls()[0].offset, 5, 1e-15);  // 3 x + 4 y = 25 is 5 away from the origin
+  EXPECT_NEAR(run->walls()[0].normal[1], 0.8, 1e-15);
+  EXPECT_EQ(run->walls()[1].name, "wall 2");
+  EXPECT_EQ(run->walls()[4].normal, (Point{0, -1, 0}));
+  EXPECT_EQ(run->walls()[4].offset, -8);
+}
+
+TEST(WorldRun, LeavesItsWordsToModelsWithoutAWorld) {
+  const model::Loaded loaded =
+      model::load(model::Source("names.sim",
+                                "param body = 2, wall = 3, mode_ = 1\nforce' = -force\nforce(0) = 1\n"
+                                "world' = force*body\nworld(0) = 0\nlet spring = wall\nrun 0..1\n"));
+  EXPECT_TRUE(loaded) << loaded.text();
 }
 
 TEST(WorldRun, ReportsContactsOfTheLastAdvance) {
