@@ -23,7 +23,7 @@ add_custom_command(
   COMMAND ${CMAKE_COMMAND} -E make_directory ${page_folder}
   COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/web/package.json ${PROJECT_SOURCE_DIR}/web/package-lock.json
           ${page_folder}
-  COMMAND ${CONTINUO_NPM} ci --no-audit --no-fund --loglevel=error
+  COMMAND ${CONTINUO_NPM} ci --no-audit --no-fund --loglevel=error --fetch-retries=5
   COMMAND ${CMAKE_COMMAND} -E touch ${page_folder}/installed
   DEPENDS ${PROJECT_SOURCE_DIR}/web/package.json ${PROJECT_SOURCE_DIR}/web/package-lock.json
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/web
