@@ -251,7 +251,7 @@ struct CollocationMethod {
 
   template <class System, State X>
   static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
-    const int evaluations = work.linear.evaluate(system, t, x, work.f, least_increments(work.tolerance, h, x, work.f));
+    const int evaluations = work.linear.evaluate(system, t, x, work.f, LeastIncrements(work.tolerance, h, x, work.f));
     ++work.costs.jacobians;
     work.has_jacobian = true;
     work.jacobian_age = 0;

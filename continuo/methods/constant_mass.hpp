@@ -46,6 +46,11 @@ class ConstantMass {
   /// Entry i of the diagonal, where M is one; entry i of the rows, where it is a matrix.
   const Real& operator[](std::size_t i) const { return entries_[i]; }
 
+  /// Empty where M is the identity.
+  std::span<const Real> diagonal() const {
+    return kind_ == Kind::diagonal ? std::span<const Real>(entries_) : std::span<const Real>();
+  }
+
   /// product = M v.
   void multiply(const X& v, X& product) const {
     const std::size_t n = dimension(v);

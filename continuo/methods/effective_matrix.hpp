@@ -111,12 +111,11 @@ class EffectiveMatrix {
 
   template <class System>
   bool factor_sparse(const System& system, const Linearization<X>& linear, const Weights& weights, std::size_t pairs) {
-    const auto jacobian = linear.entries();
     const auto values = sparse_->values();
     for (double& value : values) value = 0;
     for (std::size_t p = 0; p < targets_.size(); ++p) {
       if (targets_[p].entry == nowhere) continue;
-      values[targets_[p].entry] -= (targets_[p].damping ? weights.damping : weights.stiffness) * jacobian[p];
+      values[targets_[p].entry] -= (targets_[p].damping ? weights.damping : weights.stiffness) * linear.entry(p);
     }
     for (std::size_t i = 0; i < pairs; ++i) {  // a mass matrix beside a sparse Jacobian is diagonal
       const std::size_t row = system.pair(i, linear.size()).velocity;

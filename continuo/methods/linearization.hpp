@@ -10,7 +10,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <functional>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -19,6 +19,7 @@
 
 #include <continuo/methods/constant_mass.hpp>
 #include <continuo/methods/method.hpp>
+#include <continuo/numerics/band_layout.hpp>
 #include <continuo/numerics/banded_lu.hpp>
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/sparse_lu.hpp>
@@ -59,6 +60,7 @@ class Linearization {
         rows_.assign(pattern_.entries(), 0);
         if constexpr (!HasSparseJacobian<F, X>) groups_ = ColumnGroups(pattern_);
         banded_ = pattern_.is_banded();
+        if (banded_) prepare_band();
         diagonal_.resize(size_);
         for (std::size_t i = 0; i < size_; ++i) diagonal_[i] = pattern_.find(i, i);
       }
@@ -72,8 +74,18 @@ class Linearization {
   template <class F, class Least>
   int evaluate(F& f, const Real& t, const X& x, const X& fx, const Least& least) {
     if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
-      if (sparse_)
-        return evaluate_jacobian(f, t, x, fx, moved_, slope_, least, pattern_, groups_, std::span<Real>(rows_));
+      if constexpr (HasBandJacobian<F, X>) {
+        if (banded_) {
+          f.jacobian_band(t, x, std::span<Real>(rows_));
+          return 0;
+        }
+      }
+      if (sparse_) {
+        const std::span<Real> values(banded_ ? values_ : rows_);
+        const int evaluations = evaluate_jacobian(f, t, x, fx, moved_, slope_, least, pattern_, groups_, values);
+        for (std::size_t p = 0; p < values_.size(); ++p) rows_[places_[p]] = values_[p];
+        return evaluations;
+      }
     }
     return evaluate_jacobian(f, t, x, fx, moved_, slope_, least, std::span<Real>(rows_));
   }
@@ -93,7 +105,7 @@ class Linearization {
     if (sparse_) {
       for (std::size_t j = 0; j < size_; ++j)
         for (std::size_t p = pattern_.begin(j); p < pattern_.end(j); ++p)
-          product.data()[pattern_.row(p)] += rows_[p] * v.data()[j];
+          product.data()[pattern_.row(p)] += rows_[place(p)] * v.data()[j];
       return;
     }
     for (std::size_t i = 0; i < size_; ++i)
@@ -110,16 +122,20 @@ class Linearization {
       for (std::size_t i = 0; i < size_; ++i) matrix[i * size_ + i] += mass_.is_identity() ? c : c * Number(mass_[i]);
     }
   }
-  /// The entries of c M - J in the order of the pattern; sparse only. Entry p goes to values[place(p)].
-  template <class Number, class Place>
-  void shifted(const Number& c, Number* values, const Place& place) const {
-    for (std::size_t p = 0; p < rows_.size(); ++p) values[place(p)] = Number(-rows_[p]);
-    for (std::size_t j = 0; j < size_; ++j)
-      values[place(diagonal_[j])] += mass_.is_identity() ? c : c * Number(mass_[j]);
+  /// Its entries in the order of the pattern; sparse, not banded.
+  template <class Number>
+  void shifted_entries(const Number& c, Number* values) const {
+    for (std::size_t p = 0; p < rows_.size(); ++p) values[p] = Number(-rows_[p]);
+    for (std::size_t j = 0; j < size_; ++j) values[diagonal_[j]] += mass_.is_identity() ? c : c * Number(mass_[j]);
   }
+  const BandLayout& band() const { return band_; }
+  /// The diagonal of M; empty where it is the identity.
+  std::span<const Real> mass_diagonal() const { return mass_.diagonal(); }
   const SparsePattern& pattern() const { return pattern_; }
-  /// Of J: row by row, or of its pattern.
+  /// Of J: row by row, of its pattern or of its band.
   std::span<const Real> entries() const { return rows_; }
+  /// Entry p of the pattern.
+  const Real& entry(std::size_t p) const { return rows_[place(p)]; }
   Real mass(std::size_t i, std::size_t j) const {
     if (mass_.is_matrix()) return mass_[i * size_ + j];
     if (i != j) return Real(0);
@@ -127,9 +143,20 @@ class Linearization {
   }
 
  private:
+  void prepare_band() {
+    band_ = pattern_.band();
+    rows_.assign(band_.numbers(), Real(0));
+    values_.assign(pattern_.entries(), Real(0));
+    places_ = pattern_.places_in_band();
+  }
+  std::size_t place(std::size_t p) const { return banded_ ? places_[p] : p; }
+
   std::size_t size_;
   X moved_, slope_;
-  BlockOf<Real, N, N * N> rows_{};  // of J, or the entries of its pattern
+  BlockOf<Real, N, N * N> rows_{};     // of J, or the entries of its pattern, or its band
+  std::vector<Real> values_;           // the entries of the pattern, where they have to be brought to the band
+  std::vector<std::uint32_t> places_;  // where they are there
+  BandLayout band_;
   ConstantMass<X> mass_;
   SparsePattern pattern_;
   ColumnGroups groups_;
@@ -151,7 +178,7 @@ class Decomposition {
       if (linear.banded()) return factor_band(linear, c);
       if (linear.sparse()) {
         if (!sparse_) sparse_.emplace(linear.pattern());
-        linear.shifted(c, sparse_->values().data(), std::identity{});
+        linear.shifted_entries(c, sparse_->values().data());
         return sparse_->factor();
       }
     }
@@ -165,7 +192,7 @@ class Decomposition {
   /// b becomes the solution. Compiled into the caller, as b of a small system is in registers there.
   [[gnu::always_inline]] void solve(Number* b) {
     if constexpr (has_sparse) {
-      if (band_.lu.size() > 0) return band_.lu.solve(b);
+      if (band_.size() > 0) return band_.solve(b);
       if (sparse_) return sparse_->solve(b);
     }
     dense_.solve(b);
@@ -177,28 +204,14 @@ class Decomposition {
   struct None {};
   using Sparse = std::conditional_t<has_sparse, SparseLU<std::conditional_t<has_sparse, Number, double>>, None>;
 
-  struct Banded {
-    BandedLU<Number> lu;
-    std::vector<std::size_t> places;  // of the entries of the pattern
-  };
-
   bool factor_band(const Linearization<X>& linear, const Number& c) {
-    const SparsePattern& pattern = linear.pattern();
-    if (band_.lu.size() == 0) {
-      const auto [lower, upper] = pattern.bandwidth();
-      band_.lu = BandedLU<Number>(linear.size(), lower, upper);
-      band_.places.resize(pattern.entries());
-      for (std::size_t j = 0; j < linear.size(); ++j)
-        for (std::size_t p = pattern.begin(j); p < pattern.end(j); ++p)
-          band_.places[p] = band_.lu.place(pattern.row(p), j);
-    }
-    linear.shifted(c, band_.lu.entries(), [this](std::size_t p) { return band_.places[p]; });
-    return band_.lu.factor();
+    if (band_.size() == 0) band_ = BandedLU<Number>(linear.band());
+    return band_.factor(linear.entries(), c, linear.mass_diagonal());
   }
 
   DenseLU<Number, N> dense_;
   std::optional<Sparse> sparse_;
-  std::conditional_t<has_sparse, Banded, None> band_;
+  std::conditional_t<has_sparse, BandedLU<Number>, None> band_;
 };
 
 }  // namespace continuo

@@ -57,21 +57,39 @@ bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& 
 }
 
 /// The least increments for a Jacobian by differences: the error of rounding in f, weighted, stays below a thousandth
-/// of 1/h in each column (A. Hindmarsh et al., "SUNDIALS", ACM TOMS 31 (2005), section 2.1, for CVODE).
+/// of 1/h in each column (A. Hindmarsh et al., "SUNDIALS", ACM TOMS 31 (2005), section 2.1, for CVODE). Where nobody
+/// takes differences, nothing is computed.
 template <State X>
-auto least_increments(const Tolerance<Scalar<X>>& tolerance, const Scalar<X>& h, const X& x, const X& fx) {
+class LeastIncrements {
+ public:
   using Real = Scalar<X>;
-  using std::abs, std::sqrt;
-  const std::size_t n = dimension(x);
-  Real sum(0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Real part = fx.data()[i] / tolerance.scale(i, x.data()[i], x.data()[i]);
-    sum += part * part;
+
+  LeastIncrements(const Tolerance<Real>& tolerance, const Real& h, const X& x, const X& fx)
+      : tolerance_(tolerance), x_(x), fx_(fx), h_(h) {}
+
+  Real operator()(std::size_t j) const {
+    if (!(factor_ > 0)) factor_ = factor();
+    return factor_ * scale(j);
   }
-  const Real size = 1000 * abs(h) * std::numeric_limits<Real>::epsilon() * sqrt(Real(n) * sum);
-  return [&tolerance, &x, size = size > 0 ? size : Real(1)](std::size_t j) {
-    return size * tolerance.scale(j, x.data()[j], x.data()[j]);
-  };
-}
+
+ private:
+  Real scale(std::size_t i) const { return tolerance_.scale(i, x_.data()[i], x_.data()[i]); }
+  Real factor() const {
+    using std::abs, std::sqrt;
+    const std::size_t n = dimension(x_);
+    Real sum(0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Real part = fx_.data()[i] / scale(i);
+      sum += part * part;
+    }
+    const Real least = 1000 * abs(h_) * std::numeric_limits<Real>::epsilon() * sqrt(Real(n) * sum);
+    return least > 0 ? least : Real(1);
+  }
+
+  const Tolerance<Real>& tolerance_;
+  const X &x_, &fx_;
+  const Real h_;
+  mutable Real factor_{0};
+};
 
 }  // namespace continuo

@@ -232,11 +232,7 @@ struct RosenbrockMethod {
     }
     if (!made_jump && work.linear_fresh) return evaluations;
     if (!work.linear.prepared()) work.linear.prepare(system, x);
-    if constexpr (HasJacobian<System, X> && !HasJacobianPattern<System>) {
-      evaluations += work.linear.evaluate(system, t, x, work.slope, [](std::size_t) { return Scalar<X>(1); });
-    } else {
-      evaluations += work.linear.evaluate(system, t, x, work.slope, least_increments(work.tolerance, h, x, work.slope));
-    }
+    evaluations += work.linear.evaluate(system, t, x, work.slope, LeastIncrements(work.tolerance, h, x, work.slope));
     if (!is_autonomous(system)) evaluations += evaluate_time_derivative(system, t, h, x, work.slope, work.time_slope);
     ++work.costs.jacobians;
     work.linear_fresh = true;

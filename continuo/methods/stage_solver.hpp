@@ -63,7 +63,7 @@ struct StageSolver {
       evaluations = linear.evaluate(system, t, x, residual, [](std::size_t) { return Real(1); });
     } else {
       evaluate(system, t, x, residual);
-      evaluations = 1 + linear.evaluate(system, t, x, residual, least_increments(tolerance, h, x, residual));
+      evaluations = 1 + linear.evaluate(system, t, x, residual, LeastIncrements(tolerance, h, x, residual));
     }
     ++costs.jacobians;
     is_current = memory.matrix_is_known = true;

@@ -33,24 +33,47 @@ struct BandEnd {
         pivots(columns) {}
 };
 
+/// The rows of c M - J, seen from an end: entry j of a row is that `lower` columns before the diagonal, and on. The
+/// second end (direction = -1) counts from behind.
+template <class Number, class Real, int direction>
+struct BandRows {
+  const Real* first;      // of J
+  std::ptrdiff_t stride;  // from one entry to the next
+  Number c;
+  const Real* mass;  // of the first row; null for the identity
+
+  template <class Entry, class Lower>
+  [[gnu::always_inline]] Number operator()(std::size_t row, Entry j, Lower lower) const {
+    const auto i = static_cast<std::ptrdiff_t>(row);
+    const Number entry(-first[direction * (i + static_cast<std::ptrdiff_t>(j) * stride)]);
+    if (j != lower) return entry;
+    return entry + (mass == nullptr ? c : c * Number(mass[direction * i]));
+  }
+};
+
 /// Under way. `window`: rows k ... k + lower as they are when column k is to be eliminated, from column k on; and
 /// behind them row k of U. All of them move up and to the left by one from k to k + 1. Lower and Right are constants
 /// where the band is narrow.
-template <class Number, class Lower, class Right, class Window>
+template <class Number, class Rows, class Lower, class Right, class Window>
 class BandElimination {
  public:
-  [[gnu::always_inline]] BandElimination(BandEnd<Number>& end, const Number* entries, Lower lower, Right right,
+  [[gnu::always_inline]] BandElimination(BandEnd<Number>& end, const Rows& rows, Lower lower, Right right,
                                          Window window)
-      : end_(end), entries_(entries), lower_(lower), right_(right), window_(window) {
+      : end_(end), rows_(rows), lower_(lower), right_(right), window_(window) {
     end.lowest = 0;
     std::fill(window_.begin(), window_.end(), Number{});
     for (std::size_t i = 0; i < std::min<std::size_t>(lower, end.rows); ++i)
-      for (std::size_t j = lower - i; j <= right; ++j)
-        window_[i * (right + 1) + j + i - lower] = entries[i * (right + 1) + j];
+      for (std::size_t j = lower - i; j <= right; ++j) window_[i * (right + 1) + j + i - lower] = rows(i, j, lower);
   }
 
   /// What is left of row columns + i, from column `columns` on.
-  const Number& rest(std::size_t i, std::size_t j) const { return window_[i * (right_ + 1) + j]; }
+  [[gnu::always_inline]] const Number& rest(std::size_t i, std::size_t j) const {
+    return window_[i * (right_ + 1) + j];
+  }
+  /// Entry j of a row of the matrix.
+  [[gnu::always_inline]] Number row(std::size_t i, std::size_t j) const {
+    return rows_(i, j, static_cast<std::size_t>(lower_));
+  }
 
   /// Column k. False where its pivot is zero or not a number.
   [[gnu::always_inline]] bool eliminate(std::size_t k) {
@@ -58,10 +81,10 @@ class BandElimination {
     const Right right = right_;
     const auto at = [&](auto i, auto j)
                         __attribute__((always_inline)) -> Number& { return window_[i * (right + 1) + j]; };
-    const Number none{};
     const bool inside = k + lower < end_.rows;
-    const Number* const next = inside ? entries_ + (k + lower) * (right + 1) : &none;
-    each<0>(right, [&](auto j) __attribute__((always_inline)) { at(lower, j) = inside ? next[j] : Number{}; });
+    each<0>(right, [&](auto j) __attribute__((always_inline)) {
+      at(lower, j) = inside ? rows_(k + lower, j, lower) : Number{};
+    });
     std::size_t pivot = 0;
     auto greatest = magnitude(at(std::size_t{0}, std::size_t{0}));
     each<1>(lower, [&](auto i) __attribute__((always_inline)) {
@@ -102,7 +125,7 @@ class BandElimination {
   }
 
   BandEnd<Number>& end_;
-  const Number* entries_;
+  Rows rows_;
   Lower lower_;
   Right right_;
   Window window_;

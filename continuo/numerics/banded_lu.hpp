@@ -1,9 +1,11 @@
-// LU decomposition with partial pivoting of a matrix whose entries lie near its diagonal, P A = L D U with unit
+// LU decomposition with partial pivoting of a matrix c M - J whose entries lie near its diagonal, P A = L D U with unit
 // diagonals as in small_lu.hpp. The numbers may be real or complex, of any scalar.
 //
-//   BandedLU<double> lu(n, lower, upper);
-//   lu(i, j) = ...;                     // for j - upper <= i <= j + lower, the others are zero
-//   if (lu.factor()) lu.solve(b);
+//   const BandLayout band(n, lower, upper);
+//   std::vector<double> j(band.numbers());
+//   j[band.place(row, column)] = ...;        // for row - lower <= column <= row + upper, the others are zero
+//   BandedLU<double> lu(band);
+//   if (lu.factor(j, c)) lu.solve(b);        // (c - j) x = b
 //
 // Each unknown waits for the one before it, and the processor with it. Narrow bands are therefore eliminated from both
 // ends at once, two chains of half the length, until lower + upper unknowns are left in the middle, whose matrix is
@@ -14,11 +16,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <continuo/numerics/band_end.hpp>
+#include <continuo/numerics/band_layout.hpp>
+#include <continuo/numerics/band_straight.hpp>
 #include <continuo/numerics/dense_lu.hpp>
 
 namespace continuo {
@@ -26,38 +31,36 @@ namespace continuo {
 template <class Number>
 class BandedLU {
  public:
+  using Real = decltype(magnitude(Number{}));
+
   BandedLU() = default;
-  BandedLU(std::size_t size, std::size_t lower, std::size_t upper) : size_(size), lower_(lower), upper_(upper) {
-    const std::size_t widest = std::max({lower, upper, std::size_t{1}});
-    if (widest <= greatest_narrow && size >= 8 * widest) {
-      lower_ = upper_ = widest;
-      const std::size_t right = 2 * widest, left_over = right + size % 2, columns = (size - left_over) / 2;
-      ends_ = {End(columns + lower_ + size % 2, columns, lower_, right), End(columns + lower_, columns, lower_, right)};
+  explicit BandedLU(const BandLayout& layout)
+      : layout_(layout), size_(layout.size), lower_(layout.lower), upper_(layout.upper) {
+    if (layout.is_narrow()) {
+      const std::size_t right = lower_ + upper_, left_over = right + size_ % 2, columns = (size_ - left_over) / 2;
+      ends_ = {End(columns + lower_ + size_ % 2, columns, lower_, right),
+               End(columns + lower_, columns, lower_, right)};
+      straight_ = detail::StraightFactors<Number>(columns, lower_);
       middle_ = DenseLU<Number>(left_over);
     } else {
-      ends_[0] = End(size, size, lower, lower + upper);
-      window_.resize((lower + 2) * (lower + upper + 1));
+      ends_[0] = End(size_, size_, lower_, lower_ + upper_);
+      window_.resize((lower_ + 2) * (lower_ + upper_ + 1));
     }
-    entries_.resize((ends_[0].rows + ends_[1].rows) * (lower_ + upper_ + 1));
   }
 
   std::size_t size() const { return size_; }
 
-  void clear() { std::fill(entries_.begin(), entries_.end(), Number{}); }
-  /// The matrix, row by row. `factor` leaves it as it is.
-  Number& operator()(std::size_t row, std::size_t column) { return entries_[place(row, column)]; }
-  /// Where (row, column) is among the entries, for who fills them many times. The second end counts from behind.
-  std::size_t place(std::size_t row, std::size_t column) const {
-    const std::size_t width = lower_ + upper_ + 1;
-    if (row < ends_[0].rows) return row * width + lower_ + column - row;
-    return (ends_[0].rows + size_ - 1 - row) * width + lower_ + row - column;
-  }
-  Number* entries() { return entries_.data(); }
-
+  /// Decomposes c M - J. `jacobian` is J as it lies in the layout, `mass` the diagonal of M, or empty for the identity.
   /// False where a pivot is zero or not a number: the matrix is singular, or was not finite.
-  bool factor() {
-    if (is_wide()) return factor_wide();
-    return with_width([&]<std::size_t B>() { return factor_narrow<B>(); });
+  bool factor(std::span<const Real> jacobian, const Number& c, std::span<const Real> mass = {}) {
+    const auto stride = static_cast<std::ptrdiff_t>(layout_.stride);
+    const std::size_t last = size_ - 1;
+    const bool is_identity = mass.empty();
+    const FromTop top{jacobian.data(), stride, c, is_identity ? nullptr : mass.data()};
+    if (is_wide()) return factor_wide(top);
+    const FromBottom bottom{jacobian.data() + layout_.place(last, last + upper_), stride, c,
+                            is_identity ? nullptr : mass.data() + last};
+    return with_width([&]<std::size_t B>() { return factor_narrow<B>(top, bottom); });
   }
 
   /// b becomes the solution.
@@ -71,7 +74,10 @@ class BandedLU {
 
  private:
   using End = detail::BandEnd<Number>;
-  static constexpr std::size_t greatest_narrow = 4;
+  template <int direction>
+  using Rows = detail::BandRows<Number, Real, direction>;
+  using FromTop = Rows<1>;
+  using FromBottom = Rows<-1>;
 
   bool is_wide() const { return ends_[1].columns == 0; }
 
@@ -90,24 +96,37 @@ class BandedLU {
     }
   }
 
-  bool factor_wide() {
-    detail::BandElimination<Number, std::size_t, std::size_t, std::vector<Number>&> elimination(
-        ends_[0], entries_.data(), lower_, lower_ + upper_, window_);
+  bool factor_wide(const FromTop& rows) {
+    detail::BandElimination<Number, FromTop, std::size_t, std::size_t, std::vector<Number>&> elimination(
+        ends_[0], rows, lower_, lower_ + upper_, window_);
     for (std::size_t k = 0; k < size_; ++k)
       if (!elimination.eliminate(k)) return false;
-    filled_ = upper_ + ends_[0].lowest;
+    reach_ = upper_ + ends_[0].lowest;
     return true;
   }
 
-  template <std::size_t B>
-  using Narrow =
-      detail::BandElimination<Number, std::integral_constant<std::size_t, B>,
+  template <std::size_t B, class Rows>
+  using Pivoting =
+      detail::BandElimination<Number, Rows, std::integral_constant<std::size_t, B>,
                               std::integral_constant<std::size_t, 2 * B>, std::array<Number, (B + 2) * (2 * B + 1)>>;
 
+  /// Mostly the diagonal has the greatest entries: that is tried first.
   template <std::size_t B>
-  bool factor_narrow() {
-    Narrow<B> top(ends_[0], entries_.data(), {}, {}, {});
-    Narrow<B> bottom(ends_[1], entries_.data() + ends_[0].rows * (2 * B + 1), {}, {}, {});
+  bool factor_narrow(const FromTop& top, const FromBottom& bottom) {
+    reach_ = B;
+    if (eliminate<B>(detail::StraightElimination<Number, FromTop, B>(straight_, 0, top),
+                     detail::StraightElimination<Number, FromBottom, B>(straight_, 1, bottom))) {
+      straight_.template prepare<B>();
+      return middle_.factor();
+    }
+    reach_ = 2 * B;
+    return eliminate<B>(Pivoting<B, FromTop>(ends_[0], top, {}, {}, {}),
+                        Pivoting<B, FromBottom>(ends_[1], bottom, {}, {}, {})) &&
+           middle_.factor();
+  }
+
+  template <std::size_t B, class Top, class Bottom>
+  [[gnu::always_inline]] bool eliminate(Top top, Bottom bottom) {
     const std::size_t columns = ends_[0].columns;
     bool regular = true;
     if constexpr (B <= 2) {  // both windows fit into the registers
@@ -119,37 +138,39 @@ class BandedLU {
       for (std::size_t k = 0; k < columns && regular; ++k) regular = top.eliminate(k);
       for (std::size_t k = 0; k < columns && regular; ++k) regular = bottom.eliminate(k);
     }
-    filled_ = upper_ + std::max(ends_[0].lowest, ends_[1].lowest);
-    return regular && factor_middle<B>(top, bottom);
+    if (regular) fill_middle<B>(top, bottom);
+    return regular;
   }
 
-  /// What both ends have left over, and the row that neither has seen where there is one.
-  template <std::size_t B>
-  bool factor_middle(const Narrow<B>& top, const Narrow<B>& bottom) {
+  /// What both ends have left over, and the row that neither has seen where there is one. Compiled into the caller and
+  /// written out, as the windows would not be in registers otherwise.
+  template <std::size_t B, class Top, class Bottom>
+  [[gnu::always_inline]] void fill_middle(const Top& top, const Bottom& bottom) {
     const std::size_t s = middle_.size();
     auto& matrix = middle_.matrix();
     std::fill(matrix.begin(), matrix.end(), Number{});
-    for (std::size_t i = 0; i < B; ++i)
-      for (std::size_t j = 0; j < 2 * B; ++j) {
+    detail::unrolled<0, B>([&](auto i) __attribute__((always_inline)) {
+      detail::unrolled<0, 2 * B>([&](auto j) __attribute__((always_inline)) {
         matrix[i * s + j] = top.rest(i, j);
         matrix[(s - 1 - i) * s + s - 1 - j] = bottom.rest(i, j);
-      }
+      });
+    });
     if (s > 2 * B) {
-      const Number* const unseen = entries_.data() + (ends_[0].columns + B) * (2 * B + 1);
-      for (std::size_t j = 0; j < s; ++j) matrix[B * s + j] = unseen[j];
+      for (std::size_t j = 0; j < s; ++j) matrix[B * s + j] = top.row(ends_[0].columns + B, j);
     }
-    return middle_.factor();
   }
 
   template <std::size_t B>
   void solve_narrow(Number* b) {
-    solve_lower<B>(b);
-    middle_.solve(b + ends_[0].columns);
-    for (std::size_t end = 0; end < 2; ++end) insert_middle(end, b);
-    if (filled_ > B) {
-      solve_upper<2 * B, 2 * B>(b);
+    if (reach_ == B) {
+      straight_.template solve_lower<B>(b, b + size_ - 1);
+      middle_.solve(b + straight_.columns);
+      straight_.template solve_upper<B>(b, b + size_ - 1);
     } else {
-      solve_upper<B, 2 * B>(b);
+      solve_lower<B>(b);
+      middle_.solve(b + ends_[0].columns);
+      for (std::size_t end = 0; end < 2; ++end) insert_middle(end, b);
+      solve_upper<2 * B>(b);
     }
   }
 
@@ -206,14 +227,14 @@ class BandedLU {
 
   /// Takes the unknowns of the middle out of the rows of an end.
   void insert_middle(std::size_t e, Number* b) const {
-    const std::size_t room = lower_ + upper_, columns = ends_[e].columns;
-    for (std::size_t c = columns; c < columns + filled_; ++c)
-      for (std::size_t i = c - columns + 1; i <= filled_; ++i)
-        at(b, e, c - i) -= ends_[e].right_factors[(c + 1) * room - i] * at(b, e, c);
+    const std::size_t columns = ends_[e].columns;
+    for (std::size_t c = columns; c < columns + reach_; ++c)
+      for (std::size_t i = c - columns + 1; i <= reach_; ++i)
+        at(b, e, c - i) -= ends_[e].right_factors[(c + 1) * reach_ - i] * at(b, e, c);
   }
 
-  /// b becomes U^-1 b, where U has entries in `upper` columns behind the diagonal, and room for `room`.
-  template <std::size_t upper, std::size_t room>
+  /// b becomes U^-1 b, where U has entries in `upper` columns behind the diagonal.
+  template <std::size_t upper>
   void solve_upper(Number* b) const {
     constexpr std::size_t period = upper + 1;
     const std::size_t columns = ends_[0].columns;
@@ -226,7 +247,7 @@ class BandedLU {
         auto& ahead = aheads[e];
         ahead[(r + upper) % period] = inside ? at(b, e, k - upper) : Number{};
         const Number known = at(b, e, k) = ahead[r];
-        const Number* const column = ends_[e].right_factors.data() + (k + 1) * room;
+        const Number* const column = ends_[e].right_factors.data() + (k + 1) * upper;
         detail::unrolled<1, period>([&](auto i) __attribute__((always_inline)) {
           ahead[(r + i - moved) % period] = ahead[(r + i) % period] - *(column - i) * known;
         });
@@ -247,7 +268,7 @@ class BandedLU {
       b[k] = known * end.inverse[k];
     }
     for (std::size_t k = size_; k-- > 0;) {
-      const std::size_t room = lower_ + upper_, above = std::min(filled_, k);
+      const std::size_t room = lower_ + upper_, above = std::min(reach_, k);
       const Number* const column = end.right_factors.data() + (k + 1) * room - above;
       const Number known = b[k];
       Number* const rest = b + (k - above);
@@ -255,10 +276,13 @@ class BandedLU {
     }
   }
 
-  std::size_t size_ = 0, lower_ = 0, upper_ = 0;
-  std::size_t filled_ = 0;  // how far U reaches: upper, and further by pivoting
-  std::vector<Number> entries_;
+  BandLayout layout_;
+  std::size_t size_ = 0, lower_ = 0, upper_ = 0;  // those of the layout
+  // How far U reaches: upper, and further by pivoting. As many numbers each of its columns has where the band is
+  // narrow.
+  std::size_t reach_ = 0;
   std::array<End, 2> ends_{};
+  detail::StraightFactors<Number> straight_;  // instead of theirs, where no row of a narrow band has to move
   DenseLU<Number> middle_{0};
   std::vector<Number> window_;  // see BandElimination; empty where it is in registers
 };

@@ -43,6 +43,20 @@ bool SparsePattern::is_banded() const {
   return (2 * lower + upper + 1) * size() <= greatest_part * entries();
 }
 
+BandLayout SparsePattern::band() const {
+  const auto [lower, upper] = bandwidth();
+  return {size(), lower, upper};
+}
+
+std::vector<std::uint32_t> SparsePattern::places_in_band() const {
+  const BandLayout layout = band();
+  std::vector<std::uint32_t> places;
+  for (std::size_t column = 0; column < size(); ++column)
+    for (std::size_t p = begin(column); p < end(column); ++p)
+      places.push_back(static_cast<std::uint32_t>(layout.place(row(p), column)));
+  return places;
+}
+
 ColumnGroups::ColumnGroups(const SparsePattern& pattern) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::vector<std::size_t> group_of(pattern.size(), none);

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <continuo/numerics/band_layout.hpp>
+
 namespace continuo {
 
 struct MatrixPlace {
@@ -35,6 +37,9 @@ class SparsePattern {
   /// then it takes a half to a third of the time of a sparse solver, which is faster where most of a band would be
   /// empty.
   bool is_banded() const;
+  BandLayout band() const;
+  /// Of the entries in that layout.
+  std::vector<std::uint32_t> places_in_band() const;
 
   // In the form that sparse solvers read.
   std::span<const std::int32_t> starts() const { return starts_; }

@@ -72,6 +72,12 @@ template <class F, class X>
 concept HasSparseJacobian =
     HasJacobianPattern<F> &&
     requires(F& f, Scalar<X> t, const X& x, std::span<Scalar<X>> values) { f.jacobian_values(t, x, values); };
+/// The system gives them as they lie in the layout of the pattern's band, and writes nothing else: f.jacobian_band(t,
+/// x, span).
+template <class F, class X>
+concept HasBandJacobian =
+    HasSparseJacobian<F, X> &&
+    requires(F& f, Scalar<X> t, const X& x, std::span<Scalar<X>> band) { f.jacobian_band(t, x, band); };
 /// The system gives df/dt: f.time_derivative(t, x, dfdt).
 template <class F, class X>
 concept HasTimeDerivative = requires(F& f, Scalar<X> t, const X& x, X& dfdt) { f.time_derivative(t, x, dfdt); };
