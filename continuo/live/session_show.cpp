@@ -12,12 +12,11 @@ namespace continuo::live {
 /// Evaluations for a new program.
 void Session::show_run() {
   const model::ModelProgram& program = *shown_->program;
-  const model::Layout& layout = program.model.layout;
-  quantities_ = model::Evaluation(program.tape_of(shown_->quantities), layout, *variables_);
-  scene_ = model::Evaluation(program.tape_of(shown_->scene), layout, *variables_);
+  quantities_ = model::Evaluation(program.tape_of(shown_->quantities), *variables_);
+  scene_ = model::Evaluation(program.tape_of(shown_->scene), *variables_);
   values_.assign(shown_->quantities.size(), 0.0);
   grips_.clear();
-  for (const Grip& grip : shown_->grips) grips_.emplace_back(program.tape_of(grip.nodes), layout, *variables_);
+  for (const Grip& grip : shown_->grips) grips_.emplace_back(program.tape_of(grip.nodes), *variables_);
   evaluated_ = variables_;
 }
 

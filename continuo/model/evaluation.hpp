@@ -1,7 +1,7 @@
 // continuo/model/evaluation.hpp
 // A tape with registers of its own, for the flat variables of a model.
 //
-//   Evaluation rates(tape, layout, start_values(model));
+//   Evaluation rates(tape, start_values(model));
 //   rates(t, x, dxdt);
 #pragma once
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace continuo::model {
 class Evaluation {
  public:
   Evaluation() = default;
-  Evaluation(std::shared_ptr<const Tape> tape, const Layout& layout, std::span<const double> variables)
-      : tape_(std::move(tape)), states_(layout.states), registers_(tape_->register_count()) {
+  Evaluation(std::shared_ptr<const Tape> tape, std::span<const double> variables)
+      : tape_(std::move(tape)), registers_(tape_->register_count()) {
     std::ranges::copy(variables, registers_.begin());
     tape_->prepare<double>(registers_);
   }
@@ -28,9 +28,14 @@ class Evaluation {
 
   void operator()(double t, std::span<const double> x, std::span<double> outputs) {
     registers_[Layout::time] = t;
-    std::copy(x.begin(), x.end(), registers_.begin() + states_);
-    tape_->evaluate<double>(registers_, outputs);
+    tape_->evaluate<double>(registers_, x, outputs);
   }
+  /// The same with the outputs elsewhere: see Tape::outputs_at.
+  void operator()(double t, std::span<const double> x, std::span<double> outputs, const tape::Copies& copies) {
+    registers_[Layout::time] = t;
+    tape_->evaluate<double>(registers_, x, outputs, copies);
+  }
+  tape::Copies outputs_at(std::span<const std::uint32_t> places) const { return tape_->outputs_at(places); }
   std::vector<double> operator()(double t, std::span<const double> x) {
     std::vector<double> outputs(output_count());
     if (!outputs.empty()) (*this)(t, x, outputs);
@@ -46,7 +51,6 @@ class Evaluation {
 
  private:
   std::shared_ptr<const Tape> tape_;
-  std::uint32_t states_ = 1;
   std::vector<double> registers_;
 };
 

@@ -27,13 +27,14 @@ ModelDerivatives::ModelDerivatives(const ModelProgram& program, std::span<const 
     OfMode& mine = modes_.emplace_back();
     std::vector<NodeId> nodes(pattern_.entries(), own.model.graph.constant(0));
     for (const JacobianEntry& entry : entries[mode]) nodes[pattern_.find(entry.row, entry.column)] = entry.value;
-    mine.entries = Evaluation(own.tape_of(nodes), model.layout, variables);
+    mine.entries = Evaluation(own.tape_of(nodes), variables);
+    if (pattern_.is_banded()) mine.in_band = mine.entries.outputs_at(pattern_.places_in_band());
     nodes.clear();
     for (const JacobianEntry& entry : model::jacobian(own.model.graph, model.modes[mode].derivatives, time)) {
       mine.moving.push_back(entry.row);
       nodes.push_back(entry.value);
     }
-    mine.by_time = Evaluation(own.tape_of(nodes), model.layout, variables);
+    mine.by_time = Evaluation(own.tape_of(nodes), variables);
   }
   values_.resize(std::max(columns.size(), pattern_.entries()));
 }
@@ -41,6 +42,10 @@ ModelDerivatives::ModelDerivatives(const ModelProgram& program, std::span<const 
 void ModelDerivatives::jacobian_values(std::size_t mode, double t, std::span<const double> x,
                                        std::span<double> values) {
   modes_[mode].entries(t, x, values);
+}
+
+void ModelDerivatives::jacobian_band(std::size_t mode, double t, std::span<const double> x, std::span<double> band) {
+  modes_[mode].entries(t, x, band, modes_[mode].in_band);
 }
 
 void ModelDerivatives::jacobian(std::size_t mode, double t, std::span<const double> x, std::span<double> rows) {

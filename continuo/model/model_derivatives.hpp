@@ -23,6 +23,8 @@ class ModelDerivatives {
   const SparsePattern& pattern() const { return pattern_; }
   /// The entries in the order of the pattern.
   void jacobian_values(std::size_t mode, double t, std::span<const double> x, std::span<double> values);
+  /// The entries in the layout of the pattern's band; only where the pattern is banded.
+  void jacobian_band(std::size_t mode, double t, std::span<const double> x, std::span<double> band);
   /// All n * n, row by row.
   void jacobian(std::size_t mode, double t, std::span<const double> x, std::span<double> rows);
   void time_derivative(std::size_t mode, double t, std::span<const double> x, std::span<double> dfdt);
@@ -35,6 +37,7 @@ class ModelDerivatives {
     Evaluation entries;                 // of the pattern, zero where this mode has none
     std::vector<std::uint32_t> moving;  // the components whose derivative by time is not zero
     Evaluation by_time;                 // of those
+    tape::Copies in_band;               // the entries
   };
 
   SparsePattern pattern_;

@@ -1,4 +1,5 @@
 // continuo/model/model_program.cpp
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -171,12 +172,28 @@ std::shared_ptr<const Tape> ModelProgram::tape_of(std::span<const NodeId> nodes)
   return std::make_shared<const Tape>(graph, replaced, tape_variables(), tables);
 }
 
+namespace {
+
+/// No right-hand side of any mode reads the time.
+bool is_autonomous(const ModelProgram& program) {
+  if (!program.linear_inputs.empty()) return false;
+  const Graph& graph = program.model.graph;
+  return std::ranges::all_of(program.model.modes, [&](const Mode& mode) {
+    return std::ranges::none_of(reachable(graph, mode.derivatives), [&](NodeId id) {
+      return graph[id].op == Op::variable && graph[id].number == Layout::time;
+    });
+  });
+}
+
+}  // namespace
+
 std::shared_ptr<const ModelProgram> compile(Model model) {
   auto program = std::make_shared<ModelProgram>(std::move(model));
   place_tables(*program);
   place_watched(*program);
   compile_equations(*program);
   compile_blocks(*program);
+  program->autonomous = is_autonomous(*program);
   return program;
 }
 

@@ -51,6 +51,7 @@ struct ModelProgram {
   std::vector<TableInput> step_inputs;    // constant between scheduled times
   std::vector<TableInput> linear_inputs;  // part of the expressions
   std::vector<std::shared_ptr<const Tape>> derivatives;  // by mode
+  bool autonomous = false;                               // no derivative hangs on the time
   std::vector<ProgramGuards> guards;                     // by mode
   std::vector<ProgramBlock> event_blocks;                // by Model::events
   std::vector<ProgramBlock> schedule_blocks;             // by Model::schedule
@@ -63,6 +64,8 @@ struct ModelProgram {
     return {.variables = model.layout.size,
             .steady_begin = model.layout.parameters,
             .steady_end = model.layout.inputs,
+            .states_begin = model.layout.states,
+            .states_end = model.layout.states + static_cast<std::uint32_t>(model.states.size()),
             .families = families};
   }
   /// The expression with interpolated inputs in place, as functions of time.

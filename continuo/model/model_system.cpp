@@ -9,13 +9,15 @@
 namespace continuo::model {
 
 ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<const double> variables)
-    : program_(std::move(program)), mode_(program_->model.start_mode), variables_(variables.begin(), variables.end()) {
-  const Layout& layout = program_->model.layout;
-  for (const auto& tape : program_->derivatives) derivatives_.emplace_back(tape, layout, variables);
-  for (const ProgramGuards& guards : program_->guards) guards_.emplace_back(guards.tape, layout, variables);
-  for (const ProgramBlock& block : program_->event_blocks) event_blocks_.emplace_back(block.tape, layout, variables);
+    : autonomous(program->autonomous),
+      program_(std::move(program)),
+      mode_(program_->model.start_mode),
+      variables_(variables.begin(), variables.end()) {
+  for (const auto& tape : program_->derivatives) derivatives_.emplace_back(tape, variables);
+  for (const ProgramGuards& guards : program_->guards) guards_.emplace_back(guards.tape, variables);
+  for (const ProgramBlock& block : program_->event_blocks) event_blocks_.emplace_back(block.tape, variables);
   for (const ProgramBlock& block : program_->schedule_blocks) {
-    schedule_blocks_.emplace_back(block.tape, layout, variables);
+    schedule_blocks_.emplace_back(block.tape, variables);
   }
   guard_values_.resize(program_->model.events.size());
 }
@@ -63,6 +65,17 @@ void ModelSystem::jacobian_values(double t, const X& x, std::span<double> values
       const std::size_t entry = pattern.find(i, column);
       if (entry < pattern.entries()) values[entry] = 0;
     }
+  }
+}
+
+void ModelSystem::jacobian_band(double t, const X& x, std::span<double> band) {
+  derivatives_of_f().jacobian_band(mode_, t, x, band);
+  if (held_.empty()) return;
+  const SparsePattern& pattern = jacobian_pattern();
+  const BandLayout layout = pattern.band();
+  for (const std::size_t i : held_) {
+    for (std::size_t column = 0; column < x.size(); ++column)
+      if (pattern.find(i, column) < pattern.entries()) band[layout.place(i, column)] = 0;
   }
 }
 

@@ -52,6 +52,7 @@ class ModelSystem {
   const Model& model() const { return program_->model; }
 
   // What solve and the methods ask of a System.
+  bool autonomous;
   std::string_view component_name(std::size_t i) const { return model().states[i].column; }
   std::size_t pair_count(std::size_t) const { return model().pairs.size(); }
   PositionVelocity pair(std::size_t i, std::size_t) const { return model().pairs[i]; }
@@ -59,6 +60,7 @@ class ModelSystem {
   void jacobian(double t, const X& x, std::span<double> rows);
   const SparsePattern& jacobian_pattern() { return derivatives_of_f().pattern(); }
   void jacobian_values(double t, const X& x, std::span<double> values);
+  void jacobian_band(double t, const X& x, std::span<double> band);
   void time_derivative(double t, const X& x, X& dfdt);
   bool has_mass() const { return model().needs_dae_solver(); }
   double mass(std::size_t i) const { return model().states[i].algebraic ? 0 : 1; }

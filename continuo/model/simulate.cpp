@@ -112,7 +112,7 @@ std::vector<std::vector<double>> values_along(const ModelProgram& program, const
                                               std::span<const NodeId> nodes) {
   std::vector<std::vector<double>> columns(nodes.size());
   if (nodes.empty()) return columns;
-  Evaluation evaluation(program.tape_of(nodes), program.model.layout, run.plan.variables);
+  Evaluation evaluation(program.tape_of(nodes), run.plan.variables);
   for (std::size_t row = 0; row < run.motion.rows(); ++row) {
     const double t = run.motion.time(row);
     for (const TableInput& input : program.step_inputs) evaluation.set(input.variable, input.table.value(t));

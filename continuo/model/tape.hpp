@@ -32,6 +32,8 @@ struct TapeVariables {
   std::uint32_t variables = 0;  // how many
   // Those that change seldom, [begin, end): the parameters. `prepare` must follow each change of theirs.
   std::uint32_t steady_begin = 0, steady_end = 0;
+  // Those that a caller may hand over at another place, [begin, end): see `evaluate`.
+  std::uint32_t states_begin = 0, states_end = 0;
   // By variable, for as many as there are: members of one family, ascending, have the same number; 0 is alone. They
   // need not lie side by side.
   std::span<const std::uint32_t> families = {};
@@ -54,6 +56,15 @@ class Tape {
   template <class Real>
   void evaluate(std::span<Real> registers, std::span<Real> outputs) const;
 
+  /// The same with `states` in place of the registers of the states, which it may leave as they are.
+  template <class Real>
+  void evaluate(std::span<Real> registers, std::span<const Real> states, std::span<Real> outputs) const;
+  /// And with output k at places[k], where `copies` = outputs_at(places); nothing else is written.
+  template <class Real>
+  void evaluate(std::span<Real> registers, std::span<const Real> states, std::span<Real> outputs,
+                const tape::Copies& copies) const;
+  tape::Copies outputs_at(std::span<const std::uint32_t> places) const;
+
   /// How the work is laid out: for tests and for the curious.
   struct Size {
     std::size_t prepared = 0;  // instructions of `prepare`
@@ -74,9 +85,11 @@ class Tape {
     std::vector<tape::Instruction> instructions;  // the last one is `stop`
     std::vector<tape::Batch> batches;
     std::vector<std::uint32_t> gathered;  // registers of the batches' scattered operands
-    std::vector<tape::Copy> copies;
+    tape::Copies copies;                  // variables of families side by side
   };
 
+  template <class Real>
+  void run(std::span<Real> registers, std::span<Real> outputs, const tape::Copies& copies) const;
   template <class Real>
   void run(const Program& program, Real* registers) const;
   template <class Real>
@@ -85,14 +98,21 @@ class Tape {
   std::size_t registers_ = 0, output_count_ = 0;
   std::vector<Constant> constants_;
   Program preparation_, body_;
+  std::uint32_t states_begin_ = 0;
+  tape::Copies copies_;                 // what lies side by side before `body_`
+  std::uint32_t copied_from_ = 0;       // where they are counted from: states_begin_, if only states are copied
+  bool reads_only_copies_ = false;      // of the states
   std::vector<std::uint32_t> outputs_;  // registers
-  tape::Copies many_outputs_;           // registers to outputs, where there are that many: then `outputs_` is empty
+  tape::Copies many_outputs_;           // registers to outputs in loops, where there are that many
   std::vector<Table> tables_;
 };
 
 extern template void Tape::prepare(std::span<float>) const;
 extern template void Tape::prepare(std::span<double>) const;
 extern template void Tape::prepare(std::span<long double>) const;
+extern template void Tape::evaluate(std::span<double>, std::span<const double>, std::span<double>) const;
+extern template void Tape::evaluate(std::span<double>, std::span<const double>, std::span<double>,
+                                    const tape::Copies&) const;
 extern template void Tape::evaluate(std::span<float>, std::span<float>) const;
 extern template void Tape::evaluate(std::span<double>, std::span<double>) const;
 extern template void Tape::evaluate(std::span<long double>, std::span<long double>) const;

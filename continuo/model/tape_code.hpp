@@ -24,6 +24,9 @@ enum class Code : std::uint16_t {
   difference_of_products,   // a*b - c*d
   sum_times,                // (a + b)*c
   difference_times,         // (a - b)*c
+  multiply_twice,           // a*b*c
+  sum_less_product,         // c + d - a*b
+  less_product_plus,        // c - a*b + d
   negate,
   square_root,
   sine,
@@ -63,14 +66,13 @@ enum class Code : std::uint16_t {
   interpolate,        // table b at a
   interpolate_slope,  // its slope
   batch,              // batches[a]: one operation on many registers
-  copy,               // copies[a]: variables of a family side by side
   stop,
 };
 inline constexpr std::size_t operations = static_cast<std::size_t>(Code::interpolate);
 
 inline constexpr std::size_t frequent = static_cast<std::size_t>(Code::select_less);
 
-/// Where the evaluation goes for a code: a place of its own for the frequent ones, one for all others, four at last.
+/// Where the evaluation goes for a code: a place of its own for the frequent ones, one for all others, three at last.
 constexpr std::uint16_t entry(Code code) {
   const auto c = static_cast<std::size_t>(code);
   return static_cast<std::uint16_t>(c < operations ? (c < frequent ? c : frequent) : c - operations + frequent + 1);
@@ -105,6 +107,8 @@ constexpr std::size_t operands(Code code) {
     case Code::sum_of_products:
     case Code::difference_of_products:
     case Code::negated_sum_of_products:
+    case Code::sum_less_product:
+    case Code::less_product_plus:
     case Code::select_less:
     case Code::select_less_equal:
       return 4;
@@ -114,6 +118,7 @@ constexpr std::size_t operands(Code code) {
     case Code::negated_multiply_add:
     case Code::sum_times:
     case Code::difference_times:
+    case Code::multiply_twice:
     case Code::select:
       return 3;
     case Code::add:
@@ -227,6 +232,12 @@ Real operate(const Real& a, const Real& b, const Real& c, const Real& d) {
     return (a + b) * c;
   else if constexpr (code == Code::difference_times)
     return (a - b) * c;
+  else if constexpr (code == Code::multiply_twice)
+    return a * b * c;
+  else if constexpr (code == Code::sum_less_product)
+    return c + d - a * b;
+  else if constexpr (code == Code::less_product_plus)
+    return c - a * b + d;
   else if constexpr (code == Code::negate)
     return -a;
   else if constexpr (code == Code::select_less)

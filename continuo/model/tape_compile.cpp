@@ -62,6 +62,15 @@ class Registers {
   std::map<std::uint32_t, std::uint32_t> free_;  // begin and length
 };
 
+/// from[k] to place(k).
+template <class PlaceOf>
+tape::Copies copies_to(std::span<const std::uint32_t> from, PlaceOf&& place) {
+  std::vector<Place> places;
+  for (std::size_t k = 0; k < from.size(); ++k) places.push_back({.from = from[k], .to = place(k)});
+  std::ranges::sort(places);
+  return tape::regular_copies(places);
+}
+
 }  // namespace
 
 class TapeCompiler {
@@ -76,7 +85,9 @@ class TapeCompiler {
       if (graph_[NodeId{i}].op == Op::variable) place_[i] = graph_[NodeId{i}].number;
     }
     selected_ = tape::select_operations(prepared);
-    for (const Family& family : families_of(prepared, variables.families)) place_family(family);
+    std::vector<Place> copied;
+    for (const Family& family : families_of(prepared, variables.families)) place_family(family, copied);
+    copy_states(variables, std::move(copied));
     for (const NodeId output : prepared.outputs) last_use_[output.index] = kept;
   }
 
@@ -124,7 +135,7 @@ class TapeCompiler {
 
   /// A family that does not lie side by side, and is read more than once, is copied to where it does: at the price of
   /// reading it once from where it lies.
-  void place_family(const Family& family) {
+  void place_family(const Family& family, std::vector<Place>& copied) {
     const tape::Colour mine = ++colours_;
     for (const NodeId id : family) colour_[id.index] = mine;
     std::size_t reads = 0;
@@ -135,29 +146,35 @@ class TapeCompiler {
     const bool contiguous = last - first + 1 == family.size();
     if (contiguous || reads < 2 * family.size()) return;
     std::uint32_t next = registers_.take(static_cast<std::uint32_t>(family.size()));
-    std::vector<Place> copied;
     for (const NodeId id : family) {
       copied.push_back({.from = place_[id.index], .to = next});
       place_[id.index] = next++;
     }
-    const tape::Copies copies = tape::regular_copies(copied);
-    for (const tape::Copy& copy : copies.regular) emit_copy(copy);
-    for (const Place& place : copies.alone) emit_copy({place.from, 0, place.to, 0, 1});
   }
 
-  void emit_copy(const tape::Copy& copy) {
-    tape_.body_.instructions.emplace_back(Code::copy).a = static_cast<std::uint32_t>(tape_.body_.copies.size());
-    tape_.body_.copies.push_back(copy);
+  /// Where nobody reads a state but by its copy, states need not be among the registers at all.
+  void copy_states(const TapeVariables& variables, std::vector<Place> copied) {
+    const auto is_state = [&](std::uint32_t i) { return i >= variables.states_begin && i < variables.states_end; };
+    tape_.states_begin_ = variables.states_begin;
+    if (std::ranges::all_of(copied, is_state, &Place::from)) {
+      tape_.copied_from_ = variables.states_begin;
+      tape_.reads_only_copies_ = true;
+    }
+    for (std::uint32_t i = 0; i < graph_.size(); ++i) {
+      const Node& node = graph_[NodeId{i}];
+      if (node.op == Op::variable && is_state(node.number) && place_[i] == node.number)
+        tape_.reads_only_copies_ = false;
+    }
+    std::ranges::sort(copied);
+    for (Place& place : copied) place.from -= tape_.copied_from_;
+    tape_.copies_ = tape::regular_copies(copied);
   }
 
   void place_outputs(std::span<const NodeId> outputs) {
     tape_.output_count_ = outputs.size();
-    std::vector<Place> places;
-    for (std::uint32_t k = 0; k < outputs.size(); ++k) places.push_back({.from = place_[outputs[k].index], .to = k});
-    for (const Place& place : places) tape_.outputs_.push_back(place.from);
-    std::ranges::sort(places);
-    tape_.many_outputs_ = tape::regular_copies(places);
-    if (!tape_.many_outputs_.regular.empty()) tape_.outputs_.clear();
+    for (const NodeId output : outputs) tape_.outputs_.push_back(place_[output.index]);
+    tape_.many_outputs_ = copies_to(tape_.outputs_, [](std::size_t k) { return static_cast<std::uint32_t>(k); });
+    if (tape_.many_outputs_.loops() == 0) tape_.many_outputs_ = {};
   }
 
   void place_constant(NodeId id) {
@@ -310,6 +327,10 @@ Tape::Tape(const Graph& graph, std::span<const NodeId> outputs, TapeVariables va
   });
   *this = TapeCompiler(prepared, variables).compile(prepared.outputs);
   tables_.assign(tables.begin(), tables.end());
+}
+
+tape::Copies Tape::outputs_at(std::span<const std::uint32_t> places) const {
+  return copies_to(outputs_, [&](std::size_t k) { return places[k]; });
 }
 
 }  // namespace continuo::model

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <continuo/model/tape.hpp>
+#include <continuo/model/wide_vectors.hpp>
 
 namespace continuo::model::tape {
 
@@ -25,43 +26,53 @@ void single(Real* registers, const Instruction& i) {
   registers[i.result] = operate<code, Real>(a, b, c, d);
 }
 
-/// Operands are brought side by side a piece at a time, so that the loop over them is plain.
+/// A batch is computed a piece at a time: a loop of constant length over operands that lie side by side.
 template <class Real>
 inline constexpr std::size_t piece = std::max<std::size_t>(4, 64 * sizeof(double) / sizeof(Real));
 
+/// Numbers begin, ..., begin + count - 1 of an operand side by side. `buffer` holds a number that is one for all.
 template <class Real>
-const Real* side_by_side(const Operand& operand, const Real* registers, const std::uint32_t* gathered,
-                         std::size_t begin, std::size_t count, Real* buffer) {
-  switch (operand.layout) {
-    case Operand::Layout::contiguous:
-      return registers + operand.begin + begin;
-    case Operand::Layout::one:
-      if (begin == 0) std::fill_n(buffer, std::min(count, piece<Real>), registers[operand.begin]);
-      return buffer;
-    case Operand::Layout::gathered:
-      break;
+[[gnu::always_inline]] inline const Real* side_by_side(const Operand& operand, const Real* registers,
+                                                       const std::uint32_t* gathered, std::size_t begin,
+                                                       std::size_t count, Real* buffer) {
+  if (operand.layout == Operand::Layout::contiguous) return registers + operand.begin + begin;
+  if (operand.layout == Operand::Layout::gathered) {
+    const std::uint32_t* const from = gathered + operand.begin + begin;
+    for (std::size_t k = 0; k < count; ++k) buffer[k] = registers[from[k]];
   }
-  const std::uint32_t* from = gathered + operand.begin + begin;
-  for (std::size_t k = 0; k < count; ++k) buffer[k] = registers[from[k]];
   return buffer;
+}
+
+/// No operand of a batch lies in its results.
+template <Code code, class Real, class Count>
+[[gnu::always_inline]] inline void one_by_one(const Real* a, const Real* b, const Real* c, const Real* d, Count count,
+                                              Real* __restrict result) {
+  for (std::size_t k = 0; k < count; ++k) result[k] = operate<code, Real>(a[k], b[k], c[k], d[k]);
 }
 
 template <Code code, class Real>
 [[gnu::always_inline]] inline void in_pieces(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
   constexpr std::size_t n = operands(code);
   Real buffers[n][piece<Real>];
-  for (std::size_t begin = 0; begin < batch.count; begin += piece<Real>) {
-    const std::size_t count = std::min<std::size_t>(piece<Real>, batch.count - begin);
-    const Real* from[4];
-    for (std::size_t j = 0; j < 4; ++j) {
-      from[j] = j < n ? side_by_side(batch.operand[j], registers, gathered, begin, count, buffers[std::min(j, n - 1)])
-                      : from[0];
-    }
-    // No operand of a batch lies in its results.
-    Real* __restrict result = registers + batch.result + begin;
-    const Real *a = from[0], *b = from[1], *c = from[2], *d = from[3];
-    for (std::size_t k = 0; k < count; ++k) result[k] = operate<code, Real>(a[k], b[k], c[k], d[k]);
+  for (std::size_t j = 0; j < n; ++j) {
+    if (batch.operand[j].layout == Operand::Layout::one)
+      std::fill_n(buffers[j], piece<Real>, registers[batch.operand[j].begin]);
   }
+  const auto compute = [&](std::size_t begin, auto count) __attribute__((always_inline)) {
+    const auto from = [&](std::size_t j) __attribute__((always_inline)) {
+      return side_by_side(batch.operand[j], registers, gathered, begin, count, buffers[j]);
+    };
+    const Real* const a = from(0);
+    const Real* const b = n > 1 ? from(n > 1 ? 1 : 0) : a;
+    const Real* const c = n > 2 ? from(n > 2 ? 2 : 0) : a;
+    const Real* const d = n > 3 ? from(n > 3 ? 3 : 0) : a;
+    one_by_one<code>(a, b, c, d, count, registers + batch.result + begin);
+  };
+  if (batch.count < piece<Real>) return compute(0, std::size_t{batch.count});
+  constexpr std::integral_constant<std::size_t, piece<Real>> whole;
+  std::size_t begin = 0;
+  for (; begin + whole <= batch.count; begin += whole) compute(begin, whole);
+  if (begin < batch.count) compute(batch.count - whole, whole);  // some of it again, with the same results
 }
 
 template <Code code, class Real>
@@ -76,16 +87,10 @@ template <Code code, class Real>
 [[gnu::target("avx2")]] void many_wide(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
   in_pieces<code>(registers, batch, gathered);
 }
-inline bool has_wide_vectors() {
-  return __builtin_cpu_supports("avx2") != 0;
-}
 #else
 template <Code code, class Real>
 void many_wide(Real* registers, const Batch& batch, const std::uint32_t* gathered) {
   many<code>(registers, batch, gathered);
-}
-constexpr bool has_wide_vectors() {
-  return false;
 }
 #endif
 
@@ -143,7 +148,7 @@ namespace continuo::model {
 
 template <class Real>
 void Tape::run_batch(const Program& program, const tape::Batch& batch, Real* registers) const {
-  const auto& manys = tape::has_wide_vectors() ? tape::manys<true, Real> : tape::manys<false, Real>;
+  const auto& manys = has_wide_vectors() ? tape::manys<true, Real> : tape::manys<false, Real>;
   manys[static_cast<std::size_t>(batch.code)](registers, batch, program.gathered.data());
 }
 
@@ -156,8 +161,9 @@ void Tape::run(const Program& program, Real* registers) const {
   static const void* const labels[] = {
       &&add_, &&subtract_, &&multiply_, &&divide_, &&multiply_add_, &&multiply_subtract_, &&subtract_product_,
       &&negated_product_, &&negated_sum_, &&negated_multiply_add_, &&negated_sum_of_products_, &&sum_of_products_,
-      &&difference_of_products_, &&sum_times_, &&difference_times_, &&negate_, &&square_root_, &&sine_, &&cosine_,
-      &&other_, &&table_, &&table_, &&batch_, &&copy_, &&stop_};
+      &&difference_of_products_, &&sum_times_, &&difference_times_, &&multiply_twice_,
+      &&sum_less_product_, &&less_product_plus_, &&negate_, &&square_root_, &&sine_, &&cosine_,
+      &&other_, &&table_, &&table_, &&batch_, &&stop_};
   // clang-format on
   static_assert(std::size(labels) == tape::entry(Code::stop) + 1);
   const tape::Instruction* i = program.instructions.data();
@@ -207,6 +213,15 @@ sum_times_:
 difference_times_:
   single<Code::difference_times>(registers, *i++);
   goto* labels[i->entry];
+multiply_twice_:
+  single<Code::multiply_twice>(registers, *i++);
+  goto* labels[i->entry];
+sum_less_product_:
+  single<Code::sum_less_product>(registers, *i++);
+  goto* labels[i->entry];
+less_product_plus_:
+  single<Code::less_product_plus>(registers, *i++);
+  goto* labels[i->entry];
 negate_:
   single<Code::negate>(registers, *i++);
   goto* labels[i->entry];
@@ -231,10 +246,6 @@ batch_:
   run_batch(program, program.batches[i->a], registers);
   ++i;
   goto* labels[i->entry];
-copy_:
-  tape::run(program.copies[i->a], registers, registers);
-  ++i;
-  goto* labels[i->entry];
 stop_:
   return;
 }
@@ -246,10 +257,36 @@ void Tape::prepare(std::span<Real> registers) const {
 }
 
 template <class Real>
-void Tape::evaluate(std::span<Real> registers, std::span<Real> outputs) const {
+void Tape::run(std::span<Real> registers, std::span<Real> outputs, const tape::Copies& copies) const {
   run(body_, registers.data());
-  for (std::size_t k = 0; k < outputs_.size(); ++k) outputs[k] = registers[outputs_[k]];
-  if (!many_outputs_.regular.empty()) tape::run(many_outputs_, registers.data(), outputs.data());
+  if (copies.is_empty()) {
+    for (std::size_t k = 0; k < outputs_.size(); ++k) outputs[k] = registers[outputs_[k]];
+  } else {
+    tape::run(copies, registers.data(), outputs.data());
+  }
+}
+
+template <class Real>
+void Tape::evaluate(std::span<Real> registers, std::span<Real> outputs) const {
+  tape::run(copies_, registers.data() + copied_from_, registers.data());
+  run(registers, outputs, many_outputs_);
+}
+
+template <class Real>
+void Tape::evaluate(std::span<Real> registers, std::span<const Real> states, std::span<Real> outputs) const {
+  evaluate(registers, states, outputs, many_outputs_);
+}
+
+template <class Real>
+void Tape::evaluate(std::span<Real> registers, std::span<const Real> states, std::span<Real> outputs,
+                    const tape::Copies& copies) const {
+  if (reads_only_copies_) {
+    tape::run(copies_, states.data(), registers.data());
+  } else {
+    std::ranges::copy(states, registers.data() + states_begin_);
+    tape::run(copies_, registers.data() + copied_from_, registers.data());
+  }
+  run(registers, outputs, copies);
 }
 
 }  // namespace continuo::model

@@ -156,12 +156,25 @@ class Selector {
   struct TermCodes {
     Code both, first, second, none;
   };
+  static constexpr TermCodes of_sum{Code::sum_of_products, Code::multiply_add, Code::multiply_add, Code::add};
+  static constexpr TermCodes of_difference{Code::difference_of_products, Code::multiply_subtract,
+                                           Code::subtract_product, Code::subtract};
+
   Selected sum(NodeId id, const Node& n) const {
-    return terms(id, n, {Code::sum_of_products, Code::multiply_add, Code::multiply_add, Code::add});
+    for (const auto& [inner, other] : {std::pair(n.a, n.b), std::pair(n.b, n.a)}) {
+      if (!folds(inner, id, Op::subtract) || folds(other, id, Op::multiply)) continue;
+      const Selected s = terms(id, graph_[inner], of_difference);
+      if (s.code == Code::subtract_product)
+        return make(Code::less_product_plus, s.operand[0], s.operand[1], s.operand[2], other);
+    }
+    return terms(id, n, of_sum);
   }
   Selected difference(NodeId id, const Node& n) const {
-    return terms(id, n,
-                 {Code::difference_of_products, Code::multiply_subtract, Code::subtract_product, Code::subtract});
+    const Selected s = terms(id, n, of_difference);
+    if (s.code != Code::subtract_product || !folds(n.a, id, Op::add)) return s;
+    const Selected first = terms(id, graph_[n.a], of_sum);
+    if (first.code != Code::add) return s;
+    return make(Code::sum_less_product, s.operand[0], s.operand[1], first.operand[0], first.operand[1]);
   }
   Selected terms(NodeId id, const Node& n, const TermCodes& code) const {
     const Node &a = graph_[n.a], &b = graph_[n.b];
@@ -177,16 +190,20 @@ class Selector {
       if (folds(inner, id, Op::add)) return make(Code::sum_times, graph_[inner].a, graph_[inner].b, other);
       if (folds(inner, id, Op::subtract)) return make(Code::difference_times, graph_[inner].a, graph_[inner].b, other);
     }
+    for (const auto& [inner, other] : {std::pair(n.a, n.b), std::pair(n.b, n.a)}) {
+      if (folds(inner, id, Op::multiply)) return make(Code::multiply_twice, graph_[inner].a, graph_[inner].b, other);
+    }
     return make(Code::multiply, n.a, n.b);
   }
 
   Selected negation(NodeId id, const Node& n) const {
     const Node& a = graph_[n.a];
     if (folds(n.a, id, Op::subtract)) return difference(id, {.op = Op::subtract, .a = a.b, .b = a.a});
-    if (folds(n.a, id, Op::add)) return negated(sum(id, a));
+    if (folds(n.a, id, Op::add)) return negated(terms(id, a, of_sum));
     if (folds(n.a, id, Op::multiply)) {
       const Selected s = product(id, a);
-      return s.code == Code::sum_times ? make(Code::negated_product, a.a, a.b) : negated(s);
+      return s.code == Code::multiply || s.code == Code::difference_times ? negated(s)
+                                                                          : make(Code::negated_product, a.a, a.b);
     }
     if (a.op == Op::subtract && steady_[n.a.index] == steady_[id.index]) return make(Code::subtract, a.b, a.a);
     return make(Code::negate, n.a);

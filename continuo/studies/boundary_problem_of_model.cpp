@@ -34,7 +34,7 @@ BoundaryConditions::BoundaryConditions(const ModelProgram& program, const Plan& 
   std::ranges::sort(times_);
   times_.erase(std::ranges::unique(times_).begin(), times_.end());
   const auto evaluation_of = [&](NodeId node) {
-    return model::Evaluation(program.tape_of(std::span(&node, 1)), model_.layout, plan.variables);
+    return model::Evaluation(program.tape_of(std::span(&node, 1)), plan.variables);
   };
   for (const BoundaryCondition& condition : model_.boundary) {
     Condition& made = conditions_.emplace_back();
@@ -107,8 +107,7 @@ class Guess {
     for (const model::Guess& guess : program.model.guesses) {
       if (seen[guess.state]++ > number) continue;
       const NodeId node = guess.node;
-      sources_[guess.state].text =
-          model::Evaluation(program.tape_of(std::span(&node, 1)), program.model.layout, plan.variables);
+      sources_[guess.state].text = model::Evaluation(program.tape_of(std::span(&node, 1)), plan.variables);
     }
     for (std::size_t i = 0; i < states_.size(); ++i)
       if (states_[i].variable >= program.model.layout.unknowns)

@@ -119,7 +119,7 @@ std::optional<ConvergenceProblem> convergence_problem(const std::shared_ptr<cons
                              .interval = interval};
   if (model.total_energy.valid()) {
     const std::vector<model::NodeId> nodes{model.total_energy};
-    problem.energy = [energy = model::Evaluation(program->tape_of(nodes), model.layout, variables)](
+    problem.energy = [energy = model::Evaluation(program->tape_of(nodes), variables)](
                          double t, std::span<const double> x) mutable { return energy(t, x).front(); };
   }
   return problem;

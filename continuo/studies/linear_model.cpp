@@ -21,7 +21,7 @@ std::vector<double> derivatives(const model::ModelProgram& program, const std::v
   const auto entries = model::jacobian(own.model.graph, nodes, variables);
   std::vector<model::NodeId> of_entries;
   for (const auto& entry : entries) of_entries.push_back(entry.value);
-  model::Evaluation evaluation(own.tape_of(of_entries), own.model.layout, values);
+  model::Evaluation evaluation(own.tape_of(of_entries), values);
   const std::vector<double> numbers = evaluation(t, x);
   std::vector<double> rows(nodes.size() * variables.size());
   for (std::size_t e = 0; e < entries.size(); ++e)

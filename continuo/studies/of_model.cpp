@@ -20,7 +20,7 @@ class Tapes {
         variables_(model::start_values(program_->model, what.parameters)),
         overrides_(what.parameters) {
     const model::Model& model = program_->model;
-    rates_ = model::Evaluation(program_->derivatives[mode_], model.layout, variables_);
+    rates_ = model::Evaluation(program_->derivatives[mode_], variables_);
     for (const std::string& name : what.constants) {
       const model::Parameter& parameter = model.parameters[model::find_parameter(model, name)];
       names_.push_back(name);

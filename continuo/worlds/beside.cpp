@@ -28,14 +28,14 @@ Beside<Dim>::Beside(const model::ModelProgram& program, std::span<const double> 
     const auto begin = mode.derivatives.begin() + static_cast<std::ptrdiff_t>(first_);
     const std::vector<model::NodeId> nodes(begin, begin + static_cast<std::ptrdiff_t>(count_));
     all.insert(all.end(), nodes.begin(), nodes.end());
-    if (count_ > 0) rates_.emplace_back(program.tape_of(nodes), model.layout, variables);
+    if (count_ > 0) rates_.emplace_back(program.tape_of(nodes), variables);
   }
   std::vector<model::NodeId> nodes;
   for (const model::ForceDescription& force : text.forces) {
     forces_of_.push_back(force.body);
     for (std::size_t axis = 0; axis < V::size(); ++axis) nodes.push_back(force.components[axis]);
   }
-  if (!nodes.empty()) forces_ = model::Evaluation(program.tape_of(nodes), model.layout, variables);
+  if (!nodes.empty()) forces_ = model::Evaluation(program.tape_of(nodes), variables);
   all.insert(all.end(), nodes.begin(), nodes.end());
   const std::size_t per_body = model::WorldDescription::states_of_body(Dim);
   for (const std::uint32_t variable : variables_of(model.graph, all)) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <ostream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -141,6 +143,18 @@ class GalleryJacobian : public testing::TestWithParam<GalleryModel> {
     return sizes_[j] > 0 ? greatest / sizes_[j] : greatest;
   }
 
+  /// A band is filled with the same entries, and nothing else in it is written.
+  static void expect_same_in_band(ModelSystem& system, double t, const X& x, std::span<const double> values) {
+    const SparsePattern& pattern = system.jacobian_pattern();
+    if (!pattern.is_banded()) return;
+    constexpr double untouched = -7;
+    std::vector<double> band(pattern.band().numbers(), untouched), expected = band;
+    const std::vector<std::uint32_t> places = pattern.places_in_band();
+    for (std::size_t p = 0; p < places.size(); ++p) expected[places[p]] = values[p];
+    system.jacobian_band(t, x, band);
+    ASSERT_EQ(band, expected);
+  }
+
   std::shared_ptr<const ModelProgram> program_;
   model::Run run_;
   std::size_t size_ = 0;
@@ -178,6 +192,7 @@ TEST_P(GalleryJacobian, OfTheGraphIsThatOfColouredDifferences) {
     std::vector<double> differences(pattern.entries()), values(pattern.entries()), beyond(pattern.entries());
     evaluate_jacobian(f, t, x, fx, moved, slope, least, pattern, groups, std::span(differences));
     system.jacobian_values(t, x, values);
+    expect_same_in_band(system, t, x, values);
     const auto rows = exact(system, t, x);
     for (std::size_t g = 0; g < groups.count(); ++g) {
       X group_moved = x;
@@ -195,6 +210,15 @@ TEST_P(GalleryJacobian, OfTheGraphIsThatOfColouredDifferences) {
         }
       }
     }
+  });
+}
+
+TEST_P(GalleryJacobian, AnAutonomousModelHasNoDerivativeByTime) {
+  at_moments([&](ModelSystem& system, double t, const X& x) {
+    X by_time(size_, 1);
+    system.time_derivative(t, x, by_time);
+    if (!system.autonomous) return;
+    ASSERT_EQ(by_time, X(size_, 0)) << "at " << t;
   });
 }
 

@@ -205,14 +205,65 @@ TEST(TapeFamily, SteadyVariablesAreReadWhereTheyAre) {
   }
 }
 
+// States that lie elsewhere, and outputs wanted elsewhere: the same numbers, and nothing else is written.
+TEST(TapeFamily, StatesAndOutputsMayLieElsewhere) {
+  constexpr std::uint32_t n = 40;
+  for (const bool reads_t : {false, true}) {
+    for (const bool reads_all_by_copies : {true, false}) {
+      Graph g;
+      std::vector<std::uint32_t> numbers(1 + 2 * n, 0), places;
+      std::vector<NodeId> outputs;
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const NodeId u = g.variable(1 + 2 * i), v = g.variable(2 + 2 * i), meet = g.multiply(g.multiply(u, u), v);
+        outputs.push_back(g.subtract(meet, u));
+        outputs.push_back(reads_t ? g.add(g.subtract(v, meet), g.variable(0)) : g.subtract(v, meet));
+        numbers[1 + 2 * i] = 1;
+        if (reads_all_by_copies) numbers[2 + 2 * i] = 2;
+        places.insert(places.end(), {300 + 5 * i, 600 - 3 * i});
+      }
+      const Tape tape(g, outputs,
+                      {.variables = 1 + 2 * n, .states_begin = 1, .states_end = 1 + 2 * n, .families = numbers});
+      std::vector<double> whole(tape.register_count()), apart(tape.register_count(), -7), states(2 * n);
+      for (std::uint32_t i = 0; i < 2 * n; ++i) whole[1 + i] = states[i] = std::sin(1 + i);
+      whole[0] = apart[0] = 0.25;
+      std::vector<double> expected(2 * n), computed(2 * n), placed(700, 5), expected_placed = placed;
+      tape.prepare<double>(whole);
+      tape.prepare<double>(apart);
+      tape.evaluate<double>(whole, expected);
+      tape.evaluate<double>(apart, states, computed);
+      EXPECT_EQ(computed, expected);
+      for (std::uint32_t k = 0; k < 2 * n; ++k) {
+        EXPECT_EQ(expected[k], evaluate(g, outputs[k], whole));
+        expected_placed[places[k]] = expected[k];
+      }
+      tape.evaluate<double>(apart, states, placed, tape.outputs_at(places));
+      EXPECT_EQ(placed, expected_placed);
+    }
+  }
+}
+
 TEST(TapeFamily, RegularCopiesBringEachNumberToItsPlace) {
   std::mt19937 random(1);
+  std::size_t joined = 0, parted = 0;
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random() % n); };
   for (int repeat = 0; repeat < 300; ++repeat) {
     std::vector<tape::Place> places;
     std::uint32_t to = 0;
     for (std::uint32_t part = 0; part < 4; ++part) {
       const std::uint32_t mixed = 1 + below(20), count = below(60), from = below(100), step = below(4);
+      if (part == 2) {  // two that take turns where they come from
+        for (std::uint32_t k = 0; k < 2 * count; ++k)
+          places.push_back({.from = 900 + from + k, .to = to + k / 2 + k % 2 * count});
+        to += 2 * count;
+        continue;
+      }
+      if (part % 2 == 1) {  // two that take turns where they go, not all along
+        const std::uint32_t late = below(4), early = below(4);
+        for (std::uint32_t k = 0; k + early < count; ++k) places.push_back({.from = from + k, .to = to + 2 * k});
+        for (std::uint32_t k = late; k < count; ++k) places.push_back({.from = from + 300 + k, .to = to + 2 * k + 1});
+        to += 2 * count;
+        continue;
+      }
       for (std::uint32_t k = 0; k < count; ++k)
         for (std::uint32_t m = 0; m < mixed; ++m) places.push_back({.from = from + 7 * m + step * k, .to = to++});
       for (std::uint32_t k = below(5); k > 0; --k) places.push_back({.from = below(500), .to = to++});
@@ -225,9 +276,14 @@ TEST(TapeFamily, RegularCopiesBringEachNumberToItsPlace) {
     tape::run(copies, from.data(), copied.data());
     std::size_t written = copies.alone.size();
     for (const tape::Copy& copy : copies.regular) written += copy.count;
+    for (const tape::Turns& turns : copies.joined) written += 2 * turns.count;
+    for (const tape::Turns& turns : copies.parted) written += 2 * turns.count;
+    joined += copies.joined.size(), parted += copies.parted.size();
     EXPECT_EQ(written, places.size());
     for (const tape::Place& place : places) EXPECT_EQ(copied[place.to], static_cast<int>(place.from));
   }
+  EXPECT_GT(joined, 20u);
+  EXPECT_GT(parted, 20u);
 }
 
 TEST(TapeFamily, MembersOfAModelsStatesAreFamilies) {

@@ -1,6 +1,7 @@
 // The tape computes what the expressions say, whatever it does for speed.
 #include <cmath>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -89,6 +90,33 @@ TEST(Tape, AgreesWithTheExpressionsOnRandomOnes) {
       const double expected = evaluate(e.g, outputs[i], values);
       // Steady factors are gathered: sixty operations, each good to half a unit in the last place.
       EXPECT_NEAR(computed[i], expected, 1e-11 * (1 + std::abs(expected))) << "seed " << seed << " output " << i;
+    }
+  }
+}
+
+// One operation each, in the order of the text: every digit is that of the expression.
+TEST(Tape, SumsAndProductsOfThreeAreOneOperation) {
+  Graph g;
+  const NodeId a = g.variable(1), b = g.variable(2), c = g.variable(3), d = g.variable(4);
+  const NodeId outputs[] = {
+      g.multiply(g.multiply(a, b), c),
+      g.multiply(d, g.multiply(b, c)),
+      g.subtract(g.add(a, b), g.multiply(c, d)),
+      g.add(g.subtract(a, g.multiply(b, c)), d),
+      g.add(d, g.subtract(b, g.multiply(a, c))),
+      g.negate(g.multiply(g.multiply(a, c), d)),
+      g.negate(g.subtract(g.multiply(a, d), g.add(b, c))),
+      g.negate(g.add(g.subtract(c, g.multiply(a, b)), d)),
+  };
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const NodeId output : outputs) {
+    const Tape tape(g, std::span(&output, 1), layout);
+    EXPECT_LE(tape.size().single, g[output].op == Op::negate ? 2u : 1u);
+    for (int repeat = 0; repeat < 100; ++repeat) {
+      std::vector<double> values(variables);
+      for (double& value : values) value = uniform(random);
+      EXPECT_EQ(run<double>(tape, values).front(), evaluate(g, output, values));
     }
   }
 }

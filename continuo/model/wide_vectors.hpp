@@ -1,0 +1,17 @@
+// Whether this machine has vectors of 256 bits: code for them is compiled beside the plain one, which every machine
+// has.
+#pragma once
+
+namespace continuo::model {
+
+#if defined(__x86_64__)
+inline bool has_wide_vectors() {
+  return __builtin_cpu_supports("avx2") != 0;
+}
+#else
+constexpr bool has_wide_vectors() {
+  return false;
+}
+#endif
+
+}  // namespace continuo::model

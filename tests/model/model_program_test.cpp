@@ -1,0 +1,56 @@
+// What a compiled model knows of itself.
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tests/model/check_helpers.hpp>
+
+#include <continuo/model/model_program.hpp>
+#include <continuo/model/model_system.hpp>
+
+namespace continuo::model {
+namespace {
+
+TEST(ModelProgram, KnowsWhetherADerivativeReadsTheTime) {
+  const auto is_autonomous = [](const char* text) { return compile(good(text))->autonomous; };
+  EXPECT_TRUE(is_autonomous("model M\nx' = -x\nx(0) = 1\nrun 0..1\n"));
+  EXPECT_TRUE(is_autonomous("model M\nx' = -x\nx(0) = 1\noutput late = x*t\nrun 0..1\n"));
+  EXPECT_FALSE(is_autonomous("model M\nparam w = 2\nx' = -x + sin(w*t)\nx(0) = 1\nrun 0..1\n"));
+  EXPECT_FALSE(is_autonomous(R"(model M
+mode still { x' = -x }
+mode driven { x' = t - x }
+x(0) = 1
+when x falls through 0.5 { go driven }
+run 0..1
+)"));
+}
+
+// Somebody holds one of them: its row is zero, in the order of the pattern and in the band.
+TEST(ModelSystem, AHeldStateHasNoDerivativesInABandEither) {
+  const auto program = compile(good(R"(model Line
+param N = 30
+for i in 1..N { u[i](0) = i/N }
+u[1]' = u[2] - 2*u[1]
+for i in 2..N-1 { u[i]' = u[i-1] - 2*u[i] + u[i+1]^2 }
+u[N]' = u[N-1] - 2*u[N]
+run 0..1
+)"));
+  ModelSystem system(program, start_values(program->model));
+  const SparsePattern& pattern = system.jacobian_pattern();
+  ASSERT_TRUE(pattern.is_banded());
+  const std::vector<std::uint32_t> places = pattern.places_in_band();
+  const std::vector<double> x(30, 0.75);
+  std::vector<double> values(pattern.entries()), band(pattern.band().numbers());
+  for (const bool held : {false, true}) {
+    if (held) system.hold({7});
+    system.jacobian_values(0, x, values);
+    system.jacobian_band(0, x, band);
+    EXPECT_EQ(values[pattern.find(7, 7)], held ? 0 : -2);
+    EXPECT_EQ(values[pattern.find(7, 8)], held ? 0 : 1.5);
+    for (std::size_t p = 0; p < places.size(); ++p) EXPECT_EQ(band[places[p]], values[p]);
+  }
+}
+
+}  // namespace
+}  // namespace continuo::model
