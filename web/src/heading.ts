@@ -1,5 +1,5 @@
-// The comment at the top of a model, as a page shows it: its first line is the title; what begins with "Watch" says what
-// to see and always stays in sight.
+// The comment at the top of a model, as a page shows it: its first line is the title; what begins with "Watch" or "To see" says
+// what to see and always stays in sight.
 import { make } from "./dom";
 
 export interface Heading {
@@ -25,13 +25,13 @@ export function parseHeading(comment: string): Heading {
     else paragraphs.push({ text: code ? line : line.trim(), code });
     open = true;
   }
-  const [first, ...rest] = paragraphs;
-  const split = rest.flatMap((paragraph) => {
-    const at = paragraph.code ? -1 : paragraph.text.search(/(?<=[.:] )(Watch|See) /);
+  const split = paragraphs.flatMap((paragraph) => {
+    const at = paragraph.code ? -1 : paragraph.text.search(/(?<=[.:;] )(Watch|See|To see)\b/);
     return at > 0 ? [{ text: paragraph.text.slice(0, at).trim(), code: false }, { text: paragraph.text.slice(at), code: false }] : [paragraph];
   });
-  const watch = split.find(({ text, code }) => !code && /^(Watch|See)\b/.test(text)) ?? null;
-  return { title: first?.text ?? "", watch: watch?.text.replace(/\s*Try:$/, "") ?? null, paragraphs: split.filter((each) => each !== watch) };
+  const [first, ...rest] = split;
+  const watch = rest.find(({ text, code }) => !code && /^(Watch|See|To see)\b/.test(text)) ?? null;
+  return { title: first?.text ?? "", watch: watch?.text.replace(/\s*Try:$/, "") ?? null, paragraphs: rest.filter((each) => each !== watch) };
 }
 
 /** Words between backquotes are code. */

@@ -8,6 +8,20 @@ import { Spheres } from "./spheres";
 
 export const radiusOf = (bodies: Bodies) => (index: number): number => (typeof bodies.radius === "number" ? bodies.radius : (bodies.radius[index] ?? bodies.radius[0] ?? 1));
 
+/** The box that six walls along the axes make: drawn by its edges, since six planes would hide what is in it. */
+export function boxOfWalls(walls: Bodies["walls"]): { lower: number[]; upper: number[] } | null {
+  const lower = [NaN, NaN, NaN];
+  const upper = [NaN, NaN, NaN];
+  for (const { normal, offset } of walls) {
+    const axis = normal.findIndex((part) => part !== 0);
+    if (axis < 0 || normal.some((part, index) => index !== axis && part !== 0)) return null;
+    const place = offset / normal[axis]!;
+    if (normal[axis]! > 0) lower[axis] = place;
+    else upper[axis] = place;
+  }
+  return [...lower, ...upper].every(Number.isFinite) ? { lower, upper } : null;
+}
+
 export class BodiesView {
   readonly group = new three.Group();
   readonly spheres: Spheres;
@@ -31,7 +45,9 @@ export class BodiesView {
     this.group.add(this.spheres.object);
     const line = theme === "light" ? "#5c6b7a" : "#9aa8b5";
     for (const { lower, upper } of ghost ? [] : bodies.containers) this.outline(lower, upper, line, flat);
-    for (const { normal, offset } of ghost ? [] : bodies.walls) this.wall(normal, offset, line, flat);
+    const box = flat ? null : boxOfWalls(bodies.walls);
+    if (box && !ghost) this.outline(box.lower, box.upper, line, false);
+    for (const { normal, offset } of ghost || box ? [] : bodies.walls) this.wall(normal, offset, line, flat);
   }
 
   update(positions: Float32Array, orientations: Float32Array | null): void {
@@ -41,7 +57,8 @@ export class BodiesView {
 
   /** Containers belong into the picture whole. */
   includeContainers(bounds: Bounds): void {
-    for (const { lower, upper } of this.bodies.containers) {
+    const box = this.bodies.dimension === 3 ? boxOfWalls(this.bodies.walls) : null;
+    for (const { lower, upper } of box ? [box, ...this.bodies.containers] : this.bodies.containers) {
       include(bounds, lower[0]!, lower[1]!, lower[2] ?? 0);
       include(bounds, upper[0]!, upper[1]!, upper[2] ?? 0);
     }

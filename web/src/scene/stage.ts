@@ -131,7 +131,7 @@ export class Stage {
       return Math.abs(Math.log(height / this.viewHeight)) > 0.002 || target.distanceTo(goal) > 0.001 * height;
     }
     const radius = Math.max(1e-9, Math.hypot(extent(bounds, 0), extent(bounds, 1), extent(bounds, 2)) / 2);
-    const wanted = (0.86 * radius) / Math.sin(((fov / 2) * Math.PI) / 180) / Math.min(1, aspect);
+    const wanted = (0.95 * radius) / Math.sin(((fov / 2) * Math.PI) / 180) / Math.min(1, aspect);
     const way = this.camera.position.clone().sub(target);
     if (wanted > way.length()) part = 1;
     const distance = way.length() * (wanted / way.length()) ** part;

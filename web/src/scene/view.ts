@@ -138,7 +138,7 @@ export class SceneView {
     if (frame.positions && model.bodies) {
       this.showBodies(model.bodies, frame.positions, frame.orientations);
       union(bounds, boundsOfBodies(frame.positions, model.bodies.dimension, radiusOf(model.bodies)));
-      if (model.bodies.containers.length > 0) this.bodies?.includeContainers(bounds);
+      this.bodies?.includeContainers(bounds);
     }
     this.interest.see(bounds);
     const floor = model.drawing.find((item) => item.shape === "floor");

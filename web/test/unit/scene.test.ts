@@ -1,6 +1,7 @@
 import { expect, test } from "vitest";
 import { spring, springPoints, rope, ropePoints, Trail } from "../../src/scene/curves";
 import { boundsOfItems, gridStep, heightFor, Interest } from "../../src/scene/fit";
+import { boxOfWalls } from "../../src/scene/bodies";
 import { pickSphere } from "../../src/scene/spheres";
 import { itemColors } from "../../src/scene/drawing";
 import { curveColors } from "../../src/palette";
@@ -81,4 +82,11 @@ test("a few balls have colours of their own, many have one, a trail has its ball
   const [, second, trail] = itemColors([...balls(2), item("trail", { at: [2, 3] })], "dark");
   expect(trail).toBe(second);
   expect(curveColors.dark).toContain(second);
+});
+
+test("six walls along the axes are a box, others are not", () => {
+  const walls = [0, 1, 2].flatMap((axis) => [1, -1].map((sign) => ({ normal: [0, 1, 2].map((each) => (each === axis ? sign : 0)), offset: -2 })));
+  expect(boxOfWalls(walls)).toEqual({ lower: [-2, -2, -2], upper: [2, 2, 2] });
+  expect(boxOfWalls(walls.slice(1))).toBeNull();
+  expect(boxOfWalls([...walls, { normal: [1, 1, 0], offset: 0 }])).toBeNull();
 });
