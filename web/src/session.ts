@@ -75,8 +75,10 @@ export class Session implements Listener {
   said(message: Say): void {
     switch (message.say) {
       case "model": {
-        const same = this.model !== null && sameModel(this.model, message);
-        this.model = message;
+        const before = this.model;
+        const same = before !== null && sameModel(before, message);
+        // The same text says the same values, whatever they have been changed to since.
+        this.model = same ? { ...message, parameters: before.parameters, inputs: before.inputs } : message;
         this.beginAnew(message.run);
         if (!same) {
           this.frame = null;
