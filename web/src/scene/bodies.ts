@@ -35,7 +35,7 @@ export class BodiesView {
     private readonly size: number,
   ) {
     const flat = bodies.dimension === 2;
-    this.spheres = new Spheres(bodies.count, { flat, opacity: ghost ? 0.4 : 1, least: 1, order: ghost ? -5 : 5 });
+    this.spheres = new Spheres(bodies.count, { flat, opacity: ghost ? 0.4 : 1, least: 1, order: ghost ? -5 : 4.5 });
     const radius = radiusOf(bodies);
     for (let i = 0; i < bodies.count; ++i) {
       this.spheres.place(i, 0, 0, 0, radius(i));

@@ -140,6 +140,7 @@ export class SceneView {
       union(bounds, boundsOfBodies(frame.positions, model.bodies.dimension, radiusOf(model.bodies)));
       this.bodies?.includeContainers(bounds);
     }
+    if (frame.ghostScene) union(bounds, boundsOfItems(model.drawing, frame.ghostScene, this.stage.isFlat ? 1 : 2));
     this.interest.see(bounds);
     const floor = model.drawing.find((item) => item.shape === "floor");
     this.stage.floor = floor ? numberOf(floor, frame.scene, "at", 0) : null;
