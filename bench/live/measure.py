@@ -86,26 +86,33 @@ def slow(seconds=20):
             message = view.hear()
             best = max(best, message.reached) if isinstance(message, Frame) else best
         view.say("speed", value=10 * best)  # ten times what the machine can do
-        end, state, delays, k = time.monotonic() + seconds, None, [], 1
+        end, state, delays, k, last = time.monotonic() + seconds, None, [], 1, None
+
+        def until(seen):
+            """Hears until seen(message, rows' times with the one before them)."""
+            nonlocal state, last
+            while True:
+                message, times = view.hear(), ()
+                if isinstance(message, Frame) and message.row_t:
+                    times, last = (last, *message.row_t), message.row_t[-1]
+                elif isinstance(message, dict) and message["say"] == "state":
+                    state = message
+                if seen(message, times):
+                    return
+
+        until(lambda message, times: bool(times))
         while time.monotonic() < end:
             k = 3 - k
             begin = time.monotonic()
             view.say("set", parameter="k", value=k)
-            # The row of the change stands at the same t as one before it.
-            seen = False
-            while not seen:
-                message = view.hear()
-                if isinstance(message, dict) and message["say"] == "state":
-                    state = message
-                if isinstance(message, Frame) and any(a == b for a, b in zip(message.row_t, message.row_t[1:])):
-                    seen = True
+            # The row of the change stands at the same t as the one before it.
+            until(lambda message, times: any(a == b for a, b in zip(times, times[1:])))
             delays.append(time.monotonic() - begin)
-            time.sleep(0.2)
             view.say("ping", id=k)
-            while not (isinstance(message, dict) and message.get("say") == "pong"):
-                message = view.hear()
-                if isinstance(message, dict) and message["say"] == "state":
-                    state = message
+            until(lambda message, times: isinstance(message, dict) and message["say"] == "pong")
+            time.sleep(0.1)
+            view.say("ping", id=k)
+            until(lambda message, times: isinstance(message, dict) and message["say"] == "pong")
         delays.sort()
         print(f"slow: a model ten times too slow: reached {state['reached'] / state['target']:.3f} of the target, slow: "
               f"{state['slow']}; from a hand to its frame {1e3 * statistics.median(delays):.0f} ms, at most "
@@ -162,9 +169,10 @@ def crowd(seconds=300):
 def spheres(seconds=20):
     with open(os.path.join(root, "bench", "live", "spheres.sim")) as file:
         text = file.read()
-    with Viewed(text) as viewed:
+    # In slow motion, a step of the physics or two in a second: what is measured is the rest.
+    with Viewed(text, "--speed", "0.02") as viewed:
         view = View(viewed.address)
-        view.until(lambda m: isinstance(m, Frame) and m.t > 0.5, 60)
+        view.until(lambda m: isinstance(m, Frame) and m.t > 0, 60)
         before, begin, frames, size, reached = viewed.processor_seconds(), time.monotonic(), 0, 0, 0
         while time.monotonic() < begin + seconds:
             message = view.hear()
@@ -172,7 +180,7 @@ def spheres(seconds=20):
                 frames, size, reached = frames + 1, message.size, message.reached
         wall = time.monotonic() - begin
         used = viewed.processor_seconds()
-        print(f"spheres: {size / 1e3:.0f} kB a frame, {frames / wall:.1f} frames a second at {reached:.2f} of real time; "
+        print(f"spheres: {size / 1e3:.0f} kB a frame, {frames / wall:.1f} frames a second at {reached:.3f} of real time; "
               "processor: " + ", ".join(f"{name} {100 * (used[name] - before.get(name, 0)) / wall:.1f} %" for name in used))
         view.close()
 

@@ -142,7 +142,7 @@ class WorldTrack final : public Track {
       const double t = std::clamp(contact.time, before_t_, run_->time());
       passed_.push_back({t, {{run_->name_of(contact), {}}}, {}, {}, run_->mode(), {}});
     }
-    std::ranges::stable_sort(passed_, {}, &Passed::t);
+    std::ranges::sort(passed_, {}, &Passed::t);
   }
 
   std::unique_ptr<WorldRun> run_;

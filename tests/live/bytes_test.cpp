@@ -97,7 +97,7 @@ Read read_frame(const std::string& bytes) {
   std::memcpy(&read.flags, bytes.data() + 8, 4);
   std::memcpy(&read.rows, bytes.data() + 12, 4);
   read.t.resize(read.rows);
-  std::memcpy(read.t.data(), bytes.data() + 40, 8 * read.rows);
+  if (read.rows > 0) std::memcpy(read.t.data(), bytes.data() + 40, 8 * read.rows);
   return read;
 }
 
