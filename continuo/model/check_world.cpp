@@ -251,7 +251,11 @@ Value Checker::member(const ast::Name& name, Scope& scope) {
 Value Checker::own_of_body(const ast::Name& name, std::size_t body) {
   const bool known = name.member == "radius" || name.member == "mass";
   if (known && name.primes == 0) {
-    if (!world_.bodies_are_made) return not_constant(name.span, to_text(name));
+    if (!world_.bodies_are_made) {
+      fail("E224", name.span, fmt::format("`{}` is not known yet", to_text(name)),
+           "parameters and the world come before it", "name it by a parameter: param r = 0.5, and radius r");
+      return bad();
+    }
     const BodyDescription& made = world_.made.bodies[body];
     if (!made.radius.valid() || !made.mass.valid()) return bad();
     return name.member == "mass" ? Value{.node = made.mass, .measured = world_.mass}
