@@ -3,7 +3,6 @@
 #include <limits>
 #include <utility>
 
-#include <continuo/live/kept_step.hpp>
 #include <continuo/live/track.hpp>
 #include <continuo/live/world_track.hpp>
 
@@ -35,13 +34,7 @@ class EquationTrack final : public Track, model::StepWatcher {
     return true;
   }
 
-  void at(double t, X& x) override {
-    if (t != run_->t() && kept_.covers(t)) {
-      kept_.at(t, x);
-    } else {
-      run_->at(t, x);
-    }
-  }
+  void at(double t, X& x) override { run_->at(t, x); }
 
   Instant instant_at(double t, bool) override {
     Instant instant;
@@ -86,25 +79,10 @@ class EquationTrack final : public Track, model::StepWatcher {
     const auto stops = run_->events().stops();
     stops_.assign(stops.begin(), stops.end());
     passed_.clear();
-    begin_ = run_->t();
-    kept_.forget();
   }
 
-  // Before the actions of an event at `to`, if there is one: what dense output needs of the system is still that of the
-  // step.
-  void stretch(model::Stepping& run, double to) override {
-    if (to == begin_ || run.events().size() == 0) return;
-    between_ = run.x();
-    run.at(begin_ + (to - begin_) / 2, between_);
-  }
-  // After them, and before the next step begins: the dense output stands.
+  void stretch(model::Stepping&, double) override {}
   void happening(model::Stepping& run, const Happening<X>& now) override {
-    if (now.t != begin_ && now.t != kept_.end()) {
-      kept_.keep(begin_, now.t, now.before, [&](double t, X& x) {
-        x.resize(now.before.size());
-        run.at(t, x);
-      });
-    }
     const model::ModelEvents& events = run.events();
     const auto marks = events.marks().subspan(marks_seen_);
     const auto stops = events.stops();
@@ -119,9 +97,6 @@ class EquationTrack final : public Track, model::StepWatcher {
   }
 
   std::unique_ptr<model::Stepping> run_;
-  KeptStep kept_;
-  double begin_ = 0;  // of the last step
-  X between_;
   std::size_t mode_ = 0;            // before the last step, like
   std::vector<std::size_t> stops_;  //
   std::size_t marks_seen_ = 0;
