@@ -1,28 +1,28 @@
-// Every model of the gallery opens in the page without an error in its console and moves or says why not. And the pictures
-// that people look at: the lecture's scenes, dark, on a telephone, on a projector.
+// Every model of the gallery opens in the page without an error in its console and moves. And the pictures that people
+// look at: the lecture's scenes, dark, on a telephone, on a projector.
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { button, model, now, open, picture, root, serve, until } from "./harness.mjs";
 
+// Their conditions stand at both ends: there is nothing to see before all is known.
+const boundary = ["blasius", "boundary_layer", "bratu", "cantilever", "swinging_period"];
+
 test("each model of the gallery", async (t) => {
   const { url } = await serve(t, model("mass_spring"));
   const tab = await open(t, url);
   const names = await tab.evaluate(() => globalThis.continuo.session.model.gallery.map(({ name }) => name));
   const files = readdirSync(path.join(root, "models")).filter((file) => file.endsWith(".sim")).map((file) => file.slice(0, -4));
-  assert.deepEqual([...names].sort(), files.sort(), "the gallery is the folder");
+  assert.deepEqual([...names, ...boundary].sort(), files.sort(), "the gallery is the folder");
   for (const name of names) {
     await tab.evaluate((wanted) => globalThis.continuo.session.send({ do: "open", model: wanted }), name);
-    await tab.waitForFunction((wanted) => globalThis.continuo.session.model.path.endsWith(`/${wanted}.sim`) || document.querySelector(".message.error"), name, { timeout: 10000 });
-    const opened = await tab.evaluate((wanted) => globalThis.continuo.session.model.path.endsWith(`/${wanted}.sim`), name);
-    if (opened) {
-      await tab.waitForFunction(() => globalThis.continuo.session.history.length > 0 || document.querySelector(".message"), null, { timeout: 10000 });
-      await tab.evaluate(() => globalThis.continuo.session.state?.playing || globalThis.continuo.session.send({ do: "play" }));
-      await tab.waitForFunction(() => globalThis.continuo.session.history.length > 3 || document.querySelector(".message"), null, { timeout: 10000 });
-      const heading = await tab.locator(".heading h1").textContent();
-      assert.ok(heading.length > 5, `${name} says what it is`);
-    }
+    await tab.waitForFunction((wanted) => globalThis.continuo.session.model.path.endsWith(`/${wanted}.sim`), name, { timeout: 10000 });
+    await tab.waitForFunction(() => globalThis.continuo.session.history.length > 0 || document.querySelector(".message"), null, { timeout: 10000 });
+    await tab.evaluate(() => globalThis.continuo.session.state?.playing || globalThis.continuo.session.send({ do: "play" }));
+    await tab.waitForFunction(() => globalThis.continuo.session.history.length > 3 || document.querySelector(".message"), null, { timeout: 10000 });
+    const heading = await tab.locator(".heading h1").textContent();
+    assert.ok(heading.length > 5, `${name} says what it is`);
     await tab.waitForTimeout(250);
     await picture(tab, `gallery_${name}`);
     assert.deepEqual(tab.problems, [], `errors in the console with ${name}`);
