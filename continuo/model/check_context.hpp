@@ -399,7 +399,8 @@ class Checker {
   void make_drawings();
   void make_drawing(const std::vector<ast::DrawItem>& items, Scope& scope);
   bool depends_on_states(const DrawArgument& point) const;
-  DrawArgument draw_argument(const ast::Expression& expression, Scope& scope);
+  NodeId drawn(const ast::Expression& expression, Scope& scope, bool of_point);
+  DrawArgument draw_argument(const ast::Expression& expression, Scope& scope, bool of_point);
   Series series(const ast::Expression& expression, Scope& scope);
 
   void make_checks();  // check_checks.cpp
@@ -436,6 +437,7 @@ class Checker {
   std::vector<Placed<ast::Check>> checks_;
   std::vector<Placed<ast::Plot>> plots_;
   std::vector<Placed<ast::Draw>> draws_;
+  Measured drawn_in_;  // the unit of the first point that has one: of all that is drawn
   WorldAtWork world_;
   const ast::Run* run_ = nullptr;
   Span run_span_{};

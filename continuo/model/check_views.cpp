@@ -53,14 +53,22 @@ void Checker::make_plots() {
   }
 }
 
-DrawArgument Checker::draw_argument(const ast::Expression& expression, Scope& scope) {
+NodeId Checker::drawn(const ast::Expression& expression, Scope& scope, bool of_point) {
+  const Value value = number_of(expression, scope);
+  if (!value.measured.is_known()) return value.node;
+  if (of_point && !drawn_in_.is_known()) drawn_in_ = value.measured;
+  const auto factor = factor_between(value.measured, drawn_in_);
+  return !factor || *factor == 1 ? value.node : model_.graph.multiply(value.node, model_.graph.constant(*factor));
+}
+
+DrawArgument Checker::draw_argument(const ast::Expression& expression, Scope& scope, bool of_point) {
   DrawArgument argument;
   if (const auto* text = std::get_if<ast::Text>(&expression.node)) {
     argument.text = text->value;
   } else if (const auto* list = std::get_if<ast::List>(&expression.node)) {
-    for (const ast::Expression& item : list->items) argument.numbers.push_back(number_of(item, scope).node);
+    for (const ast::Expression& item : list->items) argument.numbers.push_back(drawn(item, scope, of_point));
   } else {
-    argument.numbers.push_back(number_of(expression, scope).node);
+    argument.numbers.push_back(drawn(expression, scope, of_point));
   }
   return argument;
 }
@@ -85,9 +93,10 @@ void Checker::make_drawing(const std::vector<ast::DrawItem>& items, Scope& scope
     }
     const ast::Shape& text = std::get<ast::Shape>(item.node);
     DrawItem made{shape_of(text.kind), {}, {}, item.span};
-    for (const ast::Expression& argument : text.arguments) made.arguments.push_back(draw_argument(argument, scope));
+    for (const ast::Expression& argument : text.arguments)
+      made.arguments.push_back(draw_argument(argument, scope, true));
     for (const ast::Attribute& attribute : text.attributes) {
-      made.attributes.push_back({attribute.name.text, draw_argument(attribute.value, scope)});
+      made.attributes.push_back({attribute.name.text, draw_argument(attribute.value, scope, false)});
     }
     if (is_dragged(made) && !depends_on_states(made.arguments.front())) {
       fail("E265", item.span, "there is nothing to drag", "no state moves this point",

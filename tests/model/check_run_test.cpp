@@ -79,6 +79,18 @@ TEST(CheckRun, PlotsAndDrawingsAreKept) {
   EXPECT_EQ(model.graph.value(model.drawing[4].arguments[0].numbers[0]), 3);
 }
 
+// A picture has one unit, that of its first point.
+TEST(CheckRun, WhatIsDrawnIsConverted) {
+  const Model model = good(
+      "param r = 28 [mm]\nx' = 1 [m/s]\nx(0) = 2 [m]\nrun 0..1 [s]\n"
+      "draw { ball (x, 30 [cm]) radius r; ball (x, 0) radius 3 }\n");
+  const auto variables = start_values(model);
+  EXPECT_DOUBLE_EQ(evaluate(model, model.drawing[0].arguments[0].numbers[0], variables), 2);
+  EXPECT_DOUBLE_EQ(evaluate(model, model.drawing[0].arguments[0].numbers[1], variables), 0.3);
+  EXPECT_DOUBLE_EQ(evaluate(model, model.drawing[0].attributes[0].value.numbers[0], variables), 0.028);
+  EXPECT_DOUBLE_EQ(evaluate(model, model.drawing[1].attributes[0].value.numbers[0], variables), 3);
+}
+
 TEST(CheckRun, WhatTheMouseMayMoveDependsOnStates) {
   const Model model = good(decay + "run 0..3\ndraw { ball (0, sin(x)) drag; box (x, 1) }\n");
   EXPECT_TRUE(is_dragged(model.drawing[0]));
