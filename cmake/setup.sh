@@ -30,7 +30,6 @@ packages_to_test=(
   "libclang-rt-19-dev     -            sanitizers and the fuzzer"
   "lld-19                 ld.lld-19    its linker: six times as fast on sanitized programs"
   "clang-format-19        clang-format-19 the layout of the code"
-  "clang-tidy-19          clang-tidy-19 static checks"
 )
 
 say() { printf 'continuo: %s\n' "$*" >&2; }
