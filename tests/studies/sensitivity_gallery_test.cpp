@@ -27,7 +27,7 @@ const std::map<std::string, double> ends = {
     {"rc_diode", 1e-2},     {"relaxation", 0.05},    {"rc_ladder", 5e-3},
     {"fed_batch", 1},       {"oregonator", 0.1},     {"ball_on_stairs", 2},
     {"wave_equation", 0.2}, {"heat_equation", 0.05}, {"brusselator_line", 0.2},
-    {"thermostat", 3},
+    {"thermostat", 3},      {"ball_located", 8},  // the fourth impact is at 9.995
 };
 
 struct Case {
