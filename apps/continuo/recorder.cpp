@@ -41,8 +41,11 @@ void Recorder::see(std::shared_ptr<const live::Slice> slice) {
 }
 
 void Recorder::hear(live::Topic topic, std::string json) {
-  if (topic == live::Topic::model) model_ = std::move(json);
-  if (topic == live::Topic::message) messages_.push_back(std::move(json));
+  if (topic == live::Topic::model) {
+    model_ = std::move(json);
+  } else if (topic == live::Topic::message) {
+    messages_.push_back(std::move(json));
+  }
 }
 
 void Recorder::begin() {
