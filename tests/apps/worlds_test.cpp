@@ -1,5 +1,4 @@
 // What the verbs make of a world of bodies.
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -30,13 +29,6 @@ constexpr const char* bounce =
     "run 0..4 output 1\n"
     "check height at 2 = 5 within 1e-12\n"
     "check count of \"ball meets floor\" = 2\n";
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
 
 TEST(Worlds, RunLikeEquations) {
   const Shell shell;
