@@ -1,16 +1,10 @@
 // A row of the controls: a name, a number that can be typed, and a slider where there is a range.
 import { make } from "../dom";
 import { formatName, formatNumber, formatUnit, parseNumber } from "../format";
+import type { Parameter } from "../protocol";
 import { places, sliderScale, type Scale } from "./scale";
 
-export interface Quantity {
-  name: string;
-  value: number;
-  unit: string;
-  min: number | null;
-  max: number | null;
-  comment: string;
-}
+export type Quantity = Pick<Parameter, "name" | "value" | "unit" | "min" | "max" | "comment">;
 
 export class QuantityRow {
   readonly element: HTMLElement;
