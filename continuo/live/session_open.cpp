@@ -3,31 +3,54 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <set>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include <continuo/live/messages.hpp>
 #include <continuo/live/session.hpp>
 #include <continuo/live/write_file.hpp>
+#include <continuo/model/format.hpp>
+#include <continuo/model/load.hpp>
+#include <continuo/model/parser.hpp>
 #include <continuo/model/simulate.hpp>
 #include <continuo/solve/catalogue.hpp>
 
 namespace continuo::live {
+
+namespace {
+
+void collect_times(const std::vector<model::ast::Statement>& statements, std::set<std::string>& times) {
+  for (const model::ast::Statement& statement : statements) {
+    if (const auto* condition = std::get_if<model::ast::Condition>(&statement.node))
+      times.insert(model::to_text(condition->time));
+    if (const auto* family = std::get_if<model::ast::Family>(&statement.node)) collect_times(family->body, times);
+  }
+}
+
+/// Whether conditions stand at several times, so that nothing moves before all is known. Only where they are written in
+/// several ways has the text to be checked; what has errors is no such model, and can be mended here.
+bool needs_boundary_solver(const model::Source& source) {
+  std::set<std::string> times;
+  collect_times(model::parse(source).model.statements, times);
+  if (times.size() < 2) return false;
+  const model::Loaded loaded = model::load(source);
+  return loaded.model && loaded.model->needs_boundary_solver();
+}
+
+}  // namespace
 
 std::vector<GalleryModel> gallery_in(const std::string& folder) {
   std::vector<GalleryModel> found;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     if (entry.path().extension() != ".sim") continue;
-    // What has conditions at both ends cannot be shown as it moves; what has errors can be mended here.
-    if (const model::Loaded loaded = model::load(entry.path().string());
-        loaded.model && loaded.model->needs_boundary_solver())
-      continue;
-    std::ifstream text(entry.path());
-    std::string line;
-    std::getline(text, line);
+    const auto source = model::read_source(entry.path());
+    if (!source || needs_boundary_solver(*source)) continue;
+    const std::string line = source->text().substr(0, source->text().find('\n'));
     const std::size_t begin = line.find_first_not_of("# \t");
     const bool heading = line.starts_with('#') && begin != std::string::npos;
     found.push_back({entry.path().stem().string(), heading ? line.substr(begin) : "", entry.path().string()});
