@@ -121,6 +121,7 @@ class Frame:
                      for i in range(rows)]
         self.scene = numbers("f", scene)
         self.ghost_rows = self.ghost_scene = self.position = self.orientation = None
+        self.ghost_position = self.ghost_orientation = self.path = self.ghost_path = None
         if flags & 2:
             self.ghost_rows, self.ghost_scene = numbers("f", rows * columns), numbers("f", scene)
         if flags & 4:
@@ -129,7 +130,15 @@ class Frame:
             self.position = numbers("f", count * dimension)
             if flags & 8:
                 self.orientation = numbers("f", count * (1 if dimension == 2 else 4))
-        assert at == len(data), "the frame says of itself how long it is"
+            if flags & 32:
+                self.ghost_position = numbers("f", count * dimension)
+                if flags & 8:
+                    self.ghost_orientation = numbers("f", count * (1 if dimension == 2 else 4))
+        if flags & 64:
+            self.path = numbers("f", rows * model["path_count"])
+            if flags & 2:
+                self.ghost_path = numbers("f", rows * model["path_count"])
+        assert at <= len(data), "the frame says of itself how long it is"  # more: of a later version
 
 
 def main():

@@ -13,7 +13,7 @@ namespace continuo::live {
 /// Bodies of a world at one instant, `dimension` numbers each; angles in the plane, quaternions (x, y, z, w) in space.
 struct Bodies {
   std::size_t dimension = 3;
-  std::vector<float> position, orientation;  // the latter may be empty
+  std::vector<float> position, orientation;
   std::size_t count() const { return position.size() / dimension; }
 };
 
@@ -30,10 +30,11 @@ struct Slice {
   double t = 0, reached = 0, target = 0;
   bool ghost = false;
   std::vector<double> row_t;
-  std::vector<float> rows, ghost_rows;  // row after row
+  std::vector<float> rows, ghost_rows;    // row after row
+  std::vector<float> paths, ghost_paths;  // of each row, where the trails are
   std::vector<float> scene, ghost_scene;
   std::vector<LiveEvent> events;
-  std::shared_ptr<const Bodies> bodies;  // null where the model has none
+  std::shared_ptr<const Bodies> bodies, ghost_bodies;  // null where the model has none
 };
 
 /// What a text says; who comes later needs the newest `model` and `state`.

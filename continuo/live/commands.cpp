@@ -38,6 +38,13 @@ std::optional<double> perhaps_number(const json& command, const char* part) {
   return found == command.end() || found->is_null() ? std::nullopt : std::optional(number(command, part));
 }
 
+bool perhaps_true(const json& command, const char* part) {
+  const auto found = command.find(part);
+  if (found == command.end() || found->is_null()) return false;
+  if (!found->is_boolean()) throw Unfit{std::string(part) + ", true or false"};
+  return found->get<bool>();
+}
+
 std::size_t index(const json& command, const char* part) {
   const double value = number(command, part);
   if (!(value >= 0 && value < 1e9)) throw Unfit{std::string(part) + ", the number of a thing"};
@@ -73,7 +80,7 @@ const std::map<std::string, Doing, std::less<>>& doings() {
       {"until_event", [](Session& s, const json&) { s.until_event(); }},
       {"restore", [](Session& s, const json&) { s.restore_parameters(); }},
       {"undo", [](Session& s, const json&) { s.undo(); }},
-      {"release", [](Session& s, const json&) { s.release(); }},
+      {"release", [](Session& s, const json& c) { s.release(perhaps_true(c, "still")); }},
       {"seek", [](Session& s, const json& c) { s.seek(number(c, "t")); }},
       {"speed", [](Session& s, const json& c) { s.set_speed(number(c, "value")); }},
       {"set", [](Session& s, const json& c) { s.set_parameter(word(c, "parameter"), number(c, "value")); }},

@@ -28,13 +28,15 @@ class Bytes {
   std::string text_;
 };
 
-std::uint32_t flags_of(const Slice& slice, bool rewound) {
+std::uint32_t flags_of(const Slice& slice, const FrameRows& rows, bool rewound) {
   std::uint32_t flags = 0;
   if (rewound) flags |= frame_rewound;
   if (slice.ghost) flags |= frame_has_ghost;
   if (slice.bodies) flags |= frame_has_bodies;
   if (slice.bodies && !slice.bodies->orientation.empty()) flags |= frame_has_orientations;
   if (slice.looking_back) flags |= frame_looks_back;
+  if (slice.bodies && slice.ghost_bodies) flags |= frame_has_ghost_bodies;
+  if (!rows.paths.empty()) flags |= frame_has_paths;
   return flags;
 }
 
@@ -45,7 +47,7 @@ std::string frame_of(const Slice& slice, const FrameRows& rows, bool rewound) {
   Bytes bytes;
   bytes.add(kind);
   bytes.add(slice.run);
-  bytes.add(flags_of(slice, rewound));
+  bytes.add(flags_of(slice, rows, rewound));
   bytes.add(static_cast<std::uint32_t>(rows.t.size()));
   bytes.add(slice.t);
   bytes.add(slice.reached);
@@ -61,7 +63,13 @@ std::string frame_of(const Slice& slice, const FrameRows& rows, bool rewound) {
     bytes.add(static_cast<std::uint32_t>(slice.bodies->count()));
     bytes.add(std::span<const float>(slice.bodies->position));
     bytes.add(std::span<const float>(slice.bodies->orientation));
+    if (slice.ghost_bodies) {
+      bytes.add(std::span<const float>(slice.ghost_bodies->position));
+      bytes.add(std::span<const float>(slice.ghost_bodies->orientation));
+    }
   }
+  bytes.add(rows.paths);
+  if (slice.ghost) bytes.add(rows.ghost_paths);
   return bytes.take();
 }
 

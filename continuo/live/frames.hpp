@@ -16,11 +16,14 @@ enum FrameFlag : std::uint32_t {
   frame_has_bodies = 4,
   frame_has_orientations = 8,
   frame_looks_back = 16,
+  frame_has_ghost_bodies = 32,
+  frame_has_paths = 64,
 };
 
 struct FrameRows {
   std::span<const double> t;
-  std::span<const float> rows, ghost_rows;  // the latter empty without a ghost
+  std::span<const float> rows, ghost_rows{};      // the latter empty without a ghost
+  std::span<const float> paths{}, ghost_paths{};  // empty without trails
 };
 
 /// The scene, time and speeds are those of the slice.

@@ -8,8 +8,9 @@ namespace continuo::live {
 
 std::size_t History::bytes_of(const Sample& sample) {
   const auto of_instant = [](const Instant& instant) {
-    const std::size_t world = instant.world ? instant.world->bodies.size() : 0;
-    return world + instant.x.size() * sizeof(double) + instant.stops.size() * sizeof(std::size_t);
+    std::size_t numbers = instant.x.size() + instant.stops.size() + 2 * instant.orientations.size();  // of 8 bytes
+    if (instant.world) numbers += instant.world->equations.size() + instant.world->variables.size();
+    return numbers * sizeof(double) + (instant.world ? instant.world->bodies.size() : 0);
   };
   return sizeof(Sample) + of_instant(sample.main) + (sample.ghost ? of_instant(*sample.ghost) : 0);
 }

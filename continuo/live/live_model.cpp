@@ -100,7 +100,7 @@ class Preparation {
 
   void draw(const model::DrawItem& item) {
     using model::Shape;
-    SceneItem made{.shape = item.shape, .label = {}, .color = {}, .text = {}, .numbers = {}, .grip = {}};
+    SceneItem made{.shape = item.shape, .label = {}, .color = {}, .text = {}, .numbers = {}, .grip = {}, .path = {}};
     for (std::size_t i = 0; i < item.arguments.size(); ++i) {
       const model::DrawArgument& argument = item.arguments[i];
       if (argument.numbers.empty()) {
@@ -117,6 +117,12 @@ class Preparation {
         made.label = attribute.value.text;
       } else if (attribute.name != "drag") {
         made.numbers.push_back(place(attribute.name, attribute.value.numbers));
+      }
+    }
+    if (item.shape == Shape::trail) {
+      for (const NodeId node : item.arguments.front().numbers) {
+        made.path.push_back(made_.paths.size());
+        made_.paths.push_back(node);
       }
     }
     if (is_dragged(item)) {
@@ -148,7 +154,7 @@ class Preparation {
 
 }  // namespace
 
-LiveModel prepare(model::Model model, const std::set<std::string, std::less<>>& taken) {
+LiveModel prepare(model::Model model, const Taken& taken) {
   for (model::Input& input : model.inputs) {
     if (!input.key.empty() || taken.contains(input.name)) input.points.reset();
   }

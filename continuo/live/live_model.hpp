@@ -44,6 +44,7 @@ struct SceneItem {
   std::string label, color, text;
   std::vector<SceneNumbers> numbers;
   std::optional<std::size_t> grip;  // of LiveModel::grips, where the mouse may move it
+  std::vector<std::size_t> path{};  // of a trail: where its point stands in the paths
 };
 
 struct LiveModel {
@@ -52,7 +53,7 @@ struct LiveModel {
   std::vector<std::size_t> plotted;  // the states that are columns, the first of them
   std::vector<LivePlot> plots;
   std::vector<SceneItem> drawing;
-  std::vector<model::NodeId> quantities, scene;
+  std::vector<model::NodeId> quantities, scene, paths;  // paths: the points of trails, for each row
   std::vector<Grip> grips;
   std::vector<std::size_t> apart;            // the states in which a ghost's distance is measured
   std::optional<std::size_t> energy, drift;  // columns
@@ -63,6 +64,7 @@ struct LiveModel {
 };
 
 /// Inputs that somebody moves (those with a key, and `taken`) do not follow their files.
-LiveModel prepare(model::Model model, const std::set<std::string, std::less<>>& taken = {});
+using Taken = std::set<std::string, std::less<>>;
+LiveModel prepare(model::Model model, const Taken& taken = {});
 
 }  // namespace continuo::live

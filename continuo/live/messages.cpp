@@ -72,26 +72,28 @@ json drawing_of(const LiveModel& shown) {
     if (!item.label.empty()) made["label"] = item.label;
     if (!item.color.empty()) made["color"] = item.color;
     if (!item.text.empty()) made["text"] = item.text;
+    if (!item.path.empty()) made["path"] = item.path;
     drawing.push_back(std::move(made));
   }
   return drawing;
 }
 
-/// Name, value, unit, range and comment: of parameters and inputs.
+/// Name, value (now, and as the text has it), unit, range and comment: of parameters and inputs.
 template <class Quantity>
-json control_of(const Quantity& quantity, std::span<const double> variables) {
+json control_of(const Quantity& quantity, std::span<const double> variables, std::span<const double> file) {
   return {{"name", quantity.name},
           {"value", number(variables[quantity.variable])},
+          {"file", number(file[quantity.variable])},
           {"unit", quantity.unit},
           {"min", quantity.range ? json(quantity.range->low) : json(nullptr)},
           {"max", quantity.range ? json(quantity.range->high) : json(nullptr)},
           {"comment", quantity.comment}};
 }
 
-json parameters_of(const ModelWords& words) {
+json parameters_of(const ModelWords& words, std::span<const double> file) {
   json parameters = json::array();
   for (const model::Parameter& parameter : words.shown.model().parameters) {
-    json made = control_of(parameter, words.variables);
+    json made = control_of(parameter, words.variables, file);
     made["structural"] = parameter.structural;
     made["independent"] = parameter.independent;
     parameters.push_back(std::move(made));
@@ -99,10 +101,10 @@ json parameters_of(const ModelWords& words) {
   return parameters;
 }
 
-json inputs_of(const ModelWords& words) {
+json inputs_of(const ModelWords& words, std::span<const double> file) {
   json inputs = json::array();
   for (const model::Input& input : words.shown.model().inputs) {
-    json made = control_of(input, words.variables);
+    json made = control_of(input, words.variables, file);
     made["key"] = input.key;
     made["from_file"] = input.points.has_value();
     inputs.push_back(std::move(made));
@@ -189,6 +191,7 @@ json diagnostic_of(const model::Diagnostic& problem, const model::Source& source
 
 std::string model_json(const ModelWords& words) {
   const model::Model& model = words.shown.model();
+  const std::vector<double> file = start_values(model);
   json gallery = json::array();
   for (const GalleryModel& other : words.gallery) gallery.push_back({{"name", other.name}, {"title", other.title}});
   json experiment = accuracy_of(words.plan);
@@ -204,12 +207,13 @@ std::string model_json(const ModelWords& words) {
                   {"time_unit", model.time_unit},
                   {"dimension", words.shown.dimension},
                   {"scene_count", words.shown.scene.size()},
+                  {"path_count", words.shown.paths.size()},
                   {"columns", columns_of(words.shown)},
                   {"plots", plots_of(words.shown)},
                   {"drawing", drawing_of(words.shown)},
                   {"bodies", bodies_of(words.world)},
-                  {"parameters", parameters_of(words)},
-                  {"inputs", inputs_of(words)},
+                  {"parameters", parameters_of(words, file)},
+                  {"inputs", inputs_of(words, file)},
                   {"methods", methods_of(model)},
                   {"experiment", experiment},
                   {"gallery", gallery},

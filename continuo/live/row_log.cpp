@@ -36,7 +36,8 @@ void RowLog::add(std::shared_ptr<const Slice> slice, const std::vector<ReadMark*
       const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * columns);
       return std::vector<float>(first, first + static_cast<std::ptrdiff_t>(columns));
     };
-    rows_.push_back({slice->row_t[i], part(slice->rows), part(slice->ghost_rows)});
+    rows_.push_back(
+        {slice->row_t[i], part(slice->rows), part(slice->ghost_rows), part(slice->paths), part(slice->ghost_paths)});
     bytes_ += rows_.back().bytes();
   }
   while (rows_.size() > 1 && (bytes_ > most_bytes || rows_.size() > most_rows)) {
@@ -57,15 +58,19 @@ std::shared_ptr<const std::string> RowLog::frame(ReadMark& mark) {
   const std::size_t first = from.next - begin_, count = rows_.size() - first;
   const std::size_t kept = std::min(count, most_rows_in_a_frame);
   std::vector<double> t;
-  std::vector<float> values, ghost;
+  std::vector<float> values, ghost, paths, ghost_paths;
   for (std::size_t k = 0; k < kept; ++k) {
     // The first and the last always, the others evenly between.
     const Row& row = rows_[first + (kept > 1 ? k * (count - 1) / (kept - 1) : 0)];
     t.push_back(row.t);
     values.insert(values.end(), row.values.begin(), row.values.end());
-    if (slice_->ghost) ghost.insert(ghost.end(), row.ghost.begin(), row.ghost.end());
+    paths.insert(paths.end(), row.path.begin(), row.path.end());
+    if (!slice_->ghost) continue;
+    ghost.insert(ghost.end(), row.ghost.begin(), row.ghost.end());
+    ghost_paths.insert(ghost_paths.end(), row.ghost_path.begin(), row.ghost_path.end());
   }
-  auto bytes = std::make_shared<const std::string>(frame_of(*slice_, {t, values, ghost}, from.rewound));
+  auto bytes =
+      std::make_shared<const std::string>(frame_of(*slice_, {t, values, ghost, paths, ghost_paths}, from.rewound));
   made_.push_back({from, bytes});
   return bytes;
 }

@@ -33,8 +33,10 @@ class RowLog {
  private:
   struct Row {
     double t;
-    std::vector<float> values, ghost;
-    std::size_t bytes() const { return sizeof(Row) + (values.size() + ghost.size()) * sizeof(float); }
+    std::vector<float> values, ghost, path, ghost_path;
+    std::size_t bytes() const {
+      return sizeof(Row) + (values.size() + ghost.size() + path.size() + ghost_path.size()) * sizeof(float);
+    }
   };
   static constexpr std::size_t most_bytes = std::size_t{16} << 20, most_rows = 1 << 15;
 

@@ -8,11 +8,10 @@
 //   for (;;) session.turn();                       // 60 times a second
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +20,7 @@
 #include <continuo/live/clock.hpp>
 #include <continuo/live/history.hpp>
 #include <continuo/live/live_model.hpp>
+#include <continuo/live/rows.hpp>
 #include <continuo/live/settings.hpp>
 #include <continuo/live/track.hpp>
 #include <continuo/model/load.hpp>
@@ -61,7 +61,8 @@ class Session {
   void undo();
   void drag(std::size_t item, std::span<const double> to);
   void drag_body(std::size_t body, std::span<const double> to);
-  void release();
+  /// What was in the hand goes on as fast as the hand went, or `still`.
+  void release(bool still = false);
   void pick(std::size_t body);
   void open_gallery(const std::string& name);
   void run_text(const std::string& text);
@@ -97,19 +98,26 @@ class Session {
   void lead_ghost(double& stop, double deadline);
   bool pass(const Passed& passed);
   void end_run();
+  model::Diagnostic why_failed(const Track& track) const;
   double sample_every(double target);
+  double finest_rows(double target) const;
   void restart_clock() { clock_.start(now_(), cursor_); }
 
   // session_show.cpp
   void show_run();
   void emit(Instant main);
+
+  // session_rows.cpp
+  Row row_at(double t, const std::vector<double>& x, const Instant* ghost);
   void add_row(double t, const std::vector<double>& x, const Instant* ghost);
+  void put(Row row);
+  void consider(double t);
   void append_values(double t, const std::vector<double>& x, double apart, std::vector<float>& row);
-  void append_scene(double t, const std::vector<double>& x, std::vector<float>& scene);
+  void append_points(model::Evaluation& points, double t, const std::vector<double>& x, std::vector<float>& to);
   void use_variables(const std::shared_ptr<const std::vector<double>>& variables);
   double energy_of(double t, const std::vector<double>& x);
   void publish();
-  std::shared_ptr<const Bodies> bodies_of(const Sample& sample) const;
+  std::shared_ptr<const Bodies> bodies_of(const Instant& instant) const;
   bool keeps_whole(double t) const;
   void rewind_to(double t);
   void say_model();
@@ -120,19 +128,28 @@ class Session {
   // session_hands.cpp
   void look_at(std::size_t i);
   void leave_look();
-  void touch(std::optional<Instant> changed = std::nullopt);
-  void hold_body(std::optional<HeldBody> held);
+  void touch(std::optional<Instant> changed = std::nullopt, const std::vector<std::size_t>& of_ghost_too = {});
   struct Undo {
     std::string what;
     double wall;
     Settings settings;
   };
-  void remember_for_undo(const std::string& what);
+  void remember_for_undo(const std::string& what, bool for_long = false);
   void keep_undo(Undo undo);
   void apply(const Settings& settings);
-  void take_input_from_file();
+  void prepare_anew();
+  std::string go_on(Track& track, const Instant& instant);
   bool change_method(MethodChoice choice);
   bool change_ghost(std::optional<MethodChoice> choice);
+
+  // session_drag.cpp
+  void hold_body(std::optional<HeldBody> held);
+  struct InHand {
+    double wall, t;
+    std::vector<double> x;  // the states that the hand moves, or the place of the body
+  };
+  void watch_hand(double wall);
+  std::vector<double> speed_of_hand() const;
   void stop_at_guards(const Grip& grip, const std::vector<double>& from, std::vector<double>& to);
 
   Now now_;
@@ -143,8 +160,6 @@ class Session {
   std::shared_ptr<const LiveModel> shown_;
   std::string path_, text_;
   Settings settings_;
-  std::map<std::string, double, std::less<>> inputs_;  // that somebody has moved
-  std::set<std::string, std::less<>> taken_;           // inputs that no longer follow their files
   std::vector<Undo> undo_;
 
   PacedClock clock_;
@@ -160,11 +175,17 @@ class Session {
   std::optional<std::size_t> looking_;
 
   std::shared_ptr<const std::vector<double>> variables_, evaluated_;  // as they are; those of the evaluations
-  model::Evaluation quantities_, scene_;
+  model::Evaluation quantities_, scene_, paths_;
   std::vector<model::Evaluation> grips_;
   std::vector<double> values_;
   double first_energy_ = 0;
   std::vector<std::size_t> held_;
+  std::size_t held_grip_ = 0;  // whose these are
+  std::deque<InHand> in_hand_;
+
+  std::optional<Row> last_row_, between_;  // that was put; one that may be left out
+  Bends bends_;
+  double step_begin_ = 0;  // of main_
 
   std::uint32_t run_ = 0;
   std::shared_ptr<Slice> slice_;

@@ -17,12 +17,6 @@ namespace {
 constexpr double same_change = 1;  // seconds: a slider that is moved for longer is one change all the same
 constexpr std::size_t most_undo = 200;
 
-/// From above zero to zero counts: a run that began at zero would have to leave it first, and nothing would turn it
-/// back.
-bool is_crossed(double before, double after) {
-  return before > 0 ? after <= 0 : before == 0 && after < 0;
-}
-
 }  // namespace
 
 // ---- the past -------------------------------------------------------------------------------------------------------
@@ -53,8 +47,8 @@ void Session::leave_look() {
   ended_.clear();
   next_passed_ = 0;
   cursor_ = sample.main.t;
-  main_->go_on(sample.main, *variables_, held_);
-  if (ghost_) ghost_->go_on(sample.ghost.value_or(sample.main), *variables_, held_);
+  go_on(*main_, sample.main);
+  if (ghost_) go_on(*ghost_, sample.ghost.value_or(sample.main));
   first_energy_ = sample.first_energy;
   rewind_to(cursor_);
   emit(sample.main);
@@ -69,8 +63,16 @@ void Session::reset() {
 
 // ---- changes --------------------------------------------------------------------------------------------------------
 
-/// The run goes on with what stands in variables_ and held_ from the instant that is shown, or from `changed`.
-void Session::touch(std::optional<Instant> changed) {
+/// With what stands in variables_ and held_; what follows a file in steps has the value of that time.
+std::string Session::go_on(Track& track, const Instant& instant) {
+  std::vector<double> variables = *variables_;
+  for (const model::TableInput& input : shown_->program->step_inputs)
+    variables[input.variable] = input.table.value(instant.t);
+  return track.go_on(instant, variables, held_);
+}
+
+/// The run goes on from the instant that is shown, or from `changed`.
+void Session::touch(std::optional<Instant> changed, const std::vector<std::size_t>& of_ghost_too) {
   const Instant instant = changed ? *changed : main_->instant_at(cursor_);
   std::optional<Instant> ghost;
   if (ghost_) {
@@ -78,12 +80,11 @@ void Session::touch(std::optional<Instant> changed) {
     if (changed) {  // the hand holds both
       ghost->mode = changed->mode;
       ghost->moved = true;
-      for (const std::size_t i : held_) ghost->x[i] = changed->x[i];
+      for (const std::size_t i : of_ghost_too) ghost->x[i] = changed->x[i];
     }
-    ghost_->go_on(*ghost, *variables_, held_);
+    go_on(*ghost_, *ghost);
   }
-  if (const std::string problem = main_->go_on(instant, *variables_, held_); !problem.empty())
-    say(model::error("", {}, problem));
+  if (const std::string problem = go_on(*main_, instant); !problem.empty()) say(model::error("", {}, problem));
   next_passed_ = 0;
   main_over_ = false;
   ended_.clear();
@@ -93,9 +94,9 @@ void Session::touch(std::optional<Instant> changed) {
   state_changed_ = true;
 }
 
-void Session::remember_for_undo(const std::string& what) {
+void Session::remember_for_undo(const std::string& what, bool for_long) {
   const double wall = now_();
-  if (!undo_.empty() && undo_.back().what == what && wall - undo_.back().wall < same_change) {
+  if (!undo_.empty() && undo_.back().what == what && (for_long || wall - undo_.back().wall < same_change)) {
     undo_.back().wall = wall;
     return;
   }
@@ -112,7 +113,8 @@ std::shared_ptr<const std::vector<double>> Session::present_variables() {
   const std::vector<double> start = start_values(model, settings_.parameters);
   std::vector<double> variables = *variables_;
   for (const model::Parameter& parameter : model.parameters) variables[parameter.variable] = start[parameter.variable];
-  for (const auto& [name, value] : inputs_) {
+  for (const model::Input& input : model.inputs) variables[input.variable] = start[input.variable];
+  for (const auto& [name, value] : settings_.inputs) {
     const std::size_t i = find_input(model, name);
     if (i != model::npos) variables[model.inputs[i].variable] = value;
   }
@@ -135,9 +137,11 @@ void Session::set_parameter(const std::string& name, double value) {
 }
 
 void Session::restore_parameters() {
-  if (settings_.parameters.empty()) return;
+  if (settings_.parameters.empty() && settings_.inputs.empty()) return;
   Settings settings = settings_;
   settings.parameters.clear();
+  settings.inputs.clear();
+  settings.taken.clear();
   remember_for_undo("restore");
   apply(settings);
 }
@@ -167,6 +171,11 @@ void Session::apply(const Settings& settings) {
     }
   }
   leave_look();
+  settings_.inputs = settings.inputs;
+  if (settings_.taken != settings.taken) {
+    settings_.taken = settings.taken;
+    prepare_anew();
+  }
   variables_ = present_variables();
   touch();
   if (!same(settings_.method, settings.method)) change_method(settings.method);
@@ -182,27 +191,28 @@ void Session::move_input(const std::string& name, double value) {
   const model::Input& input = shown_->model().inputs[i];
   if (input.range) value = std::clamp(value, input.range->low, input.range->high);
   leave_look();
-  inputs_[name] = value;
+  remember_for_undo("input " + name, !input.key.empty());  // a key that is held and let go is one change
+  settings_.inputs[name] = value;
   if (input.points) {  // from here on a hand's, no longer the file's
-    taken_.insert(name);
-    take_input_from_file();
+    settings_.taken.insert(name);
+    prepare_anew();
   }
   variables_ = present_variables();
   touch();
 }
 
-/// The program anew without the file, the run as it stands.
-void Session::take_input_from_file() {
+/// The program anew, where other inputs follow their files; the run as it stands.
+void Session::prepare_anew() {
   const Instant instant = main_->instant_at(cursor_);
   std::optional<Instant> ghost;
   if (ghost_) ghost = ghost_->instant_at(cursor_);
   model::Loaded loaded = model::load(model::Source(path_, text_));
   if (!loaded.model) return;
-  shown_ = std::make_shared<const LiveModel>(prepare(std::move(*loaded.model), taken_));
+  shown_ = std::make_shared<const LiveModel>(prepare(std::move(*loaded.model), settings_.taken));
   variables_ = present_variables();
   main_ = track_by(settings_.method);
-  main_->go_on(instant, *variables_, held_);
-  if (ghost) ghost_ = track_by(*settings_.ghost), ghost_->go_on(*ghost, *variables_, held_);
+  go_on(*main_, instant);
+  if (ghost) ghost_ = track_by(*settings_.ghost), go_on(*ghost_, *ghost);
   show_run();
   say_model();
 }
@@ -220,7 +230,7 @@ bool Session::change_method(MethodChoice choice) {
   auto track = track_by(choice);
   if (!track) return false;
   const Instant instant = main_->instant_at(cursor_);
-  track->go_on(instant, *variables_, held_);
+  go_on(*track, instant);
   main_ = std::move(track);
   settings_.method = std::move(choice);
   touch(instant);
@@ -237,101 +247,13 @@ void Session::take_ghost(std::optional<MethodChoice> choice) {
 bool Session::change_ghost(std::optional<MethodChoice> choice) {
   auto track = choice ? track_by(*choice) : nullptr;
   if (choice && !track) return false;
-  if (track) track->go_on(main_->instant_at(cursor_), *variables_, held_);
+  if (track) go_on(*track, main_->instant_at(cursor_));
   ghost_ = std::move(track);
   settings_.ghost = std::move(choice);
   if (!playing_) rewind_to(cursor_);
   emit(main_->instant_at(cursor_));
   state_changed_ = true;
   return true;
-}
-
-// ---- the mouse ------------------------------------------------------------------------------------------------------
-
-void Session::drag(std::size_t item, std::span<const double> to) {
-  if (item >= shown_->drawing.size() || !shown_->drawing[item].grip) return say_note("this cannot be dragged");
-  const std::size_t number = *shown_->drawing[item].grip;
-  const Grip& grip = shown_->grips[number];
-  if (to.size() != grip.dimension || !std::ranges::all_of(to, [](double v) { return std::isfinite(v); }))
-    return say_note(fmt::format("a drag needs {} coordinates", grip.dimension));
-  leave_look();
-  held_ = grip.held();
-  use_variables(variables_);
-  Instant instant = main_->instant_at(cursor_);
-  std::vector<double> x = pull(grip, grips_[number], cursor_, instant.x, to);
-  stop_at_guards(grip, instant.x, x);
-  const bool moved = std::ranges::any_of(grip.positions, [&](std::size_t i) { return x[i] != instant.x[i]; });
-  if (moved) instant.mode = shown_->model().start_mode;
-  instant.moved = true;
-  instant.x = std::move(x);
-  touch(std::move(instant));
-}
-
-void Session::hold_body(std::optional<HeldBody> held) {
-  held_body_ = held;
-  main_->hold(held);
-  if (ghost_) ghost_->hold(held);
-  if (!playing_) rewind_to(cursor_);
-  emit(main_->instant_at(cursor_));
-}
-
-void Session::drag_body(std::size_t body, std::span<const double> to) {
-  const worlds::WorldRun* world = main_->world();
-  if (!world || body >= world->bodies().size()) return say_note("there is no such body");
-  const bool finite = std::ranges::all_of(to, [](double v) { return std::isfinite(v); });
-  if (to.size() != static_cast<std::size_t>(world->dimension()) || !finite)
-    return say_note(fmt::format("a drag needs {} coordinates", world->dimension()));
-  leave_look();
-  HeldBody held{body, {}};
-  std::ranges::copy(to, held.to.begin());
-  hold_body(held);
-}
-
-void Session::pick(std::size_t body) {
-  const worlds::WorldRun* world = main_->world();
-  if (!world || body >= world->bodies().size()) return say_note("there is no such body");
-  audience_.hear(Topic::message, picked_json(*world, body));
-}
-
-void Session::release() {
-  if (held_body_) hold_body(std::nullopt);
-  if (held_.empty()) return;
-  held_.clear();
-  touch();
-}
-
-/// A hand does not push through what an event would have turned back: where a guard whose event changes something would
-/// have fired, the way ends just before.
-void Session::stop_at_guards(const Grip& grip, const std::vector<double>& from, std::vector<double>& to) {
-  constexpr int halvings = 50;
-  if (!main_->equations()) return;
-  model::ModelSystem system = main_->equations()->system();
-  system.go(shown_->model().start_mode);
-  model::ModelEvents guards = main_->equations()->events();
-  std::vector<double> before(guards.size()), after(guards.size());
-  guards.guards(system, cursor_, from, before);
-  const auto fires = [&](const std::vector<double>& x) {
-    guards.guards(system, cursor_, x, after);
-    for (std::size_t i = 0; i < guards.size(); ++i) {
-      if (!guards.is_guard(i) || guards.only_notes(i) || !guards.active(system, i)) continue;
-      const Direction direction = guards.direction(i);
-      if (direction != Direction::rises && is_crossed(before[i], after[i])) return true;
-      if (direction != Direction::falls && is_crossed(-before[i], -after[i])) return true;
-    }
-    return false;
-  };
-  if (!fires(to)) return;
-  std::vector<double> tried = to;
-  double good = 0, bad = 1;
-  const auto at = [&](double part) {
-    for (const std::size_t i : grip.positions) tried[i] = from[i] + part * (to[i] - from[i]);
-    return tried;
-  };
-  for (int k = 0; k < halvings; ++k) {
-    const double middle = (good + bad) / 2;
-    (fires(at(middle)) ? bad : good) = middle;
-  }
-  to = at(good);
 }
 
 }  // namespace continuo::live

@@ -93,12 +93,12 @@ model::Experiment experiment_of(const MethodChoice& choice, const model::Overrid
 
 bool Session::begin(model::Model model, std::string path, std::string text) {
   const bool other = path != path_ || !shown_;
-  auto shown = std::make_shared<const LiveModel>(prepare(std::move(model), taken_));
+  auto shown = std::make_shared<const LiveModel>(prepare(std::move(model), other ? Taken() : settings_.taken));
   const auto before = std::exchange(shown_, std::move(shown));
   const Settings settings = settings_;
   std::swap(path, path_);
   std::swap(text, text_);
-  if (other) settings_ = {}, undo_.clear(), inputs_.clear();
+  if (other) settings_ = {}, undo_.clear();
   std::erase_if(settings_.parameters,
                 [this](const auto& given) { return find_parameter(shown_->model(), given.first) == model::npos; });
   if (!begin_run()) {
@@ -126,7 +126,7 @@ std::optional<model::Plan> Session::plan_by(const MethodChoice& choice) {
     problems_ = std::move(problems);
     return std::nullopt;
   }
-  for (const auto& [name, value] : inputs_) {
+  for (const auto& [name, value] : settings_.inputs) {
     const std::size_t i = find_input(shown_->model(), name);
     if (i != model::npos) plan->variables[shown_->model().inputs[i].variable] = value;
   }
@@ -160,6 +160,7 @@ bool Session::begin_run() {
   ended_.clear();
   looking_.reset();
   held_.clear();
+  in_hand_.clear();
   history_.clear();
   slice_ = std::make_shared<Slice>();
   ++run_;
@@ -167,8 +168,6 @@ bool Session::begin_run() {
   held_body_.reset();
   const Instant start = main_->instant_at(cursor_);
   first_energy_ = energy_of(cursor_, start.x);
-  if (main_->world() && !shown_->model().event_order.empty())
-    say_note("the events of the text are not looked for while bodies are viewed", "`continuo run` looks for them");
   say_model();
   emit(start);
   restart_clock();
@@ -199,7 +198,6 @@ void Session::open_gallery(const std::string& name) {
   model::Loaded loaded = model::load(found->path);
   for (const model::Diagnostic& problem : loaded.diagnostics) say(problem, &loaded.source);
   if (!loaded.model) return;
-  taken_.clear();
   begin(std::move(*loaded.model), found->path, loaded.source.text());
 }
 

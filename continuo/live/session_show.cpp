@@ -1,7 +1,6 @@
 // continuo/live/session_show.cpp
 // What the audience gets of a moment.
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <continuo/live/messages.hpp>
@@ -14,10 +13,14 @@ void Session::show_run() {
   const model::ModelProgram& program = *shown_->program;
   quantities_ = model::Evaluation(program.tape_of(shown_->quantities), *variables_);
   scene_ = model::Evaluation(program.tape_of(shown_->scene), *variables_);
+  paths_ = model::Evaluation(program.tape_of(shown_->paths), *variables_);
   values_.assign(shown_->quantities.size(), 0.0);
   grips_.clear();
   for (const Grip& grip : shown_->grips) grips_.emplace_back(program.tape_of(grip.nodes), *variables_);
   evaluated_ = variables_;
+  bends_ = Bends(*shown_);
+  last_row_.reset();
+  between_.reset();
 }
 
 void Session::use_variables(const std::shared_ptr<const std::vector<double>>& variables) {
@@ -28,27 +31,15 @@ void Session::use_variables(const std::shared_ptr<const std::vector<double>>& va
     if ((*evaluated_)[i] == value) continue;
     quantities_.set(i, value);
     scene_.set(i, value);
+    paths_.set(i, value);
     for (model::Evaluation& grip : grips_) grip.set(i, value);
   }
   evaluated_ = variables;
 }
 
-void Session::append_values(double t, const std::vector<double>& x, double apart, std::vector<float>& row) {
-  for (const model::TableInput& input : shown_->program->step_inputs)
-    quantities_.set(input.variable, input.table.value(t));
-  if (!values_.empty()) quantities_(t, x, values_);
-  for (const std::size_t i : shown_->plotted) row.push_back(static_cast<float>(x[i]));
-  for (const double value : values_) row.push_back(static_cast<float>(value));
-  if (shown_->drift) {
-    const double energy = values_[*shown_->energy - shown_->plotted.size()];
-    row.push_back(static_cast<float>((energy - first_energy_) / std::abs(first_energy_)));
-  }
-  row.push_back(static_cast<float>(apart));
-}
-
-void Session::append_scene(double t, const std::vector<double>& x, std::vector<float>& scene) {
-  for (const model::TableInput& input : shown_->program->step_inputs) scene_.set(input.variable, input.table.value(t));
-  for (const double value : scene_(t, x)) scene.push_back(static_cast<float>(value));
+void Session::append_points(model::Evaluation& points, double t, const std::vector<double>& x, std::vector<float>& to) {
+  for (const model::TableInput& input : shown_->program->step_inputs) points.set(input.variable, input.table.value(t));
+  for (const double value : points(t, x)) to.push_back(static_cast<float>(value));
 }
 
 double Session::energy_of(double t, const std::vector<double>& x) {
@@ -56,24 +47,6 @@ double Session::energy_of(double t, const std::vector<double>& x) {
   use_variables(variables_);
   quantities_(t, x, values_);
   return values_[*shown_->energy - shown_->plotted.size()];
-}
-
-void Session::add_row(double t, const std::vector<double>& x, const Instant* ghost) {
-  use_variables(variables_);
-  double apart = std::numeric_limits<double>::quiet_NaN();
-  if (ghost) {
-    double square = 0;
-    for (const std::size_t i : shown_->apart) square += (x[i] - ghost->x[i]) * (x[i] - ghost->x[i]);
-    apart = std::sqrt(square);
-  }
-  slice_->row_t.push_back(t);
-  append_values(t, x, apart, slice_->rows);
-  if (ghost) {
-    append_values(t, ghost->x, apart, slice_->ghost_rows);
-  } else {
-    slice_->ghost_rows.resize(slice_->rows.size(), std::numeric_limits<float>::quiet_NaN());
-  }
-  changed_ = true;
 }
 
 /// Of many bodies a moment is megabytes: some in a second are enough to go back to.
@@ -93,7 +66,7 @@ void Session::emit(Instant main) {
   if (kept) history_.add(newest_);
 }
 
-std::shared_ptr<const Bodies> Session::bodies_of(const Sample& sample) const {
+std::shared_ptr<const Bodies> Session::bodies_of(const Instant& instant) const {
   const worlds::WorldRun* run = main_->world();
   if (!run) return nullptr;
   auto bodies = std::make_shared<Bodies>();
@@ -103,18 +76,14 @@ std::shared_ptr<const Bodies> Session::bodies_of(const Sample& sample) const {
   bodies->position.reserve(count * dimension);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t k = 0; k < dimension; ++k)
-      bodies->position.push_back(static_cast<float>(sample.main.x[i * states + 2 * k]));
+      bodies->position.push_back(static_cast<float>(instant.x[i * states + 2 * k]));
   }
   constexpr std::size_t angle = 4;  // of x, x', y, y', angle, angle'
-  for (std::size_t i = 0; i < count; ++i) {
-    if (dimension == 2) {
-      bodies->orientation.push_back(static_cast<float>(sample.main.x[i * states + angle]));
-    } else if (!looking_) {  // how they stood is no state: of the past it is not
-                             // known
-      const auto [w, x, y, z] = run->orientation(i);
-      for (const double part : {x, y, z, w}) bodies->orientation.push_back(static_cast<float>(part));
-    }
-  }
+  bodies->orientation.reserve(count * (dimension == 2 ? 1 : 4));
+  for (std::size_t i = 0; i < count && dimension == 2; ++i)
+    bodies->orientation.push_back(static_cast<float>(instant.x[i * states + angle]));
+  for (const auto [w, x, y, z] : instant.orientations)
+    bodies->orientation.insert(bodies->orientation.end(), {x, y, z, w});
   return bodies;
 }
 
@@ -127,10 +96,13 @@ void Session::publish() {
   slice_->t = sample.main.t;
   slice_->reached = playing_ ? clock_.reached_speed() : 0;
   slice_->target = clock_.speed();
-  append_scene(sample.main.t, sample.main.x, slice_->scene);
+  append_points(scene_, sample.main.t, sample.main.x, slice_->scene);
   slice_->ghost = sample.ghost.has_value();
-  slice_->bodies = bodies_of(sample);
-  if (sample.ghost) append_scene(sample.main.t, sample.ghost->x, slice_->ghost_scene);
+  slice_->bodies = bodies_of(sample.main);
+  if (sample.ghost) {
+    append_points(scene_, sample.main.t, sample.ghost->x, slice_->ghost_scene);
+    slice_->ghost_bodies = bodies_of(*sample.ghost);
+  }
   audience_.see(std::exchange(slice_, std::make_shared<Slice>()));
   changed_ = false;
 }
@@ -144,7 +116,11 @@ void Session::rewind_to(double t) {
     slice_->row_t.pop_back();
     slice_->rows.resize(slice_->rows.size() - columns);
     slice_->ghost_rows.resize(slice_->ghost_rows.size() - columns);
+    slice_->paths.resize(slice_->paths.size() - shown_->paths.size());
+    slice_->ghost_paths.resize(slice_->ghost_paths.size() - shown_->paths.size());
   }
+  last_row_.reset();
+  between_.reset();
   std::erase_if(slice_->events, [t](const LiveEvent& event) { return event.t > t; });
   changed_ = true;
 }

@@ -14,6 +14,7 @@ namespace {
 constexpr double part_for_steps = 0.9;     // of the time between two pictures
 constexpr double rows_of_a_run = 1000;     // at high speed: what a curve of the whole run should have at least
 constexpr double most_rows_at_once = 32;   // and a picture at most
+constexpr double rows_of_a_step = 8;       // which has a curve of its own, of high order
 constexpr double longest_single_step = 1;  // second
 
 }  // namespace
@@ -21,6 +22,7 @@ constexpr double longest_single_step = 1;  // second
 void Session::turn() {
   const double wall = now_();
   if (playing_) play_on(wall);
+  watch_hand(wall);
   publish();
   if ((state_changed_ || playing_) && wall - state_said_ >= 0.1) say_state();
 }
@@ -45,8 +47,18 @@ double Session::sample_every(double target) {
   return way / std::clamp(std::ceil(way / (span_ / rows_of_a_run)), 1.0, most_rows_at_once);
 }
 
+/// Time between rows, at least, that are looked at for a curve that bends between two pictures. The path of bodies is
+/// known at the ends of their steps only.
+double Session::finest_rows(double target) const {
+  constexpr double most_looks = 64;  // for a picture
+  if (!main_->equations() || bends_.too_wide() || !std::isfinite(target))
+    return std::numeric_limits<double>::infinity();
+  return (target - cursor_) / most_looks;
+}
+
 bool Session::ask_for_step(double wanted) {
   if (main_over_) return false;
+  step_begin_ = main_->t();
   main_over_ = !main_->advance(wanted);
   next_passed_ = 0;
   return true;
@@ -56,9 +68,8 @@ bool Session::ask_for_step(double wanted) {
 void Session::lead_ghost(double& stop, double deadline) {
   while (ghost_ && ghost_->t() < stop) {
     if (!ghost_->advance(stop) && ghost_->t() < stop) {
-      const Outcome<double>& outcome = ghost_->outcome();
-      if (!succeeded(outcome.ending)) say(failure(shown_->model(), outcome));
-      say_note("the ghost has come to its end: " + std::string(to_string(outcome.ending)));
+      if (!succeeded(ghost_->outcome().ending)) say(why_failed(*ghost_));
+      say_note("the ghost has come to its end: " + std::string(to_string(ghost_->outcome().ending)));
       ghost_.reset();
       settings_.ghost.reset();
       state_changed_ = true;
@@ -74,7 +85,8 @@ void Session::lead_ghost(double& stop, double deadline) {
 Session::Halt Session::go(double target, double deadline, bool to_event) {
   constexpr unsigned look_at_clock_every = 8;
   const double every = sample_every(target);
-  double next_sample = cursor_ + every, shown = cursor_;
+  const double finest = finest_rows(target);
+  double next_sample = cursor_ + every, shown = cursor_, looked = cursor_;
   Halt halt = Halt::target;
   for (unsigned count = 1; cursor_ < target; ++count) {
     if (count % look_at_clock_every == 0 && now_() > deadline) {
@@ -87,12 +99,14 @@ Session::Halt Session::go(double target, double deadline, bool to_event) {
       break;
     }
     double stop = std::min({target, next_sample, main_->t()});
+    const double look = looked + std::max(finest, (main_->t() - step_begin_) / rows_of_a_step);
+    if (look < stop) stop = look;
     if (next_passed_ < main_->passed().size()) stop = std::min(stop, main_->passed()[next_passed_].t);
     lead_ghost(stop, deadline);
     if (next_passed_ < main_->passed().size() && stop == main_->passed()[next_passed_].t) {
       const Passed& passed = main_->passed()[next_passed_++];
       cursor_ = stop;
-      if (pass(passed)) shown = stop;
+      if (pass(passed)) shown = looked = stop;
       if (to_event && !passed.names.empty()) {
         if (cursor_ > shown) emit(main_->instant_at(cursor_));
         return Halt::event;
@@ -102,8 +116,11 @@ Session::Halt Session::go(double target, double deadline, bool to_event) {
     cursor_ = std::max(cursor_, stop);
     if (cursor_ >= next_sample && cursor_ > shown) {
       emit(main_->instant_at(cursor_, keeps_whole(cursor_)));
-      shown = cursor_;
+      shown = looked = cursor_;
       next_sample = cursor_ + every;
+    } else if (cursor_ >= look) {
+      consider(cursor_);
+      looked = cursor_;
     }
   }
   if (cursor_ > shown) emit(main_->instant_at(cursor_, keeps_whole(cursor_)));
@@ -120,10 +137,14 @@ bool Session::pass(const Passed& passed) {
   changed_ = true;
   if (passed.after.empty()) return false;
   Instant after;
-  after.t = passed.t;
-  after.x = passed.after;
-  after.mode = passed.mode;
-  after.stops = passed.stops;
+  if (main_->world()) {  // where events are the end of a step
+    after = main_->instant_at(passed.t);
+  } else {
+    after.t = passed.t;
+    after.x = passed.after;
+    after.mode = passed.mode;
+    after.stops = passed.stops;
+  }
   if (passed.before != passed.after) {
     std::optional<Instant> ghost;
     if (ghost_) ghost = ghost_->instant_at(passed.t);
@@ -142,10 +163,13 @@ void Session::end_run() {
     ended_ = text.empty() ? outcome.event : text;
     return;
   }
-  const model::Diagnostic problem =
-      main_->world() ? model::error("", {}, main_->stop_text()) : failure(shown_->model(), outcome);
+  const model::Diagnostic problem = why_failed(*main_);
   ended_ = problem.message;
   say(problem);
+}
+
+model::Diagnostic Session::why_failed(const Track& track) const {
+  return track.world() ? model::error("", {}, track.stop_text()) : failure(shown_->model(), track.outcome());
 }
 
 void Session::step() {

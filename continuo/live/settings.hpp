@@ -2,6 +2,7 @@
 // What somebody at the page may choose, and where the models come from.
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct MethodChoice {
 
 /// What can be undone.
 struct Settings {
-  model::Overrides parameters{};
+  model::Overrides parameters{}, inputs{};
+  std::set<std::string, std::less<>> taken{};  // inputs that no longer follow their files
   MethodChoice method{};
   std::optional<MethodChoice> ghost{};
 };

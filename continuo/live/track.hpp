@@ -17,8 +17,9 @@ namespace continuo::live {
 
 /// All that it takes to go on from there.
 struct Instant : model::Instant {
-  std::shared_ptr<const worlds::Snapshot> world{};  // of bodies; null where nobody will go on from it
-  bool moved = false;                               // a hand has changed x since
+  std::shared_ptr<const worlds::Snapshot> world{};   // of bodies; null where nobody will go on from it
+  std::vector<std::array<float, 4>> orientations{};  // of bodies in space, (w, x, y, z)
+  bool moved = false;                                // a hand has changed x since
 };
 
 /// Events of one instant as they happened.
@@ -71,6 +72,8 @@ class Track {
   virtual const worlds::WorldRun* world() const { return nullptr; }
   /// From here on the body stays where the hand is, or as near as others leave it room.
   virtual void hold(std::optional<HeldBody>) {}
+  /// No longer, and it goes on with this velocity.
+  virtual void let_go(std::size_t /*body*/, const worlds::Point& /*velocity*/) {}
 
  protected:
   /// The text says how long a run takes; a view goes on for as long as somebody looks.

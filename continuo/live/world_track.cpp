@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <continuo/live/world_track.hpp>
+#include <continuo/worlds/world_events.hpp>
 
 namespace continuo::live {
 
@@ -45,32 +46,45 @@ double free_part(const WorldRun& run, std::size_t body, const Point& to) {
 
 namespace {
 
+constexpr double looks = 1000;  // in a run of the text's length, where events are watched
+
 class WorldTrack final : public Track {
  public:
-  WorldTrack(std::unique_ptr<WorldRun> run, const model::Plan& plan)
-      : Track(plan), run_(std::move(run)), before_(run_->state()), before_t_(run_->time()), chunk_(length() / 1000) {}
+  WorldTrack(const std::shared_ptr<const model::ModelProgram>& program, std::unique_ptr<WorldRun> run,
+             const model::Plan& plan)
+      : Track(plan),
+        run_(std::move(run)),
+        events_(program, plan.variables, plan.from, length() / looks),
+        layout_(program->model.layout),
+        chunk_(length() / looks) {
+    events_.begin(*run_, sink());
+    remember();
+    end_where_stopped();
+  }
 
   double t() const override { return run_->time(); }
 
   /// With steps: one. Without: as far as is wanted, or as a moment's work takes it.
   bool advance(double wanted) override {
-    if (!error_.empty()) return false;
+    if (!error_.empty() || events_.stopped()) return false;
+    remember();
     passed_.clear();
-    before_ = run_->state();
-    before_t_ = run_->time();
     ++statistics_.steps;
     put_held();
     const auto begin = std::chrono::steady_clock::now();
     const double step = run_->step();
     const double to = step > 0 ? before_t_ + step / 2 : std::min(std::max(wanted, before_t_), before_t_ + chunk_);
-    error_ = run_->advance_to(to);
+    error_ = events_.advance(*run_, std::min(to, events_.next(*run_)));
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     constexpr double moment = 4e-3;  // seconds
     chunk_ *= took.count() > moment ? 0.5 : 1.5;
     chunk_ = std::clamp(chunk_, 1e-9 * length(), length());
     put_held();
     note_contacts();
-    if (error_.empty() && run_->time() > before_t_) return true;
+    if (error_.empty()) events_.happen(*run_, sink());
+    end_where_stopped();
+    if (error_.empty() && run_->time() > before_t_) return !events_.stopped();
+    if (events_.stopped()) return false;
     if (error_.empty()) error_ = "the time does not advance";
     outcome_.ending = Ending::not_finite;
     outcome_.t = run_->time();
@@ -83,6 +97,7 @@ class WorldTrack final : public Track {
     const double end = run_->time();
     if (t >= end || !(end > before_t_)) return;
     const double part = (t - before_t_) / (end - before_t_);
+    if (const X* until = first_before()) x = *until;  // events at the end have changed it since
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = before_[i] + part * (x[i] - before_[i]);
   }
 
@@ -90,7 +105,10 @@ class WorldTrack final : public Track {
     Instant instant;
     instant.t = t;
     at(t, instant.x);
-    instant.mode = run_->mode();
+    instant.mode = t < run_->time() ? mode_ : run_->mode();
+    const auto stops = events_.stops();
+    instant.stops.assign(stops.begin(), stops.end());
+    instant.orientations = orientations_at(t);
     if (whole) instant.world = std::make_shared<const worlds::Snapshot>(run_->snapshot());
     return instant;
   }
@@ -99,21 +117,23 @@ class WorldTrack final : public Track {
     error_.clear();
     outcome_ = {};
     passed_.clear();
-    if (instant.world && instant.world->time != run_->time()) error_ = run_->restore(*instant.world);
-    if (instant.moved) run_->set_state(instant.x);
+    if (!is_of_this_motion(instant)) {
+      place(instant);
+    } else {
+      if (instant.world->time != run_->time()) error_ = run_->restore(*instant.world);
+      if (instant.moved) run_->set_state(instant.x);
+    }
     const std::vector<double> now(run_->variables().begin(), run_->variables().end());
-    for (std::uint32_t i = layout_begin(); i < layout_end() && error_.empty(); ++i) {
+    for (std::uint32_t i = layout_.parameters; i < layout_.samples && error_.empty(); ++i) {
       if (now[i] != variables[i]) error_ = run_->set(i, variables[i]);
     }
-    before_ = run_->state();
-    before_t_ = run_->time();
+    events_.go_on(*run_, run_->variables(), instant.stops);
+    remember();
     return error_;
   }
 
-  void set_layout(const model::Layout& layout) { layout_ = layout; }
-
   const Outcome<double>& outcome() const override { return outcome_; }
-  const std::string& stop_text() const override { return error_; }
+  const std::string& stop_text() const override { return error_.empty() ? events_.stop_text() : error_; }
   Statistics statistics() const override { return statistics_; }
   const WorldRun* world() const override { return run_.get(); }
 
@@ -122,10 +142,89 @@ class WorldTrack final : public Track {
     put_held();
     before_ = run_->state();
   }
+  void let_go(std::size_t body, const Point& velocity) override {
+    held_.reset();
+    run_->set_body(body, run_->position(body), velocity);
+    before_ = run_->state();
+  }
 
  private:
-  std::uint32_t layout_begin() const { return layout_.parameters; }
-  std::uint32_t layout_end() const { return layout_.samples; }
+  using Orientations = std::vector<std::array<float, 4>>;
+
+  worlds::WorldEvents::Sink sink() {
+    return [this](const worlds::WorldHappening& now) {
+      Passed passed{now.t, {}, now.before, run_->state(), run_->mode(), {}};
+      const auto stops = events_.stops();
+      passed.stops.assign(stops.begin(), stops.end());
+      for (const auto& name : now.names) passed.names.push_back({name.event, name.mark});
+      statistics_.events += passed.names.size();
+      passed_.push_back(std::move(passed));
+    };
+  }
+
+  /// Of events at the end of the step, the state that the first of them found.
+  const X* first_before() const {
+    const auto found = std::ranges::find_if(passed_, [](const Passed& passed) { return !passed.before.empty(); });
+    return found == passed_.end() ? nullptr : &found->before;
+  }
+
+  void end_where_stopped() {
+    if (!events_.stopped()) return;
+    outcome_.ending = Ending::stopped_by_event;
+    outcome_.event = events_.stopped_by();
+    outcome_.t = run_->time();
+  }
+
+  void remember() {
+    before_ = run_->state();
+    before_t_ = run_->time();
+    mode_ = run_->mode();
+    before_orientations_ = orientations();
+  }
+
+  Orientations orientations() const {
+    Orientations all;
+    if (run_->dimension() == 2) return all;
+    all.reserve(run_->bodies().size());
+    for (std::size_t i = 0; i < run_->bodies().size(); ++i) {
+      const auto [w, x, y, z] = run_->orientation(i);
+      all.push_back({static_cast<float>(w), static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+    }
+    return all;
+  }
+  /// Between two steps along the straight way, which is short.
+  Orientations orientations_at(double t) const {
+    Orientations all = orientations();
+    const double end = run_->time();
+    if (t >= end || !(end > before_t_)) return all;
+    const auto part = static_cast<float>((t - before_t_) / (end - before_t_));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::array<float, 4>& from = before_orientations_[i];
+      std::array<float, 4>& to = all[i];
+      const float cosine = from[0] * to[0] + from[1] * to[1] + from[2] * to[2] + from[3] * to[3];
+      float square = 0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        to[k] = from[k] + part * ((cosine < 0 ? -to[k] : to[k]) - from[k]);  // q and -q stand alike
+        square += to[k] * to[k];
+      }
+      for (float& component : to) component /= std::sqrt(square);
+    }
+    return all;
+  }
+
+  bool is_of_this_motion(const Instant& instant) const {
+    return instant.world && instant.world->method == plan_.method && instant.world->step == plan_.step;
+  }
+  void place(const Instant& instant) {
+    std::vector<std::array<double, 4>> orientations;
+    for (const auto& [w, x, y, z] : instant.orientations) {
+      const double a = static_cast<double>(w), b = static_cast<double>(x), c = static_cast<double>(y),
+                   d = static_cast<double>(z), length = std::sqrt(a * a + b * b + c * c + d * d);
+      orientations.push_back({a / length, b / length, c / length, d / length});
+    }
+    if (instant.mode != run_->mode()) run_->go(instant.mode);
+    run_->place(instant.t, instant.x, orientations);
+  }
 
   void put_held() {
     if (!held_) return;
@@ -146,9 +245,13 @@ class WorldTrack final : public Track {
   }
 
   std::unique_ptr<WorldRun> run_;
-  X before_;
-  double before_t_, chunk_;
+  worlds::WorldEvents events_;
   model::Layout layout_;
+  X before_;                          // of the last step, like
+  double before_t_ = 0;               //
+  std::size_t mode_ = 0;              //
+  Orientations before_orientations_;  //
+  double chunk_;
   std::optional<HeldBody> held_;
   std::string error_;
   Outcome<double> outcome_;
@@ -160,11 +263,11 @@ class WorldTrack final : public Track {
 MadeTrack make_world_track(const std::shared_ptr<const model::ModelProgram>& program, const model::Plan& plan) {
   worlds::WorldOptions options = worlds::options_of(plan);
   options.most_contacts = 200;
-  worlds::StartedWorld started = worlds::start_world(program, options, plan.variables);
+  std::vector<double> variables = plan.variables;
+  for (const model::TableInput& input : program->step_inputs) variables[input.variable] = input.table.value(plan.from);
+  worlds::StartedWorld started = worlds::start_world(program, options, variables);
   if (!started.run) return {nullptr, started.error};
-  auto track = std::make_unique<WorldTrack>(std::move(started.run), plan);
-  track->set_layout(program->model.layout);
-  return {std::move(track), {}};
+  return {std::make_unique<WorldTrack>(program, std::move(started.run), plan), {}};
 }
 
 }  // namespace continuo::live

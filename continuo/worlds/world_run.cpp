@@ -142,6 +142,16 @@ class Moving final : public WorldRun {
     for (double& z : companions_.state) z = *at++;
     renew();
   }
+  void place(double t, std::span<const double> state, std::span<const std::array<double, 4>> orientations) override {
+    world_.time = t;
+    if constexpr (Dim == 3) {
+      for (std::size_t i = 0; i < orientations.size(); ++i) world_.orientation[i].components = orientations[i];
+    }
+    set_state(state);
+    contacts_.clear();
+    make_motion();
+    collisions_apart_ += static_cast<std::size_t>(model::collisions_of(*model().world, state)) - collisions();
+  }
   void set_body(std::size_t body, const Point& position, const Point& velocity) override {
     world_.position[body] = vector_of<Dim>(position);
     world_.velocity[body] = vector_of<Dim>(velocity);
@@ -194,11 +204,14 @@ class Moving final : public WorldRun {
             .start = start_,
             .steps = steps_,
             .collisions = collisions(),
-            .mode = beside_.mode()};
+            .mode = beside_.mode(),
+            .method = options_.method,
+            .step = options_.step};
   }
   std::string restore(const Snapshot& saved) override {
     if (saved.equations.size() != companions_.state.size() || saved.variables.size() != variables_.size())
       return "a snapshot of another model";
+    if (saved.method != options_.method || saved.step != options_.step) return "a snapshot of another motion";
     std::string error =
         exact_ ? continuo::restore(saved.bodies, world_, *exact_) : continuo::restore(saved.bodies, world_, *fast_);
     if (!error.empty()) return error;

@@ -78,6 +78,8 @@ struct Snapshot {
   std::uint64_t steps = 0;
   std::size_t collisions = 0;
   std::size_t mode = 0;
+  std::string method;
+  double step = 0;
 };
 
 class WorldRun {
@@ -117,6 +119,10 @@ class WorldRun {
   virtual const std::vector<double>& state() = 0;
   /// Bodies and equations are put where it says; measures are ignored.
   virtual void set_state(std::span<const double> state) = 0;
+  /// Begins anew from another instant, of whatever run of this model: state, time, and how bodies in space stand (in
+  /// the plane that is state). What a motion remembers besides, contacts and the like, it finds out again.
+  virtual void place(double t, std::span<const double> state,
+                     std::span<const std::array<double, 4>> orientations = {}) = 0;
   /// Puts one body elsewhere: dragged by a hand.
   virtual void set_body(std::size_t body, const Point& position, const Point& velocity) = 0;
   /// A parameter or an input, by its place in the flat space (`Parameter::variable`); what follows from it follows.
@@ -129,7 +135,7 @@ class WorldRun {
   virtual void go(std::size_t mode) = 0;
 
   virtual Snapshot snapshot() const = 0;
-  /// Of this same run; empty, or what is wrong with it.
+  /// Of a run by the same method and step; empty, or what is wrong with it.
   virtual std::string restore(const Snapshot& snapshot) = 0;
 };
 

@@ -88,6 +88,38 @@ TEST(LiveFrames, OfGhostsAndBodies) {
             "00000000");  // bodies: count, position, angle
 }
 
+TEST(LiveFrames, OfAGhostsBodiesAndOfTrails) {
+  Slice slice = slice_at(1.5, {1.5});
+  slice.ghost = true;
+  slice.ghost_scene = {2};
+  Bodies bodies;
+  bodies.dimension = 2;
+  bodies.position = {1, 2};
+  bodies.orientation = {0};
+  slice.bodies = std::make_shared<Bodies>(bodies);
+  bodies.position = {0.5, 2};
+  bodies.orientation = {1};
+  slice.ghost_bodies = std::make_shared<Bodies>(bodies);
+  slice.paths = {1, 0.5};
+  slice.ghost_paths = {2, 0.5};
+  const std::string frame =
+      hex(frame_of(slice, {slice.row_t, slice.rows, slice.ghost_rows, slice.paths, slice.ghost_paths}, false));
+  EXPECT_EQ(frame.substr(16, 8), "6e000000");  // ghost, bodies, how they stand, the ghost's, trails
+  const std::string end =
+      "01000000"
+      "0000803f"
+      "00000040"
+      "00000000"  // bodies: count, position, angle
+      "0000003f"
+      "00000040"
+      "0000803f"  // the ghost's: position, angle
+      "0000803f"
+      "0000003f"  // where the trail was at the row's time
+      "00000040"
+      "0000003f";  // the ghost's
+  EXPECT_EQ(frame.substr(frame.size() - end.size()), end);
+}
+
 struct Read {
   std::uint32_t flags, rows;
   std::vector<double> t;

@@ -1,4 +1,5 @@
 // What hands do to a session: parameters, inputs, methods, the mouse, the text.
+#include <filesystem>
 #include <fstream>
 
 #include <tests/live/spectator.hpp>
@@ -183,6 +184,83 @@ TEST(LiveText, IsSavedToItsFileOnly) {
   std::getline(file, line);
   EXPECT_EQ(line, "x' = 2");
   EXPECT_EQ(stage.audience.said("saved").size(), 1U);
+}
+
+const std::string sliding =
+    "param g = 1 in 0..2\ninput push = 0.5 in 0..2\ninput lift = 0 in 0..1 key \"l\"\n"
+    "x'' = 0; y'' = push - 0.5 + lift*g\nx(0) = 0; x'(0) = 0; y(0) = 0; y'(0) = 0\n"
+    "draw { ball (x, y) radius 0.1 drag }\nrun 0..10\n";
+
+TEST(LiveHands, AThingFliesOnAsFastAsTheHandWent) {
+  for (const double speed : {1.0, 0.1}) {  // slow motion: ten times as fast in the time of the model
+    Stage stage(sliding);
+    stage.session->set_speed(speed);
+    stage.session->play();
+    for (int i = 1; i <= 20; ++i) {
+      stage.session->drag(0, {std::vector<double>{0.05 * i, 0}});
+      stage.run(1.0 / 60);
+    }
+    EXPECT_EQ(stage.state("x'"), 0);
+    stage.session->release();
+    stage.run(0.1);
+    EXPECT_NEAR(stage.state("x'"), 0.05 * 60 / speed, 1e-6 / speed);
+  }
+}
+
+TEST(LiveHands, InputsAreUndoneAndRestored) {
+  Stage stage(sliding);
+  const auto input = [&](const char* name) {
+    return nlohmann::json::parse(stage.session->state_json())["inputs"][name].get<double>();
+  };
+  const auto wait = [&] { stage.wall += 2; };  // two changes, not one slider that moves
+  stage.session->move_input("push", 1);
+  wait();
+  stage.session->move_input("push", 1.5);
+  wait();
+  for (const double down : {1.0, 0.0, 1.0, 0.0, 1.0}) stage.session->move_input("lift", down), wait();
+  stage.session->set_parameter("g", 2);
+  stage.session->undo();
+  EXPECT_EQ(input("lift"), 1);
+  stage.session->undo();  // all that a key did is one change
+  EXPECT_EQ(input("lift"), 0);
+  EXPECT_EQ(input("push"), 1.5);
+  stage.session->undo();
+  EXPECT_EQ(input("push"), 1);
+  stage.session->restore_parameters();
+  EXPECT_EQ(input("push"), 0.5);
+  stage.session->undo();
+  EXPECT_EQ(input("push"), 1);
+  const auto model = nlohmann::json::parse(stage.session->model_json());
+  EXPECT_EQ(model["inputs"][0]["value"], 1);
+  EXPECT_EQ(model["inputs"][0]["file"], 0.5);
+}
+
+TEST(LiveHands, AParameterKnowsItsValueInTheFile) {
+  Stage stage(sliding);
+  stage.session->set_parameter("g", 1.5);
+  stage.session->reset();
+  const auto parameter = stage.audience.said("model").back()["parameters"][0];
+  EXPECT_EQ(parameter["value"], 1.5);
+  EXPECT_EQ(parameter["file"], 1);
+}
+
+/// An input that follows a file in steps, beside a slider.
+TEST(LiveHands, AnInputKeepsToItsFileWhileASliderMoves) {
+  const auto csv = std::filesystem::path(::testing::TempDir()) / "live_steps.csv";
+  std::ofstream(csv) << "t,u\n0,1\n1,5\n9,5\n";
+  Stage stage("param k = 1 in 0..2\ninput u = 0 in 0..9 from \"" + csv.string() +
+              "\" step\nx' = u\nx(0) = 0\nrun 0..10\n");
+  stage.play(2);
+  const double before = stage.state("x"), t = stage.session->shown_time();
+  stage.session->set_parameter("k", 2);
+  stage.run(1);
+  EXPECT_NEAR(stage.state("x"), before + 5 * (stage.session->shown_time() - t), 1e-9);
+  stage.session->move_input("u", 2);
+  stage.run(0.5);
+  const double moved = stage.state("x"), then = stage.session->shown_time();
+  stage.session->undo();  // the file's again
+  stage.run(1);
+  EXPECT_NEAR(stage.state("x"), moved + 5 * (stage.session->shown_time() - then), 1e-9);
 }
 
 }  // namespace

@@ -103,5 +103,136 @@ TEST(LiveWorld, SlowMotionIsShownBetweenSteps) {
   EXPECT_GT(heights.size(), 20U);
 }
 
+// ---- a ghost of bodies, other methods, the past ----
+
+TEST(LiveWorld, HasAGhostByAnotherMethod) {
+  Stage stage(exact);
+  stage.play(0.3);
+  stage.session->take_ghost(MethodChoice{.name = "explicit_euler", .step = 0.04});  // in four substeps each
+  stage.run(0.2);
+  const auto& slice = *stage.audience.slices.back();
+  ASSERT_TRUE(slice.ghost_bodies);
+  ASSERT_EQ(slice.ghost_bodies->position.size(), 4U);
+  // Euler's positions lag by g*h*t/2, in the t since the ghost began.
+  const double since = slice.t - 0.3;
+  const double apart = static_cast<double>(slice.ghost_bodies->position[1] - slice.bodies->position[1]);
+  EXPECT_NEAR(apart, 9.81 * 0.01 * since / 2, 9.81 * 0.01 * 0.02);  // begun within a picture of 1/60 s
+  EXPECT_GT(apart, 0.005);
+  EXPECT_NEAR(stage.shown("distance"), apart, 1e-6);
+  stage.session->take_ghost(std::nullopt);
+  stage.run(0.1);
+  EXPECT_FALSE(stage.audience.slices.back()->ghost_bodies);
+}
+
+TEST(LiveWorld, GoesOnByAnotherMethodWhereItIs) {
+  Stage stage(exact);
+  stage.play(0.3);
+  const double before = stage.session->shown_time();
+  stage.session->take_method({.name = "semi_implicit_euler", .step = 0.001});
+  stage.run(0.2);
+  const double t = stage.session->shown_time();
+  EXPECT_NEAR(t, before + 0.2, 0.02);
+  EXPECT_NEAR(stage.state("ball.y"), 2 - 9.81 * t * t / 2, 9.81 * 0.001 * 0.2);  // of order 1: h*g*t/2
+  // From a moment before the change on, which only the other method could restore.
+  stage.session->seek(0.1);
+  const double then = stage.session->shown_time();
+  stage.play(0.1);
+  EXPECT_NEAR(stage.state("ball.y"), 2 - 9.81 * (then + 0.1) * (then + 0.1) / 2, 9.81 * 0.001);
+  EXPECT_TRUE(stage.audience.said("message").empty());
+}
+
+const std::string rolling =
+    "world {\n  dimension 3\n  body ball at (0, 0, 1) spin (0, 0, 1) radius 0.5\n  mode fast step 1/100\n}\nrun "
+    "0..10\n";
+
+/// The turn about z, of a quaternion (x, y, z, w).
+double turn_of(const Bodies& bodies) {
+  return 2 * static_cast<double>(std::atan2(bodies.orientation[2], bodies.orientation[3]));
+}
+
+TEST(LiveWorld, ThePastKnowsHowBodiesStood) {
+  Stage stage(rolling);
+  stage.play(1);
+  EXPECT_NEAR(turn_of(*stage.audience.slices.back()->bodies), 1, 1e-3);
+  stage.session->seek(0.4);
+  stage.run(0.1);
+  const auto& slice = *stage.audience.slices.back();
+  ASSERT_TRUE(slice.looking_back);
+  ASSERT_EQ(slice.bodies->orientation.size(), 4U);
+  EXPECT_NEAR(turn_of(*slice.bodies), slice.t, 1e-3);
+  stage.session->take_method({.name = "exact"});  // goes on from there, standing as it stood
+  stage.play(0.2);
+  EXPECT_NEAR(turn_of(*stage.audience.slices.back()->bodies), stage.session->shown_time(), 1e-3);
+}
+
+// ---- events of the text ----
+
+const std::string watched =
+    "world {\n  gravity (0, -10)\n  body ball at (0, 5) radius 0.5\n  mode exact\n}\n"
+    "when ball.y falls through 3.75 { ball.y' := 8; mark \"turned\" }\n"
+    "when ball.y' falls through 0 { stop \"high enough\" }\nrun 0..10\n";
+
+TEST(LiveWorld, EventsOfTheTextHappen) {
+  Stage stage(watched);
+  stage.play(2);
+  // From rest 1.25 m down take 0.5 s; thrown up at 8 m/s it turns 0.8 s later, 3.2 m higher. Double rounding is all.
+  std::vector<LiveEvent> events;
+  for (const auto& seen : stage.audience.slices) events.insert(events.end(), seen->events.begin(), seen->events.end());
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_NE(events[0].name.find("3.75"), std::string::npos);
+  EXPECT_EQ(events[0].mark, "turned");
+  EXPECT_NEAR(events[0].t, 0.5, 1e-9);
+  EXPECT_NE(events[1].name.find("ball.y'"), std::string::npos);
+  EXPECT_NEAR(events[1].t, 1.3, 1e-9);
+  EXPECT_TRUE(stage.session->has_ended());
+  EXPECT_EQ(stage.audience.said("state").back()["ended"], "high enough");
+  EXPECT_NEAR(stage.state("ball.y"), 3.75 + 3.2, 1e-9);
+  // Back to before: it happens again.
+  stage.session->seek(0.4);
+  stage.play(0.3);
+  EXPECT_NEAR(stage.state("ball.y'"), 8 - 10 * (stage.session->shown_time() - 0.5), 1e-9);
+}
+
+TEST(LiveWorld, EventsOfTheTextHappenInSteps) {
+  Stage stage(
+      "world {\n  gravity (0, -10)\n  body ball at (0, 5) radius 0.5\n  mode fast step 0.01\n}\n"
+      "when ball.y falls through 3.75 { ball.y' := 8 }\nat 1 { ball.x' := 2 }\nrun 0..10\n");
+  stage.session->until_event();
+  stage.run(2);
+  EXPECT_NEAR(stage.session->shown_time(), 0.5, 0.02);  // at the end of a step
+  stage.session->until_event();
+  stage.run(2);
+  EXPECT_NEAR(stage.session->shown_time(), 1, 1e-9);
+  EXPECT_NEAR(stage.state("ball.x'"), 2, 1e-12);
+}
+
+// ---- a hand ----
+
+TEST(LiveWorld, ABodyFliesOnAsFastAsTheHandWent) {
+  Stage stage("world {\n  body ball at (0, 0) radius 0.5\n  mode exact\n}\nrun 0..10\n");
+  stage.session->play();
+  const auto move = [&](double speed, int pictures) {
+    static double x = 0;
+    for (int i = 0; i < pictures; ++i) {
+      x += speed / 60;
+      stage.session->drag_body(0, {std::vector<double>{x, 0}});
+      stage.run(1.0 / 60);
+    }
+  };
+  move(3, 20);
+  stage.session->release();
+  stage.run(0.1);
+  EXPECT_NEAR(stage.state("ball.x'"), 3, 1e-6);
+  move(3, 20);
+  move(0, 20);  // who holds still before letting go throws nothing
+  stage.session->release();
+  stage.run(0.1);
+  EXPECT_NEAR(stage.state("ball.x'"), 0, 1e-12);
+  move(3, 20);
+  stage.session->release(true);
+  stage.run(0.1);
+  EXPECT_NEAR(stage.state("ball.x'"), 0, 1e-12);
+}
+
 }  // namespace
 }  // namespace continuo::live

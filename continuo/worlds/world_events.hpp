@@ -1,0 +1,80 @@
+// continuo/worlds/world_events.hpp
+// The events of a model's text while its bodies move. A `when` is looked for at every step, or without steps every so
+// often, and then located; `at`, `every`, `initially` and the steps of inputs happen when their time has come.
+//
+//   WorldEvents events(program, plan.variables, plan.from, look);
+//   events.begin(world, sink);
+//   error = events.advance(world, std::min(to, events.next(world)));  ...  events.happen(world, sink);
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/model/model_events.hpp>
+#include <continuo/model/run_recorder.hpp>
+#include <continuo/worlds/world_run.hpp>
+
+namespace continuo::worlds {
+
+/// With steps, how much earlier than due the end of a step may be.
+double slack_of(const WorldRun& world);
+
+/// Events of one instant; the world is as they left it.
+struct WorldHappening {
+  double t;
+  const std::vector<model::RunRecorder::Name>& names;  // empty: the step of an input, which is nobody's event
+  const std::vector<double>& before;
+};
+
+class WorldEvents {
+ public:
+  using X = std::vector<double>;
+  using Sink = std::function<void(const WorldHappening&)>;
+
+  /// `look`: between two looks at what a `when` asks, of a world without steps.
+  WorldEvents(const std::shared_ptr<const model::ModelProgram>& program, std::span<const double> variables, double from,
+              double look);
+
+  /// What happens at the very beginning.
+  void begin(WorldRun& world, const Sink& sink);
+  /// How far it may be advanced at once.
+  double next(const WorldRun& world) const;
+  /// To the first end of a step that is not before `to`; to the first instant of an event where one comes before.
+  std::string advance(WorldRun& world, double to);
+  /// What is due now.
+  void happen(WorldRun& world, const Sink& sink);
+
+  /// A `stop` has been reached: by which event, and what it says.
+  bool stopped() const { return stopped_; }
+  const std::string& stopped_by() const { return stopped_by_; }
+  const std::string& stop_text() const { return events_.stop_text(); }
+  std::span<const std::size_t> stops() const { return events_.stops(); }
+
+  /// The world has been put elsewhere, or its variables changed: what was scheduled for this very instant is over.
+  void go_on(WorldRun& world, std::span<const double> variables, std::span<const std::size_t> stops);
+
+ private:
+  double next_scheduled() const;
+  void read_guards(WorldRun& world, std::vector<double>& values);
+  bool passed(std::size_t i) const;
+  bool any_passed() const;
+  std::string go_back_to_event(WorldRun& world, const Snapshot& saved);
+  void happen_guards(WorldRun& world, const Sink& sink);
+  void happen_scheduled(WorldRun& world, const Sink& sink, bool inclusive);
+  void happen_now(WorldRun& world, const std::vector<std::size_t>& fired, const Sink& sink);
+
+  std::shared_ptr<const model::ModelProgram> program_;
+  model::ModelSystem system_;  // its guards, actions and modes
+  model::ModelEvents events_;
+  std::vector<double> values_, before_;  // of guards: now, and at the last look
+  std::vector<model::RunRecorder::Name> names_;
+  std::size_t marks_seen_ = 0;
+  double scheduled_after_, look_;
+  bool any_guard_ = false, stopped_ = false;
+  std::string stopped_by_;
+};
+
+}  // namespace continuo::worlds
