@@ -12,11 +12,13 @@ export const isEmpty = (bounds: Bounds): boolean => !(bounds.lower[0] <= bounds.
 /** Takes a ball of `radius` into the bounds; what is not finite is left out. */
 export function include(bounds: Bounds, x: number, y: number, z: number, radius = 0): void {
   if (!Number.isFinite(x + y + z + radius)) return;
-  const point = [x, y, z] as const;
-  for (let axis = 0; axis < 3; ++axis) {
-    bounds.lower[axis] = Math.min(bounds.lower[axis]!, point[axis]! - radius);
-    bounds.upper[axis] = Math.max(bounds.upper[axis]!, point[axis]! + radius);
-  }
+  const { lower, upper } = bounds;
+  lower[0] = Math.min(lower[0], x - radius);
+  lower[1] = Math.min(lower[1], y - radius);
+  lower[2] = Math.min(lower[2], z - radius);
+  upper[0] = Math.max(upper[0], x + radius);
+  upper[1] = Math.max(upper[1], y + radius);
+  upper[2] = Math.max(upper[2], z + radius);
 }
 
 export function union(bounds: Bounds, other: Bounds): void {

@@ -31,10 +31,10 @@ export class Hand {
   private nudging = false;
 
   constructor(private readonly around: Surroundings) {
-    const { canvas } = around.stage;
-    canvas.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
-    canvas.addEventListener("pointermove", (event) => this.move(event));
-    for (const name of ["pointerup", "pointercancel"] as const) canvas.addEventListener(name, (event) => this.up(event));
+    const { element } = around.stage.surface;
+    element.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
+    element.addEventListener("pointermove", (event) => this.move(event));
+    for (const name of ["pointerup", "pointercancel"] as const) element.addEventListener(name, (event) => this.up(event));
   }
 
   /** The next thing that may be dragged, for those who use keys. */
@@ -83,7 +83,7 @@ export class Hand {
   }
 
   private place(event: PointerEvent): [number, number] {
-    const box = this.around.stage.canvas.getBoundingClientRect();
+    const box = this.around.stage.surface.element.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
   }
 
@@ -128,7 +128,7 @@ export class Hand {
     }
     const point = stage.onPlane(x, y, found.at) ?? found.at.clone();
     this.held = { thing: found.thing, through: found.at, offset: found.at.clone().sub(point), moved: false, id: event.pointerId, x, y };
-    if (found.drag && session.live) stage.canvas.setPointerCapture(event.pointerId);
+    if (found.drag && session.live) stage.surface.element.setPointerCapture(event.pointerId);
   }
 
   private move(event: PointerEvent): void {
@@ -136,14 +136,14 @@ export class Hand {
     const [x, y] = this.place(event);
     const held = this.held;
     if (!held) {
-      if (event.pointerType === "mouse" && event.buttons === 0) stage.canvas.style.cursor = this.find(x, y)?.drag ? "grab" : "";
+      if (event.pointerType === "mouse" && event.buttons === 0) stage.surface.element.style.cursor = this.find(x, y)?.drag ? "grab" : "";
       return;
     }
     if (event.pointerId !== held.id) return;
     if (!held.moved && Math.hypot(x - held.x, y - held.y) < 4) return;
     held.moved = true;
-    if (!stage.canvas.hasPointerCapture(held.id)) return;
-    stage.canvas.style.cursor = "grabbing";
+    if (!stage.surface.element.hasPointerCapture(held.id)) return;
+    stage.surface.element.style.cursor = "grabbing";
     const point = stage.onPlane(x, y, held.through);
     if (!point) return;
     this.next = point.add(held.offset).toArray().slice(0, stage.isFlat ? 2 : 3);
@@ -168,13 +168,13 @@ export class Hand {
     }
     this.held = null;
     if (held.moved) {
-      if (stage.canvas.hasPointerCapture(held.id)) session.send({ do: "release" });
+      if (stage.surface.element.hasPointerCapture(held.id)) session.send({ do: "release" });
     } else {
       this.selected = held.thing;
       if (held.thing.kind === "body") session.send({ do: "pick", body: held.thing.index });
       this.around.select(held.thing);
     }
     stage.movable = true;
-    stage.canvas.style.cursor = "";
+    stage.surface.element.style.cursor = "";
   }
 }

@@ -1,59 +1,97 @@
-// Many spheres in one draw call: each a square that faces the eye, shaded as a sphere. Two triangles a sphere instead of
-// hundreds. The squares are vertices of one mesh, not instances: rendering in software pays some 20 microseconds for each
-// instance, whatever is in it, and a graphics card draws either as fast.
+// Many spheres in one draw call: each a triangle around a disc that faces the eye, shaded as a sphere and as deep as one.
+// Three corners a sphere instead of the hundreds of a mesh. They are vertices of one mesh, not instances: rendering in
+// software pays some 20 microseconds for each instance, whatever is in it, and a graphics card draws either as fast. Not
+// points either: those vanish as soon as their centre leaves the picture.
 import * as three from "three";
 
 const vertex = /* glsl */ `
-  attribute float radius;
-  attribute vec3 tint;
-  attribute vec4 turn;
-  attribute vec2 square;
+  in float radius;
+  in vec4 tint;
+  in vec4 turn;
   uniform float pixel;       // the size of a pixel: in the plane, or at distance 1
   uniform float least;       // the smallest radius, in pixels
-  varying vec2 corner;
-  varying vec3 color;
-  varying vec4 turned;
+  out vec2 corner;
+  flat out vec3 color;
+  flat out float fine;       // a pixel in radii of this sphere
+  flat out vec2 depth;       // the centre's distance along the view, and the radius
+  flat out mat3 own;         // takes a normal of the picture into the sphere's own axes
   void main() {
     vec4 centre = modelViewMatrix * vec4(position, 1.0);
     float scale = projectionMatrix[2][3] == 0.0 ? pixel : -centre.z * pixel;
     float size = max(radius, least * scale);
-    corner = square * (1.0 + scale / size);
+    fine = scale / size;
+    depth = vec2(centre.z, size);
+    color = tint.rgb;
+    // The triangle around the circle of radius 1 and the pixel around it.
+    int at = gl_VertexID % 3;
+    corner = (1.0 + fine) * (at == 0 ? vec2(0.0, 2.0) : vec2(at == 1 ? -1.7320508 : 1.7320508, -1.0));
+    vec4 q = turn;
+    vec3 x = vec3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.w * q.z), 2.0 * (q.x * q.z - q.w * q.y));
+    vec3 y = vec3(2.0 * (q.x * q.y - q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + q.w * q.x));
+    own = transpose(mat3(viewMatrix) * mat3(x, y, cross(x, y)));
     centre.xy += corner * size;
-    color = tint;
-    turned = turn;
     gl_Position = projectionMatrix * centre;
   }`;
 
+/** PLANE: discs in the plane. MARKED: octants (quarters) of two shades show how it turns. An edge is mixed with what was drawn before
+it: smooth without several samples a pixel, which cost three times as much as all else where no graphics card draws. */
 const fragment = /* glsl */ `
   uniform float opacity;
-  uniform bool flat_;
-  uniform bool marked;
-  varying vec2 corner;
-  varying vec3 color;
-  varying vec4 turned;
-  vec3 turned_back(vec3 v, vec4 q) {
-    vec3 u = -q.xyz;
-    return v + 2.0 * cross(u, cross(u, v) + q.w * v);
-  }
+  in vec2 corner;
+  flat in vec3 color;
+  flat in float fine;
+  flat in vec2 depth;
+  flat in mat3 own;
+  out vec4 shown;
   void main() {
-    float from_centre = length(corner);
-    float edge = fwidth(from_centre);
-    float cover = 1.0 - smoothstep(1.0 - edge, 1.0 + 0.5 * edge, from_centre);
-    if (cover <= 0.0) discard;
-    vec3 normal = vec3(corner, sqrt(max(0.0, 1.0 - from_centre * from_centre)));
-    vec3 shade = color;
-    if (marked) {
-      vec3 own = turned_back(transpose(mat3(viewMatrix)) * normal, turned);
-      float stripe = flat_ ? own.x * own.y : own.x * own.y * own.z;
-      float wide = fwidth(stripe) + 1e-4;
-      shade *= mix(1.0, 0.72, smoothstep(-wide, wide, stripe));
-    }
-    float light = max(0.0, dot(normal, normalize(vec3(-0.45, 0.7, 0.75))));
-    float gloss = pow(max(0.0, dot(normal, normalize(vec3(-0.28, 0.5, 0.82)))), 40.0);
-    shade = flat_ ? shade * (0.80 + 0.24 * light) + 0.10 * gloss : shade * (0.42 + 0.66 * light) + 0.18 * gloss;
-    if (flat_) shade *= mix(1.0, 0.72, smoothstep(1.0 - 3.0 * edge, 1.0 - edge, from_centre));
-    gl_FragColor = vec4(min(shade, 1.0), cover * opacity);
+    float square = dot(corner, corner);
+    float from_centre = sqrt(square);
+    float cover = 1.0 - smoothstep(1.0 - fine, 1.0 + 0.5 * fine, from_centre);
+    if (cover < 0.1) discard;
+    vec3 normal = vec3(corner, sqrt(max(0.0, 1.0 - square)));
+    float light = max(0.0, dot(normal, vec3(-0.4014, 0.6244, 0.6690)));
+    float gloss = light * light;
+    gloss *= gloss;
+    gloss *= gloss;
+    gloss *= gloss;
+    gloss *= gloss;
+    #ifdef PLANE
+      float shade = 0.80 + 0.24 * light;
+      gloss *= 0.10;
+    #else
+      // Light from above, what the ground gives back, and less of either at the rim.
+      float shade = (0.40 + 0.10 * normal.y + 0.62 * light) * (0.82 + 0.18 * normal.z);
+      gloss *= 0.20;
+    #endif
+    #ifdef MARKED
+      vec3 side = own * normal;
+      #ifdef PLANE
+        float stripe = side.x * side.y;
+      #else
+        float stripe = 1.7 * side.x * side.y * side.z;
+      #endif
+      shade *= 0.87 - 0.13 * clamp(stripe / (0.8 * fine + 0.01), -1.0, 1.0);
+    #endif
+    vec3 painted = color * shade + gloss;
+    #ifdef PLANE
+      painted *= mix(1.0, 0.72, smoothstep(1.0 - 3.0 * fine, 1.0 - fine, sqrt(square)));
+    #else
+      // The surface of the sphere, not its disc, is what a floor or another sphere cuts.
+      float z = depth.x + normal.z * depth.y;
+      float far = projectionMatrix[2][3] == 0.0 ? projectionMatrix[2][2] * z + projectionMatrix[3][2] : (projectionMatrix[2][2] * z + projectionMatrix[3][2]) / -z;
+      gl_FragDepth = 0.5 * far + 0.5;
+    #endif
+    shown = vec4(min(painted, 1.0), cover * opacity);
   }`;
+
+export interface SpheresLook {
+  /** Discs in the plane, one over the other as they are numbered. */
+  flat: boolean;
+  opacity?: number;
+  /** The smallest radius, in pixels. */
+  least?: number;
+  order?: number;
+}
 
 export class Spheres {
   readonly object: three.Mesh;
@@ -68,50 +106,47 @@ export class Spheres {
 
   constructor(
     readonly count: number,
-    options: { flat: boolean; opacity?: number; least?: number; order?: number },
+    look: SpheresLook,
   ) {
     this.places = new Float32Array(3 * count);
-    const attribute = (name: string, size: number, use: three.Usage = three.DynamicDrawUsage): three.BufferAttribute => {
-      const made = new three.BufferAttribute(new Float32Array(4 * size * count), size);
+    const attribute = (name: string, values: Float32Array | Uint8Array, size: number, use: three.Usage): three.BufferAttribute => {
+      const made = new three.BufferAttribute(values, size, values instanceof Uint8Array);
       made.setUsage(use);
       this.geometry.setAttribute(name, made);
       return made;
     };
-    this.corners = attribute("position", 3);
-    this.radii = attribute("radius", 1);
-    this.tints = attribute("tint", 3, three.StaticDrawUsage);
-    this.turns = attribute("turn", 4);
-    const square = attribute("square", 2, three.StaticDrawUsage);
-    const index = new Uint32Array(6 * count);
-    for (let i = 0; i < count; ++i) {
-      (square.array as Float32Array).set([-1, -1, 1, -1, 1, 1, -1, 1], 8 * i);
-      index.set([4 * i, 4 * i + 1, 4 * i + 2, 4 * i, 4 * i + 2, 4 * i + 3], 6 * i);
-    }
-    this.geometry.setIndex(new three.BufferAttribute(index, 1));
-    const opacity = options.opacity ?? 1;
-    const blended = options.flat || opacity < 1;
+    this.corners = attribute("position", new Float32Array(9 * count), 3, three.DynamicDrawUsage);
+    this.radii = attribute("radius", new Float32Array(3 * count), 1, three.StaticDrawUsage);
+    this.tints = attribute("tint", new Uint8Array(12 * count), 4, three.StaticDrawUsage);
+    this.turns = attribute("turn", new Float32Array(12 * count), 4, three.DynamicDrawUsage);
+    const opacity = look.opacity ?? 1;
     this.material = new three.ShaderMaterial({
+      glslVersion: three.GLSL3,
       vertexShader: vertex,
-      fragmentShader: fragment,
-      uniforms: { pixel: { value: 1 }, least: { value: options.least ?? 2.5 }, opacity: { value: opacity }, flat_: { value: options.flat }, marked: { value: false } },
-      transparent: blended,
-      alphaToCoverage: !blended,
-      depthTest: !options.flat,
-      depthWrite: !options.flat && opacity === 1,
+      fragmentShader: `uniform mat4 projectionMatrix;\n${fragment}`,
+      uniforms: { pixel: { value: 1 }, least: { value: look.least ?? 2.5 }, opacity: { value: opacity } },
+      defines: look.flat ? { PLANE: 1 } : {},
+      transparent: true,
+      depthTest: !look.flat,
+      depthWrite: !look.flat && opacity === 1,
     });
     this.object = new three.Mesh(this.geometry, this.material);
     this.object.frustumCulled = false;
-    this.object.renderOrder = options.order ?? 0;
+    this.object.renderOrder = look.order ?? 0;
+    const size = new three.Vector2();
     this.object.onBeforeRender = (renderer, _scene, camera) => {
-      const height = renderer.getDrawingBufferSize(new three.Vector2()).y;
+      const height = renderer.getDrawingBufferSize(size).y;
       const seen = camera instanceof three.OrthographicCamera ? (camera.top - camera.bottom) / camera.zoom : 2 * Math.tan((((camera as three.PerspectiveCamera).fov / 2) * Math.PI) / 180);
       this.material.uniforms["pixel"]!.value = seen / height;
     };
   }
 
   place(index: number, x: number, y: number, z: number, radius: number): void {
-    this.places.set([x, y, z], 3 * index);
-    for (let corner = 4 * index; corner < 4 * index + 4; ++corner) {
+    const places = this.places;
+    places[3 * index] = x;
+    places[3 * index + 1] = y;
+    places[3 * index + 2] = z;
+    for (let corner = 3 * index; corner < 3 * index + 3; ++corner) {
       this.corners.setXYZ(corner, x, y, z);
       this.radii.setX(corner, radius);
     }
@@ -124,21 +159,27 @@ export class Spheres {
   }
 
   tint(index: number, [r, g, b]: readonly [number, number, number]): void {
-    for (let corner = 4 * index; corner < 4 * index + 4; ++corner) this.tints.setXYZ(corner, r, g, b);
+    const to = this.tints.array;
+    for (let corner = 3 * index; corner < 3 * index + 3; ++corner) {
+      to[4 * corner] = Math.round(255 * r);
+      to[4 * corner + 1] = Math.round(255 * g);
+      to[4 * corner + 2] = Math.round(255 * b);
+    }
     this.tints.needsUpdate = true;
   }
 
   /** All centres at once, as a frame has them. */
   placeAll(positions: Float32Array, dimension: number): void {
+    const { places, count } = this;
     const to = this.corners.array as Float32Array;
-    for (let i = 0, at = 0; i < this.count; ++i) {
+    for (let i = 0, at = 0; i < count; ++i) {
       const x = positions[dimension * i]!;
       const y = positions[dimension * i + 1]!;
       const z = dimension === 3 ? positions[3 * i + 2]! : 0;
-      this.places[3 * i] = x;
-      this.places[3 * i + 1] = y;
-      this.places[3 * i + 2] = z;
-      for (let corner = 0; corner < 4; ++corner) {
+      places[3 * i] = x;
+      places[3 * i + 1] = y;
+      places[3 * i + 2] = z;
+      for (let corner = 0; corner < 3; ++corner) {
         to[at++] = x;
         to[at++] = y;
         to[at++] = z;
@@ -147,22 +188,37 @@ export class Spheres {
     this.corners.needsUpdate = true;
   }
 
-  turnAll(orientations: Float32Array, dimension: number): void {
-    for (let i = 0; i < this.count; ++i) {
+  /** All orientations at once: an angle each in the plane, a quaternion x y z w each in space; null shows none. */
+  turnAll(orientations: Float32Array | null, dimension: number): void {
+    this.define("MARKED", orientations !== null);
+    if (!orientations) return;
+    const to = this.turns.array as Float32Array;
+    for (let i = 0, at = 0; i < this.count; ++i) {
       const half = dimension === 2 ? orientations[i]! / 2 : 0;
       const x = dimension === 2 ? 0 : orientations[4 * i]!;
       const y = dimension === 2 ? 0 : orientations[4 * i + 1]!;
       const z = dimension === 2 ? Math.sin(half) : orientations[4 * i + 2]!;
       const w = dimension === 2 ? Math.cos(half) : orientations[4 * i + 3]!;
-      for (let corner = 4 * i; corner < 4 * i + 4; ++corner) this.turns.setXYZW(corner, x, y, z, w);
+      for (let corner = 0; corner < 3; ++corner) {
+        to[at++] = x;
+        to[at++] = y;
+        to[at++] = z;
+        to[at++] = w;
+      }
     }
-    this.material.uniforms["marked"]!.value = true;
     this.turns.needsUpdate = true;
   }
 
   dispose(): void {
     this.geometry.dispose();
     this.material.dispose();
+  }
+
+  private define(name: string, wanted: boolean): void {
+    if (name in this.material.defines === wanted) return;
+    if (wanted) this.material.defines[name] = 1;
+    else delete this.material.defines[name];
+    this.material.needsUpdate = true;
   }
 }
 

@@ -1,13 +1,14 @@
-// Renderer, camera and the ways to move it. Draws only when something has changed.
+// Camera, lights and the ways to move them. Draws only when something has changed.
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { centre, centreHeight, extent, heightFor, type Bounds } from "./fit";
+import { Surface } from "./surface";
 
 const fov = 35;
 
 export class Stage {
   readonly scene = new three.Scene();
-  readonly canvas: HTMLCanvasElement;
+  readonly surface: Surface;
   camera: three.OrthographicCamera | three.PerspectiveCamera;
   /** Where the floor of a scene in the plane is, if it has one. */
   floor: number | null = null;
@@ -15,7 +16,6 @@ export class Stage {
   automatic = true;
   /** Pictures drawn so far. */
   drawn = 0;
-  private readonly renderer: three.WebGLRenderer;
   private controls: OrbitControls | null = null;
   private viewHeight = 2;
   private queued = 0;
@@ -26,9 +26,7 @@ export class Stage {
     private readonly beforeDrawing: () => void,
     private readonly moved: () => void,
   ) {
-    this.renderer = new three.WebGLRenderer({ antialias: true, alpha: true });
-    this.renderer.setClearAlpha(0);
-    this.canvas = this.renderer.domElement;
+    this.surface = new Surface(() => ({ width: this.width, height: this.height }), () => this.invalidate());
     this.camera = new three.OrthographicCamera();
     const sun = new three.DirectionalLight(0xffffff, 2.2);
     sun.position.set(-0.6, -0.7, 1.2);
@@ -43,9 +41,10 @@ export class Stage {
     return this.frame.clientHeight || 1;
   }
 
-  /** A fresh camera, from the front in the plane, from the side and a little above in space. */
-  setDimension(dimension: 2 | 3): void {
+  /** A fresh camera, from the front in the plane, from the side and a little above in space; `many` bodies are drawn more cheaply. */
+  begin(dimension: 2 | 3, many: boolean): void {
     this.flat = dimension === 2;
+    this.surface.begin(!many);
     this.controls?.dispose();
     if (this.flat) {
       this.camera = new three.OrthographicCamera(-1, 1, 1, -1, -1e4, 1e4);
@@ -55,7 +54,7 @@ export class Stage {
       this.camera.up.set(0, 0, 1);
       this.camera.position.set(4, -8, 3.4);
     }
-    const controls = new OrbitControls(this.camera, this.canvas);
+    const controls = new OrbitControls(this.camera, this.surface.element);
     controls.enableDamping = false;
     controls.enableRotate = !this.flat;
     controls.screenSpacePanning = true;
@@ -87,13 +86,12 @@ export class Stage {
   /** Draws at once. What the canvas holds can be copied until the browser has shown it. */
   draw(): void {
     this.beforeDrawing();
-    this.renderer.render(this.scene, this.camera);
+    this.surface.draw(this.scene, this.camera);
     ++this.drawn;
   }
 
   private resize(): void {
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-    this.renderer.setSize(this.width, this.height, true);
+    this.surface.resize();
     this.setFrustum();
     this.invalidate();
   }

@@ -12,6 +12,9 @@ import { Hand, type Thing } from "./hand";
 import { Labels } from "./labels";
 import { Stage } from "./stage";
 
+/** From so many bodies on, each is small: smooth edges cost more than they show. */
+const many = 500;
+
 export class SceneView {
   readonly element: HTMLElement;
   readonly stage: Stage;
@@ -29,6 +32,7 @@ export class SceneView {
   private firstFrame = true;
   private theme: Theme;
   private lastPicture = 0;
+  private gridDrawn = "";
 
   constructor(
     private readonly session: Session,
@@ -39,15 +43,16 @@ export class SceneView {
     this.element = make("div", { class: "scene", tabindex: 0, "aria-label": "Scene" });
     this.element.append(this.grid);
     this.stage = new Stage(this.element, () => this.beforeDrawing(), moved);
-    this.stage.canvas.setAttribute("role", "img");
-    this.element.append(this.stage.canvas, this.labels.element, this.card);
+    const { surface } = this.stage;
+    surface.element.setAttribute("role", "img");
+    this.element.append(surface.element, this.labels.element, this.card);
     this.hand = new Hand({
       session,
       stage: this.stage,
       bodies: () => (this.bodies ? { places: this.bodies.spheres.places, radius: radiusOf(this.bodies.bodies) } : null),
       select: (thing) => this.select(thing),
     });
-    this.stage.canvas.addEventListener("dblclick", () => this.fit());
+    surface.element.addEventListener("dblclick", () => this.fit());
     session.on("model", (model) => this.open(model));
     session.on("frame", (frame) => this.show(frame));
     session.on("rewound", (t) => this.forgetFrom(t));
@@ -75,25 +80,26 @@ export class SceneView {
 
   /** The scene as it stands, with its grid, as an image. */
   picture(background: string): HTMLCanvasElement {
-    const { canvas } = this.stage;
     this.stage.draw();
-    const whole = make("canvas", { width: canvas.width, height: canvas.height });
+    const { canvas } = this.stage.surface;
+    const whole = make("canvas", { width: canvas?.width ?? 1, height: canvas?.height ?? 1 });
     const context = whole.getContext("2d")!;
     context.fillStyle = background;
     context.fillRect(0, 0, whole.width, whole.height);
     if (this.stage.isFlat && this.gridShown) context.drawImage(this.grid, 0, 0, whole.width, whole.height);
-    context.drawImage(canvas, 0, 0);
+    if (canvas) context.drawImage(canvas, 0, 0);
     return whole;
   }
 
   private open(model: ModelMessage): void {
-    this.stage.setDimension(model.dimension);
-    this.stage.canvas.setAttribute("aria-label", `Moving picture of ${model.name}`);
+    this.clear();
+    this.stage.begin(model.dimension, (model.bodies?.count ?? 0) >= many);
+    this.stage.surface.element.setAttribute("aria-label", `Moving picture of ${model.name}`);
     this.interest = new Interest(!model.bodies && !model.drawing.some((item) => item.shape === "trail"));
     this.firstFrame = true;
+    this.gridDrawn = "";
     this.hand.forget();
     this.select(null);
-    this.clear();
     this.build(model);
   }
 
@@ -187,15 +193,23 @@ export class SceneView {
     const pixelsPerUnit = this.stage.height / this.stage.seenHeight;
     this.labels.update(frame.scene, (point) => this.stage.project(point), pixelsPerUnit);
     this.grid.hidden = !this.stage.isFlat || !this.gridShown;
-    if (this.grid.hidden) return;
-    const style = getComputedStyle(this.element);
-    const color = (name: string): string => style.getPropertyValue(name).trim();
+    if (!this.grid.hidden) this.drawGrid(model, frame);
+  }
+
+  /** Where the picture stands still its grid is drawn once. */
+  private drawGrid(model: ModelMessage, frame: Frame): void {
+    const { stage, grid } = this;
     const floors = model.drawing
       .filter((item) => item.shape === "floor")
       .map((item) => ({ height: numberOf(item, frame.scene, "at", 0), color: item.color ?? null }));
-    const { x, y } = this.stage.target;
-    const height = this.stage.seenHeight;
-    drawGrid(this.grid, { centre: [x, y], height, width: (height * this.stage.width) / this.stage.height }, floors, {
+    const { x, y } = stage.target;
+    const height = stage.seenHeight;
+    const drawn = [x, y, height, stage.width, stage.height, window.devicePixelRatio, document.documentElement.className, this.theme, ...floors.map((floor) => floor.height)].join();
+    if (drawn === this.gridDrawn) return;
+    this.gridDrawn = drawn;
+    const style = getComputedStyle(this.element);
+    const color = (name: string): string => style.getPropertyValue(name).trim();
+    drawGrid(grid, { centre: [x, y], height, width: (height * stage.width) / stage.height }, floors, {
       line: color("--grid"), axis: color("--grid-axis"), text: color("--muted"), floor: color("--floor"), floorLine: color("--floor-line"),
     });
   }
@@ -232,7 +246,7 @@ export class SceneView {
 
   /** Where a point of the model is on the page. */
   onPage(point: [number, number, number]): { x: number; y: number } {
-    const box = this.stage.canvas.getBoundingClientRect();
+    const box = this.stage.surface.element.getBoundingClientRect();
     const { x, y } = this.stage.project(point);
     return { x: box.left + x, y: box.top + y };
   }
