@@ -38,14 +38,16 @@
 namespace continuo {
 
 /// Quantities beside the bodies with a rate of their own, such as the states of equations: they move together with the
-/// bodies, as one system, by the same method. The law adds to the forces and sets the rates.
+/// bodies, as one system, by the same method. The law adds to forces and torques and sets the rates. Where nothing
+/// twists, orientations, spins and torques are empty: spins are the world's between contacts.
 template <class Real, int Dim>
 struct Companions {
   using V = Vector<Real, Dim>;
   std::vector<Real> state;
-  std::function<void(Real t, std::span<const V> x, std::span<const V> v, std::span<const Real> state,
-                     std::span<V> force, std::span<Real> rate)>
+  std::function<void(Real t, const BodyStates<Real, Dim>& at, std::span<const Real> state, std::span<V> force,
+                     std::span<Spin<Real, Dim>> torque, std::span<Real> rate)>
       law;
+  bool twists = false;  // the law has torques
   Real absolute_tolerance = Real(1e-13);
 };
 

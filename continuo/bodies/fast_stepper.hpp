@@ -12,6 +12,7 @@
 #include <continuo/bodies/impacts.hpp>
 #include <continuo/bodies/sleep.hpp>
 #include <continuo/bodies/touch_log.hpp>
+#include <continuo/bodies/twist.hpp>
 
 namespace continuo {
 
@@ -57,10 +58,12 @@ class FastMotion<Real, Dim>::Stepper {
     place_before_ = {};  // not needed most of the time
     const Real h = options_.step / static_cast<Real>(options_.substeps);
     log.clear();
+    twist_.begin(world_, list_.order());
     for (int k = 0; k < options_.substeps; ++k)
       if (!substep(world_.time + h * static_cast<Real>(k), h))
         return "the equations of implicit Euler could not be solved: a smaller step may help";
-    if (!all_finite()) return "a body's motion is no longer finite: a force or a mass is too large for the step";
+    if (!bodies_.all_finite())
+      return "a body's motion is no longer finite: a force or a mass is too large for the step";
     store();
     world_.time += options_.step;
     if (log.is_kept()) note_touching();
@@ -195,13 +198,6 @@ class FastMotion<Real, Dim>::Stepper {
       }
     });
   }
-  bool all_finite() const {
-    Real sum(0);
-    for (std::size_t k = 0; k < bodies_.size(); ++k)
-      for (std::size_t axis = 0; axis < V::size(); ++axis)
-        sum += Real(0) * (bodies_.place[k].x_and_radius[axis] + bodies_.motion[k].linear[axis]);
-    return sum == Real(0);
-  }
 
   /// The bodies from the world, in the order of the list.
   void load() {
@@ -236,7 +232,8 @@ class FastMotion<Real, Dim>::Stepper {
       if (!bodies_.moves(k)) return;
       const std::size_t i = order[k];
       const Spin<Real, Dim> spin = vector_of<Spin<Real, Dim>::size()>(bodies_.motion[k].rim) * (1 / bodies_.radius(k));
-      world_.orientation[i] = turned(world_.orientation[i], spin, options_.step);
+      world_.orientation[i] =
+          twist_.acts() ? twist_.orientation(i) : turned(world_.orientation[i], spin, options_.step);
       world_.position[i] = bodies_.x(k);
       world_.velocity[i] = bodies_.v(k);
       world_.spin[i] = spin;
@@ -331,6 +328,7 @@ class FastMotion<Real, Dim>::Stepper {
       bodies_.impacts.assign(bodies_.size(), 0);
       statistics.impacts += impacts_.make(world_, list_, contacts_, bodies_, step, options_.step, t, log);
     }
+    twist_.push(bodies_, t, h);
     for_each_body([&](std::size_t k) {
       put(V(bodies_.v(k) + bodies_.acceleration(k) * h), bodies_.motion[k].linear);
       bodies_.touched[k] = 0;
@@ -347,6 +345,7 @@ class FastMotion<Real, Dim>::Stepper {
       if (!bodies_.touched[k]) v -= bodies_.acceleration(k) * (is_steady(k) ? steady_lag : lag);
       put(V(bodies_.x(k) + v * h), bodies_.place[k].x_and_radius);
     });
+    twist_.turn(bodies_, rule, h);
     for_each_pack([&](auto kind, auto& packs, std::size_t from, std::size_t to) {
       solve_packs<kind(), ContactPass::relax>(packs, from, to, bodies_, step);
     });
@@ -362,6 +361,7 @@ class FastMotion<Real, Dim>::Stepper {
       if (bodies_.touched[k]) return;
       put(V(bodies_.v(k) + (bodies_.accelerations[k] - before[k]) * (h / 2)), bodies_.motion[k].linear);
     });
+    twist_.correct(bodies_, t + h, h);
   }
 
   /// Without restitution only what moves by half a radius in a substep strikes; most worlds at most times have
@@ -384,6 +384,7 @@ class FastMotion<Real, Dim>::Stepper {
   PairList<Real, Dim> list_;
   ContactList<Real, Dim> contacts_;
   Impacts<Real, Dim> impacts_;
+  Twist<Real, Dim> twist_;
   TouchLog<Real, Dim> touches_;
   bool is_restored_ = false;  // the impulses of the last step have been kept already
   bool has_other_forces_ = false, may_bounce_ = false;

@@ -9,7 +9,7 @@
 
 #include <continuo/bodies/contact_time.hpp>
 #include <continuo/bodies/exact_engine.hpp>
-#include <continuo/bodies/forces.hpp>
+#include <continuo/bodies/forced_flow.hpp>
 #include <continuo/bodies/impulse.hpp>
 #include <continuo/bodies/queries.hpp>
 #include <continuo/methods/dop853.hpp>
@@ -26,72 +26,6 @@ constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
 struct Candidate {
   std::uint32_t a = 0, b = 0, wall = no_wall;
   bool overlaps = false;  // when it was listed: then what is watched is whether they approach
-};
-
-/// All places and then all velocities, fixed bodies too, and last what moves with the bodies, as one state.
-template <class Real, int Dim>
-class Flow {
- public:
-  using V = Vector<Real, Dim>;
-  using X = std::vector<Real>;
-
-  Flow(const World<Real, Dim>& world, const Companions<Real, Dim>* companions)
-      : world_(&world), companions_(companions), x_(world.size()), v_(world.size()), f_(world.size()) {
-    if (companions) rate_.resize(companions->state.size());
-  }
-
-  void operator()(Real t, const X& state, X& rate) {
-    unpack(state);
-    const std::size_t n = x_.size(), bodies = 2 * n * V::size();
-    all_forces(t, x_, v_, std::span(state).subspan(bodies));
-    std::ranges::copy(rate_, rate.begin() + static_cast<std::ptrdiff_t>(bodies));
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t axis = 0; axis < V::size(); ++axis) {
-        rate[i * V::size() + axis] = world_->is_fixed(i) ? Real(0) : v_[i][axis];
-        rate[(n + i) * V::size() + axis] = f_[i][axis] * world_->inverse_mass[i];
-      }
-  }
-  X pack() const {
-    const std::size_t n = world_->size();
-    X state(2 * n * V::size() + rate_.size());
-    if (companions_) std::ranges::copy(companions_->state, state.end() - static_cast<std::ptrdiff_t>(rate_.size()));
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t axis = 0; axis < V::size(); ++axis) {
-        state[i * V::size() + axis] = world_->position[i][axis];
-        state[(n + i) * V::size() + axis] = world_->velocity[i][axis];
-      }
-    return state;
-  }
-  void unpack(const X& state) { unpack(state, x_, v_); }
-  static void unpack(const X& state, std::vector<V>& x, std::vector<V>& v) {
-    const std::size_t n = x.size();
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t axis = 0; axis < V::size(); ++axis) {
-        x[i][axis] = state[i * V::size() + axis];
-        v[i][axis] = state[(n + i) * V::size() + axis];
-      }
-  }
-  std::vector<V> accelerations(Real t) {
-    all_forces(t, world_->position, world_->velocity,
-               companions_ ? std::span<const Real>(companions_->state) : std::span<const Real>());
-    std::vector<V> a(f_);
-    for (std::size_t i = 0; i < a.size(); ++i) a[i] *= world_->inverse_mass[i];
-    return a;
-  }
-
- private:
-  void all_forces(Real t, std::span<const V> x, std::span<const V> v, std::span<const Real> beside) {
-    forces<Real, Dim>(*world_, t, x, v, f_);
-    if (!companions_) return;
-    companions_->law(t, x, v, beside, f_, rate_);
-    for (std::size_t i = 0; i < f_.size(); ++i)
-      if (world_->is_fixed(i)) f_[i] = {};
-  }
-
-  const World<Real, Dim>* world_;
-  const Companions<Real, Dim>* companions_;
-  std::vector<V> x_, v_, f_;
-  X rate_;  // of the companions
 };
 
 /// The events of a stretch: a candidate touches (or, where it overlapped, approaches); or, last, a body has come as far
@@ -117,7 +51,7 @@ class Watch {
 
   template <class System>
   void guards(System&, Real, const X& state, std::span<Real> values) {
-    Flow<Real, Dim>::unpack(state, x_, v_);
+    ForcedFlow<Real, Dim>::unpack(state, x_, v_);
     for (std::size_t k = 0; k < candidates_->size(); ++k) values[k] = guard((*candidates_)[k]);
     Real farthest(0);
     for (std::size_t i = 0; i < x_.size(); ++i) farthest = std::max(farthest, squared(V(x_[i] - begin_[i])));
@@ -189,7 +123,8 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   Real usual_contact_time() {
     using std::sqrt;
     Real smallest = never, pull(0);
-    for (const V& a : Flow<Real, Dim>(world_, companions_).accelerations(world_.time)) pull = std::max(pull, length(a));
+    for (const V& a : ForcedFlow<Real, Dim>(world_, companions_).accelerations(world_.time))
+      pull = std::max(pull, length(a));
     for (const Real& radius : world_.radius) smallest = std::min(smallest, radius);
     const Real by_force = pull > Real(0) && pull < never ? Real(1e-5) * sqrt(2 * smallest / pull) : Real(0);
     return std::max(by_force, continuo::usual_contact_time(world_));
@@ -208,7 +143,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     resolve();
     for (Candidate& at : candidates_) at.overlaps = !(gap(at) > Real(0));
 
-    Flow<Real, Dim> flow(world_, companions_);
+    ForcedFlow<Real, Dim> flow(world_, companions_);
     const Real least = 64 * std::numeric_limits<Real>::epsilon(), tolerance = std::max(options_.tolerance, least);
     Options<X> how{.rtol = tolerance, .atol = tolerance * median};
     how.max_steps = options_.most_events;
@@ -228,7 +163,8 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   }
 
   template <class Method>
-  std::string follow(const Real& t, Flow<Real, Dim>& flow, Method method, const Options<X>& how, const Real& reach) {
+  std::string follow(const Real& t, ForcedFlow<Real, Dim>& flow, Method method, const Options<X>& how,
+                     const Real& reach) {
     Integrator integrator(flow, flow.pack(), Interval<Real>{world_.time, t}, method, how,
                           Watch<Real, Dim>(world_, candidates_, reach));
     while (integrator.advance()) step_ = integrator.step_size();
@@ -236,14 +172,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
       return "the path cannot be followed beyond t = " + std::to_string(integrator.t()) + ": " +
              std::string(to_string(integrator.outcome().ending));
     const Real duration = integrator.t() - world_.time;
-    Flow<Real, Dim>::unpack(integrator.x(), world_.position, world_.velocity);
-    if (companions_) {
-      const X& end = integrator.x();
-      std::copy(end.end() - static_cast<std::ptrdiff_t>(companions_->state.size()), end.end(),
-                companions_->state.begin());
-    }
-    for (std::size_t i = 0; i < world_.size(); ++i)
-      if (world_.spin[i] != S{}) world_.orientation[i] = turned(world_.orientation[i], world_.spin[i], duration);
+    flow.store(integrator.x(), world_, companions_, duration);
     world_.time = integrator.t();
     resolve();
     return {};
@@ -297,7 +226,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
       for (const Candidate& at : touching) is_over = !strike(at, before, round > 64, round > 128) && is_over;
       if (is_over) break;
     }
-    const std::vector<V> a = Flow<Real, Dim>(world_, companions_).accelerations(world_.time);
+    const std::vector<V> a = ForcedFlow<Real, Dim>(world_, companions_).accelerations(world_.time);
     for (const Candidate& at : touching) part_where_pressed(at, a);
   }
   bool strike(const Candidate& at, const std::vector<Real>& before, bool is_squeezed, bool is_caught) {

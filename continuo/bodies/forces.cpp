@@ -75,9 +75,16 @@ void forces(const World<Real, Dim>& world, Real t, std::span<const Vector<Real, 
 }
 
 template <class Real, int Dim>
+void torques(const World<Real, Dim>& world, Real t, const BodyStates<Real, Dim>& at,
+             std::span<Spin<Real, Dim>> torque) {
+  std::ranges::fill(torque, Spin<Real, Dim>{});
+  for (const TorqueLaw<Real, Dim>& law : world.torque_laws) law(world, t, at, torque);
+}
+
+template <class Real, int Dim>
 bool only_gravity(const World<Real, Dim>& world) {
   return world.springs.empty() && world.attraction.constant == Real(0) && world.drag.linear == Real(0) &&
-         world.drag.quadratic == Real(0) && world.force_laws.empty() &&
+         world.drag.quadratic == Real(0) && world.force_laws.empty() && world.torque_laws.empty() &&
          std::ranges::all_of(world.constant_force, [](const auto& f) { return f == Vector<Real, Dim>{}; });
 }
 
@@ -100,6 +107,10 @@ template void forces(const World<double, 2>&, double, std::span<const Vector<dou
                      std::span<const Vector<double, 2>>, std::span<Vector<double, 2>>);
 template void forces(const World<double, 3>&, double, std::span<const Vector<double, 3>>,
                      std::span<const Vector<double, 3>>, std::span<Vector<double, 3>>);
+template void torques(const World<float, 2>&, float, const BodyStates<float, 2>&, std::span<Spin<float, 2>>);
+template void torques(const World<float, 3>&, float, const BodyStates<float, 3>&, std::span<Spin<float, 3>>);
+template void torques(const World<double, 2>&, double, const BodyStates<double, 2>&, std::span<Spin<double, 2>>);
+template void torques(const World<double, 3>&, double, const BodyStates<double, 3>&, std::span<Spin<double, 3>>);
 template bool only_gravity(const World<float, 2>&);
 template bool only_gravity(const World<float, 3>&);
 template bool only_gravity(const World<double, 2>&);

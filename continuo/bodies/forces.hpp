@@ -1,5 +1,6 @@
 // continuo/bodies/forces.hpp
-// The forces of a world at any positions and velocities, not only the present ones: what integrators ask for.
+// The forces and torques of a world at any positions and velocities, not only the present ones: what integrators ask
+// for.
 #pragma once
 #include <span>
 
@@ -12,6 +13,10 @@ namespace continuo {
 template <class Real, int Dim>
 void forces(const World<Real, Dim>& world, Real t, std::span<const Vector<Real, Dim>> x,
             std::span<const Vector<Real, Dim>> v, std::span<Vector<Real, Dim>> force);
+
+/// torque[i] = the sum of all torques on body i, fixed bodies' too, which nothing turns.
+template <class Real, int Dim>
+void torques(const World<Real, Dim>& world, Real t, const BodyStates<Real, Dim>& at, std::span<Spin<Real, Dim>> torque);
 
 /// Whether gravity is the only force, so that paths between collisions are parabolas.
 template <class Real, int Dim>

@@ -99,10 +99,11 @@ struct SnapshotAccess {
     archive(world.time), archive(world.gravity);
     archive(world.attraction.constant), archive(world.attraction.softening), archive(world.attraction.opening);
     archive(world.drag.linear), archive(world.drag.quadratic);
-    auto laws = static_cast<std::uint64_t>(world.force_laws.size());
+    const auto laws_here = [&] { return world.force_laws.size() | std::uint64_t{world.torque_laws.size()} << 32; };
+    std::uint64_t laws = laws_here();
     archive(laws);
     if constexpr (Archive::reads)
-      archive.expect(laws == world.force_laws.size(), "the world that was saved had another number of force laws");
+      archive.expect(laws == laws_here(), "the world that was saved had another number of laws of forces or torques");
     transfer_list(archive, world.springs);
     transfer_list(archive, world.walls_);
     archive(world.position), archive(world.velocity), archive(world.constant_force), archive(world.orientation);
@@ -198,6 +199,7 @@ std::string read(std::span<const std::byte> bytes, World<Real, Dim>& world, Read
   if (sum != checksum(body)) return "byte " + std::to_string(body.size()) + ": the checksum does not fit the bytes";
   World<Real, Dim> found;
   found.force_laws = world.force_laws;
+  found.torque_laws = world.torque_laws;
   SnapshotAccess::transfer_world(reader, found);
   if (reader.ok()) read_motion(reader, of, found);
   return reader.error();

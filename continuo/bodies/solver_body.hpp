@@ -76,6 +76,13 @@ struct SolverBodies {
   Real radius(std::size_t k) const { return place[k].x_and_radius[3]; }
   Real inverse_mass(std::size_t k) const { return motion[k].linear[3]; }
   bool moves(std::size_t k) const { return inverse_mass(k) > Real(0); }
+  bool all_finite() const {
+    Real sum(0);
+    for (std::size_t k = 0; k < size(); ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        sum += Real(0) * (place[k].x_and_radius[axis] + motion[k].linear[axis] + motion[k].rim[axis]);
+    return sum == Real(0);
+  }
   V acceleration(std::size_t k) const {
     if (!accelerations.empty()) return accelerations[k];
     return moves(k) ? gravity : V{};

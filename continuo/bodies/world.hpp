@@ -81,6 +81,18 @@ using ForceLaw = std::function<void(const World<Real, Dim>& world, Real t, std::
 template <class Real>
 std::string fault_of(const Material<Real>& material);
 
+/// How bodies are moved: of body i, x[i], v[i] and so on.
+template <class Real, int Dim>
+struct BodyStates {
+  std::span<const Vector<Real, Dim>> x, v;
+  std::span<const Orientation<Real, Dim>> orientation;
+  std::span<const Spin<Real, Dim>> spin;
+};
+/// Torques of the user's own: adds to torque[i], of body i.
+template <class Real, int Dim>
+using TorqueLaw = std::function<void(const World<Real, Dim>& world, Real t, const BodyStates<Real, Dim>& at,
+                                     std::span<Spin<Real, Dim>> torque)>;
+
 template <class Real, int Dim>
 class World {
   static_assert(Dim == 2 || Dim == 3);
@@ -90,12 +102,13 @@ class World {
   using S = Spin<Real, Dim>;
   using O = Orientation<Real, Dim>;
 
-  // Forces; potential energy is known of all but the last two.
+  // Forces; potential energy is known of all but the last three.
   V gravity{};
   std::vector<Spring<Real, Dim>> springs;
   Attraction<Real> attraction{};
   Drag<Real> drag{};
   std::vector<ForceLaw<Real, Dim>> force_laws;
+  std::vector<TorqueLaw<Real, Dim>> torque_laws;
   Real time = Real(0);
 
   struct Added {

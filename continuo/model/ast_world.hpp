@@ -28,7 +28,7 @@ struct WorldSetting {
   WorldAttributes attributes;
 };
 
-/// `wall ground (0, 1) at 0 friction 0.3`: where (0, 1) . x >= 0 is free.
+/// `wall ground (0, 1) at 0 friction 0.3`: where (0, 1) . x >= 0 is free; with `thin` both sides are.
 struct WorldWall {
   std::optional<Identifier> name;
   Expression normal, offset;
@@ -102,10 +102,11 @@ struct World {
   std::vector<WorldItem> items;
 };
 
-/// `force on ball = (-k*ball.x, 0)`.
+/// `force on ball = (-k*ball.x, 0)`, `torque on ball = -c*ball.angle`.
 struct Force {
   Name body;
-  Expression value;  // a List, or a Quantity of one
+  Expression value;  // a List, or a Quantity of one; of a torque in the plane a number
+  bool is_torque = false;
 };
 
 }  // namespace continuo::model::ast

@@ -236,16 +236,20 @@ class Checker {
   std::vector<Term> components(const ast::Expression& expression, Scope& scope, std::size_t count);
   std::optional<std::size_t> body_named(const ast::Name& name, Scope& scope);
   void make_forces();
+  void make_torque(Placed<ast::Force>& torque, std::size_t body);
   void judge_world();
 
   void make_body(BodyText& body);  // check_world_bodies.cpp
   void make_pattern(PatternText& pattern);
   BodyDescription description_of(const ast::WorldAttributes& attributes, Scope& scope);
-  void set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, NodeId angle,
-                 const NodePoint& spin);
-  void place_grid(PatternText& pattern, const NodePoint& velocity);
-  void place_random(PatternText& pattern, const NodePoint& velocity);
-  void place_stack(PatternText& pattern, const NodePoint& velocity);
+  Turn turn_of(const ast::WorldAttributes& attributes, Scope& scope);
+  NodeId turn_in_plane(const ast::Expression& text, Scope& scope, const Measured& wanted, std::string_view what);
+  NodePoint turn_in_space(const ast::Expression& text, Scope& scope, const Measured& wanted, std::string_view what,
+                          bool parameters_only = true);
+  void set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, const Turn& turn);
+  void place_grid(PatternText& pattern, const NodePoint& velocity, const Turn& turn);
+  void place_random(PatternText& pattern, const NodePoint& velocity, const Turn& turn);
+  void place_stack(PatternText& pattern, const NodePoint& velocity, const Turn& turn);
   std::uint32_t group_of(const ast::WorldAttributes& attributes);
   NodePoint velocity_of(const ast::WorldAttributes& attributes, Scope& scope);
 

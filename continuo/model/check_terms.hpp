@@ -125,6 +125,11 @@ struct BodyText {
   std::string name;
   std::size_t base;  // its first
 };
+/// How a body stands and turns at the start: an angle and one spin in the plane, in space a quaternion and three.
+struct Turn {
+  std::array<NodeId, 4> orientation;
+  NodePoint spin;
+};
 struct PatternText {
   const ast::WorldBodies* text;
   Scope scope;

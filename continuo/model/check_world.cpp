@@ -18,8 +18,16 @@ struct Member {
   int order;
 };
 constexpr std::array<Member, 3> plane_members = {{{"x", 2}, {"y", 2}, {"angle", 2}}};
-constexpr std::array<Member, 6> space_members = {
-    {{"x", 2}, {"y", 2}, {"z", 2}, {"spin_x", 1}, {"spin_y", 1}, {"spin_z", 1}}};
+constexpr std::array<Member, 10> space_members = {{{"x", 2},
+                                                   {"y", 2},
+                                                   {"z", 2},
+                                                   {"q_w", 1},
+                                                   {"q_x", 1},
+                                                   {"q_y", 1},
+                                                   {"q_z", 1},
+                                                   {"spin_x", 1},
+                                                   {"spin_y", 1},
+                                                   {"spin_z", 1}}};
 
 std::span<const Member> members_of(int dimension) {
   if (dimension == 2) return plane_members;
@@ -111,7 +119,7 @@ void Checker::declare_pattern(const ast::WorldBodies& bodies, Scope& scope, Span
 }
 
 void Checker::declare_body(const std::string& name, const std::vector<long>& indices, Span span) {
-  constexpr std::size_t most_bodies = 50'000;  // each is six or nine states with names of their own
+  constexpr std::size_t most_bodies = 50'000;  // each is six or thirteen states with names of their own
   if (world_.bodies.size() >= most_bodies) {
     fail("E221", world_.span, "the world is too large", fmt::format("more than {} bodies", most_bodies),
          "take fewer, or build it in C++, where millions are fine: docs/bodies.md");
@@ -186,7 +194,7 @@ void Checker::measure_world() {
     Measured measured = length;
     if (base.family == "world") {
       measured = member == "collisions" ? none : member.starts_with("momentum") ? momentum : energy;
-    } else if (member == "angle") {
+    } else if (member == "angle" || member.starts_with("q_")) {
       measured = pure;
     } else if (member.starts_with("spin")) {
       measured = per_time(pure);
@@ -207,7 +215,7 @@ void Checker::refuse_equation_of_body(const ast::Name& name) {
   body.member.clear();
   fail("E226", name.span, world ? "the world is only looked at" : fmt::format("`{}` is moved by forces", to_text(body)),
        fmt::format("`{}` has no equation", to_text(name)),
-       world ? "" : fmt::format("write force on {} = (..., ...)", to_text(body)));
+       world ? "" : fmt::format("write force on {} = (..., ...), or torque on {} = ...", to_text(body), to_text(body)));
 }
 
 /// `ball.x`, `grain[3].y'`, `ball.mass`, `world.kinetic`.

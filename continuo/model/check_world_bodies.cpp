@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -56,19 +57,56 @@ NodePoint Checker::velocity_of(const ast::WorldAttributes& attributes, Scope& sc
   return {zero, zero, zero};
 }
 
-void Checker::set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, NodeId angle,
-                        const NodePoint& spin) {
+/// In space an angle is three numbers: the axis about which it is turned, and by how much as its length.
+Turn Checker::turn_of(const ast::WorldAttributes& attributes, Scope& scope) {
+  Graph& g = model_.graph;
+  const NodeId zero = g.constant(0);
+  Turn turn{.orientation = {zero}, .spin = {zero, zero, zero}};
+  const bool plane = world_.dimension == 2;
+  if (!plane) turn.orientation = {g.constant(1), zero, zero, zero};
+  const Measured pure = Measured::known(Unit());
+  const Measured rate = per_time(world_.length.is_known() ? pure : Measured::unknown());
+  const ast::Expression *angle = attribute(attributes, "angle"), *spin = attribute(attributes, "spin");
+  if (spin && plane) turn.spin[0] = turn_in_plane(*spin, scope, rate, "a spin");
+  if (spin && !plane) turn.spin = turn_in_space(*spin, scope, rate, "a spin");
+  if (angle && plane) turn.orientation[0] = turn_in_plane(*angle, scope, pure, "an angle");
+  if (!angle || plane) return turn;
+  const NodePoint about = turn_in_space(*angle, scope, pure, "an angle");
+  if (!about[0].valid()) return turn;
+  const NodeId whole = g.apply(Op::hypotenuse, g.apply(Op::hypotenuse, about[0], about[1]), about[2]);
+  const NodeId half = g.multiply(whole, g.constant(0.5));
+  // sin(a/2)/a times the three numbers, which are all 0 where a is.
+  const NodeId least = g.constant(std::numeric_limits<double>::min());
+  const NodeId part = g.divide(g.apply(Op::sine, half), g.apply(Op::maximum, whole, least));
+  turn.orientation[0] = g.apply(Op::cosine, half);
+  for (std::size_t k = 0; k < 3; ++k) turn.orientation[k + 1] = g.multiply(about[k], part);
+  return turn;
+}
+
+NodeId Checker::turn_in_plane(const ast::Expression& text, Scope& scope, const Measured& wanted,
+                              std::string_view what) {
+  if (!std::holds_alternative<ast::List>(text.node)) return world_number(text, scope, wanted, what, Sort::any);
+  fail("E227", text.span, fmt::format("{} in the plane is one number", what), {},
+       "write `dimension 3` in the world for bodies in space");
+  return {};
+}
+NodePoint Checker::turn_in_space(const ast::Expression& text, Scope& scope, const Measured& wanted,
+                                 std::string_view what, bool parameters_only) {
+  if (std::holds_alternative<ast::List>(text.node)) return world_point(text, scope, wanted, what, parameters_only);
+  fail("E227", text.span, fmt::format("{} in space has three components", what), {},
+       "its direction is the axis, as in (0, 0, 2)");
+  return {};
+}
+
+void Checker::set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, const Turn& turn) {
   std::size_t state = bases_[world_.bodies[body].base].first;
   for (std::size_t axis = 0; axis < world_.axes(); ++axis) {
     model_.states[state++].initial = position[axis];
     model_.states[state++].initial = velocity[axis];
   }
-  if (world_.dimension == 2) {
-    model_.states[state++].initial = angle;
-    model_.states[state].initial = spin[0];
-  } else {
-    for (const NodeId component : spin) model_.states[state++].initial = component;
-  }
+  const bool plane = world_.dimension == 2;
+  for (std::size_t k = 0; k < (plane ? 1 : 4); ++k) model_.states[state++].initial = turn.orientation[k];
+  for (std::size_t k = 0; k < (plane ? 1 : 3); ++k) model_.states[state++].initial = turn.spin[k];
 }
 
 void Checker::make_body(BodyText& body) {
@@ -86,29 +124,13 @@ void Checker::make_body(BodyText& body) {
   made.span = body.span;
   world_.made.bodies.back() = std::move(made);
   const NodeId zero = model_.graph.constant(0);
-  NodePoint position{zero, zero, zero}, spin{zero, zero, zero};
+  NodePoint position{zero, zero, zero};
   if (const ast::Expression* at = attribute(attributes, "at")) {
     position = world_point(*at, body.scope, world_.length, "a position");
   } else {
     fail("E225", body.span, fmt::format("where is `{}`?", body.name), {}, "add at (0, 0)");
   }
-  const Measured rate = per_time(world_.length.is_known() ? Measured::known(Unit()) : Measured::unknown());
-  NodeId angle = zero;
-  if (const ast::Expression* text = attribute(attributes, "angle")) {
-    if (world_.dimension == 3) {
-      fail("E227", text->span, "a body in space has no single angle", {}, "leave `angle` out");
-    } else {
-      angle = world_number(*text, body.scope, Measured::known(Unit()), "an angle", Sort::any);
-    }
-  }
-  if (const ast::Expression* text = attribute(attributes, "spin")) {
-    if (world_.dimension == 3) {
-      spin = world_point(*text, body.scope, rate, "a spin");
-    } else {
-      spin[0] = world_number(*text, body.scope, rate, "a spin", Sort::any);
-    }
-  }
-  set_start(number, position, velocity_of(attributes, body.scope), angle, spin);
+  set_start(number, position, velocity_of(attributes, body.scope), turn_of(attributes, body.scope));
 }
 
 void Checker::make_pattern(PatternText& pattern) {
@@ -122,17 +144,18 @@ void Checker::make_pattern(PatternText& pattern) {
     body = shared;
   }
   const NodePoint velocity = velocity_of(attributes, pattern.scope);
-  if (pattern.text->pattern == ast::Pattern::random) return place_random(pattern, velocity);
+  const Turn turn = turn_of(attributes, pattern.scope);
+  if (pattern.text->pattern == ast::Pattern::random) return place_random(pattern, velocity, turn);
   if (!attribute(attributes, "from")) {
     fail("E225", pattern.text->name.span, "where does the pattern begin?", {}, "add from (0, 0): its first body");
     return;
   }
-  if (pattern.text->pattern == ast::Pattern::grid) return place_grid(pattern, velocity);
-  place_stack(pattern, velocity);
+  if (pattern.text->pattern == ast::Pattern::grid) return place_grid(pattern, velocity, turn);
+  place_stack(pattern, velocity, turn);
 }
 
 /// The first axis counts fastest.
-void Checker::place_grid(PatternText& pattern, const NodePoint& velocity) {
+void Checker::place_grid(PatternText& pattern, const NodePoint& velocity, const Turn& turn) {
   const ast::WorldAttributes& attributes = pattern.text->attributes;
   Graph& g = model_.graph;
   const NodePoint from = world_point(*attribute(attributes, "from"), pattern.scope, world_.length, "a position");
@@ -151,7 +174,6 @@ void Checker::place_grid(PatternText& pattern, const NodePoint& velocity) {
     seed = whole_number(*text, pattern.scope, "a seed").value_or(1);
   if (!from[0].valid() || !spacing[0].valid() || !jitter.valid()) return;
   Random random(static_cast<std::uint64_t>(seed));
-  const NodeId zero = g.constant(0);
   std::array<long, 3> counts{1, 1, 1}, at{};
   std::ranges::copy(pattern.counts, counts.begin());
   std::size_t body = pattern.first;
@@ -164,27 +186,27 @@ void Checker::place_grid(PatternText& pattern, const NodePoint& velocity) {
           const NodeId moved = g.multiply(g.constant(random.between(-1, 1)), jitter);
           position[axis] = g.add(g.add(from[axis], way), moved);
         }
-        set_start(body++, position, velocity, zero, {zero, zero, zero});
+        set_start(body++, position, velocity, turn);
       }
 }
 
 /// One on the other, touching.
-void Checker::place_stack(PatternText& pattern, const NodePoint& velocity) {
+void Checker::place_stack(PatternText& pattern, const NodePoint& velocity, const Turn& turn) {
   Graph& g = model_.graph;
   const NodePoint from =
       world_point(*attribute(pattern.text->attributes, "from"), pattern.scope, world_.length, "a position");
-  const NodeId radius = world_.made.bodies[pattern.first].radius, zero = g.constant(0);
+  const NodeId radius = world_.made.bodies[pattern.first].radius;
   if (!from[0].valid() || !radius.valid()) return;
   for (std::size_t k = 0; k < pattern.count; ++k) {
     NodePoint position = from;
     NodeId& up = position[world_.axes() - 1];
     up = g.add(up, g.multiply(g.constant(2 * static_cast<double>(k)), radius));
-    set_start(pattern.first + k, position, velocity, zero, {zero, zero, zero});
+    set_start(pattern.first + k, position, velocity, turn);
   }
 }
 
 /// Where they fall without touching each other: numbers, so that what they depend on decides the model.
-void Checker::place_random(PatternText& pattern, const NodePoint& velocity) {
+void Checker::place_random(PatternText& pattern, const NodePoint& velocity, const Turn& turn) {
   const ast::WorldAttributes& attributes = pattern.text->attributes;
   Graph& g = model_.graph;
   Scope constant_scope = pattern.scope;
@@ -219,7 +241,6 @@ void Checker::place_random(PatternText& pattern, const NodePoint& velocity) {
          fmt::format("{} found one", places.size()), "take a larger box, fewer or smaller bodies, or a grid");
     return;
   }
-  const NodeId zero = g.constant(0);
   for (std::size_t k = 0; k < pattern.count; ++k) {
     NodePoint position{}, way = velocity;
     const std::array<double, 3> direction = *speed != 0 ? random.direction(world_.axes()) : std::array<double, 3>{};
@@ -227,7 +248,7 @@ void Checker::place_random(PatternText& pattern, const NodePoint& velocity) {
       position[axis] = g.constant(places[k][axis]);
       if (velocity[axis].valid()) way[axis] = g.add(velocity[axis], g.constant(*speed * direction[axis]));
     }
-    set_start(pattern.first + k, position, way, zero, {zero, zero, zero});
+    set_start(pattern.first + k, position, way, turn);
   }
 }
 

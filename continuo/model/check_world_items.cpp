@@ -264,8 +264,12 @@ void Checker::read_world_mode(const ast::WorldSetting& setting, Scope& scope) {
 }
 
 void Checker::read_wall(const ast::WorldWall& wall, Scope& scope, Span span) {
-  WallDescription made{
-      .name = {}, .normal = {}, .offset = {}, .material = material_of(wall.attributes, scope), .span = span};
+  WallDescription made{.name = {},
+                       .normal = {},
+                       .offset = {},
+                       .material = material_of(wall.attributes, scope),
+                       .thin = attribute(wall.attributes, "thin") != nullptr,
+                       .span = span};
   made.name = wall.name ? wall.name->text : fmt::format("wall {}", world_.made.walls.size() + 1);
   made.normal = world_point(wall.normal, scope, Measured::unknown(), "the normal of a wall");
   made.offset = world_number(wall.offset, scope, world_.length, "the place of a wall", Sort::any);
@@ -315,11 +319,30 @@ void Checker::read_ignore(const ast::WorldIgnore& ignore, Span) {
   world_.made.ignored.emplace_back(numbers[0], numbers[1]);
 }
 
+/// In the plane one number, in space three.
+void Checker::make_torque(Placed<ast::Force>& torque, std::size_t body) {
+  const ast::Expression& text = torque.text->value;
+  const Measured wanted = product(world_.mass, product(world_.length, per_time(world_.length, 2)));
+  NodePoint components{};
+  if (world_.dimension == 3) {
+    components = turn_in_space(text, torque.scope, wanted, "a torque", false);
+  } else if (std::holds_alternative<ast::List>(text.node)) {
+    components[0] = turn_in_plane(text, torque.scope, wanted, "a torque");
+  } else if (const Value value = number_of(text, torque.scope); !value.bad) {
+    components[0] = in_unit(text, value, wanted, "a torque");
+  }
+  if (components[0].valid()) world_.made.torques.push_back({body, components, torque.span});
+}
+
 /// After the equations: they may stand in a force.
 void Checker::make_forces() {
   for (Placed<ast::Force>& force : world_.forces) {
     const auto body = body_named(force.text->body, force.scope);
     if (!body) continue;
+    if (force.text->is_torque) {
+      make_torque(force, *body);
+      continue;
+    }
     const Measured wanted = product(world_.mass, per_time(world_.length, 2));
     const NodePoint components = world_point(force.text->value, force.scope, wanted, "a force", false);
     if (components[0].valid()) world_.made.forces.push_back({*body, components, force.span});
@@ -334,8 +357,10 @@ void Checker::make_forces() {
            "write it with the bodies it is made of");
     }
   };
-  for (const ForceDescription& force : world_.made.forces) {
-    for (std::size_t axis = 0; axis < world_.axes(); ++axis) only_look(force.components[axis], force.span);
+  for (const auto* loads : {&world_.made.forces, &world_.made.torques}) {
+    for (const ForceDescription& load : *loads)
+      for (const NodeId component : load.components)
+        if (component.valid()) only_look(component, load.span);
   }
   for (const Mode& mode : model_.modes) {
     for (std::size_t i = 0; i < std::min(mode.derivatives.size(), model_.states.size()); ++i) {

@@ -74,7 +74,7 @@ so a line that ends with `+` takes the next line in:
 
   model param let output energy input table unknown guess mode start
   when at every initially for run plot draw check
-  world { ... }   force on BODY = (..., ...)
+  world { ... }   force on BODY = (..., ...)   torque on BODY = ...
 
 States need no declaration: x'' = -k*x introduces x. In an event stand actions: x := value, if, go, mark, stop, for.)"},
     Code{"E112", "a word of the language cannot be a name",

@@ -120,14 +120,16 @@ class Writer {
               body.fixed ? "fixed" : "mass " + number(body.mass, start)};
     });
     section("Walls", world.walls, [&](const WallDescription& wall) -> Row {
-      return {wall.name, of(wall.normal), "at " + number(wall.offset, start)};
+      return {wall.name, of(wall.normal), "at " + number(wall.offset, start), wall.thin ? "thin" : ""};
     });
-    section("Forces", world.forces, [&](const ForceDescription& force) -> Row {
-      Row row{"on " + world.bodies[force.body].name};
-      for (int axis = 0; axis < world.dimension; ++axis)
-        row.push_back(expression(force.components[static_cast<std::size_t>(axis)]));
+    const auto row_of = [&](const ForceDescription& load) -> Row {
+      Row row{"on " + world.bodies[load.body].name};
+      for (const NodeId component : load.components)
+        if (component.valid()) row.push_back(expression(component));
       return row;
-    });
+    };
+    section("Forces", world.forces, row_of);
+    section("Torques", world.torques, row_of);
   }
 
   void equations() {

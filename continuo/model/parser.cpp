@@ -170,6 +170,10 @@ Statement Parser::parse_statement(Context context) {
 void Parser::unknown_statement() {
   const std::string_view word = spelled(current());
   const std::string_view next = spelled(look(1));
+  if (next == "on") {
+    fail(error("E111", current().span, fmt::format("no statement begins with `{}`", word), "",
+               "what pulls on a body is written force on ball = (0, -1), what turns it torque on ball = 2"));
+  }
   if (next == "falls" || next == "rises" || next == "crosses") {
     fail(error("E111", current().span, "an event begins with `when`", "",
                fmt::format("write when {} {} through 0 {{ ... }}", word, next)));

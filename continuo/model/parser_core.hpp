@@ -194,7 +194,7 @@ class Parser {
   bool at_world_word(Context context);
   ast::Statement::Node parse_world_or_force();
   ast::World parse_world();
-  ast::Force parse_force();
+  ast::Force parse_force(bool is_torque);
   ast::WorldItem parse_world_item();
   ast::WorldSetting parse_world_setting(ast::Identifier word);
   ast::WorldWall parse_world_wall();

@@ -1,5 +1,5 @@
-// `world { ... }` and `force on ...`. Their words are no reserved words: they mean something here and are names
-// elsewhere.
+// `world { ... }`, `force on ...` and `torque on ...`. Their words are no reserved words: they mean something here and
+// are names elsewhere.
 #include <algorithm>
 #include <array>
 
@@ -20,6 +20,7 @@ constexpr std::array<Word, 14> item_words = {"dimension", "gravity", "material",
                                              "spring",    "springs", "fix",       "ignore"};
 
 constexpr std::array<Word, 3> material_words = {"restitution", "friction", "rolling"};
+constexpr std::array<Word, 4> wall_words = {"restitution", "friction", "rolling", "thin"};
 constexpr std::array<Word, 2> attraction_words = {"softening", "opening"};
 constexpr std::array<Word, 2> drag_words = {"linear", "quadratic"};
 constexpr std::array<Word, 2> exact_words = {"tolerance", "contact_time"};
@@ -27,13 +28,13 @@ constexpr std::array<Word, 7> fast_words = {"step",  "substeps",    "integrator"
                                             "hertz", "sleep_after", "sleep_speed"};
 constexpr std::array<Word, 12> body_words = {"at",      "velocity",    "angle",    "spin",    "radius", "mass",
                                              "density", "restitution", "friction", "rolling", "group",  "fixed"};
-constexpr std::array<Word, 13> grid_words = {"from",        "spacing",  "jitter",  "seed",  "velocity",
-                                             "radius",      "mass",     "density", "group", "fixed",
-                                             "restitution", "friction", "rolling"};
-constexpr std::array<Word, 11> random_words = {"radius", "speed", "seed",        "velocity", "mass",   "density",
-                                               "group",  "fixed", "restitution", "friction", "rolling"};
-constexpr std::array<Word, 10> stack_words = {"from",  "radius", "mass",        "density",  "velocity",
-                                              "group", "fixed",  "restitution", "friction", "rolling"};
+constexpr std::array<Word, 15> grid_words = {"from",  "spacing", "jitter",      "seed",     "velocity",
+                                             "angle", "spin",    "radius",      "mass",     "density",
+                                             "group", "fixed",   "restitution", "friction", "rolling"};
+constexpr std::array<Word, 13> random_words = {"radius",  "speed", "seed",  "velocity",    "angle",    "spin",   "mass",
+                                               "density", "group", "fixed", "restitution", "friction", "rolling"};
+constexpr std::array<Word, 12> stack_words = {"from", "radius", "mass",  "density",     "velocity", "angle",
+                                              "spin", "group",  "fixed", "restitution", "friction", "rolling"};
 constexpr std::array<Word, 3> spring_words = {"stiffness", "length", "damping"};
 constexpr std::array<Word, 4> springs_words = {"stiffness", "length", "damping", "diagonal"};
 
@@ -42,7 +43,7 @@ bool is_one_of(Word word, std::span<const Word> words) {
 }
 
 bool is_flag(Word word) {
-  return word == "fixed" || word == "diagonal";
+  return word == "fixed" || word == "diagonal" || word == "thin";
 }
 bool takes_point(Word word) {
   return word == "at" || word == "velocity" || word == "from" || word == "spacing";
@@ -53,9 +54,9 @@ bool takes_name(Word word) {
 
 }  // namespace
 
-/// `world` before a brace, `force` before `on`: anywhere else they are names.
+/// `world` before a brace, `force` and `torque` before `on`: anywhere else they are names.
 bool Parser::at_world_word(Context context) {
-  const bool world = at_word("world"), force = at_word("force");
+  const bool world = at_word("world"), force = at_word("force") || at_word("torque");
   if (!world && !force) return false;
   const Token& next = look(1);
   const bool block = world && (next.kind == TokenKind::open_brace ||
@@ -67,10 +68,10 @@ bool Parser::at_world_word(Context context) {
 }
 
 ast::Statement::Node Parser::parse_world_or_force() {
-  const bool world = at_word("world");
+  const bool world = at_word("world"), torque = at_word("torque");
   advance();
   if (world) return parse_world();
-  return parse_force();
+  return parse_force(torque);
 }
 
 ast::World Parser::parse_world() {
@@ -80,12 +81,16 @@ ast::World Parser::parse_world() {
   return world;
 }
 
-ast::Force Parser::parse_force() {
+ast::Force Parser::parse_force(bool is_torque) {
   advance();  // on
   ast::Force force;
-  force.body = parse_name("the name of a body, as in force on ball = (0, -1)");
-  expect(TokenKind::define, "`=` and the components of the force, as in (0, -1)");
-  force.value = parse_point_with_unit();
+  force.is_torque = is_torque;
+  force.body = parse_name(is_torque ? "the name of a body, as in torque on ball = 2"
+                                    : "the name of a body, as in force on ball = (0, -1)");
+  expect(TokenKind::define, is_torque ? "`=` and the torque: a number in the plane, (0, 0, 2) in space"
+                                      : "`=` and the components of the force, as in (0, -1)");
+  if (!is_torque && !at(TokenKind::open_round)) unexpected("the components of the force, as in (0, -1)");
+  force.value = is_torque ? parse_tree(Level::logical_or).expression : parse_point_with_unit();
   expect_statement_end();
   return force;
 }
@@ -112,9 +117,10 @@ ast::WorldItem Parser::parse_world_item() {
   }
   if (!at(TokenKind::name)) unexpected("something of a world: body, wall, gravity, ...");
   const std::string word(spelled(current()));
-  if (word == "force") {
-    fail(error("E123", current().span, "a force stands outside of the world", "",
-               "write it before or after the braces: force on ball = (0, -1)"));
+  if (word == "force" || word == "torque") {
+    fail(error("E123", current().span, fmt::format("a {} stands outside of the world", word), "",
+               fmt::format("write it before or after the braces: {}",
+                           word == "force" ? "force on ball = (0, -1)" : "torque on ball = 2")));
   }
   if (!is_one_of(word, item_words)) {
     std::string help = did_you_mean(word, item_words);
@@ -191,7 +197,7 @@ ast::WorldWall Parser::parse_world_wall() {
   wall.normal = parse_point();
   expect_word("at", "`at` and how far it is from the origin, as in wall (0, 1) at 0");
   wall.offset = parse_sum_of_terms();
-  wall.attributes = parse_world_attributes("a wall", material_words);
+  wall.attributes = parse_world_attributes("a wall", wall_words);
   return wall;
 }
 
@@ -306,15 +312,7 @@ ast::WorldAttributes Parser::parse_world_attributes(Word of, std::span<const Wor
 
 Expression Parser::parse_world_value(Word word) {
   if (takes_point(word)) return parse_point_with_unit();
-  if (word == "spin" && at(TokenKind::open_round)) {
-    Expression spin = parse_round().expression;
-    if (std::holds_alternative<ast::List>(spin.node) && at(TokenKind::unit)) {
-      const Token token = advance();
-      const std::string_view text = spelled(token);
-      return {ast::Quantity{std::move(spin), {std::string(text.substr(1, text.size() - 2)), token.span}}, token.span};
-    }
-    return spin;
-  }
+  if (word == "spin" || word == "angle") return parse_tree(Level::additive).expression;  // in space a list
   if (takes_name(word)) {
     const ast::Identifier name = parse_identifier(fmt::format("a name after `{}`", word));
     ast::Name value;

@@ -42,12 +42,13 @@ struct BodyDescription {
   Span span;
 };
 
-/// A wall of the half-space normal . x >= offset. A container is several of one name.
+/// A wall of the half-space normal . x >= offset; a thin one has two sides. A container is several of one name.
 struct WallDescription {
   std::string name;  // "wall 2" where it has none
   NodePoint normal;
   NodeId offset;
   MaterialDescription material;
+  bool thin = false;
   Span span;
 };
 
@@ -58,7 +59,8 @@ struct SpringDescription {
   Span span;
 };
 
-/// `force on ball = (...)`: any expressions of the model.
+/// `force on ball = (...)`, or `torque on ball = ...`, which has one component in the plane: any expressions of the
+/// model.
 struct ForceDescription {
   std::size_t body;
   NodePoint components;
@@ -83,15 +85,17 @@ struct WorldDescription {
   std::vector<BodyDescription> bodies;    // their states are the first of the model, in this order
   std::vector<WallDescription> walls;
   std::vector<SpringDescription> springs;
-  std::vector<ForceDescription> forces;
+  std::vector<ForceDescription> forces, torques;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // groups
   WorldMode mode;
   std::size_t first_measure = 0;  // of `measures(dimension)` in Model::states: world.kinetic, ...; the last states
   Span span;
 
   std::size_t body_states() const { return bodies.size() * states_of_body(dimension); }
-  /// In the plane x, x', y, y', angle, angle'; in space x, x', y, y', z, z', spin_x, spin_y, spin_z.
-  static constexpr std::size_t states_of_body(int dimension) { return dimension == 2 ? 6 : 9; }
+  /// In the plane x, x', y, y', angle, angle'; in space x, x', y, y', z, z', q_w, q_x, q_y, q_z, spin_x, spin_y,
+  /// spin_z.
+  static constexpr std::size_t states_of_body(int dimension) { return dimension == 2 ? 6 : 13; }
+  static constexpr std::size_t components_of_spin(int dimension) { return dimension == 2 ? 1 : 3; }
 };
 
 /// What a world tells of itself: `world.kinetic`, `world.potential`, `world.momentum_x`, ..., `world.collisions`.

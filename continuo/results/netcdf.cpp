@@ -62,10 +62,10 @@ class File {
   int file_ = -1, status_ = NC_NOERR;
 };
 
-/// A variable over time, bodies and components, and which state of each body it is made of.
+/// A variable over time, bodies and the parts of a vector or quaternion, and which state of each body it is made of.
 struct OfBodies {
   std::string name, unit, long_name;
-  std::vector<std::size_t> states;  // one per component
+  std::vector<std::size_t> states;  // one per part
   int id = -1;
 };
 
@@ -80,7 +80,8 @@ std::vector<OfBodies> variables_of(const model::Model& model) {
   }
   return {{.name = "position", .unit = world.length_unit, .long_name = "position of the centre", .states = {0, 2, 4}},
           {.name = "velocity", .unit = of_velocity, .long_name = "velocity of the centre", .states = {1, 3, 5}},
-          {.name = "spin", .unit = model.states[6].unit, .long_name = "angular velocity", .states = {6, 7, 8}}};
+          {.name = "orientation", .unit = "", .long_name = "orientation, a unit quaternion", .states = {6, 7, 8, 9}},
+          {.name = "spin", .unit = model.states[10].unit, .long_name = "angular velocity", .states = {10, 11, 12}}};
 }
 
 class Writer {
@@ -123,10 +124,16 @@ class Writer {
     names_ = file_.variable("body", NC_STRING, {body});
     file_.attribute(names_, "cf_role", "trajectory_id");
     components_ = file_.variable("component", NC_STRING, {component});
+    int part = -1;
+    if (world.dimension == 3) {
+      part = file_.dimension("part", 4);
+      parts_ = file_.variable("part", NC_STRING, {part});
+      file_.attribute(parts_, "long_name", "part of a quaternion");
+    }
     of_bodies_ = variables_of(model_);
     for (OfBodies& variable : of_bodies_) {
       std::vector<int> dimensions{time_, body};
-      if (variable.states.size() > 1) dimensions.push_back(component);
+      if (variable.states.size() > 1) dimensions.push_back(variable.states.size() == 4 ? part : component);
       variable.id = file_.variable(variable.name, NC_DOUBLE, dimensions, variable.unit);
       file_.attribute(variable.id, "long_name", variable.long_name);
     }
@@ -146,6 +153,7 @@ class Writer {
     file_.put(names_, names);
     file_.put(components_,
               world.dimension == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"});
+    if (parts_ >= 0) file_.put(parts_, std::vector<std::string>{"w", "x", "y", "z"});
     file_.put(radius_, evaluate(model_, radii, run_.plan.variables));
     file_.put(mass_, evaluate(model_, masses, run_.plan.variables));
     std::vector<double> values;
@@ -181,11 +189,11 @@ class Writer {
   const model::Model& model_;
   const model::Run& run_;
   File file_;
-  int time_ = -1, names_ = -1, components_ = -1, radius_ = -1, mass_ = -1, energy_ = -1;
+  int time_ = -1, names_ = -1, components_ = -1, parts_ = -1, radius_ = -1, mass_ = -1, energy_ = -1;
   std::vector<OfBodies> of_bodies_;
   std::vector<std::pair<int, std::size_t>> columns_;
-  std::vector<std::string> taken_{"time",  "body", "component", "position", "velocity",
-                                  "angle", "spin", "radius",    "mass"};
+  std::vector<std::string> taken_{"time",  "body",        "component", "part",   "position", "velocity",
+                                  "angle", "orientation", "spin",      "radius", "mass"};
 };
 
 }  // namespace

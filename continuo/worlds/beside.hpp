@@ -28,26 +28,28 @@ class Beside {
 
   std::size_t states() const { return count_; }
   bool has_forces() const { return !forces_of_.empty(); }
-  bool is_empty() const { return count_ == 0 && forces_of_.empty(); }
+  bool has_torques() const { return !torques_of_.empty(); }
+  bool is_empty() const { return count_ == 0 && !has_forces() && !has_torques(); }
   /// Where the states of the equations begin among the model's.
   std::size_t first() const { return first_; }
   void set(std::uint32_t variable, double value);
   std::size_t mode() const { return mode_; }
   void go(std::size_t mode) { mode_ = mode; }
 
-  /// Adds to the forces and gives the rates of the equations' states z; either may be left out by an empty span.
-  void operator()(const World<double, Dim>& world, double t, std::span<const V> x, std::span<const V> v,
-                  std::span<const double> z, std::span<V> force, std::span<double> rate);
+  /// Adds to forces and torques and gives the rates of the equations' states z; each may be left out by an empty span.
+  /// Without orientations and spins the world's hold, from its time on.
+  void operator()(const World<double, Dim>& world, double t, const BodyStates<double, Dim>& at,
+                  std::span<const double> z, std::span<V> force, std::span<Spin<double, Dim>> torque,
+                  std::span<double> rate);
 
  private:
-  void fill(const World<double, Dim>& world, double t, std::span<const V> x, std::span<const V> v,
-            std::span<const double> z);
+  void fill(const World<double, Dim>& world, double t, const BodyStates<double, Dim>& at, std::span<const double> z);
 
   std::size_t first_ = 0, count_ = 0, mode_ = 0;
-  std::vector<std::size_t> forces_of_;    // the body of each force
-  std::vector<std::size_t> bodies_read_;  // whose states are read
-  std::vector<model::Evaluation> rates_;  // by mode
-  model::Evaluation forces_;
+  std::vector<std::size_t> forces_of_, torques_of_;  // the body of each
+  std::vector<std::size_t> bodies_read_;             // whose states are read
+  std::vector<model::Evaluation> rates_;             // by mode
+  model::Evaluation forces_, torques_;
   std::vector<double> state_, values_;
 };
 

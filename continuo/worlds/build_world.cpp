@@ -90,7 +90,7 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
       definition.position[axis] = *state++;
       definition.velocity[axis] = *state++;
     }
-    if constexpr (Dim == 2) definition.orientation[0] = *state++;
+    for (std::size_t k = 0; k < definition.orientation.size(); ++k) definition.orientation[k] = *state++;
     for (std::size_t k = 0; k < definition.spin.size(); ++k) definition.spin[k] = *state++;
     const auto added = world.add(definition);
     if (!added && built.error.empty()) built.error = "`" + body.name + "`: " + added.error;
@@ -101,6 +101,7 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
     made.normal = values.next_point<Dim>();
     made.offset = values.next();
     made.material = values.next_material();
+    made.thin = wall.thin;
     // A wall is written where normal . x = offset, of any length of the normal.
     made.offset /= length(made.normal);
     if (std::string error = world.add_wall(made); !error.empty()) {

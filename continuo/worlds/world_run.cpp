@@ -54,9 +54,10 @@ class Moving final : public WorldRun {
     const auto z = state_.begin() + static_cast<std::ptrdiff_t>(beside_.first());
     companions_.state.assign(z, z + static_cast<std::ptrdiff_t>(beside_.states()));
     companions_.absolute_tolerance = options_.tolerance * 1e-3;
-    companions_.law = [this](double t, std::span<const V> x, std::span<const V> v, std::span<const double> z_now,
-                             std::span<V> force,
-                             std::span<double> rate) { beside_(world_, t, x, v, z_now, force, rate); };
+    companions_.twists = beside_.has_torques();
+    companions_.law = [this](double t, const BodyStates<double, Dim>& at, std::span<const double> z_now,
+                             std::span<V> force, std::span<Spin<double, Dim>> torque,
+                             std::span<double> rate) { beside_(world_, t, at, z_now, force, torque, rate); };
   }
 
   /// Empty, or why the world cannot be as its parameters say. Bodies keep their places.
@@ -136,7 +137,10 @@ class Moving final : public WorldRun {
         world_.position[i][axis] = *at++;
         world_.velocity[i][axis] = *at++;
       }
-      if constexpr (Dim == 2) world_.orientation[i][0] = *at++;
+      Orientation<double, Dim> orientation;
+      for (std::size_t k = 0; k < orientation.size(); ++k) orientation[k] = *at++;
+      // An action may have changed a part of a quaternion: what is left of it is a direction.
+      if (Dim == 2 || length(orientation) > 0) world_.orientation[i] = turned(orientation, {}, 0.0);
       for (std::size_t k = 0; k < world_.spin[i].size(); ++k) world_.spin[i][k] = *at++;
     }
     for (double& z : companions_.state) z = *at++;
@@ -280,12 +284,15 @@ class Moving final : public WorldRun {
     options.threads = mode.threads;
     options.contact_events = options_.most_contacts;
     options.integrator = *integrator_named(options_.method == "fast" ? mode.integrator : options_.method);
-    world_.force_laws.clear();
-    if (beside_.has_forces()) {
+    world_.force_laws.clear(), world_.torque_laws.clear();
+    if (beside_.has_forces())
       world_.force_laws.push_back(
           [this](const World<double, Dim>& world, double t, std::span<const V> x, std::span<const V> v,
-                 std::span<V> force) { beside_(world, t, x, v, companions_.state, force, {}); });
-    }
+                 std::span<V> force) { beside_(world, t, {x, v, {}, {}}, companions_.state, force, {}, {}); });
+    if (beside_.has_torques())
+      world_.torque_laws.push_back(
+          [this](const World<double, Dim>& world, double t, const BodyStates<double, Dim>& at,
+                 std::span<Spin<double, Dim>> torque) { beside_(world, t, at, companions_.state, {}, torque, {}); });
     fast_.emplace(world_, options);
   }
   void renew() {
@@ -318,7 +325,7 @@ class Moving final : public WorldRun {
     if (companions_.state.empty()) return {};
     using X = std::vector<double>;
     const auto rates = [this](double t, const X& z, X& rate) {
-      beside_(world_, t, world_.position, world_.velocity, z, {}, rate);
+      beside_(world_, t, {world_.position, world_.velocity, {}, {}}, z, {}, {}, rate);
     };
     Options<X> options{.rtol = std::max(options_.tolerance, 1e-13), .atol = companions_.absolute_tolerance};
     options.save = Save<X>::only_end();

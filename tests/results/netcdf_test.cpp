@@ -158,7 +158,10 @@ TEST(NetCdf, HoldsBodiesByTimeBodyAndComponent) {
       EXPECT_THAT(file.texts("component"), ElementsAre("x", "y", "z"));
       EXPECT_THAT(file.values("position"),
                   ElementsAre(0, 2, 4, 10, 12, 14, 20, 22, 24, 100, 102, 104, 110, 112, 114, 120, 122, 124));
-      EXPECT_THAT(file.values("spin")[17], 128);
+      EXPECT_THAT(file.texts("part"), ElementsAre("w", "x", "y", "z"));
+      EXPECT_THAT(file.dimensions("orientation"), ElementsAre("time", "body", "part"));
+      EXPECT_THAT(file.values("orientation")[23], 129);
+      EXPECT_THAT(file.values("spin")[17], 132);
       EXPECT_EQ(file.attribute("position", "units"), "none");
     }
     std::filesystem::remove(path);
