@@ -1,17 +1,15 @@
-// apps/continuo/pictures.hpp
-// The drawing of a model as pictures, by gnuplot: what the page shows, flat and without a browser.
+// What the page shows as pictures, by gnuplot: flat and without a browser.
 #pragma once
 #include <string>
-#include <vector>
 
 #include <apps/continuo/recorder.hpp>
 
-#include <continuo/live/live_model.hpp>
+#include <continuo/live/session.hpp>
 
 namespace continuo::app {
 
-/// Writes FOLDER/00001.png, ... Empty, or what went wrong.
-std::string draw_pictures(const std::string& folder, const live::LiveModel& shown,
-                          const std::vector<Recorder::Scene>& scenes);
+/// Writes FOLDER/00001.png, ...: drawing and bodies of the model, or its plots where it has neither. Empty, or what
+/// went wrong.
+std::string draw_pictures(const std::string& folder, const live::Session& session, const Recorder::Slices& slices);
 
 }  // namespace continuo::app

@@ -1,6 +1,7 @@
 // apps/continuo/recorder.cpp
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include <apps/continuo/recorder.hpp>
 #include <fmt/format.h>
@@ -37,7 +38,7 @@ void Recorder::see(std::shared_ptr<const live::Slice> slice) {
   frames_.append(reinterpret_cast<const char*>(&length), sizeof length);
   frames_ += *frame;
   for (const live::LiveEvent& event : slice->events) events_.push_back(live::event_json(event));
-  scenes_.push_back({slice->t, slice->scene});
+  slices_.push_back(std::move(slice));
 }
 
 void Recorder::hear(live::Topic topic, std::string json) {
@@ -54,7 +55,7 @@ void Recorder::begin() {
   events_.clear();
   messages_.clear();
   frames_.clear();
-  scenes_.clear();
+  slices_.clear();
 }
 
 std::string Recorder::element() const {

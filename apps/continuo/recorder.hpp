@@ -1,5 +1,5 @@
 // apps/continuo/recorder.hpp
-// An audience that keeps what it sees: frames as a client would get them, and the scenes in them.
+// An audience that keeps what it sees: slices, and frames as a client would get them.
 #pragma once
 #include <memory>
 #include <string>
@@ -16,11 +16,8 @@ class Recorder final : public live::Audience {
   /// Forgets all but the newest model: the recording begins here.
   void begin();
 
-  struct Scene {
-    double t;
-    std::vector<float> numbers;
-  };
-  const std::vector<Scene>& scenes() const { return scenes_; }
+  using Slices = std::vector<std::shared_ptr<const live::Slice>>;
+  const Slices& slices() const { return slices_; }
   /// The element of docs/protocol.md that makes the page replay.
   std::string element() const;
 
@@ -30,7 +27,7 @@ class Recorder final : public live::Audience {
   std::string model_;
   std::vector<std::string> events_, messages_;
   std::string frames_;  // (u32 length, frame) one after another
-  std::vector<Scene> scenes_;
+  Slices slices_;
 };
 
 }  // namespace continuo::app

@@ -43,22 +43,26 @@ ExitCode write_page(const std::string& path, const std::string& compressed, cons
   return written(results::write_file(path, page)) ? done : usage;
 }
 
-ExitCode write_film(const std::string& path, double rate, const live::LiveModel& shown, const Recorder& recorder) {
+ExitCode write_film(const std::string& path, double rate, const live::Session& session, const Recorder& recorder) {
   const ScratchFolder scratch;
   if (!scratch.exists()) {
     say("cannot make a folder for the pictures of the film");
     return usage;
   }
   const std::string folder = scratch.file("pictures");
-  if (const std::string problem = draw_pictures(folder, shown, recorder.scenes()); !problem.empty()) {
+  if (const std::string problem = draw_pictures(folder, session, recorder.slices()); !problem.empty()) {
     say(problem);
     return usage;
   }
-  const int exit = run_program(
-      {"ffmpeg", "-y", "-framerate", fmt::format("{}", rate), "-i", folder + "/%05d.png", "-pix_fmt", "yuv420p", path});
-  if (exit == 0) return done;
-  say(exit == -1 ? fmt::format("a film is made by ffmpeg, which is not installed; --record FOLDER writes pictures")
-                 : fmt::format("ffmpeg could not write {}", path));
+  const std::string part = path + ".part";  // a film is there whole or not at all
+  const int exit = run_program({"ffmpeg", "-y", "-framerate", fmt::format("{}", rate), "-i", folder + "/%05d.png",
+                                "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", part});
+  std::error_code error;
+  if (exit == 0) std::filesystem::rename(part, path, error);
+  if (exit == 0 && !error) return done;
+  std::filesystem::remove(part, error);
+  say(exit == -1 ? fmt::format("ffmpeg was ended before it had written {}; --record FOLDER writes pictures", path)
+                 : fmt::format("ffmpeg could not write {}; --record FOLDER writes pictures", path));
   return usage;
 }
 
@@ -82,8 +86,8 @@ ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std:
   ExitCode exit = done;
   if (!request.page.empty()) exit = write_page(request.page, page, recorder);
   if (exit != done || request.pictures.empty()) return exit;
-  if (film) return write_film(request.pictures, request.rate, session.shown(), recorder);
-  const std::string problem = draw_pictures(request.pictures, session.shown(), recorder.scenes());
+  if (film) return write_film(request.pictures, request.rate, session, recorder);
+  const std::string problem = draw_pictures(request.pictures, session, recorder.slices());
   if (!problem.empty()) say(problem);
   return problem.empty() ? done : usage;
 }

@@ -76,6 +76,8 @@ class Session {
   const LiveModel& shown() const { return *shown_; }
   const History& history() const { return history_; }
   const PacedClock& clock() const { return clock_; }
+  /// Null without bodies.
+  const worlds::WorldRun* world() const { return main_->world(); }
   /// For those who come later.
   std::string model_json() const;
   std::string state_json() const;

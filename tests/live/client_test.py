@@ -5,6 +5,7 @@ import http.client
 import json
 import math
 import os
+import shutil
 import signal
 import struct
 import subprocess
@@ -12,6 +13,7 @@ import sys
 import tempfile
 import time
 import unittest
+import zlib
 from urllib.parse import urlsplit
 
 command, root = sys.argv[1], sys.argv[2]
@@ -36,6 +38,32 @@ class Viewed:
         self.process.send_signal(signal.SIGINT)
         self.said = self.process.communicate(timeout=20)[1]
         assert self.process.returncode == 0, self.said
+
+
+def pixels_of(path):
+    """The colours of a PNG of eight bits and three channels, not interlaced (ISO/IEC 15948, 9: the five filters)."""
+    with open(path, "rb") as file:
+        data = file.read()
+    at, packed, wide = 8, b"", 0
+    while at < len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        if kind == b"IHDR":
+            wide, _, depth, color = struct.unpack_from(">IIBB", data, at + 8)
+            assert (depth, color) == (8, 2)
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += 12 + length
+    flat, row, found = zlib.decompress(packed), bytearray(3 * wide), set()
+    for begin in range(0, len(flat), 3 * wide + 1):
+        way, line = flat[begin], bytearray(flat[begin + 1:begin + 1 + 3 * wide])
+        for i in range(3 * wide if way else 0):
+            left, up, corner = (line[i - 3], row[i], row[i - 3]) if i > 2 else (0, row[i], 0)
+            guess = left + up - corner
+            paeth = min((left, up, corner), key=lambda value: abs(guess - value))
+            line[i] = line[i] + (0, left, up, (left + up) // 2, paeth)[way] & 255
+        row = line
+        found.update(zip(line[0::3], line[1::3], line[2::3]))
+    return found
 
 
 def state(message):
@@ -184,6 +212,65 @@ class Protocol(unittest.TestCase):
                 self.assertIn(len(os.listdir(out)), (5, 6))
                 with open(os.path.join(out, "00003.png"), "rb") as file:
                     self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+
+    def test_pictures_show_what_there_is(self):
+        """Bodies in colour, walls in grey; plots where nothing is drawn."""
+        with tempfile.TemporaryDirectory() as folder:
+            for model, color in (("falling_balls", (0, 0x72, 0xB2)), ("maxwell_gas", (0, 0x72, 0xB2)),
+                                 ("falling_balls", (0xE9, 0xE9, 0xE9)), ("rc_ladder", None)):
+                out = os.path.join(folder, model)
+                subprocess.run([command, "view", os.path.join(root, "models", model + ".sim"), "--record", out, "--until",
+                                "0.2", "--fps", "5"], check=True, timeout=60)
+                pixels = pixels_of(os.path.join(out, "00001.png"))
+                if color:
+                    self.assertIn(color, pixels, model)
+                else:
+                    self.assertGreater(len(pixels), 3, model)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_a_film(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for model in ("kepler", "falling_balls", "robertson"):  # drawn, bodies, plots alone
+                out = os.path.join(folder, model + ".mp4")
+                subprocess.run([command, "view", os.path.join(root, "models", model + ".sim"), "--record", out, "--until",
+                                "1", "--fps", "10"], check=True, timeout=60)
+                with open(out, "rb") as file:
+                    self.assertEqual(file.read(12)[4:8], b"ftyp")
+                self.assertEqual(os.listdir(folder).count(model + ".mp4.part"), 0)
+
+    def test_ffmpeg_gets_the_pictures_and_may_fail(self):
+        with tempfile.TemporaryDirectory() as folder:
+            fake, told = os.path.join(folder, "ffmpeg"), os.path.join(folder, "told")
+            out = os.path.join(folder, "out.mp4")
+
+            def film(script):
+                with open(fake, "w") as file:
+                    file.write("#!/bin/sh\n[ \"$1\" = -version ] && exit 0\n" + script)
+                os.chmod(fake, 0o755)
+                path = folder + os.pathsep + os.environ["PATH"]
+                return subprocess.run([command, "view", os.path.join(root, "models", "kepler.sim"), "--record", out,
+                                       "--until", "1", "--fps", "8"], capture_output=True, text=True, timeout=60,
+                                      env={**os.environ, "PATH": path})
+
+            last = "for last; do :; done\n"
+            good = film(f'ls "$(dirname "$5")" | wc -l > {told}; echo "$@" >> {told}\n{last}echo film > "$last"\n')
+            self.assertEqual((good.returncode, good.stderr), (0, ""))
+            with open(told) as file:
+                count, words = file.read().splitlines()
+            self.assertIn(int(count), (9, 10))
+            self.assertTrue(words.startswith("-y -framerate 8 -i "))
+            with open(out) as file:
+                self.assertEqual(file.read(), "film\n")
+            os.remove(out)
+            for failure, why in (("exit 3\n", "could not write"), ("kill -9 $$\n", "was ended")):
+                bad = film(last + 'echo half > "$last"\n' + failure)
+                self.assertEqual(bad.returncode, 1)
+                self.assertIn(why, bad.stderr)
+                self.assertEqual([name for name in os.listdir(folder) if name.startswith("out")], [])
+            absent = subprocess.run([command, "view", os.path.join(root, "models", "kepler.sim"), "--record", out],
+                                    capture_output=True, text=True, timeout=60, env={**os.environ, "PATH": "/nonexistent"})
+            self.assertEqual(absent.returncode, 1)
+            self.assertIn("ffmpeg, which is not installed; --record FOLDER", absent.stderr)
 
     def test_malformed_texts_are_answered_then_shown_out(self):
         with Viewed("pendulum.sim", "--paused") as viewed:
