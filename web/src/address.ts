@@ -28,8 +28,8 @@ export function toHash(model: ModelMessage, state: StateMessage | null, view: re
   const hash = new URLSearchParams();
   if (model.gallery.some(({ name }) => name === galleryName(model))) hash.set("model", galleryName(model));
   if (state) {
-    for (const { name, value } of model.parameters) if (name in state.parameters && state.parameters[name] !== value) hash.set(`p.${name}`, String(state.parameters[name]));
-    for (const { name, value, from_file } of model.inputs) if (!from_file && name in state.inputs && state.inputs[name] !== value) hash.set(`i.${name}`, String(state.inputs[name]));
+    for (const { name, file } of model.parameters) if (name in state.parameters && state.parameters[name] !== file) hash.set(`p.${name}`, String(state.parameters[name]));
+    for (const { name, file, from_file } of model.inputs) if (!from_file && name in state.inputs && state.inputs[name] !== file) hash.set(`i.${name}`, String(state.inputs[name]));
     const { experiment } = model;
     const same = state.method === experiment.method && (state.step !== null ? state.step === experiment.step : state.rtol === experiment.rtol);
     if (!same) hash.set("method", methodText(state));

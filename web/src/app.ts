@@ -81,7 +81,7 @@ export class App {
       } }, words);
       tabs.append(button);
     }
-    const handle = make("div", { class: "handle", role: "separator", "aria-orientation": "horizontal", title: "Drag to share the room between scene and plots" });
+    const handle = make("div", { class: "handle", role: "separator", tabindex: 0, "aria-orientation": "horizontal", "aria-label": "Room of the plots", "aria-valuemin": 12, "aria-valuemax": 85, "aria-valuenow": 40, title: "Drag to share the room between scene and plots" });
     const middle = make("main", { class: "middle" }, this.heading, this.scene.element, handle, this.plots.element);
     this.makeHandle(handle, middle);
     const parts = this.embedded ? [top, this.messages.element, this.scene.element] : [top, this.messages.element, this.editor.element, middle, tabs, this.controls.element];
@@ -89,15 +89,26 @@ export class App {
   }
 
   private makeHandle(handle: HTMLElement, middle: HTMLElement): void {
+    const give = (percent: number): void => {
+      const share = Math.round(Math.min(85, Math.max(12, percent)));
+      middle.style.setProperty("--plots", `${share}%`);
+      handle.setAttribute("aria-valuenow", String(share));
+    };
     handle.addEventListener("pointerdown", (event) => {
       handle.setPointerCapture(event.pointerId);
       const move = (moved: PointerEvent): void => {
         const box = middle.getBoundingClientRect();
-        const share = Math.min(0.85, Math.max(0.12, (box.bottom - moved.clientY) / box.height));
-        middle.style.setProperty("--plots", `${100 * share}%`);
+        give((100 * (box.bottom - moved.clientY)) / box.height);
       };
       handle.addEventListener("pointermove", move);
       handle.addEventListener("pointerup", () => handle.removeEventListener("pointermove", move), { once: true });
+    });
+    handle.addEventListener("keydown", (event) => {
+      const by = event.key === "ArrowUp" ? 4 : event.key === "ArrowDown" ? -4 : 0;
+      if (by === 0) return;
+      event.preventDefault();
+      event.stopPropagation();
+      give(Number(handle.getAttribute("aria-valuenow")) + by);
     });
   }
 
@@ -228,7 +239,8 @@ export class App {
       turn("ArrowRight", 0.1, 0),
       turn("ArrowUp", 0, 0.1),
       turn("ArrowDown", 0, -0.1),
-      { keys: ["d"], words: "select the next thing that can be dragged", group: "Scene", run: () => void hand.selectNext() },
+      { keys: ["v"], words: "the camera goes with what is selected, or stays", group: "Scene", run: () => this.scene.toggleFollow() },
+      { keys: ["d"], words: "select the next thing that can be dragged, or the next body", group: "Scene", run: () => void hand.selectNext() },
       { ...arrow("ArrowUp", 0, 1, "drag what is selected", "Scene"), also: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"] },
       arrow("ArrowDown", 0, -1, "", "Scene"),
       { keys: ["x"], words: "the grid", group: "Scene", run: () => {

@@ -24,6 +24,8 @@ export interface Item {
   /** Places in a frame's `scene`: `at`, `to` and `size` hold several, the other attributes one. */
   numbers: Record<string, number | number[]>;
   drag: boolean;
+  /** Of a trail: where its point stands among the numbers that frames have for each row. */
+  path?: number[] | null;
 }
 export interface Bodies {
   count: number;
@@ -36,6 +38,8 @@ export interface Bodies {
 export interface Parameter {
   name: string;
   value: number;
+  /** The value in the text. */
+  file: number;
   unit: string;
   min: number | null;
   max: number | null;
@@ -45,6 +49,7 @@ export interface Parameter {
 export interface Input {
   name: string;
   value: number;
+  file: number;
   unit: string;
   min: number | null;
   max: number | null;
@@ -71,6 +76,7 @@ export interface ModelMessage {
   plots: Plot[];
   drawing: Item[];
   scene_count: number;
+  path_count?: number;
   bodies: Bodies | null;
   parameters: Parameter[];
   inputs: Input[];
@@ -133,10 +139,11 @@ export type Say =
   | CheckedMessage
   | { say: "saved"; path: string }
   | { say: "pong"; id: number }
-  | { say: "values"; t: number; values: Record<string, number> };
+  | { say: "values"; t: number; body: number; name: string; values: Record<string, number> };
 
 export type Command =
-  | { do: "play" | "pause" | "step" | "back" | "reset" | "until_event" | "restore" | "undo" | "release" }
+  | { do: "play" | "pause" | "step" | "back" | "reset" | "until_event" | "restore" | "undo" }
+  | { do: "release"; still?: boolean }
   | { do: "seek"; t: number }
   | { do: "speed"; value: number }
   | { do: "set"; parameter: string; value: number }
@@ -168,15 +175,20 @@ export interface Frame {
   ghostScene: Float32Array | null;
   positions: Float32Array | null;
   orientations: Float32Array | null;
+  ghostPositions: Float32Array | null;
+  ghostOrientations: Float32Array | null;
+  /** Where the points of trails were at the time of each row, `path_count` numbers each. */
+  paths: Float32Array | null;
+  ghostPaths: Float32Array | null;
 }
 
-const flag = { rewound: 1, ghost: 2, bodies: 4, orientation: 8, lookingBack: 16 };
+const flag = { rewound: 1, ghost: 2, bodies: 4, orientation: 8, lookingBack: 16, ghostBodies: 32, paths: 64 };
 
 /** The run a frame belongs to, readable before its model is known. */
 export const runOfFrame = (data: ArrayBuffer): number => (data.byteLength >= 8 ? new DataView(data).getUint32(4, true) : -1);
 
 /** Reads a frame of `model`, or says what is wrong with it. Arrays are views into `data` (browsers are little endian). */
-export function decodeFrame(data: ArrayBuffer, model: Pick<ModelMessage, "columns" | "scene_count" | "bodies">): Frame | string {
+export function decodeFrame(data: ArrayBuffer, model: Pick<ModelMessage, "columns" | "scene_count" | "path_count" | "bodies">): Frame | string {
   if (data.byteLength < 40) return `a frame of ${data.byteLength} bytes`;
   const view = new DataView(data);
   if (view.getUint32(0, true) !== 1) return `a binary message of kind ${view.getUint32(0, true)}`;
@@ -205,12 +217,24 @@ export function decodeFrame(data: ArrayBuffer, model: Pick<ModelMessage, "column
   const ghostScene = ghost ? floats(model.scene_count) : null;
   let positions: Float32Array | null = null;
   let orientations: Float32Array | null = null;
+  let ghostPositions: Float32Array | null = null;
+  let ghostOrientations: Float32Array | null = null;
   if ((flags & flag.bodies) !== 0 && model.bodies && room(4)) {
     const count = view.getUint32(at, true);
     at += 4;
-    positions = floats(count * model.bodies.dimension);
-    if ((flags & flag.orientation) !== 0) orientations = floats(count * (model.bodies.dimension === 2 ? 1 : 4));
+    const { dimension } = model.bodies;
+    const turned = (flags & flag.orientation) !== 0;
+    const turns = (): Float32Array | null => (turned ? floats(count * (dimension === 2 ? 1 : 4)) : null);
+    positions = floats(count * dimension);
+    orientations = turns();
+    if ((flags & flag.ghostBodies) !== 0) {
+      ghostPositions = floats(count * dimension);
+      ghostOrientations = turns();
+    }
   }
+  const withPaths = (flags & flag.paths) !== 0;
+  const paths = withPaths ? floats(rows * (model.path_count ?? 0)) : null;
+  const ghostPaths = withPaths && ghost ? floats(rows * (model.path_count ?? 0)) : null;
   if (short) return `a frame that ends early, after ${data.byteLength} bytes`;
   return {
     run: view.getUint32(4, true),
@@ -226,5 +250,9 @@ export function decodeFrame(data: ArrayBuffer, model: Pick<ModelMessage, "column
     ghostScene,
     positions,
     orientations,
+    ghostPositions,
+    ghostOrientations,
+    paths,
+    ghostPaths,
   };
 }

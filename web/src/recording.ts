@@ -64,6 +64,9 @@ export function pictureAt(frames: readonly Frame[], t: number): Frame {
     scene: between(frame.scene, next?.scene),
     ghostScene: frame.ghostScene ? between(frame.ghostScene, next?.ghostScene) : null,
     positions: frame.positions ? between(frame.positions, next?.positions) : null,
+    ghostPositions: frame.ghostPositions ? between(frame.ghostPositions, next?.ghostPositions) : null,
+    paths: frame.paths ? new Float32Array(0) : null,
+    ghostPaths: frame.ghostPaths ? new Float32Array(0) : null,
   };
 }
 

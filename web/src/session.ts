@@ -12,7 +12,7 @@ export interface Changes {
   message: SolverMessage;
   checked: { id: number; diagnostics: Diagnostic[] };
   saved: string;
-  values: { t: number; values: Record<string, number> };
+  values: { t: number; body: number; name: string; values: Record<string, number> };
   cursor: number | null;
   rewound: number;
   theme: "light" | "dark";
@@ -77,8 +77,7 @@ export class Session implements Listener {
       case "model": {
         const before = this.model;
         const same = before !== null && sameModel(before, message);
-        // The same text says the same values, whatever they have been changed to since.
-        this.model = same ? { ...message, parameters: before.parameters, inputs: before.inputs } : message;
+        this.model = message;
         this.beginAnew(message.run);
         if (!same) {
           this.frame = null;

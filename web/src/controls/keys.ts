@@ -8,11 +8,11 @@ const named: Record<string, string> = { left: "arrowleft", right: "arrowright", 
 export const keyName = (key: string): string => named[key.toLowerCase()] ?? key.toLowerCase();
 
 /** Where a key takes its input; without a range, one unit from where it rests. */
-export function valueOfKey(input: Pick<Input, "value" | "min" | "max">, shift: boolean): number {
+export function valueOfKey(input: Pick<Input, "file" | "min" | "max">, shift: boolean): number {
   const rest = restOf(input);
   return shift ? (input.min ?? rest - 1) : (input.max ?? rest + 1);
 }
 
 /** The value in the text, unless that is an end of the range which a key could not leave. */
-export const restOf = (input: Pick<Input, "value" | "min" | "max">): number =>
-  input.max !== null && input.value >= input.max && input.min !== null ? input.min : input.value;
+export const restOf = (input: Pick<Input, "file" | "min" | "max">): number =>
+  input.max !== null && input.file >= input.max && input.min !== null ? input.min : input.file;

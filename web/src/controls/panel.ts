@@ -113,6 +113,7 @@ export class ControlPanel {
 
   private get changed(): boolean {
     const { model, state } = this.session;
-    return model !== null && state !== null && model.parameters.some(({ name, value }) => (state.parameters[name] ?? value) !== value);
+    if (!model || !state) return false;
+    return model.parameters.some(({ name, value, file }) => (state.parameters[name] ?? value) !== file) || model.inputs.some(({ name, value, file, from_file }) => !from_file && (state.inputs[name] ?? value) !== file);
   }
 }

@@ -4,7 +4,7 @@ import { formatName, formatNumber, formatUnit, parseNumber } from "../format";
 import type { Parameter } from "../protocol";
 import { places, sliderScale, type Scale } from "./scale";
 
-export type Quantity = Pick<Parameter, "name" | "value" | "unit" | "min" | "max" | "comment">;
+export type Quantity = Pick<Parameter, "name" | "value" | "file" | "unit" | "min" | "max" | "comment">;
 
 export class QuantityRow {
   readonly element: HTMLElement;
@@ -41,16 +41,17 @@ export class QuantityRow {
       make("span", { class: "unit" }, shownUnit),
     );
     if (min !== null && max !== null && max > min) {
-      this.scale = sliderScale(min, max, quantity.value);
+      this.scale = sliderScale(min, max, quantity.file);
       const slider = make("input", { type: "range", min: 0, max: places, step: 1, value: this.scale.toPlace(this.value), "aria-label": label });
       slider.addEventListener("input", () => this.slid());
-      slider.addEventListener("dblclick", () => this.put(quantity.value));
+      slider.addEventListener("dblclick", () => this.put(quantity.file));
       this.slider = slider;
       this.element.append(slider);
       this.describe();
     } else {
       this.element.classList.add("plain");
     }
+    this.element.classList.toggle("changed", this.value !== quantity.file);
   }
 
   /** What the server says the value is. */
@@ -72,7 +73,7 @@ export class QuantityRow {
     this.value = value;
     if (document.activeElement !== this.field) this.field.value = formatNumber(value, 6);
     if (this.slider && this.scale) this.slider.value = String(this.scale.toPlace(value));
-    this.element.classList.toggle("changed", value !== this.quantity.value);
+    this.element.classList.toggle("changed", value !== this.quantity.file);
     this.describe();
   }
 
@@ -87,7 +88,7 @@ export class QuantityRow {
     const value = this.scale.toValue(Number(this.slider.value));
     this.value = value;
     this.field.value = formatNumber(value, 6);
-    this.element.classList.toggle("changed", value !== this.quantity.value);
+    this.element.classList.toggle("changed", value !== this.quantity.file);
     this.busyUntil = performance.now() + 400;
     this.describe();
     this.change(value);

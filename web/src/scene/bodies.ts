@@ -52,7 +52,7 @@ export class BodiesView {
 
   update(positions: Float32Array, orientations: Float32Array | null): void {
     this.spheres.placeAll(positions, this.bodies.dimension);
-    if (orientations) this.spheres.turnAll(orientations, this.bodies.dimension);
+    this.spheres.turnAll(orientations, this.bodies.dimension);
   }
 
   /** Containers belong into the picture whole. */

@@ -10,8 +10,15 @@ import { Spheres } from "./spheres";
 /** What lies over what in the plane. */
 const layer: Record<string, number> = { floor: 0, trail: 1, rope: 2, rod: 3, spring: 3, box: 4, ball: 5, arrow: 6, text: 7 };
 
+/** Where the points of trails were at the times of a frame's rows. */
+export interface Paths {
+  times: Float64Array;
+  points: Float32Array;
+  width: number;
+}
+
 interface Part {
-  update(scene: Float32Array, t: number, size: number): void;
+  update(scene: Float32Array, t: number, size: number, paths: Paths | null): void;
 }
 
 /** The colours of items that name none: balls differ from one another where they are few, a trail has its ball's. */
@@ -81,7 +88,7 @@ export class Drawing {
     });
   }
 
-  update(scene: Float32Array, t: number, size: number): void {
+  update(scene: Float32Array, t: number, size: number, paths: Paths | null = null): void {
     this.ballItems.forEach((index, at) => {
       const item = this.items[index]!;
       this.spheres.place(at, ...pointOf(item, scene, "at"), Math.abs(numberOf(item, scene, "radius", 0.02 * size)));
@@ -92,7 +99,7 @@ export class Drawing {
       this.joints.place(2 * at + 1, ...pointOf(this.items[index]!, scene, "to"), 0);
     });
     this.joints.placed();
-    for (const part of this.parts) part.update(scene, t, size);
+    for (const part of this.parts) part.update(scene, t, size, paths);
   }
 
   forgetFrom(t: number): void {
@@ -193,14 +200,25 @@ export class Drawing {
     const trail = old ?? new Trail();
     this.trails.push(trail);
     return {
-      update: (scene, t) => {
+      update: (scene, t, _size, paths) => {
         widen(scene);
         const length = numberOf(item, scene, "length", Infinity);
         const at = pointOf(item, scene, "at");
-        trail.add(t, at);
+        const place = item.path;
+        if (paths && place) {
+          const { times, points, width } = paths;
+          const number = (row: number, axis: number): number => (axis < place.length ? points[row * width + place[axis]!]! : 0);
+          for (let row = 0; row < times.length; ++row) trail.add(times[row]!, [number(row, 0), number(row, 1), number(row, 2)]);
+        } else {
+          trail.add(t, at);
+        }
         trail.forgetBefore(t - 2 * length);
         const [begin, end] = trail.range(t, length);
-        line.set(trail.points, end - begin, begin);
+        // From its newest row to where the point is now.
+        const tip = end === trail.times.length && end > begin;
+        if (tip) trail.points.push(...at);
+        line.set(trail.points, end - begin + (tip ? 1 : 0), begin);
+        if (tip) trail.points.length -= 3;
       },
     };
   }

@@ -37,19 +37,32 @@ export class Hand {
     for (const name of ["pointerup", "pointercancel"] as const) element.addEventListener(name, (event) => this.up(event));
   }
 
-  /** The next thing that may be dragged, for those who use keys. */
+  /** The next thing that may be dragged, or the next body, for those who use keys; after the last one none. */
   selectNext(): Thing | null {
     const drawing = this.around.session.model?.drawing ?? [];
-    const places = drawing.flatMap((item, index) => (item.drag ? [index] : []));
-    if (places.length === 0) return null;
-    const now = this.selected?.kind === "item" ? places.indexOf(this.selected.index) : -1;
-    this.selected = now + 1 < places.length ? { kind: "item", index: places[now + 1]! } : null;
+    const bodies = (this.around.bodies()?.places.length ?? 0) / 3;
+    const things: Thing[] = [
+      ...drawing.flatMap((item, index): Thing[] => (item.drag ? [{ kind: "item", index }] : [])),
+      ...Array.from({ length: bodies }, (_, index): Thing => ({ kind: "body", index })),
+    ];
+    const now = things.findIndex(({ kind, index }) => kind === this.selected?.kind && index === this.selected.index);
+    this.selected = things[now + 1] ?? null;
     this.around.select(this.selected);
     return this.selected;
   }
 
   get holdsByKey(): boolean {
-    return this.selected?.kind === "item" && (this.around.session.model?.drawing[this.selected.index]?.drag ?? false);
+    if (this.selected?.kind === "body") return true;
+    return this.selected !== null && (this.around.session.model?.drawing[this.selected.index]?.drag ?? false);
+  }
+
+  /** Where a thing is now. */
+  placeOf({ kind, index }: Thing): [number, number, number] | null {
+    const { model, frame } = this.around.session;
+    if (!model || !frame) return null;
+    if (kind === "item") return model.drawing[index] ? pointOf(model.drawing[index], frame.scene, "at") : null;
+    const places = this.around.bodies()?.places;
+    return places && 3 * index < places.length ? [places[3 * index]!, places[3 * index + 1]!, places[3 * index + 2]!] : null;
   }
 
   /** Drags the selected thing by parts of the picture. */
@@ -58,19 +71,22 @@ export class Hand {
     if (!this.selected || !session.model || !session.frame) return;
     // Presses in quick succession go on from one another, not from a picture that is older than the last.
     if (!this.nudge || performance.now() - this.nudgedAt > 400) {
-      this.nudge = pointOf(session.model.drawing[this.selected.index]!, session.frame.scene, "at");
+      this.nudge = this.placeOf(this.selected);
     }
+    if (!this.nudge) return;
     this.nudgedAt = performance.now();
     this.nudging = true;
     this.nudge[0] += right * stage.seenHeight;
-    this.nudge[1] += up * stage.seenHeight;
-    session.send({ do: "drag", item: this.selected.index, to: this.nudge.slice(0, session.model.dimension) });
+    this.nudge[stage.isFlat ? 1 : 2] += up * stage.seenHeight;
+    const to = this.nudge.slice(0, session.model.dimension);
+    session.send(this.selected.kind === "item" ? { do: "drag", item: this.selected.index, to } : { do: "drag", body: this.selected.index, to });
   }
 
   letGo(): void {
     if (!this.nudging) return;
     this.nudging = false;
-    this.around.session.send({ do: "release" });
+    // Keys move by jumps: what they set down does not fly on.
+    this.around.session.send({ do: "release", still: true });
   }
 
   /** A new model has other things. */
@@ -106,12 +122,13 @@ export class Hand {
     const origin = ray.origin.toArray();
     const direction = ray.direction.toArray();
     const item = pickSphere(places, sizeOf, origin, direction, least);
-    if (item >= 0) {
+    const bodies = this.around.bodies();
+    const body = bodies ? pickSphere(bodies.places, bodies.radius, origin, direction, (distance) => least(distance) / 3) : -1;
+    // Where the drawing shows a body once more, the body is what is meant.
+    if (item >= 0 && (body < 0 || model.drawing[candidates[item]!]!.drag)) {
       const index = candidates[item]!;
       return { thing: { kind: "item", index }, at: new three.Vector3(...pointOf(model.drawing[index]!, frame.scene, "at")), drag: model.drawing[index]!.drag };
     }
-    const bodies = this.around.bodies();
-    const body = bodies ? pickSphere(bodies.places, bodies.radius, origin, direction, (distance) => least(distance) / 3) : -1;
     if (!bodies || body < 0) return null;
     return { thing: { kind: "body", index: body }, at: new three.Vector3(bodies.places[3 * body], bodies.places[3 * body + 1], bodies.places[3 * body + 2]), drag: true };
   }
@@ -171,7 +188,6 @@ export class Hand {
       if (stage.surface.element.hasPointerCapture(held.id)) session.send({ do: "release" });
     } else {
       this.selected = held.thing;
-      if (held.thing.kind === "body") session.send({ do: "pick", body: held.thing.index });
       this.around.select(held.thing);
     }
     stage.movable = true;

@@ -47,7 +47,7 @@ const fragment = /* glsl */ `
     float square = dot(corner, corner);
     float from_centre = sqrt(square);
     float cover = 1.0 - smoothstep(1.0 - fine, 1.0 + 0.5 * fine, from_centre);
-    if (cover < 0.1) discard;
+    if (cover < 0.25) discard;
     vec3 normal = vec3(corner, sqrt(max(0.0, 1.0 - square)));
     float light = max(0.0, dot(normal, vec3(-0.4014, 0.6244, 0.6690)));
     float gloss = light * light;

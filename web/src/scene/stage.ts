@@ -152,6 +152,15 @@ export class Stage {
     return this.controls?.target ?? new three.Vector3();
   }
 
+  /** The camera moves along until `point` is in the middle. */
+  lookAt([x, y, z]: readonly [number, number, number]): void {
+    if (!Number.isFinite(x + y + z)) return;
+    this.automatic = false;
+    const way = new three.Vector3(x, y, z).sub(this.target);
+    this.target.add(way);
+    this.camera.position.add(way);
+  }
+
   zoom(factor: number): void {
     this.automatic = false;
     if (this.camera instanceof three.OrthographicCamera) {

@@ -1,16 +1,22 @@
 // The scene of the page: joins the stage, the drawing, the bodies and the labels with the session.
 import { make, setText } from "../dom";
-import { formatNumber } from "../format";
+import { formatName, formatNumber, formatSteady } from "../format";
 import type { Theme } from "../palette";
-import type { Frame, ModelMessage } from "../protocol";
+import type { Bodies, Frame, ModelMessage } from "../protocol";
 import type { Session } from "../session";
 import { BodiesView, radiusOf } from "./bodies";
-import { Drawing, itemColors } from "./drawing";
+import { Drawing, itemColors, type Paths } from "./drawing";
 import { boundsOfBodies, boundsOfItems, Interest, numberOf, pointOf, union } from "./fit";
 import { drawGrid } from "./grid";
 import { Hand, type Thing } from "./hand";
 import { Labels } from "./labels";
 import { Stage } from "./stage";
+
+/** Place, velocity, spin, and what does not change last. */
+function bodyOrder(names: string[]): string[] {
+  const rank = (name: string): number => (/^[xyz]$/.test(name) ? 0 : /^[xyz]'$/.test(name) ? 1 : name.startsWith("spin") ? 2 : 3);
+  return names.sort((a, b) => rank(a) - rank(b) || a.localeCompare(b));
+}
 
 /** From so many bodies on, each is small: smooth edges cost more than they show. */
 const many = 500;
@@ -26,9 +32,11 @@ export class SceneView {
   private drawing: Drawing | null = null;
   private ghost: Drawing | null = null;
   private bodies: BodiesView | null = null;
+  private ghostBodies: BodiesView | null = null;
   private ghostTrails: Drawing["trails"] = [];
   private interest = new Interest(false);
   private selected: Thing | null = null;
+  private following: Thing | null = null;
   private firstFrame = true;
   private theme: Theme;
   private lastPicture = 0;
@@ -56,14 +64,15 @@ export class SceneView {
     session.on("model", (model) => this.open(model));
     session.on("frame", (frame) => this.show(frame));
     session.on("rewound", (t) => this.forgetFrom(t));
-    session.on("values", ({ values }) => this.tellBody(values));
+    session.on("values", (values) => this.tellBody(values));
+    session.on("frame", () => this.askBody());
     session.on("theme", (now) => {
       this.theme = now;
       if (session.model) this.build(session.model);
       if (session.frame) this.show(session.frame);
     });
     session.on("state", (state) => {
-      if (!state.ghost && this.ghost) this.dropGhost();
+      if (!state.ghost && (this.ghost || this.ghostBodies)) this.dropGhost();
     });
   }
 
@@ -74,6 +83,7 @@ export class SceneView {
   }
 
   fit(): void {
+    this.following = null;
     this.stage.automatic = true;
     this.stage.invalidate();
   }
@@ -104,12 +114,12 @@ export class SceneView {
   }
 
   private clear(): void {
-    for (const part of [this.drawing, this.ghost, this.bodies]) {
+    for (const part of [this.drawing, this.ghost, this.bodies, this.ghostBodies]) {
       if (!part) continue;
       this.stage.scene.remove(part.group);
       part.dispose();
     }
-    this.drawing = this.ghost = this.bodies = null;
+    this.drawing = this.ghost = this.bodies = this.ghostBodies = null;
     this.ghostTrails = [];
   }
 
@@ -124,10 +134,12 @@ export class SceneView {
   }
 
   private dropGhost(): void {
-    if (!this.ghost) return;
-    this.stage.scene.remove(this.ghost.group);
-    this.ghost.dispose();
-    this.ghost = null;
+    for (const part of [this.ghost, this.ghostBodies]) {
+      if (!part) continue;
+      this.stage.scene.remove(part.group);
+      part.dispose();
+    }
+    this.ghost = this.ghostBodies = null;
     this.ghostTrails = [];
     this.stage.invalidate();
   }
@@ -142,9 +154,10 @@ export class SceneView {
     if (!model || !this.drawing) return;
     const bounds = boundsOfItems(model.drawing, frame.scene, this.stage.isFlat ? 1 : 2);
     if (frame.positions && model.bodies) {
-      this.showBodies(model.bodies, frame.positions, frame.orientations);
+      this.bodies = this.showBodies(this.bodies, model.bodies, frame.positions, frame.orientations, false);
+      if (frame.ghostPositions) this.ghostBodies = this.showBodies(this.ghostBodies, model.bodies, frame.ghostPositions, frame.ghostOrientations, true);
       union(bounds, boundsOfBodies(frame.positions, model.bodies.dimension, radiusOf(model.bodies)));
-      this.bodies?.includeContainers(bounds);
+      this.bodies.includeContainers(bounds);
     }
     if (frame.ghostScene) union(bounds, boundsOfItems(model.drawing, frame.ghostScene, this.stage.isFlat ? 1 : 2));
     this.interest.see(bounds);
@@ -153,31 +166,35 @@ export class SceneView {
     if (this.firstFrame && this.stage.automatic) this.stage.approach(this.interest.wanted(), 1);
     this.firstFrame = false;
     const size = this.stage.seenHeight;
-    this.drawing.update(frame.scene, frame.t, size);
+    const paths = (points: Float32Array | null): Paths | null => (points ? { times: frame.rowTimes, points, width: model.path_count ?? 0 } : null);
+    this.drawing.update(frame.scene, frame.t, size, paths(frame.paths));
     if (frame.ghostScene) {
       if (!this.ghost) {
         this.ghost = new Drawing(model.drawing, this.theme, this.stage.isFlat, true, this.ghostTrails);
         this.stage.scene.add(this.ghost.group);
       }
-      this.ghost.update(frame.ghostScene, frame.t, size);
+      this.ghost.update(frame.ghostScene, frame.t, size, paths(frame.ghostPaths));
     }
     if (this.selected) this.tellItem();
     this.stage.invalidate();
   }
 
-  private showBodies(bodies: NonNullable<ModelMessage["bodies"]>, positions: Float32Array, orientations: Float32Array | null): void {
+  /** The view of the bodies, made anew where there is none of as many. */
+  private showBodies(old: BodiesView | null, bodies: Bodies, positions: Float32Array, orientations: Float32Array | null, ghost: boolean): BodiesView {
     const count = positions.length / bodies.dimension;
-    if (!this.bodies || this.bodies.spheres.count !== count) {
-      if (this.bodies) {
-        this.stage.scene.remove(this.bodies.group);
-        this.bodies.dispose();
+    let view = old;
+    if (!view || view.spheres.count !== count) {
+      if (view) {
+        this.stage.scene.remove(view.group);
+        view.dispose();
       }
       const seen = boundsOfBodies(positions, bodies.dimension, radiusOf(bodies));
       const size = Math.max(1, ...[0, 1, 2].map((axis) => seen.upper[axis]! - seen.lower[axis]!).filter(Number.isFinite));
-      this.bodies = new BodiesView({ ...bodies, count }, this.theme, false, size);
-      this.stage.scene.add(this.bodies.group);
+      view = new BodiesView({ ...bodies, count }, this.theme, ghost, size);
+      this.stage.scene.add(view.group);
     }
-    this.bodies.update(positions, orientations);
+    view.update(positions, orientations);
+    return view;
   }
 
   /** Just before a picture: camera, grid and labels take their places. */
@@ -185,6 +202,8 @@ export class SceneView {
     const now = performance.now();
     const passed = Math.min(0.1, (now - this.lastPicture) / 1000);
     this.lastPicture = now;
+    const followed = this.following && this.hand.placeOf(this.following);
+    if (followed) this.stage.lookAt(followed);
     if (this.stage.automatic && this.stage.approach(this.interest.wanted(), 1 - Math.exp(-8 * passed), this.interest.following)) {
       requestAnimationFrame(() => this.stage.invalidate());
     }
@@ -216,11 +235,29 @@ export class SceneView {
 
   private select(thing: Thing | null): void {
     this.selected = thing;
+    this.following = this.following && thing;
+    this.asked = -Infinity;
     this.card.hidden = thing === null;
     if (!thing) return;
     this.card.replaceChildren();
     if (thing.kind === "item") this.tellItem();
-    else this.card.append(make("b", {}, `Body ${thing.index + 1}`));
+    else this.askBody();
+  }
+
+  private asked = -Infinity;
+
+  /** The state of the picked body, as it moves on. */
+  private askBody(): void {
+    if (this.selected?.kind !== "body" || !this.session.live || performance.now() - this.asked < 100) return;
+    this.asked = performance.now();
+    this.session.send({ do: "pick", body: this.selected.index });
+  }
+
+  /** The camera goes with what is selected, or stays again. */
+  toggleFollow(): void {
+    this.following = this.following ? null : this.selected;
+    this.card.classList.toggle("followed", this.following !== null);
+    this.stage.invalidate();
   }
 
   private tellItem(): void {
@@ -233,10 +270,12 @@ export class SceneView {
     setText(this.card, words);
   }
 
-  private tellBody(values: Record<string, number>): void {
-    if (this.selected?.kind !== "body") return;
-    const rows = Object.entries(values).map(([name, value]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, formatNumber(value, 5))));
-    this.card.replaceChildren(make("b", {}, `Body ${this.selected.index + 1}`), make("table", {}, make("tbody", {}, ...rows)));
+  private tellBody({ t, body, name, values }: { t: number; body: number; name: string; values: Record<string, number> }): void {
+    if (this.selected?.kind !== "body" || body !== this.selected.index) return;
+    const row = (what: string, value: string): HTMLElement => make("tr", {}, make("th", { scope: "row" }, formatName(what)), make("td", {}, value));
+    const rows = bodyOrder(Object.keys(values)).map((key) => row(key, formatSteady(values[key]!, 5)));
+    const title = name ? `${name} · ${body + 1}` : `Body ${body + 1}`;
+    this.card.replaceChildren(make("b", {}, title), make("table", {}, make("tbody", {}, row("t", formatSteady(t, 5)), ...rows)), make("small", {}, "v: the camera goes with it"));
   }
 
   /** Pictures drawn so far: tests and the measurement of the rate read it. */

@@ -10,18 +10,21 @@ export interface Parts {
   scene?: number[];
   ghostRows?: number[][];
   ghostScene?: number[];
-  bodies?: { dimension: number; positions: number[]; orientations?: number[] };
+  bodies?: { dimension: number; positions: number[]; orientations?: number[]; ghostPositions?: number[]; ghostOrientations?: number[] };
+  paths?: number[];
+  ghostPaths?: number[];
 }
 
 export function encodeFrame(parts: Parts): ArrayBuffer {
-  const { run = 1, flags = 0, t = 0, rowTimes = [], rows = [], scene = [], ghostRows, ghostScene = [], bodies } = parts;
+  const { run = 1, flags = 0, t = 0, rowTimes = [], rows = [], scene = [], ghostRows, ghostScene = [], bodies, paths, ghostPaths = [] } = parts;
   const floats = [...rows.flat(), ...scene, ...(ghostRows ? [...ghostRows.flat(), ...ghostScene] : [])];
-  const bodyFloats = bodies ? [...bodies.positions, ...(bodies.orientations ?? [])] : [];
-  const data = new ArrayBuffer(40 + 8 * rowTimes.length + 4 * floats.length + (bodies ? 4 + 4 * bodyFloats.length : 0));
+  const { ghostPositions, ghostOrientations = [], orientations = [] } = bodies ?? {};
+  const bodyFloats = [...(bodies?.positions ?? []), ...orientations, ...(ghostPositions ?? []), ...ghostOrientations, ...(paths ?? []), ...ghostPaths];
+  const data = new ArrayBuffer(40 + 8 * rowTimes.length + 4 * floats.length + (bodies ? 4 : 0) + 4 * bodyFloats.length);
   const view = new DataView(data);
   view.setUint32(0, 1, true);
   view.setUint32(4, run, true);
-  view.setUint32(8, flags | (ghostRows ? 2 : 0) | (bodies ? 4 : 0) | (bodies?.orientations ? 8 : 0), true);
+  view.setUint32(8, flags | (ghostRows ? 2 : 0) | (bodies ? 4 : 0) | (bodies?.orientations ? 8 : 0) | (ghostPositions ? 32 : 0) | (paths ? 64 : 0), true);
   view.setUint32(12, rowTimes.length, true);
   view.setFloat64(16, t, true);
   view.setFloat64(24, 0.5, true);

@@ -36,10 +36,10 @@ test("a slider reaches both ends and gives back its values", () => {
 });
 
 test("a key moves an input to its end and lets it back", () => {
-  const throttle = { value: 0, min: 0, max: 1 };
+  const throttle = { file: 0, min: 0, max: 1 };
   expect([valueOfKey(throttle, false), restOf(throttle)]).toEqual([1, 0]);
-  expect(valueOfKey({ value: 0, min: -5, max: 5 }, true)).toBe(-5);
-  expect(restOf({ value: 1, min: 0, max: 1 })).toBe(0);
+  expect(valueOfKey({ file: 0, min: -5, max: 5 }, true)).toBe(-5);
+  expect(restOf({ file: 1, min: 0, max: 1 })).toBe(0);
   expect([keyName("left"), keyName("W"), keyName("space")]).toEqual(["arrowleft", "w", " "]);
 });
 
@@ -53,7 +53,7 @@ test("keys have one name, and none while Ctrl, Alt or Meta is held", () => {
 
 test("the address carries what differs, and comes back the same", () => {
   const model = modelOf({
-    parameters: [{ name: "k", value: 4, unit: "", min: 0, max: 10, comment: "", structural: false }, { name: "m", value: 1, unit: "", min: 0, max: 10, comment: "", structural: false }],
+    parameters: [{ name: "k", value: 5.5, file: 4, unit: "", min: 0, max: 10, comment: "", structural: false }, { name: "m", value: 1, file: 1, unit: "", min: 0, max: 10, comment: "", structural: false }],
     gallery: [{ name: "m", title: "" }],
   });
   const state = { method: "rk4", step: 0.05, rtol: null, ghost: { method: "rk4", step: 1, rtol: null }, target: 0.5, parameters: { k: 5.5, m: 1 }, inputs: {} } as unknown as StateMessage;

@@ -25,6 +25,17 @@ test("bodies come with positions and orientations", () => {
   expect([...frame.orientations!]).toEqual([0.5, 1.5]);
 });
 
+test("a ghost of bodies, and the paths of trails, come after what they belong to", () => {
+  const model = modelOf({ columns: [], path_count: 2, bodies: { count: 1, dimension: 3, radius: 1, walls: [], containers: [] } });
+  const bodies = { dimension: 1, positions: [1, 2, 3], orientations: [0, 0, 0, 1], ghostPositions: [4, 5, 6], ghostOrientations: [1, 0, 0, 0] };
+  const data = encodeFrame({ rowTimes: [1, 2], rows: [], ghostRows: [], bodies, paths: [7, 8, 9, 10], ghostPaths: [11, 12, 13, 14] });
+  new DataView(data).setUint32(40 + 16, 1, true);  // one body of three numbers
+  const frame = decodeFrame(data, model);
+  if (typeof frame === "string") throw new Error(frame);
+  expect([...frame.ghostPositions!, ...frame.ghostOrientations!]).toEqual([4, 5, 6, 1, 0, 0, 0]);
+  expect([...frame.paths!, ...frame.ghostPaths!]).toEqual([7, 8, 9, 10, 11, 12, 13, 14]);
+});
+
 test("a frame that was cut off, or is none, is refused and not half read", () => {
   const model = modelOf({ scene_count: 3 });
   const whole = encodeFrame({ rowTimes: [1], rows: [[1, 2]], scene: [1, 2, 3] });

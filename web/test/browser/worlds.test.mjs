@@ -1,0 +1,69 @@
+// Worlds of bodies: a ghost beside them, one picked by hand, thousands drawn.
+import assert from "node:assert/strict";
+import { writeFileSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { test } from "node:test";
+import { model, open, picture, serve, until } from "./harness.mjs";
+
+test("a ghost of bodies stands beside them, and a body that is picked says its state", async (t) => {
+  const { url } = await serve(t, model("billiards"));
+  const tab = await open(t, url);
+  const bodies = await tab.evaluate(() => globalThis.continuo.session.model.bodies.count);
+  await tab.keyboard.press("h");
+  await tab.waitForFunction(() => globalThis.continuo.session.frame.ghostPositions !== null);
+  const apart = () => tab.evaluate(() => {
+    const { positions, ghostPositions } = globalThis.continuo.session.frame;
+    return [positions.length, ghostPositions?.length, Math.max(...positions.map((at, i) => Math.abs(at - (ghostPositions?.[i] ?? at))))];
+  });
+  const [here, there] = await apart();
+  assert.deepEqual([here, there], [2 * bodies, 2 * bodies]);
+  await tab.waitForSelector('[data-plot="distance"]');
+  await until(tab, ({ t: time }) => time > 2, "both play");
+  await tab.keyboard.press("Space");
+  await until(tab, ({ state }) => !state.playing, "it pauses");
+  const at = await tab.evaluate(() => globalThis.continuo.app.scene.onPage([...globalThis.continuo.session.frame.positions.slice(0, 2), 0]));
+  await tab.mouse.click(at.x, at.y);
+  const rows = tab.locator(".card tr");
+  await rows.first().waitFor();
+  assert.ok((await rows.count()) >= 4, "place and velocity are told");
+  await picture(tab, "ghost_of_bodies");
+  await tab.getByLabel("Method of the ghost").selectOption("");
+  await until(tab, ({ state }) => !state.ghost, "it goes again");
+  await tab.waitForFunction(() => globalThis.continuo.app.scene.ghostBodies === null);
+});
+
+test("thousands of spheres are drawn, each turned as it is", async (t) => {
+  const folder = mkdtempSync(path.join(tmpdir(), "continuo-spheres-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const file = path.join(folder, "spheres.sim");
+  writeFileSync(file, `# Spheres fall into a box.
+world {
+  dimension 3
+  gravity (0, 0, -9.81)
+  material restitution 0.3 friction 0.6
+  container box (0, 0, 0) to (6, 6, 6)
+  bodies grain random 2000 in (0, 0, 0) to (6, 6, 5) radius 0.12 seed 1
+  mode fast step 1/60
+}
+run 0..60 output 0.1
+`);
+  const { url } = await serve(t, file);
+  const tab = await open(t, url);
+  await until(tab, ({ t: time, drawn }) => time > 0.8 && drawn > 5, "they fall and are drawn", 30000);
+  await tab.keyboard.press("Space");
+  await until(tab, ({ state }) => !state.playing, "it pauses");
+  const seen = await tab.evaluate(() => {
+    const { session, app } = globalThis.continuo;
+    const picture_ = app.scene.picture("#ffffff");
+    const { data } = picture_.getContext("2d").getImageData(0, 0, picture_.width, picture_.height);
+    let painted = 0;
+    for (let at = 0; at < data.length; at += 4) if (Math.max(data[at], data[at + 1], data[at + 2]) - Math.min(data[at], data[at + 1], data[at + 2]) > 60) ++painted;
+    const samples = app.scene.stage.surface.canvas.getContext("webgl2").getContextAttributes().antialias;
+    return { painted: painted / (data.length / 4), samples, turned: session.frame.orientations?.length };
+  });
+  assert.equal(seen.turned, 4 * 2000);
+  assert.equal(seen.samples, false, "many bodies do without several samples a pixel");
+  assert.ok(seen.painted > 0.04, `their colours cover some of the picture: ${seen.painted}`);
+  await picture(tab, "spheres");
+});
