@@ -26,6 +26,8 @@ packages_to_test=(
   "libgmock-dev           -            unit tests"
   "chromium               chromium     the live view's page, tested in a browser"
   "python3                python3      the client of docs/protocol.md"
+  "python3-xarray         -            reads our netCDF files, as users do"
+  "python3-netcdf4        -            what it reads them with"
   "clang-19               clang++-19   the second compiler, with sanitizers"
   "libclang-rt-19-dev     -            sanitizers and the fuzzer"
   "lld-19                 ld.lld-19    its linker: six times as fast on sanitized programs"

@@ -1,11 +1,16 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <netcdf.h>
 
 #include <continuo/model/world.hpp>
+#include <continuo/results/families.hpp>
 #include <continuo/results/netcdf.hpp>
 
 namespace continuo::results {
@@ -102,18 +107,20 @@ class Writer {
     if (model_.has_world()) define_bodies();
     define_columns();
     file_.end_definitions();
-    file_.put(time, column(0));
+    file_.put(time, columns({0}));
     if (model_.has_world()) put_bodies();
-    for (const auto& [id, place] : columns_) file_.put(id, column(place));
+    for (std::size_t k = 0; k < axes_.size(); ++k) put_axis(k);
+    for (const auto& [id, places] : columns_) file_.put(id, columns(places));
     if (energy_ >= 0) file_.put(energy_, run_.total_energy);
     file_.close();
     return file_.status();
   }
 
  private:
-  std::vector<double> column(std::size_t place) const {
+  std::vector<double> columns(const std::vector<std::size_t>& places) const {
     std::vector<double> values;
-    for (std::size_t row = 0; row < run_.motion.rows(); ++row) values.push_back(run_.motion.row(row)[place]);
+    for (std::size_t row = 0; row < run_.motion.rows(); ++row)
+      for (const std::size_t place : places) values.push_back(run_.motion.row(row)[place]);
     return values;
   }
 
@@ -168,16 +175,39 @@ class Writer {
     }
   }
 
-  /// All that is not of bodies: states of equations, measures of the world, outputs, energies.
+  /// All that is not of bodies: states of equations, measures of the world, outputs, energies; families as arrays.
   void define_columns() {
-    const std::size_t of_bodies = model_.has_world() ? model_.world->body_states() : 0;
-    for (std::size_t place = 1 + of_bodies; place < run_.motion.columns.size(); ++place) {
-      const model::Column& column = run_.motion.columns[place];
-      columns_.emplace_back(file_.variable(free_name(column.name), NC_DOUBLE, {time_}, column.unit), place);
+    const std::size_t first = 1 + (model_.has_world() ? model_.world->body_states() : 0);
+    for (ColumnFamily& family : families_of(std::span(run_.motion.columns).subspan(first))) {
+      std::vector<int> dimensions{time_};
+      for (const ColumnFamily::Axis& axis : family.axes) dimensions.push_back(dimension_of(axis, dimensions));
+      for (std::size_t& place : family.places) place += first;
+      columns_.emplace_back(file_.variable(free_name(family.name), NC_DOUBLE, dimensions, family.unit),
+                            std::move(family.places));
     }
     if (run_.total_energy.empty()) return;
     energy_ = file_.variable(free_name("energy"), NC_DOUBLE, {time_}, run_.energy ? run_.energy->unit : "");
     file_.attribute(energy_, "long_name", "sum of all energies");
+  }
+  /// Families of the same indices share their dimensions, `i`, `j`, ..., so that they can be added to each other.
+  int dimension_of(const ColumnFamily::Axis& axis, const std::vector<int>& taken) {
+    for (const auto& [known, id, variable] : axes_)
+      if (known == axis && std::ranges::find(taken, id) == taken.end()) return id;
+    std::string letter = "i";
+    if (axes_.size() < 12) {
+      letter[0] = static_cast<char>('i' + axes_.size());
+    } else {
+      letter += std::to_string(axes_.size());
+    }
+    const std::string name = free_name(letter);
+    const int id = file_.dimension(name.c_str(), axis.count);
+    axes_.push_back({axis, id, file_.variable(name, NC_INT, {id})});
+    return id;
+  }
+  void put_axis(std::size_t k) {
+    std::vector<double> indices(axes_[k].axis.count);
+    std::iota(indices.begin(), indices.end(), static_cast<double>(axes_[k].axis.first));
+    file_.put(axes_[k].variable, indices);
   }
   /// An output may be called like one of ours.
   std::string free_name(std::string name) {
@@ -191,7 +221,12 @@ class Writer {
   File file_;
   int time_ = -1, names_ = -1, components_ = -1, parts_ = -1, radius_ = -1, mass_ = -1, energy_ = -1;
   std::vector<OfBodies> of_bodies_;
-  std::vector<std::pair<int, std::size_t>> columns_;
+  struct AxisOfFamilies {
+    ColumnFamily::Axis axis;
+    int id, variable;
+  };
+  std::vector<AxisOfFamilies> axes_;
+  std::vector<std::pair<int, std::vector<std::size_t>>> columns_;
   std::vector<std::string> taken_{"time",  "body",        "component", "part",   "position", "velocity",
                                   "angle", "orientation", "spin",      "radius", "mass"};
 };

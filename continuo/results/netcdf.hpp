@@ -5,8 +5,9 @@
 //   >>> xarray.open_dataset("gas.nc").position.sel(component="x")          # (time, body)
 //
 // Dimensions: time; where the model has a world also body and component. Variables: time, position and velocity (time,
-// body, component), angle and spin, radius and mass (body), and one (time) for every other column of the table, by its
-// name. Each has `units` where the model says some (CF conventions 1.8).
+// body, component), angle (time, body), in space orientation (time, body, part), spin, radius and mass (body), and one
+// (time) for every other column of the table, by its name; a family u[1..9] is one array (time, i), with its indices as
+// the coordinate i. Each has `units` where the model says some (CF conventions 1.8).
 #pragma once
 #include <optional>
 #include <string>

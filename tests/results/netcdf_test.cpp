@@ -168,6 +168,33 @@ TEST(NetCdf, HoldsBodiesByTimeBodyAndComponent) {
   }
 }
 
+TEST(NetCdf, MakesAnArrayOfAFamily) {
+  const model::Model model = model_of(
+      "for i in 2..4 { u[i]'' = -i*u[i]\nu[i](0) = i\nu[i]'(0) = 0 }\n"
+      "for i in 1..2 { for j in 0..1 { w[i, j]' = 10*i + j\nw[i, j](0) = 0 } }\n"
+      "for k in 2..4 { output twice[k] = 2*u[k] }\noutput one = u[2]\noutput i = 5\nrun 0..1 output 0.5\n");
+  const model::Simulated simulated = simulate(model);
+  ASSERT_TRUE(simulated.run);
+  const std::string path = scratch("families.nc");
+  ASSERT_EQ(write_netcdf(model, *simulated.run, path, ""), std::nullopt);
+  const Reading file(path);
+  EXPECT_THAT(file.dimensions("u"), ElementsAre("time", "i"));
+  EXPECT_THAT(file.dimensions("u'"), ElementsAre("time", "i"));
+  EXPECT_THAT(file.dimensions("twice"), ElementsAre("time", "i"));  // of the same indices
+  EXPECT_THAT(file.dimensions("w"), ElementsAre("time", "j", "k"));
+  EXPECT_THAT(file.dimensions("one"), ElementsAre("time"));
+  EXPECT_THAT(file.dimensions("i_"), ElementsAre("time"));  // the output of that name
+  EXPECT_THAT(file.values("i"), ElementsAre(2, 3, 4));
+  EXPECT_THAT(file.values("k"), ElementsAre(0, 1));
+  const auto u = file.values("u"), twice = file.values("twice"), w = file.values("w");
+  ASSERT_EQ(u.size(), 9u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(u[k], static_cast<double>(k + 2));
+  for (std::size_t k = 0; k < 9; ++k) EXPECT_EQ(twice[k], 2 * u[k]);
+  ASSERT_EQ(w.size(), 12u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(w[8 + k], static_cast<double>(10 + 10 * (k / 2) + k % 2), 1e-12);
+  std::filesystem::remove(path);
+}
+
 TEST(NetCdf, SaysWhyItCannotBeWritten) {
   const model::Model model = model_of("x' = 1\nx(0) = 0\nrun 0..1\n");
   const model::Simulated simulated = simulate(model);
