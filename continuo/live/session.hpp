@@ -113,6 +113,7 @@ class Session {
   Row row_at(double t, const std::vector<double>& x, const Instant* ghost);
   void add_row(double t, const std::vector<double>& x, const Instant* ghost);
   void put(Row row);
+  void put_unless_straight(const Row& next);
   void consider(double t);
   void append_values(double t, const std::vector<double>& x, double apart, std::vector<float>& row);
   void append_points(model::Evaluation& points, double t, const std::vector<double>& x, std::vector<float>& to);
@@ -185,7 +186,8 @@ class Session {
   std::size_t held_grip_ = 0;  // whose these are
   std::deque<InHand> in_hand_;
 
-  std::optional<Row> last_row_, between_;  // that was put; one that may be left out
+  std::optional<Row> last_row_;  // that was put
+  std::vector<Row> between_;     // after it, that may be left out
   Bends bends_;
   double step_begin_ = 0;  // of main_
 

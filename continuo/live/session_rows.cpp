@@ -55,14 +55,25 @@ void Session::put(Row row) {
   append(slice_->ghost_paths, row.ghost_path);
   bends_.see(row);
   last_row_ = std::move(row);
-  between_.reset();
+  between_.clear();
   changed_ = true;
 }
 
 void Session::add_row(double t, const std::vector<double>& x, const Instant* ghost) {
   Row row = row_at(t, x, ghost);
-  if (between_ && bends_.between(*last_row_, *between_, row)) put(std::move(*between_));
+  put_unless_straight(row);
   put(std::move(row));
+}
+
+/// The last row that was left out so far, if a line to the next would be seen to miss what is between. It would miss
+/// most in the middle, or at a corner that has just been passed.
+void Session::put_unless_straight(const Row& next) {
+  if (between_.empty()) return;
+  const bool bends = bends_.between(*last_row_, between_[between_.size() / 2], next) ||
+                     bends_.between(*last_row_, between_.back(), next);
+  if (!bends) return;
+  Row last = std::move(between_.back());
+  put(std::move(last));
 }
 
 /// A row that is put only where a line past it would be seen to miss it.
@@ -71,8 +82,8 @@ void Session::consider(double t) {
   std::optional<Instant> ghost;
   if (ghost_) ghost = ghost_->instant_at(t, false);
   Row row = row_at(t, main_->instant_at(t, false).x, ghost ? &*ghost : nullptr);
-  if (between_ && bends_.between(*last_row_, *between_, row)) put(std::move(*between_));
-  between_ = std::move(row);
+  put_unless_straight(row);
+  between_.push_back(std::move(row));
 }
 
 }  // namespace continuo::live

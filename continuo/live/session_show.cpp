@@ -20,7 +20,7 @@ void Session::show_run() {
   evaluated_ = variables_;
   bends_ = Bends(*shown_);
   last_row_.reset();
-  between_.reset();
+  between_.clear();
 }
 
 void Session::use_variables(const std::shared_ptr<const std::vector<double>>& variables) {
@@ -120,7 +120,7 @@ void Session::rewind_to(double t) {
     slice_->ghost_paths.resize(slice_->ghost_paths.size() - shown_->paths.size());
   }
   last_row_.reset();
-  between_.reset();
+  between_.clear();
   std::erase_if(slice_->events, [t](const LiveEvent& event) { return event.t > t; });
   changed_ = true;
 }

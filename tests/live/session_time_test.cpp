@@ -1,4 +1,6 @@
 // What the clock does to a session, and going back.
+#include <algorithm>
+
 #include <tests/live/spectator.hpp>
 
 namespace continuo::live {
@@ -224,6 +226,66 @@ TEST(LiveTime, AStopOfTheTextEndsTheRun) {
   stage.session->reset();
   EXPECT_EQ(stage.session->shown_time(), 0);
   EXPECT_FALSE(stage.session->has_ended());
+}
+
+// ---- curves that bend between two pictures ----
+
+const std::string circling =
+    "x'' = -x; y'' = -y\nx(0) = 1; x'(0) = 0; y(0) = 0; y'(0) = 1\ndraw { ball (x, y) radius 0.1; trail (x, y) }\n"
+    "plot x\nrun 0..1000";
+
+struct Trail {
+  std::vector<double> t, x, y;
+  std::size_t frames = 0;
+  /// How far the chords between its points come into the circle that they are on.
+  double deepest() const {
+    double least = 1;
+    for (std::size_t i = 1; i < t.size(); ++i)
+      least = std::min(least, std::hypot((x[i] + x[i - 1]) / 2, (y[i] + y[i - 1]) / 2));
+    return 1 - least;
+  }
+};
+
+Trail trail_at(double speed, const std::string& method) {
+  Stage stage(circling + method);
+  stage.session->set_speed(speed);
+  stage.play(2);
+  Trail trail;
+  for (const auto& slice : stage.audience.slices) {
+    EXPECT_EQ(slice->paths.size(), 2 * slice->row_t.size());
+    EXPECT_LE(slice->row_t.size(), 64U);
+    ++trail.frames;
+    for (std::size_t row = 0; row < slice->row_t.size(); ++row) {
+      trail.t.push_back(slice->row_t[row]);
+      trail.x.push_back(static_cast<double>(slice->paths[2 * row]));
+      trail.y.push_back(static_cast<double>(slice->paths[2 * row + 1]));
+    }
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(trail.t));
+  return trail;
+}
+
+TEST(LiveRows, AreDenserWhereACurveBends) {
+  for (const std::string method : {" method dop853 tol 1e-10\n", " method rk4 step 0.02\n"}) {
+    // A radian for each picture: its chord comes 1 - cos(1/2) = 0.12 into the circle. With points where a line would
+    // miss one by a 500th of the width 2, and a step's eighth or a picture's 64th more until that is seen, it is less
+    // than three times that.
+    const Trail fast = trail_at(60, method);
+    EXPECT_LT(fast.deepest(), 3 * 2.0 / 500);
+    // A hundredth of a radian bends by 1e-5: a picture each is enough, once the curve is so long that this is little.
+    const Trail slow = trail_at(0.6, method);
+    const auto late = std::ranges::count_if(slow.t, [](double t) { return t > 0.2; });
+    EXPECT_LE(late, static_cast<std::ptrdiff_t>(slow.frames));
+  }
+}
+
+TEST(LiveRows, OfMotionAlongALineAreAsManyAsPictures) {
+  Stage stage("x'' = 0\nx(0) = 0; x'(0) = 1\ndraw { trail (x, 0) }\nplot x\nrun 0..10000 method rk4 step 0.05\n");
+  stage.session->set_speed(60);
+  stage.play(2);
+  std::size_t rows = 0;
+  for (const auto& slice : stage.audience.slices) rows += slice->row_t.size();
+  EXPECT_LE(rows, stage.audience.slices.size() + 1);  // and the start
 }
 
 }  // namespace
