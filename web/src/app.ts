@@ -30,6 +30,7 @@ export class App {
   private readonly actions: Action[];
   private hashTimer = 0;
   private hashDone = false;
+  private toldNoPicture = false;
 
   constructor(
     private readonly session: Session,
@@ -68,6 +69,7 @@ export class App {
         iconButton("picture", "Save the scene as PNG", "", () => this.saveScene()),
         iconButton("share", "Copy the address with parameters and view", "", () => void this.share()),
         iconButton("big", "Larger letters, for a projector", "b", () => this.toggleBig()),
+        iconButton("fit", "Present: the whole screen, without the controls", "s", () => this.present()),
         iconButton("theme", "Light or dark", "t", () => this.theme.toggle()),
         iconButton("help", "Help", "?", () => this.help()),
       ),
@@ -118,13 +120,21 @@ export class App {
     session.on("state", () => this.remember());
     listenToKeys(this.actions, (key, shift, down) => this.controls.key(key, shift, down), () => this.scene.hand.letGo());
     addEventListener("hashchange", () => this.applyHash());
+    // Escape leaves the full screen, and with it the presentation.
+    document.addEventListener("fullscreenchange", () => {
+      if (!document.fullscreenElement && this.root.classList.contains("present")) this.present();
+    });
   }
 
   private open(model: ModelMessage): void {
     document.title = `${model.name} – Continuo`;
     setText(this.modelName, this.session.live ? "Gallery" : model.name);
     this.heading.replaceChildren(headingElement(model.name, model.heading));
-    this.root.classList.toggle("bare", model.drawing.length === 0 && !model.bodies);
+    this.root.classList.toggle("bare", this.scene.empty);
+    if (!this.scene.stage.surface.works && !this.toldNoPicture) {
+      this.toldNoPicture = true;
+      this.session.said({ say: "message", severity: "warning", code: null, text: "This browser draws no scenes: it has no WebGL.", hint: "The plots and values are all here.", line: null, column: null });
+    }
     this.root.classList.toggle("small-gallery", model.gallery.length === 0);
     if (!this.hashDone) {
       this.hashDone = true;
@@ -207,6 +217,16 @@ export class App {
     this.scene.stage.invalidate();
   }
 
+  /** For a lecture: the whole screen, larger letters, scene and plots alone. */
+  private present(): void {
+    const on = this.root.classList.toggle("present");
+    document.documentElement.classList.toggle("big", on);
+    if (on) void document.documentElement.requestFullscreen?.().catch(() => undefined);
+    else if (document.fullscreenElement) void document.exitFullscreen().catch(() => undefined);
+    this.plots.restyle();
+    this.scene.stage.invalidate();
+  }
+
   private help(): void {
     const keys = (this.session.model?.inputs ?? []).flatMap(({ key, name }) => (key ? [{ key, words: `${name}: held to its largest value, with Shift to its smallest` }] : []));
     openHelp(this.actions, keys);
@@ -255,6 +275,7 @@ export class App {
       { keys: ["e"], words: "the model's text (Ctrl-Enter runs it, Esc leaves it)", group: "Page", run: () => this.toggleEditor() },
       { keys: ["g"], words: "the gallery", group: "Page", run: () => openGallery(session) },
       { keys: ["b"], words: "larger letters", group: "Page", run: () => this.toggleBig() },
+      { keys: ["s"], words: "present: the whole screen, larger letters, no controls; and back", group: "Page", run: () => this.present() },
       { keys: ["t"], words: "light or dark", group: "Page", run: () => this.theme.toggle() },
       { keys: ["?"], words: "this help", group: "Page", run: () => this.help() },
     ];

@@ -31,11 +31,12 @@ export function parseHeading(comment: string): Heading {
   });
   const [first, ...rest] = split;
   const watch = rest.find(({ text, code }) => !code && /^(Watch|See|To see)\b/.test(text)) ?? null;
-  return { title: first?.text ?? "", watch: watch?.text.replace(/\s*Try:$/, "") ?? null, paragraphs: rest.filter((each) => each !== watch) };
+  // What announces commands is nothing without them: they are below "More".
+  return { title: first?.text ?? "", watch: watch?.text.replace(/\s*[^.:;!?]*:$/, "") ?? null, paragraphs: rest.filter((each) => each !== watch) };
 }
 
 /** Words between backquotes are code. */
-const spans = (text: string): (Node | string)[] => text.split("`").map((part, index) => (index % 2 === 1 ? make("code", {}, part) : part));
+export const spans = (text: string): (Node | string)[] => text.split("`").map((part, index) => (index % 2 === 1 ? make("code", {}, part) : part));
 
 /** The band above the scene. */
 export function headingElement(name: string, comment: string): HTMLElement {

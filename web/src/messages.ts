@@ -1,5 +1,6 @@
 // What the solver has to say, in plain sight: an error stays until it is closed or another run begins.
 import { iconButton, make } from "./dom";
+import { spans } from "./heading";
 import type { SolverMessage } from "./protocol";
 import type { Session } from "./session";
 
@@ -33,7 +34,7 @@ export class Messages {
 
   private add(message: SolverMessage, goTo: (line: number, column: number) => void, kind = ""): void {
     const { severity, code, text, hint, line, column } = message;
-    const same = [...this.element.children].filter((old) => old.querySelector(".what")?.textContent === text);
+    const same = [...this.element.children].filter((old) => old.querySelector<HTMLElement>(".what")?.dataset["text"] === text);
     if (same.length > 0 && kind === "ended") return;  // the error said it already
     for (const old of same) old.remove();
     const row: HTMLElement = make(
@@ -41,9 +42,9 @@ export class Messages {
       { class: `message ${severity} ${kind}`, role: severity === "error" ? "alert" : null },
       make("b", {}, severity === "note" ? "Note" : severity === "warning" ? "Warning" : "Error"),
       code ? make("code", {}, code) : null,
-      make("span", { class: "what" }, text),
+      make("span", { class: "what", "data-text": text }, ...spans(text)),
       line ? make("button", { type: "button", class: "link", onclick: () => goTo(line, column ?? 1) }, `line ${line}`) : null,
-      hint ? make("span", { class: "hint" }, hint) : null,
+      hint ? make("span", { class: "hint" }, ...spans(hint)) : null,
       iconButton("close", "Close this message", "", () => row.remove()),
     );
     this.element.append(row);

@@ -4,7 +4,7 @@ import { formatName, formatNumber, withUnit } from "../format";
 import type { History } from "../history";
 import { curveColor, type Theme } from "../palette";
 import type { Session } from "../session";
-import { calm, equalScales, finiteRange, timeWindow, type Range } from "./range";
+import { calm, decades, equalScales, finiteRange, powersBetween, timeWindow, type Range } from "./range";
 import type { PlotSpec } from "./specs";
 
 export interface Look {
@@ -33,6 +33,8 @@ export class Figure {
     private readonly host: HTMLElement,
     private readonly look: Look,
     private windowLength: number,
+    /** Powers of ten upward, of the size of what is plotted: for errors and distances. */
+    readonly logarithmic = false,
   ) {
     this.units = [...new Set(spec.curves.map(({ unit }) => unit))];
     this.plot = new uPlot(this.options(), this.emptyData(), host);
@@ -66,8 +68,9 @@ export class Figure {
     const begin = Math.max(0, history.indexAfter(from) - 1);
     const end = Math.min(length, history.indexAfter(to) + 1);
     const piece = (values: Float32Array | undefined): Float32Array => values?.subarray(begin, end) ?? none;
-    const curves = spec.curves.map(({ column }) => piece(history.columns[column]));
-    const ghosts = spec.curves.map(({ column }) => (spec.id === "distance" ? none : piece(history.ghosts[column])));
+    const sized = (values: Float32Array): Float32Array => (this.logarithmic ? values.map(sizeOrNone) : values);
+    const curves = spec.curves.map(({ column }) => sized(piece(history.columns[column])));
+    const ghosts = spec.curves.map(({ column }) => (spec.id === "distance" ? none : sized(piece(history.ghosts[column]))));
     const ranges = new Map<string, Range>();
     spec.curves.forEach(({ unit }, index) => {
       for (const values of [curves[index]!, ghosts[index]!]) {
@@ -78,7 +81,7 @@ export class Figure {
     });
     for (const unit of this.units) {
       const range = ranges.get(unit);
-      if (range) this.ranges.set(unit, calm(this.ranges.get(unit) ?? null, range));
+      if (range) this.ranges.set(unit, this.logarithmic ? decades(range) : calm(this.ranges.get(unit) ?? null, range));
     }
     if (spec.against) {
       const xs = piece(history.columns[spec.against.column]);
@@ -110,7 +113,8 @@ export class Figure {
     }
     const curve = spec.curves[0]!;
     const x = plot.valToPos(history.valueAt(spec.against.column, t), "x");
-    const y = plot.valToPos(history.valueAt(curve.column, t), this.scale(curve.unit));
+    const value = history.valueAt(curve.column, t);
+    const y = plot.valToPos(this.logarithmic ? sizeOrNone(value) : value, this.scale(curve.unit));
     const seen = Number.isFinite(x + y);
     this.dot.hidden = !seen;
     if (seen) this.dot.style.transform = `translate(${x}px, ${y}px)`;
@@ -133,7 +137,7 @@ export class Figure {
     const x = this.ranges.get("x") ?? [0, 1];
     const unit = this.units[0]!;
     const y = this.ranges.get(unit);
-    if (spec.against && spec.against.unit === unit && this.units.length === 1 && y && plot.over.clientWidth > 0 && alike(x, y)) {
+    if (spec.against && spec.against.unit === unit && unit !== "" && unit !== "1" && this.units.length === 1 && y && plot.over.clientWidth > 0 && alike(x, y)) {
       const [wideX, wideY] = equalScales(x, y, plot.over.clientWidth, plot.over.clientHeight);
       plot.batch(() => {
         plot.setScale("x", { min: wideX[0], max: wideX[1] });
@@ -144,7 +148,7 @@ export class Figure {
     plot.batch(() => {
       plot.setScale("x", { min: x[0], max: x[1] });
       for (const each of this.units) {
-        const [min, max] = this.ranges.get(each) ?? [0, 1];
+        const [min, max] = this.ranges.get(each) ?? (this.logarithmic ? [0.1, 1] : [0, 1]);
         plot.setScale(this.scale(each), { min, max });
       }
     });
@@ -191,7 +195,7 @@ export class Figure {
       cursor: { show: false },
       scales: {
         x: { time: false, auto: false, range: (_u, min, max) => [min, max] },
-        ...Object.fromEntries(this.units.map((unit) => [this.scale(unit), { auto: false, range: (_u: uPlot, min: number, max: number) => [min, max] }])),
+        ...Object.fromEntries(this.units.map((unit) => [this.scale(unit), { auto: false, ...(this.logarithmic ? { distr: 3 } : {}), range: (_u: uPlot, min: number, max: number) => [min, max] }])),
       } as uPlot.Scales,
       axes: [
         { ...axis, label: phase ? withUnit(spec.against!.label, spec.against!.unit) : withUnit("t", timeUnit), size: 1.5 * look.rem, space: 4.2 * look.rem },
@@ -199,14 +203,15 @@ export class Figure {
           ...axis,
           scale: this.scale(unit),
           side: index === 0 ? 3 : 1,
-          label: withUnit(this.namesOf(unit), unit),
+          label: this.logarithmic ? `|${withUnit(this.namesOf(unit), unit).replace(/ \[|$/, "|$&")}` : withUnit(this.namesOf(unit), unit),
+          ...(this.logarithmic ? powerAxis : {}),
           grid: { ...axis.grid!, show: index === 0 },
           space: 2 * look.rem,
           size: (_u: uPlot, values: string[] | null) => Math.max(2.2, 0.6 + 0.5 * Math.max(0, ...(values ?? []).map((text) => text.length))) * look.rem,
         }) as uPlot.Axis),
       ],
       series: [phase ? (null as unknown as uPlot.Series) : {}, ...indices.map((i) => series(i, false)), ...indices.map((i) => series(i, true))],
-      hooks: { drawClear: [(u) => this.paintGround(u)], draw: [(u) => this.drawEvents(u)] },
+      hooks: { drawClear: [(u) => this.paintGround(u)], drawAxes: [(u) => this.drawZero(u)], draw: [(u) => this.drawEvents(u)] },
     };
   }
 
@@ -221,6 +226,19 @@ export class Figure {
     u.ctx.save();
     u.ctx.fillStyle = this.look.background;
     u.ctx.fillRect(0, 0, u.ctx.canvas.width, u.ctx.canvas.height);
+    u.ctx.restore();
+  }
+
+  /** The line of zero, where curves cross it: a floor, a rest, no error. */
+  private drawZero(u: uPlot): void {
+    const { min, max } = u.scales[this.scale(this.units[0]!)]!;
+    if (this.logarithmic || !((min ?? 0) < 0 && (max ?? 0) > 0)) return;
+    const y = Math.round(u.valToPos(0, this.scale(this.units[0]!), true));
+    const { left, width } = u.bbox;
+    u.ctx.save();
+    u.ctx.fillStyle = this.look.muted;
+    u.ctx.globalAlpha = 0.55;
+    u.ctx.fillRect(left, y, width, Math.max(1, Math.round(u.ctx.canvas.width / u.width)));
     u.ctx.restore();
   }
 
@@ -288,6 +306,15 @@ export class Figure {
     for (const name of ["pointerup", "pointercancel"] as const) over.addEventListener(name, () => (dragging = false));
   }
 }
+
+/** Lines and numbers at powers of ten, some six of them. */
+const powerAxis: Partial<uPlot.Axis> = {
+  splits: (_u, _axis, min, max) => powersBetween(min, max, 6),
+  filter: (_u, splits) => splits,
+};
+
+/** What a logarithmic axis can show: a size, if it is any. */
+const sizeOrNone = (value: number): number => (Math.abs(value) > 0 ? Math.abs(value) : NaN);
 
 /** Two ranges of one unit that one scale can show. */
 const alike = (x: Range, y: Range): boolean => {

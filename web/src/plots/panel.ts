@@ -134,6 +134,7 @@ export class PlotPanel {
         make(
           "span",
           { class: "plot-buttons" },
+          this.logButton(spec),
           iconButton("picture", `Save “${spec.title}” as PNG`, "", () => this.savePlot(spec)),
           iconButton("table", `Save “${spec.title}” as CSV`, "", () => this.saveColumns(spec)),
           iconButton("close", `Close “${spec.title}”`, "", () => this.close(spec)),
@@ -142,11 +143,23 @@ export class PlotPanel {
       host,
     );
     this.cards.append(card);
-    const figure = new Figure(spec, this.session, host, look, this.windowLength);
+    const figure = new Figure(spec, this.session, host, look, this.windowLength, this.logs.has(spec.id));
     if (spec.curves.length > 1) {
       spec.curves.slice(0, 8).forEach(({ label }, index) => legend.append(make("i", { style: `--color: ${figure.color(index)}` }), spec.id === "energy" && label === "energy" ? "sum" : formatName(label)));
     }
     this.shown.push({ figure, card });
+  }
+
+  private readonly logs = new Set<string>();
+
+  private logButton(spec: PlotSpec): HTMLButtonElement {
+    const on = this.logs.has(spec.id);
+    const button = make("button", { type: "button", class: "small log", title: "Powers of ten upward, of the size of the values", "aria-label": `Logarithmic axis of “${spec.title}”`, "aria-pressed": String(on), onclick: () => {
+      if (on) this.logs.delete(spec.id);
+      else this.logs.add(spec.id);
+      this.rebuild();
+    } }, "log");
+    return button;
   }
 
   private close(spec: PlotSpec): void {

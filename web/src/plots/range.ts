@@ -33,11 +33,33 @@ export function calm(before: Range | null, data: Range): Range {
   return [data[0] < before[0] ? wanted[0] : before[0], data[1] > before[1] ? wanted[1] : before[1]];
 }
 
-/** The window of time: from the start while the run is shorter than the window, following its newest rows afterwards. */
+/** Whole powers of ten around a range, at most twenty of them from the top. */
+export function decades([low, high]: Range): Range {
+  const top = Math.ceil(Math.log10(high) - 1e-9);
+  const bottom = Math.max(top - 20, Math.floor(Math.log10(low) + 1e-9));
+  return [10 ** Math.min(bottom, top - 1), 10 ** top];
+}
+
+/** At most about `count` powers of ten from `low` to `high`, equally far apart. */
+export function powersBetween(low: number, high: number, count: number): number[] {
+  const [first, last] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
+  const stride = Math.max(1, Math.ceil((last - first) / count));
+  const powers: number[] = [];
+  for (let power = last; power >= first; power -= stride) powers.unshift(Number(`1e${power}`));
+  return powers;
+}
+
+/**
+ * The window of time: an eighth of it at first, doubled as the run fills it, so that a young run is not squeezed into a
+ * corner; once it is full it follows the newest rows.
+ */
 export function timeWindow(first: number, last: number, length: number): Range {
   if (!Number.isFinite(first) || !Number.isFinite(last)) return [0, Number.isFinite(length) ? length : 1];
   if (!Number.isFinite(length)) return last > first ? [first, last] : [first, first + 1];
-  return last - first <= length ? [first, first + length] : [last - length, last];
+  if (last - first > length) return [last - length, last];
+  let shown = length / 8;
+  while (shown < last - first) shown *= 2;
+  return [first, first + Math.min(shown, length)];
 }
 
 /** Both ranges widened so that a unit is as long on both axes of a plot of the given size. */

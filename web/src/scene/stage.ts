@@ -148,6 +148,12 @@ export class Stage {
     return 2 * Math.tan(((fov / 2) * Math.PI) / 180) * this.camera.position.distanceTo(this.controls?.target ?? new three.Vector3());
   }
 
+  /** How long a pixel is at a point. */
+  pixelAt(point: readonly [number, number, number]): number {
+    if (this.flat) return this.seenHeight / this.height;
+    return (2 * Math.tan(((fov / 2) * Math.PI) / 180) * this.camera.position.distanceTo(new three.Vector3(...point))) / this.height;
+  }
+
   get target(): three.Vector3 {
     return this.controls?.target ?? new three.Vector3();
   }

@@ -29,6 +29,7 @@ export class SceneView {
   private readonly grid = make("canvas", { class: "grid", "aria-hidden": "true" });
   private readonly labels = new Labels();
   private readonly card = make("div", { class: "card", role: "status", hidden: true });
+  private readonly ring = make("div", { class: "ring", hidden: true });
   private drawing: Drawing | null = null;
   private ghost: Drawing | null = null;
   private bodies: BodiesView | null = null;
@@ -53,7 +54,7 @@ export class SceneView {
     this.stage = new Stage(this.element, () => this.beforeDrawing(), moved);
     const { surface } = this.stage;
     surface.element.setAttribute("role", "img");
-    this.element.append(surface.element, this.labels.element, this.card);
+    this.element.append(surface.element, this.ring, this.labels.element, this.card);
     this.hand = new Hand({
       session,
       stage: this.stage,
@@ -79,7 +80,7 @@ export class SceneView {
   /** Whether there is anything to show. */
   get empty(): boolean {
     const model = this.session.model;
-    return !model || (model.drawing.length === 0 && !model.bodies);
+    return !model || !this.stage.surface.works || (model.drawing.length === 0 && !model.bodies);
   }
 
   fit(): void {
@@ -211,8 +212,29 @@ export class SceneView {
     if (!model || !frame) return;
     const pixelsPerUnit = this.stage.height / this.stage.seenHeight;
     this.labels.update(frame.scene, (point) => this.stage.project(point), pixelsPerUnit);
+    this.drawRing();
     this.grid.hidden = !this.stage.isFlat || !this.gridShown;
     if (!this.grid.hidden) this.drawGrid(model, frame);
+  }
+
+  /** Around what is selected. */
+  private drawRing(): void {
+    const place = this.selected && this.hand.placeOf(this.selected);
+    const at = place && this.stage.project(place);
+    this.ring.hidden = !at?.visible;
+    if (!place || !at?.visible) return;
+    const radius = Math.max(9, this.sizeOf(this.selected!) / this.stage.pixelAt(place) + 4);
+    this.ring.style.transform = `translate(${at.x - radius}px, ${at.y - radius}px)`;
+    this.ring.style.width = this.ring.style.height = `${2 * radius}px`;
+  }
+
+  private sizeOf({ kind, index }: Thing): number {
+    const { model, frame } = this.session;
+    if (kind === "body") return model?.bodies ? radiusOf(model.bodies)(index) : 0;
+    const item = model?.drawing[index];
+    if (!item || !frame) return 0;
+    if (item.shape === "box") return Math.hypot(numberOf(item, frame.scene, "size", 1, 0), numberOf(item, frame.scene, "size", 1, 1)) / 2;
+    return Math.abs(numberOf(item, frame.scene, "radius", 0));
   }
 
   /** Where the picture stands still its grid is drawn once. */
@@ -234,6 +256,7 @@ export class SceneView {
   }
 
   private select(thing: Thing | null): void {
+    this.stage.invalidate();
     this.selected = thing;
     this.following = this.following && thing;
     this.asked = -Infinity;

@@ -38,6 +38,26 @@ test("an error of the run pauses, says why and offers a way out", async (t) => {
   await picture(tab, "message");
 });
 
+test("a plot has a logarithmic axis where it is asked for, and an audience sees scene and plots alone", async (t) => {
+  const { url } = await serve(t, model("euler_energy"), "--speed", "4");
+  const tab = await open(t, url);
+  await until(tab, ({ t: time }) => time > 4, "it plays");
+  await tab.keyboard.press("Space");
+  await tab.locator('[data-plot="drift"]').hover();
+  await tab.getByRole("button", { name: "Logarithmic axis of “Drift of the energy”" }).click();
+  await tab.waitForFunction(() => {
+    const drift = globalThis.continuo.app.plots.shown.find(({ figure }) => figure.spec.id === "drift").figure;
+    return drift.logarithmic && drift.plot.scales.y0.min > 0 && drift.plot.scales.y0.max === 1;
+  });
+  await picture(tab, "logarithmic");
+  await tab.keyboard.press("s");
+  await tab.locator(".controls").waitFor({ state: "hidden" });
+  assert.ok(await tab.locator(".plots").isVisible());
+  await picture(tab, "presented");
+  await tab.keyboard.press("s");
+  await tab.locator(".controls").waitFor();
+});
+
 test("the gallery is one click away, help one key, and the theme changes", async (t) => {
   const { url } = await serve(t, model("mass_spring"));
   const tab = await open(t, url);

@@ -27,7 +27,20 @@ test("a ghost of bodies stands beside them, and a body that is picked says its s
   const rows = tab.locator(".card tr");
   await rows.first().waitFor();
   assert.ok((await rows.count()) >= 4, "place and velocity are told");
+  assert.ok(await tab.locator(".ring").isVisible(), "it is marked in the scene");
   await picture(tab, "ghost_of_bodies");
+  await tab.keyboard.press("v");
+  const middle = () => tab.evaluate(() => {
+    const { session, app } = globalThis.continuo;
+    const { x, y } = app.scene.stage.target;
+    return Math.hypot(x - session.frame.positions[0], y - session.frame.positions[1]);
+  });
+  await tab.keyboard.press("r");
+  await until(tab, ({ t: time }) => time === 0, "back to the start");
+  await tab.keyboard.press("n");
+  await until(tab, ({ t: time, state }) => time > 0 && !state.playing, "to the first impact");
+  await tab.waitForFunction(() => globalThis.continuo.app.scene.stage.target.x > 0.7);
+  assert.ok((await middle()) < 1e-3, "the camera goes with it");
   await tab.getByLabel("Method of the ghost").selectOption("");
   await until(tab, ({ state }) => !state.ghost, "it goes again");
   await tab.waitForFunction(() => globalThis.continuo.app.scene.ghostBodies === null);

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { csv } from "../../src/plots/export";
-import { calm, equalScales, finiteRange, padded, timeWindow } from "../../src/plots/range";
+import { calm, decades, equalScales, finiteRange, padded, powersBetween, timeWindow } from "../../src/plots/range";
 import { defaultSpecs, distanceSpec, energiesOf, specFromText, specText } from "../../src/plots/specs";
 import { History } from "../../src/history";
 import type { Column } from "../../src/protocol";
@@ -26,6 +26,16 @@ test("a model without drawing gets its phase plane, of a state against its own r
   const phase = defaultSpecs(modelOf({ columns })).find(({ id }) => id === "phase");
   expect(phase?.against?.label).toBe("x");
   expect(phase?.curves.map(({ label }) => label)).toEqual(["x'"]);
+});
+
+test("a logarithmic axis has whole powers of ten, and not more than say something", () => {
+  const powers = (low: number, high: number) => decades([low, high]).map((end) => Math.round(Math.log10(end)));
+  expect(powers(2e-5, 0.3)).toEqual([-5, 0]);
+  expect(powers(1e-3, 1)).toEqual([-3, 0]);
+  expect(powers(5, 5)).toEqual([0, 1]);
+  expect(powers(1e-300, 1)).toEqual([-20, 0]);
+  expect(powersBetween(1e-5, 1, 6)).toEqual([1e-5, 1e-4, 1e-3, 0.01, 0.1, 1]);
+  expect(powersBetween(1e-20, 1, 6).length).toBeLessThanOrEqual(7);
 });
 
 test("one energy alone is not shown twice", () => {
@@ -55,7 +65,9 @@ test("a range grows at once and shrinks only when most of it is empty", () => {
 });
 
 test("the window waits for the run to fill it, then follows", () => {
-  expect(timeWindow(0, 3, 10)).toEqual([0, 10]);
+  expect(timeWindow(0, 0, 10)).toEqual([0, 1.25]);
+  expect(timeWindow(0, 3, 10)).toEqual([0, 5]);
+  expect(timeWindow(0, 9, 10)).toEqual([0, 10]);
   expect(timeWindow(0, 25, 10)).toEqual([15, 25]);
   expect(timeWindow(0, 25, Infinity)).toEqual([0, 25]);
   expect(timeWindow(NaN, NaN, 10)).toEqual([0, 10]);
