@@ -105,6 +105,7 @@ export class PlotPanel {
     const distance = this.session.state?.ghost ? distanceSpec(model.columns) : null;
     const removed = new Set(this.specs.filter((spec) => this.hidden.has(spec.id)).map(({ id }) => id));
     this.specs = [...defaultSpecs(model), ...this.added, ...(distance ? [distance] : [])];
+    this.element.classList.toggle("ghosted", distance !== null);
     const look = this.look();
     for (const spec of this.specs) if (!removed.has(spec.id)) this.show(spec, look);
     const energies = energiesOf(model.columns);

@@ -30,6 +30,12 @@ export function titleOf(curves: readonly Series[], against: Series | null): stri
   return against ? `${joined(curves)} against ${against.label}` : joined(curves);
 }
 
+/** A world whose text plots nothing comes with all its sums in one plot: its energies say most, and have one scale. */
+function tellingSums(curves: Series[]): Series[] {
+  const energies = curves.filter(({ label }) => label === "world.kinetic" || label === "world.potential");
+  return curves.length > 3 && curves.every(({ label }) => label.startsWith("world.")) && energies.length > 0 ? energies : curves;
+}
+
 /** The plots to begin with. */
 export function defaultSpecs(model: Pick<ModelMessage, "columns" | "plots" | "drawing" | "bodies">): PlotSpec[] {
   const { columns } = model;
@@ -37,7 +43,7 @@ export function defaultSpecs(model: Pick<ModelMessage, "columns" | "plots" | "dr
   for (const [index, plot] of model.plots.entries()) {
     const against = plot.against === "t" ? null : plot.against;
     // The energies have a plot of their own below.
-    const curves = plot.curves.filter(({ label }) => against || plot.curves.length === 1 || !columns.some(({ kind, name }) => kind === "energy" && name === label));
+    const curves = tellingSums(plot.curves).filter(({ label }) => against || plot.curves.length === 1 || !columns.some(({ kind, name }) => kind === "energy" && name === label));
     specs.push({ id: `model${index}`, title: titleOf(curves, against), curves, against });
   }
   const states = ofKind(columns, "state");

@@ -2,7 +2,7 @@
 import * as three from "three";
 import { channels, curveColors, modelColor, type Theme } from "../palette";
 import type { Bodies } from "../protocol";
-import { include, type Bounds } from "./fit";
+import { gridStep, include, type Bounds } from "./fit";
 import { Polyline } from "./polyline";
 import { Spheres } from "./spheres";
 
@@ -26,7 +26,7 @@ export class BodiesView {
   readonly group = new three.Group();
   readonly spheres: Spheres;
   private readonly lines: Polyline[] = [];
-  private readonly surfaces: three.Mesh<three.PlaneGeometry, three.MeshBasicMaterial>[] = [];
+  private readonly surfaces: { geometry: three.BufferGeometry; material: three.Material }[] = [];
 
   constructor(
     readonly bodies: Bodies,
@@ -80,8 +80,8 @@ export class BodiesView {
     return curveColors[theme][index % 5]!;
   }
 
-  private add(points: number[], color: string, flat: boolean, width = 2): void {
-    const line = new Polyline({ color, width, opacity: 0.9, flat, order: 0 });
+  private add(points: number[], color: string, flat: boolean, width = 2, opacity = 0.9): void {
+    const line = new Polyline({ color, width, opacity, flat, order: 0 });
     line.set(points, points.length / 3);
     this.lines.push(line);
     this.group.add(line.object);
@@ -91,8 +91,31 @@ export class BodiesView {
     const [x0, y0, z0 = 0] = lower as [number, number, number?];
     const [x1, y1, z1 = 0] = upper as [number, number, number?];
     if (flat) return this.add([x0, y0, 0, x1, y0, 0, x1, y1, 0, x0, y1, 0, x0, y0, 0], color, flat);
-    for (const z of [z0, z1]) this.add([x0, y0, z, x1, y0, z, x1, y1, z, x0, y1, z, x0, y0, z], color, flat, 1.5);
-    for (const [x, y] of [[x0, y0], [x1, y0], [x1, y1], [x0, y1]] as const) this.add([x, y, z0, x, y, z1], color, flat, 1.5);
+    // A thin line on a pale broad one: smooth also where a pixel has one sample.
+    for (const [width, opacity] of [[3, 0.25], [1.2, 0.8]] as const) {
+      for (const z of [z0, z1]) this.add([x0, y0, z, x1, y0, z, x1, y1, z, x0, y1, z, x0, y0, z], color, flat, width, opacity);
+      for (const [x, y] of [[x0, y0], [x1, y0], [x1, y1], [x0, y1]] as const) this.add([x, y, z0, x, y, z1], color, flat, width, opacity);
+    }
+    this.ground([x0, y0], [x1, y1], z0, color);
+  }
+
+  /** The bottom of a box, ruled as the plane is: it gives the eye depth. */
+  private ground([x0, y0]: [number, number], [x1, y1]: [number, number], z: number, color: string): void {
+    const surface = new three.Mesh(new three.PlaneGeometry(x1 - x0, y1 - y0), new three.MeshBasicMaterial({ color, transparent: true, opacity: 0.1, side: three.DoubleSide, depthWrite: false }));
+    surface.position.set((x0 + x1) / 2, (y0 + y1) / 2, z);
+    surface.renderOrder = -8;
+    const step = gridStep(Math.max(x1 - x0, y1 - y0), 10);
+    const points: number[] = [];
+    const rule = (from: number, to: number, line: (at: number) => number[]): void => {
+      for (let i = Math.ceil(from / step - 1e-9); i * step <= to * (1 + 1e-9); ++i) points.push(...line(i * step));
+    };
+    rule(x0, x1, (x) => [x, y0, z, x, y1, z]);
+    rule(y0, y1, (y) => [x0, y, z, x1, y, z]);
+    const geometry = new three.BufferGeometry().setAttribute("position", new three.Float32BufferAttribute(points, 3));
+    const rules = new three.LineSegments(geometry, new three.LineBasicMaterial({ color, transparent: true, opacity: 0.22, depthWrite: false }));
+    rules.renderOrder = -7;
+    this.surfaces.push(surface, rules);
+    this.group.add(surface, rules);
   }
 
   /** The half space normal . x >= offset is free. */

@@ -4,9 +4,10 @@ import { test } from "node:test";
 import { button, model, now, open, picture, serve, until } from "./harness.mjs";
 
 test("the transport does what its buttons say", async (t) => {
-  const { url } = await serve(t, model("bouncing_ball"));
+  // Slowly: on a busy machine the hand that pauses comes late, and the first impact is at 10/7 s.
+  const { url } = await serve(t, model("bouncing_ball"), "--speed", "0.1");
   const tab = await open(t, url);
-  const going = await until(tab, ({ t: time, state }) => state.playing && time > 0.5, "it plays by itself");
+  const going = await until(tab, ({ t: time, state }) => state.playing && time > 0.05, "it plays by itself");
   await button(tab, "Pause").click();
   const paused = await until(tab, ({ state }) => !state.playing, "it pauses");
   assert.ok(paused.t >= going.t);
@@ -32,7 +33,7 @@ test("the transport does what its buttons say", async (t) => {
   const reset = await until(tab, ({ t: time }) => time === 0, "a reset goes to the start");
   assert.equal(reset.scene[2], 10, "the ball is at its height again");
   await tab.keyboard.press("Space");
-  await until(tab, ({ state, t: time }) => state.playing && time > 0.1, "the space bar plays");
+  await until(tab, ({ state, t: time }) => state.playing && time > 0.05, "the space bar plays");
 });
 
 test("time holds, and the speed changes it", async (t) => {

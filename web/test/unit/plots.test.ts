@@ -38,6 +38,13 @@ test("a logarithmic axis has whole powers of ten, and not more than say somethin
   expect(powersBetween(1e-20, 1, 6).length).toBeLessThanOrEqual(7);
 });
 
+test("a world that says nothing is plotted by its energies", () => {
+  const names = ["world.kinetic", "world.potential", "world.momentum.x", "world.collisions"];
+  const curves = names.map((label, column) => ({ label, column, unit: "" }));
+  const world = modelOf({ columns: names.map((name) => ({ name, unit: "", kind: "state" as const })), plots: [{ curves, against: "t" }], bodies: { count: 1, dimension: 2, radius: 1, walls: [], containers: [] } });
+  expect(defaultSpecs(world).map(({ title }) => title)).toEqual(["world.kinetic, world.potential"]);
+});
+
 test("one energy alone is not shown twice", () => {
   expect(energiesOf([columns[2]!, columns[4]!]).map(({ label }) => label)).toEqual(["kinetic"]);
 });
