@@ -133,10 +133,10 @@ std::vector<Flat> BodyPictures::wall_in_space(const worlds::WallShape& wall) con
 void BodyPictures::draw_walls(const PictureFrame& frame, PictureParts& parts) const {
   for (const worlds::WallShape& wall : walls_) {
     const bool faces_away = dimension_ == 3 && !(nearness_of(wall.normal[0], wall.normal[1], wall.normal[2]) > 0);
-    if (faces_away) continue;  // it would hide what is before us
+    if (faces_away && !wall.thin) continue;  // it would hide what is before us
     std::vector<Flat> shown = dimension_ == 2 ? wall_in_plane(wall, frame) : wall_in_space(wall);
     if (shown.size() < 3) continue;
-    parts.polygon(shown, wall_color);
+    if (!wall.thin) parts.polygon(shown, wall_color);
     if (dimension_ == 3) {
       shown.push_back(shown.front());
       parts.line(shown, edge_color, 1);

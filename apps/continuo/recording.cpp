@@ -1,4 +1,6 @@
 // apps/continuo/recording.cpp
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -66,10 +68,22 @@ ExitCode write_film(const std::string& path, double rate, const live::Session& s
   return usage;
 }
 
+/// What somebody who wants another format would write.
+bool is_one_file(const std::string& path) {
+  static constexpr std::array<std::string_view, 10> endings = {".avi", ".mov", ".webm", ".mkv", ".mpg",
+                                                               ".m4v", ".gif", ".png",  ".jpg", ".svg"};
+  return std::ranges::find(endings, std::filesystem::path(path).extension().string()) != endings.end();
+}
+
 }  // namespace
 
 ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std::string& page) {
   const bool film = std::filesystem::path(request.pictures).extension() == ".mp4";
+  if (!film && is_one_file(request.pictures)) {
+    say(fmt::format("cannot record {}: pictures go into a folder, and the name of a film ends in .mp4",
+                    request.pictures));
+    return usage;
+  }
   if (!writable(request.page) || (film && !writable(request.pictures))) return usage;
   if (film && run_program({"ffmpeg", "-version"}) != 0) {
     say("a film is made by ffmpeg, which is not installed; --record FOLDER writes pictures");
@@ -82,7 +96,12 @@ ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std:
   recorder.begin();
   session.reset();
   session.turn();
-  play_to(request.until.value_or(session.planned_end()), request.rate, wall, session);
+  const double until = request.until.value_or(session.planned_end());
+  if (!(until > session.shown_time() && std::isfinite(until))) {
+    say(fmt::format("--until must be after the start of the run, t = {:g}", session.shown_time()));
+    return usage;
+  }
+  play_to(until, request.rate, wall, session);
   ExitCode exit = done;
   if (!request.page.empty()) exit = write_page(request.page, page, recorder);
   if (exit != done || request.pictures.empty()) return exit;

@@ -1,5 +1,7 @@
 // continuo view: the motion live, in the browser.
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -67,9 +69,21 @@ bool apply_options(const ExperimentOptions& options, live::Session& session) {
     if (!setting) return false;
     choice.rtol = setting->value;
   }
-  if (choice.name || choice.step || choice.rtol) session.take_method(choice);
+  if ((choice.name || choice.step || choice.rtol) && !session.take_method(choice)) {
+    for (const model::Diagnostic& problem : session.problems())
+      say(problem.help.empty() ? problem.message : fmt::format("{} ({})", problem.message, problem.help));
+    return false;
+  }
   if (!options.settings.empty() || choice.name || choice.step || choice.rtol) session.reset();
   return true;
+}
+
+/// Of the whole text, finite.
+std::optional<double> number_of(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool good = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return good ? std::optional(value) : std::nullopt;
 }
 
 std::optional<std::string> page_of(const ViewRequest& request) {
@@ -145,6 +159,17 @@ ExitCode view(ViewRequest& request) {
   return show_to_the_world(request, session, server);
 }
 
+std::string speed_fault(const std::string& text) {
+  const auto speed = number_of(text);
+  return speed && *speed >= 0 ? "" : fmt::format("a speed is a number, 0 or more, not {}", text);
+}
+std::string port_fault(const std::string& text) {
+  const auto port = number_of(text);
+  return port && *port >= 0 && *port <= 65535 && *port == std::floor(*port)
+             ? ""
+             : fmt::format("a port is a number up to 65535, not {}", text);
+}
+
 }  // namespace
 
 void add_view(CLI::App& app, ExitCode& exit) {
@@ -162,12 +187,14 @@ void add_view(CLI::App& app, ExitCode& exit) {
       ->type_name("T");
   verb->add_option("--speed", request->speed, "Times real time; 0: as fast as can be")
       ->type_name("K")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Validator(speed_fault, ""));
   verb->add_flag("--paused", request->paused, "Waits for somebody to press play");
   verb->add_flag("--no-open", request->no_open, "Prints the address and opens no browser");
   verb->add_option("--listen", request->server.address, "Where to listen: 127.0.0.1 is for this computer alone")
       ->type_name("ADDRESS");
-  verb->add_option("--port", request->server.port, "The port; any free one where it is not given")->type_name("N");
+  verb->add_option("--port", request->server.port, "The port; any free one where it is not given")
+      ->type_name("N")
+      ->check(CLI::Validator(port_fault, ""));
   verb->add_option("--page", request->page_file, "Serves this page in place of the built-in one")->type_name("FILE");
   verb->add_option("--export", request->recording.page, "Writes one page that replays the run, and ends")
       ->type_name("FILE");

@@ -8,7 +8,7 @@ namespace continuo::live {
 
 std::size_t History::bytes_of(const Sample& sample) {
   const auto of_instant = [](const Instant& instant) {
-    std::size_t numbers = instant.x.size() + instant.stops.size() + 2 * instant.orientations.size();  // of 8 bytes
+    std::size_t numbers = instant.x.size() + instant.stops.size();
     if (instant.world) numbers += instant.world->equations.size() + instant.world->variables.size();
     return numbers * sizeof(double) + (instant.world ? instant.world->bodies.size() : 0);
   };

@@ -127,7 +127,8 @@ json bodies_of(const worlds::WorldRun* world) {
     if (world->bodies().size() <= few) names.push_back(body.name);
   }
   for (const worlds::WallShape& wall : world->walls())
-    walls.push_back({{"normal", point_of(wall.normal, world->dimension())}, {"offset", wall.offset}});
+    walls.push_back(
+        {{"normal", point_of(wall.normal, world->dimension())}, {"offset", wall.offset}, {"thin", wall.thin}});
   json springs = json::array();
   for (const worlds::SpringShape& spring : world->springs()) {
     const bool to_body = spring.b != model::no_body;

@@ -56,7 +56,8 @@ class Session {
   void set_parameter(const std::string& name, double value);
   void restore_parameters();
   void move_input(const std::string& name, double value);
-  void take_method(MethodChoice choice);
+  /// False where the model cannot be run so: `problems` says why.
+  bool take_method(MethodChoice choice);
   void take_ghost(std::optional<MethodChoice> choice);
   void undo();
   void drag(std::size_t item, std::span<const double> to);

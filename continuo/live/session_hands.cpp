@@ -219,11 +219,12 @@ void Session::prepare_anew() {
 
 // ---- methods --------------------------------------------------------------------------------------------------------
 
-void Session::take_method(MethodChoice choice) {
+bool Session::take_method(MethodChoice choice) {
   leave_look();
   const Settings before = settings_;
-  if (!change_method(std::move(choice))) return;
+  if (!change_method(std::move(choice))) return false;
   keep_undo({"method", now_(), before});
+  return true;
 }
 
 bool Session::change_method(MethodChoice choice) {

@@ -78,12 +78,19 @@ std::shared_ptr<const Bodies> Session::bodies_of(const Instant& instant) const {
     for (std::size_t k = 0; k < dimension; ++k)
       bodies->position.push_back(static_cast<float>(instant.x[i * states + 2 * k]));
   }
-  constexpr std::size_t angle = 4;  // of x, x', y, y', angle, angle'
+  constexpr std::size_t angle = 4, quaternion = 6;  // of x, x', y, y', angle, angle'; x, x', ..., z', w, x, y, z, spin
   bodies->orientation.reserve(count * (dimension == 2 ? 1 : 4));
-  for (std::size_t i = 0; i < count && dimension == 2; ++i)
-    bodies->orientation.push_back(static_cast<float>(instant.x[i * states + angle]));
-  for (const auto [w, x, y, z] : instant.orientations)
-    bodies->orientation.insert(bodies->orientation.end(), {x, y, z, w});
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* state = instant.x.data() + i * states;
+    if (dimension == 2) {
+      bodies->orientation.push_back(static_cast<float>(state[angle]));
+      continue;
+    }
+    // Between two steps the state is on the straight way, which is a little shorter.
+    const double w = state[quaternion], x = state[quaternion + 1], y = state[quaternion + 2], z = state[quaternion + 3];
+    const double length = std::sqrt(w * w + x * x + y * y + z * z);
+    for (const double part : {x, y, z, w}) bodies->orientation.push_back(static_cast<float>(part / length));
+  }
   return bodies;
 }
 

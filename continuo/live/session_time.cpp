@@ -68,7 +68,11 @@ bool Session::ask_for_step(double wanted) {
 void Session::lead_ghost(double& stop, double deadline) {
   while (ghost_ && ghost_->t() < stop) {
     if (!ghost_->advance(stop) && ghost_->t() < stop) {
-      if (!succeeded(ghost_->outcome().ending)) say(why_failed(*ghost_));
+      if (!succeeded(ghost_->outcome().ending)) {
+        model::Diagnostic why = why_failed(*ghost_);
+        why.severity = model::Severity::warning;  // the motion itself goes on
+        say(why);
+      }
       say_note("the ghost has come to its end: " + std::string(to_string(ghost_->outcome().ending)));
       ghost_.reset();
       settings_.ghost.reset();

@@ -17,9 +17,8 @@ namespace continuo::live {
 
 /// All that it takes to go on from there.
 struct Instant : model::Instant {
-  std::shared_ptr<const worlds::Snapshot> world{};   // of bodies; null where nobody will go on from it
-  std::vector<std::array<float, 4>> orientations{};  // of bodies in space, (w, x, y, z)
-  bool moved = false;                                // a hand has changed x since
+  std::shared_ptr<const worlds::Snapshot> world{};  // of bodies; null where nobody will go on from it
+  bool moved = false;                               // a hand has changed x since
 };
 
 /// Events of one instant as they happened.

@@ -29,7 +29,8 @@ double free_part(const WorldRun& run, std::size_t body, const Point& to) {
   const double radius = run.bodies()[body].radius;
   double part = 1;
   for (const worlds::WallShape& wall : run.walls()) {
-    const double room = dot(wall.normal, from) - radius - wall.offset, closing = -dot(wall.normal, way);
+    const double height = dot(wall.normal, from) - wall.offset, side = wall.thin && height < 0 ? -1 : 1;
+    const double room = side * height - radius, closing = -side * dot(wall.normal, way);
     if (closing > 0) part = std::min(part, std::max(0.0, (room - gap * radius) / closing));
   }
   for (std::size_t i = 0; i < run.bodies().size(); ++i) {
@@ -108,7 +109,6 @@ class WorldTrack final : public Track {
     instant.mode = t < run_->time() ? mode_ : run_->mode();
     const auto stops = events_.stops();
     instant.stops.assign(stops.begin(), stops.end());
-    instant.orientations = orientations_at(t);
     if (whole) instant.world = std::make_shared<const worlds::Snapshot>(run_->snapshot());
     return instant;
   }
@@ -149,8 +149,6 @@ class WorldTrack final : public Track {
   }
 
  private:
-  using Orientations = std::vector<std::array<float, 4>>;
-
   worlds::WorldEvents::Sink sink() {
     return [this](const worlds::WorldHappening& now) {
       Passed passed{now.t, {}, now.before, run_->state(), run_->mode(), {}};
@@ -179,51 +177,14 @@ class WorldTrack final : public Track {
     before_ = run_->state();
     before_t_ = run_->time();
     mode_ = run_->mode();
-    before_orientations_ = orientations();
-  }
-
-  Orientations orientations() const {
-    Orientations all;
-    if (run_->dimension() == 2) return all;
-    all.reserve(run_->bodies().size());
-    for (std::size_t i = 0; i < run_->bodies().size(); ++i) {
-      const auto [w, x, y, z] = run_->orientation(i);
-      all.push_back({static_cast<float>(w), static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
-    }
-    return all;
-  }
-  /// Between two steps along the straight way, which is short.
-  Orientations orientations_at(double t) const {
-    Orientations all = orientations();
-    const double end = run_->time();
-    if (t >= end || !(end > before_t_)) return all;
-    const auto part = static_cast<float>((t - before_t_) / (end - before_t_));
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const std::array<float, 4>& from = before_orientations_[i];
-      std::array<float, 4>& to = all[i];
-      const float cosine = from[0] * to[0] + from[1] * to[1] + from[2] * to[2] + from[3] * to[3];
-      float square = 0;
-      for (std::size_t k = 0; k < 4; ++k) {
-        to[k] = from[k] + part * ((cosine < 0 ? -to[k] : to[k]) - from[k]);  // q and -q stand alike
-        square += to[k] * to[k];
-      }
-      for (float& component : to) component /= std::sqrt(square);
-    }
-    return all;
   }
 
   bool is_of_this_motion(const Instant& instant) const {
     return instant.world && instant.world->method == plan_.method && instant.world->step == plan_.step;
   }
   void place(const Instant& instant) {
-    std::vector<std::array<double, 4>> orientations;
-    for (const auto& [w, x, y, z] : instant.orientations) {
-      const double a = static_cast<double>(w), b = static_cast<double>(x), c = static_cast<double>(y),
-                   d = static_cast<double>(z), length = std::sqrt(a * a + b * b + c * c + d * d);
-      orientations.push_back({a / length, b / length, c / length, d / length});
-    }
     if (instant.mode != run_->mode()) run_->go(instant.mode);
-    run_->place(instant.t, instant.x, orientations);
+    run_->place(instant.t, instant.x);
   }
 
   void put_held() {
@@ -247,10 +208,9 @@ class WorldTrack final : public Track {
   std::unique_ptr<WorldRun> run_;
   worlds::WorldEvents events_;
   model::Layout layout_;
-  X before_;                          // of the last step, like
-  double before_t_ = 0;               //
-  std::size_t mode_ = 0;              //
-  Orientations before_orientations_;  //
+  X before_;              // of the last step, like
+  double before_t_ = 0;   //
+  std::size_t mode_ = 0;  //
   double chunk_;
   std::optional<HeldBody> held_;
   std::string error_;

@@ -146,11 +146,8 @@ class Moving final : public WorldRun {
     for (double& z : companions_.state) z = *at++;
     renew();
   }
-  void place(double t, std::span<const double> state, std::span<const std::array<double, 4>> orientations) override {
+  void place(double t, std::span<const double> state) override {
     world_.time = t;
-    if constexpr (Dim == 3) {
-      for (std::size_t i = 0; i < orientations.size(); ++i) world_.orientation[i].components = orientations[i];
-    }
     set_state(state);
     contacts_.clear();
     make_motion();
@@ -243,7 +240,7 @@ class Moving final : public WorldRun {
       bodies_.push_back({text.bodies[i].name, world_.radius[i], world_.mass[i], world_.is_fixed(i)});
     for (std::size_t w = 0; w < world_.walls().size(); ++w) {
       const Wall<double, Dim>& wall = world_.walls()[w];
-      walls_.push_back({text.walls[w].name, point_of<Dim>(wall.normal), wall.offset});
+      walls_.push_back({text.walls[w].name, point_of<Dim>(wall.normal), wall.offset, wall.thin});
     }
     for (std::size_t k = 0; k < world_.springs.size(); ++k) {
       const auto* end = std::get_if<V>(&world_.springs[k].b);

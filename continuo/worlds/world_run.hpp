@@ -45,6 +45,7 @@ struct WallShape {
   std::string name;
   Point normal;
   double offset;
+  bool thin = false;  // free on both sides
 };
 struct SpringShape {
   std::size_t a, b;  // bodies; b is model::no_body where it ends at the point
@@ -119,10 +120,9 @@ class WorldRun {
   virtual const std::vector<double>& state() = 0;
   /// Bodies and equations are put where it says; measures are ignored.
   virtual void set_state(std::span<const double> state) = 0;
-  /// Begins anew from another instant, of whatever run of this model: state, time, and how bodies in space stand (in
-  /// the plane that is state). What a motion remembers besides, contacts and the like, it finds out again.
-  virtual void place(double t, std::span<const double> state,
-                     std::span<const std::array<double, 4>> orientations = {}) = 0;
+  /// Begins anew from another instant, of whatever run of this model. What a motion remembers besides, contacts and the
+  /// like, it finds out again.
+  virtual void place(double t, std::span<const double> state) = 0;
   /// Puts one body elsewhere: dragged by a hand.
   virtual void set_body(std::size_t body, const Point& position, const Point& velocity) = 0;
   /// A parameter or an input, by its place in the flat space (`Parameter::variable`); what follows from it follows.
