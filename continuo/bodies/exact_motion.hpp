@@ -9,7 +9,7 @@
 //
 // Under other forces an error-controlled method (dop853) moves all bodies together between contacts, which are located
 // on its dense output to neighbouring times; impulses are as exact as before. What is approximate then is the path, by
-// `tolerance`.
+// `tolerance`. What these forces press together is held, see held_contacts.hpp.
 //
 // Several collisions at one instant are resolved one after the other, pairs of lower numbers first, until nobody
 // approaches: Newton's cradle sends out as many as came in.

@@ -10,6 +10,7 @@
 #include <continuo/bodies/contact_time.hpp>
 #include <continuo/bodies/exact_engine.hpp>
 #include <continuo/bodies/forced_flow.hpp>
+#include <continuo/bodies/forced_watch.hpp>
 #include <continuo/bodies/impulse.hpp>
 #include <continuo/bodies/queries.hpp>
 #include <continuo/methods/dop853.hpp>
@@ -19,66 +20,6 @@
 namespace continuo {
 
 namespace {
-
-constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
-
-/// Two that can meet before the candidates are listed anew.
-struct Candidate {
-  std::uint32_t a = 0, b = 0, wall = no_wall;
-  bool overlaps = false;  // when it was listed: then what is watched is whether they approach
-};
-
-/// The events of a stretch: a candidate touches (or, where it overlapped, approaches); or, last, a body has come as far
-/// as the list is good for. Any of them stops the run.
-template <class Real, int Dim>
-class Watch {
- public:
-  using V = Vector<Real, Dim>;
-  using X = std::vector<Real>;
-
-  Watch(const World<Real, Dim>& world, const std::vector<Candidate>& candidates, Real reach)
-      : world_(&world), candidates_(&candidates), reach_(reach), begin_(world.position), x_(begin_), v_(begin_) {}
-
-  std::size_t size() const { return candidates_->size() + 1; }
-  std::string_view name(std::size_t i) const { return i < candidates_->size() ? "contact" : "list"; }
-  Direction direction(std::size_t) const { return Direction::falls; }
-  bool is_guard(std::size_t) const { return true; }
-  template <class System>
-  bool active(const System&, std::size_t) const {
-    return true;
-  }
-  Real next_time(std::size_t, Real, bool) const { return std::numeric_limits<Real>::infinity(); }
-
-  template <class System>
-  void guards(System&, Real, const X& state, std::span<Real> values) {
-    ForcedFlow<Real, Dim>::unpack(state, x_, v_);
-    for (std::size_t k = 0; k < candidates_->size(); ++k) values[k] = guard((*candidates_)[k]);
-    Real farthest(0);
-    for (std::size_t i = 0; i < x_.size(); ++i) farthest = std::max(farthest, squared(V(x_[i] - begin_[i])));
-    values[candidates_->size()] = reach_ * reach_ - farthest;
-  }
-  template <class System>
-  EventResponse fire(System&, std::span<const std::size_t>, Real, const X&, X&) {
-    return {.stop = true};
-  }
-
- private:
-  Real guard(const Candidate& at) const {
-    if (at.wall != no_wall) {
-      const Wall<Real, Dim> wall = facing(world_->walls()[at.wall], begin_[at.a]);
-      if (at.overlaps) return dot(wall.normal, v_[at.a]);
-      return dot(wall.normal, x_[at.a]) - wall.offset - world_->radius[at.a];
-    }
-    const V apart = x_[at.b] - x_[at.a];
-    if (at.overlaps) return dot(apart, V(v_[at.b] - v_[at.a]));
-    return length(apart) - world_->radius[at.a] - world_->radius[at.b];
-  }
-
-  const World<Real, Dim>* world_;
-  const std::vector<Candidate>* candidates_;
-  Real reach_;
-  std::vector<V> begin_, x_, v_;
-};
 
 template <class Real, int Dim>
 class ForcedFlight final : public ExactEngine<Real, Dim> {
@@ -107,11 +48,15 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     return {};
   }
 
-  void save(ByteWriter& writer) override { writer(contact_time_), writer(step_), writer(last_); }
+  void save(ByteWriter& writer) override { writer(contact_time_), writer(step_), writer(last_), writer(lasting_); }
   void load(ByteReader& reader) override {
-    reader(contact_time_), reader(step_), reader(last_);
+    reader(contact_time_), reader(step_), reader(last_), reader(lasting_);
     reader.expect(contact_time_ >= Real(0) && step_ >= Real(0) && step_ < never && last_.size() == world_.size(),
                   "a motion of other bodies");
+    for (const auto& [pair, impulse] : lasting_)
+      reader.expect(
+          pair.a < world_.size() && pair.b < world_.size() && (!pair.with_wall() || pair.wall < world_.walls().size()),
+          "contacts of other bodies");
   }
 
   using ExactEngine<Real, Dim>::statistics;
@@ -122,12 +67,19 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
 
   Real usual_contact_time() {
     using std::sqrt;
-    Real smallest = never, pull(0);
-    for (const V& a : ForcedFlow<Real, Dim>(world_, companions_).accelerations(world_.time))
-      pull = std::max(pull, length(a));
+    Real smallest = never;
+    ForcedFlow<Real, Dim> flow(world_, companions_);
+    const Real pull = greatest_acceleration(flow.loads(world_.time).first);
     for (const Real& radius : world_.radius) smallest = std::min(smallest, radius);
     const Real by_force = pull > Real(0) && pull < never ? Real(1e-5) * sqrt(2 * smallest / pull) : Real(0);
     return std::max(by_force, continuo::usual_contact_time(world_));
+  }
+
+  Real greatest_acceleration(std::span<const V> force) const {
+    Real greatest(0);
+    for (std::size_t i = 0; i < force.size(); ++i)
+      greatest = std::max(greatest, length(force[i]) * world_.inverse_mass[i]);
+    return greatest;
   }
 
   /// From the present to the next contact, or to where candidates are to be listed anew, or to t.
@@ -140,19 +92,24 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     const Real median = radii.empty() ? Real(1) : radii[radii.size() / 2];
     const Real reach = std::max(median, Real(8 * sqrt(fastest) * step_));
     list_candidates(reach);
-    resolve();
-    for (Candidate& at : candidates_) at.overlaps = !(gap(at) > Real(0));
+    HeldContacts<Real, Dim> held = resolve();
+    note_lasting(held);
+    using Watched = Candidate::Watched;
+    for (Candidate& at : candidates_) at.watched = gap(at.pair) < -allowance_ / 2 ? Watched::approach : Watched::gap;
+    for (std::size_t k = 0; k < held.size(); ++k)
+      std::ranges::find(candidates_, held[k], &Candidate::pair)->watched = Watched::nothing;
 
-    ForcedFlow<Real, Dim> flow(world_, companions_);
+    ForcedFlow<Real, Dim> flow(world_, companions_, std::move(held));
     const Real least = 64 * std::numeric_limits<Real>::epsilon(), tolerance = std::max(options_.tolerance, least);
     Options<X> how{.rtol = tolerance, .atol = tolerance * median};
     how.max_steps = options_.most_events;
     how.interrupt = options_.interrupt;
-    if (companions_) {
-      how.rtol_each.assign(flow.pack().size(), how.rtol);
-      how.atol_each.assign(how.rtol_each.size(), how.atol);
-      std::fill(how.atol_each.end() - static_cast<std::ptrdiff_t>(companions_->state.size()), how.atol_each.end(),
-                companions_->absolute_tolerance);
+    const std::size_t bodies = flow.size_of_bodies(), all = flow.pack().size();
+    if (all > bodies) {  // impulses of contacts need no control
+      how.rtol_each.assign(all, how.rtol);
+      how.atol_each.assign(all, companions_ ? companions_->absolute_tolerance : how.atol);
+      std::fill_n(how.atol_each.begin(), bodies, how.atol);
+      std::fill_n(how.atol_each.begin() + static_cast<std::ptrdiff_t>(bodies), flow.held().size(), Real(1e30));
     }
     if (options_.step > Real(0)) {
       how.step = options_.step;
@@ -166,12 +123,15 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   std::string follow(const Real& t, ForcedFlow<Real, Dim>& flow, Method method, const Options<X>& how,
                      const Real& reach) {
     Integrator integrator(flow, flow.pack(), Interval<Real>{world_.time, t}, method, how,
-                          Watch<Real, Dim>(world_, candidates_, reach));
+                          ForcedWatch<Real, Dim>(world_, candidates_, allowance_, reach, flow));
     while (integrator.advance()) step_ = integrator.step_size();
     if (!succeeded(integrator.outcome().ending))
       return "the path cannot be followed beyond t = " + std::to_string(integrator.t()) + ": " +
              std::string(to_string(integrator.outcome().ending));
     const Real duration = integrator.t() - world_.time;
+    // Where contacts cut flights short, a longer step would only have more of them to look for.
+    if (integrator.t() < t) step_ = std::min(step_, 2 * duration);
+    for (std::size_t k = 0; k < lasting_.size(); ++k) lasting_[k].impulse += flow.impulse(integrator.x(), k);
     flow.store(integrator.x(), world_, companions_, duration);
     world_.time = integrator.t();
     resolve();
@@ -184,67 +144,90 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     for (std::uint32_t i = 0; i < world_.size(); ++i) {
       if (world_.is_fixed(i)) continue;
       const auto near = queries.in_sphere(world_.position[i], world_.radius[i] + 2 * reach);
-      for (const std::uint32_t w : near.value.walls) candidates_.push_back({.a = i, .wall = w});
+      for (const std::uint32_t w : near.value.walls) candidates_.push_back({.pair = {.a = i, .b = i, .wall = w}});
       for (const BodyHandle& body : near.value.bodies) {
         const auto j = static_cast<std::uint32_t>(world_.index(body));
-        if ((j > i || world_.is_fixed(j)) && j != i && world_.collide(i, j)) candidates_.push_back({.a = i, .b = j});
+        if ((j > i || world_.is_fixed(j)) && j != i && world_.collide(i, j))
+          candidates_.push_back({.pair = {.a = i, .b = j}});
       }
     }
   }
 
-  Real gap(const Candidate& at) const {
-    if (at.wall != no_wall) {
+  Real gap(const Touching& at) const {
+    if (at.with_wall()) {
       const Wall<Real, Dim> wall = facing(world_.walls()[at.wall], world_.position[at.a]);
       return dot(wall.normal, world_.position[at.a]) - wall.offset - world_.radius[at.a];
     }
     return length(V(world_.position[at.b] - world_.position[at.a])) - world_.radius[at.a] - world_.radius[at.b];
   }
-  V normal(const Candidate& at) const {
-    if (at.wall != no_wall) return -facing(world_.walls()[at.wall], world_.position[at.a]).normal;
+  V normal(const Touching& at) const {
+    if (at.with_wall()) return -facing(world_.walls()[at.wall], world_.position[at.a]).normal;
     V n = world_.position[at.b] - world_.position[at.a];
     const Real distance = length(n);
     if (distance > Real(0)) return n * (1 / distance);
     n[0] = Real(1);
     return n;
   }
-  /// What counts as touching: the digits of a place.
-  bool touches(const Candidate& at) const {
+  Real approach(const Touching& at) const {
+    const V of_b = at.with_wall() ? V{} : world_.velocity[at.b];
+    return -dot(V(of_b - world_.velocity[at.a]), normal(at));
+  }
+  /// What counts as touching: the digits of a place, and what a gap may sink.
+  bool touches(const Touching& at) const {
     const Real size = length(world_.position[at.a]) + world_.radius[at.a];
-    return gap(at) <= 16 * std::numeric_limits<Real>::epsilon() * size;
+    return gap(at) <= std::max(Real(16 * std::numeric_limits<Real>::epsilon() * size), allowance_);
   }
 
-  /// Collisions of this instant, one after the other, until nobody approaches. As in the event-driven motion, one that
-  /// follows within the contact time loses nothing; what does not end so bounces no more, and then moves as one.
-  void resolve() {
-    std::vector<Candidate> touching;
+  /// Collisions of this instant, one after the other, until nobody approaches; what does not end so bounces no more,
+  /// and then moves as one. Where forces press two together that hardly move, in the contact time by no more than the
+  /// forces would move them, no collision happens: they are held from here on.
+  HeldContacts<Real, Dim> resolve() {
+    ForcedFlow<Real, Dim> flow(world_, companions_);
+    const auto [force, torque] = flow.loads(world_.time);
+    const Real pull = greatest_acceleration(force), slow = pull * contact_time_;
+    allowance_ = slow * contact_time_;
+    if (!(slow < never)) return {};
+    std::vector<Touching> touching;
     for (const Candidate& at : candidates_)
-      if (touches(at)) touching.push_back(at);
-    if (touching.empty()) return;
+      if (touches(at.pair)) touching.push_back(at.pair);
+    if (touching.empty()) return {};
     const std::vector<Real> before = last_;
     for (int round = 0, most = 256; round < most; ++round) {
       bool is_over = true;
-      for (const Candidate& at : touching) is_over = !strike(at, before, round > 64, round > 128) && is_over;
+      for (const Touching& at : touching) is_over = !strike(at, slow, before, round > 64, round > 128) && is_over;
       if (is_over) break;
     }
-    const std::vector<V> a = ForcedFlow<Real, Dim>(world_, companions_).accelerations(world_.time);
-    for (const Candidate& at : touching) part_where_pressed(at, a);
+    if (!(slow > Real(0))) return {};
+    std::vector<Touching> gentle;
+    for (const Touching& at : touching)
+      if (std::abs(approach(at)) <= slow &&
+          length(V(world_.position[at.b] - world_.position[at.a])) + Real(at.with_wall()) > Real(0))
+        gentle.push_back(at);
+    const Real smallest = std::ranges::min(world_.radius);
+    using std::sqrt;
+    HeldContacts<Real, Dim> held(world_, gentle, slow, Real(sqrt(pull / smallest)), force, torque);
+    held.settle(world_.velocity, world_.spin);
+    for (const Touching& at : gentle)
+      if (!held.contains(at)) strike(at, slow / 1'000'000, before, false, false);  // what is less is rounding
+    return held;
   }
-  bool strike(const Candidate& at, const std::vector<Real>& before, bool is_squeezed, bool is_caught) {
+  bool strike(const Touching& at, const Real& slow, const std::vector<Real>& before, bool is_squeezed, bool is_caught) {
     V no_velocity{};
     S no_spin{};
     const Mover<Real, Dim> a = mover(at.a);
-    const bool is_wall = at.wall != no_wall;
+    const bool is_wall = at.with_wall();
     const Mover<Real, Dim> b =
         is_wall ? Mover<Real, Dim>{no_velocity, no_spin, Real(0), Real(0), Real(0)} : mover(at.b);
     const V n = normal(at), rate = b.velocity - a.velocity;
-    const Real approach = -dot(rate, n);
-    if (!(approach > 8 * std::numeric_limits<Real>::epsilon() * length(rate))) return false;
+    const Real least = std::max(slow, Real(8 * std::numeric_limits<Real>::epsilon() * length(rate)));
+    if (!(-dot(rate, n) > least)) return false;
     Material<Real> material =
         combined(world_.material[at.a], is_wall ? world_.walls()[at.wall].material : world_.material[at.b]);
     const bool loses = material.restitution < Real(1) || material.friction > Real(0);
     const bool is_held =
         world_.time - before[at.a] < contact_time_ || (!is_wall && world_.time - before[at.b] < contact_time_);
-    if (is_held) material.restitution = Real(1);
+    const bool is_lasting = std::ranges::find(lasting_, at, &Lasting::pair) != lasting_.end();
+    if (is_held || is_lasting) material.restitution = material.restitution < Real(1) ? Real(0) : Real(1);
     if (is_squeezed && loses) material.restitution = Real(0);
     const Real impulse = collide(a, b, n, material);
     if (is_caught && loses) {
@@ -254,27 +237,33 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     last_[at.a] = world_.time;
     if (!is_wall) last_[at.b] = world_.time;
     ++(is_wall ? statistics.wall_collisions : statistics.collisions);
-    if (contacts.is_kept())
-      contacts.add({.a = world_.handle(at.a),
-                    .b = is_wall ? BodyHandle{} : world_.handle(at.b),
-                    .wall = at.wall,
-                    .point = world_.position[at.a] + n * world_.radius[at.a],
-                    .normal = n,
-                    .impulse = impulse,
-                    .time = world_.time});
+    note(at, ContactChange::impact, impulse);
     return true;
   }
-  /// No flight is shorter than the contact time where the two are pressed together.
-  void part_where_pressed(const Candidate& at, const std::vector<V>& acceleration) {
-    const bool is_wall = at.wall != no_wall;
-    const V n = normal(at), of_b = is_wall ? V{} : acceleration[at.b], v_b = is_wall ? V{} : world_.velocity[at.b];
-    const Real press = dot(acceleration[at.a] - of_b, n);
-    const Real missing = press * contact_time_ / 2 - dot(v_b - world_.velocity[at.a], n);
-    if (!(press > Real(0)) || !(missing > Real(0))) return;
-    const Real inverse_b = is_wall ? Real(0) : world_.inverse_mass[at.b];
-    const Real impulse = missing / (world_.inverse_mass[at.a] + inverse_b);
-    world_.velocity[at.a] -= n * (impulse * world_.inverse_mass[at.a]);
-    if (!is_wall) world_.velocity[at.b] += n * (impulse * inverse_b);
+  /// Which contacts go on, which are new, and which have ended.
+  void note_lasting(const HeldContacts<Real, Dim>& held) {
+    std::vector<Lasting> now;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      const auto known = std::ranges::find(lasting_, held[k], &Lasting::pair);
+      now.push_back({held[k], known == lasting_.end() ? Real(0) : known->impulse});
+      if (known == lasting_.end()) note(held[k], ContactChange::begin, Real(0));
+    }
+    for (const Lasting& one : lasting_)
+      if (std::ranges::find(now, one.pair, &Lasting::pair) == now.end())
+        note(one.pair, ContactChange::end, one.impulse);
+    lasting_ = std::move(now);
+  }
+  void note(const Touching& at, ContactChange change, const Real& impulse) {
+    if (!contacts.is_kept()) return;
+    const V n = normal(at);
+    contacts.add({.change = change,
+                  .a = world_.handle(at.a),
+                  .b = at.with_wall() ? BodyHandle{} : world_.handle(at.b),
+                  .wall = at.wall,
+                  .point = world_.position[at.a] + n * world_.radius[at.a],
+                  .normal = n,
+                  .impulse = impulse,
+                  .time = world_.time});
   }
   Mover<Real, Dim> mover(std::uint32_t i) {
     return {world_.velocity[i], world_.spin[i], world_.radius[i], world_.inverse_mass[i], world_.inverse_inertia[i]};
@@ -283,9 +272,20 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   World<Real, Dim>& world_;
   Companions<Real, Dim>* companions_;
   ExactOptions<Real> options_;
-  Real contact_time_{}, step_{};
+  /// A contact that is held, and its impulse so far.
+  struct Lasting {
+    Touching pair{};
+    Real impulse{};
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(pair.a), archive(pair.b), archive(pair.wall), archive(impulse);
+    }
+  };
+
+  Real contact_time_{}, step_{}, allowance_{};
   std::vector<Real> last_;  // when each body collided last
   std::vector<Candidate> candidates_;
+  std::vector<Lasting> lasting_;
 };
 
 }  // namespace

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/forces.hpp>
+#include <continuo/bodies/held_contacts.hpp>
 
 namespace continuo {
 
@@ -22,8 +24,8 @@ Vector<Real, 4> rate_of_orientation(const Vector<Real, 4>& q, const Vector<Real,
   return {{-dot(spin, imaginary) / 2, rate[0], rate[1], rate[2]}};
 }
 
-/// All places, all velocities, where torques act all orientations and spins, and last what moves with the bodies. Fixed
-/// bodies stand in it too.
+/// All places, all velocities, where torques act all orientations and spins, the impulses of contacts that are held,
+/// and last what moves with the bodies. Fixed bodies stand in it too.
 template <class Real, int Dim>
 class ForcedFlow {
  public:
@@ -32,13 +34,14 @@ class ForcedFlow {
   using O = Orientation<Real, Dim>;
   using X = std::vector<Real>;
 
-  ForcedFlow(const World<Real, Dim>& world, const Companions<Real, Dim>* companions)
+  ForcedFlow(const World<Real, Dim>& world, const Companions<Real, Dim>* companions, HeldContacts<Real, Dim> held = {})
       : world_(&world),
         companions_(companions),
+        held_(std::move(held)),
         x_(world.size()),
         v_(world.size()),
         f_(world.size()),
-        turns_(!world.torque_laws.empty() || (companions && companions->twists)) {
+        turns_(!world.torque_laws.empty() || (companions && companions->twists) || held_.rub()) {
     if (companions) rate_.resize(companions->state.size());
     if (turns_) orientation_ = world.orientation, spin_ = world.spin, torque_.resize(world.size());
   }
@@ -48,6 +51,9 @@ class ForcedFlow {
     const std::size_t n = x_.size();
     all_forces(t, x_, v_, std::span(state).last(rate_.size()));
     std::ranges::copy(rate_, rate.end() - static_cast<std::ptrdiff_t>(rate_.size()));
+    held_.hold(x_, v_, spin_, {f_, torque_});
+    for (std::size_t k = 0; k < held_.size(); ++k)
+      *(rate.end() - tail() + static_cast<std::ptrdiff_t>(k)) = held_.press(k);
     auto to = rate.begin();
     const auto put = [&](const auto& vector) { to = std::ranges::copy(vector.components, to).out; };
     for (std::size_t i = 0; i < n; ++i) put(world_->is_fixed(i) ? V{} : v_[i]);
@@ -63,6 +69,7 @@ class ForcedFlow {
     };
     add(world_->position), add(world_->velocity);
     if (turns_) add(world_->orientation), add(world_->spin);
+    state.resize(state.size() + held_.size());
     if (companions_) state.insert(state.end(), companions_->state.begin(), companions_->state.end());
     return state;
   }
@@ -70,6 +77,10 @@ class ForcedFlow {
     auto from = state.begin();
     take(from, x), take(from, v);
   }
+  const HeldContacts<Real, Dim>& held() const { return held_; }
+  /// Of the state: behind them stand impulses and companions.
+  std::size_t size_of_bodies() const { return x_.size() * (2 * V::size() + (turns_ ? O::size() + S::size() : 0)); }
+  Real impulse(const X& state, std::size_t k) const { return *(state.end() - tail() + static_cast<std::ptrdiff_t>(k)); }
   /// The end of a flight of this duration.
   void store(const X& state, World<Real, Dim>& world, Companions<Real, Dim>* companions, const Real& duration) const {
     auto from = state.begin();
@@ -81,17 +92,18 @@ class ForcedFlow {
       for (std::size_t i = 0; i < world.size(); ++i)
         if (world.spin[i] != S{}) world.orientation[i] = turned(world.orientation[i], world.spin[i], duration);
     }
-    if (companions) std::copy(from, state.end(), companions->state.begin());
+    if (companions) std::copy(from + static_cast<std::ptrdiff_t>(held_.size()), state.end(), companions->state.begin());
   }
-  std::vector<V> accelerations(Real t) {
+  /// Forces and torques, but for those of contacts, at the world as it is.
+  std::pair<std::span<const V>, std::span<const S>> loads(Real t) {
     all_forces(t, world_->position, world_->velocity,
                companions_ ? std::span<const Real>(companions_->state) : std::span<const Real>());
-    std::vector<V> a(f_);
-    for (std::size_t i = 0; i < a.size(); ++i) a[i] *= world_->inverse_mass[i];
-    return a;
+    return {f_, torque_};
   }
 
  private:
+  /// Of what stands behind the bodies.
+  std::ptrdiff_t tail() const { return static_cast<std::ptrdiff_t>(held_.size() + rate_.size()); }
   template <class Vectors>
   static void take(typename X::const_iterator& from, Vectors& vectors) {
     for (auto& vector : vectors) {
@@ -116,6 +128,7 @@ class ForcedFlow {
 
   const World<Real, Dim>* world_;
   const Companions<Real, Dim>* companions_;
+  HeldContacts<Real, Dim> held_;
   std::vector<V> x_, v_, f_;
   std::vector<O> orientation_;
   std::vector<S> spin_, torque_;
