@@ -126,6 +126,11 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
   if (!loaded.model) return wrong_model;
   if (!session.is_open()) {
     fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
+    if (loaded.model->needs_boundary_solver())
+      say(fmt::format(
+          "the view shows what moves; this solution is found for all times at once, and `continuo report {}` "
+          "draws it",
+          request.experiment.file));
     return usage;
   }
   if (!apply_options(request.experiment, session)) return usage;

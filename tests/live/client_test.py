@@ -180,6 +180,7 @@ class Protocol(unittest.TestCase):
                                  capture_output=True, text=True, timeout=20)
         self.assertEqual(refused.returncode, 1)
         self.assertIn("E321", refused.stderr)
+        self.assertIn("`continuo report", refused.stderr)
 
     def test_what_is_asked_for_wrongly_is_refused(self):
         for options, why in ((["--speed", "-1"], "a speed is a number"), (["--speed", "nan"], "a speed is a number"),
