@@ -3,9 +3,10 @@
 //
 //   const model::Simulated simulated = worlds::simulate_world(program, {.method = "fast", .step = 0.01});
 //
-// Events are looked for between looks: in the exact mode a thousand in a run, and every row; there the instant is then
-// found to neighbouring times, by moving a copy of the world again. In the fast mode every step ends with a look, and
-// an event happens there. Rows of the fast mode are the first ends of steps that are not before the wanted times.
+// Events are looked for between looks: in the exact mode a thousand in a run, every row, at contacts and where
+// conditions turn (world_looks.cpp); there the instant is then found to neighbouring times, by moving a copy of the
+// world again. In the fast mode every step ends with a look, and an event happens there. Rows of the fast mode are the
+// first ends of steps that are not before the wanted times.
 #pragma once
 #include <memory>
 

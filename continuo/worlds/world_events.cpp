@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include <continuo/worlds/world_events.hpp>
@@ -33,6 +32,7 @@ WorldEvents::WorldEvents(const std::shared_ptr<const model::ModelProgram>& progr
       scheduled_after_(from),
       look_(look) {
   for (std::size_t i = 0; i < events_.size(); ++i) any_guard_ = any_guard_ || events_.is_guard(i);
+  find_watched();
 }
 
 void WorldEvents::begin(WorldRun& world, const Sink& sink) {
@@ -53,12 +53,19 @@ double WorldEvents::next(const WorldRun& world) const {
 }
 
 std::string WorldEvents::advance(WorldRun& world, double to) {
-  std::optional<Snapshot> saved;
-  if (any_guard_ && !(world.step() > 0)) saved = world.snapshot();
+  if (!any_guard_ || world.step() > 0) {
+    std::string error = world.advance_to(to);
+    if (error.empty() && any_guard_) read_guards(world, values_);
+    return error;
+  }
+  const Snapshot saved = world.snapshot();
+  const X state = world.state();
   std::string error = world.advance_to(to);
-  if (!error.empty() || !any_guard_) return error;
+  if (error.empty()) error = look_at_first_contact(world, saved);
+  if (!error.empty()) return error;
   read_guards(world, values_);
-  return any_passed() && saved ? go_back_to_event(world, *saved) : error;
+  if (!any_passed()) error = look_where_guards_turn(world, saved, state);
+  return error.empty() && any_passed() ? go_back_to_event(world, saved) : error;
 }
 
 void WorldEvents::read_guards(WorldRun& world, std::vector<double>& values) {

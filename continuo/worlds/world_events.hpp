@@ -1,6 +1,7 @@
 // continuo/worlds/world_events.hpp
-// The events of a model's text while its bodies move. A `when` is looked for at every step, or without steps every so
-// often, and then located; `at`, `every`, `initially` and the steps of inputs happen when their time has come.
+// The events of a model's text while its bodies move. A `when` is looked for at every step; without steps every so
+// often, at contacts of the bodies that it reads, and where it turns in between; and then located; `at`, `every`,
+// `initially` and the steps of inputs happen when their time has come.
 //
 //   WorldEvents events(program, plan.variables, plan.from, look);
 //   events.begin(world, sink);
@@ -9,6 +10,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -61,6 +63,10 @@ class WorldEvents {
   void read_guards(WorldRun& world, std::vector<double>& values);
   bool passed(std::size_t i) const;
   bool any_passed() const;
+  std::string look_at_first_contact(WorldRun& world, const Snapshot& saved);  // world_looks.cpp
+  std::string look_where_guards_turn(WorldRun& world, const Snapshot& saved, const X& before);
+  double slope(std::size_t i, double t, const X& state, double length);
+  void find_watched();
   std::string go_back_to_event(WorldRun& world, const Snapshot& saved);
   void happen_guards(WorldRun& world, const Sink& sink);
   void happen_scheduled(WorldRun& world, const Sink& sink, bool inclusive);
@@ -70,6 +76,7 @@ class WorldEvents {
   model::ModelSystem system_;  // its guards, actions and modes
   model::ModelEvents events_;
   std::vector<double> values_, before_;  // of guards: now, and at the last look
+  std::set<std::size_t> watched_;        // bodies that they read
   std::vector<model::RunRecorder::Name> names_;
   std::size_t marks_seen_ = 0;
   double scheduled_after_, look_;
