@@ -18,10 +18,25 @@ std::size_t History::bytes_of(const Sample& sample) {
 void History::add(Sample sample) {
   bytes_ += bytes_of(sample);
   samples_.push_back(std::move(sample));
+  if (bytes_ > most_bytes_) thin();
   while (samples_.size() > 1 && (bytes_ > most_bytes_ || samples_.size() > most_samples_)) {
     bytes_ -= bytes_of(samples_.front());
     samples_.pop_front();
   }
+}
+
+/// Of the older half every second moment goes: what is long ago is known more coarsely, and none the less.
+void History::thin() {
+  std::deque<Sample> kept;
+  const std::size_t half = samples_.size() / 2;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (i < half && i % 2 == 1) {
+      bytes_ -= bytes_of(samples_[i]);
+    } else {
+      kept.push_back(std::move(samples_[i]));
+    }
+  }
+  samples_ = std::move(kept);
 }
 
 void History::clear() {

@@ -43,6 +43,7 @@ class History {
  private:
   static std::size_t bytes_of(const Sample& sample);
   void forget_last();
+  void thin();
 
   std::size_t most_bytes_, most_samples_, bytes_ = 0;
   std::deque<Sample> samples_;

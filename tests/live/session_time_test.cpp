@@ -288,5 +288,29 @@ TEST(LiveRows, OfMotionAlongALineAreAsManyAsPictures) {
   EXPECT_LE(rows, stage.audience.slices.size() + 1);  // and the start
 }
 
+TEST(LiveHistory, ThinsWhatIsLongAgoWhereMemoryIsShort) {
+  constexpr std::size_t most = 1 << 20;
+  History history(most);
+  for (int i = 0; i < 10'000; ++i) {
+    Sample sample;
+    sample.main.t = i;
+    sample.main.x.assign(1000, 0.0);  // some 130 of them fit
+    history.add(std::move(sample));
+    ASSERT_LE(history.bytes(), most);
+  }
+  EXPECT_EQ(history.first_time(), 0);
+  EXPECT_EQ(history.last_time(), 9999);
+  double before = 0;
+  for (std::size_t i = 1; i < history.size(); ++i) {
+    const double gap = history[i].main.t - history[i - 1].main.t, age = 9999 - history[i - 1].main.t;
+    EXPECT_GT(gap, 0);
+    EXPECT_LE(gap, 1 + age) << before;
+    before = gap;
+  }
+  // The last ones are all there: of the newer half none goes.
+  for (std::size_t i = 0; i < 40; ++i)
+    EXPECT_EQ(history[history.size() - 1 - i].main.t, 9999.0 - static_cast<double>(i));
+}
+
 }  // namespace
 }  // namespace continuo::live
