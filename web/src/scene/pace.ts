@@ -6,37 +6,25 @@ const long = 25;
 /** Pictures that are looked at before anything is changed. */
 const enough = 12;
 const coarser = 0.8;
-/** A picture of 0.8 the width has 0.64 of the pixels: where it does not take at least this part less, pixels are not what costs. */
-const gain = 0.93;
 
 export class Pace {
   /** Pixels of the picture for one of the screen, along one side. */
   share = 1;
   private count = 0;
   private sum = 0;
-  private before: { share: number; mean: number } | null = null;
-  private settled = false;
 
   /** `least`: the smallest share that still looks like something. */
   constructor(readonly least: number) {}
 
   /** The browser was ready for the next picture after so many milliseconds. True when the share has changed. */
   took(milliseconds: number): boolean {
-    if (this.settled || !(milliseconds > 0 && milliseconds < 1000)) return false;
+    if (!(milliseconds > 0 && milliseconds < 1000)) return false;
     this.sum += milliseconds;
     if (++this.count < enough) return false;
     const mean = this.sum / this.count;
     this.count = this.sum = 0;
-    const old = this.share;
-    if (this.before && mean > gain * this.before.mean) {
-      this.share = this.before.share;
-      this.settled = true;
-    } else if (mean > long && this.share > this.least) {
-      this.before = { share: this.share, mean };
-      this.share = Math.max(this.least, coarser * this.share);
-    } else {
-      this.before = null;
-    }
-    return this.share !== old;
+    if (mean <= long || this.share <= this.least) return false;
+    this.share = Math.max(this.least, coarser * this.share);
+    return true;
   }
 }

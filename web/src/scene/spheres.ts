@@ -14,7 +14,9 @@ const vertex = /* glsl */ `
   flat out vec3 color;
   flat out float fine;       // a pixel in radii of this sphere
   flat out vec2 depth;       // the centre's distance along the view, and the radius
-  flat out mat3 own;         // takes a normal of the picture into the sphere's own axes
+  #ifdef MARKED
+    flat out mat3 own;       // takes a normal of the picture into the sphere's own axes
+  #endif
   void main() {
     vec4 centre = modelViewMatrix * vec4(position, 1.0);
     float scale = projectionMatrix[2][3] == 0.0 ? pixel : -centre.z * pixel;
@@ -25,10 +27,12 @@ const vertex = /* glsl */ `
     // The triangle around the circle of radius 1 and the pixel around it.
     int at = gl_VertexID % 3;
     corner = (1.0 + fine) * (at == 0 ? vec2(0.0, 2.0) : vec2(at == 1 ? -1.7320508 : 1.7320508, -1.0));
+    #ifdef MARKED
     vec4 q = turn;
     vec3 x = vec3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y + q.w * q.z), 2.0 * (q.x * q.z - q.w * q.y));
     vec3 y = vec3(2.0 * (q.x * q.y - q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z + q.w * q.x));
     own = transpose(mat3(viewMatrix) * mat3(x, y, cross(x, y)));
+    #endif
     centre.xy += corner * size;
     gl_Position = projectionMatrix * centre;
   }`;
@@ -41,7 +45,9 @@ const fragment = /* glsl */ `
   flat in vec3 color;
   flat in float fine;
   flat in vec2 depth;
-  flat in mat3 own;
+  #ifdef MARKED
+    flat in mat3 own;
+  #endif
   out vec4 shown;
   void main() {
     float square = dot(corner, corner);
@@ -84,6 +90,9 @@ const fragment = /* glsl */ `
     shown = vec4(min(painted, 1.0), cover * opacity);
   }`;
 
+/** Of fewer pixels in radius nobody sees how a sphere turns, and rendering in software pays for every number that is handed on. */
+const marked = 2.5;
+
 export interface SpheresLook {
   /** Discs in the plane, one over the other as they are numbered. */
   flat: boolean;
@@ -103,6 +112,7 @@ export class Spheres {
   private readonly radii: three.BufferAttribute;
   private readonly tints: three.BufferAttribute;
   private readonly turns: three.BufferAttribute;
+  private turned = false;
 
   constructor(
     readonly count: number,
@@ -137,7 +147,9 @@ export class Spheres {
     this.object.onBeforeRender = (renderer, _scene, camera) => {
       const height = renderer.getDrawingBufferSize(size).y;
       const seen = camera instanceof three.OrthographicCamera ? (camera.top - camera.bottom) / camera.zoom : 2 * Math.tan((((camera as three.PerspectiveCamera).fov / 2) * Math.PI) / 180);
-      this.material.uniforms["pixel"]!.value = seen / height;
+      const pixel = seen / height;
+      this.material.uniforms["pixel"]!.value = pixel;
+      this.define("MARKED", this.turned && this.largestSeen(pixel, camera) > marked);
     };
   }
 
@@ -190,7 +202,7 @@ export class Spheres {
 
   /** All orientations at once: an angle each in the plane, a quaternion x y z w each in space; null shows none. */
   turnAll(orientations: Float32Array | null, dimension: number): void {
-    this.define("MARKED", orientations !== null);
+    this.turned = orientations !== null;
     if (!orientations) return;
     const to = this.turns.array as Float32Array;
     for (let i = 0, at = 0; i < this.count; ++i) {
@@ -212,6 +224,19 @@ export class Spheres {
   dispose(): void {
     this.geometry.dispose();
     this.material.dispose();
+  }
+
+  /** About how large the nearest spheres are, in pixels, by some of them. */
+  private largestSeen(pixel: number, camera: three.Camera): number {
+    const { places, count } = this;
+    const stride = Math.max(1, count >> 6);
+    const { x, y, z } = camera.position;
+    let largest = 0;
+    for (let i = 0; i < count; i += stride) {
+      const away = camera instanceof three.OrthographicCamera ? 1 : Math.hypot(places[3 * i]! - x, places[3 * i + 1]! - y, places[3 * i + 2]! - z);
+      largest = Math.max(largest, this.radii.getX(3 * i) / (away * pixel));
+    }
+    return largest;
   }
 
   private define(name: string, wanted: boolean): void {

@@ -28,12 +28,6 @@ test("never fewer than the least", () => {
   expect(pace.share).toBe(0.7);
 });
 
-test("where pixels are not what costs, they come back", () => {
-  const pace = new Pace(0.5);
-  expect(run(pace, () => 50)).toBe(2);
-  expect(pace.share).toBe(1);
-});
-
 test("a tab that was hidden for a while says nothing about the pace", () => {
   const pace = new Pace(0.5);
   expect(run(pace, () => 60_000)).toBe(0);
