@@ -99,6 +99,36 @@ class ContactList {
     act(std::integral_constant<ContactKind, ContactKind::with_wall>{}, with_wall);
   }
 
+  /// act(kind, packs, from, to) for all packs, colour by colour, those of a colour several at once.
+  template <class Act>
+  void for_each_pack(Team& team, Act&& act) {
+    for_each_kind([&](auto kind, auto& packs) {
+      if (team.is_alone()) return act(kind, packs, 0, packs.packs.size());
+      for (std::size_t c = 0; c < packs.colours; ++c) {
+        const std::size_t size = packs.first[c + 1] - packs.first[c];
+        team.for_each(packs.first[c], packs.first[c + 1], packs.is_shared(c) ? size : 64,
+                      [&](std::size_t from, std::size_t to) { act(kind, packs, from, to); });
+      }
+    });
+  }
+
+  /// Of two bodies, or of one and a wall, among those that are listed.
+  Real deepest_overlap(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls) const {
+    Real deepest(0);
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      for (const ContactEntry& entry : rows.row(k)) {
+        if (entry.other < bodies.size()) {
+          const Real distance = length(bodies.x(entry.other) - bodies.x(k));
+          deepest = std::max(deepest, bodies.radius(k) + bodies.radius(entry.other) - distance);
+        } else {
+          const Wall<Real, Dim> wall = facing(walls[entry.other - bodies.size()], bodies.x(k));
+          deepest = std::max(deepest, bodies.radius(k) + wall.offset - dot(wall.normal, bodies.x(k)));
+        }
+      }
+    }
+    return deepest;
+  }
+
   /// Takes the impulses out of the packs.
   void keep(Team& team) {
     make_rows(team, rows.rows(), kept_, [&](std::uint32_t k, KeptImpulses<Real, Dim>& part) {
@@ -130,7 +160,7 @@ class ContactList {
     const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
     team.for_each(0, rows.rows(), 512, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k)
-        fill_row(static_cast<std::uint32_t>(k), bodies, walls, material_of, before);
+        fill_row(static_cast<std::uint32_t>(k), bodies, walls, material_of, before, !place_before.empty());
     });
   }
 
@@ -266,13 +296,14 @@ class ContactList {
     }
     return p * lanes + lane;
   }
-  void recall(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, std::uint32_t a, std::uint32_t b) {
+  void recall(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, std::uint32_t a, std::uint32_t b,
+              bool was_sorted) {
     const std::size_t p = lane_number / width, lane = lane_number % width;
     Real direction(1), normal(0);
     V friction{};
     Spin<Real, Dim> rolling{};
     std::size_t found = kept_.find(a, b);
-    if (found == nowhere) {
+    if (found == nowhere && was_sorted) {
       direction = Real(-1);  // the other way round then
       found = kept_.find(b, a);
     }
@@ -288,7 +319,7 @@ class ContactList {
 
   template <class MaterialOf, class Before>
   void fill_row(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-                const MaterialOf& material_of, const Before& before) {
+                const MaterialOf& material_of, const Before& before, bool was_sorted) {
     for (ContactEntry& entry : rows.row(k)) {
       if (entry.lane == nowhere) continue;
       auto& packs = packs_of(entry);
@@ -297,7 +328,7 @@ class ContactList {
       if (j >= bodies.size())
         put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), packs.packs[lane / width].normal,
                     lane % width);
-      recall(packs, lane, before(k), before(j));
+      recall(packs, lane, before(k), before(j), was_sorted);
       entry.lane = lane | bit;
     }
   }

@@ -12,6 +12,9 @@
 // what resists across the normal is a number, 1/m1 + 1/m2 + r1^2/J1 + r2^2/J2. Friction acts across the normal, so the
 // normal velocity is the same before and after it and both impulses are added at once.
 #pragma once
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -42,12 +45,15 @@ struct ContactStep {
   Real fastest_push{};      // with which an overlap is undone at most
   bool may_strike = false;  // impacts were looked for: what they are for is no business of a soft contact
   Real greatest_acceleration{};
-  Real friction{};  // where all have the same
+  Real friction{};         // where all have the same
+  Real disturbance{};      // a change of velocity that makes so long a way in a substep is one
+  std::uint8_t sweep = 1;  // of those that push; after the first only what was disturbed is pushed again
 };
 
 /// What a contact may do: b a body that moves, one that is fixed, or a wall, whose normal stands.
 enum class ContactKind { between_movers, with_fixed, with_wall };
-enum class ContactPass { push, relax };  // undo overlaps; take out the velocity that this gave
+/// Undo overlaps; do so again where neighbours disturbed it; take out the velocity that this gave.
+enum class ContactPass { push, push_again, relax };
 
 /// An impulse on b where it touches, its opposite on a; `rub` is the part of it across the normal.
 template <class Real, int Dim>
@@ -131,18 +137,20 @@ void resist_rolling(RarePack<Real, Dim>& rare, const ContactLanes<Real>& normal_
 /// Soft spheres touch in a patch, which resists spinning about the normal by a torque of 3 pi / 16 friction times its
 /// radius times the normal force (Hertz's pressure; K. L. Johnson, "Contact Mechanics", 1985, 7.4). The radius is that
 /// of a sphere of radius r pressed in by 0.0025 r, as those within a pile are: sqrt(0.0025) r.
-template <class Real>
+template <ContactKind kind, class Real>
 void resist_spinning(const ContactLanes<Real>& force, const Vector<ContactLanes<Real>, 3>& normal,
                      LaneMotions<Real, 3>& a, LaneMotions<Real, 3>& b, const ContactLanes<Real>& radius_a,
-                     const ContactLanes<Real>& radius_b) {
+                     const ContactLanes<Real>& of_b) {
   using L = ContactLanes<Real>;
-  const L one_a = inverse_or_zero<Real>(radius_a), one_b = inverse_or_zero<Real>(radius_b);
-  const L inertia = inverse_or_zero<Real>(a.mobility * one_a * one_a + b.mobility * one_b * one_b);
-  const L most = force * smaller_radius<Real>(radius_a, radius_b) * L(Real(3 * std::numbers::pi / 16 * 0.05));
-  const L stops = dot(a.rim * one_a - b.rim * one_b, normal) * inertia;
+  // With the torque over both radii, r1 / J1 times it becomes the mobility times the other's radius. A wall has neither
+  // a radius nor a spin, and any radius will do.
+  const L radius_b = kind == ContactKind::with_wall ? radius_a : of_b;
+  const L stops = dot(a.rim * radius_b - b.rim * radius_a, normal) *
+                  inverse_or_zero<Real>(a.mobility * radius_b * radius_b + b.mobility * radius_a * radius_a);
+  const L most = force * L(Real(3 * std::numbers::pi / 16 * 0.05)) * inverse_or_zero<Real>(max(radius_a, radius_b));
   const L torque = max(min(stops, most), -most);
-  a.rim -= normal * (torque * a.mobility * one_a);
-  b.rim += normal * (torque * b.mobility * one_b);
+  a.rim -= normal * (torque * a.mobility * radius_b);
+  b.rim += normal * (torque * b.mobility * radius_a);
 }
 
 /// Too fast for a soft contact: it has struck in this substep and parts, or it will at the beginning of the next.
@@ -173,9 +181,32 @@ typename ContactLanes<Real>::Mask is_for_impacts(const ContactPack<Real, Dim>& p
 template <ContactKind kind, class Real, int Dim>
 void mark_touched(const ContactPack<Real, Dim>& pack, SolverBodies<Real, Dim>& bodies) {
   for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
-    if (!(pack.normal_impulse.lane[lane] > Real(0))) continue;  // never so of a stand-in
-    bodies.touched[pack.a[lane]] = 1;
-    if (kind == ContactKind::between_movers) bodies.touched[pack.b[lane]] = 1;
+    const auto is_pressed = static_cast<std::uint8_t>(pack.normal_impulse.lane[lane] > Real(0));
+    bodies.touched[pack.a[lane]] |= is_pressed;  // no branch: nobody could foresee it
+    if (kind == ContactKind::between_movers) bodies.touched[pack.b[lane]] |= is_pressed;
+  }
+}
+
+/// 1 in the lanes of bodies that the last sweep, or this one, disturbed.
+template <class Real, int Dim>
+std::array<Real, lanes_at_once<Real>> disturbed_lanes(const ContactPack<Real, Dim>& pack,
+                                                      const SolverBodies<Real, Dim>& bodies, std::uint8_t sweep) {
+  std::array<Real, lanes_at_once<Real>> is{};
+  for (std::size_t lane = 0; lane < is.size(); ++lane)
+    is[lane] = static_cast<Real>(std::max(bodies.disturbed[pack.a[lane]], bodies.disturbed[pack.b[lane]]) + 1 >= sweep);
+  return is;
+}
+template <ContactKind kind, class Real, int Dim>
+void mark_disturbed(const ContactPack<Real, Dim>& pack, const ContactLanes<Real>& change,
+                    SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& step) {
+  using L = ContactLanes<Real>;
+  const L way = abs(change) * L(step.h);
+  if (all(way <= L(step.disturbance))) return;
+  for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
+    if (way[lane] <= step.disturbance) continue;
+    bodies.disturbed[pack.a[lane]] = step.sweep;
+    if (kind == ContactKind::between_movers) bodies.disturbed[pack.b[lane]] = step.sweep;
+    std::atomic_ref(bodies.last_disturbance).store(step.sweep, std::memory_order_relaxed);
   }
 }
 
@@ -184,6 +215,11 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
            const ContactStep<Real>& step) {
   using L = ContactLanes<Real>;
   const L zero(Real(0)), one(Real(1));
+  typename L::Mask is_meant(true);
+  if constexpr (pass == ContactPass::push_again) {
+    is_meant = L(disturbed_lanes(pack, bodies, step.sweep)) > zero;
+    if (none(is_meant)) return;
+  }
   auto a = load_motions(bodies, pack.a), b = load_motions(bodies, pack.b);
   const Vector<L, Dim> normal = loaded(pack.normal);
   const L so_far = pack.normal_impulse;
@@ -194,7 +230,7 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
     radius_b = place_b.radius;
     if (pass == ContactPass::relax) separation = dot(place_b.x - place_a.x, normal) - (radius_a + radius_b);
   }
-  if constexpr (!is_plain)
+  if constexpr (!is_plain && pass != ContactPass::push_again)
     if (rare) resist_rolling(*rare, so_far, a, b, radius_a, radius_b);
 
   const Vector<L, Dim> between = b.v - a.v;
@@ -209,7 +245,7 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
 
   const auto is_open = separation > zero;
   L bias = select(is_open, separation * L(1 / step.h), zero), of_mass = one, of_impulse = zero;
-  if constexpr (pass == ContactPass::push) {
+  if constexpr (pass != ContactPass::relax) {
     bias = select(is_open, bias, max(separation * L(step.soft.rate), L(-step.fastest_push)));
     of_mass = select(is_open, one, L(step.soft.of_mass));
     of_impulse = select(is_open, zero, L(step.soft.of_impulse));
@@ -217,22 +253,32 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
   L normal_impulse = max(so_far - (speed + bias) * of_mass / inverse - of_impulse * so_far, zero);
   L change = normal_impulse - so_far;
   Vector<L, Dim> rub = friction - friction_before;
+  const auto leave = [&](const typename L::Mask& these, const L& impulse, const Vector<L, Dim>& rubbed) {
+    normal_impulse = select(these, impulse, normal_impulse);
+    change = select(these, zero, change);
+    for (std::size_t axis = 0; axis < rub.size(); ++axis) {
+      friction[axis] = select(these, rubbed[axis], friction[axis]);
+      rub[axis] = select(these, zero, rub[axis]);
+    }
+  };
   if constexpr (!is_plain) {
     const L restitution = rare ? L(rare->restitution) : zero;
-    const auto leave = is_for_impacts<Real, Dim>(pack, restitution, bodies, separation, speed,
-                                                 smaller_radius<Real>(radius_a, radius_b), step);
-    const auto forget = [&](L& value) { value = select(leave, zero, value); };
-    forget(normal_impulse), forget(change);
-    for (std::size_t axis = 0; axis < rub.size(); ++axis) forget(friction[axis]), forget(rub[axis]);
+    leave(is_for_impacts<Real, Dim>(pack, restitution, bodies, separation, speed,
+                                    smaller_radius<Real>(radius_a, radius_b), step),
+          zero, {});
   }
+  if constexpr (pass == ContactPass::push_again) leave(!is_meant, so_far, friction_before);
   pack.normal_impulse = normal_impulse;
   store(friction, pack.friction_impulse);
   add_impulse<Real, Dim>(a, b, normal, rub + normal * change, rub);
   if constexpr (pass == ContactPass::relax && Dim == 3)
-    resist_spinning<Real>(coefficient * normal_impulse, normal, a, b, radius_a, radius_b);
+    resist_spinning<kind>(coefficient * normal_impulse, normal, a, b, radius_a, radius_b);
   store_motions(a, bodies, pack.a);
   if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
-  if constexpr (pass == ContactPass::push) mark_touched<kind>(pack, bodies);
+  if constexpr (pass != ContactPass::relax) {
+    mark_touched<kind>(pack, bodies);
+    mark_disturbed<kind>(pack, change * inverse, bodies, step);
+  }
 }
 
 // Loops over packs. Everything is inlined into them, for a call would send registers full of lanes through memory.
@@ -241,7 +287,11 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
 template <class Real, int Dim>
 void prefetch(const ColouredPacks<Real, Dim>& packs, std::size_t p, std::size_t to,
               const SolverBodies<Real, Dim>& bodies) {
-  constexpr std::size_t ahead = 4;
+  constexpr std::size_t ahead = 3, line = 64;
+  if (p + 2 * ahead < to) {
+    const auto* pack = reinterpret_cast<const std::byte*>(&packs.packs[p + 2 * ahead]);
+    for (std::size_t at = 0; at < sizeof(packs.packs[0]); at += line) __builtin_prefetch(pack + at);
+  }
   if (p + ahead >= to) return;
   const ContactPack<Real, Dim>& pack = packs.packs[p + ahead];
   for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
@@ -262,11 +312,12 @@ template <ContactKind kind, class Real, int Dim>
 }
 template <ContactKind kind, ContactPass pass, class Real, int Dim>
 [[gnu::flatten]] void solve_packs(ColouredPacks<Real, Dim>& packs, std::size_t from, std::size_t to,
-                                  SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& step) {
+                                  SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& of_all) {
+  const ContactStep<Real> step = of_all;  // a copy, which no store to a body can change: it stays in registers
   if (packs.rare.empty() && !step.may_strike) {
     for (std::size_t p = from; p < to; ++p) {
-      prefetch(packs, p, to, bodies);
-      solve<kind, pass, true>(packs.packs[p], packs.rare_of(p), bodies, step);
+      if constexpr (pass != ContactPass::push_again) prefetch(packs, p, to, bodies);
+      solve<kind, pass, true, Real, Dim>(packs.packs[p], nullptr, bodies, step);
     }
   } else {
     for (std::size_t p = from; p < to; ++p) solve<kind, pass, false>(packs.packs[p], packs.rare_of(p), bodies, step);

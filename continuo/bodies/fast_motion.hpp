@@ -27,7 +27,7 @@ template <class Real>
 struct FastOptions {
   Real step = Real(1) / Real(60);
   int substeps = 4;                // more are stiffer and cost as much more
-  Real hertz = Real(120);          // of a contact; a quarter of the rate of substeps at most
+  Real hertz = Real(120);          // of a contact; a third of the rate of substeps at most
   Real damping = Real(10);         // ratio: 1 is critical; overdamped contacts do not jump
   Real fastest_push = Real(4);     // with which overlapping bodies part, length per time
   std::size_t contact_events = 0;  // so many of a step are kept, see contact_events.hpp

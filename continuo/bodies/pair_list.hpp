@@ -23,6 +23,7 @@ class PairList {
   /// order()[k] is the number in the world of the body at place k.
   const std::vector<std::uint32_t>& order() const { return order_; }
   std::size_t walls() const { return walls_; }
+  Real median_radius() const { return median_; }
   std::size_t lists() const { return lists_; }
 
   /// That of the world, as long as nothing is listed.

@@ -20,7 +20,7 @@ inline constexpr std::size_t lanes_at_once = 16 / sizeof(Real);
 
 /// Instead of the spin w, the velocity r w of the rim: then r is in no formula of a contact between spheres.
 template <class Real>
-struct alignas(4 * sizeof(Real)) BodyMotion {
+struct alignas(8 * sizeof(Real)) BodyMotion {
   Quad<Real> linear{};  // velocity, and last the inverse of the mass
   Quad<Real> rim{};     // radius times spin, and last radius^2 over the moment of inertia
 };
@@ -47,16 +47,22 @@ struct SolverBodies {
 
   std::vector<BodyMotion<Real>> motion{};
   std::vector<BodyPlace<Real>> place{};
-  std::vector<std::uint8_t> touched{};   // by a contact that lasts, in this substep
+  std::vector<std::uint8_t> touched{};  // by a contact that lasts, in this substep
+  std::vector<std::uint8_t>
+      disturbed{};  // the sweep over contacts in which one last changed it a lot, see contact_solver.hpp
   std::vector<std::uint32_t> impacts{};  // of this substep; empty where nothing can strike
   std::vector<V> accelerations{};        // empty where gravity is the only force
   V gravity{};
+  std::uint8_t last_disturbance = 0;  // the last sweep of a substep in which there was any
+  std::size_t bodies = 0;
 
-  std::size_t size() const { return touched.size(); }
-  void resize(std::size_t bodies, std::size_t walls) {
-    const std::size_t all = bodies + walls + 2 * lanes_at_once<Real>;
-    if (touched.size() == bodies && motion.size() == all) return;
-    touched.assign(bodies, 0);
+  std::size_t size() const { return bodies; }
+  void resize(std::size_t count, std::size_t walls) {
+    const std::size_t all = count + walls + 2 * lanes_at_once<Real>;
+    if (bodies == count && motion.size() == all) return;
+    bodies = count;
+    touched.assign(all, 0);
+    disturbed.assign(all, 0);
     motion.assign(all, {});
     place.assign(all, {});
   }
@@ -68,7 +74,7 @@ struct SolverBodies {
 
   std::size_t memory() const {
     return motion.capacity() * sizeof(motion[0]) + place.capacity() * sizeof(place[0]) + touched.capacity() +
-           impacts.capacity() * sizeof(impacts[0]) + accelerations.capacity() * sizeof(V);
+           disturbed.capacity() + impacts.capacity() * sizeof(impacts[0]) + accelerations.capacity() * sizeof(V);
   }
 
   V x(std::size_t k) const { return vector_of<Dim>(place[k].x_and_radius); }

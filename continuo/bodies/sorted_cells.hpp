@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <continuo/bodies/vector.hpp>
@@ -46,15 +47,15 @@ class SortedCells {
     auto at = from;
     for (;;) {
       auto end = at;
-      end[0] = to[0];
+      end[axes_[0]] = to[axes_[0]];
       visit(first_[number(at)], first_[number(end) + 1]);
-      std::size_t axis = 1;
-      while (axis < at.size() && at[axis] == to[axis]) {
-        at[axis] = from[axis];
-        ++axis;
+      std::size_t i = 1;
+      while (i < at.size() && at[axes_[i]] == to[axes_[i]]) {
+        at[axes_[i]] = from[axes_[i]];
+        ++i;
       }
-      if (axis == at.size()) return;
-      ++at[axis];
+      if (i == at.size()) return;
+      ++at[axes_[i]];
     }
   }
 
@@ -73,6 +74,9 @@ class SortedCells {
         if (cells <= most) count_[axis] = static_cast<std::size_t>(along);
       }
       if (cells <= most) {
+        // The longest axis comes last: then neighbours along it are as near in memory as they can be.
+        for (std::size_t axis = 0; axis < V::size(); ++axis) axes_[axis] = axis;
+        std::ranges::sort(axes_, {}, [&](std::size_t axis) { return std::pair(count_[axis], axis); });
         total_ = static_cast<std::size_t>(cells);
         return;
       }
@@ -88,13 +92,13 @@ class SortedCells {
   }
   std::size_t number(const Coordinates& at) const {
     std::size_t n = 0;
-    for (std::size_t axis = at.size(); axis-- > 0;) n = n * count_[axis] + at[axis];
+    for (std::size_t i = at.size(); i-- > 0;) n = n * count_[axes_[i]] + at[axes_[i]];
     return n;
   }
 
   V lower_{}, upper_{};
   Real edge_ = Real(1);
-  Coordinates count_{};
+  Coordinates count_{}, axes_{};  // axes_: in the order of the cells, the one along which the next cell lies first
   std::size_t total_ = 0;
   std::vector<std::uint32_t> first_;
 };

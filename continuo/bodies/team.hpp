@@ -2,8 +2,10 @@
 // the last bit for any number of threads.
 //
 // A step has hundreds of loops of some microseconds, too short to begin and end a parallel loop of the library for
-// each. So the threads come once a step and take blocks of loop after loop from one ticket, as in Box2D v3 (E. Catto,
-// "Simulation Islands", 2023). The caller can do every block alone: nothing waits for a thread that never comes.
+// each. So the threads come once a step and take blocks of loop after loop from tickets, as in Box2D v3 (E. Catto,
+// "Simulation Islands", 2023). Each thread has a ticket of its own, for the same part of every loop: what it writes in
+// one loop lies in its cache in the next. Who has done its part takes from those of others, so that the caller can do
+// every block alone: nothing waits for a thread that never comes.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -23,7 +25,8 @@ namespace continuo {
 class Team {
  public:
   /// At most so many threads, the caller's among them.
-  explicit Team(int threads) : threads_(static_cast<std::size_t>(std::max(threads, 1))) {
+  explicit Team(int threads)
+      : threads_(static_cast<std::size_t>(std::max(threads, 1))), tickets_(std::make_unique<Ticket[]>(threads_)) {
     if (threads > 1) arena_ = std::make_unique<oneapi::tbb::task_arena>(threads);
   }
   bool is_alone() const { return !arena_; }
@@ -35,7 +38,7 @@ class Team {
     arena_->execute([&] {
       oneapi::tbb::task_group helpers;
       is_open_.store(true, std::memory_order_release);
-      for (std::size_t i = 1; i < threads_; ++i) helpers.run(Helper(*this));
+      for (std::size_t i = 1; i < threads_; ++i) helpers.run(Helper(*this, i));
       std::exception_ptr error;
       try {
         act();
@@ -61,14 +64,19 @@ class Team {
              },
              std::addressof(act), first, last, std::min<std::size_t>(blocks, 0xffff)};
     done_.store(0, std::memory_order_relaxed);
-    ticket_.store(++number_of_loop_ << 32 | static_cast<std::uint64_t>(loop_.blocks) << 16, std::memory_order_release);
-    while (take_block()) {
+    ++number_of_loop_;
+    for (std::size_t i = 0; i < threads_; ++i)
+      tickets_[i].store(number_of_loop_ << 32 | (loop_.blocks * (i + 1) / threads_) << 16 | loop_.blocks * i / threads_,
+                        std::memory_order_release);
+    while (take_block(0)) {
     }
     for (int idle = 0; done_.load(std::memory_order_acquire) != loop_.blocks; ++idle) wait(idle);
     if (has_failed_.exchange(false)) std::rethrow_exception(std::exchange(error_, nullptr));
   }
 
  private:
+  /// Of a thread's part of a loop: the loop's number, where the blocks end, the next of them.
+  struct alignas(64) Ticket : std::atomic<std::uint64_t> {};
   struct Loop {
     void (*act)(const void* context, std::size_t from, std::size_t to) = nullptr;
     const void* context = nullptr;
@@ -78,26 +86,34 @@ class Team {
   /// A task that is handed on in sight of the thread sanitizer, which does not look into the library.
   class Helper {
    public:
-    explicit Helper(Team& team) { team_.store(&team, std::memory_order_release); }
-    Helper(const Helper& other) : Helper(*other.team_.load(std::memory_order_relaxed)) {}
-    void operator()() const { team_.load(std::memory_order_acquire)->help(); }
+    Helper(Team& team, std::size_t number) : number_(number) { team_.store(&team, std::memory_order_release); }
+    Helper(const Helper& other) : Helper(*other.team_.load(std::memory_order_relaxed), other.number_) {}
+    void operator()() const { team_.load(std::memory_order_acquire)->help(number_); }
 
    private:
+    std::size_t number_;
     std::atomic<Team*> team_;
   };
 
-  void help() {
-    for (int idle = 0; is_open_.load(std::memory_order_acquire); ++idle) take_block() ? void(idle = 0) : wait(idle);
+  void help(std::size_t number) {
+    for (int idle = 0; is_open_.load(std::memory_order_acquire); ++idle)
+      take_block(number) ? void(idle = 0) : wait(idle);
   }
-  /// The next block of the loop that is under way; false where none is left. Who has a block keeps its loop under way,
-  /// so that what is read of it below is of this loop: the ticket carries its number, and an old one is worth nothing.
-  bool take_block() {
-    std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-    const std::uint64_t blocks = ticket >> 16 & 0xffff, next = ticket & 0xffff;
-    if (next >= blocks) return false;
-    if (!ticket_.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel, std::memory_order_relaxed))
+  /// The next block of the loop that is under way, from the thread's own part or another's; false where none is left.
+  bool take_block(std::size_t thread) {
+    for (std::size_t i = 0; i < threads_; ++i)
+      if (take_block_of(tickets_[(thread + i) % threads_])) return true;
+    return false;
+  }
+  /// Who has a block keeps its loop under way, so that what is read of it below is of this loop: the ticket carries its
+  /// number, and an old one is worth nothing.
+  bool take_block_of(Ticket& of_part) {
+    std::uint64_t ticket = of_part.load(std::memory_order_acquire);
+    const std::uint64_t end = ticket >> 16 & 0xffff, next = ticket & 0xffff;
+    if (next >= end) return false;
+    if (!of_part.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel, std::memory_order_relaxed))
       return true;
-    const std::size_t size = loop_.last - loop_.first;
+    const std::size_t size = loop_.last - loop_.first, blocks = loop_.blocks;
     try {
       loop_.act(loop_.context, loop_.first + size * next / blocks, loop_.first + size * (next + 1) / blocks);
     } catch (...) {
@@ -115,7 +131,7 @@ class Team {
   std::unique_ptr<oneapi::tbb::task_arena> arena_;
   Loop loop_;
   std::uint64_t number_of_loop_ = 0;
-  alignas(64) std::atomic<std::uint64_t> ticket_ = 0;  // of the loop: its number, its blocks, the next of them
+  std::unique_ptr<Ticket[]> tickets_;
   alignas(64) std::atomic<std::size_t> done_ = 0;
   std::atomic<bool> is_open_ = false, has_failed_ = false;
   std::exception_ptr error_;

@@ -175,13 +175,38 @@ World<Real, 3> heap(int count, int side, std::uint32_t seed) {
   return world;
 }
 
-// A heap comes to rest without sinking in: 200 balls, the deepest overlap a hundredth of a radius.
+// A heap comes to rest without sinking in: 200 balls, the deepest overlap of all steps a hundredth of a radius,
+// although balls fall on others, at up to 4 m/s, that the floor holds.
 TEST(FastMotion, AHeapComesToRest) {
   World<double, 3> world = heap<double>(200, 5, 5);
   FastMotion<double, 3> motion(world);
-  for (int step = 0; step < 600; ++step) ASSERT_EQ(motion.advance(), "");
-  EXPECT_LT(motion.deepest_overlap(), 0.005);
+  double deepest = 0;
+  for (int step = 0; step < 600; ++step) {
+    ASSERT_EQ(motion.advance(), "");
+    if (step > 15) deepest = std::max(deepest, motion.deepest_overlap());
+  }
+  EXPECT_LT(deepest, 0.005);
   EXPECT_LT(kinetic_energy(world), 0.05);
+}
+
+// A ball ten times as heavy hits a column at 22 m/s, without restitution: what it has pressed in comes out no faster
+// than such contacts part at most, `fastest_push`.
+TEST(FastMotion, AHitColumnDoesNotSpringUp) {
+  World<double, 3> world;
+  world.gravity = {{0, 0, -9.81}};
+  ASSERT_EQ(world.add_wall({}), "");
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(world.add({.position = {{0, 0, 0.5 + i}}}));
+  ASSERT_TRUE(world.add({.position = {{0, 0, 28}}, .mass = 5}));
+  const FastOptions<double> options;
+  FastMotion<double, 3> motion(world, options);
+  double fastest = 0;
+  for (int step = 0; step < 600; ++step) {
+    ASSERT_EQ(motion.advance(), "");
+    for (const auto& v : world.velocity) fastest = std::max(fastest, v[2]);
+  }
+  EXPECT_LT(fastest, options.fastest_push);
+  EXPECT_LT(kinetic_energy(world), 1e-9);  // it has come to rest, as far as rounding goes
+  EXPECT_NEAR(world.position[3][2], 3.5, 0.01);
 }
 
 // More threads than the machine may have, so that loops are really cut in so many parts. Bounces, rolling resistance, a
@@ -226,8 +251,8 @@ TEST(FastMotion, IsTheSameInEveryBuild) {
     ASSERT_EQ(fast_single.advance(), "");
     ASSERT_EQ(fast_twice.advance(), "");
   }
-  EXPECT_EQ(hash_without_orientation(single), 0x4002fd0a6d09e634u);
-  EXPECT_EQ(hash_without_orientation(twice), 0xefb4c75148b0352u);
+  EXPECT_EQ(hash_without_orientation(single), 0x398881806a870a1eu);
+  EXPECT_EQ(hash_without_orientation(twice), 0x52ddc298025b6399u);
 
   World<double, 2> exact;
   exact.gravity = {{0, -9.81}};
