@@ -7,6 +7,7 @@
 #include <continuo/methods/rodas5p.hpp>
 #include <continuo/model/check_derivatives.hpp>
 #include <continuo/model/model_events.hpp>
+#include <continuo/model/model_method.hpp>
 #include <continuo/model/model_system.hpp>
 #include <continuo/model/simulate.hpp>
 #include <continuo/solve/integrator.hpp>
@@ -56,9 +57,8 @@ Points points_of(const std::shared_ptr<const ModelProgram>& program, const Plan&
   Options<X> options{.rtol = plan.rtol, .atol = plan.rtol};
   options.max_steps = most_steps;
   options.interrupt = experiment.interrupt;
-  Integrator<ModelSystem, X, Rodas5P, ModelEvents> integrator(ModelSystem(program, plan.variables), std::move(x0),
-                                                              {plan.from, plan.to}, Rodas5P{}, std::move(options),
-                                                              ModelEvents(*program, plan.variables, plan.from));
+  Integrator integrator(ModelSystem(program, plan.variables), std::move(x0), {plan.from, plan.to},
+                        model_method<Rodas5P>(), std::move(options), ModelEvents(*program, plan.variables, plan.from));
   Points points(model.states.size());
   points.add(integrator.t(), integrator.x(), integrator.system());
   while (integrator.advance()) points.add(integrator.t(), integrator.x(), integrator.system());

@@ -1,10 +1,15 @@
 #include <algorithm>
 #include <chrono>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <continuo/model/integrate.hpp>
+#include <continuo/model/model_method.hpp>
+#include <continuo/solve/integrator.hpp>
 #include <continuo/solve/with_method.hpp>
 
 namespace continuo::model {
@@ -39,6 +44,59 @@ class Recording final : public StepWatcher {
   std::vector<RunRecorder::Name> names_;
 };
 
+class SteppingByName final : public Stepping {
+ public:
+  SteppingByName(ModelMethod method, Integration integration, Interval<double> interval) : method_(method) {
+    begin(std::move(integration.system), std::move(integration.x0), interval, std::move(integration.options),
+          std::move(integration.events));
+  }
+
+  bool advance(StepWatcher& watcher) override {
+    Forward forward{*this, watcher};
+    return integrator_->advance(forward);
+  }
+  double t() const override { return integrator_->t(); }
+  const X& x() const override { return integrator_->x(); }
+  void at(double t, X& x) override { integrator_->at(t, x); }
+  const ModelSystem& system() const override { return integrator_->system(); }
+  const ModelEvents& events() const override { return integrator_->events(); }
+  const Outcome<double>& outcome() const override { return integrator_->outcome(); }
+  Statistics statistics() const override { return sum(past_, integrator_->statistics()); }
+  void extend_to(double to) override { integrator_->extend_to(to); }
+
+  void go_on(const Instant& instant, std::span<const double> variables, std::span<const std::size_t> held) override {
+    past_ = statistics();
+    ModelSystem system = integrator_->system();
+    system.set_all(variables);
+    system.go(instant.mode);
+    system.hold({held.begin(), held.end()});
+    ModelEvents events(system.program(), variables, integrator_->events().begin());
+    events.resume(instant.t, instant.stops);
+    Options<X> options = integrator_->options();
+    const Interval<double> interval{instant.t, integrator_->interval().to};
+    begin(std::move(system), instant.x, interval, std::move(options), std::move(events));
+  }
+
+ private:
+  using Driving = Driver<ModelSystem, X, ModelEvents>;
+  using Integrating = Integrator<ModelSystem, X, ModelMethod, ModelEvents>;
+
+  struct Forward {
+    SteppingByName& run;
+    StepWatcher& watcher;
+    void stretch(Driving&, double, double to) { watcher.stretch(run, to); }
+    void happening(Driving&, const Happening<X>& now) { watcher.happening(run, now); }
+  };
+
+  void begin(ModelSystem system, X x0, Interval<double> interval, Options<X> options, ModelEvents events) {
+    integrator_.emplace(std::move(system), std::move(x0), interval, method_, std::move(options), std::move(events));
+  }
+
+  ModelMethod method_;
+  Statistics past_;  // of integrators before this one
+  std::optional<Integrating> integrator_;
+};
+
 }  // namespace
 
 Statistics sum(const Statistics& a, const Statistics& b) {
@@ -55,8 +113,9 @@ Statistics sum(const Statistics& a, const Statistics& b) {
 std::unique_ptr<Stepping> begin_integration(std::string_view method, Integration integration,
                                             Interval<double> interval) {
   std::unique_ptr<Stepping> run;
-  with_method(method,
-              [&](auto chosen) { run = begin_integration_by<decltype(chosen)>(std::move(integration), interval); });
+  with_method(method, [&](auto chosen) {
+    run = std::make_unique<SteppingByName>(model_method<decltype(chosen)>(), std::move(integration), interval);
+  });
   return run;
 }
 

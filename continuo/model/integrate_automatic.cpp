@@ -1,10 +1,10 @@
 // continuo/model/integrate_automatic.cpp
 #include <continuo/methods/automatic.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<Tsitouras5Rodas5P>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Tsitouras5Bdf>(Integration, Interval<double>);
+template ModelMethod model_method<Tsitouras5Rodas5P>();
+template ModelMethod model_method<Tsitouras5Bdf>();
 
 }  // namespace continuo::model

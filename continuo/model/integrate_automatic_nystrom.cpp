@@ -1,9 +1,9 @@
 #include <continuo/methods/automatic.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom8Radau>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom12Radau>(Integration, Interval<double>);
+template ModelMethod model_method<DormandPrinceNystrom8Radau>();
+template ModelMethod model_method<DormandPrinceNystrom12Radau>();
 
 }  // namespace continuo::model

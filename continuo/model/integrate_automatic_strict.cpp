@@ -1,9 +1,9 @@
 // continuo/model/integrate_automatic_strict.cpp
 #include <continuo/methods/automatic.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<Dop853Radau>(Integration, Interval<double>);
+template ModelMethod model_method<Dop853Radau>();
 
 }  // namespace continuo::model

@@ -2,12 +2,12 @@
 #include <continuo/methods/dop853.hpp>
 #include <continuo/methods/verner7.hpp>
 #include <continuo/methods/verner9.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<Dop853>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Verner7>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Verner9>(Integration, Interval<double>);
+template ModelMethod model_method<Dop853>();
+template ModelMethod model_method<Verner7>();
+template ModelMethod model_method<Verner9>();
 
 }  // namespace continuo::model

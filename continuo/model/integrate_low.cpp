@@ -4,14 +4,14 @@
 #include <continuo/methods/midpoint.hpp>
 #include <continuo/methods/rk38.hpp>
 #include <continuo/methods/rk4.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<ExplicitEuler>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Midpoint>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Heun>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Rk4>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Rk38>(Integration, Interval<double>);
+template ModelMethod model_method<ExplicitEuler>();
+template ModelMethod model_method<Midpoint>();
+template ModelMethod model_method<Heun>();
+template ModelMethod model_method<Rk4>();
+template ModelMethod model_method<Rk38>();
 
 }  // namespace continuo::model

@@ -2,12 +2,12 @@
 #include <continuo/methods/adams.hpp>
 #include <continuo/methods/bdf.hpp>
 #include <continuo/methods/rkc2.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<Adams>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Bdf>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Rkc2>(Integration, Interval<double>);
+template ModelMethod model_method<Adams>();
+template ModelMethod model_method<Bdf>();
+template ModelMethod model_method<Rkc2>();
 
 }  // namespace continuo::model

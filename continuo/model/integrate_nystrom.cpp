@@ -2,12 +2,12 @@
 #include <continuo/methods/dormand_prince_nystrom12.hpp>
 #include <continuo/methods/dormand_prince_nystrom6.hpp>
 #include <continuo/methods/dormand_prince_nystrom8.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom12>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom6>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<DormandPrinceNystrom8>(Integration, Interval<double>);
+template ModelMethod model_method<DormandPrinceNystrom12>();
+template ModelMethod model_method<DormandPrinceNystrom6>();
+template ModelMethod model_method<DormandPrinceNystrom8>();
 
 }  // namespace continuo::model

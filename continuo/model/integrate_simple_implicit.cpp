@@ -3,13 +3,13 @@
 #include <continuo/methods/implicit_euler.hpp>
 #include <continuo/methods/implicit_midpoint.hpp>
 #include <continuo/methods/trapezoidal.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<Bdf2>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<ImplicitEuler>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<ImplicitMidpoint>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Trapezoidal>(Integration, Interval<double>);
+template ModelMethod model_method<Bdf2>();
+template ModelMethod model_method<ImplicitEuler>();
+template ModelMethod model_method<ImplicitMidpoint>();
+template ModelMethod model_method<Trapezoidal>();
 
 }  // namespace continuo::model

@@ -2,12 +2,12 @@
 #include <continuo/methods/kahan_li8.hpp>
 #include <continuo/methods/mclachlan_atela4.hpp>
 #include <continuo/methods/yoshida6.hpp>
-#include <continuo/model/integrate_by.hpp>
+#include <continuo/model/model_method_body.hpp>
 
 namespace continuo::model {
 
-template std::unique_ptr<Stepping> begin_integration_by<KahanLi8>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<McLachlanAtela4>(Integration, Interval<double>);
-template std::unique_ptr<Stepping> begin_integration_by<Yoshida6>(Integration, Interval<double>);
+template ModelMethod model_method<KahanLi8>();
+template ModelMethod model_method<McLachlanAtela4>();
+template ModelMethod model_method<Yoshida6>();
 
 }  // namespace continuo::model

@@ -78,9 +78,4 @@ Statistics sum(const Statistics& a, const Statistics& b);
 std::unique_ptr<Stepping> begin_integration(std::string_view method, Integration integration,
                                             Interval<double> interval);
 
-/// The same, each method instantiated once in one of the integrate_*.cpp, so that no translation unit has to compile
-/// them all.
-template <class Method>
-std::unique_ptr<Stepping> begin_integration_by(Integration integration, Interval<double> interval);
-
 }  // namespace continuo::model

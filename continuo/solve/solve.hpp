@@ -6,7 +6,9 @@
 //   if (!solution.outcome) std::puts(describe(solution.outcome).c_str());
 #pragma once
 #include <chrono>
+#include <concepts>
 #include <cstddef>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -38,9 +40,9 @@ class Recorder {
         keep(to, x_);
         break;
       case Save<X>::Kind::dense: {
-        const auto& interpolant = integrator.interpolant();
+        const std::span<const X> output = integrator.dense_output();
         solution_.segments.push_back(
-            {integrator.step_begin(), to, integrator.step_size(), {interpolant.c.begin(), interpolant.c.end()}});
+            {integrator.step_begin(), to, integrator.step_size(), {output.begin(), output.end()}});
         integrator.at(to, x_);
         keep(to, x_);
         break;
@@ -119,8 +121,8 @@ class Recorder {
 };
 
 /// Runs an integrator to its end.
-template <class System, State X, class M, class Events>
-Solution<X> run(Integrator<System, X, M, Events>& integrator) {
+template <class System, State X, class Events>
+Solution<X> run(Driver<System, X, Events>& integrator) {
   Solution<X> solution;
   const auto begin = std::chrono::steady_clock::now();
   for (std::size_t i = 0; i < integrator.events().size(); ++i)
@@ -138,7 +140,7 @@ Solution<X> run(Integrator<System, X, M, Events>& integrator) {
 
 /// Integrates dx/dt = f(t, x) from x(from) = x0. Never throws for what happens on the way: see Solution::outcome.
 template <class System, State X, class M>
-  requires Method<M, X>
+  requires Method<M, X> || std::same_as<M, AnyMethod<System, X>>
 Solution<X> solve(System system, X x0, Interval<std::type_identity_t<Scalar<X>>> interval, M method,
                   std::type_identity_t<Options<X>> options = {}) {
   Integrator<System, X, M> integrator(std::move(system), std::move(x0), interval, method, std::move(options));

@@ -22,7 +22,10 @@ Solution<std::vector<Real>> named_solve(std::string_view method, const NamedSyst
     solution.outcome.hint = std::string(method) + " needs x'' = a(t, x): pairs of a position and its velocity";
     return solution;
   }
-  with_method(method, [&](auto chosen) { solution = solve(system, std::move(x0), interval, chosen, options); });
+  with_method(method, [&](auto chosen) {
+    const auto any = any_method<decltype(chosen), NamedSystem<Real>, std::vector<Real>>();
+    solution = solve(system, std::move(x0), interval, any, options);
+  });
   return solution;
 }
 

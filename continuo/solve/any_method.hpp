@@ -1,0 +1,33 @@
+// A method whose type is forgotten, for one kind of system and state: who has it need not compile the method, which is
+// compiled wherever `any_method` is instantiated for it.
+//
+//   extern template AnyMethod<MySystem, X> any_method<Rk4, MySystem, X>();
+//   Integrator integrator(system, x0, {0, 10}, any_method<Rk4, MySystem, X>(), options);
+#pragma once
+#include <memory>
+#include <utility>
+
+#include <continuo/solve/step_control.hpp>
+#include <continuo/solve/steps.hpp>
+
+namespace continuo {
+
+template <class System, State X>
+struct AnyMethod {
+  using Real = Scalar<X>;
+  std::unique_ptr<Steps<System, X>> (*begin)(System, X x0, Real t0, Real forward, const Options<X>&);
+};
+
+/// The steps of M, ready to be taken.
+template <class M, class System, State X>
+std::unique_ptr<Steps<System, X>> begin_steps(System f, X x0, Scalar<X> t0, Scalar<X> forward,
+                                              const Options<X>& options) {
+  return std::make_unique<StepControl<System, X, M>>(std::move(f), std::move(x0), t0, forward, options);
+}
+
+template <class M, class System, State X>
+AnyMethod<System, X> any_method() {
+  return {begin_steps<M, System, X>};
+}
+
+}  // namespace continuo
