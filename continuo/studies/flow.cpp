@@ -1,34 +1,23 @@
 // continuo/studies/flow.cpp
 #include <algorithm>
-#include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
-#include <continuo/solve/automatic.hpp>
 #include <continuo/studies/flow.hpp>
+#include <continuo/studies/named_solve.hpp>
 
 namespace continuo::studies {
 
-namespace {
-
-using X = std::vector<double>;
-
-/// As `solve` wants it.
-struct WithConstants {
-  const ParametricSystem* system;
-  std::vector<double> p;
-
-  void operator()(double t, const X& x, X& dxdt) const { system->derivative(t, x, p, dxdt); }
-  void jacobian(double t, const X& x, std::span<double> rows) const {
-    std::ranges::copy(jacobian_of(*system, t, x, p), rows.begin());
-  }
-  std::string component_name(std::size_t i) const { return system->name(i); }
-};
-
-}  // namespace
-
-Solution<X> run_flow(const ParametricSystem& system, Values p, X x0, Interval<double> interval,
-                     const Options<X>& options) {
-  return solve(WithConstants{&system, {p.begin(), p.end()}}, x0, interval, options);
+Solution<std::vector<double>> run_flow(const ParametricSystem& system, Values p, std::vector<double> x0,
+                                       Interval<double> interval, const Options<std::vector<double>>& options) {
+  NamedSystem<double> named{.size = x0.size()};
+  for (std::size_t i = 0; i < x0.size(); ++i) named.names.push_back(system.name(i));
+  named.derivative = [&system, p](double t, Values x, std::span<double> dxdt) { system.derivative(t, x, p, dxdt); };
+  named.given_jacobian = [&system, p](double t, Values x, std::span<double> rows) {
+    std::ranges::copy(jacobian_of(system, t, x, p), rows.begin());
+  };
+  return named_solve(named, std::move(x0), interval, options);
 }
 
 ParametricSystem with_variations(const ParametricSystem& system, bool by_constants) {

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/solve/choice.hpp>
 #include <continuo/solve/options.hpp>
 #include <continuo/solve/solution.hpp>
 #include <continuo/system/system.hpp>
@@ -84,6 +85,19 @@ Solution<std::vector<Real>> named_solve(std::string_view method, const NamedSyst
                                         std::type_identity_t<std::vector<Real>> x0,
                                         std::type_identity_t<Interval<Real>> interval,
                                         const std::type_identity_t<Options<std::vector<Real>>>& options);
+
+/// The method chosen as solve() does where none is named.
+template <class Real>
+Solution<std::vector<Real>> named_solve(const NamedSystem<Real>& system, std::type_identity_t<std::vector<Real>> x0,
+                                        std::type_identity_t<Interval<Real>> interval,
+                                        const std::type_identity_t<Options<std::vector<Real>>>& options) {
+  const std::string_view method =
+      choose_method({.size = system.size,
+                     .rtol = static_cast<double>(options.rtol),
+                     .accelerations = system.velocity_free && 2 * system.pairs.size() == system.size})
+          .method;
+  return named_solve(method, system, std::move(x0), interval, options);
+}
 
 extern template Solution<std::vector<float>> named_solve(std::string_view, const NamedSystem<float>&,
                                                          std::vector<float>, Interval<float>,
