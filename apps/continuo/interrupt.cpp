@@ -16,6 +16,7 @@ const std::atomic<bool>& interrupt_flag() {
   action.sa_handler = [](int) { interrupted_once.store(true); };
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the next one has its ordinary effect
   sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
   return interrupted_once;
 }
 
