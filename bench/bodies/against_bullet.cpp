@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
+#include <bench/bodies/scenes.hpp>
 #include <bench/processor_time.hpp>
 #include <btBulletDynamicsCommon.h>
 
@@ -19,44 +19,6 @@
 
 namespace continuo::bench {
 namespace {
-
-/// A scene: balls of radius 1/2 and density 1 in a box.
-struct Scene {
-  std::vector<Vector<double, 3>> position{}, velocity{};
-  Vector<double, 3> gravity{}, upper{};
-  Material<double> material{};
-  double duration = 0, step = 1.0 / 60;
-};
-
-Scene gas(int count, double edge, double duration) {
-  Scene scene{.upper = {{edge, edge, edge}}, .material = {1, 0, 0}, .duration = duration};
-  std::mt19937 engine(1);
-  std::normal_distribution<double> normal;
-  const int side = static_cast<int>(std::ceil(std::cbrt(count)));
-  for (int i = 0; i < count; ++i) {
-    const double spacing = edge / side;
-    scene.position.push_back(
-        {{(i % side + 0.5) * spacing, (i / side % side + 0.5) * spacing, (i / side / side + 0.5) * spacing}});
-    Vector<double, 3> v{{normal(engine), normal(engine), normal(engine)}};
-    scene.velocity.push_back(v * (5 / length(v)));
-  }
-  return scene;
-}
-
-Scene heap(int count) {
-  const double edge = 40 * std::sqrt(count / 10000.0);
-  const int side = static_cast<int>(std::lround(edge * 0.9));
-  Scene scene{.gravity = {{0, 0, -9.81}}, .upper = {{edge, edge, 1e4}}, .material = {0, 0.5, 0}, .duration = 10};
-  std::mt19937 engine(1);
-  std::uniform_real_distribution<double> jitter(-0.02, 0.02);
-  for (int i = 0; i < count; ++i) {
-    const double spacing = edge / side;
-    scene.position.push_back({{(i % side + 0.5) * spacing + jitter(engine),
-                               (i / side % side + 0.5) * spacing + jitter(engine), 1 + 1.1 * (i / side / side)}});
-    scene.velocity.push_back({});
-  }
-  return scene;
-}
 
 struct Result {
   double seconds = std::numeric_limits<double>::infinity();
@@ -73,21 +35,6 @@ double deepest_overlap(const std::vector<Vector<double, 3>>& x) {
       if (square < 1) deepest = std::max(deepest, 1 - std::sqrt(square));
     }
   return deepest;
-}
-
-template <class Real>
-World<Real, 3> world_of(const Scene& scene) {
-  const auto as = [](const Vector<double, 3>& v) {
-    return Vector<Real, 3>{{static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])}};
-  };
-  const Material<Real> material{static_cast<Real>(scene.material.restitution),
-                                static_cast<Real>(scene.material.friction), 0};
-  World<Real, 3> world;
-  world.gravity = as(scene.gravity);
-  world.add_container({}, as(scene.upper), material);
-  for (std::size_t i = 0; i < scene.position.size(); ++i)
-    world.add({.position = as(scene.position[i]), .velocity = as(scene.velocity[i]), .material = material});
-  return world;
 }
 
 template <class Real>
@@ -195,6 +142,8 @@ Result by_bullet(const Scene& scene) {
   return {seconds, start > 0 ? end / start : end, overlap, std::max(overlap, deepest)};
 }
 
+constexpr const char* bullet = sizeof(btScalar) == sizeof(float) ? "bullet, float" : "bullet, double";
+
 void print(const char* scene, const char* solver, const Result& result, const Result& peer) {
   std::printf("| %s | %s | %.3g s | **%.3f** (1/%.1f) | %.6g | %.4f | %.4f |\n", scene, solver, result.seconds,
               result.seconds / peer.seconds, peer.seconds / result.seconds, result.energy, result.overlap,
@@ -225,7 +174,7 @@ int main(int count, char** arguments) {
       take_less(theirs, [&] { return by_bullet(scene); });
     }
     print("gas of 1,000, 60 s", "exact", ours, theirs);
-    print("gas of 1,000, 60 s", "bullet", theirs, theirs);
+    print("gas of 1,000, 60 s", bullet, theirs, theirs);
   }
   {
     const Scene scene = heap(10000);
@@ -237,6 +186,6 @@ int main(int count, char** arguments) {
     }
     print("heap of 10,000, 600 steps", "fast, float", single, theirs);
     print("heap of 10,000, 600 steps", "fast, double", full, theirs);
-    print("heap of 10,000, 600 steps", "bullet", theirs, theirs);
+    print("heap of 10,000, 600 steps", bullet, theirs, theirs);
   }
 }

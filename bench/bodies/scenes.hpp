@@ -1,0 +1,65 @@
+// The scenes that are measured: balls of radius 1/2 and density 1 in a box.
+#pragma once
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <continuo/bodies/world.hpp>
+
+namespace continuo::bench {
+
+struct Scene {
+  std::vector<Vector<double, 3>> position{}, velocity{};
+  Vector<double, 3> gravity{}, upper{};
+  Material<double> material{};
+  double duration = 0, step = 1.0 / 60;
+};
+
+/// Elastic, in a cube, on a grid, all at speed 5 in any direction.
+inline Scene gas(int count, double edge, double duration) {
+  Scene scene{.upper = {{edge, edge, edge}}, .material = {1, 0, 0}, .duration = duration};
+  std::mt19937 engine(1);
+  std::normal_distribution<double> normal;
+  const int side = static_cast<int>(std::ceil(std::cbrt(count)));
+  for (int i = 0; i < count; ++i) {
+    const double spacing = edge / side;
+    scene.position.push_back(
+        {{(i % side + 0.5) * spacing, (i / side % side + 0.5) * spacing, (i / side / side + 0.5) * spacing}});
+    Vector<double, 3> v{{normal(engine), normal(engine), normal(engine)}};
+    scene.velocity.push_back(v * (5 / length(v)));
+  }
+  return scene;
+}
+
+/// Dropped from a jittered grid into an open box, 40 x 40 for 10,000: 36 x 36 balls a layer.
+inline Scene heap(int count) {
+  const double edge = 40 * std::sqrt(count / 10000.0);
+  const int side = static_cast<int>(std::lround(edge * 0.9));
+  Scene scene{.gravity = {{0, 0, -9.81}}, .upper = {{edge, edge, 1e4}}, .material = {0, 0.5, 0}, .duration = 10};
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> jitter(-0.02, 0.02);
+  for (int i = 0; i < count; ++i) {
+    const double spacing = edge / side;
+    scene.position.push_back({{(i % side + 0.5) * spacing + jitter(engine),
+                               (i / side % side + 0.5) * spacing + jitter(engine), 1 + 1.1 * (i / side / side)}});
+    scene.velocity.push_back({});
+  }
+  return scene;
+}
+
+template <class Real>
+World<Real, 3> world_of(const Scene& scene) {
+  const auto as = [](const Vector<double, 3>& v) {
+    return Vector<Real, 3>{{static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])}};
+  };
+  const Material<Real> material{static_cast<Real>(scene.material.restitution),
+                                static_cast<Real>(scene.material.friction), 0};
+  World<Real, 3> world;
+  world.gravity = as(scene.gravity);
+  world.add_container({}, as(scene.upper), material);
+  for (std::size_t i = 0; i < scene.position.size(); ++i)
+    world.add({.position = as(scene.position[i]), .velocity = as(scene.velocity[i]), .material = material});
+  return world;
+}
+
+}  // namespace continuo::bench
