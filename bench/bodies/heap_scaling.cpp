@@ -1,5 +1,5 @@
-// What a step of the fast motion costs with more balls and with more threads: the heap of against_bullet, by the clock on
-// the wall.
+// What a step of the fast motion costs with more balls and with more threads: the heap of against_bullet, by the clock
+// on the wall.
 //   heap_scaling [STEPS] [REPEATS]
 #include <algorithm>
 #include <chrono>
