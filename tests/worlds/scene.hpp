@@ -35,6 +35,13 @@ inline model::Run run_of(const std::string& text, const model::Experiment& exper
   return std::move(simulated.run).value();
 }
 
+inline std::string failed_checks(const model::Run& run) {
+  std::string text;
+  for (const model::CheckResult& check : run.checks)
+    if (!check.passed) text += check.text + ": " + std::to_string(check.value) + " " + check.message + "\n";
+  return text;
+}
+
 inline double last(const model::Run& run, const std::string& column) {
   for (std::size_t i = 0; i < run.motion.columns.size(); ++i)
     if (run.motion.columns[i].name == column) return run.motion.row(run.motion.rows() - 1)[i];

@@ -12,13 +12,6 @@
 namespace continuo::worlds {
 namespace {
 
-std::string failed_checks(const model::Run& run) {
-  std::string text;
-  for (const model::CheckResult& check : run.checks)
-    if (!check.passed) text += check.text + ": " + std::to_string(check.value) + " " + check.message + "\n";
-  return text;
-}
-
 TEST(SimulateWorld, JudgesItsChecks) {
   const model::Run run = run_of(R"(
 world {

@@ -7,13 +7,6 @@
 namespace continuo::worlds {
 namespace {
 
-std::string failed_checks(const model::Run& run) {
-  std::string text;
-  for (const model::CheckResult& check : run.checks)
-    if (!check.passed) text += check.text + ": " + std::to_string(check.value) + " " + check.message + "\n";
-  return text;
-}
-
 // A disc of radius 1 m and mass 2 kg has 1 kg m^2: on a torsion spring of 4 N m it swings with omega = 2 /s. The fast
 // mode is of order 2 here: (omega h)^2/24 a radian of phase, over 6 radians.
 const std::string torsion = R"(
