@@ -39,7 +39,7 @@ NamedSystem<Real> equations(const model::ModelProgram& program, const Parametric
   };
   system.pairs = program.model.pairs;
   system.velocity_free = !program.model.accelerations_depend_on_velocities;
-  system.names = in_double.names;
+  system.name = [in_double](std::size_t i) { return in_double.name(i); };
   return system;
 }
 

@@ -12,7 +12,7 @@ namespace continuo::studies {
 Solution<std::vector<double>> run_flow(const ParametricSystem& system, Values p, std::vector<double> x0,
                                        Interval<double> interval, const Options<std::vector<double>>& options) {
   NamedSystem<double> named{.size = x0.size()};
-  for (std::size_t i = 0; i < x0.size(); ++i) named.names.push_back(system.name(i));
+  named.name = [&system](std::size_t i) { return system.name(i); };
   named.derivative = [&system, p](double t, Values x, std::span<double> dxdt) { system.derivative(t, x, p, dxdt); };
   named.given_jacobian = [&system, p](double t, Values x, std::span<double> rows) {
     std::ranges::copy(jacobian_of(system, t, x, p), rows.begin());

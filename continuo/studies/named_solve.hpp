@@ -32,9 +32,9 @@ struct NamedSystem {
   // What may be missing.
   /// df/dx row by row; else by central differences.
   std::function<void(Real t, std::span<const Real> x, std::span<Real> rows)> given_jacobian{};
-  std::vector<PositionVelocity> pairs{};  // for methods of x'' = a
-  bool velocity_free = false;             // no acceleration reads a velocity
-  std::vector<std::string> names{};
+  std::vector<PositionVelocity> pairs{};           // for methods of x'' = a
+  bool velocity_free = false;                      // no acceleration reads a velocity
+  std::function<std::string(std::size_t)> name{};  // of a component; asked where a run fails
 
   // A System, as solve asks for it.
   using X = std::vector<Real>;
@@ -42,9 +42,7 @@ struct NamedSystem {
   std::size_t pair_count(std::size_t) const { return pairs.size(); }
   PositionVelocity pair(std::size_t i, std::size_t) const { return pairs[i]; }
   bool ignores_velocity(const X&) const { return velocity_free; }
-  std::string component_name(std::size_t i) const {
-    return i < names.size() ? names[i] : "x[" + std::to_string(i) + "]";
-  }
+  std::string component_name(std::size_t i) const { return name ? name(i) : "x[" + std::to_string(i) + "]"; }
   void jacobian(const Real& t, const X& x, std::span<Real> rows) {
     if (given_jacobian) return given_jacobian(t, x, rows);
     // The third root of epsilon balances the error of a central difference with its rounding.
