@@ -9,7 +9,7 @@
 namespace continuo::app {
 namespace {
 
-using worlds::Point;
+using worlds::dot, worlds::Point;
 
 // Colours as numbers, which `lc rgb variable` wants. The palette is Okabe's and Ito's, for all eyes.
 constexpr std::array<std::uint32_t, 7> palette = {0x0072B2, 0xE69F00, 0x009E73, 0xD55E00, 0xCC79A7, 0x56B4E9, 0xB8A800};
@@ -24,10 +24,6 @@ std::uint32_t mixed(std::uint32_t a, std::uint32_t b, double part) {
     color |= static_cast<std::uint32_t>(std::lround(from + part * (to - from))) << shift;
   }
   return color;
-}
-
-double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 std::string circle(Flat at, double radius, std::uint32_t color) {

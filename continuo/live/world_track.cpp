@@ -9,14 +9,12 @@
 
 namespace continuo::live {
 
+using worlds::dot;
 using worlds::Point;
 using worlds::WorldRun;
 
 namespace {
 
-double dot(const Point& a, const Point& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 Point minus(const Point& a, const Point& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
@@ -47,7 +45,7 @@ double free_part(const WorldRun& run, std::size_t body, const Point& to) {
 
 namespace {
 
-constexpr double looks = 1000;  // in a run of the text's length, where events are watched
+using worlds::looks;  // in a run of the text's length
 
 class WorldTrack final : public Track {
  public:
@@ -208,9 +206,10 @@ class WorldTrack final : public Track {
   std::unique_ptr<WorldRun> run_;
   worlds::WorldEvents events_;
   model::Layout layout_;
-  X before_;              // of the last step, like
-  double before_t_ = 0;   //
-  std::size_t mode_ = 0;  //
+  // At the beginning of the last step:
+  X before_;
+  double before_t_ = 0;
+  std::size_t mode_ = 0;
   double chunk_;
   std::optional<HeldBody> held_;
   std::string error_;

@@ -20,7 +20,6 @@ namespace {
 using model::Diagnostic;
 using X = std::vector<double>;
 
-constexpr double looks = 1000;  // in a run, where events are watched
 constexpr std::size_t contacts_of_one_look = 10'000, contacts_of_a_run = 100'000;
 
 class Simulation {

@@ -21,6 +21,9 @@
 
 namespace continuo::worlds {
 
+/// At what a `when` asks, in a run of a world without steps.
+inline constexpr double looks = 1000;
+
 /// With steps, how much earlier than due the end of a step may be.
 double slack_of(const WorldRun& world);
 

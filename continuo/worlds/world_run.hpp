@@ -34,6 +34,10 @@ namespace continuo::worlds {
 /// z is 0 in the plane.
 using Point = std::array<double, 3>;
 
+inline double dot(const Point& a, const Point& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /// What does not change while it moves.
 struct BodyShape {
   std::string name;
