@@ -19,7 +19,7 @@ struct Sphere {
 template <class Real, int Dim>
 using Shape = std::variant<Sphere<Real>>;
 
-/// How a surface answers a contact. Two surfaces meet as `combined` says.
+/// How a surface answers a contact. Two surfaces meet as the `Meeting` of their world says.
 template <class Real>
 struct Material {
   Real restitution = Real(0);         // e: speed of parting over speed of approach, 0 to 1
@@ -27,13 +27,38 @@ struct Material {
   Real rolling_resistance = Real(0);  // torque over normal force, a length in units of the radius
 };
 
-/// The geometric mean of frictions (one smooth surface makes a smooth contact), the greater restitution (a ball that
-/// bounces does so on any floor) and rolling resistance: what Box2D and most engines do.
+/// Of the numbers of two surfaces the one of their contact.
+enum class Combine : std::uint8_t { average, minimum, maximum, product, geometric_mean };
+
+/// How two surfaces meet. The geometric mean of frictions (one smooth surface makes a smooth contact), the greater
+/// restitution (a ball that bounces does so on any floor) and rolling resistance: what Box2D and most engines do.
+struct Meeting {
+  Combine restitution = Combine::maximum, friction = Combine::geometric_mean, rolling_resistance = Combine::maximum;
+  friend bool operator==(const Meeting&, const Meeting&) = default;
+};
+
 template <class Real>
-Material<Real> combined(const Material<Real>& a, const Material<Real>& b) {
-  using std::max, std::sqrt;
-  return {a.restitution > b.restitution ? a.restitution : b.restitution, sqrt(a.friction * b.friction),
-          a.rolling_resistance > b.rolling_resistance ? a.rolling_resistance : b.rolling_resistance};
+Real combined(Combine how, const Real& a, const Real& b) {
+  using std::sqrt;
+  switch (how) {
+    case Combine::average:
+      return (a + b) / 2;
+    case Combine::minimum:
+      return a < b ? a : b;
+    case Combine::maximum:
+      return a > b ? a : b;
+    case Combine::product:
+      return a * b;
+    case Combine::geometric_mean:
+      break;
+  }
+  return sqrt(a * b);
+}
+template <class Real>
+Material<Real> combined(const Meeting& meeting, const Material<Real>& a, const Material<Real>& b) {
+  return {combined(meeting.restitution, a.restitution, b.restitution),
+          combined(meeting.friction, a.friction, b.friction),
+          combined(meeting.rolling_resistance, a.rolling_resistance, b.rolling_resistance)};
 }
 
 template <class Real, int Dim>

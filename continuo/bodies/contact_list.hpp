@@ -145,11 +145,12 @@ class ContactList {
     kept_.fit();
   }
 
-  /// Packs what may touch. material_of(k) is that of the body or the wall at place k, which is asked for only where
-  /// they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept (empty: at k).
-  template <class MaterialOf>
+  /// Packs what may touch. meeting_of(a, b) is how the bodies or walls at two places meet, which is asked for
+  /// only where they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept
+  /// (empty: at k).
+  template <class MeetingOf>
   void activate(Team& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-                const MaterialOf& material_of, bool has_rare, const ActiveReach<Real>& reach,
+                const MeetingOf& meeting_of, bool has_rare, const ActiveReach<Real>& reach,
                 std::span<const std::uint32_t> place_before) {
     between_movers.count.fill(0), with_fixed.count.fill(0), with_wall.count.fill(0);
     team.for_each(0, rows.rows(), 256, [&](std::size_t from, std::size_t to) {
@@ -160,7 +161,7 @@ class ContactList {
     const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
     team.for_each(0, rows.rows(), 512, [&](std::size_t from, std::size_t to) {
       for (std::size_t k = from; k < to; ++k)
-        fill_row(static_cast<std::uint32_t>(k), bodies, walls, material_of, before, !place_before.empty());
+        fill_row(static_cast<std::uint32_t>(k), bodies, walls, meeting_of, before, !place_before.empty());
     });
   }
 
@@ -279,9 +280,9 @@ class ContactList {
   }
 
   /// The lane of a numbered contact, filled but for the impulses and the normal.
-  template <class MaterialOf>
+  template <class MeetingOf>
   static std::uint32_t fill(ColouredPacks<Real, Dim>& packs, std::uint32_t numbered, std::uint32_t a, std::uint32_t b,
-                            const MaterialOf& material_of) {
+                            const MeetingOf& meeting_of) {
     const std::uint32_t colour = numbered >> colour_shift, number = numbered & ((1u << colour_shift) - 1);
     const std::uint32_t lanes = static_cast<std::uint32_t>(width);
     const std::uint32_t p = packs.first[colour] + (packs.is_shared(colour) ? number : number / lanes);
@@ -289,7 +290,7 @@ class ContactList {
     packs.packs[p].a[lane] = a;
     packs.packs[p].b[lane] = b;
     if (RarePack<Real, Dim>* rare = packs.rare_of(p)) {
-      const Material<Real> both = combined<Real>(material_of(a), material_of(b));
+      const Material<Real> both = meeting_of(a, b);
       rare->friction.lane[lane] = both.friction;
       rare->restitution.lane[lane] = both.restitution;
       rare->rolling_resistance.lane[lane] = both.rolling_resistance;
@@ -317,14 +318,14 @@ class ContactList {
     if (RarePack<Real, Dim>* rare = packs.rare_of(p)) put_in_lane(rolling, rare->rolling_impulse, lane);
   }
 
-  template <class MaterialOf, class Before>
+  template <class MeetingOf, class Before>
   void fill_row(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-                const MaterialOf& material_of, const Before& before, bool was_sorted) {
+                const MeetingOf& meeting_of, const Before& before, bool was_sorted) {
     for (ContactEntry& entry : rows.row(k)) {
       if (entry.lane == nowhere) continue;
       auto& packs = packs_of(entry);
       const std::uint32_t bit = &packs == &with_fixed ? fixed_bit : 0, j = entry.other;
-      const std::uint32_t lane = fill(packs, entry.lane & ~bit, k, j, material_of);
+      const std::uint32_t lane = fill(packs, entry.lane & ~bit, k, j, meeting_of);
       if (j >= bodies.size())
         put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), packs.packs[lane / width].normal,
                     lane % width);

@@ -272,7 +272,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     bring(i);
     bring(j);
     const Path<Real, Dim>&a = flights_.paths[i], &b = flights_.paths[j];
-    const Material<Real> own = combined(flights_.plans[i].material, flights_.plans[j].material);
+    const Material<Real> own = combined(world_.meeting, flights_.plans[i].material, flights_.plans[j].material);
     const Material<Real> material = at_this_instant(own, i, j);
     const V apart = b.x - a.x;
     const Real distance = length(apart);
@@ -314,7 +314,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     ++statistics.wall_collisions;
     bring(i);
     const Wall<Real, Dim> wall = facing(world_.walls()[w], flights_.paths[i].x);
-    const Material<Real> own = combined(flights_.plans[i].material, wall.material);
+    const Material<Real> own = combined(world_.meeting, flights_.plans[i].material, wall.material);
     const Material<Real> material = at_this_instant(own, i, i);
     V no_velocity{};
     S no_spin{};

@@ -260,13 +260,16 @@ class FastMotion<Real, Dim>::Stepper {
     const auto material_of = [this, &order = list_.order()](std::uint32_t k) -> const Material<Real>& {
       return k < order.size() ? world_.material[order[k]] : world_.walls()[k - order.size()].material;
     };
+    const auto meeting_of = [this, &material_of](std::uint32_t a, std::uint32_t b) {
+      return combined(world_.meeting, material_of(a), material_of(b));
+    };
     const Material<Real> first = bodies_.size() > 0 ? world_.material[0] : Material<Real>{};
-    friction_ = combined(first, first).friction;
+    friction_ = combined(world_.meeting.friction, first.friction, first.friction);
     may_bounce_ = any_material([](const Material<Real>& material) { return material.restitution > Real(0); });
     const bool has_rare = may_bounce_ || any_material([&](const Material<Real>& material) {
                             return material.rolling_resistance > Real(0) || material.friction != first.friction;
                           });
-    contacts_.activate(team_, bodies_, world_.walls(), material_of, has_rare, ActiveReach<Real>{dt, extra},
+    contacts_.activate(team_, bodies_, world_.walls(), meeting_of, has_rare, ActiveReach<Real>{dt, extra},
                        place_before_);
   }
 

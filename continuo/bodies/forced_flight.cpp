@@ -221,8 +221,8 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     const V n = normal(at), rate = b.velocity - a.velocity;
     const Real least = std::max(slow, Real(8 * std::numeric_limits<Real>::epsilon() * length(rate)));
     if (!(-dot(rate, n) > least)) return false;
-    Material<Real> material =
-        combined(world_.material[at.a], is_wall ? world_.walls()[at.wall].material : world_.material[at.b]);
+    Material<Real> material = combined(world_.meeting, world_.material[at.a],
+                                       is_wall ? world_.walls()[at.wall].material : world_.material[at.b]);
     const bool loses = material.restitution < Real(1) || material.friction > Real(0);
     const bool is_held =
         world_.time - before[at.a] < contact_time_ || (!is_wall && world_.time - before[at.b] < contact_time_);

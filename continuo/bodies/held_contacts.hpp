@@ -126,7 +126,7 @@ class HeldContacts {
     Held one;
     one.pair = pair;
     one.ends = {End{pair.a, Real(-1)}, End{pair.b, Real(1)}};
-    one.friction = combined(world_->material[pair.a],
+    one.friction = combined(world_->meeting, world_->material[pair.a],
                             pair.with_wall() ? world_->walls()[pair.wall].material : world_->material[pair.b])
                        .friction;
     held_.push_back(one);

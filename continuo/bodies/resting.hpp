@@ -25,7 +25,7 @@ void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& conta
   const Real press = -dot(gravity, wall.normal);
   const V pull = gravity + wall.normal * press;
   const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * length(gravity);
-  move_along(flights.paths[i], plan, wall.normal, combined(plan.material, wall.material),
+  move_along(flights.paths[i], plan, wall.normal, combined(flights.world.meeting, plan.material, wall.material),
              length(pull) > rounding ? pull : V{}, press, flights.now, contact_time);
 }
 

@@ -99,6 +99,11 @@ struct SnapshotAccess {
     archive(world.time), archive(world.gravity);
     archive(world.attraction.constant), archive(world.attraction.softening), archive(world.attraction.opening);
     archive(world.drag.linear), archive(world.drag.quadratic);
+    for (Combine* how : {&world.meeting.restitution, &world.meeting.friction, &world.meeting.rolling_resistance}) {
+      archive(*how);
+      if constexpr (Archive::reads)
+        archive.expect(*how <= Combine::geometric_mean, "materials that meet in no known way");
+    }
     const auto laws_here = [&] { return world.force_laws.size() | std::uint64_t{world.torque_laws.size()} << 32; };
     std::uint64_t laws = laws_here();
     archive(laws);

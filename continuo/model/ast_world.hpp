@@ -21,7 +21,7 @@ struct WorldAttribute {
 using WorldAttributes = std::vector<WorldAttribute>;
 
 /// `dimension 2`, `gravity (0, -9.81)`, `attraction 6.67e-11 softening 1`, `drag linear 0.1`, `material friction 0.3`,
-/// `mode fast step 1/60`.
+/// `combine restitution minimum`, `mode fast step 1/60`.
 struct WorldSetting {
   Identifier word;
   std::optional<Expression> value;  // of dimension, gravity and attraction; of mode a Name

@@ -221,6 +221,7 @@ class Checker {
 
   void make_world();  // check_world_items.cpp
   void read_world_setting(const ast::WorldSetting& setting, Scope& scope);
+  void read_combinations(const ast::WorldSetting& setting);
   void read_world_mode(const ast::WorldSetting& setting, Scope& scope);
   void read_wall(const ast::WorldWall& wall, Scope& scope, Span span);
   void read_container(const ast::WorldContainer& container, Scope& scope, Span span);

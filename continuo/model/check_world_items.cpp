@@ -220,8 +220,27 @@ void Checker::read_world_setting(const ast::WorldSetting& setting, Scope& scope)
                                     : zero;
     if (!linear && !quadratic)
       fail("E225", setting.word.span, "drag of what kind?", {}, "write drag linear 0.1, or drag quadratic 0.02");
+  } else if (word == "combine") {
+    read_combinations(setting);
   } else if (word == "mode") {
     read_world_mode(setting, scope);
+  }
+}
+
+void Checker::read_combinations(const ast::WorldSetting& setting) {
+  MeetingDescription& meeting = world_.made.meeting;
+  if (setting.attributes.empty())
+    fail("E225", setting.word.span, "combine what?", {},
+         "write combine restitution minimum, or combine friction average");
+  for (const ast::WorldAttribute& text : setting.attributes) {
+    const std::string& name = std::get<ast::Name>(text.value.node).text;
+    if (std::ranges::find(combinations, name) == combinations.end()) {
+      fail("E225", text.value.span, fmt::format("surfaces do not combine by `{}`", name), {},
+           fmt::format("they combine by {}", fmt::join(combinations, ", ")));
+      continue;
+    }
+    const std::string& word = text.name.text;
+    (word == "restitution" ? meeting.restitution : word == "friction" ? meeting.friction : meeting.rolling) = name;
   }
 }
 

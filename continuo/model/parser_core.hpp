@@ -206,8 +206,10 @@ class Parser {
   ast::WorldIgnore parse_world_ignore();
   ast::WorldFamily parse_world_family();
   std::optional<ast::Identifier> parse_name_of_wall();
-  ast::WorldAttributes parse_world_attributes(std::string_view of, std::span<const std::string_view> known);
+  ast::WorldAttributes parse_world_attributes(std::string_view of, std::span<const std::string_view> known,
+                                              bool all_names = false);
   ast::Expression parse_world_value(std::string_view word);
+  ast::Expression parse_world_name(std::string_view word);
 
   const Source& source_;
   Lexer lexer_;

@@ -7,6 +7,7 @@
 
 #include <continuo/model/parser_core.hpp>
 #include <continuo/model/suggest.hpp>
+#include <continuo/model/world.hpp>
 
 namespace continuo::model::detail {
 
@@ -15,9 +16,9 @@ namespace {
 using ast::Expression;
 using Word = std::string_view;
 
-constexpr std::array<Word, 14> item_words = {"dimension", "gravity", "material",  "attraction", "drag",
-                                             "mode",      "wall",    "container", "body",       "bodies",
-                                             "spring",    "springs", "fix",       "ignore"};
+constexpr std::array<Word, 15> item_words = {"dimension", "gravity", "material", "combine",   "attraction",
+                                             "drag",      "mode",    "wall",     "container", "body",
+                                             "bodies",    "spring",  "springs",  "fix",       "ignore"};
 
 constexpr std::array<Word, 3> material_words = {"restitution", "friction", "rolling"};
 constexpr std::array<Word, 4> wall_words = {"restitution", "friction", "rolling", "thin"};
@@ -166,6 +167,8 @@ ast::WorldSetting Parser::parse_world_setting(ast::Identifier word) {
     setting.value = parse_point_with_unit();
   } else if (which == "material") {
     setting.attributes = parse_world_attributes("a material", material_words);
+  } else if (which == "combine") {
+    setting.attributes = parse_world_attributes("`combine`", material_words, true);
   } else if (which == "attraction") {
     setting.value = parse_sum_of_terms();
     setting.attributes = parse_world_attributes("an attraction", attraction_words);
@@ -288,7 +291,7 @@ ast::WorldFamily Parser::parse_world_family() {
   return {std::move(index), std::move(range), std::move(body)};
 }
 
-ast::WorldAttributes Parser::parse_world_attributes(Word of, std::span<const Word> known) {
+ast::WorldAttributes Parser::parse_world_attributes(Word of, std::span<const Word> known, bool all_names) {
   ast::WorldAttributes attributes;
   while (true) {
     accept(TokenKind::comma);
@@ -303,7 +306,15 @@ ast::WorldAttributes Parser::parse_world_attributes(Word of, std::span<const Wor
       fail(error("E124", current().span, fmt::format("`{}` is given twice", word), "", "keep one of them"));
     ast::WorldAttribute attribute;
     attribute.name = {word, advance().span};
-    attribute.value = is_flag(word) ? Expression{ast::Missing{}, attribute.name.span} : parse_world_value(word);
+    if (is_flag(word)) {
+      attribute.value = {ast::Missing{}, attribute.name.span};
+    } else if (all_names || takes_name(word)) {
+      if (all_names && !at(TokenKind::name))
+        unexpected(fmt::format("a name after `{}`", word), fmt::format("one of {}", fmt::join(combinations, ", ")));
+      attribute.value = parse_world_name(word);
+    } else {
+      attribute.value = parse_world_value(word);
+    }
     attributes.push_back(std::move(attribute));
   }
   if (!at_statement_end()) left_over({});
@@ -313,14 +324,15 @@ ast::WorldAttributes Parser::parse_world_attributes(Word of, std::span<const Wor
 Expression Parser::parse_world_value(Word word) {
   if (takes_point(word)) return parse_point_with_unit();
   if (word == "spin" || word == "angle") return parse_tree(Level::additive).expression;  // in space a list
-  if (takes_name(word)) {
-    const ast::Identifier name = parse_identifier(fmt::format("a name after `{}`", word));
-    ast::Name value;
-    value.text = name.text;
-    value.span = name.span;
-    return {std::move(value), name.span};
-  }
   return parse_sum_of_terms();
+}
+
+Expression Parser::parse_world_name(Word word) {
+  const ast::Identifier name = parse_identifier(fmt::format("a name after `{}`", word));
+  ast::Name value;
+  value.text = name.text;
+  value.span = name.span;
+  return {std::move(value), name.span};
 }
 
 }  // namespace continuo::model::detail

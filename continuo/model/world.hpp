@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,14 @@ using NodePoint = std::array<NodeId, 3>;  // the third is not valid in the plane
 struct MaterialDescription {
   NodeId restitution, friction, rolling;
 };
+
+/// How the numbers of two surfaces become those of their contact: each one of `combinations`.
+struct MeetingDescription {
+  std::string restitution = "maximum", friction = "geometric_mean", rolling = "maximum";
+  friend bool operator==(const MeetingDescription&, const MeetingDescription&) = default;
+};
+inline constexpr std::array<std::string_view, 5> combinations{"average", "minimum", "maximum", "product",
+                                                              "geometric_mean"};
 
 /// Where it is and how it moves at the start are the initial values of its states.
 struct BodyDescription {
@@ -82,7 +91,8 @@ struct WorldDescription {
   NodePoint gravity;
   NodeId attraction, softening, opening;  // not valid without attraction
   NodeId drag_linear, drag_quadratic;     // not valid without drag
-  std::vector<BodyDescription> bodies;    // their states are the first of the model, in this order
+  MeetingDescription meeting;
+  std::vector<BodyDescription> bodies;  // their states are the first of the model, in this order
   std::vector<WallDescription> walls;
   std::vector<SpringDescription> springs;
   std::vector<ForceDescription> forces, torques;

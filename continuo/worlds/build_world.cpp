@@ -1,4 +1,7 @@
 // continuo/worlds/build_world.cpp
+#include <algorithm>
+#include <array>
+#include <string>
 #include <vector>
 
 #include <continuo/worlds/build_world.hpp>
@@ -44,6 +47,14 @@ class Values {
   std::vector<double> values_;
   std::size_t next_ = 0;
 };
+
+Combine combination(const std::string& name) {
+  const auto at = std::ranges::find(model::combinations, name) - model::combinations.begin();
+  constexpr std::array kinds{Combine::average, Combine::minimum, Combine::maximum, Combine::product,
+                             Combine::geometric_mean};
+  static_assert(kinds.size() == model::combinations.size());
+  return kinds[static_cast<std::size_t>(at)];
+}
 
 }  // namespace
 
@@ -122,6 +133,9 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
     made.damping = values.next();
     world.springs.push_back(made);
   }
+  world.meeting = {.restitution = combination(text.meeting.restitution),
+                   .friction = combination(text.meeting.friction),
+                   .rolling_resistance = combination(text.meeting.rolling)};
   for (const auto& [a, b] : text.ignored) world.ignore(a, b);
   return built;
 }

@@ -1,12 +1,15 @@
 // Worlds as bytes: what goes on from them goes on to the same bits, and bytes that are wrong are said to be.
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include <continuo/bodies/recording.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
 namespace continuo {
@@ -42,6 +45,7 @@ World<Real, Dim> crowd(unsigned seed, bool has_springs) {
     last = added.handle;
   }
   world.ignore(2, 3);
+  world.meeting = {.restitution = Combine::average, .rolling_resistance = Combine::product};
   return world;
 }
 
@@ -168,6 +172,30 @@ TEST(Snapshot, CorruptBytesAreRefused) {
     wrong.insert(wrong.end(), sum.bytes().begin(), sum.bytes().end());
     if (restore(wrong, again, motion_again).empty()) (void)motion_again.advance_to(again.time + 0.01);
   }
+}
+
+// What the fuzzer starts from is of the format as it is, or it would get no further than the version.
+TEST(Snapshot, TheFuzzersInputsAreOfThisVersion) {
+  const auto input = [](const std::string& name) {
+    std::ifstream file(CONTINUO_SOURCE_DIR "/tests/fuzz/snapshot/" + name, std::ios::binary);
+    Bytes bytes;
+    for (std::istreambuf_iterator<char> at(file), end; at != end; ++at) bytes.push_back(static_cast<std::byte>(*at));
+    return bytes;
+  };
+  World<double, 3> world;
+  World<float, 2> flat;
+  EXPECT_EQ(restore(input("world"), world), "");
+  ExactMotion exact(world, {.contact_events = 10});
+  FastMotion fast(world, {.contact_events = 10});
+  EXPECT_EQ(restore(input("exact"), world, exact), "");
+  EXPECT_EQ(restore(input("fast"), world, fast), "");
+  ExactMotion exact_flat(flat, {.contact_events = 10});
+  FastMotion fast_flat(flat, {.contact_events = 10});
+  EXPECT_EQ(restore(input("exact_flat"), flat, exact_flat), "");
+  EXPECT_EQ(restore(input("fast_flat"), flat, fast_flat), "");
+  const auto recording = Recording<double, 3>::read(input("recording"));
+  EXPECT_EQ(recording.error, "");
+  EXPECT_TRUE(recording.is_whole);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ const words = new Set([
 ]);
 // These begin something only where a name, a number or a bracket follows: `body ball`, `wall (0, 1)`. Elsewhere they are names.
 const ofWorlds = new Set([
-  "world", "force", "torque", "dimension", "gravity", "material", "attraction", "drag", "body", "bodies", "wall", "container", "spring", "springs", "fix",
+  "world", "force", "torque", "dimension", "gravity", "material", "combine", "attraction", "drag", "body", "bodies", "wall", "container", "spring", "springs", "fix",
   "ignore",
 ]);
 const shapes = new Set(["floor", "ball", "spring", "rod", "rope", "arrow", "trail", "box", "text"]);
