@@ -88,7 +88,7 @@ Value Checker::value_at(const ast::ValueOf& text, Scope& scope, Span span, Check
   check.measure = Measure::value;
   const auto* call = std::get_if<ast::Call>(&text.expression.node);
   const bool plain = call && call->arguments.size() == 1 && !is_function(call->callee.text) &&
-                     std::holds_alternative<ast::AtEnd>(text.moment);
+                     !asks_the_world(call->callee, scope) && std::holds_alternative<ast::AtEnd>(text.moment);
   Value value;
   if (plain) {
     ast::Expression name{call->callee, call->callee.span};

@@ -240,6 +240,24 @@ class Checker {
   void make_torque(Placed<ast::Force>& torque, std::size_t body);
   void judge_world();
 
+  bool asks_the_world(const ast::Name& callee, const Scope& scope) const;  // check_world_queries.cpp
+  Value query(const ast::Call& node, Span span, Scope& scope);
+  std::optional<Pairs> pairs_of(const ast::Call& node, std::size_t first, Span span, Scope& scope);
+  std::optional<std::vector<Thing>> things(const ast::Expression& text, Scope& scope);
+  std::optional<std::vector<Thing>> things_named(const ast::Name& name, Scope& scope);
+  Thing thing_of(std::size_t body);
+  Value least_gap(const Pairs& pairs);
+  Value count_within(const Pairs& pairs, const ast::Call& node, Scope& scope);
+  Value cast_ray(const Pairs& pairs, const ast::Call& node, Scope& scope);
+  Measured measure_of_direction(const ast::Expression& text, Scope& scope);
+  NodeId gap_between(const Thing& a, const Thing& b);
+  NodeId way_to_body(const Thing& body, const NodePoint& centre, const NodePoint& direction, NodeId reach);
+  NodeId way_to_wall(const WallDescription& wall, const NodePoint& from, const NodePoint& direction, NodeId reach);
+  NodeId length_in(const ast::Expression& text, Scope& scope, std::string_view what);
+  NodeId length_of(const NodePoint& v);
+  NodeId inner_product(const NodePoint& v, const NodePoint& w);
+  NodePoint from_to(const NodePoint& from, const NodePoint& to);
+
   void make_body(BodyText& body);  // check_world_bodies.cpp
   void make_pattern(PatternText& pattern);
   BodyDescription description_of(const ast::WorldAttributes& attributes, Scope& scope);

@@ -32,6 +32,8 @@ void write_out(ast::Expression& expression, const std::vector<Index>& indices) {
           inside(*node.right);
         } else if constexpr (std::is_same_v<T, ast::Call>) {
           std::ranges::for_each(node.arguments, inside);
+        } else if constexpr (std::is_same_v<T, ast::List>) {
+          std::ranges::for_each(node.items, inside);
         } else if constexpr (std::is_same_v<T, ast::Quantity>) {
           inside(*node.value);
         }

@@ -165,6 +165,7 @@ Value Checker::call(const ast::Call& node, Span span, Scope& scope) {
   const std::string& name = node.callee.text;
   if (name == "interp") return interpolation(node, span, scope);
   const Function* function = node.callee.indices.empty() && node.callee.primes == 0 ? find_function(name) : nullptr;
+  if (!function && asks_the_world(node.callee, scope)) return query(node, span, scope);
   if (!function) return sample(node, span, scope);
   const std::size_t count = node.arguments.size();
   if (count < function->least || count > function->most) {
@@ -207,6 +208,7 @@ Value Checker::sample(const ast::Call& node, Span span, Scope& scope) {
   if (!find(*key, scope.mode) && families_.find(node.callee.text) == families_.end()) {
     std::vector<std::string> names{"interp"};
     for (const Function& known : functions) names.emplace_back(known.name);
+    if (world_.text) names.insert(names.end(), {"distance", "within", "ray"});
     const std::string near = did_you_mean(node.callee.text, names);
     fail("E215", node.callee.span, fmt::format("there is no function `{}`", node.callee.text), {}, near);
     return bad();

@@ -31,6 +31,8 @@ bool has_primes(const ast::Expression& expression) {
           return has_primes(*node.value);
         } else if constexpr (std::is_same_v<T, ast::Sum>) {
           return has_primes(*node.body);
+        } else if constexpr (std::is_same_v<T, ast::List>) {
+          return std::ranges::any_of(node.items, has_primes);
         } else {
           return false;
         }
@@ -103,6 +105,8 @@ void Checker::see_primes(const ast::Expression& expression, Scope& scope) {
           see_primes(*node.value, scope);
         } else if constexpr (std::is_same_v<T, ast::Sum>) {
           for_each_term(node, scope, [&] { see_primes(*node.body, scope); });
+        } else if constexpr (std::is_same_v<T, ast::List>) {
+          for (const ast::Expression& item : node.items) see_primes(item, scope);
         }
       },
       expression.node);

@@ -137,6 +137,14 @@ struct PatternText {
   std::vector<long> counts;
   std::size_t first, count;  // of its bodies
 };
+/// What a query asks about: a body, a wall, or a point.
+struct Thing {
+  std::size_t body = no_body, wall = no_body;  // wall: by its number
+  NodePoint point{};                           // of a body its centre
+  bool is_wall() const { return wall != no_body; }
+};
+/// Who asks, and about what.
+using Pairs = std::vector<std::pair<Thing, Thing>>;
 /// Numbers that are held to their sort all at once.
 struct ToJudge {
   NodeId node;
@@ -157,7 +165,7 @@ struct WorldAtWork {
   std::vector<ToJudge> to_judge{};
   Measured length = Measured::unknown(), mass = Measured::unknown();
   WorldDescription made{};
-  bool bodies_are_made = false;
+  bool bodies_are_made = false, is_made = false;  // is_made: walls, too
 
   std::size_t axes() const { return static_cast<std::size_t>(dimension); }
 };

@@ -14,4 +14,10 @@ inline const ast::Expression* attribute(const ast::WorldAttributes& attributes, 
   return found == attributes.end() ? nullptr : &found->value;
 }
 
+/// `(1, 2)`, `(1, 2) [m]`.
+inline bool is_point(const ast::Expression& expression) {
+  const auto* quantity = std::get_if<ast::Quantity>(&expression.node);
+  return std::holds_alternative<ast::List>(quantity ? quantity->value->node : expression.node);
+}
+
 }  // namespace continuo::model::detail

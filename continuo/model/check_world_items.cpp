@@ -171,6 +171,7 @@ void Checker::make_world() {
     if (state.in_world && !state.initial.valid()) state.initial = g.constant(0);
   }
   judge_world();
+  world_.is_made = true;
 }
 
 MaterialDescription Checker::material_of(const ast::WorldAttributes& attributes, Scope& scope) {

@@ -338,12 +338,13 @@ Tree Parser::parse_name_or_call() {
 
 Tree Parser::parse_arguments(ast::Name callee, int height) {
   const Token open = advance();
+  const bool takes_numbers = is_function(callee.text);
   ++round_brackets_;
   std::vector<Expression> arguments;
   go_on_inside_brackets();
   while (!at(TokenKind::close_round)) {
     Tree argument = parse_tree(Level::logical_or);
-    require_single(argument.expression);
+    if (takes_numbers) require_single(argument.expression);  // a ray has a direction, too
     height = std::max(height, argument.height);
     arguments.push_back(std::move(argument.expression));
     go_on_inside_brackets();
