@@ -57,6 +57,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
       reader.expect(
           pair.a < world_.size() && pair.b < world_.size() && (!pair.with_wall() || pair.wall < world_.walls().size()),
           "contacts of other bodies");
+    reader.expect(std::ranges::is_sorted(lasting_, {}, &Lasting::pair), "contacts out of order");
   }
 
   using ExactEngine<Real, Dim>::statistics;
@@ -64,6 +65,21 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
 
  private:
   static constexpr Real never = std::numeric_limits<Real>::infinity();
+
+  /// A contact that is held, and its impulse so far.
+  struct Lasting {
+    Touching pair{};
+    Real impulse{};
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(pair.a), archive(pair.b), archive(pair.wall), archive(impulse);
+    }
+  };
+  /// Of contacts in order.
+  static const Lasting* find(const std::vector<Lasting>& contacts, const Touching& pair) {
+    const auto at = std::ranges::lower_bound(contacts, pair, {}, &Lasting::pair);
+    return at != contacts.end() && at->pair == pair ? &*at : nullptr;
+  }
 
   Real usual_contact_time() {
     using std::sqrt;
@@ -97,7 +113,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     using Watched = Candidate::Watched;
     for (Candidate& at : candidates_) at.watched = gap(at.pair) < -allowance_ / 2 ? Watched::approach : Watched::gap;
     for (std::size_t k = 0; k < held.size(); ++k)
-      std::ranges::find(candidates_, held[k], &Candidate::pair)->watched = Watched::nothing;
+      std::ranges::lower_bound(candidates_, held[k], {}, &Candidate::pair)->watched = Watched::nothing;
 
     ForcedFlow<Real, Dim> flow(world_, companions_, std::move(held));
     const Real least = 64 * std::numeric_limits<Real>::epsilon(), tolerance = std::max(options_.tolerance, least);
@@ -113,17 +129,19 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     }
     if (options_.step > Real(0)) {
       how.step = options_.step;
-      return follow(t, flow, Rk4{}, how, reach);
+      return follow(t, std::move(flow), Rk4{}, how, reach);
     }
     how.first_step = std::min(step_, Real(t - world_.time));
-    return follow(t, flow, Dop853{}, how, reach);
+    return follow(t, std::move(flow), Dop853{}, how, reach);
   }
 
   template <class Method>
-  std::string follow(const Real& t, ForcedFlow<Real, Dim>& flow, Method method, const Options<X>& how,
+  std::string follow(const Real& t, ForcedFlow<Real, Dim> flow, Method method, const Options<X>& how,
                      const Real& reach) {
-    Integrator integrator(flow, flow.pack(), Interval<Real>{world_.time, t}, method, how,
-                          ForcedWatch<Real, Dim>(world_, candidates_, allowance_, reach, flow));
+    X start = flow.pack();
+    ForcedWatch<Real, Dim> watch(world_, candidates_, allowance_, reach, flow.held().size());
+    Integrator integrator(std::move(flow), std::move(start), Interval<Real>{world_.time, t}, method, how,
+                          std::move(watch));
     while (integrator.advance()) step_ = integrator.step_size();
     if (!succeeded(integrator.outcome().ending))
       return "the path cannot be followed beyond t = " + std::to_string(integrator.t()) + ": " +
@@ -131,8 +149,9 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     const Real duration = integrator.t() - world_.time;
     // Where contacts cut flights short, a longer step would only have more of them to look for.
     if (integrator.t() < t) step_ = std::min(step_, 2 * duration);
-    for (std::size_t k = 0; k < lasting_.size(); ++k) lasting_[k].impulse += flow.impulse(integrator.x(), k);
-    flow.store(integrator.x(), world_, companions_, duration);
+    for (std::size_t k = 0; k < lasting_.size(); ++k)
+      lasting_[k].impulse += integrator.system().impulse(integrator.x(), k);
+    integrator.system().store(integrator.x(), world_, companions_, duration);
     world_.time = integrator.t();
     resolve();
     return {};
@@ -151,6 +170,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
           candidates_.push_back({.pair = {.a = i, .b = j}});
       }
     }
+    std::ranges::sort(candidates_, {}, &Candidate::pair);  // so are those that are held
   }
 
   Real gap(const Touching& at) const {
@@ -207,8 +227,13 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     using std::sqrt;
     HeldContacts<Real, Dim> held(world_, gentle, slow, Real(sqrt(pull / smallest)), force, torque);
     held.settle(world_.velocity, world_.spin);
+    std::size_t k = 0;
     for (const Touching& at : gentle)
-      if (!held.contains(at)) strike(at, slow / 1'000'000, before, false, false);  // what is less is rounding
+      if (k < held.size() && held[k] == at) {
+        ++k;
+      } else {
+        strike(at, slow / 1'000'000, before, false, false);  // what is less is rounding
+      }
     return held;
   }
   bool strike(const Touching& at, const Real& slow, const std::vector<Real>& before, bool is_squeezed, bool is_caught) {
@@ -226,7 +251,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     const bool loses = material.restitution < Real(1) || material.friction > Real(0);
     const bool is_held =
         world_.time - before[at.a] < contact_time_ || (!is_wall && world_.time - before[at.b] < contact_time_);
-    const bool is_lasting = std::ranges::find(lasting_, at, &Lasting::pair) != lasting_.end();
+    const bool is_lasting = find(lasting_, at) != nullptr;
     if (is_held || is_lasting) material.restitution = material.restitution < Real(1) ? Real(0) : Real(1);
     if (is_squeezed && loses) material.restitution = Real(0);
     const Real impulse = collide(a, b, n, material);
@@ -244,13 +269,12 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   void note_lasting(const HeldContacts<Real, Dim>& held) {
     std::vector<Lasting> now;
     for (std::size_t k = 0; k < held.size(); ++k) {
-      const auto known = std::ranges::find(lasting_, held[k], &Lasting::pair);
-      now.push_back({held[k], known == lasting_.end() ? Real(0) : known->impulse});
-      if (known == lasting_.end()) note(held[k], ContactChange::begin, Real(0));
+      const Lasting* const known = find(lasting_, held[k]);
+      now.push_back({held[k], known ? known->impulse : Real(0)});
+      if (!known) note(held[k], ContactChange::begin, Real(0));
     }
     for (const Lasting& one : lasting_)
-      if (std::ranges::find(now, one.pair, &Lasting::pair) == now.end())
-        note(one.pair, ContactChange::end, one.impulse);
+      if (!find(now, one.pair)) note(one.pair, ContactChange::end, one.impulse);
     lasting_ = std::move(now);
   }
   void note(const Touching& at, ContactChange change, const Real& impulse) {
@@ -272,15 +296,6 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   World<Real, Dim>& world_;
   Companions<Real, Dim>* companions_;
   ExactOptions<Real> options_;
-  /// A contact that is held, and its impulse so far.
-  struct Lasting {
-    Touching pair{};
-    Real impulse{};
-    template <class Archive>
-    void transfer(Archive& archive) {
-      archive(pair.a), archive(pair.b), archive(pair.wall), archive(impulse);
-    }
-  };
 
   Real contact_time_{}, step_{}, allowance_{};
   std::vector<Real> last_;  // when each body collided last

@@ -20,7 +20,7 @@ struct Candidate {
   Watched watched = Watched::gap;
 };
 
-/// Guards that fall through 0, each of which stops the flight: of every candidate; of every contact that is held two;
+/// Guards that fall through 0, each of which stops the flight: of every candidate; of every contact that is held three;
 /// and last, how far bodies are from where the list ends.
 template <class Real, int Dim>
 class ForcedWatch {
@@ -30,17 +30,17 @@ class ForcedWatch {
 
   /// A gap is watched for falling below -`allowance`.
   ForcedWatch(const World<Real, Dim>& world, const std::vector<Candidate>& candidates, const Real& allowance,
-              const Real& reach, ForcedFlow<Real, Dim> flow)
+              const Real& reach, std::size_t held)
       : world_(&world),
         candidates_(&candidates),
         allowance_(allowance),
         reach_(reach),
-        flow_(std::move(flow)),
+        held_(held),
         begin_(world.position),
         x_(begin_),
         v_(begin_) {}
 
-  std::size_t size() const { return candidates_->size() + 2 * flow_.held().size() + 1; }
+  std::size_t size() const { return candidates_->size() + HeldContacts<Real, Dim>::guards * held_ + 1; }
   std::string_view name(std::size_t i) const { return i + 1 < size() ? "contact" : "list"; }
   Direction direction(std::size_t) const { return Direction::falls; }
   bool is_guard(std::size_t) const { return true; }
@@ -50,19 +50,17 @@ class ForcedWatch {
   }
   Real next_time(std::size_t, Real, bool) const { return std::numeric_limits<Real>::infinity(); }
 
-  template <class System>
-  void guards(System&, Real t, const X& state, std::span<Real> values) {
+  void guards(ForcedFlow<Real, Dim>& flow, Real t, const X& state, std::span<Real> values) {
     ForcedFlow<Real, Dim>::unpack(state, x_, v_);
     std::size_t next = 0;
     for (const Candidate& candidate : *candidates_) values[next++] = guard(candidate);
-    if (flow_.held().size() > 0) {
+    if (held_ > 0) {
       rate_.resize(state.size());
-      flow_(t, state, rate_);
+      flow(t, state, rate_);
     }
-    for (std::size_t k = 0; k < flow_.held().size(); ++k) {
-      values[next++] = flow_.held().press(k);
-      values[next++] = flow_.held().grip(k);
-    }
+    for (std::size_t k = 0; k < held_; ++k)
+      for (std::size_t which = 0; which < HeldContacts<Real, Dim>::guards; ++which)
+        values[next++] = flow.held().guard(k, which);
     Real farthest(0);
     for (std::size_t i = 0; i < x_.size(); ++i) farthest = std::max(farthest, squared(V(x_[i] - begin_[i])));
     values[next] = reach_ * reach_ - farthest;
@@ -90,7 +88,7 @@ class ForcedWatch {
   const World<Real, Dim>* world_;
   const std::vector<Candidate>* candidates_;
   Real allowance_, reach_;
-  ForcedFlow<Real, Dim> flow_;
+  std::size_t held_;
   std::vector<V> begin_, x_, v_;
   X rate_;
 };

@@ -1,0 +1,156 @@
+// The linear equations of contacts that act together: how much each speed changes by a unit of each force. Two contacts
+// know of each other only through a body that both touch: of many the matrix is sparse. Few are solved as a dense one.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/world.hpp>
+#include <continuo/numerics/dense_lu.hpp>
+#include <continuo/numerics/sparse_lu.hpp>
+
+namespace continuo {
+
+/// A direction in which a contact acts: the force and the torque on each body at its ends. By virtual work the speed in
+/// the direction is the sum of force . v + torque . spin.
+template <class Real, int Dim>
+struct ContactDirection {
+  struct End {
+    std::uint32_t body = 0;
+    Vector<Real, Dim> force{};
+    Spin<Real, Dim> torque{};
+  };
+  std::array<End, 2> at{};
+  std::size_t count = 0;
+
+  void add(const End& end) { at[count++] = end; }
+  std::span<const End> ends() const { return std::span(at).first(count); }
+};
+
+/// The speed in a direction that a unit in another makes.
+template <class Real, int Dim>
+Real response(const World<Real, Dim>& world, const ContactDirection<Real, Dim>& of,
+              const ContactDirection<Real, Dim>& to) {
+  Real sum(0);
+  for (const auto& e : of.ends())
+    for (const auto& f : to.ends())
+      if (e.body == f.body)
+        sum += world.inverse_mass[e.body] * dot(e.force, f.force) +
+               world.inverse_inertia[e.body] * dot(e.torque, f.torque);
+  return sum;
+}
+
+template <class Real, int Dim>
+class ContactMatrix {
+ public:
+  using Directions = std::vector<ContactDirection<Real, Dim>>;
+
+  /// Of each row the change of speed that a unit of each column makes; both of the same contacts.
+  void fill(const World<Real, Dim>& world, const Directions& rows, const Directions& columns) {
+    if (!is_of(rows)) make_pattern(world, rows);
+    for (std::size_t column = 0; column < columns.size(); ++column)
+      for (std::size_t entry = pattern_.begin(column); entry < pattern_.end(column); ++entry)
+        values_[entry] = response(world, rows[pattern_.row(entry)], columns[column]);
+  }
+
+  /// From the changes of speed that are wanted to the forces that make them; false where the matrix is singular. More
+  /// contacts than bodies need leave it so: of all forces that do, a small diagonal, 1e-5 of the greatest entry there,
+  /// takes the smallest. What that leaves wrong two more rounds take away: 1e-15, and no force is more than 3e5 times
+  /// what it should be for what cannot be.
+  bool solve(std::vector<Real>& wanted) {
+    const std::size_t n = wanted.size();
+    Real greatest(0);
+    for (std::size_t k = 0; k < n; ++k) greatest = std::max(greatest, std::abs(values_[diagonal_[k]]));
+    if (!factor(Real(1e-5) * greatest)) return false;
+    force_.assign(n, Real(0));
+    for (int round = 0; round < 3; ++round) {
+      rest_ = wanted;
+      if (round > 0)
+        for (std::size_t column = 0; column < n; ++column)
+          for (std::size_t entry = pattern_.begin(column); entry < pattern_.end(column); ++entry)
+            rest_[pattern_.row(entry)] -= values_[entry] * force_[column];
+      solve_factored();
+      for (std::size_t k = 0; k < n; ++k) force_[k] += rest_[k];
+    }
+    wanted = force_;
+    return true;
+  }
+
+ private:
+  /// Up to here a dense decomposition is faster than a sparse one, see bench/bodies/README.md.
+  static constexpr std::size_t greatest_dense = 24;
+  using Bodies = std::array<std::uint32_t, 2>;
+
+  static Bodies bodies_of(const ContactDirection<Real, Dim>& direction) {
+    return {direction.at[0].body, direction.at[direction.count - 1].body};
+  }
+  bool is_of(const Directions& rows) const { return std::ranges::equal(rows, bodies_, {}, &ContactMatrix::bodies_of); }
+  void make_pattern(const World<Real, Dim>& world, const Directions& rows) {
+    const std::size_t n = rows.size();
+    bodies_.clear();
+    for (const auto& row : rows) bodies_.push_back(bodies_of(row));
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> at_bodies;  // a body and a row there
+    for (std::uint32_t r = 0; r < n; ++r)
+      for (const auto& end : rows[r].ends())
+        if (!world.is_fixed(end.body)) at_bodies.emplace_back(end.body, r);
+    std::ranges::sort(at_bodies);
+    std::vector<MatrixPlace> places;
+    for (auto first = at_bodies.begin(); first != at_bodies.end();) {
+      const auto last =
+          std::find_if(first, at_bodies.end(), [&](const auto& one) { return one.first != first->first; });
+      for (auto r = first; r != last; ++r)
+        for (auto c = first; c != last; ++c) places.push_back({r->second, c->second});
+      first = last;
+    }
+    pattern_ = SparsePattern(n, places);
+    values_.assign(pattern_.entries(), Real(0));
+    diagonal_.resize(n);
+    for (std::size_t k = 0; k < n; ++k) diagonal_[k] = pattern_.find(k, k);
+    dense_.reset(), sparse_.reset();
+    if (n > greatest_dense) {
+      sparse_.emplace(pattern_);
+    } else {
+      dense_.emplace(n);
+    }
+  }
+
+  bool factor(const Real& more) {
+    if (sparse_) {
+      std::ranges::copy(values_, sparse_->values().begin());
+      for (const std::size_t entry : diagonal_) sparse_->values()[entry] += static_cast<double>(more);
+      return sparse_->factor();
+    }
+    const std::size_t n = pattern_.size();
+    auto& matrix = dense_->matrix();
+    std::ranges::fill(matrix, Real(0));
+    for (std::size_t column = 0; column < n; ++column)
+      for (std::size_t entry = pattern_.begin(column); entry < pattern_.end(column); ++entry)
+        matrix[pattern_.row(entry) * n + column] = values_[entry];
+    for (std::size_t k = 0; k < n; ++k) matrix[k * n + k] += more;
+    return dense_->factor();
+  }
+  void solve_factored() {
+    if (!sparse_) return dense_->solve(rest_.data());
+    if constexpr (std::is_same_v<Real, double>) {
+      sparse_->solve(rest_.data());
+    } else {
+      std::vector<double> wide(rest_.begin(), rest_.end());
+      sparse_->solve(wide.data());
+      std::ranges::transform(wide, rest_.begin(), [](double value) { return static_cast<Real>(value); });
+    }
+  }
+
+  std::vector<Bodies> bodies_;
+  SparsePattern pattern_;
+  std::vector<Real> values_, force_, rest_;
+  std::vector<std::size_t> diagonal_;
+  std::optional<DenseLU<Real, run_time_size>> dense_;
+  std::optional<SparseLU<double>> sparse_;
+};
+
+}  // namespace continuo
