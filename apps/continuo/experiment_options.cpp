@@ -151,6 +151,7 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
     return prepared;
   }
   if (decides_a_size(*prepared.loaded.model, *values)) {
+    prepared.decides_size = true;
     prepared.loaded = load_model(options.file, {.overrides = *values});
     if (!prepared.loaded) {
       prepared.exit = wrong_model;

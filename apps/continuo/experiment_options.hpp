@@ -48,6 +48,7 @@ struct Prepared {
   model::Loaded loaded;
   std::shared_ptr<const model::ModelProgram> program;
   model::Experiment experiment;
+  bool decides_size = false;  // the parameters that were set
 };
 /// Verbs that study equations refuse a world of bodies.
 enum class Worlds { refused, welcome };

@@ -28,6 +28,8 @@ int command(int argc, char** argv) {
   app.require_subcommand(1);
   ExitCode exit = done;
   add_run(app, exit);
+  add_replay(app, exit);
+  add_resume(app, exit);
   add_view(app, exit);
   add_check(app, exit);
   add_info(app, exit);

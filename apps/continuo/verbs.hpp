@@ -7,6 +7,8 @@
 namespace continuo::app {
 
 void add_run(CLI::App& app, ExitCode& exit);
+void add_replay(CLI::App& app, ExitCode& exit);
+void add_resume(CLI::App& app, ExitCode& exit);
 void add_view(CLI::App& app, ExitCode& exit);
 void add_check(CLI::App& app, ExitCode& exit);
 void add_info(CLI::App& app, ExitCode& exit);

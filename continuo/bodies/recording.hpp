@@ -11,8 +11,8 @@
 //   if (!recording.error.empty()) ...
 //   const auto frame = recording.frame(17);                // frame.time, frame.position[i]
 //
-// A block is its kind, its size, its bytes and their checksum. The last one is the index; a file that ends without it,
-// because the run did not, is read as far as its blocks are whole.
+// The last block is the index; a file that ends without it, because the run did not, is read as far as its blocks are
+// whole.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/blocks.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
 namespace continuo {
@@ -43,7 +44,7 @@ struct Frame {
 
 namespace detail {
 
-enum class Block : std::uint8_t { scene, frame, index };
+enum class RecordingBlock : std::uint8_t { scene, frame, index };
 
 struct RecordingHeader {
   static constexpr std::array<char, 8> expected{'c', 'o', 'n', 't', 'i', 'r', 'e', 'c'};
@@ -77,7 +78,7 @@ class Recorder {
     header.dim = Dim;
     ByteWriter writer;
     writer(header);
-    write(writer.bytes());
+    out_.write(writer.bytes());
   }
 
   void add(const World<Real, Dim>& world) {
@@ -85,37 +86,23 @@ class Recorder {
     for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i] = world.handle(i);
     if (index_.scenes.empty() || bodies != bodies_) {
       bodies_ = std::move(bodies);
-      index_.scenes.push_back(at_);
-      write_block(detail::Block::scene, snapshot(world));
+      index_.scenes.push_back(out_.position());
+      out_.write(detail::RecordingBlock::scene, snapshot(world));
     }
     ByteWriter writer;
     writer(Frame<Real, Dim>{world.time, index_.scenes.size() - 1, world.position, world.orientation});
-    index_.frames.push_back(at_);
-    write_block(detail::Block::frame, writer.bytes());
+    index_.frames.push_back(out_.position());
+    out_.write(detail::RecordingBlock::frame, writer.bytes());
   }
   void finish() {
     ByteWriter writer;
     writer(index_);
-    write_block(detail::Block::index, writer.bytes());
+    out_.write(detail::RecordingBlock::index, writer.bytes());
     out_.flush();
   }
 
  private:
-  void write_block(detail::Block kind, const Bytes& bytes) {
-    ByteWriter head, tail;
-    head(kind), head(static_cast<std::uint64_t>(bytes.size()));
-    tail(checksum(bytes));
-    write(head.bytes());
-    write(bytes);
-    write(tail.bytes());
-  }
-  void write(const Bytes& bytes) {
-    out_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    at_ += bytes.size();
-  }
-
-  std::ostream& out_;
-  std::uint64_t at_ = 0;
+  BlockWriter out_;
   std::vector<BodyHandle> bodies_;
   detail::RecordingIndex index_;
 };
@@ -143,18 +130,13 @@ struct Recording {
     reader.expect(header.version == 1, "a recording of another version");
     reader.expect(header.real == sizeof(Real) && header.dim == Dim, "numbers or dimensions of another kind");
     detail::RecordingIndex found;
-    while (reader.ok() && !recording.is_whole && reader.left() > 0) {
+    while (!recording.is_whole) {
       const std::uint64_t begin = reader.position();
-      detail::Block kind{};
-      std::uint64_t size = 0, sum = 0;
-      reader(kind), reader(size);
-      const std::span<const std::byte> block = reader.take(size);
-      reader(sum);
-      if (!reader.ok()) break;  // cut off here
-      reader.expect(sum == checksum(block), "the checksum does not fit the block before");
-      reader.expect(kind <= detail::Block::index, "a block of no known kind");
-      if (reader.ok()) recording.take(reader, kind, block, begin, found);
+      const auto block = next_block<detail::RecordingBlock>(reader);
+      if (block) reader.expect(block->kind <= detail::RecordingBlock::index, "a block of no known kind");
+      if (block && reader.ok()) recording.take(reader, block->kind, block->bytes, begin, found);
       if (!reader.ok()) return {.error = reader.error()};
+      if (!block) break;
     }
     if (recording.frames.empty())
       return {.error = reader.ok() ? "byte " + std::to_string(bytes.size()) + ": not one frame" : reader.error()};
@@ -162,14 +144,14 @@ struct Recording {
   }
 
  private:
-  void take(ByteReader& outer, detail::Block kind, std::span<const std::byte> block, std::uint64_t begin,
+  void take(ByteReader& outer, detail::RecordingBlock kind, std::span<const std::byte> block, std::uint64_t begin,
             detail::RecordingIndex& found) {
     ByteReader reader(block);
-    if (kind == detail::Block::scene) {
+    if (kind == detail::RecordingBlock::scene) {
       found.scenes.push_back(begin);
       if (const std::string why = restore(block, scenes.emplace_back()); !why.empty())
         outer.fail("the block before, " + why);
-    } else if (kind == detail::Block::frame) {
+    } else if (kind == detail::RecordingBlock::frame) {
       found.frames.push_back(begin);
       Frame<Real, Dim>& frame = frames.emplace_back();
       reader(frame);

@@ -101,6 +101,11 @@ and `info` read it. It has no equations `0 = ...` beside it and no conditions at
 
 A force or a start that is no number, a spring too stiff for the step (take a smaller one, or `mode exact`), bodies that
 collide without end between others that press them (take `mode fast`).)"},
+    Code{
+        "E325", "a recording does not fit its model",
+        R"(`continuo replay` and `continuo resume` read the model from the recording itself, but tables from their files. The
+numbers in it are of other states than the model has, or of a world that cannot be: the file was made by another version,
+or changed.)"},
     Code{"E330", "there is no such method", R"(`continuo methods` lists the methods with their order and use.)"},
     Code{
         "E331", "the method needs a step",

@@ -20,57 +20,112 @@ namespace {
 using model::Diagnostic;
 using X = std::vector<double>;
 
+constexpr std::chrono::seconds standing_of_clock{10};  // no more is lost where a long run is killed
 constexpr std::size_t contacts_of_one_look = 10'000, contacts_of_a_run = 100'000;
+
+/// Steps do not end at round times: rows are written when the time has come, with the time that it is.
+model::Plan as_the_recorder_sees(model::Plan plan) {
+  plan.output = model::OutputPlan::Kind::steps;
+  return plan;
+}
+
+/// Why a run ended before its end.
+Diagnostic ending_of(const model::Model& model, const Outcome<double>& outcome, const std::string& error) {
+  if (error.empty()) return failure(model, outcome);
+  return model::error("E324", model.world->span,
+                      fmt::format("the bodies cannot be moved beyond t = {:.6g}: {}", outcome.t, error));
+}
 
 class Simulation {
  public:
+  /// `look`: between two looks at what a `when` asks.
   Simulation(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
-             model::Plan plan, std::unique_ptr<WorldRun> world)
+             model::Plan plan, std::unique_ptr<WorldRun> world, double look, RunLog* log)
       : program_(program),
         experiment_(experiment),
         world_(std::move(world)),
-        events_(program, plan.variables, plan.from, (plan.to - plan.from) / looks),
+        log_(log),
+        events_(program, plan.variables, plan.from, look),
         times_(plan),
         samples_(sample_times(program->model, plan)),
         recorder_(*program, as_the_recorder_sees(plan), experiment.keep_rows, samples_, program->always) {
     run_.plan = std::move(plan);
+    end_time_ = run_.plan.to;
+    if (log_ && log_->standings() > 0)
+      stand_every_ = (end_time_ - run_.plan.from) / static_cast<double>(log_->standings());
+    next_standing_ = run_.plan.from;
   }
 
-  model::Simulated go() {
-    const auto begin = std::chrono::steady_clock::now();
+  void begin() {
     const double from = run_.plan.from;
-    end_time_ = run_.plan.to;
-    recorder_.begin(from, world_->state());
+    note({.kind = Note::Kind::begin, .t = from, .x = world_->state()});
     for (; next_row() <= from; ++next_output_) {
     }
     while (next_sample_ < samples_.size() && samples_[next_sample_] <= from) ++next_sample_;
     events_.begin(*world_, sink());
     end_where_stopped();
-    while (!ended_ && world_->time() < end_time_ - slack()) advance();
-    recorder_.finish(world_->time(), world_->state());
+    stand();
+  }
+
+  /// Empty, or why that standing is none of this model.
+  std::string resume(const RunRecording& recording, std::size_t standing) {
+    const Standing& at = recording.standings[standing];
+    if (at.stops.size() != events_.stops().size() || at.next_sample > samples_.size() ||
+        at.world.mode >= program_->model.modes.size())
+      return "it stands where this model cannot";
+    for (std::size_t i = 0, k = 0; i < at.notes; ++i) {
+      note(recording.notes[i]);
+      for (; log_ && k <= standing && recording.standings[k].notes == i + 1; ++k) log_->add(recording.standings[k]);
+    }
+    if (std::string error = world_->restore(at.world); !error.empty()) return error;
+    next_output_ = static_cast<std::size_t>(at.next_output);
+    next_sample_ = static_cast<std::size_t>(at.next_sample);
+    contacts_ = static_cast<std::size_t>(at.contacts);
+    const std::vector<std::size_t> stops(at.stops.begin(), at.stops.end());
+    events_.go_on(*world_, world_->variables(), stops);
+    next_standing_ = world_->time() + stand_every_;
+    return {};
+  }
+
+  model::Simulated go() {
+    const auto begin = std::chrono::steady_clock::now();
+    while (!ended_ && world_->time() < end_time_ - slack()) {
+      advance();
+      if (!ended_) stand();
+    }
     if (!ended_) run_.outcome.ending = Ending::reached_end;
     run_.outcome.t = world_->time();
+    if (!ended_) stand(true);
+    note({.kind = Note::Kind::finish, .t = world_->time(), .x = world_->state()});
     run_.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     run_.stop_text = events_.stop_text();
+    if (log_) log_->add(RunEnd{run_.outcome, run_.stop_text, error_, run_.statistics.seconds});
     recorder_.give(run_);
     run_.checks = judge(program_->model, run_, recorder_);
     model::Simulated simulated;
-    if (!error_.empty()) {
-      simulated.diagnostics.push_back(
-          model::error("E324", program_->model.world->span,
-                       fmt::format("the bodies cannot be moved beyond t = {:.6g}: {}", run_.outcome.t, error_)));
-    } else if (!succeeded(run_.outcome.ending)) {
-      simulated.diagnostics.push_back(failure(program_->model, run_.outcome));
-    }
+    if (!succeeded(run_.outcome.ending))
+      simulated.diagnostics.push_back(ending_of(program_->model, run_.outcome, error_));
     simulated.run = std::move(run_);
     return simulated;
   }
 
  private:
-  /// Steps do not end at round times: rows are written when the time has come, with the time that it is.
-  static model::Plan as_the_recorder_sees(model::Plan plan) {
-    plan.output = model::OutputPlan::Kind::steps;
-    return plan;
+  void note(const Note& note) {
+    if (log_) log_->add(note);
+    tell(recorder_, note);
+  }
+  /// From here the run can go on, if it is time to note that: by the run's time or by the clock.
+  void stand(bool is_end = false) {
+    const double t = world_->time();
+    const auto now = std::chrono::steady_clock::now();
+    if (!log_ || !(stand_every_ > 0) || (!is_end && t < next_standing_ && now - stood_ < standing_of_clock)) return;
+    stood_ = now;
+    log_->add({.world = world_->snapshot(),
+               .next_output = next_output_,
+               .next_sample = next_sample_,
+               .contacts = contacts_,
+               .stops = {events_.stops().begin(), events_.stops().end()}});
+    next_standing_ = t + stand_every_;
   }
   bool in_steps() const { return world_->step() > 0; }
   double slack() const { return slack_of(*world_); }
@@ -86,7 +141,10 @@ class Simulation {
 
   /// To the next instant that somebody asks for.
   void advance() {
-    if (is_interrupted()) return end(Ending::interrupted);
+    if (is_interrupted()) {
+      stand(true);
+      return end(Ending::interrupted);
+    }
     double to = std::min({end_time_, next_row(), events_.next(*world_)});
     if (next_sample_ < samples_.size()) to = std::min(to, samples_[next_sample_]);
     if (!program_->always.empty() && in_steps()) to = std::min(to, world_->time() + world_->step());
@@ -116,26 +174,29 @@ class Simulation {
     }
     bool sampled = false;
     for (; next_sample_ < samples_.size() && samples_[next_sample_] <= t; ++next_sample_) sampled = true;
-    const X& state = world_->state();
-    if (sampled) recorder_.sample_until(t, state);
-    if (row) {
-      recorder_.stretch(world_->time(), model::At{const_cast<X*>(&state),
-                                                  [](void* from, double, X& x) { x = *static_cast<X*>(from); }});
-    } else {
-      recorder_.look(world_->time(), state);
-    }
+    note({.kind = Note::Kind::arrival,
+          .t = world_->time(),
+          .x = world_->state(),
+          .is_row = row,
+          .is_sampled = sampled,
+          .until = t});
   }
 
   void note_contacts() {
     for (const Contact& contact : world_->contacts()) {
       if (contacts_ == contacts_of_a_run) return;
       ++contacts_;
-      recorder_.contact(contact.time, world_->name_of(contact), contact.impulse);
+      note({.kind = Note::Kind::contact,
+            .t = contact.time,
+            .name = world_->name_of(contact),
+            .impulse = contact.impulse});
     }
   }
 
   WorldEvents::Sink sink() {
-    return [this](const WorldHappening& now) { recorder_.happening(now.t, now.names, now.before, world_->state()); };
+    return [this](const WorldHappening& now) {
+      note({.kind = Note::Kind::happening, .t = now.t, .x = world_->state(), .before = now.before, .names = now.names});
+    };
   }
   void end_where_stopped() {
     if (!events_.stopped()) return;
@@ -151,13 +212,15 @@ class Simulation {
   std::shared_ptr<const model::ModelProgram> program_;
   const model::Experiment& experiment_;
   std::unique_ptr<WorldRun> world_;
+  RunLog* log_;
   WorldEvents events_;
   model::OutputTimes times_;
   std::vector<double> samples_;
   model::RunRecorder recorder_;
   model::Run run_{};
   std::size_t next_output_ = 0, next_sample_ = 0, contacts_ = 0;
-  double end_time_ = 0;
+  double end_time_ = 0, stand_every_ = 0, next_standing_ = 0;
+  std::chrono::steady_clock::time_point stood_ = std::chrono::steady_clock::now();
   bool ended_ = false;
   std::string error_;
 };
@@ -172,34 +235,119 @@ std::optional<Diagnostic> refusal(const model::Model& model) {
   return std::nullopt;
 }
 
-}  // namespace
-
-model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
-                                const model::Experiment& experiment) {
-  model::Simulated simulated;
+/// A world that can begin, and the plan of its run; or why there is none.
+struct Prepared {
+  std::optional<model::Plan> plan;
+  std::unique_ptr<WorldRun> world;
+};
+Prepared prepare(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
+                 std::vector<Diagnostic>& problems) {
   const model::Model& model = program->model;
   if (auto problem = refusal(model)) {
-    simulated.diagnostics.push_back(std::move(*problem));
-    return simulated;
+    problems.push_back(std::move(*problem));
+    return {};
   }
-  auto planned = plan(model, experiment, simulated.diagnostics);
-  if (!planned) return simulated;
+  auto planned = plan(model, experiment, problems);
+  if (!planned) return {};
   for (const model::TableInput& input : program->step_inputs)
     planned->variables[input.variable] = input.table.value(planned->from);
   WorldOptions options = options_of(*planned);
   options.most_contacts = contacts_of_one_look;
   options.interrupt = experiment.interrupt;
   StartedWorld started = start_world(program, options, planned->variables);
-  if (!started.run) {
-    simulated.diagnostics.push_back(model::error("E324", model.world->span, "the world cannot begin", started.error));
-    return simulated;
-  }
-  simulated = Simulation(program, experiment, std::move(*planned), std::move(started.run)).go();
+  if (!started.run)
+    problems.push_back(model::error("E324", model.world->span, "the world cannot begin", started.error));
+  return {std::move(planned), std::move(started.run)};
+}
+
+double look_of(const model::Plan& plan) {
+  return (plan.to - plan.from) / looks;
+}
+
+/// The model's states are in every note, or it is a note of another model.
+bool fits(const model::Model& model, const Note& note) {
+  if (note.kind == Note::Kind::contact) return true;
+  return note.x.size() == model.states.size() &&
+         (note.kind != Note::Kind::happening || note.before.size() == model.states.size());
+}
+Diagnostic does_not_fit(const model::Model& model, std::string_view why) {
+  return model::error("E325", model.world->span, "the recording does not fit its model", std::string(why));
+}
+
+}  // namespace
+
+model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
+                                const model::Experiment& experiment, RunLog* log) {
+  model::Simulated simulated;
+  Prepared prepared = prepare(program, experiment, simulated.diagnostics);
+  if (!prepared.world) return simulated;
+  const double look = look_of(*prepared.plan);
+  Simulation simulation(program, experiment, std::move(*prepared.plan), std::move(prepared.world), look, log);
+  simulation.begin();
+  simulated = simulation.go();
   if (experiment.estimate_error && succeeded(simulated.run->outcome.ending))
     simulated.run->error = estimate_error(program, experiment, *simulated.run, [&](model::Experiment strict) {
       strict.atol.clear();  // bodies have a relative one only
       return simulate_world(program, strict);
     });
+  return simulated;
+}
+
+model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording,
+                              std::size_t standing, const GoOn& how, RunLog* log) {
+  model::Simulated simulated;
+  model::Experiment experiment = recording.head.experiment;
+  const auto as_recorded = plan(program->model, experiment, simulated.diagnostics);
+  if (!as_recorded) return simulated;
+  experiment.interrupt = how.interrupt;
+  experiment.progress = how.progress;
+  if (how.to) experiment.to = how.to;
+  Prepared prepared = prepare(program, experiment, simulated.diagnostics);
+  if (!prepared.world) return simulated;
+  if (!std::ranges::all_of(recording.notes, [&](const Note& note) { return fits(program->model, note); })) {
+    simulated.diagnostics.push_back(does_not_fit(program->model, "it has other states"));
+    return simulated;
+  }
+  Simulation simulation(program, experiment, std::move(*prepared.plan), std::move(prepared.world),
+                        look_of(*as_recorded), log);
+  if (const std::string error = simulation.resume(recording, standing); !error.empty()) {
+    simulated.diagnostics.push_back(does_not_fit(program->model, error));
+    return simulated;
+  }
+  return simulation.go();
+}
+
+model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& program,
+                              const RunRecording& recording) {
+  model::Simulated simulated;
+  const model::Model& model = program->model;
+  auto planned = plan(model, recording.head.experiment, simulated.diagnostics);
+  if (!planned) return simulated;
+  model::RunRecorder recorder(*program, as_the_recorder_sees(*planned), recording.head.experiment.keep_rows,
+                              sample_times(model, *planned), program->always);
+  for (const Note& note : recording.notes) {
+    if (!fits(model, note)) {
+      simulated.diagnostics.push_back(does_not_fit(model, "it has other states"));
+      return simulated;
+    }
+    tell(recorder, note);
+  }
+  model::Run run{};
+  run.plan = std::move(*planned);
+  if (recording.end) {
+    run.outcome = recording.end->outcome;
+    run.stop_text = recording.end->stop_text;
+    run.statistics.seconds = recording.end->seconds;
+  } else {
+    run.outcome.ending = Ending::interrupted;
+    run.outcome.t = recording.notes.back().t;
+  }
+  recorder.give(run);
+  run.checks = judge(model, run, recorder);
+  if (!succeeded(run.outcome.ending))
+    simulated.diagnostics.push_back(
+        ending_of(model, run.outcome, recording.end ? recording.end->error : std::string()));
+  simulated.run = std::move(run);
   return simulated;
 }
 

@@ -8,14 +8,34 @@
 // world again. In the fast mode every step ends with a look, and an event happens there. Rows of the fast mode are the
 // first ends of steps that are not before the wanted times.
 #pragma once
+#include <atomic>
+#include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include <continuo/model/simulate.hpp>
+#include <continuo/worlds/run_log.hpp>
 
 namespace continuo::worlds {
 
+/// With a log it is recorded as it goes.
 model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
-                                const model::Experiment& experiment = {});
+                                const model::Experiment& experiment = {}, RunLog* log = nullptr);
+
+/// The run that was recorded, told again. The program must be of its text; numbers that do not fit it are told (E325).
+model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording);
+
+/// What of a run that goes on may be other than recorded.
+struct GoOn {
+  std::optional<double> to{};
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double t)> progress{};
+};
+/// The recorded run up to one of its standings, and from there on simulated: to the end that it was to have, to the
+/// same bits as without a break, or to another.
+model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording,
+                              std::size_t standing, const GoOn& how = {}, RunLog* log = nullptr);
 
 /// By simulate_world where the model has a world, else by model::simulate.
 model::Simulated simulate_any(const std::shared_ptr<const model::ModelProgram>& program,

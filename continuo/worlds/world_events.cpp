@@ -164,7 +164,7 @@ void WorldEvents::go_on(WorldRun& world, std::span<const double> variables, std:
   events_ = model::ModelEvents(*program_, variables, events_.begin());
   events_.resume(world.time(), counts);
   marks_seen_ = 0;
-  scheduled_after_ = world.time();
+  scheduled_after_ = world.time() + slack_of(world);  // up to there it has happened
   stopped_ = false;
   stopped_by_.clear();
   if (any_guard_) read_guards(world, before_);

@@ -1,0 +1,41 @@
+// The recording of a run on disk, written as the run goes and read again.
+#pragma once
+#include <cstddef>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include <continuo/worlds/run_log.hpp>
+
+namespace continuo::app {
+
+struct RecordTo {
+  std::string path{};  // empty: nowhere
+  std::size_t standings = 20;
+};
+/// --record and --snapshots.
+void add_record(CLI::App& verb, RecordTo& record);
+bool can_be_written(const RecordTo& record);
+
+class RunFile {
+ public:
+  explicit RunFile(const RecordTo& to) : to_(to) {}
+  bool is_wanted() const { return !to_.path.empty(); }
+  /// Opens the file. Null where it is not wanted, or cannot be opened.
+  worlds::RunLog* begin(const worlds::RunHead& head);
+  /// False, and said, where not all of it could be written.
+  bool close();
+
+ private:
+  RecordTo to_;
+  std::ofstream file_;
+  std::unique_ptr<worlds::RunLog> log_;
+};
+
+/// Says why there is none.
+std::optional<worlds::RunRecording> read_run(const std::string& path);
+
+}  // namespace continuo::app

@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include <continuo/worlds/run_log.hpp>
+
+namespace continuo::worlds {
+
+namespace {
+
+constexpr std::array<char, 8> magic{'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'};
+constexpr std::uint32_t version = 1;
+enum class Part : std::uint8_t { head, note, standing, end };
+
+// What each part is made of, once for both ways.
+
+template <class Archive, class T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+void transfer(Archive& archive, T& value) {
+  archive(value);
+}
+template <class Archive>
+void transfer(Archive& archive, std::string& text) {
+  std::vector<char> letters(text.begin(), text.end());
+  archive(letters);
+  if constexpr (Archive::reads) text.assign(letters.begin(), letters.end());
+}
+template <class Archive>
+void transfer(Archive& archive, model::RunRecorder::Name& name) {
+  transfer(archive, name.event), transfer(archive, name.mark);
+}
+template <class Archive>
+void transfer(Archive& archive, std::pair<std::string, double>& value) {
+  transfer(archive, value.first), transfer(archive, value.second);
+}
+template <class Archive, class T>
+void transfer(Archive& archive, std::optional<T>& value) {
+  bool is_there = value.has_value();
+  archive(is_there);
+  if (!is_there) return;
+  if constexpr (Archive::reads) value.emplace();
+  transfer(archive, *value);
+}
+template <class Archive, class T>
+void transfer_list(Archive& archive, std::vector<T>& values) {
+  auto count = static_cast<std::uint64_t>(values.size());
+  archive(count);
+  if constexpr (Archive::reads) {
+    values.clear();
+    if (count > archive.left()) return archive.fail("a list longer than the bytes that are left");
+    for (std::uint64_t i = 0; i < count && archive.ok(); ++i) transfer(archive, values.emplace_back());
+  } else {
+    for (T& value : values) transfer(archive, value);
+  }
+}
+template <class Archive>
+void transfer(Archive& archive, model::Overrides& values) {
+  std::vector<std::pair<std::string, double>> list(values.begin(), values.end());
+  transfer_list(archive, list);
+  if constexpr (Archive::reads) values = model::Overrides(list.begin(), list.end());
+}
+
+template <class Archive>
+void transfer(Archive& archive, RunHead& head) {
+  transfer(archive, head.file), transfer(archive, head.text);
+  archive(head.decides_size), archive(head.as_written);
+  model::Experiment& e = head.experiment;
+  transfer(archive, e.method);
+  for (std::optional<double>* number : {&e.rtol, &e.step, &e.from, &e.to, &e.output}) transfer(archive, *number);
+  archive(e.output_steps), archive(e.atol), archive(e.keep_rows);
+  transfer(archive, e.rtol_of), transfer(archive, e.atol_of), transfer(archive, e.parameters);
+}
+template <class Archive>
+void transfer(Archive& archive, Note& note) {
+  archive(note.kind), archive(note.t);
+  archive(note.x), archive(note.before);
+  archive(note.is_row), archive(note.is_sampled), archive(note.until);
+  transfer(archive, note.name), archive(note.impulse);
+  transfer_list(archive, note.names);
+  if constexpr (Archive::reads) archive.expect(note.kind <= Note::Kind::finish, "a note of no known kind");
+}
+template <class Archive>
+void transfer(Archive& archive, Standing& standing) {
+  Snapshot& world = standing.world;
+  archive(world.bodies), archive(world.equations), archive(world.variables);
+  archive(world.time), archive(world.start), archive(world.steps);
+  auto collisions = static_cast<std::uint64_t>(world.collisions), mode = static_cast<std::uint64_t>(world.mode);
+  archive(collisions), archive(mode);
+  transfer(archive, world.method), archive(world.step);
+  archive(standing.next_output), archive(standing.next_sample), archive(standing.contacts), archive(standing.stops);
+  if constexpr (Archive::reads) {
+    world.collisions = static_cast<std::size_t>(collisions), world.mode = static_cast<std::size_t>(mode);
+    archive.expect(std::isfinite(world.time) && std::isfinite(world.start), "a standing at no time");
+  }
+}
+template <class Archive>
+void transfer(Archive& archive, RunEnd& end) {
+  Outcome<double>& o = end.outcome;
+  archive(o.ending), archive(o.t), archive(o.h), archive(o.error), archive(o.limit_time);
+  for (std::string* text : {&o.component, &o.event, &o.hint, &end.stop_text, &end.error}) transfer(archive, *text);
+  archive(end.seconds);
+  if constexpr (Archive::reads) {
+    const auto ending = static_cast<int>(o.ending);
+    archive.expect(ending >= 0 && ending <= static_cast<int>(Ending::invalid_input), "an end of no known kind");
+  }
+}
+
+template <class T>
+Bytes bytes_of(const T& part) {
+  ByteWriter writer;
+  transfer(writer, const_cast<T&>(part));  // a writer only reads it
+  return writer.take();
+}
+template <class T>
+void read_part(ByteReader& outer, std::span<const std::byte> bytes, T& part) {
+  ByteReader reader(bytes);
+  transfer(reader, part);
+  if (reader.ok()) reader.expect_end();
+  if (!reader.ok()) outer.fail("the block before, " + reader.error());
+}
+
+}  // namespace
+
+void tell(model::RunRecorder& recorder, const Note& note) {
+  switch (note.kind) {
+    case Note::Kind::begin:
+      return recorder.begin(note.t, note.x);
+    case Note::Kind::arrival:
+      if (note.is_sampled) recorder.sample_until(note.until, note.x);
+      if (!note.is_row) return recorder.look(note.t, note.x);
+      return recorder.stretch(
+          note.t, model::At{const_cast<std::vector<double>*>(&note.x), [](void* from, double, std::vector<double>& x) {
+                              x = *static_cast<const std::vector<double>*>(from);
+                            }});
+    case Note::Kind::contact:
+      return recorder.contact(note.t, note.name, note.impulse);
+    case Note::Kind::happening:
+      return recorder.happening(note.t, note.names, note.before, note.x);
+    case Note::Kind::finish:
+      return recorder.finish(note.t, note.x);
+  }
+}
+
+RunLog::RunLog(std::ostream& out, const RunHead& head, std::size_t standings) : out_(out), standings_(standings) {
+  ByteWriter writer;
+  writer(magic), writer(version);
+  out_.write(writer.bytes());
+  out_.write(Part::head, bytes_of(head));
+}
+void RunLog::add(const Note& note) {
+  out_.write(Part::note, bytes_of(note));
+}
+/// A run that is killed keeps what came before.
+void RunLog::add(const Standing& standing) {
+  out_.write(Part::standing, bytes_of(standing));
+  out_.flush();
+}
+void RunLog::add(const RunEnd& end) {
+  out_.write(Part::end, bytes_of(end));
+  out_.flush();
+}
+
+RunRecording RunRecording::read(std::span<const std::byte> bytes) {
+  RunRecording recording;
+  ByteReader reader(bytes);
+  std::array<char, 8> name{};
+  std::uint32_t of_version = 0;
+  reader(name);
+  reader.expect(name == magic, "this is no recording of a run");
+  reader(of_version);
+  reader.expect(of_version == version, "a recording of another version");
+  bool has_head = false;
+  while (!recording.end) {
+    const auto block = next_block<Part>(reader);
+    if (!block) break;
+    reader.expect(block->kind <= Part::end, "a block of no known kind");
+    reader.expect(has_head == (block->kind != Part::head), "blocks in another order");
+    if (!reader.ok()) break;
+    if (block->kind == Part::head) {
+      read_part(reader, block->bytes, recording.head);
+      has_head = true;
+    } else if (block->kind == Part::note) {
+      read_part(reader, block->bytes, recording.notes.emplace_back());
+      const bool is_first = recording.notes.size() == 1;
+      reader.expect((recording.notes.back().kind == Note::Kind::begin) == is_first, "notes in another order");
+    } else if (block->kind == Part::standing) {
+      read_part(reader, block->bytes, recording.standings.emplace_back());
+      recording.standings.back().notes = recording.notes.size();
+    } else {
+      read_part(reader, block->bytes, recording.end.emplace());
+    }
+  }
+  if (reader.ok() && recording.notes.empty())
+    reader.fail(has_head ? "it was cut off before its first row" : "it was cut off before it began");
+  if (!reader.ok()) return {.error = reader.error()};
+  return recording;
+}
+
+std::size_t RunRecording::standing_at(double t) const {
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < standings.size(); ++i)
+    if (standings[i].world.time <= t) found = i;
+  return found;
+}
+
+}  // namespace continuo::worlds

@@ -1,0 +1,95 @@
+// A run of a world as a file: what the run noted, one thing after the other, and every so often the world itself with
+// all it takes to go on from there to the same bits.
+//
+//   std::ofstream file("gas.run", std::ios::binary);
+//   RunLog log(file, {.file = "gas.sim", .text = text});
+//   simulate_world(program, experiment, &log);
+//   const RunRecording recording = RunRecording::read(bytes_of_the_file);
+//   if (!recording.error.empty()) ...
+//   replay_world(program, recording);                              // the same run, without moving a body
+//   resume_world(program, recording, recording.standings.size() - 1, {.to = 20});
+//
+// A file that was cut off is read as far as its blocks are whole.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <ostream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/bodies/blocks.hpp>
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/run.hpp>
+#include <continuo/model/run_recorder.hpp>
+#include <continuo/worlds/world_run.hpp>
+
+namespace continuo::worlds {
+
+/// What was run: the model's text, and what was asked of it.
+struct RunHead {
+  std::string file{}, text{};  // the folder of the file is where tables are
+  bool decides_size = false;   // the parameters are wanted when the text is read
+  bool as_written = true;      // checks are meant for this run
+  model::Experiment experiment{};
+};
+
+/// What a run tells its recorder.
+struct Note {
+  enum class Kind : std::uint8_t { begin, arrival, contact, happening, finish };
+  Kind kind{};
+  double t = 0;
+  std::vector<double> x{}, before{};              // before: of a happening
+  bool is_row = false, is_sampled = false;        // of an arrival,
+  double until = 0;                               // samples up to here
+  std::string name{};                             // of a contact
+  double impulse = 0;                             //
+  std::vector<model::RunRecorder::Name> names{};  // of a happening
+};
+void tell(model::RunRecorder& recorder, const Note& note);
+
+/// Between two notes: the world, and how far its run is.
+struct Standing {
+  Snapshot world;
+  std::uint64_t next_output = 0, next_sample = 0, contacts = 0;
+  std::vector<std::uint64_t> stops{};
+  std::size_t notes = 0;  // so many came before
+};
+
+/// How it ended.
+struct RunEnd {
+  Outcome<double> outcome{};
+  std::string stop_text{}, error{};
+  double seconds = 0;
+};
+
+class RunLog {
+ public:
+  /// The stream must be binary and stay; whether writing went well is for the caller to ask of it.
+  RunLog(std::ostream& out, const RunHead& head, std::size_t standings = 20);
+
+  void add(const Note& note);
+  void add(const Standing& standing);
+  void add(const RunEnd& end);
+  /// So many standings are wanted, evenly over the run, and more where that takes long; none for 0.
+  std::size_t standings() const { return standings_; }
+
+ private:
+  BlockWriter out_;
+  std::size_t standings_;
+};
+
+struct RunRecording {
+  std::string error{};  // why there is nothing; else all below is as the file says
+  RunHead head{};
+  std::vector<Note> notes{};
+  std::vector<Standing> standings{};
+  std::optional<RunEnd> end{};  // none where the file was cut off
+
+  static RunRecording read(std::span<const std::byte> bytes);
+  /// The last standing not after t; the first where all are.
+  std::size_t standing_at(double t) const;
+};
+
+}  // namespace continuo::worlds

@@ -1,0 +1,105 @@
+// continuo run --record, replay, resume: as somebody uses them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tests/apps/shell.hpp>
+
+namespace continuo::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string bounce =
+    "param g = 10\n"
+    "world {\n  gravity (0, -g)\n  wall floor (0, 1) at 0\n  material restitution 0.8 friction 0\n"
+    "  body ball at (0, 5.5) velocity (1, 0)\n}\n"
+    "output height = ball.y - ball.radius\n"
+    "run 0..3 output 0.1\n"
+    "check count of \"ball meets floor\" = 2\n";
+
+/// Without the first line, which names a manifest with the time that the run took.
+std::string rows(const std::string& csv) {
+  return csv.substr(csv.find('\n') + 1);
+}
+std::string summary(const std::string& text) {
+  return text.substr(0, text.find("cost"));
+}
+
+TEST(Replay, WritesWhatTheRunWrote) {
+  const Shell shell;
+  shell.write("bounce.sim", bounce);
+  const Result run = shell.run("run bounce.sim --record bounce.run -o a.csv --events ae.csv --plot a.svg --set g=9");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  shell.write("bounce.sim", "nothing");  // the recording has the model in it
+  const Result again = shell.run("replay bounce.run -o b.csv --events be.csv --plot b.svg");
+  EXPECT_EQ(again.exit, 0) << again.err;
+  EXPECT_EQ(rows(shell.read("b.csv")), rows(shell.read("a.csv")));
+  EXPECT_EQ(rows(shell.read("be.csv")), rows(shell.read("ae.csv")));
+  EXPECT_EQ(shell.read("b.svg"), shell.read("a.svg"));
+  EXPECT_EQ(summary(again.out), summary(run.out));
+  EXPECT_THAT(again.out, HasSubstr(" to go on from, t = 0 to 3: continuo resume"));
+  EXPECT_THAT(shell.run("replay bounce.run --json").out, HasSubstr("\"outcome\": \"reached end\""));
+}
+
+TEST(Replay, GoesOnWithWhatWasInterrupted) {
+  const Shell shell;
+  shell.write("bounce.sim", bounce);
+  shell.write("long.sim",
+              "world {\n  gravity (0, -10)\n  wall floor (0, 1) at 0\n  material restitution 1\n"
+              "  body ball at (0, 5.5)\n}\nrun 0..1e9 output 1e3\n");
+  ASSERT_EQ(shell.run("run bounce.sim --record bounce.run -o a.csv").exit, 0);
+  const std::string file = shell.read("bounce.run");
+  shell.write("cut.run", file.substr(0, file.size() / 2));
+  const Result cut = shell.run("replay cut.run");
+  EXPECT_EQ(cut.exit, 130);
+  EXPECT_THAT(cut.err, HasSubstr("was cut off after t = 1."));
+  const Result on = shell.run("resume cut.run -o b.csv --record whole.run");
+  EXPECT_EQ(on.exit, 0) << on.err;
+  EXPECT_EQ(rows(shell.read("b.csv")), rows(shell.read("a.csv")));
+  EXPECT_EQ(shell.run("replay whole.run").exit, 0);
+  EXPECT_EQ(shell.run("resume bounce.run --at 1 --until 5 -o c.csv").exit, 0);
+  EXPECT_THAT(shell.read("c.csv"), HasSubstr("\n5,"));
+  EXPECT_TRUE(rows(shell.read("c.csv")).starts_with(rows(shell.read("a.csv"))));
+  // Ctrl-C, as timeout sends it.
+  const Result interrupted = shell.run("run long.sim --record long.run", "timeout -s INT 3");
+  EXPECT_THAT(interrupted.err, HasSubstr("interrupted"));
+  const Result kept = shell.run("replay long.run");
+  EXPECT_EQ(kept.exit, 130);
+  EXPECT_THAT(kept.err, Not(HasSubstr("cut off")));
+  EXPECT_THAT(kept.out, HasSubstr("to go on from"));
+}
+
+TEST(Replay, SaysWhatIsWrong) {
+  const Shell shell;
+  shell.write("bounce.sim", bounce);
+  shell.write("decay.sim", "x' = -x\nx(0) = 1\nrun 0..1\n");
+  ASSERT_EQ(shell.run("run bounce.sim --record bounce.run --snapshots 0").exit, 0);
+  std::string wrong = shell.read("bounce.run");
+  wrong[wrong.size() / 2] ^= 1;
+  shell.write("wrong.run", wrong);
+  shell.write("short.run", wrong.substr(0, 20));
+  shell.write("empty.run", "");
+  struct Case {
+    const char *line, *says;
+  };
+  for (const Case& each : {Case{"replay nothing.run", "cannot read nothing.run"},
+                           Case{"replay bounce.sim", "this is no recording of a run"},
+                           Case{"replay empty.run", "byte 0"}, Case{"replay short.run", "cut off before it began"},
+                           Case{"replay wrong.run", "byte "}, Case{"resume bounce.run", "no place to go on from"},
+                           Case{"run decay.sim --record x.run", "--record keeps the run of a world"},
+                           Case{"run bounce.sim --record -", "--record takes the name of a file"},
+                           Case{"run bounce.sim --record no/where.run", "cannot write no/where.run"},
+                           Case{"run bounce.sim --snapshots 3", "--snapshots requires --record"}}) {
+    const Result result = shell.run(each.line);
+    EXPECT_EQ(result.exit, 1) << each.line;
+    EXPECT_THAT(result.err, HasSubstr(each.says)) << each.line;
+    EXPECT_EQ(result.out, "") << each.line;
+  }
+  ASSERT_EQ(shell.run("run bounce.sim --record places.run --snapshots 3").exit, 0);
+  EXPECT_THAT(shell.run("resume places.run --at 2 --until 1").err, HasSubstr("goes on from t = 2 at the earliest"));
+  EXPECT_THAT(shell.run("resume places.run --at -1").err, HasSubstr("goes on from t = 0 at the earliest"));
+  EXPECT_THAT(shell.run("resume places.run --record places.run").err, HasSubstr("another file"));
+}
+
+}  // namespace
+}  // namespace continuo::app
