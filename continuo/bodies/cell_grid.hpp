@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <vector>
 
+#include <continuo/bodies/short_lists.hpp>
 #include <continuo/bodies/vector.hpp>
 
 namespace continuo {
@@ -19,14 +19,12 @@ template <class Real, int Dim>
 class CellGrid {
  public:
   using Cell = std::array<std::int64_t, static_cast<std::size_t>(Dim)>;
-  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
   CellGrid() = default;
   /// Room for `bodies` at about one in a list of the table.
-  CellGrid(const Real& edge, std::size_t bodies) : edge_(edge), next_(bodies, none) {
+  CellGrid(const Real& edge, std::size_t bodies) : edge_(edge) {
     while ((std::size_t{1} << (bits_ * Dim)) < bodies && bits_ < 20 / Dim + 2) ++bits_;
-    lists_.assign(std::size_t{1} << (bits_ * Dim), {});
-    rest_.assign(lists_.size(), none);
+    lists_ = ShortLists(std::size_t{1} << (bits_ * Dim), bodies);
   }
 
   Real edge() const { return edge_; }
@@ -44,79 +42,68 @@ class CellGrid {
     return cell;
   }
 
-  void insert(std::uint32_t body, const Cell& cell) {
-    const std::size_t at = list_of(cell);
-    List& list = lists_[at];
-    if (list.count < in_table) {
-      list.body[list.count] = body;
-    } else {
-      next_[body] = rest_[at];
-      rest_[at] = body;
+  void insert(std::uint32_t body, const Cell& cell) { lists_.insert(list_of(cell), body); }
+  void remove(std::uint32_t body, const Cell& cell) { lists_.remove(list_of(cell), body); }
+
+  /// Writes the bodies of the cells from `lower` to `upper`, both included and at most three along an axis, to `found`,
+  /// which grows as needed; gives their count.
+  std::size_t gather(const Cell& lower, const Cell& upper, std::vector<std::uint32_t>& found) const {
+    constexpr std::size_t cells = Dim == 3 ? 27 : 9;
+    std::array<std::size_t, cells> lists;
+    std::size_t number = 0, count = 0;
+    for_each_list(lower, upper, [&](std::size_t list) { lists[number++] = list; });
+    for (std::size_t k = 0; k < number; ++k) {
+      if (found.size() < count + 2) found.resize(2 * count + 2 * cells);
+      count = lists_.append_to(found, count, lists[k]);
     }
-    ++list.count;
-  }
-  void remove(std::uint32_t body, const Cell& cell) {
-    const std::size_t at = list_of(cell);
-    List& list = lists_[at];
-    --list.count;
-    for (std::uint32_t k = 0; k < in_table; ++k) {
-      if (k > list.count || list.body[k] != body) continue;
-      if (list.count >= in_table) {
-        list.body[k] = rest_[at];
-        rest_[at] = next_[rest_[at]];
-      } else {
-        list.body[k] = list.body[list.count];
-      }
-      return;
-    }
-    std::uint32_t* link = &rest_[at];
-    while (*link != body) link = &next_[*link];
-    *link = next_[body];
+    return count;
   }
 
-  /// Appends the bodies of the cells from `lower` to `upper`, both included, to the first `count` of `found`, which
-  /// grows as needed; gives the new count.
-  std::size_t gather(const Cell& lower, const Cell& upper, std::vector<std::uint32_t>& found, std::size_t count) const {
-    Cell cell = lower;
-    constexpr std::size_t last = static_cast<std::size_t>(Dim - 1);
-    for (;;) {
-      for (cell[last] = lower[last]; cell[last] <= upper[last]; ++cell[last]) {
-        const std::size_t at = list_of(cell);
-        const List& list = lists_[at];
-        if (found.size() < count + list.count + in_table) found.resize(2 * (count + list.count + in_table));
-        std::memcpy(found.data() + count, list.body.data(), sizeof list.body);
-        count += list.count < in_table ? list.count : in_table;
-        if (list.count > in_table)
-          for (std::uint32_t body = rest_[at]; body != none; body = next_[body]) found[count++] = body;
-      }
-      std::size_t axis = last;
-      while (axis-- > 0 && cell[axis] == upper[axis]) cell[axis] = lower[axis];
-      if (axis >= last) return count;
-      ++cell[axis];
-    }
+  /// Of a cell and all its neighbours.
+  std::size_t gather_around(const Cell& cell, std::vector<std::uint32_t>& found) const {
+    return gather(shifted(cell, -1), shifted(cell, 1), found);
+  }
+  /// Their lists lie in rows, each in a cache line or two.
+  void ask_for_around(const Cell& cell) const {
+    const Cell lower = shifted(cell, -1);
+    Cell first = shifted(cell, 1);
+    first.back() = lower.back();
+    for_each_list(lower, first, [&](std::size_t list) { lists_.ask_for(list); });
   }
 
   /// Which list of the table a cell has: sorted by it, neighbours in space are neighbours in memory.
   std::size_t list_of(const Cell& cell) const {
-    const auto mask = static_cast<std::uint64_t>((std::size_t{1} << bits_) - 1);
     std::size_t list = 0;
-    for (std::size_t axis = 0; axis < cell.size(); ++axis)
-      list = list << bits_ | static_cast<std::size_t>(static_cast<std::uint64_t>(cell[axis]) & mask);
+    for (const std::int64_t coordinate : cell) list = list << bits_ | part_of(coordinate);
     return list;
   }
 
  private:
-  static constexpr std::uint32_t in_table = 3;
   static constexpr Real farthest = Real(std::int64_t{1} << (std::numeric_limits<Real>::digits - 5));
-  struct List {
-    std::uint32_t count = 0;
-    std::array<std::uint32_t, in_table> body{};
-  };
+
+  static Cell shifted(Cell cell, std::int64_t by) {
+    for (std::int64_t& coordinate : cell) coordinate += by;
+    return cell;
+  }
+  std::size_t part_of(std::int64_t coordinate) const {
+    return static_cast<std::size_t>(coordinate) & ((std::size_t{1} << bits_) - 1);
+  }
+  template <class Visit>
+  void for_each_list(const Cell& lower, const Cell& upper, Visit&& visit) const {
+    for (std::int64_t x = lower[0]; x <= upper[0]; ++x)
+      for (std::int64_t y = lower[1]; y <= upper[1]; ++y) {
+        const std::size_t row = part_of(x) << bits_ | part_of(y);
+        if constexpr (Dim == 2) {
+          visit(row);
+        } else {
+          for (std::int64_t z = lower[2]; z <= upper[2]; ++z) visit(row << bits_ | part_of(z));
+        }
+      }
+  }
 
   Real edge_ = Real(1);
   std::size_t bits_ = 2;  // of a cell's number that the table knows, by axis: four cells, so that neighbours differ
-  std::vector<List> lists_;
-  std::vector<std::uint32_t> rest_, next_;  // what a list has beyond, and its chain
+  ShortLists lists_;
 };
 
 }  // namespace continuo

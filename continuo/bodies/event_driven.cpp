@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include <continuo/bodies/contact_time.hpp>
@@ -10,6 +9,7 @@
 #include <continuo/bodies/exact_engine.hpp>
 #include <continuo/bodies/flight_bytes.hpp>
 #include <continuo/bodies/flights.hpp>
+#include <continuo/bodies/foresight.hpp>
 #include <continuo/bodies/impulse.hpp>
 #include <continuo/bodies/resting.hpp>
 
@@ -45,6 +45,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
         return "interrupted";
       }
       flights_.now = std::max(flights_.now, queue_.time());
+      foresight_.look_ahead(queue_, flights_);
       handle(queue_.first());
       if (crossings_since_sort_ > 4 * flights_.paths.size()) sort();
     }
@@ -58,9 +59,9 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   void save(ByteWriter& writer) override {
     writer(contact_time_), writer(flights_.grid.edge());
     for (const std::uint32_t k : places()) {
-      Plan<Real, Dim> plan = flights_.plans[k];
-      if (plan.partner < first_wall) plan.partner = flights_.plans[plan.partner].number;
-      transfer_flight(writer, flights_.paths[k], plan, flights_.marks[k]);
+      Flight<Real, Dim> flight = flights_.flight(k);
+      if (flight.plan.partner < first_wall) flight.plan.partner = flights_.plans[flight.plan.partner].number;
+      transfer_flight(writer, flight);
     }
   }
   void load(ByteReader& reader) override {
@@ -70,12 +71,10 @@ class EventDriven final : public ExactEngine<Real, Dim> {
                   "a contact time or cells of no size");
     const std::vector<std::uint32_t> place = places();
     for (std::uint32_t i = 0; i < place.size() && reader.ok(); ++i) {
-      Path<Real, Dim>& path = flights_.paths[place[i]];
-      Plan<Real, Dim>& plan = flights_.plans[place[i]];
-      Mark& mark = flights_.marks[place[i]];
-      transfer_flight(reader, path, plan, mark);
-      if (const char* fault = fault_of_flight(world_, path, plan, mark))
-        reader.fail("body " + std::to_string(i) + ": " + fault);
+      Flight<Real, Dim> flight = flights_.flight(place[i]);
+      transfer_flight(reader, flight);
+      flights_.set_flight(place[i], flight);
+      if (const char* fault = fault_of_flight(world_, flight)) reader.fail("body " + std::to_string(i) + ": " + fault);
     }
     if (!reader.ok()) return;
     for (auto& plan : flights_.plans)
@@ -94,62 +93,39 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     for (std::uint32_t k = 0; k < place.size(); ++k) place[flights_.plans[k].number] = k;
     return place;
   }
-  /// Brings the bodies into the order of their cells. Nothing but places changes.
+  /// Nothing but places in memory changes.
   void sort() {
     crossings_since_sort_ = 0;
-    auto& plans = flights_.plans;
-    auto& grid = flights_.grid;
-    const std::size_t n = plans.size();
-    std::vector<std::uint32_t> order(n), place(n), numbers(n);
-    std::iota(order.begin(), order.end(), 0u);
-    std::vector<std::size_t> key(n);
-    for (std::size_t i = 0; i < n; ++i)
-      key[i] = plans[i].is_large ? std::numeric_limits<std::size_t>::max() : grid.list_of(plans[i].cell);
-    std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(key[i], plans[i].number); });
-    for (std::uint32_t k = 0; k < n; ++k) place[order[k]] = k;
-    const auto arrange = [&](auto& values) {
-      auto old = values;
-      for (std::size_t k = 0; k < n; ++k) values[k] = old[order[k]];
-    };
-    arrange(flights_.paths), arrange(plans), arrange(flights_.marks);
-    for (auto& plan : plans)
-      if (plan.partner < first_wall) plan.partner = place[plan.partner];
-    flights_.large.clear();
-    grid = CellGrid<Real, Dim>(grid.edge(), n);
-    for (std::size_t k = 0; k < n; ++k) numbers[k] = plans[k].number;
+    flights_.sort();
+    std::vector<std::uint32_t> numbers;
+    for (const auto& plan : flights_.plans) numbers.push_back(plan.number);
     queue_ = EventQueue<Real>(std::move(numbers));
-    for (std::uint32_t k = 0; k < n; ++k) {
-      schedule(k);
-      if (plans[k].is_large) {
-        flights_.large.push_back(k);
-      } else {
-        grid.insert(k, plans[k].cell);
-      }
-    }
+    for (std::uint32_t k = 0; k < flights_.plans.size(); ++k) schedule(k);
   }
 
   void synchronize(const Real& t) {
     for (std::size_t i = 0; i < flights_.paths.size(); ++i) {
       Path<Real, Dim> at = flights_.paths[i];
-      Plan<Real, Dim>& plan = flights_.plans[i];
+      const Plan<Real, Dim>& plan = flights_.plans[i];
       Flights<Real, Dim>::advance(at, plan.acceleration, t);
       world_.position[plan.number] = at.x;
       world_.velocity[plan.number] = at.v;
-      turn_to(plan, t);
-      world_.spin[plan.number] = spin_at(plan, t);
+      turn_to(static_cast<std::uint32_t>(i), t);
+      world_.spin[plan.number] = spin_at(flights_.turnings[i], t);
     }
     world_.time = flights_.now = t;
   }
-  static S spin_at(const Plan<Real, Dim>& plan, const Real& t) {
-    return plan.spin + plan.spin_rate * (t - plan.spun_since);
+  static S spin_at(const Turning<Real, Dim>& turning, const Real& t) {
+    return turning.spin + turning.spin_rate * (t - turning.spun_since);
   }
   /// Its orientation. A spin that changes evenly turns by its mean.
-  void turn_to(Plan<Real, Dim>& plan, const Real& t) {
-    const Real from = plan.spun_to;
-    plan.spun_to = t;
-    if (!(t > from) || (plan.spin == S{} && plan.spin_rate == S{})) return;
-    auto& orientation = world_.orientation[plan.number];
-    orientation = turned(orientation, spin_at(plan, Real(from + (t - from) / 2)), Real(t - from));
+  void turn_to(std::uint32_t i, const Real& t) {
+    Turning<Real, Dim>& turning = flights_.turnings[i];
+    const Real from = turning.spun_to;
+    turning.spun_to = t;
+    if (!(t > from) || (turning.spin == S{} && turning.spin_rate == S{})) return;
+    auto& orientation = world_.orientation[flights_.plans[i].number];
+    orientation = turned(orientation, spin_at(turning, Real(from + (t - from) / 2)), Real(t - from));
   }
 
   void schedule(std::uint32_t i) {
@@ -166,7 +142,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     if (plan.crossing_time <= plan.collision_time) return cross(i);
     if (j >= first_wall && j < look_again) return hit_wall(i, j - first_wall);
     if (plan.path_end <= flights_.now) return go_on(i);
-    if (j == look_again || flights_.marks[j].collisions != plan.collisions_of_partner) {
+    if (j == look_again || flights_.collisions[j] != plan.collisions_of_partner) {
       ++statistics.outdated;
       return predict(i);
     }
@@ -176,7 +152,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   /// It slips no more, or rolls no more, or otherwise: on another path until the next time.
   void go_on(std::uint32_t i) {
     bring(i);
-    ++flights_.marks[i].collisions;
+    ++flights_.collisions[i];
     go_on_along(flights_, i, contact_time_);
     predict(i);
   }
@@ -224,21 +200,24 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   }
   /// It lies where it is, carried by all round it, until something hits it.
   void freeze(std::uint32_t i) {
-    if (flights_.marks[i].act == Act::is_fixed) return;
+    if (flights_.acts[i] == Act::is_fixed) return;
+    turn_to(i, flights_.now);
     flights_.paths[i].v = flights_.plans[i].acceleration = {};
-    flights_.plans[i].spin = flights_.plans[i].spin_rate = {};
+    flights_.turnings[i].spin = flights_.turnings[i].spin_rate = {};
     flights_.plans[i].path_end = Flights<Real, Dim>::never;
     flights_.plans[i].support_count = 0;
-    flights_.plans[i].rests_since = flights_.now;
-    flights_.marks[i].act = Act::rests;
+    flights_.turnings[i].rests_since = flights_.now;
+    flights_.acts[i] = Act::rests;
   }
   bool is_still(std::uint32_t i) const {
-    return flights_.marks[i].act == Act::is_fixed ||
-           (flights_.marks[i].act == Act::rests && flights_.plans[i].support_count == 0);
+    return flights_.acts[i] == Act::is_fixed ||
+           (flights_.acts[i] == Act::rests && flights_.plans[i].support_count == 0);
   }
   /// Two that are caught go on as one, or not at all where one is held fast.
   void stop(std::uint32_t i, std::uint32_t j) {
     const bool is_held_fast = is_still(i) || is_still(j);
+    turn(i);
+    turn(j);
     note_collision(i);
     note_collision(j);
     if (is_held_fast) {
@@ -246,7 +225,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
       freeze(j);
       return;
     }
-    const Mover<Real, Dim> a = mover(i), b = mover(j);
+    const Mover<Real, Dim> a = mover(i, true), b = mover(j, true);
     const V change = b.velocity - a.velocity;
     a.velocity += change * (a.inverse_mass / (a.inverse_mass + b.inverse_mass));
     b.velocity = a.velocity;
@@ -255,31 +234,42 @@ class EventDriven final : public ExactEngine<Real, Dim> {
 
   bool is_held(std::uint32_t i) const { return flights_.now - flights_.plans[i].last_collision < contact_time_; }
   void bring(std::uint32_t i) {
-    Plan<Real, Dim>& plan = flights_.plans[i];
     flights_.move_to_now(i);
-    turn_to(plan, flights_.now);
-    plan.spin = spin_at(plan, flights_.now);
-    plan.spun_since = flights_.now;
+    turn(i);
   }
-  Mover<Real, Dim> mover(std::uint32_t i) {
+  void turn(std::uint32_t i) {
+    turn_to(i, flights_.now);
+    Turning<Real, Dim>& turning = flights_.turnings[i];
+    turning.spin = spin_at(turning, flights_.now);
+    turning.spun_since = flights_.now;
+  }
+  /// For an event that may change how it turns, or may not: one that falls turns evenly, and then that can wait.
+  void bring(std::uint32_t i, bool rubs) {
+    rubs || flights_.acts[i] == Act::rests ? bring(i) : flights_.move_to_now(i);
+  }
+  /// What does not rub needs to know nothing of how it turns.
+  Mover<Real, Dim> mover(std::uint32_t i, bool rubs) {
     Path<Real, Dim>& path = flights_.paths[i];
-    Plan<Real, Dim>& plan = flights_.plans[i];
-    return {path.v, plan.spin, path.radius, plan.inverse_mass, plan.inverse_inertia};
+    const Real inverse_mass = flights_.plans[i].inverse_mass;
+    if (!rubs) return {path.v, no_spin_, path.radius, inverse_mass, Real(0)};
+    Turning<Real, Dim>& turning = flights_.turnings[i];
+    return {path.v, turning.spin, path.radius, inverse_mass, turning.inverse_inertia};
   }
 
   void hit(std::uint32_t i, std::uint32_t j) {
     ++statistics.collisions;
-    bring(i);
-    bring(j);
+    const Material<Real> own = combined(world_.meeting, flights_.material(i), flights_.material(j));
+    const bool rubs = own.friction > Real(0);
+    bring(i, rubs);
+    bring(j, rubs);
     const Path<Real, Dim>&a = flights_.paths[i], &b = flights_.paths[j];
-    const Material<Real> own = combined(world_.meeting, flights_.plans[i].material, flights_.plans[j].material);
     const Material<Real> material = at_this_instant(own, i, j);
     const V apart = b.x - a.x;
     const Real distance = length(apart);
     V normal = distance > Real(0) ? apart * (1 / distance) : V{};
     if (!(distance > Real(0))) normal[0] = Real(1);
     Real impulse(0);
-    if (dot(b.v - a.v, normal) < Real(0)) impulse = collide(mover(i), mover(j), normal, material);
+    if (dot(b.v - a.v, normal) < Real(0)) impulse = collide(mover(i, rubs), mover(j, rubs), normal, material);
     if (is_caught(own, i) || is_caught(own, j)) {
       stop(i, j);
     } else {
@@ -302,7 +292,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   /// then, and what lies bounces by less than one sees.
   void part_where_pressed(std::uint32_t i, std::uint32_t j, const V& normal) {
     const Real press = dot(flights_.plans[i].acceleration - flights_.plans[j].acceleration, normal);
-    const Mover<Real, Dim> a = mover(i), b = mover(j);
+    const Mover<Real, Dim> a = mover(i, false), b = mover(j, false);
     const Real missing = press * contact_time_ / 2 - dot(b.velocity - a.velocity, normal);
     if (!(press > Real(0)) || !(missing > Real(0))) return;
     const Real impulse = missing / (a.inverse_mass + b.inverse_mass);
@@ -312,16 +302,17 @@ class EventDriven final : public ExactEngine<Real, Dim> {
 
   void hit_wall(std::uint32_t i, std::uint32_t w) {
     ++statistics.wall_collisions;
-    bring(i);
+    const Material<Real> own = combined(world_.meeting, flights_.material(i), world_.walls()[w].material);
+    const bool rubs = own.friction > Real(0);
+    bring(i, rubs);
     const Wall<Real, Dim> wall = facing(world_.walls()[w], flights_.paths[i].x);
-    const Material<Real> own = combined(world_.meeting, flights_.plans[i].material, wall.material);
     const Material<Real> material = at_this_instant(own, i, i);
     V no_velocity{};
     S no_spin{};
     const Mover<Real, Dim> of_wall{no_velocity, no_spin, Real(0), Real(0), Real(0)};
     Real impulse(0);
     if (dot(flights_.paths[i].v, wall.normal) < Real(0))
-      impulse = collide(mover(i), of_wall, V(-wall.normal), material);
+      impulse = collide(mover(i, rubs), of_wall, V(-wall.normal), material);
     const bool caught = is_caught(own, i);
     note_collision(i);
     if (contacts.is_kept() && impulse > Real(0)) note_wall(i, w, ContactChange::impact, impulse);
@@ -336,19 +327,20 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   /// Its path is another one now; what it lay on it lies on no more, until it touches it again.
   void note_collision(std::uint32_t i) {
     Plan<Real, Dim>& plan = flights_.plans[i];
-    ++flights_.marks[i].collisions;
+    ++flights_.collisions[i];
     plan.at_once = plan.last_collision == flights_.now ? static_cast<std::uint8_t>(std::min(254, int{plan.at_once}) + 1)
                                                        : std::uint8_t{0};
     plan.last_collision = flights_.now;
-    if (flights_.marks[i].act != Act::rests) return;
+    if (flights_.acts[i] != Act::rests) return;
     if (contacts.is_kept()) {
       const auto forces = support_forces(flights_, i);
       for (std::uint32_t k = 0; k < plan.support_count; ++k)
-        note_wall(i, plan.supports[k], ContactChange::end, Real(forces[k] * (flights_.now - plan.rests_since)));
+        note_wall(i, plan.supports[k], ContactChange::end,
+                  Real(forces[k] * (flights_.now - flights_.turnings[i].rests_since)));
     }
-    flights_.marks[i].act = Act::falls;
+    flights_.acts[i] = Act::falls;
     plan.acceleration = world_.gravity;
-    plan.spin_rate = {};
+    flights_.turnings[i].spin_rate = {};
     plan.path_end = Flights<Real, Dim>::never;
   }
 
@@ -370,7 +362,9 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   Real contact_time_;
   Flights<Real, Dim> flights_;
   EventQueue<Real> queue_;
+  Foresight<Real, Dim> foresight_;
   std::size_t crossings_since_sort_ = 0;
+  S no_spin_{};
 };
 
 }  // namespace

@@ -12,8 +12,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
+
+#include <continuo/bodies/prefetch.hpp>
+#include <continuo/bodies/short_lists.hpp>
 
 namespace continuo {
 
@@ -21,22 +23,20 @@ template <class Real>
 class EventQueue {
  public:
   /// Nobody has an event yet; numbers[body] decides between equal times.
-  explicit EventQueue(std::vector<std::uint32_t> numbers = {}) : nodes_(numbers.size()) {
+  explicit EventQueue(std::vector<std::uint32_t> numbers = {})
+      : nodes_(numbers.size()), buckets_(numbers.size() / 2 + 1, numbers.size()) {
     for (std::size_t i = 0; i < numbers.size(); ++i) nodes_[i].number = numbers[i];
-    first_.assign(numbers.size() / 2 + 1, none);
     heap_.reserve(64);
   }
 
   /// Infinity: no event.
   void set(std::uint32_t body, const Real& time) {
     Node& node = nodes_[body];
-    if (node.bucket == in_heap) {
-      take_from_heap(body);
-    } else if (node.bucket != nowhere) {
-      unlink(node);
-    }
+    const std::uint32_t to = place_for(time);
     node.time = time;
-    put(body);
+    if (to == later && (node.place & kind) == later) return;
+    leave(body);
+    enter(body, to);
   }
 
   /// The earliest time, infinity where there is none; `first` is the body it belongs to.
@@ -46,14 +46,23 @@ class EventQueue {
   }
   std::uint32_t first() const { return heap_.front().body; }
 
+  /// For what is wanted early. Buckets come one after the other, until they begin anew at 0; the bodies of one that is
+  /// still to come are the first of `found`, as many as is given back.
+  std::uint32_t present_bucket() const { return present_; }
+  std::size_t coming(std::uint32_t bucket, std::vector<std::uint32_t>& found) const {
+    if (bucket >= buckets_.size()) return 0;
+    found.resize(std::max(found.size(), std::size_t{2}));
+    return buckets_.append_to(found, 0, bucket);
+  }
+  void ask_for(std::uint32_t body) const { prefetch(&nodes_[body]); }
+
  private:
   static constexpr Real never = std::numeric_limits<Real>::infinity();
-  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max(), nowhere = none, in_heap = none - 1,
-                                 later = none - 2;
+  // Where a body is: in a bucket, or at a place of the heap or of those that wait.
+  static constexpr std::uint32_t kind = 3u << 30, in_bucket = 0, in_heap = 1u << 30, later = 2u << 30, nowhere = kind;
   struct Node {
     Real time = never;
-    std::uint32_t number = 0, bucket = nowhere;
-    std::uint32_t next = none, before = none;  // in its list; in the heap, `before` is its place
+    std::uint32_t number = 0, place = nowhere;
   };
   struct Entry {
     Real time;
@@ -63,72 +72,68 @@ class EventQueue {
     }
   };
 
-  void put(std::uint32_t body) {
+  void enter(std::uint32_t body, std::uint32_t to) {
     Node& node = nodes_[body];
-    node.bucket = bucket_of(node.time);
-    if (node.bucket == nowhere) return;
-    if (node.bucket == in_heap) {
+    node.place = to;
+    if (to == in_heap) {
       heap_.push_back({});
       rise(heap_.size() - 1, {node.time, node.number, body});
-      return;
+    } else if (to == later) {
+      node.place = later | static_cast<std::uint32_t>(later_.size());
+      later_.push_back(body);
+    } else if (to != nowhere) {
+      buckets_.insert(to, body);
     }
-    std::uint32_t& first = node.bucket == later ? later_ : first_[node.bucket];
-    node.before = none;
-    node.next = first;
-    if (first != none) nodes_[first].before = body;
-    first = body;
   }
-  std::uint32_t bucket_of(const Real& time) const {
+  void leave(std::uint32_t body) {
+    const std::uint32_t place = nodes_[body].place, at = place & ~kind;
+    if ((place & kind) == in_bucket) {
+      buckets_.remove(at, body);
+    } else if ((place & kind) == in_heap) {
+      take_from_heap(at);
+    } else if ((place & kind) == later) {
+      later_[at] = later_.back();
+      nodes_[later_[at]].place = place;
+      later_.pop_back();
+    }
+  }
+  std::uint32_t place_for(const Real& time) const {
     if (!(time < never)) return nowhere;
     if (!(time > begin_)) return in_heap;
     const Real at = (time - begin_) * buckets_per_time_;
-    if (!(at < static_cast<Real>(first_.size()))) return later;
+    if (!(at < static_cast<Real>(buckets_.size()))) return later;
     const auto bucket = static_cast<std::uint32_t>(at);
-    return bucket < first_.size() ? (bucket < present_ ? in_heap : bucket) : later;
-  }
-  void unlink(const Node& node) {
-    if (node.before != none) {
-      nodes_[node.before].next = node.next;
-    } else {
-      (node.bucket == later ? later_ : first_[node.bucket]) = node.next;
-    }
-    if (node.next != none) nodes_[node.next].before = node.before;
+    return bucket < buckets_.size() ? (bucket < present_ ? in_heap : bucket) : later;
   }
 
   /// The bodies of the next bucket that has any come into the heap. Buckets before `present_` are used up.
   void fill_heap() {
-    while (present_ < first_.size() && first_[present_] == none) ++present_;
-    if (present_ == first_.size()) return share_out();
-    std::uint32_t body = std::exchange(first_[present_], none);
-    ++present_;
-    while (body != none) {
-      const std::uint32_t next = nodes_[body].next;
-      put(body);
-      body = next;
-    }
+    while (present_ < buckets_.size() && buckets_.is_empty(present_)) ++present_;
+    if (present_ == buckets_.size()) return share_out();
+    const std::size_t count = coming(present_, waiting_);
+    buckets_.clear(present_++);
+    for (std::size_t i = 0; i < count; ++i) enter(waiting_[i], in_heap);
   }
   /// Half of those that wait get into buckets, the first of all into the heap.
   void share_out() {
-    std::vector<std::uint32_t> waiting;
-    for (std::uint32_t body = later_; body != none; body = nodes_[body].next) waiting.push_back(body);
-    if (waiting.empty()) return;
-    std::vector<Real> times(waiting.size());
-    for (std::size_t i = 0; i < times.size(); ++i) times[i] = nodes_[waiting[i]].time;
+    if (later_.empty()) return;
+    waiting_.swap(later_);
+    later_.clear();
+    std::vector<Real> times(waiting_.size());
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = nodes_[waiting_[i]].time;
     const auto half = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
     std::nth_element(times.begin(), half, times.end());
     begin_ = *std::min_element(times.begin(), half + 1);
-    buckets_per_time_ = static_cast<Real>(first_.size()) / (*half - begin_);  // infinite where half come at once
+    buckets_per_time_ = static_cast<Real>(buckets_.size()) / (*half - begin_);  // infinite where half come at once
     present_ = 0;
-    later_ = none;
-    for (const std::uint32_t body : waiting) put(body);
+    for (const std::uint32_t body : waiting_) enter(body, place_for(nodes_[body].time));
   }
 
   void set_heap(std::size_t at, const Entry& entry) {
     heap_[at] = entry;
-    nodes_[entry.body].before = static_cast<std::uint32_t>(at);
+    nodes_[entry.body].place = in_heap | static_cast<std::uint32_t>(at);
   }
-  void take_from_heap(std::uint32_t body) {
-    const std::size_t at = nodes_[body].before;
+  void take_from_heap(std::size_t at) {
     const Entry last = heap_.back();
     heap_.pop_back();
     if (at == heap_.size()) return;
@@ -153,8 +158,9 @@ class EventQueue {
 
   std::vector<Node> nodes_;
   std::vector<Entry> heap_;
-  std::vector<std::uint32_t> first_;  // of each bucket
-  std::uint32_t later_ = none, present_ = 0;
+  ShortLists buckets_;
+  std::vector<std::uint32_t> later_, waiting_;
+  std::uint32_t present_ = 0;
   Real begin_ = std::numeric_limits<Real>::lowest(), buckets_per_time_ = never;  // until shared out: all wait
 };
 

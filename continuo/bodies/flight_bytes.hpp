@@ -9,41 +9,38 @@
 namespace continuo {
 
 template <class Archive, class Real, int Dim>
-void transfer_flight(Archive& archive, Path<Real, Dim>& path, Plan<Real, Dim>& plan, Mark& mark) {
+void transfer_flight(Archive& archive, Flight<Real, Dim>& flight) {
+  auto& [path, plan, turning, collisions, act] = flight;
   archive(path.x), archive(path.v), archive(path.t);
-  archive(plan.collision_time), archive(plan.crossing_time), archive(plan.last_collision), archive(plan.spun_to);
-  archive(plan.rests_since), archive(plan.acceleration), archive(plan.cell), archive(plan.partner);
+  archive(plan.collision_time), archive(plan.crossing_time), archive(plan.last_collision), archive(turning.spun_to);
+  archive(turning.rests_since), archive(plan.acceleration), archive(plan.cell), archive(plan.partner);
   archive(plan.collisions_of_partner), archive(plan.supports), archive(plan.support_count), archive(plan.is_large);
-  archive(plan.direction), archive(plan.axis), archive(plan.spin_rate), archive(plan.path_end);
-  archive(plan.spin), archive(plan.spun_since);
-  std::uint32_t collisions = mark.collisions;
-  auto act = static_cast<std::uint8_t>(mark.act);
-  archive(collisions), archive(act);
+  archive(plan.direction), archive(plan.axis), archive(turning.spin_rate), archive(plan.path_end);
+  archive(turning.spin), archive(turning.spun_since);
+  auto act_byte = static_cast<std::uint8_t>(act);
+  archive(collisions), archive(act_byte);
   if constexpr (Archive::reads) {
-    mark.collisions = collisions & 0x3fffffffu;
-    mark.act = static_cast<Act>(act & 3u);
-    archive.expect(collisions < std::uint32_t{1} << 30 && act <= static_cast<std::uint8_t>(Act::is_fixed),
-                   "a body that moves in no known way");
+    archive.expect(act_byte <= static_cast<std::uint8_t>(Act::is_fixed), "a body that moves in no known way");
+    act = static_cast<Act>(act_byte & 3u);
   }
 }
 
 /// What is wrong with a flight that was read; nullptr where nothing is.
 template <class Real, int Dim>
-const char* fault_of_flight(const World<Real, Dim>& world, const Path<Real, Dim>& path, const Plan<Real, Dim>& plan,
-                            const Mark& mark) {
+const char* fault_of_flight(const World<Real, Dim>& world, const Flight<Real, Dim>& flight) {
+  const auto& [path, plan, turning, collisions, act] = flight;
   constexpr Real never = Plan<Real, Dim>::never;
   const auto is_number = [](const Real& value) { return value - value == Real(0); };
-  if (!is_finite(path.x) || !is_finite(path.v) || !is_finite(plan.acceleration) || !is_finite(plan.spin_rate) ||
-      !is_number(path.t) || !is_number(plan.spun_to) || !is_number(plan.rests_since) || !is_finite(plan.spin) ||
-      !is_number(plan.spun_since))
+  if (!is_finite(path.x) || !is_finite(path.v) || !is_finite(plan.acceleration) || !is_finite(turning.spin_rate) ||
+      !is_number(path.t) || !is_number(turning.spun_to) || !is_number(turning.rests_since) ||
+      !is_finite(turning.spin) || !is_number(turning.spun_since))
     return "a flight that is not finite";
   if (!(plan.collision_time > -never) || !(plan.crossing_time > -never) || !(plan.last_collision < never) ||
       !(plan.path_end > -never))
     return "an event at no time";
-  if (plan.path_end < never && (mark.act != Act::rests || plan.support_count != 1))
-    return "a path that ends in the air";
-  if ((mark.act == Act::is_fixed) != world.is_fixed(plan.number)) return "a flight of a body that does not move";
-  if (mark.act == Act::is_fixed && (plan.collision_time < never || plan.crossing_time < never))
+  if (plan.path_end < never && (act != Act::rests || plan.support_count != 1)) return "a path that ends in the air";
+  if ((act == Act::is_fixed) != world.is_fixed(plan.number)) return "a flight of a body that does not move";
+  if (act == Act::is_fixed && (plan.collision_time < never || plan.crossing_time < never))
     return "an event of a body that does not move";
   const bool is_body = plan.partner < first_wall, is_wall = !is_body && plan.partner < look_again;
   if (plan.partner == nobody ? plan.collision_time < never

@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -52,7 +54,11 @@ Real edge_of_cells(const World<Real, Dim>& world) {
 inline constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max(), look_again = nobody - 1,
                                first_wall = std::uint32_t{1} << 31;
 
-/// What others look at who seek their next collision: with doubles a cache line in space.
+// A body's flight is kept apart by who reads it, so that an event reads few cache lines: of the neighbours `Path`,
+// `Act` and, of the one that is met, the count of its collisions; of those that take part also `Plan`, and `Turning`
+// where they rub or rest. The sizes said here are those with doubles in space.
+
+/// What others look at who seek their next collision: a cache line.
 template <class Real, int Dim>
 struct alignas(sizeof(Real) * (Dim == 3 ? 8 : 2)) Path {
   Vector<Real, Dim> x{}, v{};  // at the time t of its own
@@ -62,29 +68,40 @@ struct alignas(sizeof(Real) * (Dim == 3 ? 8 : 2)) Path {
 /// How a body is accelerated.
 enum class Act : std::uint8_t { falls, rests, is_fixed };
 
-/// What else a look at another needs.
-struct Mark {
-  std::uint32_t collisions : 30 = 0;  // so many changes of its path; a prediction holds for one of them
-  Act act : 2 = Act::falls;
-};
-
+/// What every event of a body reads and writes: two cache lines, of which the first tells what comes next.
 template <class Real, int Dim>
-struct Plan {
+struct alignas(sizeof(Real) * 16) Plan {
   static constexpr Real never = std::numeric_limits<Real>::infinity();
-  Real collision_time = never, crossing_time = never, last_collision = -never, spun_to{}, spun_since{}, rests_since{};
+  Real collision_time = never, crossing_time = never;
   Real path_end = never;  // when it is accelerated otherwise, though nothing hits it: see rolling.hpp
-  Real inverse_mass{}, inverse_inertia{};
-  Vector<Real, Dim> acceleration{};
-  Spin<Real, Dim> spin{}, spin_rate{};  // at the time spun_since; the orientation is of spun_to
-  Material<Real> material{};
   typename CellGrid<Real, Dim>::Cell cell{};
-  std::uint32_t number = 0, partner = nobody, collisions_of_partner = 0;
-  std::array<std::uint32_t, static_cast<std::size_t>(Dim)> supports{};  // the walls it rests on
-  std::uint8_t support_count = 0;
-  std::uint8_t at_once = 0;  // so many collisions before the last, at the same instant; no more than 255
-  bool is_large = false;
+  std::uint32_t partner = nobody, collisions_of_partner = 0;
   std::int8_t direction = 0;  // of the crossing, along the axis
   std::uint8_t axis = 0;
+  bool is_large = false;
+  std::uint8_t support_count = 0;
+  std::uint8_t at_once = 0;  // so many collisions before the last, at the same instant; no more than 255
+  std::uint32_t number = 0, material = 0;
+  std::array<std::uint32_t, static_cast<std::size_t>(Dim)> supports{};  // the walls it rests on
+  Vector<Real, Dim> acceleration{};
+  Real last_collision = -never, inverse_mass{};
+};
+
+/// How a body turns, and since when it rests.
+template <class Real, int Dim>
+struct Turning {
+  Spin<Real, Dim> spin{}, spin_rate{};  // at the time spun_since; the orientation is of spun_to
+  Real spun_to{}, spun_since{}, rests_since{}, inverse_inertia{};
+};
+
+/// All of it, of one body.
+template <class Real, int Dim>
+struct Flight {
+  Path<Real, Dim> path{};
+  Plan<Real, Dim> plan{};
+  Turning<Real, Dim> turning{};
+  std::uint32_t collisions = 0;
+  Act act = Act::falls;
 };
 
 template <class Real, int Dim>
@@ -98,19 +115,39 @@ class Flights {
     const std::size_t n = world.size();
     grid = Grid(edge_of_cells(world), n);
     some_pass_ = world.has_ignored_groups();
-    paths.resize(n);
-    plans.resize(n);
-    marks.resize(n);
-    for (std::uint32_t i = 0; i < n; ++i) take_from_world(i);
+    for_each_array([&](auto& array) { array.resize(n); });
+    std::map<std::array<Real, 3>, std::uint32_t> kinds;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      take_from_world(i);
+      const Material<Real>& of_body = world.material[i];
+      const auto [kind, is_new] = kinds.try_emplace({of_body.restitution, of_body.friction, of_body.rolling_resistance},
+                                                    static_cast<std::uint32_t>(materials_.size()));
+      if (is_new) materials_.push_back(of_body);
+      plans[i].material = kind->second;
+    }
   }
 
   const World<Real, Dim>& world;
   Real now;
   std::vector<Path<Real, Dim>> paths;
   std::vector<Plan<Real, Dim>> plans;
-  std::vector<Mark> marks;
+  std::vector<Turning<Real, Dim>> turnings;
+  std::vector<std::uint32_t> collisions;  // so many changes of its path: a prediction holds for one of them
+  std::vector<Act> acts;
   std::vector<std::uint32_t> large;  // too wide for the cells, or too far out: everybody's neighbours
   Grid grid;
+
+  template <class Action>
+  void for_each_array(Action&& action) {
+    action(paths), action(plans), action(turnings), action(collisions), action(acts);
+  }
+  Flight<Real, Dim> flight(std::uint32_t i) const { return {paths[i], plans[i], turnings[i], collisions[i], acts[i]}; }
+  void set_flight(std::uint32_t i, const Flight<Real, Dim>& to) {
+    paths[i] = to.path, plans[i] = to.plan, turnings[i] = to.turning, collisions[i] = to.collisions, acts[i] = to.act;
+  }
+  /// Bytes that events go through.
+  std::size_t memory() const { return paths.size() * (sizeof(Path<Real, Dim>) + sizeof(Plan<Real, Dim>)); }
+  const Material<Real>& material(std::uint32_t i) const { return materials_[plans[i].material]; }
 
   static void advance(Path<Real, Dim>& path, const V& acceleration, const Real& t) {
     const Real dt = t - path.t;
@@ -125,25 +162,45 @@ class Flights {
     return std::find(plan.supports.begin(), end, w) != end;
   }
 
+  /// Brings the bodies into the order of their cells.
+  void sort() {
+    const std::size_t n = plans.size();
+    std::vector<std::uint32_t> order(n), place(n);
+    std::iota(order.begin(), order.end(), 0u);
+    std::vector<std::size_t> key(n);
+    for (std::size_t i = 0; i < n; ++i)
+      key[i] = plans[i].is_large ? std::numeric_limits<std::size_t>::max() : grid.list_of(plans[i].cell);
+    std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(key[i], plans[i].number); });
+    for (std::uint32_t k = 0; k < n; ++k) place[order[k]] = k;
+    for_each_array([&](auto& values) {
+      auto old = values;
+      for (std::size_t k = 0; k < n; ++k) values[k] = old[order[k]];
+    });
+    large.clear();
+    grid = Grid(grid.edge(), n);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      if (plans[k].partner < first_wall) plans[k].partner = place[plans[k].partner];
+      plans[k].is_large ? large.push_back(k) : grid.insert(k, plans[k].cell);
+    }
+  }
+
   /// When body i crosses into another cell and whom it meets first. Brings it to the present.
   void predict(std::uint32_t i) {
     Plan<Real, Dim>& plan = plans[i];
     plan.crossing_time = never;
     plan.collision_time = plan.path_end;
     plan.partner = plan.path_end < never ? look_again : nobody;
-    if (marks[i].act == Act::is_fixed) return;
+    if (acts[i] == Act::is_fixed) return;
     move_to_now(i);
     predict_crossing(i);
     for (std::uint32_t w = 0; w < world.walls().size(); ++w)
-      if (marks[i].act != Act::rests || !is_support(plan, w)) predict_wall(i, w);
+      if (acts[i] != Act::rests || !is_support(plan, w)) predict_wall(i, w);
     std::size_t count = 0;
     if (plan.is_large) {
       candidates_.resize(std::max(candidates_.size(), paths.size()));
       for (std::uint32_t j = 0; j < paths.size(); ++j) candidates_[count++] = j;
     } else {
-      auto lower = plan.cell, upper = plan.cell;
-      for (std::size_t axis = 0; axis < lower.size(); ++axis) --lower[axis], ++upper[axis];
-      count = grid.gather(lower, upper, candidates_, 0);
+      count = grid.gather_around(plan.cell, candidates_);
       if (candidates_.size() < count + large.size()) candidates_.resize(count + large.size());
       for (const std::uint32_t j : large) candidates_[count++] = j;
     }
@@ -163,7 +220,7 @@ class Flights {
     }
     plan.crossing_time = never;
     predict_crossing(i);
-    predict_pairs(i, grid.gather(lower, upper, candidates_, 0));
+    predict_pairs(i, grid.gather(lower, upper, candidates_));
   }
 
  private:
@@ -171,14 +228,14 @@ class Flights {
     Path<Real, Dim>& path = paths[i];
     Plan<Real, Dim>& plan = plans[i];
     path = {world.position[i], world.velocity[i], now, world.radius[i]};
-    marks[i].act = world.is_fixed(i) ? Act::is_fixed : Act::falls;
+    acts[i] = world.is_fixed(i) ? Act::is_fixed : Act::falls;
     plan.number = i;
-    plan.spun_to = plan.spun_since = now;
     plan.inverse_mass = world.inverse_mass[i];
-    plan.inverse_inertia = world.inverse_inertia[i];
     plan.acceleration = world.is_fixed(i) ? V{} : world.gravity;
-    plan.spin = world.spin[i];
-    plan.material = world.material[i];
+    Turning<Real, Dim>& turning = turnings[i];
+    turning.spun_to = turning.spun_since = now;
+    turning.inverse_inertia = world.inverse_inertia[i];
+    turning.spin = world.spin[i];
     plan.is_large = 2 * path.radius > grid.edge() || !grid.has_cell(path.x);
     if (!plan.is_large) plan.cell = grid.cell_of(path.x);
   }
@@ -204,9 +261,12 @@ class Flights {
   void predict_wall(std::uint32_t i, std::uint32_t w) {
     const Path<Real, Dim>& path = paths[i];
     Plan<Real, Dim>& plan = plans[i];
-    const Wall<Real, Dim> wall = facing(world.walls()[w], path.x);
-    const Real gap = dot(wall.normal, path.x) - wall.offset - path.radius;
-    const Real wait = time_to_close(gap, dot(wall.normal, path.v), dot(wall.normal, plan.acceleration));
+    const Wall<Real, Dim>& wall = world.walls()[w];
+    Real along = dot(wall.normal, path.x) - wall.offset, speed = dot(wall.normal, path.v);
+    Real pull = dot(wall.normal, plan.acceleration);
+    if (wall.thin && along < Real(0)) along = -along, speed = -speed, pull = -pull;
+    if (speed >= Real(0) && pull >= Real(0)) return;
+    const Real wait = time_to_close(Real(along - path.radius), speed, pull);
     if (now + wait < plan.collision_time) {
       plan.collision_time = now + wait;
       plan.partner = first_wall + w;
@@ -220,8 +280,7 @@ class Flights {
     std::size_t straight = 0, curved = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t j = candidates_[k];
-      const auto falls =
-          static_cast<unsigned>(marks[i].act == Act::falls) & static_cast<unsigned>(marks[j].act == Act::falls);
+      const auto falls = static_cast<unsigned>(acts[i] == Act::falls) & static_cast<unsigned>(acts[j] == Act::falls);
       candidates_[straight] = j;
       curved_[curved] = j;
       straight += falls & may_touch(me, paths[j]);
@@ -289,14 +348,15 @@ class Flights {
     if (some_pass_ && !world.collide(plan.number, plans[j].number)) return;
     plan.collision_time = t;
     plan.partner = j;
-    plan.collisions_of_partner = marks[j].collisions;
+    plan.collisions_of_partner = collisions[j];
   }
   /// Of two partners at one instant the lower number comes first, walls before both.
   bool gives_way(std::uint32_t partner, std::uint32_t j) const {
     return partner >= look_again || (partner < first_wall && plans[j].number < plans[partner].number);
   }
 
-  bool some_pass_ = false;  // through each other: groups are to be asked
+  bool some_pass_ = false;                 // through each other: groups are to be asked
+  std::vector<Material<Real>> materials_;  // each but once
   std::vector<std::uint32_t> candidates_, curved_;
 };
 

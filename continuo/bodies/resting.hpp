@@ -25,8 +25,9 @@ void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& conta
   const Real press = -dot(gravity, wall.normal);
   const V pull = gravity + wall.normal * press;
   const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * length(gravity);
-  move_along(flights.paths[i], plan, wall.normal, combined(flights.world.meeting, plan.material, wall.material),
-             length(pull) > rounding ? pull : V{}, press, flights.now, contact_time);
+  move_along(flights.paths[i], plan, flights.turnings[i], wall.normal,
+             combined(flights.world.meeting, flights.material(i), wall.material), length(pull) > rounding ? pull : V{},
+             press, flights.now, contact_time);
 }
 
 /// Lets body i rest on wall `hit`, which it has just met, and on whatever others it touches, where it would leave none
@@ -79,8 +80,8 @@ bool rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t h
   }
   if (plan.support_count == 0) return false;
   plan.acceleration = pull;
-  plan.rests_since = flights.now;
-  flights.marks[i].act = Act::rests;
+  flights.turnings[i].rests_since = flights.now;
+  flights.acts[i] = Act::rests;
   go_on_along(flights, i, contact_time);
   return true;
 }

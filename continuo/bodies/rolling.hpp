@@ -38,23 +38,23 @@ Course<Real, Dim> course_of(const Vector<Real, Dim>& w, const Vector<Real, Dim>&
 /// The motion of one that rests, until `path_end`: sets acceleration and spin rate. `press` is what the wall carries of
 /// gravity, `pull` what it leaves. Rolling resistance beyond what friction can transmit acts like that limit.
 template <class Real, int Dim>
-void move_along(Path<Real, Dim>& path, Plan<Real, Dim>& plan, const Vector<Real, Dim>& normal,
-                const Material<Real>& material, const Vector<Real, Dim>& pull, const Real& press, const Real& now,
-                const Real& shortest) {
+void move_along(Path<Real, Dim>& path, Plan<Real, Dim>& plan, Turning<Real, Dim>& rotation,
+                const Vector<Real, Dim>& normal, const Material<Real>& material, const Vector<Real, Dim>& pull,
+                const Real& press, const Real& now, const Real& shortest) {
   using V = Vector<Real, Dim>;
   plan.acceleration = pull;
-  plan.spin_rate = {};
+  rotation.spin_rate = {};
   plan.path_end = Plan<Real, Dim>::never;
-  if (!(material.friction > Real(0)) || !(plan.inverse_inertia > Real(0))) return;
-  const Real r = path.radius, shape = plan.inverse_mass / (plan.inverse_inertia * r * r);  // J / (m r^2)
+  if (!(material.friction > Real(0)) || !(rotation.inverse_inertia > Real(0))) return;
+  const Real r = path.radius, shape = plan.inverse_mass / (rotation.inverse_inertia * r * r);  // J / (m r^2)
   const Real rub = material.friction * press;
   // Friction f changes the slip v + spin x (-r normal) by f (1 / m + r^2 / J).
   const Real rub_of_slip = rub * (1 + 1 / shape);
-  V slip = path.v + turning(plan.spin, V(normal * -r));
+  V slip = path.v + turning(rotation.spin, V(normal * -r));
   slip -= normal * dot(slip, normal);
   const bool rolls = !(length(slip) > rub_of_slip * shortest);
   if (rolls) {
-    plan.spin += moment(normal, slip) * (1 / r);
+    rotation.spin += moment(normal, slip) * (1 / r);
     // Rolling, m v' = m pull + f and J v' / r = -r f - torque: both together carry the inertia 1 + J / (m r^2).
     const Real resistance = std::min(material.rolling_resistance, Real(material.friction * (1 + shape)));
     const Real drag = resistance * press / (1 + shape);
@@ -68,13 +68,13 @@ void move_along(Path<Real, Dim>& path, Plan<Real, Dim>& plan, const Vector<Real,
       acceleration -= drive * (drag / length(drive));
     } else if (drag > Real(0)) {
       path.v = acceleration = {};
-      plan.spin -= moment(normal, turning(plan.spin, normal));  // what is about the normal goes on
+      rotation.spin -= moment(normal, turning(rotation.spin, normal));  // what is about the normal goes on
     }
     // Resistance at that limit asks for all of the friction, to rounding; without a pull nothing slips downhill.
     const Real most = rub * (1 + 16 * std::numeric_limits<Real>::epsilon());
     if (!(length(acceleration - pull) > most) || pull == V{}) {
       plan.acceleration = acceleration;
-      plan.spin_rate = moment(normal, acceleration) * (1 / r);
+      rotation.spin_rate = moment(normal, acceleration) * (1 / r);
       plan.path_end = now + course.duration;
       return;
     }
@@ -82,7 +82,7 @@ void move_along(Path<Real, Dim>& path, Plan<Real, Dim>& plan, const Vector<Real,
   // Where friction cannot hold one that rolls, it begins to slip downhill.
   const Course<Real, Dim> course = course_of(rolls ? pull : slip, pull, rub_of_slip, shortest);
   plan.acceleration = pull - course.direction * rub;
-  plan.spin_rate = moment(normal, course.direction) * (rub / (shape * r));
+  rotation.spin_rate = moment(normal, course.direction) * (rub / (shape * r));
   plan.path_end = rolls ? Plan<Real, Dim>::never : Real(now + course.duration);
 }
 

@@ -283,6 +283,20 @@ TEST(ExactMotion, LookingDoesNotDisturb) {
   EXPECT_EQ(a.velocity, b.velocity);
 }
 
+// Where bodies do not fit into the cache, it looks ahead at what comes next: that decides nothing.
+TEST(ExactMotion, LooksAheadInAGasTooLargeForTheCache) {
+  constexpr std::size_t count = 25000;
+  World<double, 3> world = gas<3>(count, 36, elastic), looked_at = world;
+  const double energy = kinetic_energy(world);
+  ExactMotion motion(world), seen(looked_at);
+  ASSERT_EQ(motion.advance_to(0.25), "");
+  for (const double t : {0.02, 0.1, 0.11, 0.25}) ASSERT_EQ(seen.advance_to(t), "");
+  EXPECT_GT(motion.statistics().collisions, count);
+  EXPECT_EQ(state_hash(looked_at), state_hash(world));
+  const double collisions_of_each = static_cast<double>(2 * motion.statistics().collisions / count);
+  EXPECT_NEAR(kinetic_energy(world) / energy, 1, 2 * epsilon * collisions_of_each);
+}
+
 // Fast, small, far apart: a ball at 1 km/s meets one of a centimetre, and a light ball one of 1e12 times its mass.
 TEST(ExactMotion, NothingPassesThrough) {
   World<double, 3> world;
