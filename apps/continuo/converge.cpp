@@ -41,6 +41,13 @@ ExitCode draw(const results::Figure& figure, const std::string& path, ExitCode e
   return exit == done ? usage : exit;
 }
 
+/// Bodies are moved in steps, in double; what they are compared with has none.
+bool fits_a_world(const ConvergeOptions& options) {
+  if (options.tolerances.empty() && !options.in_float && !options.in_long_double) return true;
+  say("a world of bodies converges by its steps and in double: without --tol, --float and --long");
+  return false;
+}
+
 ExitCode converge(const ConvergeOptions& options) {
   if (!drawable(options.plot)) return usage;
   if (!options.derivative.empty()) {
@@ -53,9 +60,10 @@ ExitCode converge(const ConvergeOptions& options) {
     say("converge takes a model and --methods, or --derivative with an expression in x");
     return usage;
   }
-  if (!known_methods(options.methods)) return usage;
-  Prepared prepared = prepare(options.experiment);
+  Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
+  if (!known_methods(options.methods, prepared.program->model.has_world())) return usage;
+  if (prepared.program->model.has_world() && !fits_a_world(options)) return usage;
   if (has_no_start(prepared)) return wrong_model;
   Progress progress;
   const auto study = studies::converge(prepared.program, prepared.experiment,
@@ -85,6 +93,7 @@ void add_converge(CLI::App& app, ExitCode& exit) {
       "  continuo converge models/mass_spring_damper.sim --methods euler,heun,rk4 --plot orders.svg\n"
       "  continuo converge models/kepler.sim --methods rk4,yoshida6 --float      also with seven digits\n"
       "  continuo converge models/kepler.sim --methods adams --tol 1e-3,1e-5,1e-7\n"
+      "  continuo converge models/chain.sim --methods fast,rk4 --until 2         bodies, against their exact motion\n"
       "  continuo converge --derivative \"sin(x)\" --at 1            difference schemes for f' and f''\n";
   CLI::App* verb = add_verb(app, "converge", "Error against step: observed orders and the floor of rounding", examples);
   auto options = std::make_shared<ConvergeOptions>();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <apps/continuo/converge_text.hpp>
@@ -5,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <continuo/model/suggest.hpp>
+#include <continuo/model/world.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/solve/catalogue.hpp>
 
@@ -70,6 +72,7 @@ std::string row_of(const MethodConvergence& method, bool by_tolerance) {
 /// A line on methods that choose more than the size of a step: what was measured of them.
 std::string what_keeps_its_order(const std::string& name) {
   const MethodInfo* info = find_method(name);
+  if (info == nullptr) return "";
   if (info->automatic)
     return fmt::format("{}: measured is its explicit method, unless equations are stiff or algebraic\n", name);
   if (info->order == info->order_of_fixed_steps) return "";
@@ -84,13 +87,21 @@ void end_line(std::string& text) {
   text += '\n';
 }
 
-bool known_methods(const std::vector<std::string>& names) {
+bool known_methods(const std::vector<std::string>& names, bool of_world) {
   std::vector<std::string> known;
-  for (const MethodInfo& method : method_catalogue()) known.emplace_back(method.name);
+  if (of_world) known = model::world_methods();
+  for (const MethodInfo& method : method_catalogue())
+    if (!of_world) known.emplace_back(method.name);
   for (const std::string& name : names) {
-    if (find_method(name) != nullptr) continue;
+    if (std::ranges::find(known, name) != known.end() || (!of_world && find_method(name) != nullptr)) continue;
     const std::string near = model::did_you_mean(name, known);
-    say(fmt::format("there is no method `{}`{} `continuo methods` lists them", name, near.empty() ? ";" : ", " + near));
+    if (of_world) {
+      say(fmt::format("bodies are not moved by `{}`, {}", name,
+                      near.empty() ? fmt::format("but by {}", fmt::join(known, ", ")) : near));
+    } else {
+      say(fmt::format("there is no method `{}`{} `continuo methods` lists them", name,
+                      near.empty() ? ";" : ", " + near));
+    }
     return false;
   }
   return true;

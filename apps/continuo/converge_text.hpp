@@ -9,7 +9,7 @@
 namespace continuo::app {
 
 /// False, and said which, where a name is no method.
-bool known_methods(const std::vector<std::string>& names);
+bool known_methods(const std::vector<std::string>& names, bool of_world = false);
 
 /// Ends a line of a table, without blanks at its end.
 void end_line(std::string& text);

@@ -94,8 +94,9 @@ Fix: guess x = ... gives the search a place to begin, as a function of t; `guess
 for less.)"},
     Code{
         "E323", "a world of bodies does not fit here",
-        R"(Bodies collide, which no study of equations can see: `continuo run`, `verify` and `compare` move a world, `check`
-and `info` read it. It has no equations `0 = ...` beside it and no conditions at several times.)"},
+        R"(Bodies collide, which no study of equations can see: `continuo run`, `verify`, `compare` and `converge` move a world,
+`check` and `info` read it. What comes of a start is no smooth function of it where bodies meet, so that there are no
+sensitivities, and a world has no x' = f(x) to find rest, orbits or a linearization of. It has no equations `0 = ...` beside it and no conditions at several times.)"},
     Code{"E324", "the bodies cannot be moved on",
          R"(The motion of the world ended before the run did; the message says why. What was computed is kept.
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <continuo/model/evaluation.hpp>
+#include <continuo/model/world.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/compare.hpp>
 #include <continuo/studies/converge.hpp>
@@ -43,11 +44,18 @@ NamedSystem<Real> equations(const model::ModelProgram& program, const Parametric
   return system;
 }
 
+/// Of a world's methods `fast` is the integrator that the world names.
+int order_of(const model::Model& model, const std::string& method) {
+  const bool is_fast = model.has_world() && method == "fast";
+  const MethodInfo* info = find_method(is_fast ? model.world->mode.integrator : method);
+  return info == nullptr ? 0 : info->order_of_fixed_steps;
+}
+
 /// Points of a model that is more than equations: by the comparison of whole runs.
-MethodConvergence by_comparison(const std::string& method, std::span<const Contender> contenders, bool by_tolerance) {
+MethodConvergence by_comparison(const model::Model& model, const std::string& method,
+                                std::span<const Contender> contenders, bool by_tolerance) {
   MethodConvergence result{.method = method};
-  if (const MethodInfo* info = find_method(method); info != nullptr && !by_tolerance)
-    result.nominal = info->order_of_fixed_steps;
+  if (!by_tolerance) result.nominal = order_of(model, method);
   std::vector<double> steps, global, energy;
   for (const Contender& contender : contenders) {
     if (contender.method != method) continue;
@@ -58,6 +66,10 @@ MethodConvergence by_comparison(const std::string& method, std::span<const Conte
     }
     const model::Run& run = *contender.simulated.run;
     const bool ended = succeeded(run.outcome.ending);
+    if (!contender.step && !contender.tolerance) {
+      result.problem = "it has no step to make smaller";
+      continue;
+    }
     const double step = contender.step ? *contender.step : contender.tolerance.value_or(unknown);
     result.points.push_back({.step = step,
                              .global = ended ? contender.largest_error : unknown,
@@ -78,7 +90,8 @@ MethodConvergence by_comparison(const std::string& method, std::span<const Conte
 
 Convergence compare_runs(const std::shared_ptr<const model::ModelProgram>& program, model::Experiment experiment,
                          Interval<double> interval, const ConvergeRequest& request) {
-  Convergence result{.by_tolerance = !request.tolerances.empty(), .reference = "a strict run"};
+  Convergence result{.by_tolerance = !request.tolerances.empty(),
+                     .reference = program->model.has_world() ? "the exact motion" : "a strict run"};
   experiment.interrupt = request.interrupt;
   CompareRequest compared{.methods = {}, .tolerances = request.tolerances, .experiment = std::move(experiment)};
   if (request.tolerances.empty())
@@ -92,7 +105,8 @@ Convergence compare_runs(const std::shared_ptr<const model::ModelProgram>& progr
       result.problem = problems.empty() ? "there is no reference run" : problems.front().message;
       return result;
     }
-    result.methods.push_back(by_comparison(request.methods[i], comparison.contenders, result.by_tolerance));
+    result.methods.push_back(
+        by_comparison(program->model, request.methods[i], comparison.contenders, result.by_tolerance));
     if (request.progress) request.progress(static_cast<double>(i + 1) / static_cast<double>(request.methods.size()));
     if (request.interrupt != nullptr && request.interrupt->load()) {
       result.interrupted = true;
@@ -107,8 +121,8 @@ Convergence compare_runs(const std::shared_ptr<const model::ModelProgram>& progr
 std::optional<ConvergenceProblem> convergence_problem(const std::shared_ptr<const model::ModelProgram>& program,
                                                       const model::Overrides& parameters, Interval<double> interval) {
   const model::Model& model = program->model;
-  if (model.needs_boundary_solver() || model.needs_dae_solver() || !model.events.empty() || !model.schedule.empty() ||
-      !program->step_inputs.empty() || model.modes.size() > 1)
+  if (model.has_world() || model.needs_boundary_solver() || model.needs_dae_solver() || !model.events.empty() ||
+      !model.schedule.empty() || !program->step_inputs.empty() || model.modes.size() > 1)
     return std::nullopt;
   const std::vector<double> variables = model::start_values(model, parameters, interval.from);
   const ParametricSystem exact = of_model(program, {.parameters = parameters});
