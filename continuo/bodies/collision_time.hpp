@@ -49,24 +49,37 @@ Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate
   const auto gap = [&](const Real& t) {
     return squared(apart + rate * t + acceleration * (t * t / 2)) - reach * reach;
   };
+  // Narrows a touch down that lies between the two.
+  const auto touch_between = [&](Real low, Real high) {
+    for (int i = 0; i < 2 * std::numeric_limits<Real>::digits && low < high; ++i) {
+      const Real middle = low + (high - low) / 2;
+      if (middle == low || middle == high) break;
+      (gap(middle) > Real(0) ? low : high) = middle;
+    }
+    return low;
+  };
   if (!(gap(Real(0)) > Real(0))) {
     if (detail::approaches(apart, rate)) return Real(0);
     // At rest on each other, and pressed together.
-    if (!detail::approaches(apart, Vector<Real, Dim>(-rate)) && dot(apart, acceleration) < Real(0)) return Real(0);
+    const bool parts = detail::approaches(apart, Vector<Real, Dim>(-rate));
+    if (!parts && dot(apart, acceleration) < Real(0)) return Real(0);
+    // Parts, and is pulled back after so short a flight perhaps that rounding hides it: then it touches where it comes
+    // as near again. To second order |apart|^2 changes by 2 b t + curve t^2.
+    const Real curve = squared(rate) + dot(apart, acceleration);
+    if (parts && curve < Real(0)) {
+      const Real back = -2 * dot(apart, rate) / curve;
+      if (2 * back < horizon && !(gap(2 * back) > Real(0)))
+        return gap(back / 2) > Real(0) ? touch_between(back / 2, Real(2 * back)) : back;
+    }
   }
   std::array<double, bernstein::count> values{};
   for (std::size_t k = 0; k < values.size(); ++k)
     values[k] = static_cast<double>(gap(horizon * static_cast<Real>(bernstein::nodes[k])));
   Real found = never;
   bernstein::isolate_sign_changes(bernstein::from_values(values), [&](double from, double to) {
-    Real low = horizon * static_cast<Real>(from), high = horizon * static_cast<Real>(to);
+    const Real low = horizon * static_cast<Real>(from), high = horizon * static_cast<Real>(to);
     if (!(gap(low) > gap(high))) return false;  // parts here
-    for (int i = 0; i < 2 * std::numeric_limits<Real>::digits && low < high; ++i) {
-      const Real middle = low + (high - low) / 2;
-      if (middle == low || middle == high) break;
-      (gap(middle) > Real(0) ? low : high) = middle;
-    }
-    found = low;
+    found = touch_between(low, high);
     return true;
   });
   return found;

@@ -283,6 +283,28 @@ TEST(ExactMotion, LookingDoesNotDisturb) {
   EXPECT_EQ(a.velocity, b.velocity);
 }
 
+// What is dropped into a narrow box slides over what lies on its floor, in flights so short that rounding hides them.
+// Each place is right to an ulp of the edge of the box.
+TEST(ExactMotion, ABallDoesNotSinkIntoOneThatLies) {
+  const Material<double> slack{.restitution = 0, .friction = 0};
+  World<double, 3> world;
+  world.gravity = {{0, 0, -9.81}};
+  ASSERT_EQ(world.add_container({}, {{3.45, 3.45, 100}}, slack), "");
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> jitter(-0.04, 0.04);
+  for (int i = 0; i < 20; ++i) {
+    BodyDefinition<double, 3> ball{.material = slack};
+    for (int axis = 0, rest = i; axis < 3; ++axis, rest /= 3)
+      ball.position[static_cast<std::size_t>(axis)] = 0.575 + 1.15 * (axis < 2 ? rest % 3 : rest) + jitter(engine);
+    ASSERT_TRUE(world.add(ball));
+  }
+  ExactMotion motion(world);
+  for (const double t : {0.1, 0.2, 0.3, 0.35, 0.4}) {
+    ASSERT_EQ(motion.advance_to(t), "");
+    EXPECT_LT(deepest_overlap(world), 16 * epsilon) << t;
+  }
+}
+
 // Where bodies do not fit into the cache, it looks ahead at what comes next: that decides nothing.
 TEST(ExactMotion, LooksAheadInAGasTooLargeForTheCache) {
   constexpr std::size_t count = 25000;
