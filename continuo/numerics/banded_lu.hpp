@@ -1,5 +1,5 @@
 // LU decomposition with partial pivoting of a matrix c M - J whose entries lie near its diagonal, P A = L D U with unit
-// diagonals as in small_lu.hpp. The numbers may be real or complex, of any scalar.
+// diagonals as in small_lu.hpp. The numbers are double or ComplexNumber<double>, which banded_lu.cpp is compiled for.
 //
 //   const BandLayout band(n, lower, upper);
 //   std::vector<double> j(band.numbers());
@@ -34,43 +34,16 @@ class BandedLU {
   using Real = decltype(magnitude(Number{}));
 
   BandedLU() = default;
-  explicit BandedLU(const BandLayout& layout)
-      : layout_(layout), size_(layout.size), lower_(layout.lower), upper_(layout.upper) {
-    if (layout.is_narrow()) {
-      const std::size_t right = lower_ + upper_, left_over = right + size_ % 2, columns = (size_ - left_over) / 2;
-      ends_ = {End(columns + lower_ + size_ % 2, columns, lower_, right),
-               End(columns + lower_, columns, lower_, right)};
-      straight_ = detail::StraightFactors<Number>(columns, lower_);
-      middle_ = DenseLU<Number>(left_over);
-    } else {
-      ends_[0] = End(size_, size_, lower_, lower_ + upper_);
-      window_.resize((lower_ + 2) * (lower_ + upper_ + 1));
-    }
-  }
+  explicit BandedLU(const BandLayout& layout);
 
   std::size_t size() const { return size_; }
 
   /// Decomposes c M - J. `jacobian` is J as it lies in the layout, `mass` the diagonal of M, or empty for the identity.
   /// False where a pivot is zero or not a number: the matrix is singular, or was not finite.
-  bool factor(std::span<const Real> jacobian, const Number& c, std::span<const Real> mass = {}) {
-    const auto stride = static_cast<std::ptrdiff_t>(layout_.stride);
-    const std::size_t last = size_ - 1;
-    const bool is_identity = mass.empty();
-    const FromTop top{jacobian.data(), stride, c, is_identity ? nullptr : mass.data()};
-    if (is_wide()) return factor_wide(top);
-    const FromBottom bottom{jacobian.data() + layout_.place(last, last + upper_), stride, c,
-                            is_identity ? nullptr : mass.data() + last};
-    return with_width([&]<std::size_t B>() { return factor_narrow<B>(top, bottom); });
-  }
+  bool factor(std::span<const Real> jacobian, const Number& c, std::span<const Real> mass = {});
 
   /// b becomes the solution.
-  void solve(Number* b) {
-    if (is_wide()) return solve_wide(b);
-    with_width([&]<std::size_t B>() {
-      solve_narrow<B>(b);
-      return true;
-    });
-  }
+  void solve(Number* b);
 
  private:
   using End = detail::BandEnd<Number>;
