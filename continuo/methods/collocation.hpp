@@ -133,7 +133,7 @@ struct CollocationMethod {
   static int interpolate(System&, const Scalar<X>&, const X& x, const Scalar<X>& h, const X& x_new, Workspace<X>& work,
                          Interpolant<X, dense_degree>& interpolant) {
     with_stages(work.stages, [&]<std::size_t s>() {
-      const auto& table = collocation::table<Scalar<X>, nodes, s>();
+      const auto& table = collocation::table_for<X, nodes, s>();
       for (std::size_t i = 0; i < dimension(x); ++i) {
         std::array<Scalar<X>, static_cast<std::size_t>(dense_degree) + 1> powers{};
         if (radau || work.linear.has_mass()) {
@@ -153,7 +153,7 @@ struct CollocationMethod {
   template <State X>
   static void accept(Workspace<X>& work) {
     with_stages(work.stages, [&]<std::size_t s>() {
-      const auto& table = collocation::table<Scalar<X>, nodes, s>();
+      const auto& table = collocation::table_for<X, nodes, s>();
       collocation::for_each_sums(
           table.ahead, work.Z, [&](std::size_t i, const auto& ahead) __attribute__((always_inline)) {
             detail::unrolled<0, s>([&](auto k) __attribute__((always_inline)) { work.ahead[k].data()[i] = ahead[k]; });
@@ -278,7 +278,7 @@ struct CollocationMethod {
   template <std::size_t s, class System, State X>
   static int finish(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
-    const auto& table = collocation::table<Real, nodes, s>();
+    const auto& table = collocation::table_for<X, nodes, s>();
     work.h = h;
     work.next_stages = s;
     const Real one_over_h = Real(1) / h;

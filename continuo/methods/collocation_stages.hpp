@@ -17,7 +17,7 @@ namespace continuo::collocation {
 template <Nodes nodes, std::size_t s, State X, std::size_t most>
 bool decompose(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
-  const auto& numbers = table<Real, nodes, s>();
+  const auto& numbers = table_for<X, nodes, s>();
   if (work.decomposed_for == h && work.decomposed_stages == s) return true;
   constexpr std::size_t reals = s % 2, pairs = s / 2;
   bool done = true;
@@ -38,7 +38,7 @@ bool decompose(const Scalar<X>& h, Workspace<X, most>& work) {
 template <Nodes nodes, std::size_t s, std::size_t degree, State X, std::size_t most>
 void extend(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
-  const auto& numbers = table<Real, nodes, s>();
+  const auto& numbers = table_for<X, nodes, s>();
   std::array<std::array<Real, degree>, s> power{};  // of the places of the stages, seen from that end
   if (work.ahead_degree != 0) {
     const Real ratio = h / work.ahead_h;
@@ -68,7 +68,7 @@ template <Nodes nodes, std::size_t s, State X, std::size_t most>
 void estimate_dense_of_first(Workspace<X, most>& work) {
   using Real = Scalar<X>;
   using std::abs, std::max;
-  const auto& numbers = table<Real, nodes, s>();
+  const auto& numbers = table_for<X, nodes, s>();
   Real last_size(0), size_before(0);
   for (std::size_t i = 0; i < dimension(work.f); ++i) {
     Real last(0), before(0);
@@ -90,7 +90,7 @@ void estimate_dense_of_first(Workspace<X, most>& work) {
 template <Nodes nodes, std::size_t s, State X, std::size_t most>
 void estimate_dense(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
-  const auto& numbers = table<Real, nodes, s>();
+  const auto& numbers = table_for<X, nodes, s>();
   if (work.ahead_degree == 0) return estimate_dense_of_first<nodes, s>(work);
   Real part(0);
   if (work.ahead_degree == s) {
@@ -104,7 +104,7 @@ void estimate_dense(const Scalar<X>& h, Workspace<X, most>& work) {
 
 template <Nodes nodes, std::size_t s, class System, State X, std::size_t most>
 void stage_slopes(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X, most>& work) {
-  const auto& numbers = table<Scalar<X>, nodes, s>();
+  const auto& numbers = table_for<X, nodes, s>();
   for (std::size_t j = 0; j < s; ++j) {
     for (std::size_t i = 0; i < dimension(x); ++i) work.point.data()[i] = x.data()[i] + work.Z[j].data()[i];
     evaluate(system, Scalar<X>(t + numbers.c[j] * h), work.point, work.F[j]);
@@ -115,7 +115,7 @@ void stage_slopes(System& system, const Scalar<X>& t, const X& x, const Scalar<X
 template <Nodes nodes, std::size_t s, State X, std::size_t most>
 [[gnu::always_inline]] inline void set_right(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
-  const auto& numbers = table<Real, nodes, s>();
+  const auto& numbers = table_for<X, nodes, s>();
   constexpr std::size_t reals = s % 2, pairs = s / 2;
   if (work.linear.has_mass())
     for (std::size_t m = 0; m < s; ++m) work.linear.multiply_mass(work.W[m], work.MW[m]);
@@ -139,7 +139,7 @@ template <Nodes nodes, std::size_t s, State X, std::size_t most>
 [[gnu::always_inline]] inline Scalar<X> correct(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
   using std::sqrt;
-  const auto& numbers = table<Real, nodes, s>();
+  const auto& numbers = table_for<X, nodes, s>();
   constexpr std::size_t reals = s % 2, pairs = s / 2;
   set_right<nodes, s>(h, work);
   if constexpr (reals == 1) work.lu.solve(work.right.data());
