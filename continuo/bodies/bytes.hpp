@@ -55,8 +55,8 @@ class ByteWriter {
   void operator()(const Vector<Real, Size>& v) {
     (*this)(v.components);
   }
-  template <class T>
-  void operator()(const std::vector<T>& values) {
+  template <class T, class Allocator>
+  void operator()(const std::vector<T, Allocator>& values) {
     (*this)(static_cast<std::uint64_t>(values.size()));
     for (const T& value : values) (*this)(value);
   }
@@ -101,8 +101,8 @@ class ByteReader {
   void operator()(Vector<Real, Size>& v) {
     (*this)(v.components);
   }
-  template <class T>
-  void operator()(std::vector<T>& values) {
+  template <class T, class Allocator>
+  void operator()(std::vector<T, Allocator>& values) {
     std::uint64_t count = 0;
     (*this)(count);
     values.clear();

@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/contact_blocks.hpp>
 #include <continuo/bodies/contact_rows.hpp>
 #include <continuo/bodies/contact_solver.hpp>
+#include <continuo/bodies/kept_impulses.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
-
-inline constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
 
 /// What a body may touch: another body's place, or that of a wall's stand-in. Rows are in rising order, walls last; a
 /// pair of two that move stands with the lower place, one with a fixed body with the other.
@@ -27,53 +27,6 @@ struct ContactEntry {
   std::uint32_t lane = nowhere;  // in the packs of its kind, where it is solved
 };
 using ContactRows = Rows<ContactEntry>;
-
-/// The impulses of a contact between steps.
-template <class Real, int Dim>
-struct KeptImpulse {
-  std::uint32_t other = 0;
-  Real normal{};
-  Vector<Real, Dim> friction{};  // on `other`
-
-  template <class Archive>
-  void transfer(Archive& archive) {
-    archive(other), archive(normal), archive(friction);
-  }
-};
-template <class Real, int Dim>
-struct KeptImpulses : Rows<KeptImpulse<Real, Dim>> {
-  using Base = Rows<KeptImpulse<Real, Dim>>;
-  std::vector<Spin<Real, Dim>> rolling{};  // of the same contacts; empty where nothing resists rolling
-
-  template <class Archive>
-  void transfer(Archive& archive) {
-    archive(this->first), archive(this->entries), archive(rolling);
-  }
-  /// Of `bodies`, with others below `others`.
-  bool fits(std::size_t bodies, std::size_t others) const {
-    const auto& starts = this->first;
-    bool fits = !starts.empty() && starts.front() == 0 && starts.back() == this->entries.size() &&
-                starts.size() <= bodies + 1 && std::ranges::is_sorted(starts) &&
-                (rolling.empty() || rolling.size() == this->entries.size());
-    for (const auto& entry : this->entries) fits = fits && entry.other < others;
-    return fits;
-  }
-  std::size_t find(std::uint32_t k, std::uint32_t other) const {
-    if (k < this->rows())
-      for (std::size_t i = this->first[k]; i < this->first[k + 1]; ++i)
-        if (this->entries[i].other == other) return i;
-    return nowhere;
-  }
-  void clear() {
-    Base::clear();
-    rolling.clear();
-  }
-  void append(const KeptImpulses& more) {
-    Base::append(more);
-    rolling.insert(rolling.end(), more.rolling.begin(), more.rolling.end());
-  }
-  std::size_t memory() const { return Base::memory() + rolling.capacity() * sizeof(Spin<Real, Dim>); }
-};
 
 /// How near two must be to be solved in a step: as near as they may come.
 template <class Real>
@@ -91,25 +44,18 @@ class ContactList {
   ContactRows rows;
   ColouredPacks<Real, Dim> between_movers, with_fixed, with_wall;
 
-  /// act(kind, packs) for the three kinds, in the order in which they are solved: walls last, they yield least.
-  template <class Act>
-  void for_each_kind(Act&& act) {
-    act(std::integral_constant<ContactKind, ContactKind::between_movers>{}, between_movers);
-    act(std::integral_constant<ContactKind, ContactKind::with_fixed>{}, with_fixed);
-    act(std::integral_constant<ContactKind, ContactKind::with_wall>{}, with_wall);
-  }
+  ContactBlocks blocks;
 
-  /// act(kind, packs, from, to) for all packs, colour by colour, those of a colour several at once.
+  /// act(kind, packs, group) for the contacts of a group of those between bodies that move, see contact_blocks.hpp.
   template <class Act>
-  void for_each_pack(Team& team, Act&& act) {
-    for_each_kind([&](auto kind, auto& packs) {
-      if (team.is_alone()) return act(kind, packs, 0, packs.packs.size());
-      for (std::size_t c = 0; c < packs.colours; ++c) {
-        const std::size_t size = packs.first[c + 1] - packs.first[c];
-        team.for_each(packs.first[c], packs.first[c + 1], packs.is_shared(c) ? size : 64,
-                      [&](std::size_t from, std::size_t to) { act(kind, packs, from, to); });
-      }
-    });
+  void in_group(std::size_t group, Act&& act) {
+    act_on<ContactKind::between_movers>(between_movers, group, act);
+  }
+  /// The same for those that only a block's own bodies feel: with fixed ones and walls. Walls last, they yield least.
+  template <class Act>
+  void at_border(std::size_t block, Act&& act) {
+    act_on<ContactKind::with_fixed>(with_fixed, block, act);
+    act_on<ContactKind::with_wall>(with_wall, block, act);
   }
 
   /// Of two bodies, or of one and a wall, among those that are listed.
@@ -136,9 +82,9 @@ class ContactList {
         if (entry.lane == nowhere) continue;
         auto& packs = packs_of(entry);
         const std::size_t p = (entry.lane & ~fixed_bit) / width, lane = entry.lane % width;
-        const ContactPack<Real, Dim>& pack = packs.packs[p];
-        if (!(pack.normal_impulse.lane[lane] > Real(0))) continue;
-        part.entries.push_back({entry.other, pack.normal_impulse.lane[lane], in_lane(pack.friction_impulse, lane)});
+        const PackImpulses<Real, Dim>& impulses = packs.impulses[p];
+        if (!(impulses.normal.lane[lane] > Real(0))) continue;
+        part.entries.push_back({entry.other, impulses.normal.lane[lane], in_lane(impulses.friction, lane)});
         if (const auto* rare = packs.rare_of(p)) part.rolling.push_back(in_lane(rare->rolling_impulse, lane));
       }
     });
@@ -152,16 +98,19 @@ class ContactList {
   void activate(Team& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
                 const MeetingOf& meeting_of, bool has_rare, const ActiveReach<Real>& reach,
                 std::span<const std::uint32_t> place_before) {
-    between_movers.count.fill(0), with_fixed.count.fill(0), with_wall.count.fill(0);
-    team.for_each(0, rows.rows(), 256, [&](std::size_t from, std::size_t to) {
-      for (std::size_t k = from; k < to; ++k) choose(static_cast<std::uint32_t>(k), bodies, walls, reach);
+    between_movers.clear(blocks.groups()), with_fixed.clear(blocks.count), with_wall.clear(blocks.count);
+    std::vector<std::uint8_t> has_rest(blocks.count, 0);
+    team.share(blocks.count, [&](std::size_t block) {
+      for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
+        choose(k, bodies, walls, reach);
+      has_rest[block] = colour(block, bodies);
     });
-    colour(bodies);
-    for_each_kind([&](auto, auto& packs) { packs.make_room(bodies, has_rare); });
+    colour_rest(has_rest, bodies);
+    for (auto* packs : {&between_movers, &with_fixed, &with_wall}) packs->make_room(blocks, bodies, has_rare);
     const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
-    team.for_each(0, rows.rows(), 512, [&](std::size_t from, std::size_t to) {
-      for (std::size_t k = from; k < to; ++k)
-        fill_row(static_cast<std::uint32_t>(k), bodies, walls, meeting_of, before, !place_before.empty());
+    team.share(blocks.count, [&](std::size_t block) {
+      for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
+        fill_row(k, bodies, walls, meeting_of, before, !place_before.empty());
     });
   }
 
@@ -179,7 +128,7 @@ class ContactList {
       for (const ContactEntry& entry : rows.row(k)) {
         if (entry.lane == nowhere) continue;
         const std::uint32_t lane = entry.lane & ~fixed_bit;
-        const Real pressed = packs_of(entry).packs[lane / width].normal_impulse.lane[lane % width];
+        const Real pressed = packs_of(entry).impulses[lane / width].normal.lane[lane % width];
         const auto bodies = static_cast<std::uint32_t>(rows.rows());
         const bool is_wall = entry.other >= bodies;
         if (pressed > Real(0)) visit(k, is_wall ? entry.other - bodies : entry.other, is_wall, pressed);
@@ -188,19 +137,23 @@ class ContactList {
 
   std::size_t memory() const {
     std::size_t sum = rows.memory() + kept_.memory();
-    for (const auto* packs : {&between_movers, &with_fixed, &with_wall})
-      sum += packs->packs.capacity() * sizeof(packs->packs[0]) + packs->rare.capacity() * sizeof(packs->rare[0]);
+    for (const auto* packs : {&between_movers, &with_fixed, &with_wall}) sum += packs->memory();
     return sum;
   }
   std::size_t active() const {
     std::size_t sum = 0;
-    for (const auto* packs : {&between_movers, &with_fixed, &with_wall})
-      for (const std::uint32_t count : packs->count) sum += count;
+    for (const auto* packs : {&between_movers, &with_fixed, &with_wall}) sum += packs->contacts;
     return sum;
   }
 
  private:
   static constexpr std::uint32_t fixed_bit = 1u << 31;  // of an entry's lane: its packs are those with fixed bodies
+
+  template <ContactKind kind, class Act>
+  static void act_on(ColouredPacks<Real, Dim>& packs, std::size_t group, Act&& act) {
+    const auto& first = packs.groups[group].first;
+    if (first.front() < first.back()) act(std::integral_constant<ContactKind, kind>{}, packs, group);
+  }
 
   const ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry) const {
     if (entry.other >= rows.rows()) return with_wall;
@@ -227,16 +180,24 @@ class ContactList {
     return sum * reach.step + reach.extra;
   }
 
-  // Until the packs have room, an entry's lane holds its colour and its number among those of that colour.
+  // Until the packs have room, an entry's lane holds its colour and its number among those of that colour in its group.
   static constexpr std::uint32_t colour_shift = 25;
+  static constexpr std::uint32_t last_colour = ColouredPacks<Real, Dim>::most_colours - 1;
+  static constexpr std::uint32_t chosen = nowhere - 1;  // but without a colour yet
 
   /// The lowest colour that neither has.
   static std::uint32_t lowest_free(std::uint64_t used) {
-    const auto last = static_cast<int>(ColouredPacks<Real, Dim>::most_colours) - 1;
-    return static_cast<std::uint32_t>(std::min(std::countr_one(used), last));
+    return std::min(static_cast<std::uint32_t>(std::countr_one(used)), last_colour);
   }
-  static std::uint32_t number(ColouredPacks<Real, Dim>& packs, std::uint32_t colour) {
-    return colour << colour_shift | packs.count[colour]++;
+  static std::uint32_t number(ColouredPacks<Real, Dim>& packs, std::size_t group, std::uint32_t colour) {
+    return colour << colour_shift | packs.count[group][colour]++;
+  }
+  /// `taken`: the colours of what has the body as one of two that move, in their group.
+  std::uint32_t number(std::size_t group, std::uint64_t& taken_by_a, std::uint64_t& taken_by_b) {
+    const std::uint32_t free = lowest_free(taken_by_a | taken_by_b);
+    taken_by_a |= std::uint64_t{1} << free;
+    taken_by_b |= std::uint64_t{1} << free;
+    return number(between_movers, group, free);
   }
   /// Which entries of row k may touch: their lane is no longer `nowhere`.
   void choose(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
@@ -253,42 +214,55 @@ class ContactList {
         const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
         may_touch = squared(bodies.x(j) - x) < near * near;
       }
-      entry.lane = may_touch ? 0 : nowhere;
+      entry.lane = may_touch ? chosen : nowhere;
     }
   }
-  /// Colours depend on those before: by one thread.
-  void colour(const SolverBodies<Real, Dim>& bodies) {
-    constexpr std::uint32_t last = ColouredPacks<Real, Dim>::most_colours - 1;
-    std::vector<std::uint64_t> taken(bodies.size(), 0);  // the colours of what has the body as one of two that move
-    for (std::uint32_t k = 0; k < rows.rows(); ++k) {
+  /// Of the rows of a block; says whether contacts are left that are neither within it nor across its end.
+  bool colour(std::size_t block, const SolverBodies<Real, Dim>& bodies) {
+    const std::uint32_t begin = blocks.first(block), end = blocks.last(block, rows.rows());
+    std::vector<std::uint64_t> within(2 * blocks.half, 0), across(2 * blocks.half, 0);
+    bool has_rest = false;
+    for (std::uint32_t k = begin; k < end; ++k) {
       std::uint32_t fixed = 0, at_walls = 0;  // each of these has a colour of its own
       for (ContactEntry& entry : rows.row(k)) {
         if (entry.lane == nowhere) continue;
         const std::uint32_t j = entry.other;
         if (j >= bodies.size()) {
-          entry.lane = number(with_wall, std::min(at_walls++, last));
-        } else if (bodies.moves(j)) {
-          const std::uint32_t free = lowest_free(taken[k] | taken[j]);
-          taken[j] |= std::uint64_t{1} << free;
-          taken[k] |= std::uint64_t{1} << free;
-          entry.lane = number(between_movers, free);
+          entry.lane = number(with_wall, block, std::min(at_walls++, last_colour));
+        } else if (!bodies.moves(j)) {
+          entry.lane = number(with_fixed, block, std::min(fixed++, last_colour)) | fixed_bit;
+        } else if (const std::size_t group = blocks.group_of(k, j); group == block) {
+          entry.lane = number(group, within[k - begin], within[j - begin]);
+        } else if (group != blocks.rest()) {
+          entry.lane = number(group, across[k - begin - blocks.half], across[j - begin - blocks.half]);
         } else {
-          entry.lane = number(with_fixed, std::min(fixed++, last)) | fixed_bit;
+          has_rest = true;
         }
       }
     }
+    return has_rest;
+  }
+  void colour_rest(std::span<const std::uint8_t> has_rest, const SolverBodies<Real, Dim>& bodies) {
+    if (std::ranges::find(has_rest, 1) == has_rest.end()) return;
+    std::vector<std::uint64_t> taken(bodies.size(), 0);
+    for (std::size_t block = 0; block < blocks.count; ++block)
+      for (std::uint32_t k = blocks.first(block); has_rest[block] && k < blocks.last(block, rows.rows()); ++k)
+        for (ContactEntry& entry : rows.row(k))
+          if (entry.lane == chosen) entry.lane = number(blocks.rest(), taken[k], taken[entry.other]);
   }
 
   /// The lane of a numbered contact, filled but for the impulses and the normal.
   template <class MeetingOf>
-  static std::uint32_t fill(ColouredPacks<Real, Dim>& packs, std::uint32_t numbered, std::uint32_t a, std::uint32_t b,
-                            const MeetingOf& meeting_of) {
+  std::uint32_t fill(ColouredPacks<Real, Dim>& packs, std::size_t group, std::uint32_t numbered, std::uint32_t a,
+                     std::uint32_t b, const MeetingOf& meeting_of) {
     const std::uint32_t colour = numbered >> colour_shift, number = numbered & ((1u << colour_shift) - 1);
     const std::uint32_t lanes = static_cast<std::uint32_t>(width);
-    const std::uint32_t p = packs.first[colour] + (packs.is_shared(colour) ? number : number / lanes);
+    const std::uint32_t p = packs.groups[group].first[colour] + (packs.is_shared(colour) ? number : number / lanes);
     const std::uint32_t lane = packs.is_shared(colour) ? 0 : number % lanes;
     packs.packs[p].a[lane] = a;
     packs.packs[p].b[lane] = b;
+    packs.bins[p] |= blocks.bit_of(group, a);
+    if (&packs == &between_movers) packs.bins[p] |= blocks.bit_of(group, b);
     if (RarePack<Real, Dim>* rare = packs.rare_of(p)) {
       const Material<Real> both = meeting_of(a, b);
       rare->friction.lane[lane] = both.friction;
@@ -313,8 +287,8 @@ class ContactList {
       friction = kept_.entries[found].friction * direction;
       if (!kept_.rolling.empty()) rolling = kept_.rolling[found] * direction;
     }
-    packs.packs[p].normal_impulse.lane[lane] = normal;
-    put_in_lane(friction, packs.packs[p].friction_impulse, lane);
+    packs.impulses[p].normal.lane[lane] = normal;
+    put_in_lane(friction, packs.impulses[p].friction, lane);
     if (RarePack<Real, Dim>* rare = packs.rare_of(p)) put_in_lane(rolling, rare->rolling_impulse, lane);
   }
 
@@ -325,7 +299,8 @@ class ContactList {
       if (entry.lane == nowhere) continue;
       auto& packs = packs_of(entry);
       const std::uint32_t bit = &packs == &with_fixed ? fixed_bit : 0, j = entry.other;
-      const std::uint32_t lane = fill(packs, entry.lane & ~bit, k, j, meeting_of);
+      const std::size_t group = &packs == &between_movers ? blocks.group_of(k, j) : blocks.block_of(k);
+      const std::uint32_t lane = fill(packs, group, entry.lane & ~bit, k, j, meeting_of);
       if (j >= bodies.size())
         put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), packs.packs[lane / width].normal,
                     lane % width);

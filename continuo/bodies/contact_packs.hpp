@@ -1,10 +1,12 @@
-// Contacts in packs of as many as there are lanes, by colour.
+// Contacts in packs of as many as there are lanes, by group and colour.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include <continuo/bodies/contact_blocks.hpp>
 #include <continuo/bodies/lane_bodies.hpp>
 
 namespace continuo {
@@ -15,8 +17,14 @@ struct ContactPack {
   using L = StoredLanes<Real>;
   LaneIndices<Real> a{}, b{};
   Vector<L, Dim> normal{};  // from a to b
-  L separation{}, normal_impulse{};
-  Vector<L, Dim> friction_impulse{};
+  L separation{};
+};
+/// What every pass over contacts changes lies apart from what it only reads, in a line of the cache.
+template <class Real, int Dim>
+struct alignas(64) PackImpulses {
+  using L = StoredLanes<Real>;
+  L normal{};
+  Vector<L, Dim> friction{};  // on b
 };
 /// What few worlds have: several materials, bounces, rolling resistance.
 template <class Real, int Dim>
@@ -26,17 +34,24 @@ struct RarePack {
   Spin<L, Dim> rolling_impulse{};
 };
 
-/// The contacts of one kind, colour by colour: packs first[c] ... first[c + 1] - 1.
+/// The contacts of one kind, group by group and colour by colour.
 template <class Real, int Dim>
 struct ColouredPacks {
   static constexpr std::size_t width = lanes_at_once<Real>;
   static constexpr std::size_t most_colours = 64;
 
-  std::vector<ContactPack<Real, Dim>> packs{};
-  std::vector<RarePack<Real, Dim>> rare{};  // empty where all are alike, and neither bounce nor resist
-  std::array<std::uint32_t, most_colours + 1> first{};
-  std::array<std::uint32_t, most_colours> count{};  // of contacts
-  std::size_t colours = 0;
+  /// Packs first[c] ... first[c + 1] - 1 are those of a colour.
+  struct Group {
+    std::array<std::uint32_t, most_colours + 1> first{};
+  };
+  LargeArray<ContactPack<Real, Dim>> packs{};
+  LargeArray<PackImpulses<Real, Dim>> impulses{};
+  LargeArray<RarePack<Real, Dim>> rare{};  // empty where all are alike, and neither bounce nor resist
+  std::vector<std::uint32_t> bins{};       // of a pack's bodies, see contact_blocks.hpp
+  std::vector<Group> groups{};
+  std::vector<std::array<std::uint32_t, most_colours>> count{};  // of each group's contacts, until there is room
+  std::size_t contacts = 0;
+  std::size_t colours = 0;  // of the group that has most
 
   /// What more than 63 neighbours leave over goes to the last colour, one contact a pack: these do share bodies, and
   /// are for one after the other.
@@ -44,35 +59,56 @@ struct ColouredPacks {
 
   RarePack<Real, Dim>* rare_of(std::size_t pack) { return rare.empty() ? nullptr : &rare[pack]; }
 
-  /// Room for `count`; lanes that no contact will fill have stand-ins.
-  void make_room(const SolverBodies<Real, Dim>& bodies, bool has_rare) {
-    colours = 0;
-    for (std::size_t c = 0; c < most_colours; ++c) {
-      const std::uint32_t lanes = static_cast<std::uint32_t>(width);
-      first[c + 1] = first[c] + (is_shared(c) ? count[c] : (count[c] + lanes - 1) / lanes);
-      if (count[c] > 0) colours = c + 1;
+  void clear(std::size_t number_of_groups) {
+    groups.assign(number_of_groups, {});
+    count.assign(number_of_groups, {});
+  }
+  /// Room for what was counted; lanes that no contact will fill have stand-ins.
+  void make_room(const ContactBlocks& blocks, const SolverBodies<Real, Dim>& bodies, bool has_rare) {
+    std::uint32_t total = 0;
+    colours = contacts = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (std::size_t c = 0; c < most_colours; ++c) {
+        const std::uint32_t lanes = static_cast<std::uint32_t>(width), of_colour = count[g][c];
+        groups[g].first[c] = total;
+        total += is_shared(c) ? of_colour : (of_colour + lanes - 1) / lanes;
+        contacts += of_colour;
+        if (of_colour > 0) colours = std::max(colours, c + 1);
+      }
+      groups[g].first[most_colours] = total;
     }
-    const std::size_t total = first[most_colours];
     if (packs.capacity() < total) {
-      packs = {};  // nothing in them is needed, and half as much again would be a good part of all memory
-      packs.reserve(total + total / 64);
+      // Nothing in them is needed, and half as much again would be a good part of all memory.
+      packs = {}, impulses = {}, bins = {};
+      packs.reserve(total + total / 64), impulses.reserve(packs.capacity()), bins.reserve(packs.capacity());
     }
-    packs.resize(total);
+    packs.resize(total), impulses.resize(total);
+    bins.assign(total, 0);
     rare.resize(has_rare ? total : 0);
-    for (std::size_t c = 0; c < colours; ++c) {
-      if (is_shared(c))
-        for (std::size_t p = first[c]; p < first[c + 1]; ++p) clear(p, bodies);
-      else if (count[c] % width != 0)
-        clear(first[c + 1] - 1, bodies);
-    }
+    for (std::size_t g = 0; g < groups.size(); ++g) clear_spare(g, blocks.stand_ins_of(g), bodies);
+    count = {};
+  }
+  std::size_t memory() const {
+    return packs.capacity() * sizeof(packs[0]) + impulses.capacity() * sizeof(impulses[0]) +
+           rare.capacity() * sizeof(rare[0]) + bins.capacity() * sizeof(bins[0]) +
+           groups.capacity() * sizeof(groups[0]);
   }
 
  private:
-  void clear(std::size_t pack, const SolverBodies<Real, Dim>& bodies) {
-    packs[pack] = {};
+  void clear_spare(std::size_t g, std::size_t stand_ins, const SolverBodies<Real, Dim>& bodies) {
+    const Group& group = groups[g];
+    for (std::size_t c = 0; c < most_colours; ++c) {
+      if (is_shared(c))
+        for (std::size_t p = group.first[c]; p < group.first[c + 1]; ++p) clear(p, stand_ins, bodies);
+      else if (count[g][c] % width != 0)
+        clear(group.first[c + 1] - 1, stand_ins, bodies);
+    }
+  }
+  void clear(std::size_t pack, std::size_t stand_ins, const SolverBodies<Real, Dim>& bodies) {
+    packs[pack] = {}, impulses[pack] = {};
     for (std::size_t lane = 0; lane < width; ++lane) {
-      packs[pack].a[lane] = bodies.stand_in(2 * lane);
-      packs[pack].b[lane] = bodies.stand_in(2 * lane + 1);
+      packs[pack].a[lane] = bodies.stand_in(stand_ins, 2 * lane);
+      packs[pack].b[lane] = bodies.stand_in(stand_ins, 2 * lane + 1);
     }
     if (!rare.empty()) rare[pack] = {};
   }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <continuo/bodies/large_array.hpp>
 #include <continuo/bodies/team.hpp>
 
 namespace continuo {
@@ -14,7 +15,7 @@ namespace continuo {
 template <class Entry>
 struct Rows {
   std::vector<std::uint32_t> first{0};
-  std::vector<Entry> entries{};
+  LargeArray<Entry> entries{};
 
   std::size_t rows() const { return first.size() - 1; }
   std::span<const Entry> row(std::size_t k) const { return {entries.data() + first[k], entries.data() + first[k + 1]}; }

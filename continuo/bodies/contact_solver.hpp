@@ -14,7 +14,6 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -93,7 +92,9 @@ ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLane
 /// Where the two are now, and the impulses of the last substep to begin with: all contacts do so before any is solved,
 /// for each must see what the others carry.
 template <ContactKind kind, class Real, int Dim>
-void begin(ContactPack<Real, Dim>& pack, RarePack<Real, Dim>* rare, SolverBodies<Real, Dim>& bodies) {
+void begin(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Dim>& bodies) {
+  ContactPack<Real, Dim>& pack = packs.packs[p];
+  PackImpulses<Real, Dim>& impulses = packs.impulses[p];
   using L = ContactLanes<Real>;
   using std::sqrt;
   const auto place_a = load_places(bodies, pack.a), place_b = load_places(bodies, pack.b);
@@ -110,12 +111,13 @@ void begin(ContactPack<Real, Dim>& pack, RarePack<Real, Dim>* rare, SolverBodies
     pack.separation = distance - (place_a.radius + place_b.radius);
   }
   // What friction did along the normal of then is not along that of now.
-  Vector<L, Dim> rub = loaded(pack.friction_impulse);
+  Vector<L, Dim> rub = loaded(impulses.friction);
   rub -= normal * dot(rub, normal);
-  store(rub, pack.friction_impulse);
+  store(rub, impulses.friction);
   auto a = load_motions(bodies, pack.a), b = load_motions(bodies, pack.b);
-  add_impulse<Real, Dim>(a, b, normal, normal * L(pack.normal_impulse) + rub, rub);
-  if (rare) add_roll<Real, Dim>(a, b, place_a.radius, place_b.radius, loaded(rare->rolling_impulse));
+  add_impulse<Real, Dim>(a, b, normal, normal * L(impulses.normal) + rub, rub);
+  if (const auto* rare = packs.rare_of(p))
+    add_roll<Real, Dim>(a, b, place_a.radius, place_b.radius, loaded(rare->rolling_impulse));
   store_motions(a, bodies, pack.a);
   if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
 }
@@ -179,9 +181,10 @@ typename ContactLanes<Real>::Mask is_for_impacts(const ContactPack<Real, Dim>& p
 }
 
 template <ContactKind kind, class Real, int Dim>
-void mark_touched(const ContactPack<Real, Dim>& pack, SolverBodies<Real, Dim>& bodies) {
+void mark_touched(const ContactPack<Real, Dim>& pack, const PackImpulses<Real, Dim>& impulses,
+                  SolverBodies<Real, Dim>& bodies) {
   for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
-    const auto is_pressed = static_cast<std::uint8_t>(pack.normal_impulse.lane[lane] > Real(0));
+    const auto is_pressed = static_cast<std::uint8_t>(impulses.normal.lane[lane] > Real(0));
     bodies.touched[pack.a[lane]] |= is_pressed;  // no branch: nobody could foresee it
     if (kind == ContactKind::between_movers) bodies.touched[pack.b[lane]] |= is_pressed;
   }
@@ -204,16 +207,22 @@ void mark_disturbed(const ContactPack<Real, Dim>& pack, const ContactLanes<Real>
   if (all(way <= L(step.disturbance))) return;
   for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
     if (way[lane] <= step.disturbance) continue;
-    bodies.disturbed[pack.a[lane]] = step.sweep;
-    if (kind == ContactKind::between_movers) bodies.disturbed[pack.b[lane]] = step.sweep;
-    std::atomic_ref(bodies.last_disturbance).store(step.sweep, std::memory_order_relaxed);
+    const auto mark = [&](std::uint32_t body) {
+      bodies.disturbed[body] = step.sweep;
+      bodies.disturbances[body / bodies.blocks.half].now |= 1u << bodies.blocks.bin_of(body);
+    };
+    mark(pack.a[lane]);
+    if (kind == ContactKind::between_movers) mark(pack.b[lane]);
   }
 }
 
 template <ContactKind kind, ContactPass pass, bool is_plain, class Real, int Dim>
-void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* rare, SolverBodies<Real, Dim>& bodies,
+void solve(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Dim>& bodies,
            const ContactStep<Real>& step) {
   using L = ContactLanes<Real>;
+  const ContactPack<Real, Dim>& pack = packs.packs[p];
+  PackImpulses<Real, Dim>& impulses = packs.impulses[p];
+  [[maybe_unused]] RarePack<Real, Dim>* const rare = is_plain ? nullptr : packs.rare_of(p);
   const L zero(Real(0)), one(Real(1));
   typename L::Mask is_meant(true);
   if constexpr (pass == ContactPass::push_again) {
@@ -222,7 +231,7 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
   }
   auto a = load_motions(bodies, pack.a), b = load_motions(bodies, pack.b);
   const Vector<L, Dim> normal = loaded(pack.normal);
-  const L so_far = pack.normal_impulse;
+  const L so_far = impulses.normal;
   L separation = pack.separation, radius_a, radius_b;
   if (pass == ContactPass::relax || !is_plain) {
     const auto place_a = load_places(bodies, pack.a), place_b = load_places(bodies, pack.b);
@@ -239,7 +248,7 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
   L coefficient(step.friction);
   if constexpr (!is_plain)
     if (rare) coefficient = rare->friction;
-  const Vector<L, Dim> friction_before = loaded(pack.friction_impulse);
+  const Vector<L, Dim> friction_before = loaded(impulses.friction);
   Vector<L, Dim> friction = clamped(
       Vector<L, Dim>(friction_before - slip * (one / (inverse + a.mobility + b.mobility))), L(coefficient * so_far));
 
@@ -268,32 +277,30 @@ void solve(ContactPack<Real, Dim>& pack, [[maybe_unused]] RarePack<Real, Dim>* r
           zero, {});
   }
   if constexpr (pass == ContactPass::push_again) leave(!is_meant, so_far, friction_before);
-  pack.normal_impulse = normal_impulse;
-  store(friction, pack.friction_impulse);
+  impulses.normal = normal_impulse;
+  store(friction, impulses.friction);
   add_impulse<Real, Dim>(a, b, normal, rub + normal * change, rub);
   if constexpr (pass == ContactPass::relax && Dim == 3)
     resist_spinning<kind>(coefficient * normal_impulse, normal, a, b, radius_a, radius_b);
   store_motions(a, bodies, pack.a);
   if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
   if constexpr (pass != ContactPass::relax) {
-    mark_touched<kind>(pack, bodies);
+    mark_touched<kind>(pack, impulses, bodies);
     mark_disturbed<kind>(pack, change * inverse, bodies, step);
   }
 }
 
 // Loops over packs. Everything is inlined into them, for a call would send registers full of lanes through memory.
 
-/// Asks for the bodies of a pack that is soon to come: they lie where they lie.
+/// Asks for a pack that is soon to come, and for the bodies of one that is: they lie where they lie.
+template <class Pack>
+void prefetch_lines(const Pack& pack) {
+  constexpr std::size_t line = 64;
+  const auto* bytes = reinterpret_cast<const std::byte*>(&pack);
+  for (std::size_t at = 0; at < sizeof(Pack); at += line) __builtin_prefetch(bytes + at);
+}
 template <class Real, int Dim>
-void prefetch(const ColouredPacks<Real, Dim>& packs, std::size_t p, std::size_t to,
-              const SolverBodies<Real, Dim>& bodies) {
-  constexpr std::size_t ahead = 3, line = 64;
-  if (p + 2 * ahead < to) {
-    const auto* pack = reinterpret_cast<const std::byte*>(&packs.packs[p + 2 * ahead]);
-    for (std::size_t at = 0; at < sizeof(packs.packs[0]); at += line) __builtin_prefetch(pack + at);
-  }
-  if (p + ahead >= to) return;
-  const ContactPack<Real, Dim>& pack = packs.packs[p + ahead];
+void prefetch_bodies(const ContactPack<Real, Dim>& pack, const SolverBodies<Real, Dim>& bodies) {
   for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
     __builtin_prefetch(&bodies.motion[pack.a[lane]]);
     __builtin_prefetch(&bodies.motion[pack.b[lane]]);
@@ -301,26 +308,63 @@ void prefetch(const ColouredPacks<Real, Dim>& packs, std::size_t p, std::size_t 
     __builtin_prefetch(&bodies.place[pack.b[lane]]);
   }
 }
-
-template <ContactKind kind, class Real, int Dim>
-[[gnu::flatten]] void begin_packs(ColouredPacks<Real, Dim>& packs, std::size_t from, std::size_t to,
-                                  SolverBodies<Real, Dim>& bodies) {
-  for (std::size_t p = from; p < to; ++p) {
-    prefetch(packs, p, to, bodies);
-    begin<kind>(packs.packs[p], packs.rare_of(p), bodies);
+/// number(i) for i = 0 ... count - 1 are those of packs.
+template <class Real, int Dim, class Number, class Act>
+void for_each_ahead(const ColouredPacks<Real, Dim>& packs, const SolverBodies<Real, Dim>& bodies, std::size_t count,
+                    const Number& number, const Act& act) {
+  constexpr std::size_t ahead = 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i + 2 * ahead < count) {
+      prefetch_lines(packs.packs[number(i + 2 * ahead)]);
+      prefetch_lines(packs.impulses[number(i + 2 * ahead)]);
+    }
+    if (i + ahead < count) prefetch_bodies(packs.packs[number(i + ahead)], bodies);
+    act(number(i));
   }
 }
-template <ContactKind kind, ContactPass pass, class Real, int Dim>
-[[gnu::flatten]] void solve_packs(ColouredPacks<Real, Dim>& packs, std::size_t from, std::size_t to,
-                                  SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& of_all) {
-  const ContactStep<Real> step = of_all;  // a copy, which no store to a body can change: it stays in registers
-  if (packs.rare.empty() && !step.may_strike) {
-    for (std::size_t p = from; p < to; ++p) {
-      if constexpr (pass != ContactPass::push_again) prefetch(packs, p, to, bodies);
-      solve<kind, pass, true, Real, Dim>(packs.packs[p], nullptr, bodies, step);
+/// Those of a group in which the last sweep, or this one, disturbed anything. Packs of a colour share no body, so that
+/// which ones are meant can be seen before the first of them is solved; those of the shared one are few.
+template <class Real, int Dim, class Act>
+void for_each_disturbed(const ColouredPacks<Real, Dim>& packs, std::size_t group, const SolverBodies<Real, Dim>& bodies,
+                        const Act& act) {
+  const auto& first = packs.groups[group].first;
+  std::array<std::uint32_t, 256> meant;
+  for (std::size_t c = 0; c < packs.most_colours && first[c] < first.back(); ++c)
+    for (std::size_t from = first[c]; from < first[c + 1]; from += meant.size()) {
+      const std::uint32_t bins = packs.is_shared(c) ? ~std::uint32_t{0} : bodies.disturbed_bins(group);
+      const std::size_t to = std::min<std::size_t>(from + meant.size(), first[c + 1]);
+      std::size_t count = 0;
+      for (std::size_t p = from; p < to; ++p) {
+        meant[count] = static_cast<std::uint32_t>(p);
+        count += (packs.bins[p] & bins) != 0;  // no branch: nobody could foresee it
+      }
+      for_each_ahead(packs, bodies, count, [&](std::size_t i) { return meant[i]; }, act);
     }
+}
+
+template <ContactKind kind, class Real, int Dim>
+[[gnu::flatten]] void begin_packs(ColouredPacks<Real, Dim>& packs, std::size_t group, SolverBodies<Real, Dim>& bodies) {
+  const std::size_t from = packs.groups[group].first.front(), to = packs.groups[group].first.back();
+  for_each_ahead(
+      packs, bodies, to - from, [&](std::size_t i) { return from + i; },
+      [&](std::size_t p) { begin<kind>(packs, p, bodies); });
+}
+template <ContactKind kind, ContactPass pass, class Real, int Dim>
+[[gnu::flatten]] void solve_packs(ColouredPacks<Real, Dim>& packs, std::size_t group, SolverBodies<Real, Dim>& bodies,
+                                  const ContactStep<Real>& of_all) {
+  const ContactStep<Real> step = of_all;  // a copy, which no store to a body can change: it stays in registers
+  const auto for_each = [&](const auto& act) {
+    const std::size_t from = packs.groups[group].first.front(), to = packs.groups[group].first.back();
+    if constexpr (pass == ContactPass::push_again) {
+      for_each_disturbed(packs, group, bodies, act);
+    } else {
+      for_each_ahead(packs, bodies, to - from, [&](std::size_t i) { return from + i; }, act);
+    }
+  };
+  if (packs.rare.empty() && !step.may_strike) {
+    for_each([&](std::size_t p) { solve<kind, pass, true>(packs, p, bodies, step); });
   } else {
-    for (std::size_t p = from; p < to; ++p) solve<kind, pass, false>(packs.packs[p], packs.rare_of(p), bodies, step);
+    for_each([&](std::size_t p) { solve<kind, pass, false>(packs, p, bodies, step); });
   }
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/contact_passes.hpp>
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/impacts.hpp>
@@ -172,15 +173,10 @@ class FastMotion<Real, Dim>::Stepper {
       for (std::size_t k = from; k < to; ++k) act(k);
     });
   }
-  template <class Act>
-  void for_each_pack(Act&& act) {
-    contacts_.for_each_pack(team_, act);
-  }
-
   /// The bodies from the world, in the order of the list.
   void load() {
     const std::vector<std::uint32_t>& order = list_.order();
-    bodies_.resize(order.size(), world_.walls().size());
+    bodies_.resize(order.size(), world_.walls().size(), list_.blocks());
     bodies_.gravity = world_.gravity;
     for_each_body([&](std::size_t k) {
       const std::size_t i = order[k];
@@ -197,9 +193,9 @@ class FastMotion<Real, Dim>::Stepper {
     });
     for (std::size_t w = 0; w < world_.walls().size(); ++w)
       put(V(world_.walls()[w].normal * world_.walls()[w].offset), bodies_.place[bodies_.wall(w)].x_and_radius);
-    for (std::size_t lane = 0; lane < 2 * lanes_at_once<Real>; ++lane) {
-      bodies_.place[bodies_.stand_in(lane)].x_and_radius[0] = static_cast<Real>(lane % 2);
-      bodies_.motion[bodies_.stand_in(lane)].linear[3] = Real(1);
+    for (std::size_t k = bodies_.wall(world_.walls().size()); k < bodies_.motion.size(); ++k) {  // the stand-ins
+      bodies_.place[k].x_and_radius[0] = static_cast<Real>(k % 2);
+      bodies_.motion[k].linear[3] = Real(1);
     }
     has_other_forces_ = !only_gravity(world_);
     if (!has_other_forces_) bodies_.accelerations.clear();
@@ -233,12 +229,13 @@ class FastMotion<Real, Dim>::Stepper {
     load();
     // Pairs are listed for as long as nobody has come further than this.
     list_within([once = step_reach(), this](std::size_t k) {
-      return std::max(Real(0.2) * bodies_.radius(k), Real(1.25) * once(k));
+      return std::max(Real(0.22) * bodies_.radius(k), Real(1.7) * once(k));
     });
   }
   template <class Reach>
   void list_within(const Reach& reach) {
     list_.list(team_, world_, bodies_, reach, contacts_.rows);
+    contacts_.blocks = list_.blocks();
   }
 
   template <class Is>
@@ -313,43 +310,20 @@ class FastMotion<Real, Dim>::Stepper {
       statistics.impacts += impacts_.make(world_, list_, contacts_, bodies_, step, options_.step, t, log);
     }
     twist_.push(bodies_, t, h);
-    for_each_body([&](std::size_t k) {
+    ContactPasses passes(team_, contacts_, bodies_);
+    passes.push(step, [&](std::uint32_t k) {
       put(V(bodies_.v(k) + bodies_.acceleration(k) * h), bodies_.motion[k].linear);
       bodies_.touched[k] = 0;
     });
-    for_each_pack([&](auto kind, auto& packs, std::size_t from, std::size_t to) {
-      begin_packs<kind()>(packs, from, to, bodies_);
-    });
-    push(step);
+    twist_.turn(bodies_, rule, h);
     const Real lag = static_cast<Real>(rule.lag) * h, steady_lag = static_cast<Real>(rule.steady_lag) * h;
-    for_each_body([&](std::size_t k) {
+    passes.relax(step, [&](std::uint32_t k) {
       V v = bodies_.v(k);
       if (!bodies_.touched[k]) v -= bodies_.acceleration(k) * (is_steady(k) ? steady_lag : lag);
       put(V(bodies_.x(k) + v * h), bodies_.place[k].x_and_radius);
     });
-    twist_.turn(bodies_, rule, h);
-    for_each_pack([&](auto kind, auto& packs, std::size_t from, std::size_t to) {
-      solve_packs<kind(), ContactPass::relax>(packs, from, to, bodies_, step);
-    });
     if (has_other_forces_ && rule.ends_with_correction) correct(t, h);
     return true;
-  }
-
-  /// An impact on a ball that others hold takes many turns round all contacts until it has come through to what holds
-  /// them up, and the speed that is left after the last becomes overlap. Few contacts take part: those of bodies whose
-  /// velocities their contacts have just changed by a lot. These are pushed again until nothing is disturbed.
-  void push(ContactStep<Real>& step) {
-    constexpr std::uint8_t most_sweeps = 20;  // a bound: what is squeezed between others may never settle
-    if (std::exchange(bodies_.last_disturbance, std::uint8_t{0}) > 0) std::ranges::fill(bodies_.disturbed, 0);
-    for_each_pack([&](auto kind, auto& packs, std::size_t from, std::size_t to) {
-      solve_packs<kind(), ContactPass::push>(packs, from, to, bodies_, step);
-    });
-    while (bodies_.last_disturbance == step.sweep && step.sweep < most_sweeps) {
-      ++step.sweep;
-      for_each_pack([&](auto kind, auto& packs, std::size_t from, std::size_t to) {
-        solve_packs<kind(), ContactPass::push_again>(packs, from, to, bodies_, step);
-      });
-    }
   }
 
   /// The mean of the accelerations at the beginning and at the end is what changed the velocity.

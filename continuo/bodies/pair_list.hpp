@@ -22,12 +22,14 @@ class PairList {
 
   /// order()[k] is the number in the world of the body at place k.
   const std::vector<std::uint32_t>& order() const { return order_; }
+  const ContactBlocks& blocks() const { return blocks_; }
   std::size_t walls() const { return walls_; }
   Real median_radius() const { return median_; }
   std::size_t lists() const { return lists_; }
 
   /// That of the world, as long as nothing is listed.
   void begin(const World<Real, Dim>& world) {
+    blocks_ = ContactBlocks::of(world.size(), world.size());
     order_.resize(world.size());
     for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
   }
@@ -52,6 +54,7 @@ class PairList {
       median_ = *middle;
     }
     cells_.sort(world.position, Real(2.6) * median_, order_);
+    blocks_ = ContactBlocks::of(bodies, cells_.most_in_layer());
     place_before.resize(bodies);
     for (std::size_t k = 0; k < bodies; ++k) place_before[k] = place_of[order_[k]];
   }
@@ -154,6 +157,7 @@ class PairList {
   std::vector<V> x_of_list_;
   Real median_ = Real(1), usual_ = Real(0);
   std::size_t walls_ = 0, lists_ = 0;
+  ContactBlocks blocks_{};
   SortedCells<Real, Dim> cells_;
 };
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <continuo/bodies/contact_blocks.hpp>
+#include <continuo/bodies/large_array.hpp>
 #include <continuo/bodies/vector.hpp>
 #include <continuo/numerics/lanes.hpp>
 
@@ -29,6 +31,13 @@ struct alignas(4 * sizeof(Real)) BodyPlace {
   Quad<Real> x_and_radius{};
 };
 
+/// The bins of contact_blocks.hpp in which the last sweep over contacts disturbed a body, and in which this one has.
+struct Disturbances {
+  std::uint32_t last = 0, now = 0;
+
+  std::uint32_t any() const { return last | now; }
+};
+
 template <int Size, class Real>
 Vector<Real, Size> vector_of(const Quad<Real>& quad) {
   Vector<Real, Size> v;
@@ -45,36 +54,46 @@ template <class Real, int Dim>
 struct SolverBodies {
   using V = Vector<Real, Dim>;
 
-  std::vector<BodyMotion<Real>> motion{};
-  std::vector<BodyPlace<Real>> place{};
-  std::vector<std::uint8_t> touched{};  // by a contact that lasts, in this substep
-  std::vector<std::uint8_t>
-      disturbed{};  // the sweep over contacts in which one last changed it a lot, see contact_solver.hpp
-  std::vector<std::uint32_t> impacts{};  // of this substep; empty where nothing can strike
-  std::vector<V> accelerations{};        // empty where gravity is the only force
+  LargeArray<BodyMotion<Real>> motion{};
+  LargeArray<BodyPlace<Real>> place{};
+  std::vector<std::uint8_t> touched{};       // by a contact that lasts, in this substep
+  std::vector<std::uint8_t> disturbed{};     // the sweep over contacts in which one last changed it a lot
+  std::vector<Disturbances> disturbances{};  // of every half of a block, and of none at the end
+  std::vector<std::uint32_t> impacts{};      // of this substep; empty where nothing can strike
+  std::vector<V> accelerations{};            // empty where gravity is the only force
   V gravity{};
-  std::uint8_t last_disturbance = 0;  // the last sweep of a substep in which there was any
+  ContactBlocks blocks{};
   std::size_t bodies = 0;
 
   std::size_t size() const { return bodies; }
-  void resize(std::size_t count, std::size_t walls) {
-    const std::size_t all = count + walls + 2 * lanes_at_once<Real>;
+  void resize(std::size_t count, std::size_t walls, const ContactBlocks& in_blocks) {
+    blocks = in_blocks;
+    const std::size_t all = count + walls + stand_ins * blocks.count;
     if (bodies == count && motion.size() == all) return;
     bodies = count;
     touched.assign(all, 0);
     disturbed.assign(all, 0);
+    disturbances.assign(2 * blocks.count + 1, {});
     motion.assign(all, {});
     place.assign(all, {});
   }
   std::uint32_t wall(std::size_t number) const { return static_cast<std::uint32_t>(size() + number); }
-  /// Two for each lane; they are apart, have mass, and never move.
-  std::uint32_t stand_in(std::size_t number) const {
-    return static_cast<std::uint32_t>(motion.size() - 2 * lanes_at_once<Real> + number);
+  /// Two for each lane of a pack, for each block; they are apart, have mass, and never move.
+  static constexpr std::size_t stand_ins = 2 * lanes_at_once<Real>;
+  std::uint32_t stand_in(std::size_t block, std::size_t number) const {
+    return static_cast<std::uint32_t>(motion.size() - stand_ins * (block + 1) + number);
   }
 
   std::size_t memory() const {
     return motion.capacity() * sizeof(motion[0]) + place.capacity() * sizeof(place[0]) + touched.capacity() +
            disturbed.capacity() + impacts.capacity() * sizeof(impacts[0]) + accelerations.capacity() * sizeof(V);
+  }
+
+  /// What sweeps have disturbed among the bodies of a group, see contact_blocks.hpp.
+  std::uint32_t disturbed_bins(std::size_t group) const {
+    if (group == blocks.rest()) return ~std::uint32_t{0};
+    const Disturbances* half = &disturbances[blocks.first_half(group)];
+    return half[0].any() | half[1].any() << 16;
   }
 
   V x(std::size_t k) const { return vector_of<Dim>(place[k].x_and_radius); }

@@ -59,6 +59,14 @@ class SortedCells {
     }
   }
 
+  /// Of the layers across the longest axis, that which has most bodies.
+  std::size_t most_in_layer() const {
+    const std::size_t cells = total_ / count_[axes_.back()];
+    std::size_t most = 0;
+    for (std::size_t c = 0; c < total_; c += cells) most = std::max<std::size_t>(most, first_[c + cells] - first_[c]);
+    return most;
+  }
+
   std::size_t memory() const { return first_.capacity() * sizeof(std::uint32_t); }
 
  private:

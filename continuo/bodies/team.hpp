@@ -56,13 +56,26 @@ class Team {
   template <class Act>
   void for_each(std::size_t first, std::size_t last, std::size_t shortest, Act&& act) {
     if (first >= last) return;
-    const std::size_t blocks = std::min((last - first) / std::max(shortest, std::size_t{1}), 4 * threads_);
+    const std::size_t blocks =
+        std::min((last - first) / std::max(shortest, std::size_t{1}), std::min<std::size_t>(4 * threads_, 0xffff));
     if (blocks < 2 || !is_open_.load(std::memory_order_relaxed)) return act(first, last);
+    share(blocks, [&](std::size_t block) {
+      act(first + (last - first) * block / blocks, first + (last - first) * (block + 1) / blocks);
+    });
+  }
+
+  /// act(block) for 0 ... blocks - 1, at most 65535.
+  template <class Act>
+  void share(std::size_t blocks, Act&& act) {
+    if (blocks < 2 || !is_open_.load(std::memory_order_relaxed)) {
+      for (std::size_t block = 0; block < blocks; ++block) act(block);
+      return;
+    }
     using Plain = std::remove_reference_t<Act>;
-    loop_ = {[](const void* context, std::size_t from, std::size_t to) {
-               (*const_cast<Plain*>(static_cast<const Plain*>(context)))(from, to);
+    loop_ = {[](const void* context, std::size_t block) {
+               (*const_cast<Plain*>(static_cast<const Plain*>(context)))(block);
              },
-             std::addressof(act), first, last, std::min<std::size_t>(blocks, 0xffff)};
+             std::addressof(act), blocks};
     done_.store(0, std::memory_order_relaxed);
     ++number_of_loop_;
     for (std::size_t i = 0; i < threads_; ++i)
@@ -78,9 +91,9 @@ class Team {
   /// Of a thread's part of a loop: the loop's number, where the blocks end, the next of them.
   struct alignas(64) Ticket : std::atomic<std::uint64_t> {};
   struct Loop {
-    void (*act)(const void* context, std::size_t from, std::size_t to) = nullptr;
+    void (*act)(const void* context, std::size_t block) = nullptr;
     const void* context = nullptr;
-    std::size_t first = 0, last = 0, blocks = 0;
+    std::size_t blocks = 0;
   };
 
   /// A task that is handed on in sight of the thread sanitizer, which does not look into the library.
@@ -113,9 +126,8 @@ class Team {
     if (next >= end) return false;
     if (!of_part.compare_exchange_strong(ticket, ticket + 1, std::memory_order_acq_rel, std::memory_order_relaxed))
       return true;
-    const std::size_t size = loop_.last - loop_.first, blocks = loop_.blocks;
     try {
-      loop_.act(loop_.context, loop_.first + size * next / blocks, loop_.first + size * (next + 1) / blocks);
+      loop_.act(loop_.context, next);
     } catch (...) {
       if (!has_failed_.exchange(true)) error_ = std::current_exception();
     }
