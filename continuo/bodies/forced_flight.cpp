@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <continuo/bodies/forced_flow.hpp>
 #include <continuo/bodies/forced_watch.hpp>
 #include <continuo/bodies/impulse.hpp>
+#include <continuo/bodies/joint_impacts.hpp>
 #include <continuo/bodies/queries.hpp>
 #include <continuo/methods/dop853.hpp>
 #include <continuo/methods/rk4.hpp>
@@ -40,6 +42,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   std::string advance_to(const Real& t) override {
     if (last_.size() != world_.size()) return "bodies have come or gone: the motion needs a `refresh`";
     std::size_t events = 0;
+    resolved_.reset();  // a motion that is read from a snapshot has none
     while (world_.time < t) {
       if (++events > options_.most_events) return "more events than `most_events`: bodies may be caught between others";
       if (options_.is_interrupted()) return "interrupted";
@@ -48,10 +51,13 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     return {};
   }
 
-  void save(ByteWriter& writer) override { writer(contact_time_), writer(step_), writer(last_), writer(lasting_); }
+  void save(ByteWriter& writer) override {
+    writer(contact_time_), writer(step_), writer(lasted_), writer(last_), writer(lasting_);
+  }
   void load(ByteReader& reader) override {
-    reader(contact_time_), reader(step_), reader(last_), reader(lasting_);
-    reader.expect(contact_time_ >= Real(0) && step_ >= Real(0) && step_ < never && last_.size() == world_.size(),
+    reader(contact_time_), reader(step_), reader(lasted_), reader(last_), reader(lasting_);
+    reader.expect(contact_time_ >= Real(0) && lasted_ >= Real(0) && step_ >= Real(0) && step_ < never &&
+                      last_.size() == world_.size(),
                   "a motion of other bodies");
     for (const auto& [pair, impulse] : lasting_)
       reader.expect(
@@ -106,9 +112,10 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     std::vector<Real> radii = world_.radius;
     std::ranges::nth_element(radii, radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2));
     const Real median = radii.empty() ? Real(1) : radii[radii.size() / 2];
-    const Real reach = std::max(median, Real(8 * sqrt(fastest) * step_));
+    const Real reach = std::max(median, Real(4 * sqrt(fastest) * step_));
     list_candidates(reach);
-    HeldContacts<Real, Dim> held = resolve();
+    HeldContacts<Real, Dim> held = resolved_ ? std::move(*resolved_) : resolve();
+    resolved_.reset();
     note_lasting(held);
     using Watched = Candidate::Watched;
     for (Candidate& at : candidates_) at.watched = gap(at.pair) < -allowance_ / 2 ? Watched::approach : Watched::gap;
@@ -131,7 +138,8 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
       how.step = options_.step;
       return follow(t, std::move(flow), Rk4{}, how, reach);
     }
-    how.first_step = std::min(step_, Real(t - world_.time));
+    // Where contacts cut flights short, a step many times as long would have many more of them to look for.
+    how.first_step = std::min({step_, std::max(Real(16 * lasted_), Real(1e-3 * step_)), Real(t - world_.time)});
     return follow(t, std::move(flow), Dop853{}, how, reach);
   }
 
@@ -142,18 +150,18 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     ForcedWatch<Real, Dim> watch(world_, candidates_, allowance_, reach, flow.held().size());
     Integrator integrator(std::move(flow), std::move(start), Interval<Real>{world_.time, t}, method, how,
                           std::move(watch));
+    // The last step as its error wanted it: an impact jumps the state, not the forces that set the pace.
     while (integrator.advance()) step_ = integrator.step_size();
+    if (integrator.t() < t) step_ = integrator.step_size();
+    lasted_ = integrator.t() - world_.time;
     if (!succeeded(integrator.outcome().ending))
       return "the path cannot be followed beyond t = " + std::to_string(integrator.t()) + ": " +
              std::string(to_string(integrator.outcome().ending));
-    const Real duration = integrator.t() - world_.time;
-    // Where contacts cut flights short, a longer step would only have more of them to look for.
-    if (integrator.t() < t) step_ = std::min(step_, 2 * duration);
     for (std::size_t k = 0; k < lasting_.size(); ++k)
       lasting_[k].impulse += integrator.system().impulse(integrator.x(), k);
-    integrator.system().store(integrator.x(), world_, companions_, duration);
+    integrator.system().store(integrator.x(), world_, companions_, lasted_);
     world_.time = integrator.t();
-    resolve();
+    resolved_ = resolve();
     return {};
   }
 
@@ -212,11 +220,8 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
       if (touches(at.pair)) touching.push_back(at.pair);
     if (touching.empty()) return {};
     const std::vector<Real> before = last_;
-    for (int round = 0, most = 256; round < most; ++round) {
-      bool is_over = true;
-      for (const Touching& at : touching) is_over = !strike(at, slow, before, round > 64, round > 128) && is_over;
-      if (is_over) break;
-    }
+    for (int round = 0, most = 256; round < most; ++round)
+      if (!strike_all(touching, slow, before, round > 64)) break;
     if (!(slow > Real(0))) return {};
     std::vector<Touching> gentle;
     for (const Touching& at : touching)
@@ -232,38 +237,60 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
       if (k < held.size() && held[k] == at) {
         ++k;
       } else {
-        strike(at, slow / 1'000'000, before, false, false);  // what is less is rounding
+        strike(at, slow / 1'000'000, material_now(at, before, false));  // what is less is rounding
       }
     return held;
   }
-  bool strike(const Touching& at, const Real& slow, const std::vector<Real>& before, bool is_squeezed, bool is_caught) {
+  /// What bounces, one after the other, and then what does not, all together. False where nobody approaches.
+  bool strike_all(std::span<const Touching> touching, const Real& slow, const std::vector<Real>& before,
+                  bool is_squeezed) {
+    bool is_any = false, is_plastic = false;
+    std::vector<Touching> plastic;
+    for (const Touching& at : touching) {
+      const Material<Real> material = material_now(at, before, is_squeezed);
+      if (material.restitution > Real(0)) {
+        is_any = strike(at, slow, material) || is_any;
+      } else {
+        plastic.push_back(at);
+        is_plastic = is_plastic || approaches(at, slow);
+      }
+    }
+    if (!is_plastic) return is_any;
+    const std::vector<Real> impulse = strike_together<Real, Dim>(world_, plastic, slow / 8);
+    for (std::size_t k = 0; k < plastic.size(); ++k)
+      if (impulse[k] > Real(0)) has_struck(plastic[k], impulse[k]);
+    return true;
+  }
+  bool strike(const Touching& at, const Real& slow, const Material<Real>& material) {
+    if (!approaches(at, slow)) return false;
     V no_velocity{};
     S no_spin{};
-    const Mover<Real, Dim> a = mover(at.a);
+    const Mover<Real, Dim> wall{no_velocity, no_spin, Real(0), Real(0), Real(0)};
+    has_struck(at, collide(mover(at.a), at.with_wall() ? wall : mover(at.b), normal(at), material));
+    return true;
+  }
+  /// By more than `slow`, and than rounding.
+  bool approaches(const Touching& at, const Real& slow) const {
+    const V rate = (at.with_wall() ? V{} : world_.velocity[at.b]) - world_.velocity[at.a];
+    return approach(at) > std::max(slow, Real(8 * std::numeric_limits<Real>::epsilon() * length(rate)));
+  }
+  /// What has collided within the contact time before this instant, or touched already, bounces no more.
+  Material<Real> material_now(const Touching& at, const std::vector<Real>& before, bool is_squeezed) const {
     const bool is_wall = at.with_wall();
-    const Mover<Real, Dim> b =
-        is_wall ? Mover<Real, Dim>{no_velocity, no_spin, Real(0), Real(0), Real(0)} : mover(at.b);
-    const V n = normal(at), rate = b.velocity - a.velocity;
-    const Real least = std::max(slow, Real(8 * std::numeric_limits<Real>::epsilon() * length(rate)));
-    if (!(-dot(rate, n) > least)) return false;
     Material<Real> material = combined(world_.meeting, world_.material[at.a],
                                        is_wall ? world_.walls()[at.wall].material : world_.material[at.b]);
     const bool loses = material.restitution < Real(1) || material.friction > Real(0);
     const bool is_held =
         world_.time - before[at.a] < contact_time_ || (!is_wall && world_.time - before[at.b] < contact_time_);
-    const bool is_lasting = find(lasting_, at) != nullptr;
-    if (is_held || is_lasting) material.restitution = material.restitution < Real(1) ? Real(0) : Real(1);
+    if (is_held || find(lasting_, at)) material.restitution = material.restitution < Real(1) ? Real(0) : Real(1);
     if (is_squeezed && loses) material.restitution = Real(0);
-    const Real impulse = collide(a, b, n, material);
-    if (is_caught && loses) {
-      a.velocity += (b.velocity - a.velocity) * (a.inverse_mass / (a.inverse_mass + b.inverse_mass));
-      if (!is_wall && b.inverse_mass > Real(0)) b.velocity = a.velocity;
-    }
+    return material;
+  }
+  void has_struck(const Touching& at, const Real& impulse) {
     last_[at.a] = world_.time;
-    if (!is_wall) last_[at.b] = world_.time;
-    ++(is_wall ? statistics.wall_collisions : statistics.collisions);
+    if (!at.with_wall()) last_[at.b] = world_.time;
+    ++(at.with_wall() ? statistics.wall_collisions : statistics.collisions);
     note(at, ContactChange::impact, impulse);
-    return true;
   }
   /// Which contacts go on, which are new, and which have ended.
   void note_lasting(const HeldContacts<Real, Dim>& held) {
@@ -297,10 +324,11 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
   Companions<Real, Dim>* companions_;
   ExactOptions<Real> options_;
 
-  Real contact_time_{}, step_{}, allowance_{};
-  std::vector<Real> last_;  // when each body collided last
+  Real contact_time_{}, step_{}, allowance_{}, lasted_ = never;  // lasted_: the last flight
+  std::vector<Real> last_;                                       // when each body collided last
   std::vector<Candidate> candidates_;
   std::vector<Lasting> lasting_;
+  std::optional<HeldContacts<Real, Dim>> resolved_;  // at the end of the last flight
 };
 
 }  // namespace

@@ -50,7 +50,32 @@ class ForcedWatch {
   }
   Real next_time(std::size_t, Real, bool) const { return std::numeric_limits<Real>::infinity(); }
 
+  /// Of an instant that was asked for already they are known: each guard that is looked at more closely asks for all.
   void guards(ForcedFlow<Real, Dim>& flow, Real t, const X& state, std::span<Real> values) {
+    const auto same = [&](const Known& one) { return one.t == t && one.state == state; };
+    if (const auto known = std::ranges::find_if(known_, same); known != known_.end()) {
+      std::ranges::copy(known->values, values.begin());
+      return;
+    }
+    find_guards(flow, t, state, values);
+    if (held_ == 0) return;  // nothing there that costs
+    if (known_.size() == most_known) known_.clear();
+    known_.push_back({t, state, {values.begin(), values.end()}});
+  }
+  template <class System>
+  EventResponse fire(System&, std::span<const std::size_t>, Real, const X&, X&) {
+    return {.stop = true};
+  }
+
+ private:
+  static constexpr std::size_t most_known = 256;
+  struct Known {
+    Real t;
+    X state;
+    std::vector<Real> values;
+  };
+
+  void find_guards(ForcedFlow<Real, Dim>& flow, Real t, const X& state, std::span<Real> values) {
     ForcedFlow<Real, Dim>::unpack(state, x_, v_);
     std::size_t next = 0;
     for (const Candidate& candidate : *candidates_) values[next++] = guard(candidate);
@@ -65,24 +90,21 @@ class ForcedWatch {
     for (std::size_t i = 0; i < x_.size(); ++i) farthest = std::max(farthest, squared(V(x_[i] - begin_[i])));
     values[next] = reach_ * reach_ - farthest;
   }
-  template <class System>
-  EventResponse fire(System&, std::span<const std::size_t>, Real, const X&, X&) {
-    return {.stop = true};
-  }
-
- private:
   Real guard(const Candidate& at) const {
     if (at.watched == Candidate::Watched::nothing) return Real(1);
-    const bool by_speed = at.watched == Candidate::Watched::approach;
     const auto [a, b, w] = at.pair;
+    Real gap, parting;
     if (at.pair.with_wall()) {
       const Wall<Real, Dim> wall = facing(world_->walls()[w], begin_[a]);
-      if (by_speed) return dot(wall.normal, v_[a]);
-      return dot(wall.normal, x_[a]) - wall.offset - world_->radius[a] + allowance_;
+      gap = dot(wall.normal, x_[a]) - wall.offset - world_->radius[a];
+      parting = dot(wall.normal, v_[a]);
+    } else {
+      const V apart = x_[b] - x_[a];
+      const Real distance = length(apart);
+      gap = distance - world_->radius[a] - world_->radius[b];
+      parting = distance > Real(0) ? dot(apart, V(v_[b] - v_[a])) / distance : Real(0);
     }
-    const V apart = x_[b] - x_[a];
-    if (by_speed) return dot(apart, V(v_[b] - v_[a]));
-    return length(apart) - world_->radius[a] - world_->radius[b] + allowance_;
+    return at.watched == Candidate::Watched::approach ? parting : gap + allowance_;
   }
 
   const World<Real, Dim>* world_;
@@ -91,6 +113,7 @@ class ForcedWatch {
   std::size_t held_;
   std::vector<V> begin_, x_, v_;
   X rate_;
+  std::vector<Known> known_;
 };
 
 }  // namespace continuo

@@ -44,6 +44,13 @@ struct Grip {
     holds = most > Real(0) && !is_fast;
     if (is_fast) way_at_start = way = rate * (1 / speed);
   }
+  /// After impulses that may have turned it round.
+  void look_again(const Real& slow) {
+    const Real speed = length(rate);
+    if (!is_fast || dot(rate, way) > slow / 2 || !(speed > Real(0))) return;
+    is_fast = speed > slow / 2;
+    way_at_start = way = rate * (1 / speed);
+  }
   /// It moves from here on, against the load that held it.
   void let_go() {
     const Real size = length(load);
@@ -121,34 +128,39 @@ struct HeldContact {
 
   void place(const World<Real, Dim>& world, std::span<const V> x, std::span<const V> v, std::span<const S> spin) {
     const auto [a, b, w] = pair;
-    V rate = -v[a];
+    bend = {};
     if (pair.with_wall()) {
       const Wall<Real, Dim> wall = facing(world.walls()[w], world.position[a]);
       normal = -wall.normal;
       gap = dot(wall.normal, x[a]) - wall.offset - world.radius[a];
-      bend = {};
     } else {
       const V apart = x[b] - x[a];
       const Real distance = length(apart);
       normal = apart * (1 / distance);
       gap = distance - world.radius[a] - world.radius[b];
-      rate += v[b];
+      const V rate = v[b] - v[a];
       bend = (rate - normal * dot(rate, normal)) * (1 / distance);
     }
+    slip.way = carried(slip.way_at_start);
+    if constexpr (Dim == 3) {
+      roll.way = carried(roll.way_at_start);
+    } else {
+      roll.way = roll.way_at_start;
+    }
+    move(world, v, spin);
+  }
+  /// Where they stay where they were placed.
+  void move(const World<Real, Dim>& world, std::span<const V> v, std::span<const S> spin) {
+    const auto [a, b, w] = pair;
+    V rate = pair.with_wall() ? -v[a] : V(v[b] - v[a]);
     parting = dot(rate, normal);
     if (!(slip.most > Real(0))) return;
     rate -= normal * parting + turning(spin[a], V(normal * world.radius[a]));
     if (!pair.with_wall()) rate -= turning(spin[b], V(normal * world.radius[b]));
     slip.rate = rate;
-    slip.way = carried(slip.way_at_start);
     if (!(roll.most > Real(0))) return;
     roll.rate = (pair.with_wall() ? -spin[a] : S(spin[b] - spin[a])) * arm;
-    if constexpr (Dim == 3) {
-      roll.rate -= normal * dot(roll.rate, normal);
-      roll.way = carried(roll.way_at_start);
-    } else {
-      roll.way = roll.way_at_start;
-    }
+    if constexpr (Dim == 3) roll.rate -= normal * dot(roll.rate, normal);
   }
 
   bool can_roll() const { return slip.holds && roll.most > Real(0); }

@@ -84,6 +84,10 @@ class HeldContacts {
         velocity[end.body] += end.force * (impulse[r] * world_->inverse_mass[end.body]);
         spin[end.body] += end.torque * (impulse[r] * world_->inverse_inertia[end.body]);
       }
+    for (Held& one : held_) {
+      one.move(*world_, velocity, spin);
+      one.slip.look_again(slow_), one.roll.look_again(slow_);
+    }
   }
 
  private:
