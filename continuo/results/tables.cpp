@@ -22,10 +22,12 @@ std::optional<std::string> write_motion(const model::Run& run, const std::string
 std::optional<std::string> write_events(const model::Run& run, const std::string& path,
                                         std::string_view manifest_hash) {
   const bool contacts = std::ranges::any_of(run.events, &model::Happened::is_contact);
+  // Of a contact the states are not kept: where nothing else happened, there are no columns for them.
+  const bool states = run.events.empty() || !std::ranges::all_of(run.events, &model::Happened::is_contact);
   std::vector<std::string> names{"event", "t"};
   if (contacts) names.emplace_back("impulse");
   for (const char* side : {"before ", "after "}) {
-    for (std::size_t i = 1; i <= run.motion.states; ++i) names.push_back(side + run.motion.columns[i].name);
+    for (std::size_t i = 1; states && i <= run.motion.states; ++i) names.push_back(side + run.motion.columns[i].name);
   }
   OutputFile out(path);
   CsvWriter csv(out, manifest_hash, names);
@@ -35,7 +37,7 @@ std::optional<std::string> write_events(const model::Run& run, const std::string
     if (contacts) values.push_back(event.impulse.value_or(std::nan("")));
     values.insert(values.end(), event.before.begin(), event.before.end());
     values.insert(values.end(), event.after.begin(), event.after.end());
-    values.resize(names.size() - 1, std::nan(""));  // of a contact the states are not kept
+    values.resize(names.size() - 1, std::nan(""));
     csv.row(event.name, values);
   }
   return out.close();

@@ -46,8 +46,8 @@ TEST(Worlds, RunLikeEquations) {
   EXPECT_THAT(rows[1], HasSubstr(",world.collisions,height"));
   const auto events = lines_of(shell.read("events.csv"));
   ASSERT_EQ(events.size(), 4u);
-  EXPECT_THAT(events[1], StartsWith("event,t,impulse,before ball.x"));
-  EXPECT_THAT(events[2], StartsWith("ball meets floor,1,40,nan"));  // 2 kg turned from -10 to 10 m/s
+  EXPECT_EQ(events[1], "event,t,impulse");
+  EXPECT_EQ(events[2], "ball meets floor,1,40");  // 2 kg turned from -10 to 10 m/s
   EXPECT_TRUE(shell.has("rows.svg"));
 }
 

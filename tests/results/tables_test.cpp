@@ -62,6 +62,23 @@ TEST(Tables, TheEventListHasTheStatesBeforeAndAfter) {
             "h falls through 0,1,0,-2,0,1\n");
 }
 
+// A contact has an impulse and no states: a gas of a thousand balls had six thousand columns of nan a row.
+TEST(Tables, ContactsHaveAnImpulseAndColumnsOfStatesOnlyBesideOtherEvents) {
+  const Folder folder;
+  model::Run run = falling_ball().run;
+  const model::Happened fall = run.events.at(0);
+  run.events = {{.name = "a meets b", .mark = "", .t = 0.25, .before = {}, .after = {}, .impulse = 3}};
+  ASSERT_FALSE(write_events(run, folder / "contacts.csv", "abc"));
+  EXPECT_EQ(content(folder / "contacts.csv"), "# manifest abc\nevent,t,impulse\na meets b,0.25,3\n");
+  run.events.push_back(fall);
+  ASSERT_FALSE(write_events(run, folder / "both.csv", "abc"));
+  EXPECT_EQ(content(folder / "both.csv"),
+            "# manifest abc\n"
+            "event,t,impulse,before h,before h',after h,after h'\n"
+            "a meets b,0.25,3,nan,nan,nan,nan\n"
+            "h falls through 0,1,nan,0,-2,0,1\n");
+}
+
 TEST(Tables, AFolderThatIsNotThereIsOneMessage) {
   const auto failure = write_motion(falling_ball().run, "/no such folder/ball.csv", "abc");
   ASSERT_TRUE(failure);
