@@ -82,7 +82,7 @@ class ContactMatrix {
   }
 
  private:
-  /// Up to here a dense decomposition is faster than a sparse one, see bench/bodies/README.md.
+  /// So few rows are not worth an analysis of where they meet.
   static constexpr std::size_t greatest_dense = 24;
   using Bodies = std::array<std::uint32_t, 2>;
 

@@ -157,14 +157,17 @@ void resist_spinning(const ContactLanes<Real>& force, const Vector<ContactLanes<
 
 /// Too fast for a soft contact: it has struck in this substep and parts, or it will at the beginning of the next.
 /// What gravity alone brings about in a substep is no impact; nor is, without restitution, what moves it by less than
-/// half a radius.
+/// half a radius; nor what comes about, while contacts are solved, between two that have touched since it began: in
+/// the end it may be slower than an impact is, and then nothing would hold them apart. What has struck begins so far
+/// behind where it did, perhaps, that it comes from the other side of the other.
 template <class Real, int Dim>
 typename ContactLanes<Real>::Mask is_for_impacts(const ContactPack<Real, Dim>& pack,
                                                  const ContactLanes<Real>& restitution,
                                                  const SolverBodies<Real, Dim>& bodies,
                                                  const ContactLanes<Real>& separation,
-                                                 const ContactLanes<Real>& parting, const ContactLanes<Real>& radius,
-                                                 const ContactStep<Real>& step) {
+                                                 const ContactLanes<Real>& parting,
+                                                 const typename ContactLanes<Real>::Mask& parts_in_the_end,
+                                                 const ContactLanes<Real>& radius, const ContactStep<Real>& step) {
   using L = ContactLanes<Real>;
   const L zero(Real(0));
   if (!step.may_strike) return typename L::Mask(false);
@@ -173,11 +176,12 @@ typename ContactLanes<Real>::Mask is_for_impacts(const ContactPack<Real, Dim>& p
     const auto of = [&](std::uint32_t i) { return i < bodies.size() ? bodies.impacts[i] : 0u; };
     struck[lane] = of(pack.a[lane]) + of(pack.b[lane]) > 0 ? Real(1) : Real(0);
   }
-  const auto has_struck = (L(struck) > zero) & (separation < zero) & (parting > zero);
+  const auto has_struck = (L(struck) > zero) & (separation < zero) & ((parting > zero) | parts_in_the_end);
   const L approach = -parting;
   const auto bounces = restitution > zero;
-  return has_struck | (bounces & (approach > L(4 * step.greatest_acceleration * step.h))) |
-         ((!bounces) & (approach * L(step.h) > radius * L(Real(0.5))));
+  const auto will_strike = (bounces & (approach > L(4 * step.greatest_acceleration * step.h))) |
+                           ((!bounces) & (approach * L(step.h) > radius * L(Real(0.5))));
+  return has_struck | (will_strike & (L(pack.separation) > zero));
 }
 
 template <ContactKind kind, class Real, int Dim>
@@ -233,11 +237,13 @@ void solve(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Di
   const Vector<L, Dim> normal = loaded(pack.normal);
   const L so_far = impulses.normal;
   L separation = pack.separation, radius_a, radius_b;
+  Vector<L, Dim> apart;
   if (pass == ContactPass::relax || !is_plain) {
     const auto place_a = load_places(bodies, pack.a), place_b = load_places(bodies, pack.b);
     radius_a = place_a.radius;
     radius_b = place_b.radius;
-    if (pass == ContactPass::relax) separation = dot(place_b.x - place_a.x, normal) - (radius_a + radius_b);
+    apart = place_b.x - place_a.x;
+    if (pass == ContactPass::relax) separation = dot(apart, normal) - (radius_a + radius_b);
   }
   if constexpr (!is_plain && pass != ContactPass::push_again)
     if (rare) resist_rolling(*rare, so_far, a, b, radius_a, radius_b);
@@ -272,7 +278,10 @@ void solve(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Di
   };
   if constexpr (!is_plain) {
     const L restitution = rare ? L(rare->restitution) : zero;
-    leave(is_for_impacts<Real, Dim>(pack, restitution, bodies, separation, speed,
+    const Vector<L, Dim> at_end = pass == ContactPass::relax ? apart : Vector<L, Dim>(apart + between * L(step.h));
+    const auto parts_in_the_end =
+        kind == ContactKind::with_wall ? typename L::Mask(false) : dot(at_end, between) > zero;
+    leave(is_for_impacts<Real, Dim>(pack, restitution, bodies, separation, speed, parts_in_the_end,
                                     smaller_radius<Real>(radius_a, radius_b), step),
           zero, {});
   }
