@@ -96,7 +96,8 @@ for less.)"},
         "E323", "a world of bodies does not fit here",
         R"(Bodies collide, which no study of equations can see: `continuo run`, `verify`, `compare` and `converge` move a world,
 `check` and `info` read it. What comes of a start is no smooth function of it where bodies meet, so that there are no
-sensitivities, and a world has no x' = f(x) to find rest, orbits or a linearization of. It has no equations `0 = ...` beside it and no conditions at several times.)"},
+sensitivities, and a world has no x' = f(x) to find rest, orbits or a linearization of. It has no equations `0 = ...`
+beside it and no conditions at several times.)"},
     Code{"E324", "the bodies cannot be moved on",
          R"(The motion of the world ended before the run did; the message says why. What was computed is kept.
 
@@ -105,8 +106,8 @@ collide without end between others that press them (take `mode fast`).)"},
     Code{
         "E325", "a recording does not fit its model",
         R"(`continuo replay` and `continuo resume` read the model from the recording itself, but tables from their files. The
-numbers in it are of other states than the model has, or of a world that cannot be: the file was made by another version,
-or changed.)"},
+numbers in it are of other states than the model has, or of a world that cannot be: the file was made by another
+version, or changed.)"},
     Code{"E330", "there is no such method", R"(`continuo methods` lists the methods with their order and use.)"},
     Code{
         "E331", "the method needs a step",
