@@ -12,6 +12,7 @@
 #include <continuo/worlds/beside.hpp>
 #include <continuo/worlds/build_world.hpp>
 #include <continuo/worlds/world_run.hpp>
+#include <continuo/worlds/world_shapes.hpp>
 
 namespace continuo::worlds {
 
@@ -25,12 +26,6 @@ std::optional<ForceIntegrator> integrator_named(std::string_view name) {
   return std::nullopt;
 }
 
-template <int Dim>
-Point point_of(const Vector<double, Dim>& v) {
-  Point point{};
-  for (std::size_t i = 0; i < v.size(); ++i) point[i] = v[i];
-  return point;
-}
 template <int Dim>
 Vector<double, Dim> vector_of(const Point& point) {
   Vector<double, Dim> v;
@@ -70,7 +65,7 @@ class Moving final : public WorldRun {
       built.world.time = world_.time;
     }
     world_ = std::move(built.world);
-    note_shapes();
+    shapes_ = shapes_of(world_, *model().world);
     make_motion();
     return {};
   }
@@ -91,9 +86,9 @@ class Moving final : public WorldRun {
     return {};
   }
 
-  const std::vector<BodyShape>& bodies() const override { return bodies_; }
-  const std::vector<WallShape>& walls() const override { return walls_; }
-  const std::vector<SpringShape>& springs() const override { return springs_; }
+  const std::vector<BodyShape>& bodies() const override { return shapes_.bodies; }
+  const std::vector<WallShape>& walls() const override { return shapes_.walls; }
+  const std::vector<SpringShape>& springs() const override { return shapes_.springs; }
   Point position(std::size_t i) const override { return point_of<Dim>(world_.position[i]); }
   Point velocity(std::size_t i) const override { return point_of<Dim>(world_.velocity[i]); }
   Point spin(std::size_t i) const override {
@@ -226,27 +221,12 @@ class Moving final : public WorldRun {
     variables_ = saved.variables;
     beside_.go(saved.mode);
     contacts_.clear();
-    note_shapes();
+    shapes_ = shapes_of(world_, *model().world);
     return {};
   }
 
  private:
   const model::Model& model() const { return program_->model; }
-
-  void note_shapes() {
-    const model::WorldDescription& text = *model().world;
-    bodies_.clear(), walls_.clear(), springs_.clear();
-    for (std::size_t i = 0; i < world_.size(); ++i)
-      bodies_.push_back({text.bodies[i].name, world_.radius[i], world_.mass[i], world_.is_fixed(i)});
-    for (std::size_t w = 0; w < world_.walls().size(); ++w) {
-      const Wall<double, Dim>& wall = world_.walls()[w];
-      walls_.push_back({text.walls[w].name, point_of<Dim>(wall.normal), wall.offset, wall.thin});
-    }
-    for (std::size_t k = 0; k < world_.springs.size(); ++k) {
-      const auto* end = std::get_if<V>(&world_.springs[k].b);
-      springs_.push_back({text.springs[k].a, text.springs[k].b, end ? point_of<Dim>(*end) : Point{}});
-    }
-  }
 
   void make_motion() {
     const std::size_t before = exact_ || fast_ ? collisions() : 0;
@@ -371,9 +351,7 @@ class Moving final : public WorldRun {
   double start_;                      // of the steps
   std::uint64_t steps_ = 0;           // since then
   std::size_t collisions_apart_ = 0;  // to be added to what the motion has counted
-  std::vector<BodyShape> bodies_;
-  std::vector<WallShape> walls_;
-  std::vector<SpringShape> springs_;
+  Shapes shapes_;
   std::vector<Contact> contacts_;
   std::size_t lost_ = 0;
   std::vector<double> state_;
