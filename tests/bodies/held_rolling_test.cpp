@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "round.hpp"
 #include <continuo/bodies/exact_motion.hpp>
 
 namespace continuo {
@@ -28,16 +29,7 @@ void add_rolling(World<double, Dim>& world, double speed, const Material<double>
 }
 template <class T>
 class HeldRolling : public testing::Test {};
-struct Disc {
-  static constexpr int dim = 2;
-  static constexpr double shape = 1.0 / 2;  // J / (m r^2)
-};
-struct Ball {
-  static constexpr int dim = 3;
-  static constexpr double shape = 2.0 / 5;
-};
-using Shapes = testing::Types<Disc, Ball>;
-TYPED_TEST_SUITE(HeldRolling, Shapes);
+TYPED_TEST_SUITE(HeldRolling, round::DiscAndBall);
 
 // v' = -rho g / (1 + c) until it stops, as the motion under gravity alone has it to rounding. It is let be at half a
 // speed of what 1e-5 of the time of a fall of its radius gives, 1e-5 m/s: places differ by v^2 / 2a, 1e-10 m.
@@ -51,7 +43,7 @@ TYPED_TEST(HeldRolling, EndsByResistanceAsUnderGravityAlone) {
   World<double, dim> known = world;
   disguise(world);
   ExactMotion motion(world), under_gravity(known);
-  const double slows = 0.05 * 10 / (1 + TypeParam::shape), stops = 2 / slows;
+  const double slows = 0.05 * 10 / (1 + TypeParam::inertia), stops = 2 / slows;
   for (const double t : {1.0, stops - 0.1, stops + 0.1, 100.0}) {
     ASSERT_EQ(motion.advance_to(t), "");
     ASSERT_EQ(under_gravity.advance_to(t), "");
@@ -73,7 +65,7 @@ TYPED_TEST(HeldRolling, EndsByResistanceAndDrag) {
   const Material<double> material{.restitution = 0, .friction = 0.3, .rolling_resistance = 0.05};
   ASSERT_EQ(world.add_wall({.material = material}), "");
   add_rolling(world, 2, material);
-  const double m = world.mass[0], a = 0.4 / (m * (1 + TypeParam::shape)), b = 0.05 * m * 10 / 0.4;
+  const double m = world.mass[0], a = 0.4 / (m * (1 + TypeParam::inertia)), b = 0.05 * m * 10 / 0.4;
   const double stops = std::log(1 + 2 / b) / a;
   ExactMotion motion(world);
   ASSERT_EQ(motion.advance_to(stops / 2), "");
@@ -97,7 +89,7 @@ TYPED_TEST(HeldRolling, BeginsWhereASlopeIsSteeperThanTheResistance) {
     add_rolling(world, 0, material);
     ExactMotion motion(world);
     ASSERT_EQ(motion.advance_to(10), "");
-    const double a = tan > 0.05 ? 10 * std::cos(slope) * (tan - 0.05) / (1 + TypeParam::shape) : 0.0;
+    const double a = tan > 0.05 ? 10 * std::cos(slope) * (tan - 0.05) / (1 + TypeParam::inertia) : 0.0;
     EXPECT_NEAR(world.position[0][0], 50 * a, 1e-8) << tan;
     EXPECT_NEAR(world.velocity[0][0], 10 * a, 1e-8) << tan;
   }
@@ -117,7 +109,7 @@ TYPED_TEST(HeldRolling, SwingsOnASpringUntilResistanceHoldsIt) {
   world.force_laws.emplace_back(
       [](const auto&, double, auto x, auto, auto force) { force[0][0] -= 0.06 * 2 * 10 / 0.15 * x[0][0]; });
   ExactMotion motion(world);
-  const double half = std::acos(-1.0) * std::sqrt(2 * (1 + TypeParam::shape) * 0.15 / (0.06 * 2 * 10));
+  const double half = std::acos(-1.0) * std::sqrt(2 * (1 + TypeParam::inertia) * 0.15 / (0.06 * 2 * 10));
   const std::array<double, 6> turns{1, -0.7, 0.4, -0.1, -0.1, -0.1};
   for (std::size_t k = 0; k < turns.size(); ++k) {
     ASSERT_EQ(motion.advance_to(static_cast<double>(k) * half), "");

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "round.hpp"
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
 #include <continuo/methods/dop853.hpp>
@@ -33,16 +34,7 @@ Vector<double, Dim> at_height(double height) {
 
 template <class T>
 class Rolling : public testing::Test {};
-struct Disc {
-  static constexpr int dim = 2;
-  static constexpr double c = 1.0 / 2;
-};
-struct Ball {
-  static constexpr int dim = 3;
-  static constexpr double c = 2.0 / 5;
-};
-using Shapes = testing::Types<Disc, Ball>;
-TYPED_TEST_SUITE(Rolling, Shapes);
+TYPED_TEST_SUITE(Rolling, round::DiscAndBall);
 
 // Rolling resistance beyond what friction can transmit holds back like that limit, by mu g.
 TYPED_TEST(Rolling, ResistanceBeyondFrictionStopsLikeFriction) {
@@ -66,7 +58,7 @@ TYPED_TEST(Rolling, ResistanceBeyondFrictionStopsLikeFriction) {
 // Slip v0 at first, which friction eats at mu g (1 + 1/c); what is left of the speed is v0 / (1 + c).
 TYPED_TEST(Rolling, FrictionTurnsSlidingIntoRolling) {
   constexpr int dim = TypeParam::dim;
-  constexpr double c = TypeParam::c, v0 = 7, begins = v0 / (mu * g * (1 + 1 / c));
+  constexpr double c = TypeParam::inertia, v0 = 7, begins = v0 / (mu * g * (1 + 1 / c));
   auto world = table<dim>();
   Vector<double, dim> velocity{};
   velocity[0] = v0;
@@ -88,7 +80,7 @@ TYPED_TEST(Rolling, FrictionTurnsSlidingIntoRolling) {
 // Of rolling, v' = -rho g / (1 + c) until it stops; there it stays.
 TYPED_TEST(Rolling, RollingResistanceStopsIt) {
   constexpr int dim = TypeParam::dim;
-  constexpr double c = TypeParam::c, v0 = 2, rho = 0.05, slows = rho * g / (1 + c);
+  constexpr double c = TypeParam::inertia, v0 = 2, rho = 0.05, slows = rho * g / (1 + c);
   auto world = table<dim>();
   Vector<double, dim> velocity{};
   velocity[0] = v0;
@@ -111,7 +103,7 @@ TYPED_TEST(Rolling, RollingResistanceStopsIt) {
 // g (sin - mu cos).
 TYPED_TEST(Rolling, OnASlopeItRollsOrSlips) {
   constexpr int dim = TypeParam::dim;
-  constexpr double c = TypeParam::c;
+  constexpr double c = TypeParam::inertia;
   for (const bool is_steep : {false, true}) {
     const double slope = std::atan(mu * (1 + 1 / c) * (is_steep ? 1.25 : 0.8));
     World<double, dim> world;
