@@ -73,6 +73,7 @@ class Simulation {
     if (at.stops.size() != events_.stops().size() || at.next_sample > samples_.size() ||
         at.world.mode >= program_->model.modes.size())
       return "it stands where this model cannot";
+    if (std::string fault = world_->fault_of(at.world); !fault.empty()) return fault;
     for (std::size_t i = 0, k = 0; i < at.notes; ++i) {
       note(recording.notes[i]);
       for (; log_ && k <= standing && recording.standings[k].notes == i + 1; ++k) log_->add(recording.standings[k]);

@@ -139,6 +139,8 @@ class WorldRun {
   virtual void go(std::size_t mode) = 0;
 
   virtual Snapshot snapshot() const = 0;
+  /// Empty, or why this run cannot go on from it: of one that was read from a file, which may say anything.
+  virtual std::string fault_of(const Snapshot& snapshot) const = 0;
   /// Of a run by the same method and step; empty, or what is wrong with it.
   virtual std::string restore(const Snapshot& snapshot) = 0;
 };

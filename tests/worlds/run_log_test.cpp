@@ -1,10 +1,12 @@
 // Recorded runs: told again they are the same runs, gone on with they come to the same bits, cut off or changed they
 // are as much as is whole, or refused.
+#include <cmath>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include <tests/fuzz/right_sums.hpp>
 #include <tests/worlds/scene.hpp>
 
 #include <continuo/worlds/run_log.hpp>
@@ -174,18 +176,9 @@ TEST(RunLog, MayBeCutOffAnywhere) {
   EXPECT_GT(usable, 50U);
 }
 
-/// The file with the checksum of its block put right after bytes of it were changed, or nothing would get further.
 std::string with_right_sums(std::string file) {
-  for (std::size_t at = 12; at + 9 <= file.size();) {
-    ByteReader head(std::as_bytes(std::span(file)).subspan(at + 1));
-    std::uint64_t size = 0;
-    head(size);
-    if (size > file.size() - at - 9 || file.size() - at - 9 - size < 8) break;
-    ByteWriter sum;
-    sum(checksum(std::as_bytes(std::span(file)).subspan(at + 9, size)));
-    for (std::size_t i = 0; i < 8; ++i) file[at + 9 + size + i] = static_cast<char>(sum.bytes()[i]);
-    at += 9 + size + 8;
-  }
+  constexpr std::size_t head = 12;
+  put_sums_right(std::as_writable_bytes(std::span(file)), head, [](std::uint8_t, std::span<std::byte>) {});
   return file;
 }
 
@@ -231,6 +224,33 @@ TEST(RunLog, OfAnotherModelIsRefused) {
     ASSERT_EQ(simulated.diagnostics.size(), 1U);
     EXPECT_EQ(simulated.diagnostics[0].code, "E325");
   }
+}
+
+// What a file may say with all its checksums right: more bodies than the model has (their states were written beyond
+// the end of the array), steps that began so early that no number of them comes to the end.
+TEST(RunLog, DoesNotGoOnFromPlacesThatAreNoneOfItsRun) {
+  const Recorded made = recorded(cases()[2].text, 5);
+  const RunRecording recording = RunRecording::read(bytes_of(made.file));
+  const std::size_t last = recording.standings.size() - 1;
+  const auto more_bodies = [] {
+    std::string text = cases()[2].text;
+    text.replace(text.find("random 8"), 8, "random 9");
+    return RunRecording::read(bytes_of(recorded(text, 5).file));
+  }();
+  const auto expect_refused = [&](auto&& change, const std::string& why) {
+    RunRecording wrong = recording;
+    change(wrong.standings[last].world);
+    const model::Simulated on = resume_world(made.program, wrong, last, {.to = 1.6});
+    EXPECT_FALSE(on.run) << why;
+    ASSERT_EQ(on.diagnostics.size(), 1U) << why;
+    EXPECT_EQ(on.diagnostics[0].code, "E325");
+    EXPECT_NE(on.diagnostics[0].label.find(why), std::string::npos) << on.diagnostics[0].label;
+  };
+  expect_refused([&](Snapshot& world) { world.bodies = more_bodies.standings[last].world.bodies; }, "other bodies");
+  expect_refused([&](Snapshot& world) { world.bodies = recording.standings[0].world.bodies; }, "another time");
+  expect_refused([](Snapshot& world) { world.start = -1e300; }, "none of its steps");
+  expect_refused([](Snapshot& world) { world.steps += 5; }, "none of its steps");
+  expect_refused([](Snapshot& world) { world.equations[0] = std::nan(""); }, "not finite");
 }
 
 }  // namespace

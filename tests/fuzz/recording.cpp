@@ -1,0 +1,148 @@
+// Any bytes as a recording: of bodies, played to its end, or of a run, told again and gone on with. The checksums are
+// put right first, or hardly any bytes would get beyond them. A run is one of the models below, whatever text stands in
+// it: texts are another target's.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <sstream>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include <tests/fuzz/right_sums.hpp>
+
+#include <continuo/bodies/recording.hpp>
+#include <continuo/model/check.hpp>
+#include <continuo/model/parser.hpp>
+#include <continuo/worlds/simulate_world.hpp>
+
+namespace {
+
+using namespace continuo;
+using namespace continuo::worlds;
+
+void check_refusal(const std::string& error) {
+  if (error.substr(0, 5) != "byte ") std::abort();
+}
+
+template <class Real, int Dim>
+void play(std::span<const std::byte> bytes) {
+  const auto recording = Recording<Real, Dim>::read(bytes);
+  if (!recording.error.empty()) return check_refusal(recording.error);
+  for (const auto& frame : recording.frames)
+    if (recording.at(frame.time).position.size() != recording.scenes.at(frame.scene).size() && frame.time == frame.time)
+      std::abort();
+}
+
+/// By all that a run remembers: an exact world and a fast one, with equations and events.
+constexpr std::array<const char*, 3> models{R"(
+world { gravity (0, -10); wall floor (0, 1) at 0; material restitution 0.7 friction 0.2
+  body ball at (0, 2) velocity (1, 0); body other at (3, 1); spring ball to other stiffness 3; container box (-4, 0) to (4, 9) }
+when ball.y falls through 1 { mark "low" }
+run 0..1 output 0.1
+)",
+                                            R"(
+world { gravity (0, -10); wall floor (0, 1) at 0; body ball at (0, 2) velocity (1, 0); body other at (3, 1)
+  mode fast step 1/60 }
+force on ball = (-2*(ball.x - u), 0)
+u' = ball.x - u
+u(0) = 1
+every 0.3 { ball.x' := ball.x' + 0.01 }
+check ball.y(0.5) = 1 within 100
+check energy drift < 1000
+run 0..1 output 0.1
+)",
+                                            R"(
+world { dimension 3; body ball at (0, 0, 2) velocity (1, 0, 0); wall (0, 0, 1) at 0 }
+force on ball = (-u*ball.x, 0, -1)
+u'' = -u
+u(0) = 1; u'(0) = 0
+run 0..1 output log 3 per decade from 0.01
+)"};
+std::shared_ptr<const model::ModelProgram> program_of(const char* text) {
+  const model::Source source("scene.sim", text);
+  model::Checked checked = check(model::parse(source).model, source);
+  if (!checked.model) std::abort();
+  return model::compile(std::move(*checked.model));
+}
+
+/// As somebody who waits for a second and interrupts: springs may be as stiff and bodies as fast as numbers can be.
+class Timer {
+ public:
+  explicit Timer(std::atomic<bool>& enough)
+      : thread_([&enough](const std::stop_token& stop) {
+          std::mutex mutex;
+          std::unique_lock lock(mutex);
+          if (!std::condition_variable_any().wait_for(lock, stop, std::chrono::seconds(1),
+                                                      [&] { return stop.stop_requested(); }))
+            enough = true;
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+/// What of an experiment decides how long it takes; the rest of it may be anything.
+bool is_short(const model::Experiment& e, double from) {
+  return e.step.value_or(0.01) >= 1e-3 && e.rtol.value_or(1e-6) >= 1e-12 && e.output.value_or(1) >= 1e-3 &&
+         e.to.value_or(1) - from < 2 && e.from.value_or(0) > -10;
+}
+
+void tell_and_go_on(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording) {
+  if (!is_short(recording.head.experiment, 0)) return;
+  const model::Simulated told = replay_world(program, recording);
+  if (!told.run && told.diagnostics.empty()) std::abort();
+  if (recording.standings.empty()) return;
+  const double from = recording.standings.back().world.time;
+  std::atomic<bool> enough = false;
+  const Timer timer(enough);
+  std::ostringstream file;
+  RunLog log(file, recording.head, 3);
+  const model::Simulated on =
+      resume_world(program, recording, recording.standings.size() - 1, {.to = from + 0.05, .interrupt = &enough}, &log);
+  if (!on.run && on.diagnostics.empty()) std::abort();
+  if (!on.run) return;
+  // What it wrote is in order whatever it went on from.
+  const std::string text = file.str();
+  if (!RunRecording::read(std::as_bytes(std::span(text))).error.empty()) std::abort();
+}
+
+void go_on(std::span<const std::byte> bytes) {
+  static const std::array programs{program_of(models[0]), program_of(models[1]), program_of(models[2])};
+  const RunRecording recording = RunRecording::read(bytes);
+  if (!recording.error.empty()) return check_refusal(recording.error);
+  const auto fits = [&](const auto& program) {
+    return program->model.states.size() == recording.notes.front().x.size();
+  };
+  const auto found = std::ranges::find_if(programs, fits);
+  tell_and_go_on(found == programs.end() ? programs.front() : *found, recording);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Bytes bytes(size);
+  for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::byte>(data[i]);
+  put_sums_right(bytes, 14, [](std::uint8_t kind, std::span<std::byte> block) {
+    if (kind == 0) put_sum_right(block);  // a scene
+  });
+  play<double, 3>(bytes);
+  play<float, 2>(bytes);
+  put_sums_right(bytes, 12, [](std::uint8_t kind, std::span<std::byte> block) {
+    if (kind != 2 || block.size() < 8) return;  // a standing begins with its bodies
+    std::uint64_t count = 0;
+    ByteReader reader(block);
+    reader(count);
+    if (count <= block.size() - 8) put_sum_right(block.subspan(8, static_cast<std::size_t>(count)));
+  });
+  go_on(bytes);
+  return 0;
+}
