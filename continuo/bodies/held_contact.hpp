@@ -57,7 +57,9 @@ struct Grip {
     holds = false;
     way_at_start = way = size > Real(0) ? load * (-1 / size) : W{};
   }
-  bool is_too_weak(const Real& press) const { return holds && !(length(load) < most * press * Real(1 - 1e-9)); }
+  bool is_too_weak(const Real& press, const Real& rounding) const {
+    return holds && !(length(load) < most * press + rounding);
+  }
   /// Against which it acts: where the surfaces move, and where they hardly do, where they will. Beyond the instant at
   /// which they stop it stays the same, so that nothing jumps there, in steps that go too far.
   W direction(const Real& slow) const {
@@ -66,9 +68,9 @@ struct Grip {
     return speed > slow ? ahead * (1 / speed) : (ahead + way * (slow - speed)) * (1 / slow);
   }
   /// Falls through 0 where it begins to hold, or holds no more.
-  Real guard(const Real& press, const Real& slow) const {
+  Real guard(const Real& press, const Real& slow, const Real& rounding) const {
     if (!(most > Real(0))) return Real(1);
-    if (holds) return most * press - length(load);
+    if (holds) return most * press - length(load) + 2 * rounding;
     return is_fast ? dot(rate, way) - slow / 2 : dot(rate, way) + slow / 8;
   }
 };

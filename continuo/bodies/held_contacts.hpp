@@ -36,6 +36,8 @@ class HeldContacts {
                std::span<const V> force, std::span<const S> torque)
       : world_(&world), slow_(slow), rate_(rate) {
     for (const Touching& one : touching) held_.emplace_back(world, one);
+    for (const Touching& one : touching)
+      for (const std::uint32_t body : {one.a, one.b}) rounding_ = std::max(rounding_, Real(1e-9) * length(force[body]));
     choose(force, torque);
     std::erase_if(held_, [](const Held& one) { return !one.is_pressed; });
     for (const Held& one : held_) rubs_ = rubs_ || one.slip.most > Real(0);
@@ -64,9 +66,9 @@ class HeldContacts {
   static constexpr std::size_t guards = 3;
   Real guard(std::size_t k, std::size_t which) const {
     const Held& one = held_[k];
-    if (which == 0) return one.press;
-    if (which == 1) return one.slip.guard(one.press, slow_);
-    return one.can_roll() ? one.roll.guard(one.press, slow_) : Real(1);
+    if (which == 0) return one.press + 2 * rounding_;
+    if (which == 1) return one.slip.guard(one.press, slow_, rounding_);
+    return one.can_roll() ? one.roll.guard(one.press, slow_, rounding_) : Real(1);
   }
 
   /// Takes away what speed they have in the directions held, by impulses.
@@ -237,17 +239,17 @@ class HeldContacts {
       return free_rate(of, row, world_->spin, force, torque) < -least * greatest * response(*world_, row, row);
     };
     const auto begins_again = [](const auto& grip) { return grip.most > Real(0) && !grip.holds && !grip.is_fast; };
-    if (one.is_pressed && one.press < Real(0)) {
+    if (one.is_pressed && one.press < -rounding_) {
       one.is_pressed = false;
     } else if (!one.is_pressed) {
       if (!returns({k, Holds::normal}, Real(1e-9))) return false;
       one.is_pressed = true;
-    } else if (one.slip.is_too_weak(one.press)) {
+    } else if (one.slip.is_too_weak(one.press, rounding_)) {
       one.slip.let_go();
     } else if (begins_again(one.slip) &&
                returns({.held = k, .what = Holds::slip, .across = one.slip.way}, Real(1e-6))) {
       one.slip.holds = true;  // once others slip it can
-    } else if (one.can_roll() && one.roll.is_too_weak(one.press)) {
+    } else if (one.can_roll() && one.roll.is_too_weak(one.press, rounding_)) {
       one.roll.let_go();
     } else if (one.can_roll() && begins_again(one.roll) &&
                returns({.held = k, .what = Holds::roll, .about = one.roll.way}, Real(1e-6))) {
@@ -260,6 +262,7 @@ class HeldContacts {
 
   const World<Real, Dim>* world_ = nullptr;
   Real slow_{}, rate_{};
+  Real rounding_{};  // of forces: what none is far from, as between bodies side by side, pulls or slips only beyond it
   bool rubs_ = false;
   std::vector<Held> held_;
   // Of the directions in which they are held:
