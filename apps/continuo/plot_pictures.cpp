@@ -16,34 +16,20 @@ std::string axis_of(const live::LiveCurve& curve) {
   return curve.unit.empty() ? curve.label : fmt::format("{} [{}]", curve.label, curve.unit);
 }
 
-/// Room for all curves of a plot from the beginning, so that its axes do not move.
-std::string ranges_of(const live::LivePlot& plot, double begin, double end) {
-  std::string ranges = "unset xrange\nunset yrange\nlow = 1e300\nhigh = -1e300\n";
-  for (const live::LiveCurve& curve : plot.curves)
-    ranges += fmt::format(
-        "stats $data using {} name 'c' nooutput\nlow = c_min < low ? c_min : low\n"
-        "high = c_max > high ? c_max : high\n",
-        curve.column + 2);
-  ranges += "room = high > low ? 0.05*(high - low) : 1\nset yrange [low - room:high + room]\n";
-  if (!plot.against) return ranges + fmt::format("set xrange [{}:{}]\n", begin, end);
-  return ranges + fmt::format(
-                      "stats $data using {} name 'a' nooutput\nroom = a_max > a_min ? 0.05*(a_max - a_min) : 1\n"
-                      "set xrange [a_min - room:a_max + room]\n",
-                      plot.against->column + 2);
-}
-
 }  // namespace
 
 PlotPictures::PlotPictures(const live::LiveModel& shown, const Recorder::Slices& slices) : shown_(shown) {
   data_ = "$data << END\n";
   std::size_t rows = 0;
   const std::size_t columns = shown.columns.size();
+  extremes_.assign(columns, {INFINITY, -INFINITY});
   for (const auto& slice : slices) {
     for (std::size_t row = 0; row < slice->row_t.size(); ++row, ++rows) {
       data_ += fmt::format("{:.9g}", slice->row_t[row]);
       for (std::size_t i = 0; i < columns; ++i) {
         const float value = slice->rows[row * columns + i];
         data_ += std::isfinite(value) ? fmt::format(" {:.7g}", value) : " NaN";
+        if (std::isfinite(value)) extremes_[i].take(value);
       }
       data_ += "\n";
     }
@@ -52,6 +38,19 @@ PlotPictures::PlotPictures(const live::LiveModel& shown, const Recorder::Slices&
   }
   data_ += "END\n";
   end_ = t_.back() > t_.front() ? t_.back() : t_.front() + 1;
+}
+
+/// Room for all curves of a plot from the beginning, so that its axes do not move.
+std::string PlotPictures::ranges_of(const live::LivePlot& plot) const {
+  constexpr double air = 0.05;
+  const auto range = [](const char* axis, Extremes e, double with) {
+    const results::Range over = results::axis_over(e.low, e.high, with);
+    return fmt::format("set {}range [{}:{}]\n", axis, over.low, over.high);
+  };
+  Extremes up;
+  for (const live::LiveCurve& curve : plot.curves) up.take(extremes_[curve.column]);
+  return range("y", up, air) +
+         (plot.against ? range("x", extremes_[plot.against->column], air) : range("x", {t_.front(), end_}, 0));
 }
 
 std::string PlotPictures::commands(std::size_t number) const {
@@ -73,7 +72,7 @@ std::string PlotPictures::commands(std::size_t number) const {
           curves.empty() ? "" : ", ", last, across, curve.column + 2, rgb, safe_text(axis_of(curve)), last, last,
           across, curve.column + 2, rgb);
     }
-    all += ranges_of(plot, t_.front(), end_);
+    all += ranges_of(plot);
     all += fmt::format("set xlabel '{}'\nplot {}\n", plot.against ? safe_text(axis_of(*plot.against)) : time, curves);
   }
   return all + "unset multiplot\n";

@@ -53,6 +53,11 @@ struct Range {
   double low, high;
 };
 
+/// What an axis shows of values from low to high, with so much air as a part of these. It has an extent even over a
+/// constant (with its round-off) and over nothing at all (low > high): left to choose, gnuplot warns of the one and
+/// ends at the other.
+Range axis_over(double low, double high, double air);
+
 /// What of a closed path without gaps lies in a rectangle.
 Curve clipped(const Curve& path, Range x, Range y);
 

@@ -58,10 +58,20 @@ int height_of(const Figure& figure) {
   return height;
 }
 
-void append_data(std::string& script, std::size_t panel, std::size_t number, const Curve& curve) {
-  script += fmt::format("$curve{}_{} << END\n", panel, number);
+/// Where a value stands on an axis; what has no place is no number. Of an axis of decades gnuplot knows no more.
+double place_of(bool is_logarithmic, double value) {
+  if (!is_logarithmic) return value;
+  return value >= 1e-300 && value <= 1e300 ? std::log10(value) : NAN;
+}
+bool has_place(const Panel& panel, const Curve& curve, std::size_t i) {
+  return std::isfinite(place_of(panel.logarithmic_x, curve.x[i])) &&
+         std::isfinite(place_of(panel.logarithmic_y, curve.y[i]));
+}
+
+void append_data(std::string& script, const Panel& panel, const std::string& name, const Curve& curve) {
+  script += fmt::format("{} << END\n", name);
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
-    if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i])) {
+    if (has_place(panel, curve, i)) {
       append_number(script, curve.x[i]);
       script += ' ';
       append_number(script, curve.y[i]);
@@ -71,11 +81,12 @@ void append_data(std::string& script, std::size_t panel, std::size_t number, con
   script += "END\n";
 }
 
-std::string style_of(const Curve& curve, std::size_t number) {
-  const std::string_view color = curve.color.empty() ? color_of(number) : curve.color;
+/// `own`: a colour, or none.
+std::string style_of(Curve::Style style, std::string_view own, std::size_t number) {
+  const std::string_view color = own.empty() ? color_of(number) : own;
   // Dashes tell the second round of colours from the first.
-  const std::size_t round = curve.color.empty() ? number / std::size(palette) : 0;
-  switch (curve.style) {
+  const std::size_t round = own.empty() ? number / std::size(palette) : 0;
+  switch (style) {
     case Curve::Style::dashed_line:
       return fmt::format("lines lw 1.8 dt '-' lc rgb '{}'", color);
     case Curve::Style::thin_line:
@@ -95,32 +106,23 @@ std::string style_of(const Curve& curve, std::size_t number) {
 }
 
 /// What one axis spans: all values and a little air, so that no curve lies on the frame.
-std::optional<Range> range_of(const Panel& panel, std::vector<double> Curve::* values, double air) {
+Range range_of(const Panel& panel, std::vector<double> Curve::* values, double air) {
   double low = INFINITY, high = -INFINITY;
   for (const Curve& curve : panel.curves) {
     for (const double v : curve.*values) {
       if (std::isfinite(v) && curve.widens_axes) low = std::min(low, v), high = std::max(high, v);
     }
   }
-  // Nothing to show, or a constant with its round-off, which is no curve: gnuplot's own choice.
-  if (!(low < high) || high - low < 1e-14 * std::max(std::abs(low), std::abs(high))) return std::nullopt;
-  const double margin = air * (high - low);
-  return Range{low - margin, high + margin};
+  return axis_over(low, high, air);
 }
-std::optional<Range> range_of_x(const Panel& panel) {
+Range range_of_x(const Panel& panel) {
   return range_of(panel, &Curve::x, panel.equal_scale ? 0.05 : 0);
 }
-std::optional<Range> range_of_y(const Panel& panel) {
+Range range_of_y(const Panel& panel) {
   return range_of(panel, &Curve::y, 0.05);
 }
-std::string range_text(const std::optional<Range>& range) {
-  return range ? fmt::format("[{}:{}]", range->low, range->high) : "[*:*]";
-}
-
-/// Where x stands on the panel's axis, in any scale; what has no place is no number.
-double place_of(const Panel& panel, double x) {
-  if (!panel.logarithmic_x) return x;
-  return x > 0 ? std::log10(x) : NAN;
+std::string range_text(const Range& range) {
+  return fmt::format("[{}:{}]", range.low, range.high);
 }
 
 /// The least and the greatest place with a point.
@@ -128,7 +130,7 @@ std::array<double, 2> places_of(const Panel& panel) {
   double low = INFINITY, high = -INFINITY;
   for (const Curve& curve : panel.curves) {
     for (const double x : curve.x) {
-      const double place = place_of(panel, x);
+      const double place = place_of(panel.logarithmic_x, x);
       if (std::isfinite(place)) low = std::min(low, place), high = std::max(high, place);
     }
   }
@@ -140,18 +142,46 @@ std::vector<double> distinct_marks(const Panel& panel) {
   const auto [low, high] = places_of(panel);
   std::vector<double> marks;
   for (const double mark : panel.marks) {
-    const double place = place_of(panel, mark);
+    const double place = place_of(panel.logarithmic_x, mark);
     if (!std::isfinite(place)) continue;
-    const double before = marks.empty() ? -INFINITY : place_of(panel, marks.back());
+    const double before = marks.empty() ? -INFINITY : place_of(panel.logarithmic_x, marks.back());
     if (place - before >= closest_marks * (high - low) / width) marks.push_back(mark);
   }
   return marks;
 }
 
+constexpr double least_decades = 1e-12;  // less is round-off
+
+/// Of a logarithmic axis with one value, or none.
+std::string decades_about(double value) {
+  const double middle = std::isfinite(value) ? value : 1;
+  return range_text({middle / 10, middle * 10});
+}
+
 std::string x_range_text(const Panel& panel) {
   if (!panel.logarithmic_x) return range_text(range_of_x(panel));
   const auto [low, high] = places_of(panel);
-  return low < high ? range_text(Range{std::pow(10, low), std::pow(10, high)}) : range_text({});
+  return high - low > least_decades ? range_text({std::pow(10, low), std::pow(10, high)})
+                                    : decades_about(std::pow(10, low));
+}
+
+std::string y_range_text(const Panel& panel) {
+  if (!panel.logarithmic_y) return range_text(range_of_y(panel));
+  double low = INFINITY, high = 0;
+  for (const Curve& curve : panel.curves)
+    for (std::size_t i = 0; i < curve.y.size(); ++i)
+      if (has_place(panel, curve, i)) low = std::min(low, curve.y[i]), high = std::max(high, curve.y[i]);
+  return std::log10(high / low) > least_decades ? "[*:*]" : decades_about(low);  // to whole decades
+}
+
+std::size_t shown_points(const Panel& panel, const Curve& curve) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < curve.y.size(); ++i) count += has_place(panel, curve, i) ? 1 : 0;
+  return count;
+}
+
+bool is_line(Curve::Style style) {
+  return style == Curve::Style::line || style == Curve::Style::dashed_line || style == Curve::Style::thin_line;
 }
 
 /// Ticks between the powers of ten, where there are few enough of these.
@@ -174,8 +204,7 @@ void append_panel(std::string& script, const Panel& panel, std::size_t number, d
                         small_ticks(panel, &Curve::y, panel.logarithmic_y));
   script +=
       fmt::format("set xlabel {}\nset ylabel {}\nunset arrow\n", in_quotes(panel.x_label), in_quotes(panel.y_label));
-  script += fmt::format("set xrange {}\nset yrange {}\n", x_range_text(panel),
-                        range_text(panel.logarithmic_y ? std::nullopt : range_of_y(panel)));
+  script += fmt::format("set xrange {}\nset yrange {}\n", x_range_text(panel), y_range_text(panel));
   const auto marks = distinct_marks(panel);
   for (const double mark : marks) {
     script += fmt::format(
@@ -183,9 +212,13 @@ void append_panel(std::string& script, const Panel& panel, std::size_t number, d
   }
   script += "plot ";
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    Curve::Style style = panel.curves[i].style;
     const std::string& label = panel.curves[i].label;
-    script += fmt::format("{}$curve{}_{} using 1:2 with {} {}", i > 0 ? ", " : "", number, i,
-                          style_of(panel.curves[i], i), label.empty() ? "notitle" : "title " + in_quotes(label));
+    const std::size_t points = shown_points(panel, panel.curves[i]);
+    if (points == 1 && is_line(style)) style = Curve::Style::full_points;  // a line to nowhere is none
+    script += fmt::format(
+        "{}{} with {} {}", i > 0 ? ", " : "", points > 0 ? fmt::format("$curve{}_{} using 1:2", number, i) : "NaN",
+        style_of(style, panel.curves[i].color, i), label.empty() ? "notitle" : "title " + in_quotes(label));
   }
   if (!marks.empty())
     script += fmt::format(", NaN with lines lw 1 dt 3 lc rgb '#999999' title {}", in_quotes(panel.mark_label));
@@ -229,16 +262,25 @@ namespace {
 
 /// As much of a curve as the picture needs.
 Curve drawn(const Panel& panel, const Curve& curve) {
-  using enum Curve::Style;
-  if (curve.style == area && !curve.widens_axes) {  // gnuplot leaves some of it beyond the frame
-    const auto x = range_of_x(panel), y = range_of_y(panel);
-    return x && y ? clipped(curve, *x, *y) : curve;
+  if (curve.style == Curve::Style::area && !curve.widens_axes) {  // gnuplot leaves some of it beyond the frame
+    return clipped(curve, range_of_x(panel), range_of_y(panel));
   }
-  const bool is_line = curve.style == line || curve.style == dashed_line || curve.style == thin_line;
-  return is_line && !panel.logarithmic_x ? thinned(curve, 2 * width) : curve;
+  return is_line(curve.style) && !panel.logarithmic_x ? thinned(curve, 2 * width) : curve;
 }
 
 }  // namespace
+
+Range axis_over(double low, double high, double air) {
+  constexpr double highest = 4e307;  // gnuplot adds and subtracts such
+  if (!(low <= high)) return {0, 1};
+  low = std::clamp(low, -highest, highest), high = std::clamp(high, -highest, highest);
+  double margin = air * (high - low);
+  if (high == low || high - low < 1e-14 * std::max(std::abs(low), std::abs(high))) {
+    margin = 0.01 * std::abs(low);
+    if (low - margin == low) margin = 1;
+  }
+  return {low - margin, high + margin};
+}
 
 std::string_view color_of(std::size_t number) {
   return palette[number % std::size(palette)];
@@ -250,7 +292,7 @@ std::string gnuplot_script(const Figure& figure, const std::string& path) {
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     for (std::size_t c = 0; c < figure.panels[p].curves.size(); ++c) {
       const Panel& panel = figure.panels[p];
-      append_data(script, p, c, drawn(panel, panel.curves[c]));
+      append_data(script, panel, fmt::format("$curve{}_{}", p, c), drawn(panel, panel.curves[c]));
     }
   }
   script +=

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <span>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -177,6 +179,37 @@ TEST(Plots, AnAreaThatGoesOnForeverLeavesTheAxesToTheOthers) {
   EXPECT_THAT(script, HasSubstr("set xrange [0:1]"));
   EXPECT_THAT(script, HasSubstr("filledcurves closed"));
   EXPECT_THAT(script, Not(HasSubstr("\n9 ")));  // it is cut to them
+}
+
+// gnuplot warns of an axis without extent, and ends where a panel has no point. What it has to say goes to standard
+// error.
+TEST(Plots, WhatHasNoExtentIsDrawnWithoutAWord) {
+  constexpr double huge = 1.7e308, tiny = 4e-324;
+  const std::vector<std::vector<double>> values = {{3, 3},        {0, 0},       {-5, -5},    {1, 1 + 4e-16},
+                                                   {7},           {NAN, NAN},   {NAN, 2},    {},
+                                                   {huge, -huge}, {huge, huge}, {tiny, tiny}};
+  Figure figure{.title = "", .panels = {}};
+  for (const auto& y : values) {
+    std::vector<double> x(y.size());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<double>(i + 1);
+    for (const bool is_logarithmic : {false, true}) {
+      const Panel panel{.x_label = "",
+                        .y_label = "",
+                        .curves = {{.label = "it", .x = x, .y = y}},
+                        .logarithmic_x = is_logarithmic,
+                        .logarithmic_y = is_logarithmic};
+      Panel other = panel, turned = panel;
+      std::swap(turned.curves[0].x, turned.curves[0].y);
+      other.curves.push_back({.label = "another", .x = {0, 1}, .y = {0, 1}});
+      figure.panels.insert(figure.panels.end(), {panel, turned, other});
+    }
+  }
+  const std::string path = testing::TempDir() + "no_extent.svg";
+  testing::internal::CaptureStderr();
+  const auto failure = draw(figure, path);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(failure.value_or(""), "");
+  std::filesystem::remove(path);
 }
 
 TEST(Plots, SmallTicksStandBetweenFewDecadesOnly) {
