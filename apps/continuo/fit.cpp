@@ -288,7 +288,7 @@ bool strict_enough(const model::Experiment& experiment) {
 
 ExitCode fit(const FitOptions& options) {
   if (!drawable(options.plot)) return usage;
-  Prepared prepared = prepare(options.experiment);
+  Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   if (!strict_enough(prepared.experiment)) return usage;
   say_step_has_no_part(prepared);

@@ -16,7 +16,7 @@ void refuse_methods(CLI::App& verb) {
 
 void say_step_has_no_part(const Prepared& prepared) {
   const model::RunSettings& run = prepared.program->model.run;
-  if (run.step)
+  if (run.step && !prepared.program->model.has_world())
     say(
         fmt::format("{}: the fixed step has no part here: derivatives are integrated along with the motion, in steps "
                     "chosen for both",

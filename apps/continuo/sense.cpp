@@ -69,6 +69,7 @@ std::string table_of(const model::Model& model, const SensitivityRun& run,
                           relative(run.value(last, i)), relative(sizes[i]));
     }
   }
+  if (model.has_world()) text += "by differences of runs to both sides of each; nan: bodies meet just then\n";
   if (run.events.empty()) return text;
   const studies::SensitivityEvent& event = run.events.back();
   text += fmt::format("{} events; the last, `{}`, at t = {}", run.events.size(), event.name,
@@ -125,7 +126,7 @@ results::Figure figure_of(const model::Model& model, const SensitivityRun& run,
 
 ExitCode sense(const SenseOptions& options) {
   if (!drawable(options.plot) || !writable(options.output)) return usage;
-  Prepared prepared = prepare(options.experiment);
+  Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   const model::Model& model = prepared.program->model;
   say_step_has_no_part(prepared);

@@ -95,9 +95,8 @@ for less.)"},
     Code{
         "E323", "a world of bodies does not fit here",
         R"(Bodies collide, which no study of equations can see: `continuo run`, `verify`, `compare` and `converge` move a world,
-`check` and `info` read it. What comes of a start is no smooth function of it where bodies meet, so that there are no
-sensitivities, and a world has no x' = f(x) to find rest, orbits or a linearization of. It has no equations `0 = ...`
-beside it and no conditions at several times.)"},
+`sense` and `fit` compare runs of it with other parameters, `check` and `info` read it. A world has no x' = f(x) to find
+rest, orbits or a linearization of, no equations `0 = ...` beside it and no conditions at several times.)"},
     Code{"E324", "the bodies cannot be moved on",
          R"(The motion of the world ended before the run did; the message says why. What was computed is kept.
 

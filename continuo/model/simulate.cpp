@@ -61,7 +61,7 @@ bool is_positive_period(const Model& model, const Plan& plan, std::vector<Diagno
 Diagnostic no_study_of_worlds(const Model& model) {
   return error("E323", model.world->span, "a world of bodies is not integrated like equations",
                "its bodies collide, and no study of equations can see that",
-               "`continuo run`, `verify`, `compare` and `converge` move it");
+               "`continuo run`, `verify`, `compare`, `converge`, `sense` and `fit` move it");
 }
 
 std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <continuo/model/world.hpp>
 #include <continuo/studies/fit.hpp>
+#include <continuo/studies/fit_of_world.hpp>
 #include <continuo/studies/sensitivity.hpp>
 #include <continuo/studies/student_t.hpp>
 
@@ -63,8 +65,10 @@ class Part {
     request.experiment.parameters = fixed(request_, data_);
     // Conditions at several times need the whole interval.
     if (!model.needs_boundary_solver()) request.experiment.to = times.back();
-    request.experiment.rtol = std::min(request_.experiment.rtol.value_or(model.run.rtol.value_or(greatest_rtol_of_fit)),
-                                       greatest_rtol_of_fit);
+    if (!model.has_world())  // whose own tolerance is strict enough
+      request.experiment.rtol = std::min(
+          request_.experiment.rtol.value_or(model.run.rtol.value_or(greatest_rtol_of_fit)), greatest_rtol_of_fit);
+    request.increments = increments_;
     for (std::size_t u = 0; u < p.size(); ++u) {
       const Influence& influence = request_.unknowns[u].influence;
       if (influence.kind == Influence::Kind::initial) {
@@ -94,6 +98,20 @@ class Part {
 
   const std::vector<double>& times() const { return times_; }
   const FitData& data() const { return data_; }
+  /// Of a world.
+  void set_increments(std::vector<double> increments) { increments_ = std::move(increments); }
+  /// A quantity that jumps at impacts; empty: none.
+  std::string jumping_quantity() const {
+    const model::Model& model = request_.program->model;
+    for (std::size_t c = 0; c < states_.size(); ++c) {
+      const std::string& name = data_.columns[c].quantity;
+      if (detail::jumps_at_impacts(model, states_[c] == model::npos
+                                              ? model::variables_of(model.graph, *quantity_node(model, name))
+                                              : std::vector{model.states[states_[c]].variable}))
+        return name;
+    }
+    return {};
+  }
 
  private:
   const FitRequest& request_;
@@ -102,7 +120,7 @@ class Part {
   std::vector<std::size_t> states_, places_;
   std::size_t quantities_ = 0;
   SensitivityStudy::Along along_;
-  std::vector<double> times_;
+  std::vector<double> times_, increments_;
 };
 
 /// A measured value: its row among the run's, its column, and the scale that makes its residual a number.
@@ -188,6 +206,9 @@ class Problem {
       if (!known_[s] && pending_[s] > 0) scales_[s] = pending_[s];
   }
   const std::vector<Part>& parts() const { return parts_; }
+  void set_increments(const std::vector<double>& increments) {
+    for (Part& part : parts_) part.set_increments(increments);
+  }
 
  private:
   std::size_t unknowns_;
@@ -213,6 +234,22 @@ std::string why_not(const Problem& problem, std::span<const double> p, std::vect
                        data.lines.back(), run.outcome.t);
   }
   return "the runs give no finite numbers";
+}
+
+/// Why no derivative says how the quantities depend on the unknowns; empty: places alone are measured, or nothing
+/// meets.
+std::string jump_of(const Problem& problem, const model::Model& model, std::span<const double> p) {
+  for (const Part& part : problem.parts()) {
+    const std::string name = part.jumping_quantity();
+    SensitivityRun run;
+    if (name.empty() || !part.at(p, part.times(), &run).good) continue;
+    if (model::collisions_of(*model.world, run.row(run.rows() - 1).first(run.states)) > 0)
+      return fmt::format(
+          "`{}` jumps where bodies meet, at instants that the unknowns move: it cannot be fitted; "
+          "measured places can",
+          name);
+  }
+  return {};
 }
 
 /// Which measurement lies before the model's start, or behind its end where conditions stand there; empty: none.
@@ -277,6 +314,8 @@ Fit fit(const FitRequest& request) {
   least.evaluate = [&](std::span<const double> p, std::span<double> r, std::span<double> rows) {
     return problem.evaluate(p, r, rows);
   };
+  if (model.has_world()) result.problem = jump_of(problem, model, least.start);
+  if (!result.problem.empty()) return result;
   if (problem.several_unknown()) problem.estimate_scales({});
   LeastSquaresOptions options = request.options;
   options.known_deviation = problem.all_known();
@@ -302,6 +341,17 @@ Fit fit(const FitRequest& request) {
   if (!result.least.found) {
     if (!result.least.interrupted) result.problem = why_not(problem, least.start, result.diagnostics);
     return result;
+  }
+  if (model.has_world() && !result.least.interrupted) {
+    std::vector<std::string> names;
+    for (const Influence& influence : influences) names.push_back(name_of(model, influence));
+    result.problem = detail::judge_slopes(
+        least, options, names, [&](const std::vector<double>& increments) { problem.set_increments(increments); },
+        result.least);
+    if (!result.problem.empty()) {
+      result.least.found = false;
+      return result;
+    }
   }
   for (const double scale : problem.scales()) result.scales.push_back(scale * result.least.residual_deviation);
   result.confidence_factor = options.known_deviation ? student_t_quantile(0.95, 1e9)

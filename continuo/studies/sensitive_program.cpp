@@ -30,6 +30,7 @@ SensitiveProgram::SensitiveProgram(std::shared_ptr<const model::ModelProgram> pr
     const bool moves = model.run.from && !start_is_given;
     start_time_.push_back(moves ? by_parameters(graph, model.run.from->node, k) : graph.constant(0));
   }
+  if (model.has_world()) return;  // whose motion nobody differentiates
   add_equations();
   add_events();
 }

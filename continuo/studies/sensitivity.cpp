@@ -9,6 +9,7 @@
 #include <continuo/studies/boundary_sensitivity.hpp>
 #include <continuo/studies/sensitive_integration.hpp>
 #include <continuo/studies/sensitivity.hpp>
+#include <continuo/studies/world_sensitivity.hpp>
 
 namespace continuo::studies {
 
@@ -125,6 +126,7 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   const model::Model& model = program().model;
   if (model.needs_boundary_solver() && !no_sensitivity(model, influences()))
     return detail::boundary_sensitivity(program_, request);
+  if (model.has_world()) return detail::world_sensitivity(program_, request);
   SensitivityRun run;
   run.states = model.states.size();
   run.influences = influences().size();

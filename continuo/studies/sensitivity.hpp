@@ -1,5 +1,6 @@
 // How a model's motion depends on its parameters and initial values: S = dx/dp along the run, exact but for the
 // tolerance of the integration, which holds for S as for x; through events, whose times move too, and through modes.
+// Of a world of bodies S comes from differences of runs (world_sensitivity.hpp).
 //
 //   const SensitivityStudy study(program, {{.index = model::find_parameter(program->model, "k")}});
 //   const SensitivityRun run = study.run();
@@ -56,13 +57,15 @@ struct SensitivityRun {
 };
 
 struct SensitivityRequest {
-  /// Its method and its step have no part: the method is chosen by tolerance and size; collocation where conditions
-  /// stand at several times.
+  /// Its method and its step have no part, but for a world: the method is chosen by tolerance and size; collocation
+  /// where conditions stand at several times.
   model::Experiment experiment{};
   /// Rows at these times, ascending, and nowhere else; empty: as the model's `run` says, both sides of events too.
   std::vector<double> times{};
   /// Initial values in place of the model's, by state; of influences that are initial values.
   std::vector<std::pair<std::size_t, double>> initial{};
+  /// Of a world: how far to both sides each influence is moved; 0, or none: as little as rounding allows.
+  std::vector<double> increments{};
 };
 
 /// Compiled once, for any number of runs with other values.

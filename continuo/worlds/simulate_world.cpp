@@ -9,6 +9,7 @@
 #include <continuo/model/error_estimate.hpp>
 #include <continuo/model/run_checks.hpp>
 #include <continuo/model/run_recorder.hpp>
+#include <continuo/worlds/prepared_world.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 #include <continuo/worlds/world_events.hpp>
 #include <continuo/worlds/world_run.hpp>
@@ -21,7 +22,7 @@ using model::Diagnostic;
 using X = std::vector<double>;
 
 constexpr std::chrono::seconds standing_of_clock{10};  // no more is lost where a long run is killed
-constexpr std::size_t contacts_of_one_look = 10'000, contacts_of_a_run = 100'000;
+constexpr std::size_t contacts_of_a_run = 100'000;
 
 /// Steps do not end at round times: rows are written when the time has come, with the time that it is.
 model::Plan as_the_recorder_sees(model::Plan plan) {
@@ -226,41 +227,6 @@ class Simulation {
   std::string error_;
 };
 
-std::optional<Diagnostic> refusal(const model::Model& model) {
-  if (model.needs_dae_solver())
-    return model::error("E323", model.algebraic.front().span, "equations `0 = ...` cannot stand beside a world", "",
-                        "solve this one for its unknown and name it: let ... = ...");
-  if (model.needs_boundary_solver())
-    return model::error("E323", model.boundary.front().span, "a world begins at the start of its run",
-                        "this condition stands at another time", "give all initial values at the start");
-  return std::nullopt;
-}
-
-/// A world that can begin, and the plan of its run; or why there is none.
-struct Prepared {
-  std::optional<model::Plan> plan;
-  std::unique_ptr<WorldRun> world;
-};
-Prepared prepare(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
-                 std::vector<Diagnostic>& problems) {
-  const model::Model& model = program->model;
-  if (auto problem = refusal(model)) {
-    problems.push_back(std::move(*problem));
-    return {};
-  }
-  auto planned = plan(model, experiment, problems);
-  if (!planned) return {};
-  for (const model::TableInput& input : program->step_inputs)
-    planned->variables[input.variable] = input.table.value(planned->from);
-  WorldOptions options = options_of(*planned);
-  options.most_contacts = contacts_of_one_look;
-  options.interrupt = experiment.interrupt;
-  StartedWorld started = start_world(program, options, planned->variables);
-  if (!started.run)
-    problems.push_back(model::error("E324", model.world->span, "the world cannot begin", started.error));
-  return {std::move(planned), std::move(started.run)};
-}
-
 double look_of(const model::Plan& plan) {
   return (plan.to - plan.from) / looks;
 }
@@ -280,7 +246,7 @@ Diagnostic does_not_fit(const model::Model& model, std::string_view why) {
 model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
                                 const model::Experiment& experiment, RunLog* log) {
   model::Simulated simulated;
-  Prepared prepared = prepare(program, experiment, simulated.diagnostics);
+  PreparedWorld prepared = prepare_world(program, experiment, simulated.diagnostics);
   if (!prepared.world) return simulated;
   const double look = look_of(*prepared.plan);
   Simulation simulation(program, experiment, std::move(*prepared.plan), std::move(prepared.world), look, log);
@@ -303,7 +269,7 @@ model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& 
   experiment.interrupt = how.interrupt;
   experiment.progress = how.progress;
   if (how.to) experiment.to = how.to;
-  Prepared prepared = prepare(program, experiment, simulated.diagnostics);
+  PreparedWorld prepared = prepare_world(program, experiment, simulated.diagnostics);
   if (!prepared.world) return simulated;
   if (!std::ranges::all_of(recording.notes, [&](const Note& note) { return fits(program->model, note); })) {
     simulated.diagnostics.push_back(does_not_fit(program->model, "it has other states"));

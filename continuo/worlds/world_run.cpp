@@ -205,20 +205,17 @@ class Moving final : public WorldRun {
             .step = options_.step};
   }
   std::string fault_of(const Snapshot& saved) const override {
-    World<double, Dim> found;
-    found.force_laws = world_.force_laws, found.torque_laws = world_.torque_laws;
+    World<double, Dim> found = world_;
     if (std::string error = continuo::restore(saved.bodies, found); !error.empty()) return error;
-    const auto sizes = [](const World<double, Dim>& world) {
-      return std::array{world.size(), world.walls().size(), world.springs.size()};
-    };
-    if (sizes(found) != sizes(world_)) return "it has other bodies, walls or springs";
+    if (found.size() != world_.size() || found.walls().size() != world_.walls().size() ||
+        found.springs.size() != world_.springs.size())
+      return "it has other bodies, walls or springs";
     if (found.time != saved.time) return "its bodies are at another time";
     if (!std::ranges::all_of(saved.equations, [](double z) { return std::isfinite(z); }))
       return "a state of its equations is not finite";
-    if (is_free()) return {};
-    // The step that it is in, whole but for one that was interrupted.
-    const double ahead = saved.start + static_cast<double>(saved.steps) * options_.step - saved.time;
-    return std::abs(ahead - options_.step / 2) <= options_.step * 0.51 ? "" : "its time is none of its steps";
+    const double ahead = saved.start + static_cast<double>(saved.steps) * options_.step - saved.time;  // in its step
+    const bool is_one = is_free() || std::abs(ahead - options_.step / 2) <= options_.step * 0.51;
+    return is_one ? "" : "its time is none of its steps";
   }
   std::string restore(const Snapshot& saved) override {
     if (saved.equations.size() != companions_.state.size() || saved.variables.size() != variables_.size())

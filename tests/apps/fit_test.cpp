@@ -104,5 +104,22 @@ TEST(Fit, SaysFileAndLineOfWrongData) {
   EXPECT_THAT(shell.run("fit decay.sim good.csv --param a --plot /no/such/x.svg").err, HasSubstr("cannot write"));
 }
 
+TEST(Fit, FitsAWorldOfBodies) {
+  Shell shell;
+  // Free fall for 0.4 s, by hand: y = 5.5 - g t^2/2 with g = 10; then a bounce at 1 s with restitution 0.5.
+  shell.write("ball.sim",
+              "param g = 9, e = 0.8 in 0..1\nworld {\n  gravity (0, -g)\n  wall floor (0, 1) at 0\n"
+              "  material restitution e friction 0\n  body ball at (0, 5.5) radius 0.5\n}\nrun 0..1\n");
+  shell.write("data.csv", "t,ball.y\n0.2,5.3\n0.4,4.7\n0.8,2.3\n1.2,1.3\n1.4,1.7\n1.6,1.7\n");
+  const Result found = shell.run("fit ball.sim data.csv --param g,e");
+  EXPECT_EQ(found.exit, 0) << found.err;
+  EXPECT_THAT(found.out, ContainsRegex("\ng  +10 "));
+  EXPECT_THAT(found.out, ContainsRegex("\ne  +0.5 "));
+  const Result sense = shell.run("sense ball.sim --param g --set g=10");
+  EXPECT_EQ(sense.exit, 0) << sense.err;
+  EXPECT_THAT(sense.out, HasSubstr("by differences of runs to both sides"));
+  EXPECT_EQ(shell.run("fit ball.sim data.csv --param g --set e=2").exit, 2);
+}
+
 }  // namespace
 }  // namespace continuo::app

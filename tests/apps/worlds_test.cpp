@@ -133,7 +133,7 @@ TEST(Worlds, AreRefusedByStudiesOfEquations) {
   const Shell shell;
   shell.write("bounce.sim", bounce);
   for (const char* line : {"steady bounce.sim", "orbit bounce.sim", "linearize bounce.sim", "phase bounce.sim",
-                           "sense bounce.sim", "check bounce.sim --jacobian"}) {
+                           "check bounce.sim --jacobian"}) {
     const Result result = shell.run(line);
     EXPECT_NE(result.exit, 0) << line;
     EXPECT_THAT(result.err, HasSubstr("error[E323]")) << line;

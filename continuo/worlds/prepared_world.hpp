@@ -1,0 +1,28 @@
+// continuo/worlds/prepared_world.hpp
+// A world at the start of a run, and the plan of that run; or why there is none. Internal to worlds.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/worlds/world_run.hpp>
+
+namespace continuo::worlds {
+
+inline constexpr std::size_t contacts_of_one_look = 10'000;
+
+struct PreparedWorld {
+  std::optional<model::Plan> plan;
+  std::unique_ptr<WorldRun> world;  // null where it cannot begin
+};
+/// `initial`: values of states in place of the model's.
+PreparedWorld prepare_world(const std::shared_ptr<const model::ModelProgram>& program,
+                            const model::Experiment& experiment, std::vector<model::Diagnostic>& problems,
+                            std::span<const std::pair<std::size_t, double>> initial = {});
+
+}  // namespace continuo::worlds

@@ -1,0 +1,39 @@
+// continuo/worlds/world_along.hpp
+// The states of a world at wanted instants, for studies that compare runs: without rows, checks or a recording.
+//
+//   const WorldAlong along = world_along(program, {.experiment = experiment, .times = {0.1, 0.2, 0.35}});
+//   if (along.diagnostics.empty()) ... along.states[2]
+//
+// Without steps they are those of these instants. With steps they are read off between the ends of one: of bodies that
+// met nobody meanwhile by the cubic through places and velocities, of the others by the parabola before the impact and
+// the one after it, which part where they cross; of equations along a straight line.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <continuo/model/diagnostic.hpp>
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/solve/outcome.hpp>
+
+namespace continuo::worlds {
+
+struct AlongRequest {
+  model::Experiment experiment{};
+  std::vector<double> times{};                            // ascending; empty: as the model's `run` says
+  std::vector<std::pair<std::size_t, double>> initial{};  // values of states in place of the model's
+};
+
+struct WorldAlong {
+  std::vector<double> times;                // so far as the run came
+  std::vector<std::vector<double>> states;  // Model::states at each of them
+  std::vector<double> variables;            // the register file at the start
+  Outcome<double> outcome;
+  std::vector<model::Diagnostic> diagnostics;
+};
+
+WorldAlong world_along(const std::shared_ptr<const model::ModelProgram>& program, const AlongRequest& request);
+
+}  // namespace continuo::worlds
