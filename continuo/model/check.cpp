@@ -74,6 +74,8 @@ void Checker::fill() {
   append_unknowns();
   check_method_fits();
   mark_structural();
+  look_at_groups();
+  if (world_.text && errors_ == 0) look_at_start();
   if (world_.text) model_.world = std::make_shared<const WorldDescription>(std::move(world_.made));
 }
 

@@ -239,6 +239,8 @@ class Checker {
   void make_forces();
   void make_torque(Placed<ast::Force>& torque, std::size_t body);
   void judge_world();
+  void look_at_start();  // check_world_start.cpp
+  void look_at_groups();
 
   bool asks_the_world(const ast::Name& callee, const Scope& scope) const;  // check_world_queries.cpp
   Value query(const ast::Call& node, Span span, Scope& scope);

@@ -359,6 +359,10 @@ void Checker::make_forces() {
   for (Placed<ast::Force>& force : world_.forces) {
     const auto body = body_named(force.text->body, force.scope);
     if (!body) continue;
+    if (world_.made.bodies[*body].fixed)
+      warn("E294", force.text->body.span,
+           fmt::format("`{}` is fixed: nothing moves it", world_.made.bodies[*body].name), {},
+           "leave out what acts on it, or let it go");
     if (force.text->is_torque) {
       make_torque(force, *body);
       continue;

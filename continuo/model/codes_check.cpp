@@ -218,8 +218,18 @@ k*(x + 1), not k(x + 1).)"},
         "E292", "a method loses its order",
         R"(A warning: velocity_verlet and central_difference take accelerations that depend on time and positions only. With
 friction or a Coriolis force they still run, at lower order.)"},
-    Code{"E293", "a group of bodies that nothing ignores",
-         R"(A warning: bodies of a group collide like all others unless the world says `ignore GROUP with GROUP`.)"},
+    Code{
+        "E293", "a group of bodies that nothing ignores",
+        R"(A warning: bodies of a group collide like all others unless the world says `ignore GROUP with GROUP`. The other way
+round, a group that is ignored and that no body is in is a name misspelled.)"},
+    Code{"E294", "a force on a body that does not move",
+         R"(A warning: a fixed body stays where it is, whatever acts on it.)"},
+    Code{
+        "E295", "bodies overlap at the start",
+        R"(A warning: bodies begin within each other, or beyond a wall. What follows is no motion of hard bodies: the exact mode
+sends apart those that approach, the fast mode pushes all of them apart.
+
+Fix: leave room, or let their groups ignore each other.)"},
 };
 
 }  // namespace

@@ -208,6 +208,7 @@ class Parser {
   std::optional<ast::Identifier> parse_name_of_wall();
   ast::WorldAttributes parse_world_attributes(std::string_view of, std::span<const std::string_view> known,
                                               bool all_names = false);
+  void skip_to_attribute(std::span<const std::string_view> known);
   ast::Expression parse_world_value(std::string_view word);
   ast::Expression parse_world_name(std::string_view word);
 

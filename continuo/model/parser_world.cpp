@@ -300,10 +300,12 @@ ast::WorldAttributes Parser::parse_world_attributes(Word of, std::span<const Wor
     if (!is_one_of(word, known)) {
       std::string help = did_you_mean(word, known);
       if (help.empty()) help = fmt::format("{} has: {}", of, fmt::join(known, ", "));
-      fail(error("E125", current().span, fmt::format("{} has no `{}`", of, word), "", help));
+      report(error("E125", current().span, fmt::format("{} has no `{}`", of, word), "", help));
+      skip_to_attribute(known);
+      continue;
     }
     if (std::ranges::any_of(attributes, [&](const auto& other) { return other.name.text == word; }))
-      fail(error("E124", current().span, fmt::format("`{}` is given twice", word), "", "keep one of them"));
+      report(error("E124", current().span, fmt::format("`{}` is given twice", word), "", "keep one of them"));
     ast::WorldAttribute attribute;
     attribute.name = {word, advance().span};
     if (is_flag(word)) {
@@ -319,6 +321,16 @@ ast::WorldAttributes Parser::parse_world_attributes(Word of, std::span<const Wor
   }
   if (!at_statement_end()) left_over({});
   return attributes;
+}
+
+/// Past a word that is none, and whatever was meant as its value: to the next word that is one, or nearly.
+void Parser::skip_to_attribute(std::span<const Word> known) {
+  advance();
+  for (; !at_statement_end() && !at(TokenKind::open_brace); advance()) {
+    if (!at(TokenKind::name)) continue;
+    const Word word = spelled(current());
+    if (is_one_of(word, known) || !did_you_mean(word, known).empty()) return;
+  }
 }
 
 Expression Parser::parse_world_value(Word word) {

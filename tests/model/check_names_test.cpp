@@ -109,5 +109,28 @@ TEST(CheckNames, AMistakeInAFamilyIsSaidOnce) {
   EXPECT_EQ(count_said("for i in 1..100 { x[i]' = -kk*x[i]\nx[i](0) = 1 }\nrun 0..1\n"), 1U);
 }
 
+std::string places(const std::string& in_world) {
+  std::string told;
+  for (const Diagnostic& d : load_text("world {\n" + in_world + "\n}\nrun 0..1\n").diagnostics)
+    told += d.code + " " + d.message + " " + d.label + "\n";
+  return told;
+}
+
+TEST(CheckNames, BodiesThatBeginWithinEachOtherAreTold) {
+  const std::string two = "body a at (0, 1); body b at (0.6, 1.8)";  // 1 apart, of radius 0.5: they touch
+  EXPECT_EQ(places(two), "");
+  EXPECT_EQ(places("body a at (0, 1); body b at (0.6, 1.7)"), "E295 `b` begins within `a` by 0.078\n");
+  EXPECT_EQ(places("body a at (0, 1) fixed; body b at (0.6, 1.7) fixed"), "");
+  EXPECT_EQ(places("body a at (0, 1) group g; body b at (0.6, 1.7) group g; ignore g with g"), "");
+  EXPECT_EQ(places(two + "; wall floor (0, 2) at 1"), "");  // y >= 0.5: a touches it
+  EXPECT_EQ(places(two + "; wall floor (0, 2) at 1.4"), "E295 `a` begins within the wall `floor` by 0.2\n");
+  EXPECT_EQ(places(two + "; wall up (0, 1) at 3 thin"), "");
+  EXPECT_EQ(places(two + "; wall up (0, 1) at 2 thin"), "E295 `b` begins within the wall `up` by 0.3\n");
+  // Rows of three and columns of three, 0.9 apart: 6 pairs each; diagonals are 1.27 apart.
+  EXPECT_EQ(places("bodies g grid 3 x 3 from (0, 0) spacing (0.9, 0.9)"),
+            "E295 `g[2]` begins within `g[1]` by 0.1, 12 such in all\n");
+  EXPECT_EQ(places("dimension 3; bodies g grid 3 x 3 x 3 from (0, 0, 0) spacing (1, 1, 1)"), "");
+}
+
 }  // namespace
 }  // namespace continuo::model
