@@ -47,6 +47,10 @@ class EventDriven final : public ExactEngine<Real, Dim> {
       flights_.now = std::max(flights_.now, queue_.time());
       foresight_.look_ahead(queue_, flights_);
       handle(queue_.first());
+      if (hands_over) {
+        synchronize(flights_.now);
+        return {};
+      }
       if (crossings_since_sort_ > 4 * flights_.paths.size()) sort();
     }
     synchronize(t);
@@ -83,8 +87,15 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     sort();
   }
 
+  void let_go() override {
+    if (!contacts.is_kept()) return;
+    for (const std::uint32_t k : places())
+      if (flights_.acts[k] == Act::rests) note_end(k);
+  }
+
   using ExactEngine<Real, Dim>::statistics;
   using ExactEngine<Real, Dim>::contacts;
+  using ExactEngine<Real, Dim>::hands_over;
 
  private:
   /// Where the body of each number is.
@@ -175,13 +186,18 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     schedule(i);
   }
 
-  // Where bodies are squeezed between others, or wedged in by friction, collisions of one instant may never end. Where
-  // one that loses energy has had so many that no free body has, it bounces no more, and then it moves no more.
+  // Squeezed between others, or wedged in by friction, a body may collide at one instant without end. One that loses
+  // energy and did so more often than free ones bounces no more, and then moves no more; gravity calls for held
+  // contacts.
   static constexpr std::uint8_t many_at_once = 64, most_at_once = 128;
 
   std::uint8_t at_once(std::uint32_t i) const {
     const Plan<Real, Dim>& plan = flights_.plans[i];
-    return plan.last_collision == flights_.now ? plan.at_once : std::uint8_t{0};
+    return is_at_once(plan) ? plan.at_once : std::uint8_t{0};
+  }
+  /// Whether its last collision was at this instant, as far as that can be told under gravity.
+  bool is_at_once(const Plan<Real, Dim>& plan) const {
+    return plan.last_collision == flights_.now || (is_heavy() && flights_.now - plan.last_collision < contact_time_);
   }
   static bool loses(const Material<Real>& material) {
     return material.restitution < Real(1) || material.friction > Real(0);
@@ -198,6 +214,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   bool is_caught(const Material<Real>& material, std::uint32_t i) const {
     return loses(material) && at_once(i) >= most_at_once;
   }
+  bool is_heavy() const { return world_.gravity != V{}; }
   /// It lies where it is, carried by all round it, until something hits it.
   void freeze(std::uint32_t i) {
     if (flights_.acts[i] == Act::is_fixed) return;
@@ -270,10 +287,11 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     if (!(distance > Real(0))) normal[0] = Real(1);
     Real impulse(0);
     if (dot(b.v - a.v, normal) < Real(0)) impulse = collide(mover(i, rubs), mover(j, rubs), normal, material);
-    if (is_caught(own, i) || is_caught(own, j)) {
+    const bool caught = is_caught(own, i) || is_caught(own, j);
+    if (caught && !is_heavy()) {
       stop(i, j);
     } else {
-      part_where_pressed(i, j, normal);
+      hands_over = caught || stays_on(i, j, normal);
       note_collision(i);
       note_collision(j);
     }
@@ -288,16 +306,12 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     predict(j);
   }
 
-  /// On a sphere nobody rests for good: the path would be no parabola. No flight is shorter than the contact time,
-  /// then, and what lies bounces by less than one sees.
-  void part_where_pressed(std::uint32_t i, std::uint32_t j, const V& normal) {
+  /// Whether the two, having collided, would fly for less than the contact time: on a sphere nobody rests on a
+  /// parabola.
+  bool stays_on(std::uint32_t i, std::uint32_t j, const V& normal) const {
     const Real press = dot(flights_.plans[i].acceleration - flights_.plans[j].acceleration, normal);
-    const Mover<Real, Dim> a = mover(i, false), b = mover(j, false);
-    const Real missing = press * contact_time_ / 2 - dot(b.velocity - a.velocity, normal);
-    if (!(press > Real(0)) || !(missing > Real(0))) return;
-    const Real impulse = missing / (a.inverse_mass + b.inverse_mass);
-    a.velocity -= normal * (impulse * a.inverse_mass);
-    b.velocity += normal * (impulse * b.inverse_mass);
+    const Real parting = dot(flights_.paths[j].v - flights_.paths[i].v, normal);
+    return press > Real(0) && parting < press * contact_time_ / 2;
   }
 
   void hit_wall(std::uint32_t i, std::uint32_t w) {
@@ -316,8 +330,9 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     const bool caught = is_caught(own, i);
     note_collision(i);
     if (contacts.is_kept() && impulse > Real(0)) note_wall(i, w, ContactChange::impact, impulse);
+    hands_over = caught && is_heavy();
     if (caught) {
-      freeze(i);
+      if (!hands_over) freeze(i);
     } else if (rest_on_walls(flights_, i, w, contact_time_) && contacts.is_kept())
       for (std::uint32_t k = 0; k < flights_.plans[i].support_count; ++k)
         note_wall(i, flights_.plans[i].supports[k], ContactChange::begin, Real(0));
@@ -328,22 +343,23 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   void note_collision(std::uint32_t i) {
     Plan<Real, Dim>& plan = flights_.plans[i];
     ++flights_.collisions[i];
-    plan.at_once = plan.last_collision == flights_.now ? static_cast<std::uint8_t>(std::min(254, int{plan.at_once}) + 1)
-                                                       : std::uint8_t{0};
+    plan.at_once = is_at_once(plan) ? static_cast<std::uint8_t>(std::min(254, int{plan.at_once}) + 1) : std::uint8_t{0};
     plan.last_collision = flights_.now;
     if (flights_.acts[i] != Act::rests) return;
-    if (contacts.is_kept()) {
-      const auto forces = support_forces(flights_, i);
-      for (std::uint32_t k = 0; k < plan.support_count; ++k)
-        note_wall(i, plan.supports[k], ContactChange::end,
-                  Real(forces[k] * (flights_.now - flights_.turnings[i].rests_since)));
-    }
+    if (contacts.is_kept()) note_end(i);
     flights_.acts[i] = Act::falls;
     plan.acceleration = world_.gravity;
     flights_.turnings[i].spin_rate = {};
     plan.path_end = Flights<Real, Dim>::never;
   }
 
+  void note_end(std::uint32_t i) {
+    const Plan<Real, Dim>& plan = flights_.plans[i];
+    const auto forces = support_forces(flights_, i);
+    for (std::uint32_t k = 0; k < plan.support_count; ++k)
+      note_wall(i, plan.supports[k], ContactChange::end,
+                Real(forces[k] * (flights_.now - flights_.turnings[i].rests_since)));
+  }
   BodyHandle handle_of(std::uint32_t i) const { return world_.handle(flights_.plans[i].number); }
   void note_wall(std::uint32_t i, std::uint32_t w, ContactChange change, const Real& impulse) {
     const Path<Real, Dim>& path = flights_.paths[i];

@@ -17,9 +17,14 @@ class ExactEngine {
   virtual std::string advance_to(const Real& t) = 0;
   virtual void save(ByteWriter& writer) = 0;
   virtual void load(ByteReader& reader) = 0;
+  /// Of contacts that last, that they end.
+  virtual void let_go() = 0;
 
   ExactStatistics statistics{};
   ContactLog<Real, Dim> contacts;
+  /// Whether the other engine is to go on from here, where gravity is the only force: bodies have come to lie on each
+  /// other, and move on no parabolas, or none does any more.
+  bool hands_over = false;
 };
 
 /// From event to event on parabolas: event_driven.cpp.

@@ -7,9 +7,22 @@
 namespace continuo {
 
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> ExactMotion<Real, Dim>::engine_for_world() const {
-  if (!companions_ && only_gravity(*world_)) return event_driven(*world_, options_);
-  return forced_flight(*world_, options_, companions_);
+bool ExactMotion<Real, Dim>::is_parabolic() const {
+  return !companions_ && only_gravity(*world_);
+}
+template <class Real, int Dim>
+std::unique_ptr<ExactEngine<Real, Dim>> ExactMotion<Real, Dim>::engine(bool ballistic) const {
+  return ballistic ? event_driven(*world_, options_) : forced_flight(*world_, options_, companions_);
+}
+/// Contacts that last end with one engine and begin again with the other.
+template <class Real, int Dim>
+void ExactMotion<Real, Dim>::hand_over() {
+  engine_->let_go();
+  is_ballistic_ = !is_ballistic_;
+  auto next = engine(is_ballistic_);
+  next->statistics = engine_->statistics;
+  next->contacts = std::move(engine_->contacts);
+  engine_ = std::move(next);
 }
 
 template <class Real, int Dim>
@@ -34,15 +47,19 @@ template <class Real, int Dim>
 std::string ExactMotion<Real, Dim>::advance_to(const Real& t) {
   if (!(t >= world_->time) || !(t - t == Real(0)))
     return "the time to advance to must be finite and not before the present";
-  if (only_gravity(*world_) != was_parabolic_) refresh();
+  if (is_parabolic() != was_parabolic_) refresh();
   engine_->contacts.clear();
-  return engine_->advance_to(t);
+  while (true) {
+    std::string fault = engine_->advance_to(t);
+    if (!fault.empty() || !engine_->hands_over) return fault;
+    hand_over();
+  }
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::refresh() {
   const ExactStatistics so_far = engine_ ? engine_->statistics : ExactStatistics{};
-  was_parabolic_ = only_gravity(*world_);
-  engine_ = engine_for_world();
+  was_parabolic_ = is_ballistic_ = is_parabolic();
+  engine_ = engine(is_ballistic_);
   engine_->statistics = so_far;
 }
 template <class Real, int Dim>
@@ -61,19 +78,23 @@ std::size_t ExactMotion<Real, Dim>::lost_contact_events() const {
 
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::save(ByteWriter& writer) const {
-  writer(engine_->statistics);
+  writer(engine_->statistics), writer(is_ballistic_);
   engine_->save(writer);
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::load(ByteReader& reader) {
   ExactStatistics statistics;
-  reader(statistics);
-  auto engine = engine_for_world();
-  engine->load(reader);
+  bool ballistic = false;
+  reader(statistics), reader(ballistic);
+  reader.expect(!ballistic || is_parabolic(), "parabolas where there are other forces than gravity");
+  if (!reader.ok()) return;
+  auto next = engine(ballistic);
+  next->load(reader);
   reader.expect_end();
   if (!reader.ok()) return;
-  was_parabolic_ = only_gravity(*world_);
-  engine_ = std::move(engine);
+  was_parabolic_ = is_parabolic();
+  is_ballistic_ = ballistic;
+  engine_ = std::move(next);
   engine_->statistics = statistics;
 }
 

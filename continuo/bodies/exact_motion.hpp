@@ -9,16 +9,16 @@
 //
 // Under other forces an error-controlled method (dop853) moves all bodies together between contacts, which are located
 // on its dense output to neighbouring times; impulses are as exact as before. What is approximate then is the path, by
-// `tolerance`. What these forces press together is held, see held_contacts.hpp.
+// `tolerance`. What these forces press together is held, see held_contacts.hpp; where flights become too short, or no
+// forces hold what friction jams, steps lead through, see contact_steps.hpp.
 //
 // Several collisions at one instant are resolved one after the other, pairs of lower numbers first, until nobody
 // approaches: Newton's cradle sends out as many as came in.
 //
 // Where restitution is below 1, collisions can pile up without end (inelastic collapse). A body that collides twice
 // within `contact_time` keeps its energy the second time (S. Luding, S. McNamara, Granular Matter 1 (1998) 113-128),
-// and one that would leave a wall for less than that stays on it. On spheres, where a body that stays would move on no
-// parabola, it bounces for that long at least: a heap at rest is many small flights, which the fast motion is better
-// at.
+// and one that would leave a wall for less than that stays on it. One that would leave a body for less than that moves
+// on no parabola: then all go on as under other forces, until for some time no two have lain on each other.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -106,11 +106,13 @@ class ExactMotion {
   void load(ByteReader& reader);
 
  private:
-  std::unique_ptr<ExactEngine<Real, Dim>> engine_for_world() const;
+  bool is_parabolic() const;
+  std::unique_ptr<ExactEngine<Real, Dim>> engine(bool ballistic) const;
+  void hand_over();
 
   World<Real, Dim>* world_;
   Companions<Real, Dim>* companions_ = nullptr;
-  bool was_parabolic_ = true;
+  bool was_parabolic_ = true, is_ballistic_ = true;  // the only force was gravity; the engine is that for parabolas
   ExactOptions<Real> options_;
   std::unique_ptr<ExactEngine<Real, Dim>> engine_;
 };

@@ -16,7 +16,7 @@ void transfer_flight(Archive& archive, Flight<Real, Dim>& flight) {
   archive(turning.rests_since), archive(plan.acceleration), archive(plan.cell), archive(plan.partner);
   archive(plan.collisions_of_partner), archive(plan.supports), archive(plan.support_count), archive(plan.is_large);
   archive(plan.direction), archive(plan.axis), archive(turning.spin_rate), archive(plan.path_end);
-  archive(turning.spin), archive(turning.spun_since);
+  archive(turning.spin), archive(turning.spun_since), archive(plan.at_once);
   auto act_byte = static_cast<std::uint8_t>(act);
   archive(collisions), archive(act_byte);
   if constexpr (Archive::reads) {

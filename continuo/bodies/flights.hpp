@@ -80,7 +80,7 @@ struct alignas(sizeof(Real) * 16) Plan {
   std::uint8_t axis = 0;
   bool is_large = false;
   std::uint8_t support_count = 0;
-  std::uint8_t at_once = 0;  // so many collisions before the last, at the same instant; no more than 255
+  std::uint8_t at_once = 0;  // so many collisions before the last, each at once after the one before; at most 255
   std::uint32_t number = 0, material = 0;
   std::array<std::uint32_t, static_cast<std::size_t>(Dim)> supports{};  // the walls it rests on
   Vector<Real, Dim> acceleration{};

@@ -8,13 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/bodies/collision_time.hpp>
+#include <continuo/bodies/contact_steps.hpp>
 #include <continuo/bodies/contact_time.hpp>
+#include <continuo/bodies/crowding.hpp>
 #include <continuo/bodies/exact_engine.hpp>
+#include <continuo/bodies/forced_contacts.hpp>
 #include <continuo/bodies/forced_flow.hpp>
 #include <continuo/bodies/forced_watch.hpp>
-#include <continuo/bodies/impulse.hpp>
-#include <continuo/bodies/joint_impacts.hpp>
-#include <continuo/bodies/queries.hpp>
+#include <continuo/bodies/touching.hpp>
 #include <continuo/methods/dop853.hpp>
 #include <continuo/methods/rk4.hpp>
 #include <continuo/solve/integrator.hpp>
@@ -24,19 +26,20 @@ namespace continuo {
 namespace {
 
 template <class Real, int Dim>
-class ForcedFlight final : public ExactEngine<Real, Dim> {
+class ForcedFlight final : public ForcedContacts<Real, Dim> {
  public:
-  using V = Vector<Real, Dim>;
-  using S = Spin<Real, Dim>;
+  using Base = ForcedContacts<Real, Dim>;
+  using typename Base::S;
+  using typename Base::V;
   using X = std::vector<Real>;
 
   ForcedFlight(World<Real, Dim>& world, const ExactOptions<Real>& options, Companions<Real, Dim>* companions)
-      : ExactEngine<Real, Dim>(options),
-        world_(world),
-        companions_(companions),
-        options_(options),
-        last_(world.size(), -never) {
-    contact_time_ = options.contact_time ? *options.contact_time : usual_contact_time();
+      : Base(world, options), companions_(companions), options_(options) {
+    const Real usual = usual_contact_time();
+    contact_time_ = options.contact_time.value_or(usual);
+    together_ = world.time;
+    only_gravity_ = !companions && only_gravity(world);
+    stride_ = std::max(contact_time_, Real(steps_of_contact_time * usual));
   }
 
   std::string advance_to(const Real& t) override {
@@ -46,46 +49,41 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     while (world_.time < t) {
       if (++events > options_.most_events) return "more events than `most_events`: bodies may be caught between others";
       if (options_.is_interrupted()) return "interrupted";
-      if (std::string fault = fly(t); !fault.empty()) return fault;
+      if (is_steady_) return stay(t);
+      if (hands_over = is_ballistic(); hands_over) return {};
+      if (std::string fault = crowding_.is_in_steps() ? step(t) : fly(t); !fault.empty()) return fault;
     }
     return {};
   }
 
+  void let_go() override { note_lasting(std::span<const Touching>{}); }
+
   void save(ByteWriter& writer) override {
-    writer(contact_time_), writer(step_), writer(lasted_), writer(last_), writer(lasting_);
+    writer(contact_time_), writer(stride_), writer(left_by_steps_), writer(step_), writer(lasted_), writer(last_),
+        writer(lasting_);
+    writer(together_), writer(crowding_), writer(steps_), writer(is_slow_), writer(is_steady_);
   }
   void load(ByteReader& reader) override {
-    reader(contact_time_), reader(step_), reader(lasted_), reader(last_), reader(lasting_);
-    reader.expect(contact_time_ >= Real(0) && lasted_ >= Real(0) && step_ >= Real(0) && step_ < never &&
-                      last_.size() == world_.size(),
+    reader(contact_time_), reader(stride_), reader(left_by_steps_), reader(step_), reader(lasted_), reader(last_),
+        reader(lasting_);
+    reader(together_), reader(crowding_), reader(steps_), reader(is_slow_), reader(is_steady_);
+    for (const auto& one : steps_.pushed()) reader.expect(one.pair.is_of(world_), "contacts of other bodies");
+    reader.expect(crowding_.is_possible(), "steps that cannot be");
+    reader.expect(contact_time_ >= Real(0) && stride_ >= Real(0) && stride_ < never && lasted_ >= Real(0) &&
+                      step_ >= Real(0) && step_ < never && last_.size() == world_.size(),
                   "a motion of other bodies");
-    for (const auto& [pair, impulse] : lasting_)
-      reader.expect(
-          pair.a < world_.size() && pair.b < world_.size() && (!pair.with_wall() || pair.wall < world_.walls().size()),
-          "contacts of other bodies");
+    for (const Lasting& one : lasting_) reader.expect(one.pair.is_of(world_), "contacts of other bodies");
     reader.expect(std::ranges::is_sorted(lasting_, {}, &Lasting::pair), "contacts out of order");
   }
 
-  using ExactEngine<Real, Dim>::statistics;
-  using ExactEngine<Real, Dim>::contacts;
-
  private:
-  static constexpr Real never = std::numeric_limits<Real>::infinity();
-
-  /// A contact that is held, and its impulse so far.
-  struct Lasting {
-    Touching pair{};
-    Real impulse{};
-    template <class Archive>
-    void transfer(Archive& archive) {
-      archive(pair.a), archive(pair.b), archive(pair.wall), archive(impulse);
-    }
-  };
-  /// Of contacts in order.
-  static const Lasting* find(const std::vector<Lasting>& contacts, const Touching& pair) {
-    const auto at = std::ranges::lower_bound(contacts, pair, {}, &Lasting::pair);
-    return at != contacts.end() && at->pair == pair ? &*at : nullptr;
-  }
+  using Base::allowance_, Base::contact_time_, Base::last_, Base::lasting_, Base::left_by_steps_, Base::never,
+      Base::world_;
+  using Base::approaches, Base::find, Base::greatest_acceleration, Base::material_now, Base::note_lasting, Base::strike,
+      Base::strike_all, Base::touches;
+  using Base::hands_over;
+  using typename Base::Lasting;
+  static constexpr Real steps_of_contact_time = 100;  // a thousandth of the time in which a body falls its radius
 
   Real usual_contact_time() {
     using std::sqrt;
@@ -97,13 +95,6 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     return std::max(by_force, continuo::usual_contact_time(world_));
   }
 
-  Real greatest_acceleration(std::span<const V> force) const {
-    Real greatest(0);
-    for (std::size_t i = 0; i < force.size(); ++i)
-      greatest = std::max(greatest, length(force[i]) * world_.inverse_mass[i]);
-    return greatest;
-  }
-
   /// From the present to the next contact, or to where candidates are to be listed anew, or to t.
   std::string fly(const Real& t) {
     using std::sqrt;
@@ -113,16 +104,22 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     std::ranges::nth_element(radii, radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2));
     const Real median = radii.empty() ? Real(1) : radii[radii.size() / 2];
     const Real reach = std::max(median, Real(4 * sqrt(fastest) * step_));
-    list_candidates(reach);
+    candidates_.clear();
+    for (const Touching& pair : pairs_within(world_, reach)) candidates_.push_back({.pair = pair});
     HeldContacts<Real, Dim> held = resolved_ ? std::move(*resolved_) : resolve();
     resolved_.reset();
+    if (!held.is_found() && may_step()) {
+      crowding_.go_by_steps();
+      return {};
+    }
     note_lasting(held);
-    using Watched = Candidate::Watched;
-    for (Candidate& at : candidates_) at.watched = gap(at.pair) < -allowance_ / 2 ? Watched::approach : Watched::gap;
+    for (Candidate<Real>& at : candidates_) watch(at);
     for (std::size_t k = 0; k < held.size(); ++k)
-      std::ranges::lower_bound(candidates_, held[k], {}, &Candidate::pair)->watched = Watched::nothing;
+      std::ranges::lower_bound(candidates_, held[k], {}, &Candidate<Real>::pair)->watched =
+          Candidate<Real>::Watched::nothing;
 
     ForcedFlow<Real, Dim> flow(world_, companions_, std::move(held));
+    if (is_steady_ = rests(flow); is_steady_) return {};
     const Real least = 64 * std::numeric_limits<Real>::epsilon(), tolerance = std::max(options_.tolerance, least);
     Options<X> how{.rtol = tolerance, .atol = tolerance * median};
     how.max_steps = options_.most_events;
@@ -143,18 +140,41 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     return follow(t, std::move(flow), Dop853{}, how, reach);
   }
 
+  /// Two that overlap by more than half of what they may are to sink no deeper.
+  void watch(Candidate<Real>& at) const {
+    const Real gap = gap_of(world_, at.pair), pull = allowance_ / (contact_time_ * contact_time_);
+    const bool overlap = gap < -allowance_ / 2, part = approach_of(world_, at.pair) < -pull * contact_time_;
+    at.watched = overlap && part ? Candidate<Real>::Watched::approach : Candidate<Real>::Watched::gap;
+    at.lowest = overlap ? gap - allowance_ / 2 : -allowance_;
+  }
+
   template <class Method>
   std::string follow(const Real& t, ForcedFlow<Real, Dim> flow, Method method, const Options<X>& how,
                      const Real& reach) {
     X start = flow.pack();
-    ForcedWatch<Real, Dim> watch(world_, candidates_, allowance_, reach, flow.held().size());
+    ForcedWatch<Real, Dim> watch(world_, candidates_, reach, flow.held().size());
     Integrator integrator(std::move(flow), std::move(start), Interval<Real>{world_.time, t}, method, how,
                           std::move(watch));
     // The last step as its error wanted it: an impact jumps the state, not the forces that set the pace.
-    while (integrator.advance()) step_ = integrator.step_size();
+    int steps = 0;
+    const auto is_stuck = [&] {  // what slips slowly on much else turns its way so fast that steps are very short
+      return ++steps >= 16 && integrator.system().held().rub() &&
+             integrator.t() - world_.time < static_cast<Real>(steps) * stride_ / 8;
+    };
+    bool is_too_short = false;
+    while (!is_too_short && integrator.advance()) {
+      step_ = integrator.step_size();
+      is_too_short = may_step() && is_stuck();
+    }
     if (integrator.t() < t) step_ = integrator.step_size();
     lasted_ = integrator.t() - world_.time;
-    if (!succeeded(integrator.outcome().ending))
+    if (may_step() && integrator.outcome().ending == Ending::step_too_small) is_too_short = true;
+    if (is_too_short) {
+      crowding_.go_by_steps();
+    } else if (integrator.t() < t && may_step()) {
+      crowding_.has_flown(lasted_, stride_);
+    }
+    if (!is_too_short && !succeeded(integrator.outcome().ending))
       return "the path cannot be followed beyond t = " + std::to_string(integrator.t()) + ": " +
              std::string(to_string(integrator.outcome().ending));
     for (std::size_t k = 0; k < lasting_.size(); ++k)
@@ -165,45 +185,113 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     return {};
   }
 
-  void list_candidates(const Real& reach) {
-    candidates_.clear();
-    const Queries<Real, Dim> queries(world_);
-    for (std::uint32_t i = 0; i < world_.size(); ++i) {
-      if (world_.is_fixed(i)) continue;
-      const auto near = queries.in_sphere(world_.position[i], world_.radius[i] + 2 * reach);
-      for (const std::uint32_t w : near.value.walls) candidates_.push_back({.pair = {.a = i, .b = i, .wall = w}});
-      for (const BodyHandle& body : near.value.bodies) {
-        const auto j = static_cast<std::uint32_t>(world_.index(body));
-        if ((j > i || world_.is_fixed(j)) && j != i && world_.collide(i, j))
-          candidates_.push_back({.pair = {.a = i, .b = j}});
+  /// Under gravity alone, where for some steps no two bodies have lain on each other.
+  bool is_ballistic() {
+    if (!only_gravity_) return false;
+    const auto is_of_two = [](const Lasting& one) { return !one.pair.with_wall(); };
+    if (std::ranges::any_of(lasting_, is_of_two)) together_ = world_.time;
+    return world_.time - together_ > 32 * stride_;
+  }
+  /// Not where equations move beside, nor where the steps are the user's: those of first order are not for them.
+  bool may_step() const {
+    return stride_ > Real(0) && !(options_.step > Real(0)) && (!companions_ || companions_->state.empty());
+  }
+  /// As far as the stride, or to an impact, or to t.
+  std::string step(const Real& t) {
+    crowding_.has_stepped();
+    ForcedFlow<Real, Dim> flow(world_, companions_);
+    const auto [force, torque] = flow.loads(world_.time);
+    const Real pull = greatest_acceleration(force), slow = 2 * pull * stride_;
+    allowance_ = pull * stride_ * stride_ / 2;
+    left_by_steps_ = pull * stride_ * stride_;
+    list_near(pull);
+    // What bounces does so at its instant; what does not the step stops.
+    const std::vector<Real> before = last_;
+    std::vector<Touching> bounce;
+    for (const Touching& at : near_)
+      if (approaches(at, slow) && material_now(at, before, false).restitution > Real(0)) bounce.push_back(at);
+    bool is_any = !bounce.empty();
+    for (int round = 0, most = 64; is_any && round < most; ++round) {
+      is_any = false;
+      for (const Touching& at : bounce)
+        is_any = (touches(at) && strike(at, slow, material_now(at, before, false))) || is_any;
+    }
+    Real h = std::min(stride_, Real(t - world_.time));
+    for (const Touching& at : bounce)
+      if (approaches(at, slow) && !touches(at)) {
+        const V rate =
+            force[at.a] * world_.inverse_mass[at.a] - (at.with_wall() ? V{} : force[at.b] * world_.inverse_mass[at.b]);
+        h = std::min(h, time_to_close(gap_of(world_, at), Real(-approach_of(world_, at)),
+                                      Real(-dot(rate, normal_of(world_, at)))));
       }
+    steps_.advance(world_, near_, {force, torque, pull}, h);
+    const bool is_last = h >= t - world_.time;
+    world_.time = is_last ? t : world_.time + h;
+    note_pushed(h);
+    const bool was_slow = is_slow_;
+    is_slow_ = is_autonomous() && steps_.fastest() <= pull * contact_time_ / 16 &&
+               steps_.greatest_change() <= Real(1e-5) * pull * h;
+    is_steady_ = was_slow && is_slow_;
+    lasted_ = h;
+    resolved_.reset();
+    if (steps_.fastest() < never) return {};
+    return "a body's motion is no longer finite: a speed or a force is too large for the numbers";
+  }
+  /// Whether forces are the same where places and velocities are.
+  bool is_autonomous() const { return !companions_ && world_.force_laws.empty() && world_.torque_laws.empty(); }
+  /// Whether nothing moves or begins to, by the forces of contacts that last, but for rounding.
+  bool rests(ForcedFlow<Real, Dim>& flow) {
+    const Real pull = allowance_ / (contact_time_ * contact_time_), least = Real(1e-3) * pull * contact_time_;
+    const auto moves = [&](const V& v) { return length(v) > least; };
+    if (!is_autonomous() || flow.held().size() == 0 || std::ranges::any_of(world_.velocity, moves)) return false;
+    const X state = flow.pack();
+    X rate(state.size());
+    flow(world_.time, state, rate);
+    const std::size_t n = world_.size(), bodies = flow.size_of_bodies();
+    const auto begins = [&](std::size_t first, std::size_t last, const Real& most) {
+      return std::any_of(rate.begin() + static_cast<std::ptrdiff_t>(first),
+                         rate.begin() + static_cast<std::ptrdiff_t>(last),
+                         [&](const Real& value) { return std::abs(value) > most; });
+    };
+    const Real widest = std::ranges::max(world_.radius);
+    if (begins(n * V::size(), 2 * n * V::size(), Real(1e-8) * pull)) return false;
+    if (bodies > 2 * n * V::size() && begins(bodies - n * S::size(), bodies, Real(1e-8) * pull / widest)) return false;
+    for (std::size_t k = 0; k < lasting_.size(); ++k) lasting_[k].press = flow.held().press(k);
+    return true;
+  }
+  /// Nothing moves, but for what turns about itself: the same contacts carry the same until t.
+  std::string stay(const Real& t) {
+    const Real duration = t - world_.time;
+    for (std::size_t i = 0; i < world_.size(); ++i) {
+      if (world_.is_fixed(i)) continue;
+      world_.velocity[i] = {};
+      if (world_.spin[i] != S{}) world_.orientation[i] = turned(world_.orientation[i], world_.spin[i], duration);
     }
-    std::ranges::sort(candidates_, {}, &Candidate::pair);  // so are those that are held
+    for (Lasting& one : lasting_) one.impulse += one.press * duration;
+    world_.time = t;
+    return {};
   }
-
-  Real gap(const Touching& at) const {
-    if (at.with_wall()) {
-      const Wall<Real, Dim> wall = facing(world_.walls()[at.wall], world_.position[at.a]);
-      return dot(wall.normal, world_.position[at.a]) - wall.offset - world_.radius[at.a];
+  /// Those that may meet in the next step, and have been listed for some.
+  void list_near(const Real& pull) {
+    using std::sqrt;
+    Real fastest(0), farthest = listed_.empty() ? never : Real(0);
+    for (const V& v : world_.velocity) fastest = std::max(fastest, squared(v));
+    const Real needed = 4 * stride_ * (sqrt(fastest) + 2 * pull * stride_);
+    for (std::size_t i = 0; i < listed_.size(); ++i)
+      farthest = std::max(farthest, squared(V(world_.position[i] - listed_[i])));
+    if (!(sqrt(farthest) > listed_reach_ - needed)) return;
+    listed_reach_ = std::max(8 * needed, Real(std::ranges::min(world_.radius) / 8));
+    listed_ = world_.position;
+    near_ = pairs_within(world_, listed_reach_);
+  }
+  void note_pushed(const Real& h) {
+    std::vector<Touching> pairs;
+    for (const auto& one : steps_.pushed()) pairs.push_back(one.pair);
+    note_lasting(pairs);
+    for (std::size_t k = 0; k < lasting_.size(); ++k) {
+      lasting_[k].press = steps_.pushed()[k].press;
+      lasting_[k].impulse += lasting_[k].press * h;
     }
-    return length(V(world_.position[at.b] - world_.position[at.a])) - world_.radius[at.a] - world_.radius[at.b];
-  }
-  V normal(const Touching& at) const {
-    if (at.with_wall()) return -facing(world_.walls()[at.wall], world_.position[at.a]).normal;
-    V n = world_.position[at.b] - world_.position[at.a];
-    const Real distance = length(n);
-    if (distance > Real(0)) return n * (1 / distance);
-    n[0] = Real(1);
-    return n;
-  }
-  Real approach(const Touching& at) const {
-    const V of_b = at.with_wall() ? V{} : world_.velocity[at.b];
-    return -dot(V(of_b - world_.velocity[at.a]), normal(at));
-  }
-  /// What counts as touching: the digits of a place, and what a gap may sink.
-  bool touches(const Touching& at) const {
-    const Real size = length(world_.position[at.a]) + world_.radius[at.a];
-    return gap(at) <= std::max(Real(16 * std::numeric_limits<Real>::epsilon() * size), allowance_);
   }
 
   /// Collisions of this instant, one after the other, until nobody approaches; what does not end so bounces no more,
@@ -216,7 +304,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     allowance_ = slow * contact_time_;
     if (!(slow < never)) return {};
     std::vector<Touching> touching;
-    for (const Candidate& at : candidates_)
+    for (const Candidate<Real>& at : candidates_)
       if (touches(at.pair)) touching.push_back(at.pair);
     if (touching.empty()) return {};
     const std::vector<Real> before = last_;
@@ -225,7 +313,7 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
     if (!(slow > Real(0))) return {};
     std::vector<Touching> gentle;
     for (const Touching& at : touching)
-      if (std::abs(approach(at)) <= slow &&
+      if (std::abs(approach_of(world_, at)) <= slow &&
           length(V(world_.position[at.b] - world_.position[at.a])) + Real(at.with_wall()) > Real(0))
         gentle.push_back(at);
     const Real smallest = std::ranges::min(world_.radius);
@@ -241,94 +329,21 @@ class ForcedFlight final : public ExactEngine<Real, Dim> {
       }
     return held;
   }
-  /// What bounces, one after the other, and then what does not, all together. False where nobody approaches.
-  bool strike_all(std::span<const Touching> touching, const Real& slow, const std::vector<Real>& before,
-                  bool is_squeezed) {
-    bool is_any = false, is_plastic = false;
-    std::vector<Touching> plastic;
-    for (const Touching& at : touching) {
-      const Material<Real> material = material_now(at, before, is_squeezed);
-      if (material.restitution > Real(0)) {
-        is_any = strike(at, slow, material) || is_any;
-      } else {
-        plastic.push_back(at);
-        is_plastic = is_plastic || approaches(at, slow);
-      }
-    }
-    if (!is_plastic) return is_any;
-    const std::vector<Real> impulse = strike_together<Real, Dim>(world_, plastic, slow / 8);
-    for (std::size_t k = 0; k < plastic.size(); ++k)
-      if (impulse[k] > Real(0)) has_struck(plastic[k], impulse[k]);
-    return true;
-  }
-  bool strike(const Touching& at, const Real& slow, const Material<Real>& material) {
-    if (!approaches(at, slow)) return false;
-    V no_velocity{};
-    S no_spin{};
-    const Mover<Real, Dim> wall{no_velocity, no_spin, Real(0), Real(0), Real(0)};
-    has_struck(at, collide(mover(at.a), at.with_wall() ? wall : mover(at.b), normal(at), material));
-    return true;
-  }
-  /// By more than `slow`, and than rounding.
-  bool approaches(const Touching& at, const Real& slow) const {
-    const V rate = (at.with_wall() ? V{} : world_.velocity[at.b]) - world_.velocity[at.a];
-    return approach(at) > std::max(slow, Real(8 * std::numeric_limits<Real>::epsilon() * length(rate)));
-  }
-  /// What has collided within the contact time before this instant, or touched already, bounces no more.
-  Material<Real> material_now(const Touching& at, const std::vector<Real>& before, bool is_squeezed) const {
-    const bool is_wall = at.with_wall();
-    Material<Real> material = combined(world_.meeting, world_.material[at.a],
-                                       is_wall ? world_.walls()[at.wall].material : world_.material[at.b]);
-    const bool loses = material.restitution < Real(1) || material.friction > Real(0);
-    const bool is_held =
-        world_.time - before[at.a] < contact_time_ || (!is_wall && world_.time - before[at.b] < contact_time_);
-    if (is_held || find(lasting_, at)) material.restitution = material.restitution < Real(1) ? Real(0) : Real(1);
-    if (is_squeezed && loses) material.restitution = Real(0);
-    return material;
-  }
-  void has_struck(const Touching& at, const Real& impulse) {
-    last_[at.a] = world_.time;
-    if (!at.with_wall()) last_[at.b] = world_.time;
-    ++(at.with_wall() ? statistics.wall_collisions : statistics.collisions);
-    note(at, ContactChange::impact, impulse);
-  }
-  /// Which contacts go on, which are new, and which have ended.
-  void note_lasting(const HeldContacts<Real, Dim>& held) {
-    std::vector<Lasting> now;
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      const Lasting* const known = find(lasting_, held[k]);
-      now.push_back({held[k], known ? known->impulse : Real(0)});
-      if (!known) note(held[k], ContactChange::begin, Real(0));
-    }
-    for (const Lasting& one : lasting_)
-      if (!find(now, one.pair)) note(one.pair, ContactChange::end, one.impulse);
-    lasting_ = std::move(now);
-  }
-  void note(const Touching& at, ContactChange change, const Real& impulse) {
-    if (!contacts.is_kept()) return;
-    const V n = normal(at);
-    contacts.add({.change = change,
-                  .a = world_.handle(at.a),
-                  .b = at.with_wall() ? BodyHandle{} : world_.handle(at.b),
-                  .wall = at.wall,
-                  .point = world_.position[at.a] + n * world_.radius[at.a],
-                  .normal = n,
-                  .impulse = impulse,
-                  .time = world_.time});
-  }
-  Mover<Real, Dim> mover(std::uint32_t i) {
-    return {world_.velocity[i], world_.spin[i], world_.radius[i], world_.inverse_mass[i], world_.inverse_inertia[i]};
-  }
-
-  World<Real, Dim>& world_;
   Companions<Real, Dim>* companions_;
   ExactOptions<Real> options_;
 
-  Real contact_time_{}, step_{}, allowance_{}, lasted_ = never;  // lasted_: the last flight
-  std::vector<Real> last_;                                       // when each body collided last
-  std::vector<Candidate> candidates_;
-  std::vector<Lasting> lasting_;
+  Real step_{}, lasted_ = never;  // the last step of a flight as its error wanted it, and the last flight
+  Real stride_{};                 // of steps through contacts
+  Real together_{};               // when two bodies lay on each other last
+  bool only_gravity_ = false;
+  std::vector<Candidate<Real>> candidates_;
   std::optional<HeldContacts<Real, Dim>> resolved_;  // at the end of the last flight
+  Crowding crowding_;
+  ContactSteps<Real, Dim> steps_;
+  bool is_slow_ = false, is_steady_ = false;  // in the last step; for good
+  std::vector<Touching> near_;                // of steps
+  std::vector<V> listed_;                     // where bodies were when they were listed
+  Real listed_reach_{};
 };
 
 }  // namespace

@@ -14,10 +14,12 @@
 namespace continuo {
 
 /// Two that can meet before the candidates are listed anew.
+template <class Real>
 struct Candidate {
-  enum class Watched { gap, approach, nothing };  // approach: where they overlapped at the start; nothing: held
+  enum class Watched { gap, approach, nothing };  // approach: of two that overlap and part; nothing: held
   Touching pair{};
   Watched watched = Watched::gap;
+  Real lowest{};  // to which the gap may fall
 };
 
 /// Guards that fall through 0, each of which stops the flight: of every candidate; of every contact that is held three;
@@ -28,12 +30,10 @@ class ForcedWatch {
   using V = Vector<Real, Dim>;
   using X = std::vector<Real>;
 
-  /// A gap is watched for falling below -`allowance`.
-  ForcedWatch(const World<Real, Dim>& world, const std::vector<Candidate>& candidates, const Real& allowance,
-              const Real& reach, std::size_t held)
+  ForcedWatch(const World<Real, Dim>& world, const std::vector<Candidate<Real>>& candidates, const Real& reach,
+              std::size_t held)
       : world_(&world),
         candidates_(&candidates),
-        allowance_(allowance),
         reach_(reach),
         held_(held),
         begin_(world.position),
@@ -78,7 +78,7 @@ class ForcedWatch {
   void find_guards(ForcedFlow<Real, Dim>& flow, Real t, const X& state, std::span<Real> values) {
     ForcedFlow<Real, Dim>::unpack(state, x_, v_);
     std::size_t next = 0;
-    for (const Candidate& candidate : *candidates_) values[next++] = guard(candidate);
+    for (const Candidate<Real>& candidate : *candidates_) values[next++] = guard(candidate);
     if (held_ > 0) {
       rate_.resize(state.size());
       flow(t, state, rate_);
@@ -90,8 +90,8 @@ class ForcedWatch {
     for (std::size_t i = 0; i < x_.size(); ++i) farthest = std::max(farthest, squared(V(x_[i] - begin_[i])));
     values[next] = reach_ * reach_ - farthest;
   }
-  Real guard(const Candidate& at) const {
-    if (at.watched == Candidate::Watched::nothing) return Real(1);
+  Real guard(const Candidate<Real>& at) const {
+    if (at.watched == Candidate<Real>::Watched::nothing) return Real(1);
     const auto [a, b, w] = at.pair;
     Real gap, parting;
     if (at.pair.with_wall()) {
@@ -104,12 +104,12 @@ class ForcedWatch {
       gap = distance - world_->radius[a] - world_->radius[b];
       parting = distance > Real(0) ? dot(apart, V(v_[b] - v_[a])) / distance : Real(0);
     }
-    return at.watched == Candidate::Watched::approach ? parting : gap + allowance_;
+    return at.watched == Candidate<Real>::Watched::approach ? parting : gap - at.lowest;
   }
 
   const World<Real, Dim>* world_;
-  const std::vector<Candidate>* candidates_;
-  Real allowance_, reach_;
+  const std::vector<Candidate<Real>>* candidates_;
+  Real reach_;
   std::size_t held_;
   std::vector<V> begin_, x_, v_;
   X rate_;

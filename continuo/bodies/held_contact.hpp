@@ -3,29 +3,15 @@
 #pragma once
 #include <array>
 #include <cmath>
-#include <compare>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include <continuo/bodies/contact_matrix.hpp>
+#include <continuo/bodies/touching.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
-
-/// Two that touch or may touch. In the order of the first, walls before bodies.
-struct Touching {
-  static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t a = 0, b = 0, wall = no_wall;
-  bool with_wall() const { return wall != no_wall; }
-  friend bool operator==(const Touching&, const Touching&) = default;
-  friend std::strong_ordering operator<=>(const Touching& one, const Touching& other) {
-    return std::tuple(one.a, one.wall, one.b) <=> std::tuple(other.a, other.wall, other.b);
-  }
-};
 
 /// What acts against a motion of two surfaces by no more than `most` times what presses them together, as Coulomb's
 /// friction does against slip: it holds where that is enough, and else acts with all of it. Rates and loads have the

@@ -43,6 +43,8 @@ class HeldContacts {
     for (const Held& one : held_) rubs_ = rubs_ || one.slip.most > Real(0);
   }
 
+  /// False where no set of contacts was found in which all is right.
+  bool is_found() const { return is_found_; }
   std::size_t size() const { return held_.size(); }
   const Touching& operator[](std::size_t k) const { return held_[k].pair; }
   /// Whether spins change.
@@ -216,6 +218,7 @@ class HeldContacts {
       hold(world.position, world.velocity, world.spin, {all, twist});
       if (!change(all, twist)) return;
     }
+    is_found_ = false;
   }
   /// Lets go what pulls, takes back what would sink in, lets move what friction cannot hold. False where all is right.
   bool change(std::span<const V> force, std::span<const S> torque) {
@@ -224,6 +227,7 @@ class HeldContacts {
     for (const Held& one : held_) greatest = std::max(greatest, one.press);
     for (std::size_t k = 0; k < held_.size(); ++k) {
       if (held_[k].changes > 8) {  // undecided: as it is, but that it sticks
+        is_found_ = false;
         held_[k].slip.holds = held_[k].slip.most > Real(0) && !held_[k].slip.is_fast;
       } else if (change(k, greatest, force, torque)) {
         is_other = true, ++held_[k].changes;
@@ -263,7 +267,7 @@ class HeldContacts {
   const World<Real, Dim>* world_ = nullptr;
   Real slow_{}, rate_{};
   Real rounding_{};  // of forces: what none is far from, as between bodies side by side, pulls or slips only beyond it
-  bool rubs_ = false;
+  bool rubs_ = false, is_found_ = true;
   std::vector<Held> held_;
   // Of the directions in which they are held:
   std::vector<RowOf> of_row_;

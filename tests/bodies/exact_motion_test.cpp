@@ -258,7 +258,7 @@ TEST(ExactMotion, TheOrderOfBodiesDoesNotMatter) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT(length(a.position[i] - b.position[a.size() - 1 - i]), 1e-6) << i;
 }
 
-// A ball that is set down on a fixed one stays on it, by bounces of the contact time: they reach up to g tc^2 / 8.
+// A ball that is set down on a fixed one stays on it, but for what a body falls in the contact time.
 TEST(ExactMotion, ABallLiesOnAFixedSphere) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
@@ -267,10 +267,9 @@ TEST(ExactMotion, ABallLiesOnAFixedSphere) {
   ExactMotion motion(world, {.contact_time = 1e-3});
   for (int k = 1; k <= 100; ++k) {
     ASSERT_EQ(motion.advance_to(0.01 * k), "");
-    EXPECT_GT(world.position[1][1], 1 - 1e-12);
-    EXPECT_LT(world.position[1][1], 1 + 10 * 1e-6 / 8 * 1.001);
+    EXPECT_NEAR(world.position[1][1], 1, 10 * 1e-6);
   }
-  EXPECT_LT(motion.statistics().collisions, 1200u);  // a thousand flights, and some in the beginning
+  EXPECT_LT(motion.statistics().collisions, 10u);
 }
 
 // Where one looks makes no difference to where one gets: advance_to leaves the prediction alone.
@@ -283,8 +282,8 @@ TEST(ExactMotion, LookingDoesNotDisturb) {
   EXPECT_EQ(a.velocity, b.velocity);
 }
 
-// What is dropped into a narrow box slides over what lies on its floor, in flights so short that rounding hides them.
-// Each place is right to an ulp of the edge of the box.
+// What is dropped into a narrow box slides over what lies on its floor. What lasts may sink by what a body falls in the
+// contact time, a hundred-thousandth of the time for its radius: 2e-10 of that.
 TEST(ExactMotion, ABallDoesNotSinkIntoOneThatLies) {
   const Material<double> slack{.restitution = 0, .friction = 0};
   World<double, 3> world;
@@ -301,7 +300,7 @@ TEST(ExactMotion, ABallDoesNotSinkIntoOneThatLies) {
   ExactMotion motion(world);
   for (const double t : {0.1, 0.2, 0.3, 0.35, 0.4}) {
     ASSERT_EQ(motion.advance_to(t), "");
-    EXPECT_LT(deepest_overlap(world), 16 * epsilon) << t;
+    EXPECT_LT(deepest_overlap(world), 2e-10 * 0.5) << t;
   }
 }
 

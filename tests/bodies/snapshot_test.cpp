@@ -188,12 +188,13 @@ TEST(Snapshot, TheFuzzersInputsAreOfThisVersion) {
   ExactMotion exact(world, {.contact_events = 10});
   FastMotion fast(world, {.contact_events = 10});
   EXPECT_EQ(restore(input("exact"), world, exact), "");
+  EXPECT_EQ(restore(input("exact_heap"), world, exact), "");
   EXPECT_EQ(restore(input("fast"), world, fast), "");
   ExactMotion exact_flat(flat, {.contact_events = 10});
   FastMotion fast_flat(flat, {.contact_events = 10});
   EXPECT_EQ(restore(input("exact_flat"), flat, exact_flat), "");
   EXPECT_EQ(restore(input("fast_flat"), flat, fast_flat), "");
-  const auto recording = Recording<double, 3>::read(input("recording"));
+  const auto recording = Recording<double, 3>::read(input("../recording/bodies"));
   EXPECT_EQ(recording.error, "");
   EXPECT_TRUE(recording.is_whole);
 }
