@@ -8,6 +8,7 @@
 #include <apps/continuo/command_line.hpp>
 #include <fmt/format.h>
 
+#include <continuo/model/cells.hpp>
 #include <continuo/model/suggest.hpp>
 
 namespace continuo::app {
@@ -54,6 +55,18 @@ void examples_first(CLI::App& app, std::string_view examples) {
   app.formatter(std::make_shared<ExamplesFirst>());
   app.footer(fmt::format("Examples:\n{}", examples));
   app.get_formatter()->column_width(34);
+}
+
+CLI::Validator quotients() {
+  return {[](std::string& text) {
+            const auto slash = text.find('/');
+            if (slash == std::string::npos) return std::string();
+            const auto above = model::cell_number(text.substr(0, slash)),
+                       below = model::cell_number(text.substr(slash + 1));
+            if (above && below && *below != 0) text = fmt::format("{}", *above / *below);
+            return std::string();
+          },
+          ""};
 }
 
 std::string unexpected(const CLI::App& app, int argc, char** argv) {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 
 namespace continuo::app {
 
@@ -13,6 +14,9 @@ CLI::App* add_verb(CLI::App& app, std::string name, std::string description, std
 
 /// Help of every verb begins with its examples.
 void examples_first(CLI::App& app, std::string_view examples);
+
+/// For options that take a number: 1/60 is one, as in a model.
+CLI::Validator quotients();
 
 /// What to say of words that no verb or option takes.
 std::string unexpected(const CLI::App& app, int argc, char** argv);

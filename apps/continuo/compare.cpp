@@ -132,8 +132,10 @@ void add_compare(CLI::App& app, ExitCode& exit) {
       ->required()
       ->delimiter(',')
       ->type_name("NAMES");
-  auto* steps =
-      verb->add_option("--step", options->steps, "Fixed steps, with commas")->delimiter(',')->type_name("H,...");
+  auto* steps = verb->add_option("--step", options->steps, "Fixed steps, with commas")
+                    ->delimiter(',')
+                    ->type_name("H,...")
+                    ->transform(quotients());
   verb->add_option("--tol", options->tolerances, "Tolerances, with commas")
       ->delimiter(',')
       ->type_name("RTOL,...")

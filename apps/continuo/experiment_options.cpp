@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include <apps/continuo/command_line.hpp>
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
@@ -76,7 +77,7 @@ void add_model(CLI::App& verb, ExperimentOptions& options) {
 void add_experiment(CLI::App& verb, ExperimentOptions& options) {
   add_model(verb, options);
   verb.add_option("--until", options.until, "The time at which the run ends")->type_name("T");
-  verb.add_option("--output", options.output, "A row every DT")->type_name("DT");
+  verb.add_option("--output", options.output, "A row every DT")->type_name("DT")->transform(quotients());
 }
 
 void add_tolerances(CLI::App& verb, ExperimentOptions& options) {
@@ -95,6 +96,7 @@ void add_method(CLI::App& verb, ExperimentOptions& options) {
   add_tolerances(verb, options);
   verb.add_option("--step", options.step, "A fixed step")
       ->type_name("H")
+      ->transform(quotients())
       ->excludes(verb.get_option("--tol"))
       ->excludes(verb.get_option("--atol"));
 }

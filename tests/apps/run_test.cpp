@@ -232,5 +232,16 @@ TEST(Compare, EveryPairHasItsLine) {
   EXPECT_EQ(shell.run("compare spring.sim --methods euler,rk5 --step 0.1").exit, 1);
 }
 
+TEST(Run, TakesQuotientsForNumbersAsAModelDoes) {
+  Shell shell;
+  shell.write("fall.sim", "world { body ball at (0, 0); gravity (0, -1) }\nrun 0..1\n");
+  const Result result = shell.run("run fall.sim --method fast --step 1/8 --output 1/4 -o a.csv");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("by fast, step 0.125"));
+  EXPECT_THAT(shell.read("a.csv"), HasSubstr("\n0.75,"));
+  for (const char* wrong : {"1/0", "1/", "/2", "a/2", "1/2/3"})
+    EXPECT_THAT(shell.run(std::string("run fall.sim --method fast --step ") + wrong).err, HasSubstr(wrong));
+}
+
 }  // namespace
 }  // namespace continuo::app
