@@ -10,7 +10,7 @@ source cmake/setup.sh
 
 setup_packages test
 say "building the command, the library and the tests"
-cmake --preset release -DCONTINUO_TESTS=ON -DCONTINUO_CHECKS=ON >&2
+cmake --preset release -DCONTINUO_TESTS=ON -DCONTINUO_CHECKS=ON -DCMAKE_UNITY_BUILD=ON >&2
 touch build/.built.began
 cmake --build build >&2
 mv build/.built.began build/.built  # continuo.sh finds the command fresh

@@ -98,7 +98,7 @@ setup_build() {
   touch "$stamp.began"
   if [[ ! -e $build/build.ninja ]]; then
     say "building, which takes some minutes this once"
-    if ! quietly "$build/.log" env -C "$root" cmake --preset release -DCONTINUO_TESTS=OFF; then
+    if ! quietly "$build/.log" env -C "$root" cmake --preset release -DCONTINUO_TESTS=OFF -DCMAKE_UNITY_BUILD=ON; then
       say "the build could not be configured"
       exit 1
     fi

@@ -12,7 +12,7 @@
 namespace continuo::app {
 namespace {
 
-constexpr std::string_view examples =
+constexpr std::string_view command_examples =
     "  continuo run models/bouncing_ball.sim                     the motion in a few lines\n"
     "  continuo view models/spring_pendulum.sim                  the motion live in the browser, to be touched\n"
     "  continuo run models/kepler.sim -o orbit.csv --plot orbit.svg\n"
@@ -23,7 +23,7 @@ constexpr std::string_view examples =
 
 int command(int argc, char** argv) {
   CLI::App app("Simulates continuous systems: the equations in, a motion out that can be trusted.", "continuo");
-  examples_first(app, examples);
+  examples_first(app, command_examples);
   app.set_version_flag("--version", "continuo " CONTINUO_VERSION);
   app.require_subcommand(1);
   ExitCode exit = done;

@@ -11,7 +11,7 @@ namespace {
 
 // Of what a plot or the scene shows, some hundreds of pixels high: about one of them. What a float rounds is no bend.
 constexpr float overlooked = 1.0F / 500, rounding = 1e-6F;
-constexpr float nothing = std::numeric_limits<float>::infinity();
+constexpr float endless = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -34,8 +34,8 @@ Bends::Bends(const LiveModel& shown) {
     if (plot.against) columns.insert(plot.against->column);
   }
   columns_.assign(columns.begin(), columns.end());
-  ranges_.assign(columns_.size(), {nothing, -nothing});
-  reach_.assign(shown.paths.size(), {nothing, -nothing});
+  ranges_.assign(columns_.size(), {endless, -endless});
+  reach_.assign(shown.paths.size(), {endless, -endless});
 }
 
 void Bends::see(const Row& row) {

@@ -7,7 +7,7 @@ namespace continuo::model {
 
 namespace {
 
-constexpr std::array entries = {
+constexpr std::array check_entries = {
     Code{"E201", "units do not match",
          R"(What is added, compared, assigned or equated must measure the same thing:
 
@@ -235,7 +235,7 @@ Fix: leave room, or let their groups ignore each other.)"},
 }  // namespace
 
 std::span<const Code> check_codes() {
-  return entries;
+  return check_entries;
 }
 
 }  // namespace continuo::model

@@ -7,7 +7,7 @@ namespace continuo::model {
 
 namespace {
 
-constexpr std::array entries = {
+constexpr std::array numerical_entries = {
     Code{"E300", "the run ended early",
          R"(The run stopped before its end for a reason that has no code of its own. What was computed is kept.)"},
     Code{"E301", "the equations give no finite number",
@@ -164,7 +164,7 @@ conditions at several times determine are nothing to differentiate by.)"},
 }  // namespace
 
 std::span<const Code> numerical_codes() {
-  return entries;
+  return numerical_entries;
 }
 
 }  // namespace continuo::model

@@ -7,7 +7,7 @@ namespace continuo::model {
 
 namespace {
 
-constexpr std::array entries = {
+constexpr std::array syntax_entries = {
     Code{"E101", "this file is not UTF-8 text",
          R"(A model is a text in UTF-8. This file holds a byte that UTF-8 does not allow; the message gives its offset
 from the start of the file, counted from 0. Often the file was saved in an older encoding (Latin-1,
@@ -195,7 +195,7 @@ A point of a drawing has two or three coordinates: (0, h).)"},
 }  // namespace
 
 std::span<const Code> syntax_codes() {
-  return entries;
+  return syntax_entries;
 }
 
 }  // namespace continuo::model

@@ -16,7 +16,6 @@ namespace {
 
 using LongValues = ConvergenceProblem::LongValues;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 // Equations of implicit steps are solved as closely as rounding lets Newton's iteration see that it converges.
 constexpr double newton_tolerance = 1e-12;
 constexpr double of_rounding = 30;   // errors below so many epsilon are made of it
@@ -152,11 +151,11 @@ class Study {
     const std::size_t steps = step_counts(request_.most_steps)[i];
     const double h = (problem_.interval.to - problem_.interval.from) / static_cast<double>(steps);
     StepErrors errors{.step = h,
-                      .global = unknown,
-                      .local = unknown,
-                      .energy = unknown,
-                      .in_float = unknown,
-                      .in_long_double = unknown};
+                      .global = not_measured,
+                      .local = not_measured,
+                      .energy = not_measured,
+                      .in_float = not_measured,
+                      .in_long_double = not_measured};
     run<double>(name, problem_.system, {.rtol = newton_tolerance, .atol = newton_tolerance, .step = h}, steps, errors,
                 result);
     if (!result.problem.empty()) return errors;
@@ -184,11 +183,11 @@ class Study {
   StepErrors with_tolerance(const std::string& name, std::size_t i, MethodConvergence& result) {
     const double tolerance = request_.tolerances[i];
     StepErrors errors{.step = tolerance,
-                      .global = unknown,
-                      .local = unknown,
-                      .energy = unknown,
-                      .in_float = unknown,
-                      .in_long_double = unknown};
+                      .global = not_measured,
+                      .local = not_measured,
+                      .energy = not_measured,
+                      .in_float = not_measured,
+                      .in_long_double = not_measured};
     run<double>(name, problem_.system, {.rtol = tolerance, .atol = tolerance}, 0, errors, result);
     return errors;
   }
@@ -243,7 +242,7 @@ class Study {
       const auto t = static_cast<double>(truth_.time(k));
       const auto solution = named_solve<double>(name, problem_.system, start, {t, t + h},
                                                 {.rtol = newton_tolerance, .atol = newton_tolerance, .step = h});
-      if (!succeeded(solution.outcome.ending)) return unknown;
+      if (!succeeded(solution.outcome.ending)) return not_measured;
       const double error = truth_.error(solution.final_state(), truth_.after(k, h));
       worst = error > worst || std::isnan(error) ? error : worst;
     }

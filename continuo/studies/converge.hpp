@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -72,7 +73,8 @@ struct ConvergeRequest {
 };
 
 /// One step size (or tolerance), and the errors with it, relative to the largest value of each state, the worst
-/// state's. NaN where there is none.
+/// state's; not_measured where there is none.
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 struct StepErrors {
   double step, global, local, energy, in_float, in_long_double;  // the last two: global
   std::size_t evaluations = 0;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,8 +14,6 @@
 namespace continuo::studies {
 
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// The model's equations in numbers of any length; exact derivatives, rounded to double where those are longer.
 template <class Real>
@@ -70,13 +67,13 @@ MethodConvergence by_comparison(const model::Model& model, const std::string& me
       result.problem = "it has no step to make smaller";
       continue;
     }
-    const double step = contender.step ? *contender.step : contender.tolerance.value_or(unknown);
+    const double step = contender.step ? *contender.step : contender.tolerance.value_or(not_measured);
     result.points.push_back({.step = step,
-                             .global = ended ? contender.largest_error : unknown,
-                             .local = unknown,
-                             .energy = ended && run.energy ? run.energy->drift : unknown,
-                             .in_float = unknown,
-                             .in_long_double = unknown,
+                             .global = ended ? contender.largest_error : not_measured,
+                             .local = not_measured,
+                             .energy = ended && run.energy ? run.energy->drift : not_measured,
+                             .in_float = not_measured,
+                             .in_long_double = not_measured,
                              .evaluations = run.statistics.evaluations,
                              .seconds = run.statistics.seconds});
     steps.push_back(step);

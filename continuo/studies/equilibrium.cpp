@@ -15,7 +15,7 @@ namespace continuo::studies {
 
 namespace {
 
-constexpr std::size_t most_iterations = 200;
+constexpr std::size_t most_search_iterations = 200;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double singular_part = 1e-10;  // of |f| at the start: with a singular df/dx, so small is zero
 constexpr double same_part = 1e-6;       // equilibria closer than this, relative to the box, are one
@@ -141,7 +141,7 @@ EquilibriumSearch find_equilibrium(const ParametricSystem& system, std::vector<d
   };
   if (!std::isfinite(size)) return ended(EquilibriumEnding::not_finite);
   double mu = 0;
-  for (search.iterations = 0; search.iterations < most_iterations; ++search.iterations) {
+  for (search.iterations = 0; search.iterations < most_search_iterations; ++search.iterations) {
     if (size == 0) return ended(EquilibriumEnding::found);
     const std::vector<double> rows = jacobian_of(system, t, x, p);
     if (!std::isfinite(largest(rows))) return ended(EquilibriumEnding::not_finite);

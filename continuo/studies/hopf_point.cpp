@@ -11,7 +11,7 @@ namespace continuo::studies {
 
 namespace {
 
-constexpr int most_iterations = 40;
+constexpr int most_hopf_iterations = 40;
 constexpr double on_axis = 1e-12;  // of the real part, relative to the frequency: what differences leave of it is more
 
 /// The equilibrium at one value of the constant, with the pair that is watched.
@@ -52,7 +52,7 @@ std::optional<HopfPoint> find_hopf_point(const ParametricSystem& system, const H
   auto before = oscillating_at(system, guess.constant, guess.value, near, t);
   if (!before) return std::nullopt;
   double step = guess.value + 1e-4 * range <= guess.high ? 1e-4 * range : -1e-4 * range;
-  for (int k = 0; k < most_iterations; ++k) {
+  for (int k = 0; k < most_hopf_iterations; ++k) {
     if (std::abs(before->growth) <= on_axis * before->point.angular_frequency) return std::move(before->point);
     const double value = before->point.constant + step;
     if (!(value >= guess.low && value <= guess.high)) return std::nullopt;

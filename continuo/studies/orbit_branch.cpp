@@ -14,7 +14,7 @@ namespace {
 
 using Vector = std::vector<double>;
 
-constexpr std::size_t most_iterations = 10;
+constexpr std::size_t most_branch_iterations = 10;
 constexpr double no_size = 1e-12;  // of the largest component: what rounding leaves of a zero
 
 double length(const Vector& v) {
@@ -135,7 +135,7 @@ std::optional<Vector> OrbitBranchSteps::corrected(const Vector& guess, const Vec
                                                   const Vector& last) {
   Vector z(guess);
   double before = 0;
-  for (iterations_ = 1; iterations_ <= most_iterations; ++iterations_) {
+  for (iterations_ = 1; iterations_ <= most_branch_iterations; ++iterations_) {
     if (!equations_.evaluate(z)) return std::nullopt;
     Vector b(equations_.residuals().begin(), equations_.residuals().end());
     b.resize(unknowns_);

@@ -15,8 +15,8 @@ namespace {
 using X = std::vector<double>;
 
 constexpr std::size_t points_per_motion = 800;
-constexpr double off_saddle = 1e-4;  // of the plane's size: where a separatrix begins
-constexpr double beyond = 0.02;      // motions end so far outside
+constexpr double off_saddle = 1e-4;   // of the plane's size: where a separatrix begins
+constexpr double far_outside = 0.02;  // motions end so far outside
 
 class Portrait {
  public:
@@ -135,7 +135,7 @@ class Portrait {
     auto outside = rises<X>("outside", [this](double, const X& x) {
       double most = -1;
       for (std::size_t i = 0; i < 2; ++i)
-        most = std::max(most, std::abs(2 * (x[i] - plane_.low[i]) / size_[i] - 1) - 1 - beyond);
+        most = std::max(most, std::abs(2 * (x[i] - plane_.low[i]) / size_[i] - 1) - 1 - far_outside);
       return most;
     });
     outside.stop_after = 1;

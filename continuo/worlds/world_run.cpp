@@ -313,12 +313,12 @@ class Moving final : public WorldRun {
   /// With the bodies where they are.
   std::string move_equations(double from, double to) {
     if (companions_.state.empty()) return {};
-    using X = std::vector<double>;
-    const auto rates = [this](double t, const X& z, X& rate) {
+    using Others = std::vector<double>;
+    const auto rates = [this](double t, const Others& z, Others& rate) {
       beside_(world_, t, {world_.position, world_.velocity, {}, {}}, z, {}, {}, rate);
     };
-    Options<X> options{.rtol = std::max(options_.tolerance, 1e-13), .atol = companions_.absolute_tolerance};
-    options.save = Save<X>::only_end();
+    Options<Others> options{.rtol = std::max(options_.tolerance, 1e-13), .atol = companions_.absolute_tolerance};
+    options.save = Save<Others>::only_end();
     Integrator integrator(rates, companions_.state, Interval<double>{from, to}, Dop853{}, options);
     while (integrator.advance()) {
     }

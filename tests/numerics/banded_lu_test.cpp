@@ -8,21 +8,12 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tests/numerics/random_number.hpp>
 
 #include <continuo/numerics/banded_lu.hpp>
 
 namespace continuo {
 namespace {
-
-template <class Number>
-Number random_number(std::mt19937& engine) {
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  if constexpr (std::is_same_v<Number, ComplexNumber<double>>) {
-    return {uniform(engine), uniform(engine)};
-  } else {
-    return Number(uniform(engine));
-  }
-}
 
 /// A band that is filled entry by entry, and decomposed as it is: BandedLU decomposes c M - J.
 template <class Number>

@@ -8,21 +8,12 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tests/numerics/random_number.hpp>
 
 #include <continuo/numerics/dense_lu.hpp>
 
 namespace continuo {
 namespace {
-
-template <class Number>
-Number random_number(std::mt19937& engine) {
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  if constexpr (std::is_same_v<Number, double>) {
-    return uniform(engine);
-  } else {
-    return {uniform(engine), uniform(engine)};
-  }
-}
 
 // The greatest |x_i - known_i| of a random system of n equations.
 template <class Number, std::size_t N>
