@@ -51,6 +51,10 @@ class ContactList {
   void in_group(std::size_t group, Act&& act) {
     act_on<ContactKind::between_movers>(between_movers, group, act);
   }
+  bool has_rest() const {
+    const auto& first = between_movers.groups[blocks.rest()].first;
+    return first.front() < first.back();
+  }
   /// The same for those that only a block's own bodies feel: with fixed ones and walls. Walls last, they yield least.
   template <class Act>
   void at_border(std::size_t block, Act&& act) {

@@ -2,13 +2,17 @@
 // before a pass, and what its border does after the pass before, is done by the thread that has the block anyway.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include <continuo/bodies/contact_list.hpp>
 #include <continuo/bodies/contact_solver.hpp>
 #include <continuo/bodies/team.hpp>
+#include <continuo/bodies/wavefront.hpp>
 
 namespace continuo {
 
@@ -20,44 +24,80 @@ class ContactPasses {
 
   /// push_body(k) for all bodies, then contacts begin and push.
   template <class Push>
-  void push(ContactStep<Real> step, const Push& push_body) {
-    const auto begin = [this](auto kind, auto& packs, std::size_t group) {
-      begin_packs<kind()>(packs, group, bodies_);
-    };
-    pass(begin, [&](std::size_t block) {
-      forget_disturbances(block);
-      for_each_body(block, push_body);
-    });
-    const auto push = solve<ContactPass::push>(step);
-    pass(push, [&](std::size_t block) { contacts_.at_border(block, begin); });
-    team_.share(blocks_.count, [&](std::size_t block) { contacts_.at_border(block, push); });
+  void push(const ContactStep<Real>& step, const Push& push_body) {
+    run(std::array{begin(push_body), solve<ContactPass::push>(step)});
+    push_again(step);
+  }
+  /// move_body(k) for all bodies, then contacts relax.
+  template <class Move>
+  void relax(const ContactStep<Real>& step, const Move& move_body) {
+    run(std::array{relaxing(step, move_body)});
+  }
+  /// The end of a substep and the next one's beginning.
+  template <class Move, class Push>
+  void relax_and_push(const ContactStep<Real>& step, const Move& move_body, const Push& push_body) {
+    run(std::array{relaxing(step, move_body), begin(push_body), solve<ContactPass::push>(step)});
     push_again(step);
   }
 
-  template <class Move>
-  void relax(const ContactStep<Real>& step, const Move& move_body) {
-    const auto relax = solve<ContactPass::relax>(step);
-    pass(relax, [&](std::size_t block) { for_each_body(block, move_body); });
-    team_.share(blocks_.count, [&](std::size_t block) { contacts_.at_border(block, relax); });
-  }
-
  private:
+  /// All contacts between bodies that move, group by group; before(block) comes before those within a block, and at
+  /// last comes what only a block's own bodies feel.
+  struct Pass {
+    std::function<void(std::size_t)> before, in_group, at_border;
+  };
+
+  template <class Act>
+  Pass pass_of(const Act& act) {
+    return {[](std::size_t) {}, [this, act](std::size_t group) { contacts_.in_group(group, act); },
+            [this, act](std::size_t block) { contacts_.at_border(block, act); }};
+  }
   template <ContactPass pass>
-  auto solve(const ContactStep<Real>& step) {
+  auto act_of(const ContactStep<Real>& step) {
     return [this, &step](auto kind, auto& packs, std::size_t group) {
       solve_packs<kind(), pass>(packs, group, bodies_, step);
     };
   }
-  /// All contacts between bodies that move; before(block) comes before those within a block.
-  template <class Act, class Before>
-  void pass(const Act& act, const Before& before) {
-    team_.share(blocks_.count, [&](std::size_t block) {
-      before(block);
-      contacts_.in_group(block, act);
-    });
-    team_.share(blocks_.count, [&](std::size_t block) { contacts_.in_group(blocks_.across(block), act); });
-    contacts_.in_group(blocks_.rest(), act);
+  template <ContactPass pass>
+  Pass solve(const ContactStep<Real>& step) {
+    return pass_of(act_of<pass>(step));
   }
+  template <class Push>
+  Pass begin(const Push& push_body) {
+    Pass pass =
+        pass_of([this](auto kind, auto& packs, std::size_t group) { begin_packs<kind()>(packs, group, bodies_); });
+    pass.before = [this, &push_body](std::size_t block) {
+      forget_disturbances(block);
+      for_each_body(block, push_body);
+    };
+    return pass;
+  }
+  template <class Move>
+  Pass relaxing(const ContactStep<Real>& step, const Move& move_body) {
+    Pass pass = solve<ContactPass::relax>(step);
+    pass.before = [this, &move_body](std::size_t block) { for_each_body(block, move_body); };
+    return pass;
+  }
+
+  void run(std::span<const Pass> passes) {
+    std::vector<Sweep> sweeps;
+    for (std::size_t i = 0; i <= passes.size(); ++i) {
+      const Pass* const last = i > 0 ? &passes[i - 1] : nullptr;
+      const Pass* const pass = i < passes.size() ? &passes[i] : nullptr;
+      Sweep& sweep = sweeps.emplace_back();
+      sweep.within = [last, pass](std::size_t block) {
+        if (last) last->at_border(block);
+        if (!pass) return;
+        pass->before(block);
+        pass->in_group(block);
+      };
+      if (!pass) break;
+      sweep.across = [this, pass](std::size_t block) { pass->in_group(blocks_.across(block)); };
+      if (contacts_.has_rest()) sweep.rest = [this, pass] { pass->in_group(blocks_.rest()); };
+    }
+    run_sweeps(team_, blocks_.count, sweeps);
+  }
+
   template <class Act>
   void for_each_body(std::size_t block, const Act& act) {
     for (std::uint32_t k = blocks_.first(block); k < blocks_.last(block, bodies_.size()); ++k) act(k);
@@ -66,9 +106,9 @@ class ContactPasses {
   /// An impact on a ball that others hold takes many turns round all contacts until it has come through to what holds
   /// them up, and the speed that is left after the last becomes overlap. Few contacts take part: those of bodies whose
   /// velocities their contacts have just changed by a lot. These are pushed again until nothing is disturbed.
-  void push_again(ContactStep<Real>& step) {
+  void push_again(ContactStep<Real> step) {
     constexpr std::uint8_t most_sweeps = 20;  // a bound: what is squeezed between others may never settle
-    const auto again = solve<ContactPass::push_again>(step);
+    const auto again = act_of<ContactPass::push_again>(step);
     auto& halves = bodies_.disturbances;
     const auto share = [&](std::size_t first_half, const auto& act) {
       meant_.clear();

@@ -30,6 +30,7 @@ class Team {
     if (threads > 1) arena_ = std::make_unique<oneapi::tbb::task_arena>(threads);
   }
   bool is_alone() const { return !arena_; }
+  std::size_t threads() const { return threads_; }
 
   /// Loops within `act` are shared out.
   template <class Act>
