@@ -97,16 +97,16 @@ class ContactList {
 
   /// Packs what may touch. meeting_of(a, b) is how the bodies or walls at two places meet, which is asked for
   /// only where they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept
-  /// (empty: at k).
+  /// (empty: at k). reach_of[block] is how near those of a block must be.
   template <class MeetingOf>
   void activate(Team& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-                const MeetingOf& meeting_of, bool has_rare, const ActiveReach<Real>& reach,
+                const MeetingOf& meeting_of, bool has_rare, std::span<const ActiveReach<Real>> reach_of,
                 std::span<const std::uint32_t> place_before) {
     between_movers.clear(blocks.groups()), with_fixed.clear(blocks.count), with_wall.clear(blocks.count);
     std::vector<std::uint8_t> has_rest(blocks.count, 0);
     team.share(blocks.count, [&](std::size_t block) {
       for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
-        choose(k, bodies, walls, reach);
+        choose(k, bodies, walls, reach_of[block]);
       has_rest[block] = colour(block, bodies);
     });
     colour_rest(has_rest, bodies);
