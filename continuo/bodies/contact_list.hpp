@@ -24,7 +24,8 @@ namespace continuo {
 /// pair of two that move stands with the lower place, one with a fixed body with the other.
 struct ContactEntry {
   std::uint32_t other;
-  std::uint32_t lane = nowhere;  // in the packs of its kind, where it is solved
+  std::uint32_t lane = nowhere;    // in the packs of its kind, where it is solved
+  std::uint32_t before = nowhere;  // where it was in the step before, since the pair was listed
 };
 using ContactRows = Rows<ContactEntry>;
 
@@ -79,25 +80,25 @@ class ContactList {
     return deepest;
   }
 
-  /// Takes the impulses out of the packs.
+  /// Takes the impulses out of the packs, for the rows are to be others.
   void keep(Team& team) {
     make_rows(team, rows.rows(), kept_, [&](std::uint32_t k, KeptImpulses<Real, Dim>& part) {
       for (const ContactEntry& entry : rows.row(k)) {
         if (entry.lane == nowhere) continue;
-        auto& packs = packs_of(entry);
-        const std::size_t p = (entry.lane & ~fixed_bit) / width, lane = entry.lane % width;
-        const PackImpulses<Real, Dim>& impulses = packs.impulses[p];
-        if (!(impulses.normal.lane[lane] > Real(0))) continue;
-        part.entries.push_back({entry.other, impulses.normal.lane[lane], in_lane(impulses.friction, lane)});
-        if (const auto* rare = packs.rare_of(p)) part.rolling.push_back(in_lane(rare->rolling_impulse, lane));
+        const KeptContact contact = impulse_in_lane(entry, entry.lane, false);
+        if (!(contact.normal > Real(0))) continue;
+        part.entries.push_back({entry.other, contact.normal, contact.friction});
+        if (resists_rolling(entry)) part.rolling.push_back(contact.rolling);
       }
     });
     kept_.fit();
+    has_kept_ = true;
+    for (auto* packs : {&between_movers, &with_fixed, &with_wall}) packs->before = {};
   }
 
   /// Packs what may touch. meeting_of(a, b) is how the bodies or walls at two places meet, which is asked for
-  /// only where they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept
-  /// (empty: at k). reach_of[block] is how near those of a block must be.
+  /// only where they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept, if
+  /// they were (empty: at k). reach_of[block] is how near those of a block must be.
   template <class MeetingOf>
   void activate(Team& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
                 const MeetingOf& meeting_of, bool has_rare, std::span<const ActiveReach<Real>> reach_of,
@@ -112,16 +113,23 @@ class ContactList {
     colour_rest(has_rest, bodies);
     for (auto* packs : {&between_movers, &with_fixed, &with_wall}) packs->make_room(blocks, bodies, has_rare);
     const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
+    const auto impulse_of = [&](std::uint32_t k, const ContactEntry& entry) {
+      if (has_kept_) return impulse_kept(before(k), before(entry.other), !place_before.empty());
+      return entry.before == nowhere ? KeptContact{} : impulse_in_lane(entry, entry.before, true);
+    };
     team.share(blocks.count, [&](std::size_t block) {
       for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
-        fill_row(k, bodies, walls, meeting_of, before, !place_before.empty());
+        fill_row(k, bodies, walls, meeting_of, impulse_of);
     });
+    kept_ = {};
+    has_kept_ = false;
   }
 
   /// What `keep` takes, to and fro.
   template <class Archive>
   void transfer_kept(Archive& archive) {
     archive(kept_);
+    has_kept_ = true;
   }
   bool kept_fits(std::size_t bodies, std::size_t world_walls) const { return kept_.fits(bodies, bodies + world_walls); }
 
@@ -132,7 +140,7 @@ class ContactList {
       for (const ContactEntry& entry : rows.row(k)) {
         if (entry.lane == nowhere) continue;
         const std::uint32_t lane = entry.lane & ~fixed_bit;
-        const Real pressed = packs_of(entry).impulses[lane / width].normal.lane[lane % width];
+        const Real pressed = packs_of(entry, entry.lane).impulses[lane / width].normal.lane[lane % width];
         const auto bodies = static_cast<std::uint32_t>(rows.rows());
         const bool is_wall = entry.other >= bodies;
         if (pressed > Real(0)) visit(k, is_wall ? entry.other - bodies : entry.other, is_wall, pressed);
@@ -159,12 +167,12 @@ class ContactList {
     if (first.front() < first.back()) act(std::integral_constant<ContactKind, kind>{}, packs, group);
   }
 
-  const ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry) const {
+  const ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry, std::uint32_t lane) const {
     if (entry.other >= rows.rows()) return with_wall;
-    return entry.lane & fixed_bit ? with_fixed : between_movers;
+    return lane & fixed_bit ? with_fixed : between_movers;
   }
-  ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry) {
-    return const_cast<ColouredPacks<Real, Dim>&>(std::as_const(*this).packs_of(entry));
+  ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry, std::uint32_t lane) {
+    return const_cast<ColouredPacks<Real, Dim>&>(std::as_const(*this).packs_of(entry, lane));
   }
   template <int Size>
   static Vector<Real, Size> in_lane(const Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
@@ -218,6 +226,7 @@ class ContactList {
         const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
         may_touch = squared(bodies.x(j) - x) < near * near;
       }
+      entry.before = entry.lane;
       entry.lane = may_touch ? chosen : nowhere;
     }
   }
@@ -275,45 +284,61 @@ class ContactList {
     }
     return p * lanes + lane;
   }
-  void recall(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, std::uint32_t a, std::uint32_t b,
-              bool was_sorted) {
-    const std::size_t p = lane_number / width, lane = lane_number % width;
-    Real direction(1), normal(0);
+  /// Of a contact that pressed.
+  struct KeptContact {
+    Real normal{};
     V friction{};
     Spin<Real, Dim> rolling{};
+  };
+  bool resists_rolling(const ContactEntry& entry) const { return !packs_of(entry, entry.lane).rare.empty(); }
+  KeptContact impulse_in_lane(const ContactEntry& entry, std::uint32_t lane_number, bool is_before) const {
+    const ColouredPacks<Real, Dim>& packs = packs_of(entry, lane_number);
+    const PackedImpulses<Real, Dim>& of_packs = is_before ? packs.before : packs;
+    const std::size_t p = (lane_number & ~fixed_bit) / width, lane = lane_number % width;
+    const PackImpulses<Real, Dim>& impulses = of_packs.impulses[p];
+    if (!(impulses.normal.lane[lane] > Real(0))) return {};
+    KeptContact contact{impulses.normal.lane[lane], in_lane(impulses.friction, lane)};
+    if (!of_packs.rare.empty()) contact.rolling = in_lane(of_packs.rare[p].rolling_impulse, lane);
+    return contact;
+  }
+  KeptContact impulse_kept(std::uint32_t a, std::uint32_t b, bool was_sorted) const {
+    Real direction(1);
     std::size_t found = kept_.find(a, b);
     if (found == nowhere && was_sorted) {
       direction = Real(-1);  // the other way round then
       found = kept_.find(b, a);
     }
-    if (found != nowhere) {
-      normal = kept_.entries[found].normal;
-      friction = kept_.entries[found].friction * direction;
-      if (!kept_.rolling.empty()) rolling = kept_.rolling[found] * direction;
-    }
-    packs.impulses[p].normal.lane[lane] = normal;
-    put_in_lane(friction, packs.impulses[p].friction, lane);
-    if (RarePack<Real, Dim>* rare = packs.rare_of(p)) put_in_lane(rolling, rare->rolling_impulse, lane);
+    if (found == nowhere) return {};
+    KeptContact contact{kept_.entries[found].normal, kept_.entries[found].friction * direction};
+    if (!kept_.rolling.empty()) contact.rolling = kept_.rolling[found] * direction;
+    return contact;
+  }
+  void put_in(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, const KeptContact& contact) {
+    const std::size_t p = lane_number / width, lane = lane_number % width;
+    packs.impulses[p].normal.lane[lane] = contact.normal;
+    put_in_lane(contact.friction, packs.impulses[p].friction, lane);
+    if (RarePack<Real, Dim>* rare = packs.rare_of(p)) put_in_lane(contact.rolling, rare->rolling_impulse, lane);
   }
 
-  template <class MeetingOf, class Before>
+  template <class MeetingOf, class ImpulseOf>
   void fill_row(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-                const MeetingOf& meeting_of, const Before& before, bool was_sorted) {
+                const MeetingOf& meeting_of, const ImpulseOf& impulse_of) {
     for (ContactEntry& entry : rows.row(k)) {
       if (entry.lane == nowhere) continue;
-      auto& packs = packs_of(entry);
+      auto& packs = packs_of(entry, entry.lane);
       const std::uint32_t bit = &packs == &with_fixed ? fixed_bit : 0, j = entry.other;
       const std::size_t group = &packs == &between_movers ? blocks.group_of(k, j) : blocks.block_of(k);
       const std::uint32_t lane = fill(packs, group, entry.lane & ~bit, k, j, meeting_of);
       if (j >= bodies.size())
         put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), packs.packs[lane / width].normal,
                     lane % width);
-      recall(packs, lane, before(k), before(j), was_sorted);
+      put_in(packs, lane, impulse_of(k, entry));
       entry.lane = lane | bit;
     }
   }
 
   KeptImpulses<Real, Dim> kept_;
+  bool has_kept_ = false;  // else the impulses are those of the packs of the step before
 };
 
 }  // namespace continuo

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <continuo/bodies/contact_blocks.hpp>
@@ -34,9 +35,19 @@ struct RarePack {
   Spin<L, Dim> rolling_impulse{};
 };
 
+template <class Real, int Dim>
+struct PackedImpulses {
+  LargeArray<PackImpulses<Real, Dim>> impulses{};
+  LargeArray<RarePack<Real, Dim>> rare{};  // empty where all are alike, and neither bounce nor resist
+
+  std::size_t memory() const { return impulses.capacity() * sizeof(impulses[0]) + rare.capacity() * sizeof(rare[0]); }
+};
+
 /// The contacts of one kind, group by group and colour by colour.
 template <class Real, int Dim>
-struct ColouredPacks {
+struct ColouredPacks : PackedImpulses<Real, Dim> {
+  using PackedImpulses<Real, Dim>::impulses;
+  using PackedImpulses<Real, Dim>::rare;
   static constexpr std::size_t width = lanes_at_once<Real>;
   static constexpr std::size_t most_colours = 64;
 
@@ -45,9 +56,8 @@ struct ColouredPacks {
     std::array<std::uint32_t, most_colours + 1> first{};
   };
   LargeArray<ContactPack<Real, Dim>> packs{};
-  LargeArray<PackImpulses<Real, Dim>> impulses{};
-  LargeArray<RarePack<Real, Dim>> rare{};  // empty where all are alike, and neither bounce nor resist
-  std::vector<std::uint32_t> bins{};       // of a pack's bodies, see contact_blocks.hpp
+  PackedImpulses<Real, Dim> before{};  // those of the step before
+  std::vector<std::uint32_t> bins{};   // of a pack's bodies, see contact_blocks.hpp
   std::vector<Group> groups{};
   std::vector<std::array<std::uint32_t, most_colours>> count{};  // of each group's contacts, until there is room
   std::size_t contacts = 0;
@@ -77,10 +87,15 @@ struct ColouredPacks {
       }
       groups[g].first[most_colours] = total;
     }
+    std::swap<PackedImpulses<Real, Dim>>(*this, before);
+    // Nothing in them is needed, and half as much again would be a good part of all memory.
     if (packs.capacity() < total) {
-      // Nothing in them is needed, and half as much again would be a good part of all memory.
-      packs = {}, impulses = {}, bins = {};
-      packs.reserve(total + total / 64), impulses.reserve(packs.capacity()), bins.reserve(packs.capacity());
+      packs = {}, bins = {};
+      packs.reserve(total + total / 64), bins.reserve(packs.capacity());
+    }
+    if (impulses.capacity() < total) {
+      impulses = {};
+      impulses.reserve(total + total / 64);
     }
     packs.resize(total), impulses.resize(total);
     bins.assign(total, 0);
@@ -89,9 +104,8 @@ struct ColouredPacks {
     count = {};
   }
   std::size_t memory() const {
-    return packs.capacity() * sizeof(packs[0]) + impulses.capacity() * sizeof(impulses[0]) +
-           rare.capacity() * sizeof(rare[0]) + bins.capacity() * sizeof(bins[0]) +
-           groups.capacity() * sizeof(groups[0]);
+    return PackedImpulses<Real, Dim>::memory() + before.memory() + packs.capacity() * sizeof(packs[0]) +
+           bins.capacity() * sizeof(bins[0]) + groups.capacity() * sizeof(groups[0]);
   }
 
  private:

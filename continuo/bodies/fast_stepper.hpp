@@ -52,9 +52,13 @@ class FastMotion<Real, Dim>::Stepper {
     if (world_.size() != bodies_.size() || world_.walls().size() != list_.walls()) refresh();
     is_other_at_rest_ |= sleep_.wake_changed(world_);
     load();
-    if (!std::exchange(is_restored_, false)) contacts_.keep(team_);
-    if (is_other_at_rest_ || list_.is_outdated(bodies_, step_reach())) make_list();
-    while (sleep_.wake_near(bodies_, contacts_.rows, list_.order(), options_.step)) make_list();
+    bool is_kept = std::exchange(is_restored_, false);
+    const auto list_anew = [&] {
+      if (!std::exchange(is_kept, true)) contacts_.keep(team_);
+      make_list();
+    };
+    if (is_other_at_rest_ || list_.is_outdated(bodies_, step_reach())) list_anew();
+    while (sleep_.wake_near(bodies_, contacts_.rows, list_.order(), options_.step)) list_anew();
     activate();
     place_before_ = {};  // not needed most of the time
     const Real h = options_.step / static_cast<Real>(options_.substeps);
