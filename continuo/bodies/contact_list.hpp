@@ -16,6 +16,7 @@
 #include <continuo/bodies/contact_rows.hpp>
 #include <continuo/bodies/contact_solver.hpp>
 #include <continuo/bodies/kept_impulses.hpp>
+#include <continuo/bodies/reach.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
@@ -28,13 +29,6 @@ struct ContactEntry {
   std::uint32_t before = nowhere;  // where it was in the step before, since the pair was listed
 };
 using ContactRows = Rows<ContactEntry>;
-
-/// How near two must be to be solved in a step: as near as they may come.
-template <class Real>
-struct ActiveReach {
-  Real step{};   // of time
-  Real extra{};  // beside what their velocities say
-};
 
 template <class Real, int Dim>
 class ContactList {

@@ -57,7 +57,7 @@ class FastMotion<Real, Dim>::Stepper {
       if (!std::exchange(is_kept, true)) contacts_.keep(team_);
       make_list();
     };
-    if (is_other_at_rest_ || list_.is_outdated(bodies_, step_reach())) list_anew();
+    if (is_other_at_rest_ || list_.is_outdated(bodies_, options_.step)) list_anew();
     while (sleep_.wake_near(bodies_, contacts_.rows, list_.order(), options_.step)) list_anew();
     activate();
     place_before_ = {};  // not needed most of the time
@@ -142,8 +142,8 @@ class FastMotion<Real, Dim>::Stepper {
 
   std::size_t memory() const {
     return bodies_.memory() + list_.memory() + contacts_.memory() + place_before_.capacity() * sizeof(std::uint32_t) +
-           (x_.capacity() + v_.capacity() + force_.capacity()) * sizeof(V) +
-           (inverse_mass_.capacity() + once_.capacity()) * sizeof(Real) + sleep_.memory();
+           (x_.capacity() + v_.capacity() + force_.capacity()) * sizeof(V) + inverse_mass_.capacity() * sizeof(Real) +
+           sleep_.memory();
   }
 
   FastStatistics statistics{};
@@ -218,12 +218,6 @@ class FastMotion<Real, Dim>::Stepper {
     });
   }
 
-  /// How far a body may come in one step.
-  auto step_reach() const {
-    return [this, dt = options_.step](std::size_t k) {
-      return length(bodies_.v(k)) * dt + length(bodies_.acceleration(k)) * dt * dt / 2;
-    };
-  }
   void make_list() {
     const std::vector<std::uint32_t> earlier = std::move(place_before_);
     list_.sort(world_, place_before_);
@@ -231,25 +225,7 @@ class FastMotion<Real, Dim>::Stepper {
       for (std::uint32_t& place : place_before_) place = earlier[place];
     is_other_at_rest_ = false;
     load();
-    list_within(reach_until_listed());
-  }
-  /// Pairs are listed for as long as nobody has come further than this. Where all move fast that is not much more than
-  /// a step; where few do, they reach as many steps ahead as leaves them few.
-  auto reach_until_listed() {
-    using List = PairList<Real, Dim>;
-    once_.resize(bodies_.size());
-    std::vector<Real> steps(bodies_.size());
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-      once_[k] = step_reach()(k);
-      steps[k] = bodies_.moves(k) ? List::skin(bodies_.radius(k)) / once_[k] : most_steps_ahead;
-    }
-    Real ahead = most_steps_ahead;
-    if (const std::size_t few = List::few(steps.size()); few < steps.size()) {
-      const auto last = steps.begin() + static_cast<std::ptrdiff_t>(few);
-      std::nth_element(steps.begin(), last, steps.end());
-      ahead = std::clamp(*last, Real(1.7), most_steps_ahead);
-    }
-    return [this, ahead](std::size_t k) { return std::max(List::skin(bodies_.radius(k)), ahead * once_[k]); };
+    list_within(ListReach<Real>(bodies_, options_.step));
   }
   template <class Reach>
   void list_within(const Reach& reach) {
@@ -276,36 +252,8 @@ class FastMotion<Real, Dim>::Stepper {
     const bool has_rare = may_bounce_ || any_material([&](const Material<Real>& material) {
                             return material.rolling_resistance > Real(0) || material.friction != first.friction;
                           });
-    contacts_.activate(team_, bodies_, world_.walls(), meeting_of, has_rare, active_reach(), place_before_);
-  }
-
-  /// Of every block: beside what the velocities of two say, they come nearer by what another gives them, which is no
-  /// faster than the fastest of this block and the two beside it.
-  std::vector<ActiveReach<Real>> active_reach() {
-    using std::sqrt;
-    struct Most {
-      Real square_of_speed{}, radius{};
-    };
-    const ContactBlocks& blocks = list_.blocks();
-    std::vector<Most> most(blocks.count + 2);  // none before the first block, none behind the last
-    team_.share(blocks.count, [&](std::size_t block) {
-      Most of_block;
-      for (std::size_t k = blocks.first(block); k < blocks.last(block, bodies_.size()); ++k) {
-        of_block.square_of_speed = std::max(of_block.square_of_speed, squared(bodies_.v(k)));
-        of_block.radius = std::max(of_block.radius, bodies_.radius(k));
-      }
-      most[block + 1] = of_block;
-    });
-    Real widest(0);
-    for (const Most& of_block : most) widest = std::max(widest, of_block.radius);
-    const Real dt = options_.step, fall = length(world_.gravity) * dt * dt;
-    std::vector<ActiveReach<Real>> result;
-    for (std::size_t block = 0; block < blocks.count; ++block) {
-      Real square(0);
-      for (std::size_t near = block; near < block + 3; ++near) square = std::max(square, most[near].square_of_speed);
-      result.push_back({dt, std::min(Real(0.1) * widest, Real(sqrt(square) * dt)) + fall});
-    }
-    return result;
+    contacts_.activate(team_, bodies_, world_.walls(), meeting_of, has_rare,
+                       active_reaches(team_, bodies_, options_.step), place_before_);
   }
 
   /// Accelerations by all forces at time t; with h, at the end of a step of that. False where that could not be solved.
@@ -421,14 +369,13 @@ class FastMotion<Real, Dim>::Stepper {
   Impacts<Real, Dim> impacts_;
   Twist<Real, Dim> twist_;
   TouchLog<Real, Dim> touches_;
-  static constexpr Real most_steps_ahead = Real(12);
   bool is_restored_ = false;  // the impulses of the last step have been kept already
   bool has_other_forces_ = false, may_bounce_ = false;
   bool may_strike_soon_ = false;  // something is so fast that impacts are looked for in every substep
   Real friction_ = Real(0);
   std::vector<std::uint32_t> place_before_;
   std::vector<V> x_, v_, force_;
-  std::vector<Real> inverse_mass_, once_;
+  std::vector<Real> inverse_mass_;
   Sleep<Real, Dim> sleep_;
   bool is_other_at_rest_ = false;  // than when pairs were listed
 };

@@ -36,10 +36,9 @@ class PairList {
   }
 
   /// Whether a body may come further in the next step than the list is good for.
-  template <class StepReach>
-  bool is_outdated(const Bodies& bodies, const StepReach& step_reach) const {
+  bool is_outdated(const Bodies& bodies, const Real& step) const {
     for (std::size_t k = 0; k < bodies.size(); ++k)
-      if (!(length(bodies.x(k) - x_of_list_[k]) + step_reach(k) <= reach_[k])) return true;
+      if (!(length(bodies.x(k) - x_of_list_[k]) + step_reach(bodies, k, step) <= reach_[k])) return true;
     return false;
   }
 
@@ -58,13 +57,6 @@ class PairList {
     blocks_ = ContactBlocks::of(bodies, cells_.most_in_layer());
     place_before.resize(bodies);
     for (std::size_t k = 0; k < bodies; ++k) place_before[k] = place_of[order_[k]];
-  }
-
-  /// How far a body of some radius may go before its pairs are listed anew, if it moves like the others.
-  static Real skin(const Real& radius) { return Real(0.22) * radius; }
-  /// So many of some bodies may look for others themselves before that costs more than it saves.
-  static std::size_t few(std::size_t bodies) {
-    return static_cast<std::size_t>(std::sqrt(2 * static_cast<double>(bodies)));
   }
 
   /// Lists what may touch while body k moves by reach(k) at most.
