@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -25,8 +26,7 @@ namespace continuo {
 /// pair of two that move stands with the lower place, one with a fixed body with the other.
 struct ContactEntry {
   std::uint32_t other;
-  std::uint32_t lane = nowhere;    // in the packs of its kind, where it is solved
-  std::uint32_t before = nowhere;  // where it was in the step before, since the pair was listed
+  std::uint32_t lane = nowhere;  // in the packs of its kind, where it is solved
 };
 using ContactRows = Rows<ContactEntry>;
 
@@ -99,9 +99,13 @@ class ContactList {
                 std::span<const std::uint32_t> place_before) {
     between_movers.clear(blocks.groups()), with_fixed.clear(blocks.count), with_wall.clear(blocks.count);
     std::vector<std::uint8_t> has_rest(blocks.count, 0);
+    const auto lane_before = std::make_unique_for_overwrite<std::uint32_t[]>(rows.entries.size());
+    const auto lane_before_of = [&](const ContactEntry& entry) -> std::uint32_t& {
+      return lane_before[static_cast<std::size_t>(&entry - rows.entries.data())];
+    };
     team.share(blocks.count, [&](std::size_t block) {
       for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
-        choose(k, bodies, walls, reach_of[block]);
+        choose(k, bodies, walls, reach_of[block], lane_before_of);
       has_rest[block] = colour(block, bodies);
     });
     colour_rest(has_rest, bodies);
@@ -109,7 +113,8 @@ class ContactList {
     const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
     const auto impulse_of = [&](std::uint32_t k, const ContactEntry& entry) {
       if (has_kept_) return impulse_kept(before(k), before(entry.other), !place_before.empty());
-      return entry.before == nowhere ? KeptContact{} : impulse_in_lane(entry, entry.before, true);
+      const std::uint32_t lane = lane_before_of(entry);
+      return lane == nowhere ? KeptContact{} : impulse_in_lane(entry, lane, true);
     };
     team.share(blocks.count, [&](std::size_t block) {
       for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
@@ -206,8 +211,9 @@ class ContactList {
     return number(between_movers, group, free);
   }
   /// Which entries of row k may touch: their lane is no longer `nowhere`.
+  template <class LaneBeforeOf>
   void choose(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-              const ActiveReach<Real>& reach) {
+              const ActiveReach<Real>& reach, const LaneBeforeOf& lane_before_of) {
     const V x = bodies.x(k), v = bodies.v(k);
     const Real radius = bodies.radius(k);
     for (ContactEntry& entry : rows.row(k)) {
@@ -220,7 +226,7 @@ class ContactList {
         const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
         may_touch = squared(bodies.x(j) - x) < near * near;
       }
-      entry.before = entry.lane;
+      lane_before_of(entry) = entry.lane;
       entry.lane = may_touch ? chosen : nowhere;
     }
   }
