@@ -322,29 +322,6 @@ TEST(FastMotion, NothingPassesThroughAThinWall) {
   }
 }
 
-// One that is fast among many at rest looks for the others itself: all pairs are not listed anew for it alone, which at
-// 6 a second and a skin of 0.11 they would be every other step. What it flies past stays at rest, what it meets does
-// not.
-TEST(FastMotion, ListsPairsAnewForFewThatAreFastNoOftenerThanTheyReach) {
-  for (const bool is_last : {false, true}) {  // it finds the others on either side of its place
-    World<double, 3> world;
-    const auto add_fast = [&] { EXPECT_TRUE(world.add({.position = {{0, 0, 1.2}}, .velocity = {{6, 0, 0}}})); };
-    if (!is_last) add_fast();
-    for (int i = 0; i < 400; ++i) ASSERT_TRUE(world.add({.position = {{(i % 20) * 1.5, (i / 20) * 1.5, 0}}}));
-    ASSERT_TRUE(world.add({.position = {{5.5, 0.3, 1.2}}}));
-    if (is_last) add_fast();
-    FastMotion<double, 3> motion(world);
-    for (int step = 0; step < 60; ++step) ASSERT_EQ(motion.advance(), "");
-    EXPECT_LE(motion.statistics().lists, 10u);
-    const std::size_t met = is_last ? 400 : 401;
-    EXPECT_GT(length(world.velocity[met]), 1);
-    for (std::size_t i = 0; i < world.size(); ++i)
-      if (i != met && i != (is_last ? 401 : 0)) {
-        EXPECT_EQ(length(world.velocity[i]), 0) << i;
-      }
-  }
-}
-
 // World and motion together, while balls lie on each other.
 TEST(FastMotion, HoldsAtMost400BytesASphere) {
   const int count = 4000;
