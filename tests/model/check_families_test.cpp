@@ -4,7 +4,7 @@
 namespace continuo::model {
 namespace {
 
-constexpr const char* chain = R"(param N = 4, D = 2
+constexpr const char* coupled = R"(param N = 4, D = 2
 for i in 2..N-1 { u[i]' = D*(u[i-1] - 2*u[i] + u[i+1]) }
 u[1]' = D*(u[2] - 2*u[1])
 u[N]' = D*(u[N-1] - 2*u[N])
@@ -24,7 +24,7 @@ run 0..1
 )";
 
 TEST(CheckFamilies, AFamilyIsTheSystemWrittenOut) {
-  const Model family = good(chain), plain = good(by_hand);
+  const Model family = good(coupled), plain = good(by_hand);
   ASSERT_EQ(family.states.size(), 4U);
   const char* names[] = {"a", "b", "c", "d"};
   for (int i = 0; i < 4; ++i) {
@@ -33,7 +33,7 @@ TEST(CheckFamilies, AFamilyIsTheSystemWrittenOut) {
 }
 
 TEST(CheckFamilies, SumsRunOverTheirRange) {
-  const Model model = good(chain);
+  const Model model = good(coupled);
   EXPECT_EQ(value_of(model, "total"), 30);
   EXPECT_EQ(value_of(model, "odd"), 10);
   EXPECT_EQ(value_of(model, "none"), 0);
@@ -69,11 +69,11 @@ TEST(CheckFamilies, IndicesAreWholeAndWhereTheyBelong) {
 }
 
 TEST(CheckFamilies, TheSizeIsChangedByAnOverrideAtLoading) {
-  const Model model = good(chain, {.overrides = {{"N", 7.0}}});
+  const Model model = good(coupled, {.overrides = {{"N", 7.0}}});
   EXPECT_EQ(model.states.size(), 7U);
   EXPECT_TRUE(model.parameters[find_parameter(model, "N")].structural);
   EXPECT_FALSE(model.parameters[find_parameter(model, "D")].structural);
-  EXPECT_EQ(said(chain, "E210", {.overrides = {{"M", 7.0}}}).message, "there is no parameter `M` to set");
+  EXPECT_EQ(said(coupled, "E210", {.overrides = {{"M", 7.0}}}).message, "there is no parameter `M` to set");
 }
 
 TEST(CheckFamilies, HugeFamiliesAreRefusedInTime) {

@@ -4,24 +4,24 @@
 namespace continuo::model {
 namespace {
 
-const std::string decay = "param k = 2\nx' = -k*x\nx(0) = 1\n";
+const std::string decaying = "param k = 2\nx' = -k*x\nx(0) = 1\n";
 
 TEST(CheckRun, WhatIsNotSaidIsNotSet) {
-  const Model model = good(decay + "run 0..3\n");
+  const Model model = good(decaying + "run 0..3\n");
   EXPECT_EQ(model.run.to->value, 3);
   EXPECT_FALSE(model.run.output || model.run.method || model.run.step || model.run.rtol);
   EXPECT_TRUE(model.run.atol.empty());
-  EXPECT_FALSE(good(decay).run.from);
+  EXPECT_FALSE(good(decaying).run.from);
 }
 
 TEST(CheckRun, EveryPartIsKept) {
-  const Model model = good(decay + "run 1 - 1..2*k output 0.02 method euler step 0.1 realtime\n");
+  const Model model = good(decaying + "run 1 - 1..2*k output 0.02 method euler step 0.1 realtime\n");
   EXPECT_EQ(model.run.to->value, 4);
   EXPECT_EQ(model.run.method, "explicit_euler");
   EXPECT_EQ(model.run.step->value, 0.1);
   EXPECT_EQ(model.run.output->interval->value, 0.02);
   EXPECT_TRUE(model.run.realtime);
-  const Model adaptive = good(decay + "run 0..1 output log 10 per decade from 1e-3 tol 1e-8, abs 1e-10\n");
+  const Model adaptive = good(decaying + "run 0..1 output log 10 per decade from 1e-3 tol 1e-8, abs 1e-10\n");
   EXPECT_EQ(adaptive.run.rtol, 1e-8);
   EXPECT_EQ(adaptive.run.atol, std::vector<double>{1e-10});
   EXPECT_EQ(adaptive.run.output->per_decade, 10);
@@ -35,18 +35,18 @@ TEST(CheckRun, TimesAreInTheUnitOfTheRun) {
 }
 
 TEST(CheckRun, WrongSettingsAreRefused) {
-  EXPECT_EQ(place(said(decay + "run 3..1\n", "E261")), "4:5");
-  EXPECT_EQ(place(said(decay + "run 0..1 tol -1\n", "E261")), "4:14");
-  EXPECT_EQ(place(said(decay + "run 0..x\n", "E222")), "4:8");
-  EXPECT_EQ(place(said(decay + "run 0..1 tol 1e-6, abs (1e-6, 1e-7)\n", "E263")).substr(0, 2), "4:");
-  const Said method = said(decay + "run 0..1 method dop835\n", "E260");
+  EXPECT_EQ(place(said(decaying + "run 3..1\n", "E261")), "4:5");
+  EXPECT_EQ(place(said(decaying + "run 0..1 tol -1\n", "E261")), "4:14");
+  EXPECT_EQ(place(said(decaying + "run 0..x\n", "E222")), "4:8");
+  EXPECT_EQ(place(said(decaying + "run 0..1 tol 1e-6, abs (1e-6, 1e-7)\n", "E263")).substr(0, 2), "4:");
+  const Said method = said(decaying + "run 0..1 method dop835\n", "E260");
   EXPECT_EQ(place(method), "4:17");
   EXPECT_EQ(method.help, "did you mean `dop853`?");
-  EXPECT_EQ(place(said(decay + "run 0..1\nrun 0..2\n", "E262")), "5:1");
+  EXPECT_EQ(place(said(decaying + "run 0..1\nrun 0..2\n", "E262")), "5:1");
 }
 
 TEST(CheckRun, ChecksReadTheMotion) {
-  const Model model = good(decay +
+  const Model model = good(decaying +
                            "run 0..3\ncheck x(1) = exp(-2) within 1e-9\ncheck x + x(2) at end = 1 within 9\n"
                            "check always x > 0\ncheck time of end = 3 within 0\n");
   ASSERT_EQ(model.checks.size(), 4U);
@@ -61,13 +61,13 @@ TEST(CheckRun, ChecksReadTheMotion) {
 }
 
 TEST(CheckRun, ChecksOfWhatIsNotThereAreRefused) {
-  EXPECT_EQ(place(said(decay + "run 0..3\ncheck x(4) = 1 within 1\n", "E281")), "5:9");
-  EXPECT_EQ(place(said(decay + "run 0..3\ncheck energy drift < 1\n", "E281")), "5:7");
-  EXPECT_EQ(said(decay + "run 0..3\ncheck count of \"bounce\" = 1\n", "E281").help, "the model has no events");
+  EXPECT_EQ(place(said(decaying + "run 0..3\ncheck x(4) = 1 within 1\n", "E281")), "5:9");
+  EXPECT_EQ(place(said(decaying + "run 0..3\ncheck energy drift < 1\n", "E281")), "5:7");
+  EXPECT_EQ(said(decaying + "run 0..3\ncheck count of \"bounce\" = 1\n", "E281").help, "the model has no events");
 }
 
 TEST(CheckRun, PlotsAndDrawingsAreKept) {
-  const Model model = good(decay +
+  const Model model = good(decaying +
                            "energy all = x\nrun 0..3\nplot x, energy against t\nplot x'\n"
                            "draw { floor 0; ball (0, x) radius 0.3 color \"red\"; for i in 1..3 { ball (i, x) } }\n");
   ASSERT_EQ(model.plots.size(), 2U);
@@ -92,10 +92,10 @@ TEST(CheckRun, WhatIsDrawnIsConverted) {
 }
 
 TEST(CheckRun, WhatTheMouseMayMoveDependsOnStates) {
-  const Model model = good(decay + "run 0..3\ndraw { ball (0, sin(x)) drag; box (x, 1) }\n");
+  const Model model = good(decaying + "run 0..3\ndraw { ball (0, sin(x)) drag; box (x, 1) }\n");
   EXPECT_TRUE(is_dragged(model.drawing[0]));
   EXPECT_FALSE(is_dragged(model.drawing[1]));
-  said(decay + "param k = 1\nrun 0..3\ndraw { ball (k, t) drag }\n", "E265");
+  said(decaying + "param k = 1\nrun 0..3\ndraw { ball (k, t) drag }\n", "E265");
 }
 
 TEST(CheckRun, AValueOutsideItsRangeIsAWarning) {

@@ -7,19 +7,19 @@
 namespace continuo::model {
 namespace {
 
-const std::string spring =
+const std::string sprung =
     "# A spring\nmodel Spring\nparam k = 4 [N/m], c = 1 [N*s/m], m = 1 [kg]\n"
     "param F = 1 [N]\n\nx'' = (F - k*x - c*x)/m\n";
 
 Diagnostic units_do_not_match() {
-  const auto begin = static_cast<std::uint32_t>(spring.find("F - k*x - c"));
+  const auto begin = static_cast<std::uint32_t>(sprung.find("F - k*x - c"));
   return error("E201", {begin, begin + 13}, "units do not match", "`F - k*x` is N, `c*x` is N*s",
                "did you mean c*x' ?");
 }
 
 // The block is the one of the language's description, character by character.
 TEST(Diagnostics, AMessageShowsCodePlaceLineCaretsAndFix) {
-  const Source source("spring.sim", spring);
+  const Source source("spring.sim", sprung);
   EXPECT_EQ(render(units_do_not_match(), source), R"(error[E201]: units do not match
  --> spring.sim:6:8
   6 | x'' = (F - k*x - c*x)/m
@@ -77,7 +77,7 @@ TEST(Diagnostics, SeveralComeInOrderOfPlaceAndTheRestIsCounted) {
 }
 
 TEST(Diagnostics, TheSameObjectIsJson) {
-  const auto json = nlohmann::json::parse(to_json(units_do_not_match(), Source("spring.sim", spring)));
+  const auto json = nlohmann::json::parse(to_json(units_do_not_match(), Source("spring.sim", sprung)));
   EXPECT_EQ(json["code"], "E201");
   EXPECT_EQ(json["severity"], "error");
   EXPECT_EQ(json["message"], "units do not match");

@@ -8,7 +8,7 @@ namespace continuo::model {
 namespace {
 
 constexpr auto linear = Table::Between::linear;
-constexpr auto step = Table::Between::step;
+constexpr auto stepwise = Table::Between::step;
 
 TEST(Table, IsALineBetweenPointsAndConstantOutside) {
   const auto read = parse_table("t,F\n0,1\n2,5\n3,5\n", "f.csv", linear);
@@ -23,7 +23,7 @@ TEST(Table, IsALineBetweenPointsAndConstantOutside) {
 }
 
 TEST(Table, AStepHoldsFromItsPointOn) {
-  const auto read = parse_table("# a pulse\n0;0\n1;10\n2;0\n", "f.csv", step);
+  const auto read = parse_table("# a pulse\n0;0\n1;10\n2;0\n", "f.csv", stepwise);
   ASSERT_TRUE(read.table) << read.problem;
   EXPECT_EQ(read.table->value(0.999), 0);
   EXPECT_EQ(read.table->value(1), 10);
