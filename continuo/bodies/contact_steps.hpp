@@ -48,17 +48,7 @@ class ContactSteps {
     const std::size_t n = world.size();
     begin(world, loads, h);
     list_rows(world, pairs, loads.pull, h);
-    for (Row& row : rows_) push(row, row.press, row.rub, row.roll);
-    const Real least = Real(1e-4) * loads.pull * h;
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      Real greatest(0);
-      if (sweep % 2 == 0) {  // to and fro, as in joint_impacts.hpp
-        for (Row& row : rows_) greatest = std::max(greatest, set_right(row));
-      } else {
-        for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) greatest = std::max(greatest, set_right(*row));
-      }
-      if (!(greatest > least)) break;
-    }
+    find_impulses(loads.pull * h);
     pushed_.clear();
     std::vector<bool> is_pushed(n);
     for (const Row& row : rows_) {
@@ -152,6 +142,40 @@ class ContactSteps {
       }
       rows_.push_back(row);
     }
+  }
+  /// The impulses of all contacts, from the forces of the last step. Where those were of an impact they throw bodies
+  /// about, which so many sweeps may not take back: impulses of contacts cannot but lower the energy.
+  void find_impulses(const Real& change_by_forces) {
+    const std::vector<Moving> free = movers_;
+    Real weight(0);
+    for (const Moving& one : movers_)
+      if (one.inverse_mass > Real(0)) weight += 1 / one.inverse_mass;
+    const Real most = energy() + weight * change_by_forces * change_by_forces / 100;
+    for (Row& row : rows_) push(row, row.press, row.rub, row.roll);
+    sweep(Real(1e-4) * change_by_forces, most_sweeps);
+    if (energy() > most) sweep(Real(1e-4) * change_by_forces, 4 * most_sweeps);
+    if (!(energy() > most)) return;
+    movers_ = free;
+    for (Row& row : rows_) row.press = Real(0), row.rub = {}, row.roll = {};
+    sweep(Real(1e-4) * change_by_forces, 4 * most_sweeps);
+  }
+  void sweep(const Real& least, int most) {
+    for (int k = 0; k < most; ++k) {
+      Real greatest(0);
+      if (k % 2 == 0) {  // to and fro, as in joint_impacts.hpp
+        for (Row& row : rows_) greatest = std::max(greatest, set_right(row));
+      } else {
+        for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) greatest = std::max(greatest, set_right(*row));
+      }
+      if (!(greatest > least)) return;
+    }
+  }
+  /// Twice as much.
+  Real energy() const {
+    Real sum(0);
+    for (const Moving& one : movers_)
+      if (one.inverse_mass > Real(0)) sum += squared(one.v) / one.inverse_mass + squared(one.spin) / over(one);
+    return sum;
   }
   static Real over(const Moving& one) { return one.radius > Real(0) ? one.turn / one.radius : Real(0); }
   static S across_normal(const S& spin, const V& normal) {

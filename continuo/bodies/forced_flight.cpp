@@ -327,6 +327,7 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
       } else {
         strike(at, slow / 1'000'000, material_now(at, before, false));  // what is less is rounding
       }
+    held.look_again();
     return held;
   }
   Companions<Real, Dim>* companions_;

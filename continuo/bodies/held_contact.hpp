@@ -30,10 +30,10 @@ struct Grip {
     holds = most > Real(0) && !is_fast;
     if (is_fast) way_at_start = way = rate * (1 / speed);
   }
-  /// After impulses that may have turned it round.
+  /// After impulses that may have turned it round: what acts along with the slip would drive it, unseen by the guard.
   void look_again(const Real& slow) {
-    const Real speed = length(rate);
-    if (!is_fast || dot(rate, way) > slow / 2 || !(speed > Real(0))) return;
+    const Real speed = length(rate), along = dot(rate, way);
+    if (!(most > Real(0)) || holds || !(speed > Real(0)) || along > (is_fast ? slow / 2 : -slow / 16)) return;
     is_fast = speed > slow / 2;
     way_at_start = way = rate * (1 / speed);
   }

@@ -88,8 +88,11 @@ class HeldContacts {
         velocity[end.body] += end.force * (impulse[r] * world_->inverse_mass[end.body]);
         spin[end.body] += end.torque * (impulse[r] * world_->inverse_inertia[end.body]);
       }
+  }
+  /// To which side they slip and roll, after the last impulses.
+  void look_again() {
     for (Held& one : held_) {
-      one.move(*world_, velocity, spin);
+      one.move(*world_, world_->velocity, world_->spin);
       one.slip.look_again(slow_), one.roll.look_again(slow_);
     }
   }
