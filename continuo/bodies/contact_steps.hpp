@@ -150,7 +150,7 @@ class ContactSteps {
     Real weight(0);
     for (const Moving& one : movers_)
       if (one.inverse_mass > Real(0)) weight += 1 / one.inverse_mass;
-    const Real most = energy() + weight * change_by_forces * change_by_forces / 100;
+    const Real most = Real(1.001) * energy() + weight * change_by_forces * change_by_forces;
     for (Row& row : rows_) push(row, row.press, row.rub, row.roll);
     sweep(Real(1e-4) * change_by_forces, most_sweeps);
     if (energy() > most) sweep(Real(1e-4) * change_by_forces, 4 * most_sweeps);
