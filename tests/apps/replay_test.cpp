@@ -9,7 +9,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string bounce =
+const std::string bouncing =
     "param g = 10\n"
     "world {\n  gravity (0, -g)\n  wall floor (0, 1) at 0\n  material restitution 0.8 friction 0\n"
     "  body ball at (0, 5.5) velocity (1, 0)\n}\n"
@@ -27,7 +27,7 @@ std::string summary(const std::string& text) {
 
 TEST(Replay, WritesWhatTheRunWrote) {
   const Shell shell;
-  shell.write("bounce.sim", bounce);
+  shell.write("bounce.sim", bouncing);
   const Result run = shell.run("run bounce.sim --record bounce.run -o a.csv --events ae.csv --plot a.svg --set g=9");
   ASSERT_EQ(run.exit, 0) << run.err;
   shell.write("bounce.sim", "nothing");  // the recording has the model in it
@@ -43,7 +43,7 @@ TEST(Replay, WritesWhatTheRunWrote) {
 
 TEST(Replay, GoesOnWithWhatWasInterrupted) {
   const Shell shell;
-  shell.write("bounce.sim", bounce);
+  shell.write("bounce.sim", bouncing);
   shell.write("long.sim",
               "world {\n  gravity (0, -10)\n  wall floor (0, 1) at 0\n  material restitution 1\n"
               "  body ball at (0, 5.5)\n}\nrun 0..1e9 output 1e3\n");
@@ -71,7 +71,7 @@ TEST(Replay, GoesOnWithWhatWasInterrupted) {
 
 TEST(Replay, SaysWhatIsWrong) {
   const Shell shell;
-  shell.write("bounce.sim", bounce);
+  shell.write("bounce.sim", bouncing);
   shell.write("decay.sim", "x' = -x\nx(0) = 1\nrun 0..1\n");
   ASSERT_EQ(shell.run("run bounce.sim --record bounce.run --snapshots 0").exit, 0);
   std::string wrong = shell.read("bounce.run");
