@@ -82,8 +82,8 @@ class ContactMatrix {
   }
 
  private:
-  /// So few rows are not worth an analysis of where they meet.
-  static constexpr std::size_t greatest_dense = 24;
+  /// So few rows are solved sooner as a dense matrix: measured of square packings, both take as long at 55 rows.
+  static constexpr std::size_t greatest_dense = 48;
   using Bodies = std::array<std::uint32_t, 2>;
 
   static Bodies bodies_of(const ContactDirection<Real, Dim>& direction) {
