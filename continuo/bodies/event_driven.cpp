@@ -197,8 +197,9 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   }
   /// Whether its last collision was at this instant, as far as that can be told under gravity.
   bool is_at_once(const Plan<Real, Dim>& plan) const {
-    return plan.last_collision == flights_.now || (is_heavy() && flights_.now - plan.last_collision < contact_time_);
+    return plan.last_collision == flights_.now || (is_heavy() && is_soon(plan));
   }
+  bool is_soon(const Plan<Real, Dim>& plan) const { return flights_.now - plan.last_collision < contact_time_; }
   static bool loses(const Material<Real>& material) {
     return material.restitution < Real(1) || material.friction > Real(0);
   }
@@ -249,7 +250,8 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     a.spin = b.spin = {};
   }
 
-  bool is_held(std::uint32_t i) const { return flights_.now - flights_.plans[i].last_collision < contact_time_; }
+  /// Whether it keeps its energy, lest it collide faster and faster without end; under gravity held contacts end that.
+  bool is_held(std::uint32_t i) const { return !is_heavy() && is_soon(flights_.plans[i]); }
   void bring(std::uint32_t i) {
     flights_.move_to_now(i);
     turn(i);
