@@ -41,14 +41,15 @@ class ContactList {
 
   ContactBlocks blocks;
 
+  /// Whether there are contacts that are neither within a block nor across the end of one.
+  bool has_rest() const {
+    const auto& first = between_movers.groups[blocks.rest()].first;
+    return first.front() < first.back();
+  }
   /// act(kind, packs, group) for the contacts of a group of those between bodies that move, see contact_blocks.hpp.
   template <class Act>
   void in_group(std::size_t group, Act&& act) {
     act_on<ContactKind::between_movers>(between_movers, group, act);
-  }
-  bool has_rest() const {
-    const auto& first = between_movers.groups[blocks.rest()].first;
-    return first.front() < first.back();
   }
   /// The same for those that only a block's own bodies feel: with fixed ones and walls. Walls last, they yield least.
   template <class Act>

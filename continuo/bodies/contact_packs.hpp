@@ -35,6 +35,7 @@ struct RarePack {
   Spin<L, Dim> rolling_impulse{};
 };
 
+/// What the packs of a step hand on to those of the next.
 template <class Real, int Dim>
 struct PackedImpulses {
   LargeArray<PackImpulses<Real, Dim>> impulses{};
