@@ -41,8 +41,7 @@ std::string judge_slopes(LeastSquares& least, const LeastSquaresOptions& options
     if (after <= most_change * before && before <= most_change * after) continue;
     return fmt::format(
         "the motion is no smooth function of {}: over the width of its interval it changes at another rate than at "
-        "{:g}, "
-        "so that no interval is honest; a stretch of the data with fewer impacts may have one",
+        "{:g}, so that no interval is honest; a stretch of the data with fewer impacts may have one",
         names[u], result.p[u]);
   }
   wide.starts_done = result.starts_done, wide.starts_agreeing = result.starts_agreeing;
