@@ -17,6 +17,7 @@
 #include <string>
 #include <thread>
 
+#include <tests/fuzz/recorded_models.hpp>
 #include <tests/fuzz/right_sums.hpp>
 
 #include <continuo/bodies/recording.hpp>
@@ -42,31 +43,6 @@ void play(std::span<const std::byte> bytes) {
       std::abort();
 }
 
-/// By all that a run remembers: an exact world and a fast one, with equations and events.
-constexpr std::array<const char*, 3> models{R"(
-world { gravity (0, -10); wall floor (0, 1) at 0; material restitution 0.7 friction 0.2
-  body ball at (0, 2) velocity (1, 0); body other at (3, 1); spring ball to other stiffness 3; container box (-4, 0) to (4, 9) }
-when ball.y falls through 1 { mark "low" }
-run 0..1 output 0.1
-)",
-                                            R"(
-world { gravity (0, -10); wall floor (0, 1) at 0; body ball at (0, 2) velocity (1, 0); body other at (3, 1)
-  mode fast step 1/60 }
-force on ball = (-2*(ball.x - u), 0)
-u' = ball.x - u
-u(0) = 1
-every 0.3 { ball.x' := ball.x' + 0.01 }
-check ball.y(0.5) = 1 within 100
-check energy drift < 1000
-run 0..1 output 0.1
-)",
-                                            R"(
-world { dimension 3; body ball at (0, 0, 2) velocity (1, 0, 0); wall (0, 0, 1) at 0 }
-force on ball = (-u*ball.x, 0, -1)
-u'' = -u
-u(0) = 1; u'(0) = 0
-run 0..1 output log 3 per decade from 0.01
-)"};
 std::shared_ptr<const model::ModelProgram> program_of(const char* text) {
   const model::Source source("scene.sim", text);
   model::Checked checked = check(model::parse(source).model, source);
@@ -116,7 +92,8 @@ void tell_and_go_on(const std::shared_ptr<const model::ModelProgram>& program, c
 }
 
 void go_on(std::span<const std::byte> bytes) {
-  static const std::array programs{program_of(models[0]), program_of(models[1]), program_of(models[2])};
+  static const std::array programs{program_of(recorded_models[0].text), program_of(recorded_models[1].text),
+                                   program_of(recorded_models[2].text)};
   const RunRecording recording = RunRecording::read(bytes);
   if (!recording.error.empty()) return check_refusal(recording.error);
   const auto fits = [&](const auto& program) {

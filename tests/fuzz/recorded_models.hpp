@@ -1,0 +1,40 @@
+// The models whose recorded runs the fuzzer of recordings starts from.
+#pragma once
+#include <array>
+
+namespace continuo {
+
+struct RecordedModel {
+  const char* name;  // of the file with its run
+  const char* text;
+};
+
+/// By all that a run remembers: an exact world and a fast one, with equations and events.
+inline constexpr std::array<RecordedModel, 3> recorded_models{{
+    {"exact", R"(
+world { gravity (0, -10); wall floor (0, 1) at 0; material restitution 0.7 friction 0.2
+  body ball at (0, 2) velocity (1, 0); body other at (3, 1); spring ball to other stiffness 3; container box (-4, 0) to (4, 9) }
+when ball.y falls through 1 { mark "low" }
+run 0..1 output 0.1
+)"},
+    {"fast_with_equations", R"(
+world { gravity (0, -10); wall floor (0, 1) at 0; body ball at (0, 2) velocity (1, 0); body other at (3, 1)
+  mode fast step 1/60 }
+force on ball = (-2*(ball.x - u), 0)
+u' = ball.x - u
+u(0) = 1
+every 0.3 { ball.x' := ball.x' + 0.01 }
+check ball.y(0.5) = 1 within 100
+check energy drift < 1000
+run 0..1 output 0.1
+)"},
+    {"exact_with_equations", R"(
+world { dimension 3; body ball at (0, 0, 2) velocity (1, 0, 0); wall (0, 0, 1) at 0 }
+force on ball = (-u*ball.x, 0, -1)
+u'' = -u
+u(0) = 1; u'(0) = 0
+run 0..1 output log 3 per decade from 0.01
+)"},
+}};
+
+}  // namespace continuo
