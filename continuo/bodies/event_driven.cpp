@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/bodies/cluster.hpp>
 #include <continuo/bodies/contact_time.hpp>
 #include <continuo/bodies/event_queue.hpp>
 #include <continuo/bodies/exact_engine.hpp>
@@ -11,6 +12,7 @@
 #include <continuo/bodies/flights.hpp>
 #include <continuo/bodies/foresight.hpp>
 #include <continuo/bodies/impulse.hpp>
+#include <continuo/bodies/pile_up.hpp>
 #include <continuo/bodies/resting.hpp>
 
 namespace continuo {
@@ -29,6 +31,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
         options_(options),
         contact_time_(options.contact_time ? *options.contact_time : usual_contact_time(world)),
         flights_(world) {
+    flights_.slow = slow();
     sort();
     for (std::uint32_t i = 0; i < flights_.paths.size(); ++i) predict(i);
   }
@@ -61,35 +64,19 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   }
 
   void save(ByteWriter& writer) override {
-    writer(contact_time_), writer(flights_.grid.edge());
-    for (const std::uint32_t k : places()) {
-      Flight<Real, Dim> flight = flights_.flight(k);
-      if (flight.plan.partner < first_wall) flight.plan.partner = flights_.plans[flight.plan.partner].number;
-      transfer_flight(writer, flight);
-    }
+    writer(contact_time_);
+    save_flights(writer, flights_);
   }
   void load(ByteReader& reader) override {
-    Real edge{};
-    reader(contact_time_), reader(edge);
-    reader.expect(contact_time_ >= Real(0) && edge > Real(0) && edge < std::numeric_limits<Real>::infinity(),
-                  "a contact time or cells of no size");
-    const std::vector<std::uint32_t> place = places();
-    for (std::uint32_t i = 0; i < place.size() && reader.ok(); ++i) {
-      Flight<Real, Dim> flight = flights_.flight(place[i]);
-      transfer_flight(reader, flight);
-      flights_.set_flight(place[i], flight);
-      if (const char* fault = fault_of_flight(world_, flight)) reader.fail("body " + std::to_string(i) + ": " + fault);
-    }
-    if (!reader.ok()) return;
-    for (auto& plan : flights_.plans)
-      if (plan.partner < first_wall) plan.partner = place[plan.partner];
-    flights_.grid = CellGrid<Real, Dim>(edge, place.size());
-    sort();
+    reader(contact_time_);
+    reader.expect(contact_time_ >= Real(0), "a contact time below 0");
+    flights_.slow = slow();
+    if (load_flights(reader, flights_)) sort();
   }
 
   void let_go() override {
     if (!contacts.is_kept()) return;
-    for (const std::uint32_t k : places())
+    for (const std::uint32_t k : flights_.places())
       if (flights_.acts[k] == Act::rests) note_end(k);
   }
 
@@ -98,11 +85,10 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   using ExactEngine<Real, Dim>::hands_over;
 
  private:
-  /// Where the body of each number is.
-  std::vector<std::uint32_t> places() const {
-    std::vector<std::uint32_t> place(flights_.plans.size());
-    for (std::uint32_t k = 0; k < place.size(); ++k) place[flights_.plans[k].number] = k;
-    return place;
+  /// By the usual contact time, the greatest speed at the start.
+  Real slow() const {
+    if (is_heavy() || world_.size() == 0 || !(contact_time_ > Real(0))) return Real(0);
+    return Real(1e-5) * std::ranges::min(world_.radius) / contact_time_;
   }
   /// Nothing but places in memory changes.
   void sort() {
@@ -186,34 +172,12 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     schedule(i);
   }
 
-  // Squeezed between others, or wedged in by friction, a body may collide at one instant without end. One that loses
-  // energy and did so more often than free ones bounces no more, and then moves no more; gravity calls for held
-  // contacts.
-  static constexpr std::uint8_t many_at_once = 64, most_at_once = 128;
-
-  std::uint8_t at_once(std::uint32_t i) const {
-    const Plan<Real, Dim>& plan = flights_.plans[i];
-    return is_at_once(plan) ? plan.at_once : std::uint8_t{0};
-  }
-  /// Whether its last collision was at this instant, as far as that can be told under gravity.
-  bool is_at_once(const Plan<Real, Dim>& plan) const {
-    return plan.last_collision == flights_.now || (is_heavy() && is_soon(plan));
-  }
-  bool is_soon(const Plan<Real, Dim>& plan) const { return flights_.now - plan.last_collision < contact_time_; }
-  static bool loses(const Material<Real>& material) {
-    return material.restitution < Real(1) || material.friction > Real(0);
-  }
-  Material<Real> at_this_instant(Material<Real> material, std::uint32_t i, std::uint32_t j) const {
-    const bool is_squeezed = loses(material) && std::max(at_once(i), at_once(j)) >= many_at_once;
-    if (is_squeezed) {
-      material.restitution = Real(0);
-    } else if (is_held(i) || is_held(j)) {
-      material.restitution = Real(1);
-    }
-    return material;
+  PileUp<Real, Dim> pile_up() const { return {is_heavy(), contact_time_}; }
+  bool is_piled(const Material<Real>& material, std::uint32_t i) const {
+    return pile_up().is_piled(material, pile_up().in_a_row(flights_.plans[i], flights_.now));
   }
   bool is_caught(const Material<Real>& material, std::uint32_t i) const {
-    return loses(material) && at_once(i) >= most_at_once;
+    return pile_up().is_caught(material, flights_.plans[i], flights_.now);
   }
   bool is_heavy() const { return world_.gravity != V{}; }
   /// It lies where it is, carried by all round it, until something hits it.
@@ -250,8 +214,6 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     a.spin = b.spin = {};
   }
 
-  /// Whether it keeps its energy, lest it collide faster and faster without end; under gravity held contacts end that.
-  bool is_held(std::uint32_t i) const { return !is_heavy() && is_soon(flights_.plans[i]); }
   void bring(std::uint32_t i) {
     flights_.move_to_now(i);
     turn(i);
@@ -277,19 +239,21 @@ class EventDriven final : public ExactEngine<Real, Dim> {
 
   void hit(std::uint32_t i, std::uint32_t j) {
     ++statistics.collisions;
-    const Material<Real> own = combined(world_.meeting, flights_.material(i), flights_.material(j));
-    const bool rubs = own.friction > Real(0);
+    Material<Real> material = combined(world_.meeting, flights_.material(i), flights_.material(j));
+    const bool caught = is_caught(material, i) || is_caught(material, j),
+               piled = is_piled(material, i) || is_piled(material, j);
+    if (piled && !caught && !is_heavy() && strike_cluster(i, j)) return;
+    if (piled) material.restitution = Real(0);
+    const bool rubs = material.friction > Real(0);
     bring(i, rubs);
     bring(j, rubs);
     const Path<Real, Dim>&a = flights_.paths[i], &b = flights_.paths[j];
-    const Material<Real> material = at_this_instant(own, i, j);
     const V apart = b.x - a.x;
     const Real distance = length(apart);
     V normal = distance > Real(0) ? apart * (1 / distance) : V{};
     if (!(distance > Real(0))) normal[0] = Real(1);
     Real impulse(0);
     if (dot(b.v - a.v, normal) < Real(0)) impulse = collide(mover(i, rubs), mover(j, rubs), normal, material);
-    const bool caught = is_caught(own, i) || is_caught(own, j);
     if (caught && !is_heavy()) {
       stop(i, j);
     } else {
@@ -308,6 +272,26 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     predict(j);
   }
 
+  /// All that touch, through others too, so that none approach afterwards. Whether that changed anything.
+  bool strike_cluster(std::uint32_t i, std::uint32_t j) {
+    const V& v = flights_.paths[i].v;
+    const V rate = i == j ? v : V(flights_.paths[j].v - v);
+    cluster_.gather(flights_, i, Real(length(rate) * contact_time_));
+    for (const std::uint32_t k : cluster_.members()) bring(k);
+    const Real speeds = length(v) + length(flights_.paths[j].v);
+    const Real least = std::numeric_limits<Real>::epsilon() * std::max(speeds, flights_.slow);
+    const std::vector<Real> impulses = cluster_.strike(world_, flights_, least);
+    for (std::size_t k = 0; k < impulses.size(); ++k) {
+      if (!(impulses[k] > Real(0))) continue;
+      const Touching& at = cluster_.pairs()[k];
+      ++(at.with_wall() ? statistics.wall_collisions : statistics.collisions);
+      if (contacts.is_kept()) contacts.add(event_of(world_, at, flights_.now, ContactChange::impact, impulses[k]));
+    }
+    for (const std::uint32_t k : cluster_.struck()) note_collision(k, true);
+    for (const std::uint32_t k : cluster_.struck()) predict(k);
+    return !cluster_.struck().empty();
+  }
+
   /// Whether the two, having collided, would fly for less than the contact time: on a sphere nobody rests on a
   /// parabola.
   bool stays_on(std::uint32_t i, std::uint32_t j, const V& normal) const {
@@ -318,18 +302,19 @@ class EventDriven final : public ExactEngine<Real, Dim> {
 
   void hit_wall(std::uint32_t i, std::uint32_t w) {
     ++statistics.wall_collisions;
-    const Material<Real> own = combined(world_.meeting, flights_.material(i), world_.walls()[w].material);
-    const bool rubs = own.friction > Real(0);
+    Material<Real> material = combined(world_.meeting, flights_.material(i), world_.walls()[w].material);
+    const bool caught = is_caught(material, i), piled = is_piled(material, i);
+    if (piled && !caught && !is_heavy() && strike_cluster(i, i)) return;
+    if (piled) material.restitution = Real(0);
+    const bool rubs = material.friction > Real(0);
     bring(i, rubs);
     const Wall<Real, Dim> wall = facing(world_.walls()[w], flights_.paths[i].x);
-    const Material<Real> material = at_this_instant(own, i, i);
     V no_velocity{};
     S no_spin{};
     const Mover<Real, Dim> of_wall{no_velocity, no_spin, Real(0), Real(0), Real(0)};
     Real impulse(0);
     if (dot(flights_.paths[i].v, wall.normal) < Real(0))
       impulse = collide(mover(i, rubs), of_wall, V(-wall.normal), material);
-    const bool caught = is_caught(own, i);
     note_collision(i);
     if (contacts.is_kept() && impulse > Real(0)) note_wall(i, w, ContactChange::impact, impulse);
     hands_over = caught && is_heavy();
@@ -342,11 +327,10 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   }
 
   /// Its path is another one now; what it lay on it lies on no more, until it touches it again.
-  void note_collision(std::uint32_t i) {
+  void note_collision(std::uint32_t i, bool is_strike = false) {
     Plan<Real, Dim>& plan = flights_.plans[i];
     ++flights_.collisions[i];
-    plan.at_once = is_at_once(plan) ? static_cast<std::uint8_t>(std::min(254, int{plan.at_once}) + 1) : std::uint8_t{0};
-    plan.last_collision = flights_.now;
+    pile_up().count(plan, flights_.now, is_strike);
     if (flights_.acts[i] != Act::rests) return;
     if (contacts.is_kept()) note_end(i);
     flights_.acts[i] = Act::falls;
@@ -381,6 +365,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   Flights<Real, Dim> flights_;
   EventQueue<Real> queue_;
   Foresight<Real, Dim> foresight_;
+  Cluster<Real, Dim> cluster_;
   std::size_t crossings_since_sort_ = 0;
   S no_spin_{};
 };

@@ -15,11 +15,10 @@
 // Several collisions at one instant are resolved one after the other, pairs of lower numbers first, until nobody
 // approaches: Newton's cradle sends out as many as came in.
 //
-// Where restitution is below 1, collisions can pile up without end (inelastic collapse). Without gravity, a body that
-// collides twice within `contact_time` keeps its energy the second time (S. Luding, S. McNamara, Granular Matter 1
-// (1998) 113-128). Under gravity one that would leave a wall for less than that stays on it; one that would leave a
-// body for less than that moves on no parabola: then all go on as under other forces, until for some time no two have
-// lain on each other.
+// Where energy is lost, collisions can pile up without end (inelastic collapse): see pile_up.hpp. Without gravity, all
+// that touch are struck together then. Under gravity a ball that would leave a wall for less than the contact time
+// stays on it; one that would leave a body for less than that moves on no parabola: then all go on as under other
+// forces, until for some time no two have lain on each other.
 #pragma once
 #include <atomic>
 #include <cstddef>

@@ -1,7 +1,10 @@
 // continuo/bodies/flight_bytes.hpp
-// One body's flight as bytes: what is not in the world. Partners are told by number, since places change.
+// Flights as bytes: what is not in the world. Partners are told by number, since places change.
 #pragma once
 #include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/flights.hpp>
@@ -16,7 +19,7 @@ void transfer_flight(Archive& archive, Flight<Real, Dim>& flight) {
   archive(turning.rests_since), archive(plan.acceleration), archive(plan.cell), archive(plan.partner);
   archive(plan.collisions_of_partner), archive(plan.supports), archive(plan.support_count), archive(plan.is_large);
   archive(plan.direction), archive(plan.axis), archive(turning.spin_rate), archive(plan.path_end);
-  archive(turning.spin), archive(turning.spun_since), archive(plan.at_once);
+  archive(turning.spin), archive(turning.spun_since), archive(plan.strikes_at_once), archive(plan.in_a_row);
   auto act_byte = static_cast<std::uint8_t>(act);
   archive(collisions), archive(act_byte);
   if constexpr (Archive::reads) {
@@ -56,6 +59,36 @@ const char* fault_of_flight(const World<Real, Dim>& world, const Flight<Real, Di
   for (std::size_t k = 0; k < plan.support_count; ++k)
     if (plan.supports[k] >= world.walls().size()) return "a support that is no wall";
   return nullptr;
+}
+
+template <class Real, int Dim>
+void save_flights(ByteWriter& writer, const Flights<Real, Dim>& flights) {
+  writer(flights.grid.edge());
+  for (const std::uint32_t k : flights.places()) {
+    Flight<Real, Dim> flight = flights.flight(k);
+    if (flight.plan.partner < first_wall) flight.plan.partner = flights.plans[flight.plan.partner].number;
+    transfer_flight(writer, flight);
+  }
+}
+/// Into flights of the same world, that are to be sorted then. Whether they could be read.
+template <class Real, int Dim>
+bool load_flights(ByteReader& reader, Flights<Real, Dim>& flights) {
+  Real edge{};
+  reader(edge);
+  reader.expect(edge > Real(0) && edge < std::numeric_limits<Real>::infinity(), "cells of no size");
+  const std::vector<std::uint32_t> place = flights.places();
+  for (std::uint32_t i = 0; i < place.size() && reader.ok(); ++i) {
+    Flight<Real, Dim> flight = flights.flight(place[i]);
+    transfer_flight(reader, flight);
+    flights.set_flight(place[i], flight);
+    if (const char* fault = fault_of_flight(flights.world, flight))
+      reader.fail("body " + std::to_string(i) + ": " + fault);
+  }
+  if (!reader.ok()) return false;
+  for (auto& plan : flights.plans)
+    if (plan.partner < first_wall) plan.partner = place[plan.partner];
+  flights.grid = CellGrid<Real, Dim>(edge, place.size());
+  return true;
 }
 
 }  // namespace continuo

@@ -80,7 +80,8 @@ struct alignas(sizeof(Real) * 16) Plan {
   std::uint8_t axis = 0;
   bool is_large = false;
   std::uint8_t support_count = 0;
-  std::uint8_t at_once = 0;  // so many collisions before the last, each at once after the one before; at most 255
+  std::uint8_t strikes_at_once = 0;  // so many with all that touch, at the instant of the last collision
+  std::uint16_t in_a_row = 0;        // so many collisions before the last, each soon after the one before
   std::uint32_t number = 0, material = 0;
   std::array<std::uint32_t, static_cast<std::size_t>(Dim)> supports{};  // the walls it rests on
   Vector<Real, Dim> acceleration{};
@@ -129,6 +130,7 @@ class Flights {
 
   const World<Real, Dim>& world;
   Real now;
+  Real slow{};  // no speed below the last digits of this one counts where two touch
   std::vector<Path<Real, Dim>> paths;
   std::vector<Plan<Real, Dim>> plans;
   std::vector<Turning<Real, Dim>> turnings;
@@ -147,6 +149,12 @@ class Flights {
   }
   /// Bytes that events go through.
   std::size_t memory() const { return paths.size() * (sizeof(Path<Real, Dim>) + sizeof(Plan<Real, Dim>)); }
+  /// Where the body of each number is.
+  std::vector<std::uint32_t> places() const {
+    std::vector<std::uint32_t> place(plans.size());
+    for (std::uint32_t k = 0; k < place.size(); ++k) place[plans[k].number] = k;
+    return place;
+  }
   const Material<Real>& material(std::uint32_t i) const { return materials_[plans[i].material]; }
 
   static void advance(Path<Real, Dim>& path, const V& acceleration, const Real& t) {
@@ -195,16 +203,15 @@ class Flights {
     predict_crossing(i);
     for (std::uint32_t w = 0; w < world.walls().size(); ++w)
       if (acts[i] != Act::rests || !is_support(plan, w)) predict_wall(i, w);
-    std::size_t count = 0;
-    if (plan.is_large) {
-      candidates_.resize(std::max(candidates_.size(), paths.size()));
-      for (std::uint32_t j = 0; j < paths.size(); ++j) candidates_[count++] = j;
-    } else {
-      count = grid.gather_around(plan.cell, candidates_);
-      if (candidates_.size() < count + large.size()) candidates_.resize(count + large.size());
-      for (const std::uint32_t j : large) candidates_[count++] = j;
-    }
+    const std::size_t count = gather_near(i, candidates_);
     predict_pairs(i, count);
+  }
+
+  /// Each that may touch body i, in the order of memory; perhaps itself too.
+  template <class Action>
+  void for_each_near(std::uint32_t i, std::vector<std::uint32_t>& near, Action&& action) const {
+    const std::size_t count = gather_near(i, near);
+    for (std::size_t k = 0; k < count; ++k) action(near[k]);
   }
 
   /// It has come to another cell: only the bodies of those that have come into sight are new.
@@ -224,6 +231,18 @@ class Flights {
   }
 
  private:
+  std::size_t gather_near(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    std::size_t count = 0;
+    if (plans[i].is_large) {
+      near.resize(std::max(near.size(), paths.size()));
+      for (std::uint32_t j = 0; j < paths.size(); ++j) near[count++] = j;
+    } else {
+      count = grid.gather_around(plans[i].cell, near);
+      if (near.size() < count + large.size()) near.resize(count + large.size());
+      for (const std::uint32_t j : large) near[count++] = j;
+    }
+    return count;
+  }
   void take_from_world(std::uint32_t i) {
     Path<Real, Dim>& path = paths[i];
     Plan<Real, Dim>& plan = plans[i];
@@ -266,6 +285,7 @@ class Flights {
     Real pull = dot(wall.normal, plan.acceleration);
     if (wall.thin && along < Real(0)) along = -along, speed = -speed, pull = -pull;
     if (speed >= Real(0) && pull >= Real(0)) return;
+    if (along <= path.radius && pull == Real(0) && is_rounding(Real(-speed), length(path.v))) return;
     const Real wait = time_to_close(Real(along - path.radius), speed, pull);
     if (now + wait < plan.collision_time) {
       plan.collision_time = now + wait;
@@ -289,9 +309,11 @@ class Flights {
     for (std::size_t k = 0; k < straight; ++k) {
       const Path<Real, Dim>& other = paths[candidates_[k]];
       const Real dt = now - other.t;
-      meet(i, candidates_[k],
-           time_to_touch(V(other.x + other.v * dt + world.gravity * (dt * dt / 2) - me.x),
-                         V(other.v + world.gravity * dt - me.v), Real(me.radius + other.radius)));
+      const V apart = other.x + other.v * dt + world.gravity * (dt * dt / 2) - me.x;
+      const V rate = other.v + world.gravity * dt - me.v;
+      const Real wait = time_to_touch(apart, rate, Real(me.radius + other.radius));
+      if (wait > Real(0) || !is_rounding(Real(-dot(apart, rate) / length(apart)), Real(length(me.v) + length(other.v))))
+        meet(i, candidates_[k], wait);
     }
     // How far ahead a meeting on a curved path is looked for depends on what was found before: always in one order.
     curved_.resize(curved);
@@ -307,6 +329,13 @@ class Flights {
     const Real reach = me.radius + other.radius, b = dot(apart, rate), c = squared(apart) - reach * reach;
     const auto overlap = static_cast<unsigned>(c <= Real(0)), hit = static_cast<unsigned>(b * b >= squared(rate) * c);
     return static_cast<unsigned>(b < Real(0)) & (overlap | hit);
+  }
+
+  /// Whether two that touch approach so slowly that their velocities do not tell, or that it is as good as rest: how
+  /// those end that were struck together. They sink into each other by no more than the digits of places that are lost
+  /// on the way.
+  bool is_rounding(const Real& approach, const Real& speeds) const {
+    return approach <= 8 * std::numeric_limits<Real>::epsilon() * std::max(speeds, slow);
   }
 
   void predict_pair(std::uint32_t i, std::uint32_t j) {

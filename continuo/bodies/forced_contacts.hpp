@@ -125,16 +125,7 @@ class ForcedContacts : public ExactEngine<Real, Dim> {
     lasting_ = std::move(now);
   }
   void note(const Touching& at, ContactChange change, const Real& impulse) {
-    if (!contacts.is_kept()) return;
-    const V n = normal_of(world_, at);
-    contacts.add({.change = change,
-                  .a = world_.handle(at.a),
-                  .b = at.with_wall() ? BodyHandle{} : world_.handle(at.b),
-                  .wall = at.wall,
-                  .point = world_.position[at.a] + n * world_.radius[at.a],
-                  .normal = n,
-                  .impulse = impulse,
-                  .time = world_.time});
+    if (contacts.is_kept()) contacts.add(event_of(world_, at, world_.time, change, impulse));
   }
   Mover<Real, Dim> mover(std::uint32_t i) {
     return {world_.velocity[i], world_.spin[i], world_.radius[i], world_.inverse_mass[i], world_.inverse_inertia[i]};

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/queries.hpp>
 #include <continuo/bodies/world.hpp>
 
@@ -53,6 +54,21 @@ template <class Real, int Dim>
 Real approach_of(const World<Real, Dim>& world, const Touching& at) {
   const Vector<Real, Dim> of_b = at.with_wall() ? Vector<Real, Dim>{} : world.velocity[at.b];
   return -dot(Vector<Real, Dim>(of_b - world.velocity[at.a]), normal_of(world, at));
+}
+
+/// What they do to each other, for the log of contacts.
+template <class Real, int Dim>
+ContactEvent<Real, Dim> event_of(const World<Real, Dim>& world, const Touching& at, const Real& time,
+                                 ContactChange change, const Real& impulse) {
+  const Vector<Real, Dim> n = normal_of(world, at);
+  return {.change = change,
+          .a = world.handle(at.a),
+          .b = at.with_wall() ? BodyHandle{} : world.handle(at.b),
+          .wall = at.wall,
+          .point = world.position[at.a] + n * world.radius[at.a],
+          .normal = n,
+          .impulse = impulse,
+          .time = time};
 }
 
 /// In order, all pairs that are less apart than `reach` twice over: that can meet before one has moved by it.
