@@ -5,7 +5,7 @@
 
 #include <continuo/bodies/exact_motion.hpp>
 
-namespace continuo {
+namespace continuo::at_one_instant_test {
 namespace {
 
 // A column without restitution stays where it lands: what the floor stops stops what comes behind it. What is left of
@@ -40,4 +40,4 @@ TEST(AtOneInstant, AColumnThatFallsStaysWhereItLands) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::at_one_instant_test

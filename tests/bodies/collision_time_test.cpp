@@ -7,7 +7,7 @@
 
 #include <continuo/bodies/collision_time.hpp>
 
-namespace continuo {
+namespace continuo::collision_time_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -33,4 +33,4 @@ TEST(CollisionTime, LeavesForGoodWherePathsPart) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::collision_time_test

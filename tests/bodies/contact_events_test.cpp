@@ -10,7 +10,7 @@
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
 
-namespace continuo {
+namespace continuo::contact_events_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -137,4 +137,4 @@ TEST(ContactEvents, AreBounded) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::contact_events_test

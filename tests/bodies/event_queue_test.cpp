@@ -12,7 +12,7 @@
 
 #include <continuo/bodies/event_queue.hpp>
 
-namespace continuo {
+namespace continuo::event_queue_test {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
@@ -65,4 +65,4 @@ TEST(EventQueue, OfNobodyHasNoEvent) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::event_queue_test

@@ -11,7 +11,7 @@
 
 #include <continuo/bodies/exact_motion.hpp>
 
-namespace continuo {
+namespace continuo::exact_motion_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -339,4 +339,4 @@ TEST(ExactMotion, SaysWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::exact_motion_test

@@ -12,7 +12,7 @@
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
 
-namespace continuo {
+namespace continuo::fast_motion_test {
 namespace {
 
 const Material<double> elastic{.restitution = 1, .friction = 0};
@@ -395,4 +395,4 @@ TEST(FastMotion, SaysWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::fast_motion_test

@@ -8,7 +8,7 @@
 
 #include <continuo/bodies/snapshot.hpp>
 
-namespace continuo {
+namespace continuo::forced_flight_test {
 namespace {
 
 const Material<double> elastic{.restitution = 1, .friction = 0};
@@ -109,4 +109,4 @@ TEST(ForcedFlight, GoesOnFromASnapshotToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::forced_flight_test

@@ -8,7 +8,7 @@
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
-namespace continuo {
+namespace continuo::held_contacts_test {
 namespace {
 
 const Material<double> smooth{.restitution = 0, .friction = 0};
@@ -217,4 +217,4 @@ TEST(HeldContacts, GoOnFromASnapshot) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::held_contacts_test

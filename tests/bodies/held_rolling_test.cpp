@@ -8,7 +8,7 @@
 #include "round.hpp"
 #include <continuo/bodies/exact_motion.hpp>
 
-namespace continuo {
+namespace continuo::held_rolling_test {
 namespace {
 
 /// Forces that are zero, but not known to be.
@@ -155,4 +155,4 @@ TEST(HeldContacts, WheelsInGearAreHeldBackByRollingResistance) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::held_rolling_test

@@ -8,7 +8,7 @@
 
 #include <continuo/bodies/fast_motion.hpp>
 
-namespace continuo {
+namespace continuo::integrator_test {
 namespace {
 
 /// Two bodies of mass 1 and 3 on a spring of stiffness 3: the distance swings with omega^2 = 3 (1/1 + 1/3) = 4.
@@ -132,4 +132,4 @@ TEST(ForceIntegrator, FollowsParabolas) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::integrator_test

@@ -8,7 +8,7 @@
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
 
-namespace continuo {
+namespace continuo::materials_test {
 namespace {
 
 constexpr double g = 9.81;
@@ -130,4 +130,4 @@ TEST(Materials, ADiscRollsByTheRuleOfItsWorld) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::materials_test

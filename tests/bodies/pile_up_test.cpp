@@ -11,7 +11,7 @@
 
 #include <continuo/bodies/exact_motion.hpp>
 
-namespace continuo {
+namespace continuo::pile_up_test {
 namespace {
 
 /// One ball comes in at speed 1, to `count` - 1 others that are so far apart, the last of which leaves.
@@ -162,4 +162,4 @@ TEST(PileUp, AClumpThatCollapsesKeepsItsMomenta) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::pile_up_test

@@ -10,7 +10,7 @@
 
 #include <continuo/bodies/queries.hpp>
 
-namespace continuo {
+namespace continuo::queries_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
@@ -217,4 +217,4 @@ TEST(Queries, AThinWallHasTwoSides) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::queries_test

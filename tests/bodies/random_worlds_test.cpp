@@ -14,7 +14,7 @@
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/queries.hpp>
 
-namespace continuo {
+namespace continuo::random_worlds_test {
 namespace {
 
 /// Numbers of all sizes, and now and then one that is none.
@@ -170,4 +170,4 @@ TEST(RandomWorlds, HugeCrowd) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::random_worlds_test

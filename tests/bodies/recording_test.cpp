@@ -9,7 +9,7 @@
 
 #include <continuo/bodies/recording.hpp>
 
-namespace continuo {
+namespace continuo::recording_test {
 namespace {
 
 Bytes bytes_of(const std::string& text) {
@@ -84,4 +84,4 @@ TEST(Recording, CorruptBytesAreTold) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::recording_test

@@ -13,7 +13,7 @@
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
-namespace continuo {
+namespace continuo::resting_heaps_test {
 namespace {
 
 template <int Dim>
@@ -206,4 +206,4 @@ TEST(RestingHeaps, GoOnFromASnapshotAndTellWhoTouches) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::resting_heaps_test

@@ -12,7 +12,7 @@
 #include <continuo/methods/dop853.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::rolling_test {
 namespace {
 
 constexpr double g = 10, mu = 0.2, r = 0.5;
@@ -221,4 +221,4 @@ TEST(RollingInSpace, PlacesDoNotDependOnHowOftenOneLooks) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::rolling_test

@@ -10,7 +10,7 @@
 
 #include <continuo/bodies/short_lists.hpp>
 
-namespace continuo {
+namespace continuo::short_lists_test {
 namespace {
 
 TEST(ShortLists, HoldWhatWasInsertedAndNotRemoved) {
@@ -51,4 +51,4 @@ TEST(ShortLists, HoldWhatWasInsertedAndNotRemoved) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::short_lists_test

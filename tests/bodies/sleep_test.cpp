@@ -7,7 +7,7 @@
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
-namespace continuo {
+namespace continuo::sleep_test {
 namespace {
 
 const FastOptions<double> with_sleep{.sleep_after = 0.5};
@@ -136,4 +136,4 @@ TEST(Sleep, RemovalWakes) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::sleep_test

@@ -12,7 +12,7 @@
 #include <continuo/bodies/recording.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
-namespace continuo {
+namespace continuo::snapshot_test {
 namespace {
 
 /// Balls of several sizes and materials over a floor between walls, some fixed, some removed again, with groups.
@@ -200,4 +200,4 @@ TEST(Snapshot, TheFuzzersInputsAreOfThisVersion) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::snapshot_test

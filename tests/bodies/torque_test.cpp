@@ -9,7 +9,7 @@
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
 
-namespace continuo {
+namespace continuo::torque_test {
 namespace {
 
 /// A disc of moment of inertia 1 (mass 2, radius 1) held by a torsion spring of stiffness 4, turned by 0.5: it swings
@@ -93,4 +93,4 @@ TEST(Torque, DrivesABallAlongAFloor) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::torque_test

@@ -8,7 +8,7 @@
 
 #include <continuo/bodies/wavefront.hpp>
 
-namespace continuo {
+namespace continuo::wavefront_test {
 namespace {
 
 /// Of each block two halves, of which an act across the end of a block touches the second and the first of the next.
@@ -81,4 +81,4 @@ TEST(Wavefront, StaysWithinAsManyBlocksAsThereAreSweeps) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::wavefront_test

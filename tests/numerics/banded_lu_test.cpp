@@ -12,7 +12,7 @@
 
 #include <continuo/numerics/banded_lu.hpp>
 
-namespace continuo {
+namespace continuo::banded_lu_test {
 namespace {
 
 /// A band that is filled entry by entry, and decomposed as it is: BandedLU decomposes c M - J.
@@ -164,4 +164,4 @@ TEST(BandedLU, SaysWhatIsSingularOrNotFinite) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::banded_lu_test

@@ -9,7 +9,7 @@
 #include <continuo/numerics/bernstein.hpp>
 #include <continuo/numerics/root_bracketing.hpp>
 
-namespace continuo {
+namespace continuo::bernstein_test {
 namespace {
 
 template <class F>
@@ -104,4 +104,4 @@ TEST(RootBracketing, ZeroBelongsToTheNearSideAndTimeMayRunBackwards) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::bernstein_test

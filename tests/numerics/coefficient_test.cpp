@@ -9,7 +9,7 @@
 
 #include <continuo/numerics/coefficient.hpp>
 
-namespace continuo {
+namespace continuo::coefficient_test {
 namespace {
 
 using Wide = boost::multiprecision::cpp_bin_float_100;
@@ -79,4 +79,4 @@ TEST(Coefficient, CompileTimeAndRunTimeAgree) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::coefficient_test

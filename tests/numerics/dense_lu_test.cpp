@@ -12,7 +12,7 @@
 
 #include <continuo/numerics/dense_lu.hpp>
 
-namespace continuo {
+namespace continuo::dense_lu_test {
 namespace {
 
 // The greatest |x_i - known_i| of a random system of n equations.
@@ -178,4 +178,4 @@ TEST(ComplexNumber, ReciprocalAgreesWithTheStandardLibrary) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::dense_lu_test

@@ -9,7 +9,7 @@
 
 #include <continuo/numerics/gmres.hpp>
 
-namespace continuo {
+namespace continuo::gmres_test {
 namespace {
 
 /// Not symmetric, with a spread of eigenvalues from about 1 to n / 4.
@@ -87,4 +87,4 @@ TEST(Gmres, WhatIsNotFiniteIsNotHidden) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::gmres_test

@@ -11,7 +11,7 @@
 #include <continuo/numerics/lanes.hpp>
 #include <continuo/numerics/state.hpp>
 
-namespace continuo {
+namespace continuo::lanes_test {
 namespace {
 
 template <class L>
@@ -145,4 +145,4 @@ TEST(Lanes, AFunctionOfItsScalarTakesThemUnchanged) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::lanes_test

@@ -8,7 +8,7 @@
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/sparse_lu.hpp>
 
-namespace continuo {
+namespace continuo::sparse_lu_test {
 namespace {
 
 constexpr std::size_t size = 30;
@@ -116,4 +116,4 @@ TEST(ColumnGroups, OfATridiagonalMatrixAreThree) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::sparse_lu_test

@@ -27,7 +27,7 @@ std::size_t allocations = 0;  // of the whole program
   std::free(memory);
 }
 
-namespace continuo {
+namespace continuo::allocation_test {
 namespace {
 
 using X = std::array<double, 2>;
@@ -85,4 +85,4 @@ TEST(Allocation, TheEndOfARunNeedsAHandful) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::allocation_test

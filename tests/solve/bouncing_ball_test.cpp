@@ -6,7 +6,7 @@
 #include <continuo/methods/all.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::bouncing_ball_test {
 namespace {
 
 using X = std::array<double, 2>;
@@ -135,4 +135,4 @@ TEST(BouncingBall, BackwardsInTimeItClimbsBack) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::bouncing_ball_test

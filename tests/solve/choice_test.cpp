@@ -10,7 +10,7 @@
 #include <continuo/solve/automatic.hpp>
 #include <continuo/solve/catalogue.hpp>
 
-namespace continuo {
+namespace continuo::choice_test {
 namespace {
 
 TEST(Choice, GoesByToleranceSizeAndKind) {
@@ -62,4 +62,4 @@ TEST(Choice, DampingIsNoAccelerationOfTheKind) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::choice_test

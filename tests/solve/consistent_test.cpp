@@ -8,7 +8,7 @@
 #include <continuo/methods/tsitouras5.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::consistent_test {
 namespace {
 
 using X = std::array<double, 2>;
@@ -71,4 +71,4 @@ TEST(Consistency, ExplicitMethodsDeclineAMass) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::consistent_test

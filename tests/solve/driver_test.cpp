@@ -7,7 +7,7 @@
 #include <continuo/solve/solve.hpp>
 #include <continuo/solve/with_method.hpp>
 
-namespace continuo {
+namespace continuo::driver_test {
 namespace {
 
 using X = std::array<double, 2>;
@@ -146,4 +146,4 @@ TEST(Driver, MethodsAreFoundByName) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::driver_test

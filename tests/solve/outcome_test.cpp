@@ -1,6 +1,8 @@
 // Every way a run can end, with what was computed kept.
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -8,14 +10,16 @@
 #include <continuo/methods/all.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::outcome_test {
 namespace {
 
 using X = std::array<double, 1>;
+/// Any system, of one type, so that the driver is compiled once for a method.
+using Slope = std::function<X(double, const X&)>;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Outcome, BlowUpEndsNearTheSingularityWithTheComponentNamed) {
-  auto f = [](double, const X& x) { return X{x[0] * x[0]}; };  // x = 1/(1 - t)
+  const Slope f = [](double, const X& x) { return X{x[0] * x[0]}; };  // x = 1/(1 - t)
   const auto solution = solve(f, X{1}, {0, 2}, Tsitouras5{});
   EXPECT_TRUE(solution.outcome.ending == Ending::step_too_small || solution.outcome.ending == Ending::not_finite);
   EXPECT_NEAR(solution.outcome.t, 1, 1e-3);
@@ -26,7 +30,7 @@ TEST(Outcome, BlowUpEndsNearTheSingularityWithTheComponentNamed) {
 
 // odeint-v2#79, scipy#11239: NaN is never success and never a hang.
 TEST(Outcome, NotFiniteIsNeverAccepted) {
-  auto f = [](double t, const X&) { return X{t > 0.5 ? nan : 1.0}; };
+  const Slope f = [](double t, const X&) { return X{t > 0.5 ? nan : 1.0}; };
   const auto solution = solve(f, X{0}, {0, 1}, Tsitouras5{});
   EXPECT_EQ(solution.outcome.ending, Ending::not_finite);
   EXPECT_EQ(solution.outcome.component, "x[0]");
@@ -35,21 +39,23 @@ TEST(Outcome, NotFiniteIsNeverAccepted) {
 }
 
 TEST(Outcome, AnInfiniteStageIsRejectedAndTheStepShrunk) {
-  auto f = [](double, const X& x) { return X{x[0] > 0.999 ? std::numeric_limits<double>::infinity() : 1 - x[0]}; };
+  const Slope f = [](double, const X& x) {
+    return X{x[0] > 0.999 ? std::numeric_limits<double>::infinity() : 1 - x[0]};
+  };
   const auto solution = solve(f, X{0}, {0, 5}, Tsitouras5{}, {.first_step = 5});
   EXPECT_EQ(solution.outcome.ending, Ending::reached_end);
   EXPECT_NEAR(solution.final_state()[0], 1 - std::exp(-5), 1e-5);
 }
 
 TEST(Outcome, FixedStepsEndAtTheFirstOverflow) {
-  auto f = [](double, const X& x) { return X{x[0] * x[0]}; };
+  const Slope f = [](double, const X& x) { return X{x[0] * x[0]}; };
   const auto solution = solve(f, X{1}, {0, 10}, Rk4{}, {.step = 0.1});
   EXPECT_EQ(solution.outcome.ending, Ending::not_finite);
   EXPECT_TRUE(std::isfinite(solution.final_state()[0]));
 }
 
 TEST(Outcome, InputThatIsNotFiniteIsRefused) {
-  auto f = [](double, const X& x) { return x; };
+  const Slope f = [](double, const X& x) { return x; };
   EXPECT_EQ(solve(f, X{nan}, {0, 1}, Tsitouras5{}).outcome.ending, Ending::invalid_input);
   EXPECT_EQ(solve(f, X{1}, {0, nan}, Tsitouras5{}).outcome.ending, Ending::invalid_input);
   EXPECT_EQ(solve(f, X{1}, {0, 1}, Rk4{}).outcome.ending, Ending::invalid_input);
@@ -58,14 +64,14 @@ TEST(Outcome, InputThatIsNotFiniteIsRefused) {
 }
 
 TEST(Outcome, FThatIsNotFiniteAtTheStartSaysSo) {
-  auto f = [](double, const X& x) { return X{std::log(-x[0])}; };
+  const Slope f = [](double, const X& x) { return X{std::log(-x[0])}; };
   const auto solution = solve(f, X{1}, {0, 1}, Tsitouras5{});
   EXPECT_EQ(solution.outcome.ending, Ending::not_finite);
   EXPECT_EQ(solution.outcome.t, 0);
 }
 
 TEST(Outcome, TheStepLimitHolds) {
-  auto f = [](double t, const X&) { return X{std::cos(t)}; };
+  const Slope f = [](double t, const X&) { return X{std::cos(t)}; };
   const auto solution = solve(f, X{0}, {0, 1e6}, Tsitouras5{}, {.max_steps = 100});
   EXPECT_EQ(solution.outcome.ending, Ending::too_many_steps);
   EXPECT_EQ(solution.statistics.steps + solution.statistics.rejected, 100U);
@@ -74,7 +80,7 @@ TEST(Outcome, TheStepLimitHolds) {
 
 TEST(Outcome, AnInterruptKeepsWhatWasComputed) {
   std::atomic<bool> interrupt = false;
-  auto f = [&interrupt](double t, const X&) {
+  const Slope f = [&interrupt](double t, const X&) {
     if (t > 3) interrupt = true;
     return X{std::cos(t)};
   };
@@ -98,7 +104,7 @@ TEST(Outcome, NoiseEndsInsteadOfLoopingForEver) {
 
 // DifferentialEquations.jl#924: a crumb before the end is not an underflow.
 TEST(Outcome, AnIntervalOfNoLengthAndACrumbAreFine) {
-  auto f = [](double, const X& x) { return x; };
+  const Slope f = [](double, const X& x) { return x; };
   EXPECT_EQ(solve(f, X{1}, {1, 1}, Tsitouras5{}).outcome.ending, Ending::reached_end);
   const auto crumb = solve(f, X{1}, {1, std::nextafter(1.0, 2.0)}, Tsitouras5{});
   EXPECT_EQ(crumb.outcome.ending, Ending::reached_end);
@@ -117,4 +123,4 @@ TEST(Outcome, DescribesItselfInOneSentence) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::outcome_test

@@ -15,7 +15,7 @@
 #include <continuo/solve/solve.hpp>
 #include <continuo/system/second_order.hpp>
 
-namespace continuo {
+namespace continuo::stiffness_test {
 namespace {
 
 TEST(Stiffness, TheWatchFindsTheDominantEigenvalue) {
@@ -121,4 +121,4 @@ TEST(Stiffness, AnOscillationIsNotStiff) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::stiffness_test

@@ -8,7 +8,7 @@
 #include "problems.hpp"
 #include <continuo/studies/boundary_value.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::boundary_value_test {
 namespace {
 
 using X = std::vector<double>;
@@ -193,4 +193,4 @@ TEST(BoundaryValue, TooFineAMeshKeepsTheLastSolution) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::boundary_value_test

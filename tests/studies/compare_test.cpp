@@ -6,7 +6,7 @@
 #include "problems.hpp"
 #include <continuo/studies/compare.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::compare_test {
 namespace {
 
 constexpr const char* decay = "x' = -x\nx(0) = 1\nrun 0..1 output 0.1\n";
@@ -67,4 +67,4 @@ TEST(Compare, WithoutAReferenceThereAreNoContenders) {  // x = 1/(1 - t) does no
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::compare_test

@@ -7,7 +7,7 @@
 #include "problems.hpp"
 #include <continuo/studies/continuation.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::continuation_test {
 namespace {
 
 TEST(Continuation, LorenzFromTheSide) {  // Hopf at rho = 24.7368..., and where it began, at 1, the pitchfork
@@ -65,4 +65,4 @@ TEST(Continuation, WithoutAStartItSaysSo) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::continuation_test

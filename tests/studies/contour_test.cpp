@@ -7,7 +7,7 @@
 
 #include <continuo/studies/contour.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::contour_test {
 namespace {
 
 constexpr std::size_t points = 201;
@@ -64,4 +64,4 @@ TEST(Contour, WhatIsNoNumberIsLeftOut) {  // the left half
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::contour_test

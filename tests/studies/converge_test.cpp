@@ -15,7 +15,7 @@
 #include <continuo/studies/converge.hpp>
 #include <continuo/studies/difference_schemes.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::converge_test {
 namespace {
 
 /// A planet from its perihelion at (1, 0) with the velocity sqrt(1 + e): its start has no rounding for the values of e
@@ -199,4 +199,4 @@ TEST(Converge, AnInterruptKeepsWhatIsThere) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::converge_test

@@ -7,7 +7,7 @@
 #include "problems.hpp"
 #include <continuo/studies/equilibrium.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::equilibrium_test {
 namespace {
 
 TEST(Equilibrium, LorenzRestsAtThreePoints) {
@@ -148,4 +148,4 @@ TEST(Modes, MassSpringDamper) {  // lambda = -c/2m +- i sqrt(k/m - (c/2m)^2)
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::equilibrium_test

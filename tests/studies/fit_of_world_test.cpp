@@ -15,7 +15,7 @@
 #include <continuo/studies/sensitivity.hpp>
 #include <continuo/worlds/world_along.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::fit_of_world_test {
 namespace {
 
 using testing::HasSubstr;
@@ -222,4 +222,4 @@ TEST(FitOfWorld, RefusesIntervalsInChaos) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::fit_of_world_test

@@ -10,7 +10,7 @@
 #include "problems.hpp"
 #include <continuo/studies/fit.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::fit_test {
 namespace {
 
 // x'' + c x' + k x = 0 from x = 1 at rest: x = exp(-d t) (cos w t + d/w sin w t), d = c/2, w^2 = k - d^2.
@@ -197,4 +197,4 @@ TEST(Fit, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::fit_test

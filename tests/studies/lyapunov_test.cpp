@@ -6,7 +6,7 @@
 #include "problems.hpp"
 #include <continuo/studies/lyapunov.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::lyapunov_test {
 namespace {
 
 TEST(Lyapunov, OfALinearSystemTheyAreTheRealParts) {  // eigenvalues -0.1 +- 2i and -3
@@ -38,4 +38,4 @@ TEST(Lyapunov, Lorenz) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::lyapunov_test

@@ -4,7 +4,7 @@
 
 #include <continuo/studies/measurements.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::measurements_test {
 namespace {
 
 TEST(Measurements, AreReadWithGapsAndInAnyOrder) {
@@ -38,4 +38,4 @@ TEST(Measurements, SayFileAndLineOfWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::measurements_test

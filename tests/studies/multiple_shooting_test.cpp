@@ -7,7 +7,7 @@
 #include "problems.hpp"
 #include <continuo/studies/multiple_shooting.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::multiple_shooting_test {
 namespace {
 
 using X = std::vector<double>;
@@ -55,4 +55,4 @@ TEST(MultipleShooting, WithoutASolutionItSaysSo) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::multiple_shooting_test

@@ -9,7 +9,7 @@
 
 #include <continuo/studies/orbit_continuation.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::orbit_continuation_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -246,4 +246,4 @@ TEST(OrbitContinuation, WhatIsInterruptedKeepsWhatItHas) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::orbit_continuation_test

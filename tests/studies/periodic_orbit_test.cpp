@@ -6,7 +6,7 @@
 
 #include <continuo/studies/periodic_orbit.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::periodic_orbit_test {
 namespace {
 
 ParametricSystem van_der_pol(double mu) {
@@ -92,4 +92,4 @@ TEST(PeriodicOrbit, WhatHasNone) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::periodic_orbit_test

@@ -5,7 +5,7 @@
 
 #include <continuo/studies/phase_portrait.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::phase_portrait_test {
 namespace {
 
 ParametricSystem pendulum() {
@@ -56,4 +56,4 @@ TEST(PhasePortrait, MotionsEndWhereTheyLeave) {  // x' = x, y' = 0
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::phase_portrait_test

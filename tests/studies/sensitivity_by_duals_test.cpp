@@ -5,7 +5,7 @@
 
 #include <continuo/studies/sensitivity_by_duals.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::sensitivity_by_duals_test {
 namespace {
 
 TEST(SensitivityByDuals, OfDecayIsThatOfTheClosedForm) {  // x = q exp(-p t): dx/dp = -t x, dx/dq = x/q
@@ -45,4 +45,4 @@ TEST(SensitivityByDuals, OfABallAfterTenBouncesIsThatOfTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::sensitivity_by_duals_test

@@ -15,7 +15,7 @@
 #include <continuo/studies/boundary_of_model.hpp>
 #include <continuo/studies/sensitivity.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::sensitivity_gallery_test {
 namespace {
 
 /// Ends before chaos or many orbits have made a difference of 1e-3 in a parameter a large one, and large models short
@@ -142,4 +142,4 @@ TEST(SensitivityGallery, EveryModelAgreesWithDifferences) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::sensitivity_gallery_test

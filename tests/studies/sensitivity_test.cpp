@@ -7,7 +7,7 @@
 #include "problems.hpp"
 #include <continuo/studies/sensitivity.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::sensitivity_test {
 namespace {
 
 Influence parameter(const model::ModelProgram& program, const std::string& name) {
@@ -216,4 +216,4 @@ TEST(Sensitivity, HasTheUnitsOfARatio) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::sensitivity_test

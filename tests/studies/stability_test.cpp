@@ -15,7 +15,7 @@
 #include <continuo/studies/of_model.hpp>
 #include <continuo/studies/stability.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::stability_test {
 namespace {
 
 // Limits end where a factor exceeds neutral_factor, 1 + 1e-9: beyond the true one by 1e-9 over the slope of |R| there,
@@ -165,4 +165,4 @@ TEST(Stability, TheLargestStepOfEulerIsThatOfTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::stability_test

@@ -4,7 +4,7 @@
 
 #include <continuo/studies/student_t.hpp>
 
-namespace continuo::studies {
+namespace continuo::studies::student_t_test {
 namespace {
 
 TEST(StudentT, QuantilesAreThoseOfTheTables) {  // to the digits that tables print
@@ -21,4 +21,4 @@ TEST(StudentT, IsCauchysDistributionForOneDegree) {  // 1/2 + atan(t)/pi
 }
 
 }  // namespace
-}  // namespace continuo::studies
+}  // namespace continuo::studies::student_t_test

@@ -15,7 +15,7 @@
 #include <continuo/system/check_jacobian.hpp>
 #include <continuo/system/differentiable.hpp>
 
-namespace continuo {
+namespace continuo::check_jacobian_test {
 namespace {
 
 using Pair = std::array<double, 2>;
@@ -225,4 +225,4 @@ TEST(CheckJacobian, LongDoubleSeesSmallerSlips) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::check_jacobian_test

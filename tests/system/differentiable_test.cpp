@@ -15,7 +15,7 @@
 #include <continuo/system/differentiable.hpp>
 #include <continuo/system/jacobian.hpp>
 
-namespace continuo {
+namespace continuo::differentiable_test {
 namespace {
 
 /// A state near x none of whose components is special.
@@ -135,4 +135,4 @@ TEST(Differentiable, KeepsWhatTheSystemSaysOfItself) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::differentiable_test

@@ -8,7 +8,7 @@
 
 #include <continuo/system/second_order.hpp>
 
-namespace continuo {
+namespace continuo::second_order_test {
 namespace {
 
 template <class System, class X>
@@ -64,4 +64,4 @@ TEST(SecondOrder, OneThatDoesNotSayDependsOnItsVelocities) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::second_order_test

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <tests/worlds/scene.hpp>
 
-namespace continuo::worlds {
+namespace continuo::worlds::looks_test {
 namespace {
 
 std::vector<double> times_of(const model::Run& run, const std::string& mark) {
@@ -69,4 +69,4 @@ run 0..5
 }
 
 }  // namespace
-}  // namespace continuo::worlds
+}  // namespace continuo::worlds::looks_test

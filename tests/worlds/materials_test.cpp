@@ -6,7 +6,7 @@
 
 #include <continuo/model/describe.hpp>
 
-namespace continuo::worlds {
+namespace continuo::worlds::materials_test {
 namespace {
 
 /// A ball of e = 0.8 falls by 5 on a floor of e = 0.2; a disc of mu = 0.4 slips on it, of mu = 0.1.
@@ -76,4 +76,4 @@ TEST(Materials, AreToldByTheDescription) {
 }
 
 }  // namespace
-}  // namespace continuo::worlds
+}  // namespace continuo::worlds::materials_test

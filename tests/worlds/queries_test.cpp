@@ -8,7 +8,7 @@
 #include <continuo/bodies/queries.hpp>
 #include <continuo/worlds/build_world.hpp>
 
-namespace continuo::worlds {
+namespace continuo::worlds::queries_test {
 namespace {
 
 TEST(QueriesInText, MeasureBetweenSurfaces) {
@@ -186,4 +186,4 @@ check ray at end = 10 within 1e-9
 }
 
 }  // namespace
-}  // namespace continuo::worlds
+}  // namespace continuo::worlds::queries_test

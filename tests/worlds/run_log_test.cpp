@@ -11,7 +11,7 @@
 
 #include <continuo/worlds/run_log.hpp>
 
-namespace continuo::worlds {
+namespace continuo::worlds::run_log_test {
 namespace {
 
 Bytes bytes_of(const std::string& text) {
@@ -254,4 +254,4 @@ TEST(RunLog, DoesNotGoOnFromPlacesThatAreNoneOfItsRun) {
 }
 
 }  // namespace
-}  // namespace continuo::worlds
+}  // namespace continuo::worlds::run_log_test

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <tests/worlds/scene.hpp>
 
-namespace continuo::worlds {
+namespace continuo::worlds::simulate_world_test {
 namespace {
 
 TEST(SimulateWorld, JudgesItsChecks) {
@@ -290,4 +290,4 @@ run 0..10
 }
 
 }  // namespace
-}  // namespace continuo::worlds
+}  // namespace continuo::worlds::simulate_world_test

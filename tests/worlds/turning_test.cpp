@@ -4,7 +4,7 @@
 
 #include <tests/worlds/scene.hpp>
 
-namespace continuo::worlds {
+namespace continuo::worlds::turning_test {
 namespace {
 
 // A disc of radius 1 m and mass 2 kg has 1 kg m^2: on a torsion spring of 4 N m it swings with omega = 2 /s. The fast
@@ -113,4 +113,4 @@ run 0..5 [s]
 }
 
 }  // namespace
-}  // namespace continuo::worlds
+}  // namespace continuo::worlds::turning_test

@@ -6,7 +6,7 @@
 
 #include <continuo/model/load.hpp>
 
-namespace continuo::worlds {
+namespace continuo::worlds::world_run_test {
 namespace {
 
 constexpr const char* bouncing = R"(
@@ -126,4 +126,4 @@ TEST(WorldRun, StopsAtTheEndOfAStepInTheFastMode) {
 }
 
 }  // namespace
-}  // namespace continuo::worlds
+}  // namespace continuo::worlds::world_run_test
