@@ -25,7 +25,7 @@ template <class Real, int Dim>
 struct alignas(64) PackImpulses {
   using L = StoredLanes<Real>;
   L normal{};
-  Vector<L, Dim> friction{};  // on b
+  Vector<L, Dim> friction{};  // on b; in space what lies along the normal resists spinning
 };
 /// What few worlds have: several materials, bounces, rolling resistance.
 template <class Real, int Dim>

@@ -17,10 +17,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 
-#include <continuo/bodies/contact_packs.hpp>
+#include <continuo/bodies/contact_torques.hpp>
 
 namespace continuo {
 
@@ -49,8 +48,6 @@ struct ContactStep {
   std::uint8_t sweep = 1;  // of those that push; after the first only what was disturbed is pushed again
 };
 
-/// What a contact may do: b a body that moves, one that is fixed, or a wall, whose normal stands.
-enum class ContactKind { between_movers, with_fixed, with_wall };
 /// Undo overlaps; do so again where neighbours disturbed it; take out the velocity that this gave.
 enum class ContactPass { push, push_again, relax };
 
@@ -64,29 +61,18 @@ void add_impulse(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const Vec
   a.rim -= twist * a.mobility;
   b.rim -= twist * b.mobility;
 }
-template <class Real>
-ContactLanes<Real> inverse_or_zero(const ContactLanes<Real>& x) {
-  return select(x > ContactLanes<Real>(Real(0)), ContactLanes<Real>(Real(1)) / x, ContactLanes<Real>(Real(0)));
-}
-/// A torque's impulse on b, its opposite on a: the rim moves by impulse r / J.
+/// `impulse`, its part across the normal no longer than `most`; what lies along that, in space, resists spinning, and
+/// stays.
 template <class Real, int Dim>
-void add_roll(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a,
-              const ContactLanes<Real>& radius_b, const Spin<ContactLanes<Real>, Dim>& impulse) {
-  a.rim -= impulse * (a.mobility * inverse_or_zero<Real>(radius_a));
-  b.rim += impulse * (b.mobility * inverse_or_zero<Real>(radius_b));
-}
-
-/// `impulse` no longer than `most`.
-template <class Number, int Size>
-Vector<Number, Size> clamped(const Vector<Number, Size>& impulse, const Number& most) {
+Vector<ContactLanes<Real>, Dim> clamped_across(const Vector<ContactLanes<Real>, Dim>& impulse,
+                                               const Vector<ContactLanes<Real>, Dim>& normal,
+                                               const ContactLanes<Real>& most) {
   using std::sqrt;
-  const Number square = squared(impulse);
-  return impulse * select(square > most * most, most / sqrt(square), Number(1));
-}
-
-template <class Real>
-ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLanes<Real>& b) {
-  return select(b > ContactLanes<Real>(Real(0)), min(a, b), a);  // a wall has none
+  using L = ContactLanes<Real>;
+  if constexpr (Dim == 2) return clamped(impulse, most);
+  const L along = dot(impulse, normal), square = squared(impulse) - along * along, one(Real(1));
+  const L part = select(square > most * most, most / sqrt(square), one);
+  return impulse * part + normal * (along * (one - part));
 }
 
 /// Where the two are now, and the impulses of the last substep to begin with: all contacts do so before any is solved,
@@ -110,49 +96,19 @@ void begin(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Di
     store(normal, pack.normal);
     pack.separation = distance - (place_a.radius + place_b.radius);
   }
-  // What friction did along the normal of then is not along that of now.
+  // What friction did along the normal of then is not along that of now: in space a little of it becomes a torque.
   Vector<L, Dim> rub = loaded(impulses.friction);
-  rub -= normal * dot(rub, normal);
-  store(rub, impulses.friction);
+  const L along = dot(rub, normal);
+  rub -= normal * along;
+  if constexpr (Dim == 2) store(rub, impulses.friction);
   auto a = load_motions(bodies, pack.a), b = load_motions(bodies, pack.b);
   add_impulse<Real, Dim>(a, b, normal, normal * L(impulses.normal) + rub, rub);
+  if constexpr (Dim == 3)
+    add_spin<Real>(a, b, normal, place_a.radius, other_radius<kind, Real>(place_a.radius, place_b.radius), along);
   if (const auto* rare = packs.rare_of(p))
     add_roll<Real, Dim>(a, b, place_a.radius, place_b.radius, loaded(rare->rolling_impulse));
   store_motions(a, bodies, pack.a);
   if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
-}
-
-template <class Real, int Dim>
-void resist_rolling(RarePack<Real, Dim>& rare, const ContactLanes<Real>& normal_impulse, LaneMotions<Real, Dim>& a,
-                    LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b) {
-  using L = ContactLanes<Real>;
-  const L one_a = inverse_or_zero<Real>(radius_a), one_b = inverse_or_zero<Real>(radius_b);
-  const L inertia = inverse_or_zero<Real>(a.mobility * one_a * one_a + b.mobility * one_b * one_b);
-  const Spin<L, Dim> before = loaded(rare.rolling_impulse);
-  const Spin<L, Dim> impulse =
-      clamped(Spin<L, Dim>(before - (b.rim * one_b - a.rim * one_a) * inertia),
-              L(L(rare.rolling_resistance) * smaller_radius<Real>(radius_a, radius_b) * normal_impulse));
-  store(impulse, rare.rolling_impulse);
-  add_roll<Real, Dim>(a, b, radius_a, radius_b, impulse - before);
-}
-
-/// Soft spheres touch in a patch, which resists spinning about the normal by a torque of 3 pi / 16 friction times its
-/// radius times the normal force (Hertz's pressure; K. L. Johnson, "Contact Mechanics", 1985, 7.4). The radius is that
-/// of a sphere of radius r pressed in by 0.0025 r, as those within a pile are: sqrt(0.0025) r.
-template <ContactKind kind, class Real>
-void resist_spinning(const ContactLanes<Real>& force, const Vector<ContactLanes<Real>, 3>& normal,
-                     LaneMotions<Real, 3>& a, LaneMotions<Real, 3>& b, const ContactLanes<Real>& radius_a,
-                     const ContactLanes<Real>& of_b) {
-  using L = ContactLanes<Real>;
-  // With the torque over both radii, r1 / J1 times it becomes the mobility times the other's radius. A wall has neither
-  // a radius nor a spin, and any radius will do.
-  const L radius_b = kind == ContactKind::with_wall ? radius_a : of_b;
-  const L stops = dot(a.rim * radius_b - b.rim * radius_a, normal) *
-                  inverse_or_zero<Real>(a.mobility * radius_b * radius_b + b.mobility * radius_a * radius_a);
-  const L most = force * L(Real(3 * std::numbers::pi / 16 * 0.05)) * inverse_or_zero<Real>(max(radius_a, radius_b));
-  const L torque = max(min(stops, most), -most);
-  a.rim -= normal * (torque * a.mobility * radius_b);
-  b.rim += normal * (torque * b.mobility * radius_a);
 }
 
 /// Too fast for a soft contact: it has struck in this substep and parts, or it will at the beginning of the next.
@@ -255,8 +211,8 @@ void solve(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Di
   if constexpr (!is_plain)
     if (rare) coefficient = rare->friction;
   const Vector<L, Dim> friction_before = loaded(impulses.friction);
-  Vector<L, Dim> friction = clamped(
-      Vector<L, Dim>(friction_before - slip * (one / (inverse + a.mobility + b.mobility))), L(coefficient * so_far));
+  Vector<L, Dim> friction = clamped_across<Real, Dim>(
+      friction_before - slip * (one / (inverse + a.mobility + b.mobility)), normal, coefficient * so_far);
 
   const auto is_open = separation > zero;
   L bias = select(is_open, separation * L(1 / step.h), zero), of_mass = one, of_impulse = zero;
@@ -287,10 +243,11 @@ void solve(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Di
   }
   if constexpr (pass == ContactPass::push_again) leave(!is_meant, so_far, friction_before);
   impulses.normal = normal_impulse;
-  store(friction, impulses.friction);
   add_impulse<Real, Dim>(a, b, normal, rub + normal * change, rub);
   if constexpr (pass == ContactPass::relax && Dim == 3)
-    resist_spinning<kind>(coefficient * normal_impulse, normal, a, b, radius_a, radius_b);
+    friction += normal * resist_spinning<Real>(dot(friction, normal), coefficient * normal_impulse, normal, a, b,
+                                               radius_a, other_radius<kind, Real>(radius_a, radius_b));
+  store(friction, impulses.friction);
   store_motions(a, bodies, pack.a);
   if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
   if constexpr (pass != ContactPass::relax) {
