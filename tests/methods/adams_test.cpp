@@ -15,7 +15,7 @@
 #include <continuo/methods/dop853.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::adams_test {
 namespace {
 
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
@@ -169,4 +169,4 @@ TEST(Adams, AnFThatIsNotANumberEndsTheRunByName) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::adams_test

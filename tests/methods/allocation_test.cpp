@@ -41,7 +41,7 @@ void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 
-namespace continuo {
+namespace continuo::allocation_test {
 namespace {
 
 auto damped() {
@@ -142,4 +142,4 @@ TEST(Allocation, NoStructuralStepAllocatesAfterTheFirst) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::allocation_test

@@ -12,7 +12,7 @@
 #include "stiff_promises.hpp"
 #include <continuo/methods/bdf_krylov.hpp>
 
-namespace continuo {
+namespace continuo::bdf_krylov_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -179,4 +179,4 @@ TEST(BdfKrylov, WhatIsNotFiniteEndsByName) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::bdf_krylov_test

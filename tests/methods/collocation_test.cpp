@@ -9,7 +9,7 @@
 
 #include <continuo/methods/collocation_table.hpp>
 
-namespace continuo::collocation {
+namespace continuo::collocation::collocation_test {
 namespace {
 
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
@@ -132,4 +132,4 @@ TEST(Collocation, GaussOfTwoStagesIsTheOneInTheBooks) {
 }
 
 }  // namespace
-}  // namespace continuo::collocation
+}  // namespace continuo::collocation::collocation_test

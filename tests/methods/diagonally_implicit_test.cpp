@@ -22,7 +22,7 @@
 #include <continuo/methods/trapezoidal.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::diagonally_implicit_test {
 namespace {
 
 using Real =
@@ -302,4 +302,4 @@ TEST(Bdf2, AStepOfAnotherSizeKeepsTheOrder) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::diagonally_implicit_test

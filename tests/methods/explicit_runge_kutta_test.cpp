@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -10,28 +12,30 @@
 
 #include <continuo/methods/all.hpp>
 
-namespace continuo {
+namespace continuo::explicit_runge_kutta_test {
 namespace {
 
 template <class M>
-class Stepper : public testing::Test {};
-using Methods = testing::Types<ExplicitEuler, Midpoint, Heun, Rk4, Rk38, BogackiShampine3, DormandPrince5, Tsitouras5,
-                               Dop853, Verner7, Verner9>;
+class Stepper : public ::testing::Test {};
+using Methods = ::testing::Types<ExplicitEuler, Midpoint, Heun, Rk4, Rk38, BogackiShampine3, DormandPrince5, Tsitouras5,
+                                 Dop853, Verner7, Verner9>;
 TYPED_TEST_SUITE(Stepper, Methods);
 
-struct Oscillator {
+/// Any right-hand side, so that each method is compiled once for a kind of state.
+struct Equations {
+  std::function<void(double, std::span<const double>, std::span<double>)> f;
   int calls = 0;
   template <State X>
-  void operator()(const Scalar<X>&, const X& x, X& dxdt) {
+  void operator()(double t, const X& x, X& dxdt) {
     ++calls;
-    dxdt[0] = x[1];
-    dxdt[1] = -x[0];
+    f(t, x, dxdt);
   }
 };
+const Equations oscillator{[](double, auto x, auto dxdt) { dxdt[0] = x[1], dxdt[1] = -x[0]; }};
 
 TYPED_TEST(Stepper, CountsTheEvaluationsItMakes) {
   using X = std::array<double, 2>;
-  Oscillator f;
+  Equations f = oscillator;
   X x{1, 0}, x_new{};
   auto work = TypeParam::workspace(x);
   Interpolant<X, TypeParam::dense_degree> interpolant(x);
@@ -47,7 +51,7 @@ TYPED_TEST(Stepper, CountsTheEvaluationsItMakes) {
 }
 
 TYPED_TEST(Stepper, VectorsAndArraysTakeTheSameStep) {
-  Oscillator f;
+  Equations f = oscillator;
   const std::array<double, 2> x{1, 0.5};
   const std::vector<double> y{1, 0.5};
   std::array<double, 2> x_new{};
@@ -62,7 +66,7 @@ TYPED_TEST(Stepper, VectorsAndArraysTakeTheSameStep) {
 
 TYPED_TEST(Stepper, TheInterpolantMeetsBothEnds) {
   using X = std::array<double, 2>;
-  Oscillator f;
+  Equations f = oscillator;
   const X x{1, 0.5};
   X x_new{}, value{};
   auto work = TypeParam::workspace(x);
@@ -78,17 +82,11 @@ TYPED_TEST(Stepper, TheInterpolantMeetsBothEnds) {
 }
 
 /// f depends on t and is not linear, so that a stage taken at the wrong place shows.
-struct Forced {
-  template <State X>
-  void operator()(const Scalar<X>& t, const X& x, X& dxdt) const {
-    dxdt[0] = x[1] * x[1] - t;
-    dxdt[1] = x[0] - t * x[1];
-  }
-};
+const Equations forced{[](double t, auto x, auto dxdt) { dxdt[0] = x[1] * x[1] - t, dxdt[1] = x[0] - t * x[1]; }};
 using Pair = std::array<double, 2>;
 
 TYPED_TEST(Stepper, AfterAJumpNothingOfTheLastStepIsUsed) {
-  Forced f;
+  Equations f = forced;
   const Pair x{1, 0.5}, elsewhere{-2, 3};
   Pair x_new{}, expected{};
   auto used = TypeParam::workspace(x), fresh = TypeParam::workspace(x);
@@ -100,7 +98,7 @@ TYPED_TEST(Stepper, AfterAJumpNothingOfTheLastStepIsUsed) {
 }
 
 TYPED_TEST(Stepper, ARejectedStepKeepsTheDerivativeAtItsStart) {
-  Forced f;
+  Equations f = forced;
   const Pair x{1, 0.5};
   Pair x_new{}, expected{};
   auto work = TypeParam::workspace(x), fresh = TypeParam::workspace(x);
@@ -112,7 +110,7 @@ TYPED_TEST(Stepper, ARejectedStepKeepsTheDerivativeAtItsStart) {
 
 TYPED_TEST(Stepper, TheDerivativeAtTheEndIsTheNextStart) {
   // Known after every step where the last stage is taken at the end, otherwise once the interpolant asked for it.
-  Forced f;
+  Equations f = forced;
   const Pair x{1, 0.5};
   for (const bool interpolates : {false, true}) {
     Pair x_new{}, next{}, expected{}, slope{};
@@ -131,7 +129,7 @@ TYPED_TEST(Stepper, TheDerivativeAtTheEndIsTheNextStart) {
 }
 
 TYPED_TEST(Stepper, TheInterpolantMeetsTheSlopesAtBothEnds) {
-  Forced f;
+  Equations f = forced;
   const Pair x{1, 0.5};
   Pair x_new{}, start{}, end{};
   auto work = TypeParam::workspace(x);
@@ -150,7 +148,7 @@ TYPED_TEST(Stepper, TheInterpolantMeetsTheSlopesAtBothEnds) {
 }
 
 TYPED_TEST(Stepper, AnErrorThatIsNotFiniteIsNeverGood) {
-  const auto blow_up = [](double, const Pair& x, Pair& dxdt) { dxdt = {x[0] * 1e308, -x[1]}; };
+  Equations blow_up{[](double, auto x, auto dxdt) { dxdt[0] = x[0] * 1e308, dxdt[1] = -x[1]; }};
   const Pair x{1e10, 0.5};
   Pair x_new{};
   auto work = TypeParam::workspace(x);
@@ -161,7 +159,7 @@ TYPED_TEST(Stepper, AnErrorThatIsNotFiniteIsNeverGood) {
 
 TYPED_TEST(Stepper, EveryComponentHasItsOwnTolerance) {
   if constexpr (TypeParam::error_order > 0) {
-    Forced f;
+    Equations f = forced;
     const Pair x{1, 0.5}, rtol{1e-3, 1e9}, atol{1e-6, 1e9};
     const std::vector<double> y{1, 0.5};
     Pair x_new{};
@@ -185,9 +183,9 @@ TYPED_TEST(Stepper, EveryComponentHasItsOwnTolerance) {
 /// The oscillator x_i' = x_(i+1) - x_i, indices modulo the size, by array and by vector.
 template <class M, std::size_t Size>
 void expect_same_as_vector() {
-  const auto ring = [](double, const auto& x, auto& dxdt) {
+  Equations ring{[](double, auto x, auto dxdt) {
     for (std::size_t i = 0; i < x.size(); ++i) dxdt[i] = x[(i + 1) % x.size()] - x[i];
-  };
+  }};
   std::array<double, Size> x{}, x_new{};
   for (std::size_t i = 0; i < Size; ++i) x[i] = static_cast<double>(i * i + 1);
   const std::vector<double> y(x.begin(), x.end());
@@ -214,4 +212,4 @@ TYPED_TEST(Stepper, RegistersAndMemoryGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::explicit_runge_kutta_test

@@ -15,7 +15,7 @@
 #include <continuo/methods/bdf_krylov.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::failure_test {
 namespace {
 
 using ::testing::AnyOf;
@@ -36,7 +36,7 @@ struct Anything {
 };
 
 template <class M>
-class Failure : public testing::Test {
+class Failure : public ::testing::Test {
  protected:
   static constexpr bool adaptive = M::error_order > 0;
   static constexpr double step = 1e-3;  // of the others
@@ -72,7 +72,7 @@ template <class List>
 struct TypesOf;
 template <class... M>
 struct TypesOf<std::tuple<M...>> {
-  using type = testing::Types<M...>;
+  using type = ::testing::Types<M...>;
 };
 // Of the pairs, those for any system.
 template <class... M>
@@ -219,7 +219,7 @@ struct Mass {
 };
 
 template <class M>
-class StructuralFailure : public testing::Test {};
+class StructuralFailure : public ::testing::Test {};
 TYPED_TEST_SUITE(StructuralFailure, TypesOf<StructuralMethods>::type, NameOfMethod);
 
 TYPED_TEST(StructuralFailure, NoNumberInFEndsTheRunWhereItBegins) {
@@ -237,4 +237,4 @@ TYPED_TEST(StructuralFailure, AJumpOfFIsPassed) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::failure_test

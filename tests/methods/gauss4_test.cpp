@@ -8,7 +8,7 @@
 #include "stiff_promises.hpp"
 #include <continuo/methods/gauss4.hpp>
 
-namespace continuo {
+namespace continuo::gauss4_test {
 namespace {
 
 /// The pendulum q'' = -sin q, and its energy.
@@ -117,4 +117,4 @@ TEST(Gauss4, ACopyGoesOnToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::gauss4_test

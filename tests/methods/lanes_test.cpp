@@ -9,7 +9,7 @@
 #include <continuo/methods/all.hpp>
 #include <continuo/numerics/lanes.hpp>
 
-namespace continuo {
+namespace continuo::lanes_test {
 namespace {
 
 using Four = Lanes<double, 4>;
@@ -31,15 +31,15 @@ Wide together(const std::array<Narrow, 4>& states) {
 }
 
 template <class M>
-class OverLanes : public testing::Test {};
+class OverLanes : public ::testing::Test {};
 struct NameOfMethod {
   template <class M>
   static std::string GetName(int) {
     return std::string(M::name);
   }
 };
-using Methods = testing::Types<ExplicitEuler, SemiImplicitEuler, CentralDifference, VelocityVerlet, BogackiShampine3,
-                               DormandPrince5, Tsitouras5, Dop853, Verner7>;
+using Methods = ::testing::Types<ExplicitEuler, SemiImplicitEuler, CentralDifference, VelocityVerlet, BogackiShampine3,
+                                 DormandPrince5, Tsitouras5, Dop853, Verner7>;
 TYPED_TEST_SUITE(OverLanes, Methods, NameOfMethod);
 
 TYPED_TEST(OverLanes, AStepGivesTheBitsOfEachLaneAlone) {
@@ -94,4 +94,4 @@ TYPED_TEST(OverLanes, OnlyAcceptedLanesGoOn) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::lanes_test

@@ -15,7 +15,7 @@
 
 #include <continuo/methods/all.hpp>
 
-namespace continuo {
+namespace continuo::order_test {
 namespace {
 
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
@@ -143,4 +143,4 @@ TYPED_TEST(OrderOf, TheInterpolantHasTheStatedOneInsideAStep) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::order_test

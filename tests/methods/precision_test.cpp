@@ -14,7 +14,7 @@
 #include <continuo/methods/all.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::precision_test {
 namespace {
 
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
@@ -137,4 +137,4 @@ TEST(Precision, AdamsUsesLongDouble) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::precision_test

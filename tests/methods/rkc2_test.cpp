@@ -9,7 +9,7 @@
 #include "stiff_promises.hpp"
 #include <continuo/methods/rkc2.hpp>
 
-namespace continuo {
+namespace continuo::rkc2_test {
 namespace {
 
 /// R(-z): one step of x' = -z x from 1 with h = 1.
@@ -141,4 +141,4 @@ TEST(Rkc2, WhatIsNotFiniteEndsByName) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::rkc2_test

@@ -16,7 +16,7 @@
 #include <continuo/methods/rosenbrock23.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::rosenbrock_test {
 namespace {
 
 using Real =
@@ -262,4 +262,4 @@ TEST(Rosenbrock23, RoundingIsNotAddedUp) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::rosenbrock_test

@@ -18,15 +18,15 @@
 #include <continuo/methods/dormand_prince_nystrom8.hpp>
 #include <continuo/system/second_order.hpp>
 
-namespace continuo {
+namespace continuo::runge_kutta_nystrom_test {
 namespace {
 
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
                                            boost::multiprecision::et_off>;
 
 template <class M>
-class Nystrom : public testing::Test {};
-using Pairs = testing::Types<DormandPrinceNystrom6, DormandPrinceNystrom8, DormandPrinceNystrom12>;
+class Nystrom : public ::testing::Test {};
+using Pairs = ::testing::Types<DormandPrinceNystrom6, DormandPrinceNystrom8, DormandPrinceNystrom12>;
 TYPED_TEST_SUITE(Nystrom, Pairs);
 
 template <std::size_t Stages>
@@ -160,4 +160,4 @@ TYPED_TEST(Nystrom, AForceThatReadsTheVelocityIsRefused) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::runge_kutta_nystrom_test

@@ -9,7 +9,7 @@
 #include <continuo/methods/semi_implicit_euler.hpp>
 #include <continuo/methods/velocity_verlet.hpp>
 
-namespace continuo {
+namespace continuo::second_order_method_test {
 namespace {
 
 using X = std::array<double, 2>;
@@ -158,4 +158,4 @@ TEST(CentralDifference, AComponentInNoPairHasItsOrder) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::second_order_method_test

@@ -13,16 +13,16 @@
 #include <continuo/methods/rodas5p.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::stiff_events_test {
 namespace {
 
 template <class M>
-class StiffEvents : public testing::Test {};
-using Methods = testing::Types<Rodas4, Rodas5P, Radau5, Radau, Bdf, Kvaerno5, KenCarp4>;
+class StiffEvents : public ::testing::Test {};
+using Methods = ::testing::Types<Rodas4, Rodas5P, Radau5, Radau, Bdf, Kvaerno5, KenCarp4>;
 TYPED_TEST_SUITE(StiffEvents, Methods);
 
 // Until the first event C grows like t, near the second A falls like 1/t: a relative error of theirs is one of t, to a
-// factor near 1. Methods keep within 30 tolerances (stiff_tolerance.hpp), here 3e-9; eight digits are 5e-9.
+// factor near 1. Methods keep within 30 tolerances (stiff_tolerance_test.cpp), here 3e-9; eight digits are 5e-9.
 TYPED_TEST(StiffEvents, AreFoundToEightDigits) {
   using Problem = bench::Robertson<>;
   using X = Problem::State;
@@ -38,4 +38,4 @@ TYPED_TEST(StiffEvents, AreFoundToEightDigits) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::stiff_events_test

@@ -9,20 +9,30 @@
 #include <bench/problems/problem.hpp>
 #include <gtest/gtest.h>
 
+#include "solved_by_name.hpp"
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::promises {
 
 /// The greatest error of a component at the end of the problem, relative to the component, in units of rtol.
-template <class M, class Problem>
-double error_in_tolerances(const Problem& problem, double rtol, double atol) {
-  const auto solution = solve(problem, Problem::start(), {0.0, Problem::duration}, M{}, {.rtol = rtol, .atol = atol});
+template <class Problem, class X>
+double error_in_tolerances(const Solution<X>& solution, double rtol, double atol) {
   EXPECT_TRUE(solution.outcome) << describe(solution.outcome);
   const auto expected = bench::end_of<Problem>();
   double worst = 0;
   for (std::size_t i = 0; i < expected.size(); ++i)
     worst = std::max(worst, std::abs(solution.final_state()[i] - expected[i]) / (atol + rtol * std::abs(expected[i])));
   return worst;
+}
+template <class M, class Problem>
+double error_in_tolerances(const Problem& problem, double rtol, double atol) {
+  return error_in_tolerances<Problem>(
+      solve(problem, Problem::start(), {0.0, Problem::duration}, M{}, {.rtol = rtol, .atol = atol}), rtol, atol);
+}
+/// The same of the method as the studies have it.
+template <class M, class Problem>
+double error_in_tolerances_by_name(double rtol, double atol) {
+  return error_in_tolerances<Problem>(solved_by_name<M, Problem>(rtol, atol), rtol, atol);
 }
 
 /// x' = -y, 0 = x - y: x = y = exp(-t).

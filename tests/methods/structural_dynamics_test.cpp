@@ -17,7 +17,7 @@
 #include <continuo/solve/solve.hpp>
 #include <continuo/system/second_order.hpp>
 
-namespace continuo {
+namespace continuo::structural_dynamics_test {
 namespace {
 
 using X = std::array<double, 2>;
@@ -126,8 +126,8 @@ X after_duffing(double h) {
 }
 
 template <class M>
-class Structural : public testing::Test {};
-using StructuralMethods = testing::Types<Newmark, GeneralizedAlpha>;
+class Structural : public ::testing::Test {};
+using StructuralMethods = ::testing::Types<Newmark, GeneralizedAlpha>;
 TYPED_TEST_SUITE(Structural, StructuralMethods);
 
 TYPED_TEST(Structural, HasOrderTwoWhereForcesAreNotLinear) {
@@ -234,4 +234,4 @@ TYPED_TEST(Structural, AForceThatIsNotANumberEndsTheRunByName) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::structural_dynamics_test

@@ -15,16 +15,14 @@
 #include <continuo/solve/automatic.hpp>
 #include <continuo/system/second_order.hpp>
 
-namespace continuo {
+namespace continuo::switching_test {
 namespace {
 
-struct Pair : Switching<Tsitouras5, Bdf> {
-  static constexpr std::string_view name = "pair";
-};
+using Pair = Tsitouras5Bdf;
 
 TEST(Switching, MeetsItsToleranceOnStiffProblems) {
   for (const double rtol : {1e-4, 1e-7, 1e-10}) {
-    EXPECT_LT(promises::error_in_tolerances<Pair>(bench::Hires<>{}, rtol, rtol * 1e-4), 30) << rtol;
+    EXPECT_LT((promises::error_in_tolerances_by_name<Pair, bench::Hires<>>(rtol, rtol * 1e-4)), 30) << rtol;
     EXPECT_LT(promises::error_in_tolerances<Pair>(bench::Oregonator<>{}, rtol, rtol * 1e-6), 30) << rtol;
     EXPECT_LT(promises::error_in_tolerances<Pair>(bench::VanDerPol<>{}, rtol, rtol), 30) << rtol;
   }
@@ -107,4 +105,4 @@ TEST(Switching, AnOscillationStaysWithTheNystromMethod) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::switching_test

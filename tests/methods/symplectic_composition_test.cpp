@@ -20,7 +20,7 @@
 #include <continuo/methods/yoshida6.hpp>
 #include <continuo/solve/solve.hpp>
 
-namespace continuo {
+namespace continuo::symplectic_composition_test {
 namespace {
 
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
@@ -29,8 +29,8 @@ using X = std::array<double, 4>;
 using bench::Kepler;
 
 template <class M>
-class Symplectic : public testing::Test {};
-using Compositions = testing::Types<McLachlanAtela4, Yoshida6, KahanLi8>;
+class Symplectic : public ::testing::Test {};
+using Compositions = ::testing::Types<McLachlanAtela4, Yoshida6, KahanLi8>;
 TYPED_TEST_SUITE(Symplectic, Compositions);
 
 /// Kicks and drifts as a Runge-Kutta-Nystrom method: what kick j adds to the velocity is there from c_j on.
@@ -199,4 +199,4 @@ TYPED_TEST(Symplectic, AForceThatReadsTheVelocityIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::symplectic_composition_test

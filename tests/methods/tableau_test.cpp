@@ -11,7 +11,7 @@
 #include "rooted_trees.hpp"
 #include <continuo/methods/all.hpp>
 
-namespace continuo {
+namespace continuo::tableau_test {
 namespace {
 
 using boost::multiprecision::cpp_bin_float_50;
@@ -177,4 +177,4 @@ TEST(Verner9, TheInterpolantLeavesNoRest) {
 }
 
 }  // namespace
-}  // namespace continuo
+}  // namespace continuo::tableau_test

@@ -2,10 +2,8 @@
 // problems of bench/stiff: Robertson to 1e11, HIRES, Oregonator, van der Pol in both forms, pollution, and the
 // Brusselator on a line. bench/stiff prints the whole table (docs/benchmarks_stiff.md); the tests take of it what runs
 // in seconds.
-#pragma once
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,10 +12,21 @@
 #include <bench/stiff/page.hpp>
 #include <gtest/gtest.h>
 
+#include "solved_by_name.hpp"
+#include <continuo/methods/automatic.hpp>
+#include <continuo/methods/bdf.hpp>
+#include <continuo/methods/implicit_euler.hpp>
+#include <continuo/methods/kencarp4.hpp>
+#include <continuo/methods/kvaerno5.hpp>
+#include <continuo/methods/radau.hpp>
+#include <continuo/methods/rodas4.hpp>
+#include <continuo/methods/rodas5p.hpp>
+#include <continuo/methods/rosenbrock23.hpp>
+#include <continuo/methods/tr_bdf2.hpp>
 #include <continuo/solve/solve.hpp>
-#include <continuo/studies/named_solve.hpp>
 
 namespace continuo::promises {
+namespace {
 
 /// run(rtol, atol) is the solution of Problem by some method.
 template <class Problem, class Run>
@@ -35,25 +44,7 @@ void expect_tolerance_kept_by(int strictest_power, const Run& run) {
 /// By the methods as the studies have them, compiled once for all systems.
 template <class M, class Problem>
 void expect_tolerance_kept(int strictest_power) {
-  using X = typename Problem::State;
-  const auto state = [](std::span<const double> values) {
-    X x{};
-    std::ranges::copy(values, x.begin());
-    return x;
-  };
-  auto system = studies::named_system<double>(Problem::size, [state](double t, std::span<const double> x, auto dxdt) {
-    X slope{};
-    Problem{}(t, state(x), slope);
-    std::ranges::copy(slope, dxdt.begin());
-  });
-  system.given_jacobian = [state](double t, std::span<const double> x, std::span<double> rows) {
-    Problem{}.jacobian(t, state(x), rows);
-  };
-  const auto start = Problem::start();
-  expect_tolerance_kept_by<Problem>(strictest_power, [&](double rtol, double atol) {
-    return studies::named_solve<double>(M::name, system, {start.begin(), start.end()}, {0.0, Problem::duration},
-                                        {.rtol = rtol, .atol = atol, .save = Save<std::vector<double>>::only_end()});
-  });
+  expect_tolerance_kept_by<Problem>(strictest_power, solved_by_name<M, Problem>);
 }
 
 /// With the sparse Jacobian.
@@ -103,4 +94,16 @@ TYPED_TEST_P(StiffTolerance, IsKeptToTheLimitsOfDouble) {
 
 REGISTER_TYPED_TEST_SUITE_P(StiffTolerance, IsKeptOnAnOrbitWithJumps, IsKeptToTheLimitsOfDouble);
 
+using Pairs = ::testing::Types<Tsitouras5Rodas5P, Dop853Radau, Tsitouras5Bdf>;
+INSTANTIATE_TYPED_TEST_SUITE_P(Automatic, StiffTolerance, Pairs, NameOfStiffMethod);
+using CollocationMethods = ::testing::Types<Radau5, Radau>;
+INSTANTIATE_TYPED_TEST_SUITE_P(Collocation, StiffTolerance, CollocationMethods, NameOfStiffMethod);
+using DiagonalMethods = ::testing::Types<ImplicitEuler, TrBdf2, KenCarp4, Kvaerno5>;
+INSTANTIATE_TYPED_TEST_SUITE_P(DiagonallyImplicit, StiffTolerance, DiagonalMethods, NameOfStiffMethod);
+using MultistepMethods = ::testing::Types<Bdf>;
+INSTANTIATE_TYPED_TEST_SUITE_P(Multistep, StiffTolerance, MultistepMethods, NameOfStiffMethod);
+using RosenbrockMethods = ::testing::Types<Rosenbrock23, Rodas4, Rodas5P>;
+INSTANTIATE_TYPED_TEST_SUITE_P(Rosenbrock, StiffTolerance, RosenbrockMethods, NameOfStiffMethod);
+
+}  // namespace
 }  // namespace continuo::promises
