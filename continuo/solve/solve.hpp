@@ -19,11 +19,11 @@ namespace continuo {
 
 /// Keeps of a run what `save` says.
 template <State X>
-class Recorder {
+class Keeper {
  public:
   using Real = Scalar<X>;
 
-  Recorder(const Save<X>& save, Interval<Real> interval, const X& x0, Solution<X>& solution)
+  Keeper(const Save<X>& save, Interval<Real> interval, const X& x0, Solution<X>& solution)
       : save_(save), interval_(interval), x_(x0), solution_(solution) {
     if (save_.kind == Save<X>::Kind::times || save_.kind == Save<X>::Kind::grid) skip_to_start();
     if (save_.kind == Save<X>::Kind::end) return;
@@ -128,10 +128,10 @@ Solution<X> run(Driver<System, X, Events>& integrator) {
   for (std::size_t i = 0; i < integrator.events().size(); ++i)
     solution.event_names.emplace_back(integrator.events().name(i));
   const Options<X>& options = integrator.options();
-  Recorder<X> recorder(options.save, integrator.interval(), integrator.x(), solution);
-  for (std::size_t count = 1; integrator.advance(recorder); ++count)
+  Keeper<X> keeper(options.save, integrator.interval(), integrator.x(), solution);
+  for (std::size_t count = 1; integrator.advance(keeper); ++count)
     if (count % 1024 == 0 && options.progress) options.progress(integrator.t());
-  recorder.finish(integrator);
+  keeper.finish(integrator);
   solution.outcome = integrator.outcome();
   solution.statistics = integrator.statistics();
   solution.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
