@@ -5,8 +5,10 @@
 //   motion.advance_to(1);
 //   for (const ContactEvent<double, 3>& event : motion.contact_events()) ...
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <vector>
@@ -52,6 +54,23 @@ class ContactLog {
     } else if (most_ > 0) {
       ++lost_;
     }
+  }
+  /// Another's events take their places in the order of time; of bodies that have other names there.
+  template <class Rename>
+  void take_over(ContactLog& other, Rename&& rename) {
+    if (other.events_.empty()) return;
+    for (ContactEvent<Real, Dim>& event : other.events_) {
+      event.a = rename(event.a);
+      if (!event.with_wall()) event.b = rename(event.b);
+    }
+    using Event = ContactEvent<Real, Dim>;
+    const auto first = std::ranges::upper_bound(events_, other.events_.front().time, {}, &Event::time);
+    const std::vector<Event> later(first, events_.end());
+    events_.erase(first, events_.end());
+    std::ranges::merge(later, other.events_, std::back_inserter(events_), {}, &Event::time, &Event::time);
+    lost_ += other.lost_;
+    if (events_.size() > most_) lost_ += events_.size() - most_, events_.resize(most_);
+    other.clear();
   }
   std::span<const ContactEvent<Real, Dim>> events() const { return events_; }
   std::size_t lost() const { return lost_; }

@@ -70,6 +70,12 @@ class ContactSteps {
   }
 
   std::span<const Pushed> pushed() const { return pushed_; }
+  /// What pushed other bodies, which have the numbers `to` here.
+  void take_over(const ContactSteps& other, std::span<const std::uint32_t> to) {
+    for (const Pushed& one : other.pushed_)
+      if (const auto pair = one.pair.moved(to)) pushed_.push_back({*pair, one.press, one.rub, one.roll});
+    std::ranges::sort(pushed_, {}, &Pushed::pair);
+  }
   /// Of the last step: the greatest speed, and the greatest change of a velocity or of a spin times the radius.
   Real fastest() const { return fastest_; }
   Real greatest_change() const { return change_; }

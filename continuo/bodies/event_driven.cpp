@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/bodies/aside.hpp>
 #include <continuo/bodies/cluster.hpp>
 #include <continuo/bodies/contact_time.hpp>
 #include <continuo/bodies/event_queue.hpp>
@@ -20,13 +21,13 @@ namespace continuo {
 namespace {
 
 template <class Real, int Dim>
-class EventDriven final : public ExactEngine<Real, Dim> {
+class EventDriven final : public ParabolicEngine<Real, Dim> {
  public:
   using V = Vector<Real, Dim>;
   using S = Spin<Real, Dim>;
 
   EventDriven(World<Real, Dim>& world, const ExactOptions<Real>& options)
-      : ExactEngine<Real, Dim>(options),
+      : ParabolicEngine<Real, Dim>(options),
         world_(world),
         options_(options),
         contact_time_(options.contact_time ? *options.contact_time : usual_contact_time(world)),
@@ -37,30 +38,45 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   }
 
   std::string advance_to(const Real& t) override {
+    std::string fault = run_to(t);
+    synchronize(flights_.now);
+    return fault.empty() ? fault_of_motion(world_) : fault;
+  }
+  std::string run_to(const Real& t) override {
     std::size_t events = 0;
+    met.reset();
     while (queue_.time() <= t) {
-      if (++events > options_.most_events) {
-        synchronize(flights_.now);
-        return "more events than `most_events`: bodies may be caught between others";
-      }
-      if (events % 1024 == 0 && options_.is_interrupted()) {
-        synchronize(flights_.now);
-        return "interrupted";
-      }
+      if (++events > options_.most_events) return "more events than `most_events`: bodies may be caught between others";
+      if (events % 1024 == 0 && options_.is_interrupted()) return "interrupted";
       flights_.now = std::max(flights_.now, queue_.time());
       foresight_.look_ahead(queue_, flights_);
       handle(queue_.first());
-      if (hands_over) {
-        synchronize(flights_.now);
-        return {};
-      }
+      if (met) return {};
       if (crossings_since_sort_ > 4 * flights_.paths.size()) sort();
     }
-    synchronize(t);
-    for (std::size_t i = 0; i < world_.size(); ++i)
-      if (!is_finite(world_.position[i]) || !is_finite(world_.velocity[i]))
-        return "a body's motion is no longer finite: a speed or gravity is too large for the numbers";
+    flights_.now = t;
     return {};
+  }
+  Real now() const override { return flights_.now; }
+
+  void bring_out(std::uint32_t number) override {
+    const std::uint32_t i = place_[number];
+    bring(i);
+    if (flights_.acts[i] == Act::rests && contacts.is_kept()) note_end(i);
+    world_.position[number] = flights_.paths[i].x;
+    world_.velocity[number] = flights_.paths[i].v;
+    world_.spin[number] = flights_.turnings[i].spin;
+  }
+  void set_aside(std::uint32_t number, const V& centre, const Real& radius) override {
+    put_sphere(flights_, place_[number], centre, radius);
+    predict(place_[number]);
+  }
+  void take_back(std::uint32_t number) override {
+    put_body(flights_, place_[number]);
+    predict(place_[number]);
+  }
+  void find_overlapping(std::uint32_t number, std::vector<std::uint32_t>& found) override {
+    continuo::find_overlapping(flights_, place_[number], found);
   }
 
   void save(ByteWriter& writer) override {
@@ -74,15 +90,9 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     if (load_flights(reader, flights_)) sort();
   }
 
-  void let_go() override {
-    if (!contacts.is_kept()) return;
-    for (const std::uint32_t k : flights_.places())
-      if (flights_.acts[k] == Act::rests) note_end(k);
-  }
-
   using ExactEngine<Real, Dim>::statistics;
   using ExactEngine<Real, Dim>::contacts;
-  using ExactEngine<Real, Dim>::hands_over;
+  using ParabolicEngine<Real, Dim>::met;
 
  private:
   /// By the usual contact time, the greatest speed at the start.
@@ -94,14 +104,16 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   void sort() {
     crossings_since_sort_ = 0;
     flights_.sort();
+    place_ = flights_.places();
     std::vector<std::uint32_t> numbers;
     for (const auto& plan : flights_.plans) numbers.push_back(plan.number);
     queue_ = EventQueue<Real>(std::move(numbers));
     for (std::uint32_t k = 0; k < flights_.plans.size(); ++k) schedule(k);
   }
 
-  void synchronize(const Real& t) {
+  void synchronize(const Real& t) override {
     for (std::size_t i = 0; i < flights_.paths.size(); ++i) {
+      if (flights_.acts[i] == Act::is_aside) continue;
       Path<Real, Dim> at = flights_.paths[i];
       const Plan<Real, Dim>& plan = flights_.plans[i];
       Flights<Real, Dim>::advance(at, plan.acceleration, t);
@@ -143,8 +155,11 @@ class EventDriven final : public ExactEngine<Real, Dim> {
       ++statistics.outdated;
       return predict(i);
     }
+    if (flights_.acts[i] == Act::is_aside || flights_.acts[j] == Act::is_aside) return stop_at(i, j);
     plan.number < flights_.plans[j].number ? hit(i, j) : hit(j, i);
   }
+
+  void stop_at(std::uint32_t i, std::uint32_t j) { met = {flights_.plans[i].number, flights_.plans[j].number}; }
 
   /// It slips no more, or rolls no more, or otherwise: on another path until the next time.
   void go_on(std::uint32_t i) {
@@ -257,7 +272,7 @@ class EventDriven final : public ExactEngine<Real, Dim> {
     if (caught && !is_heavy()) {
       stop(i, j);
     } else {
-      hands_over = caught || stays_on(i, j, normal);
+      if (caught || stays_on(i, j, normal)) stop_at(i, j);
       note_collision(i);
       note_collision(j);
     }
@@ -317,9 +332,8 @@ class EventDriven final : public ExactEngine<Real, Dim> {
       impulse = collide(mover(i, rubs), of_wall, V(-wall.normal), material);
     note_collision(i);
     if (contacts.is_kept() && impulse > Real(0)) note_wall(i, w, ContactChange::impact, impulse);
-    hands_over = caught && is_heavy();
     if (caught) {
-      if (!hands_over) freeze(i);
+      is_heavy() ? stop_at(i, i) : freeze(i);
     } else if (rest_on_walls(flights_, i, w, contact_time_) && contacts.is_kept())
       for (std::uint32_t k = 0; k < flights_.plans[i].support_count; ++k)
         note_wall(i, flights_.plans[i].supports[k], ContactChange::begin, Real(0));
@@ -367,19 +381,20 @@ class EventDriven final : public ExactEngine<Real, Dim> {
   Foresight<Real, Dim> foresight_;
   Cluster<Real, Dim> cluster_;
   std::size_t crossings_since_sort_ = 0;
+  std::vector<std::uint32_t> place_;  // of each number
   S no_spin_{};
 };
 
 }  // namespace
 
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> event_driven(World<Real, Dim>& world, const ExactOptions<Real>& options) {
+std::unique_ptr<ParabolicEngine<Real, Dim>> event_driven(World<Real, Dim>& world, const ExactOptions<Real>& options) {
   return std::make_unique<EventDriven<Real, Dim>>(world, options);
 }
 
-template std::unique_ptr<ExactEngine<float, 2>> event_driven(World<float, 2>&, const ExactOptions<float>&);
-template std::unique_ptr<ExactEngine<float, 3>> event_driven(World<float, 3>&, const ExactOptions<float>&);
-template std::unique_ptr<ExactEngine<double, 2>> event_driven(World<double, 2>&, const ExactOptions<double>&);
-template std::unique_ptr<ExactEngine<double, 3>> event_driven(World<double, 3>&, const ExactOptions<double>&);
+template std::unique_ptr<ParabolicEngine<float, 2>> event_driven(World<float, 2>&, const ExactOptions<float>&);
+template std::unique_ptr<ParabolicEngine<float, 3>> event_driven(World<float, 3>&, const ExactOptions<float>&);
+template std::unique_ptr<ParabolicEngine<double, 2>> event_driven(World<double, 2>&, const ExactOptions<double>&);
+template std::unique_ptr<ParabolicEngine<double, 3>> event_driven(World<double, 3>&, const ExactOptions<double>&);
 
 }  // namespace continuo

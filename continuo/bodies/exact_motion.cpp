@@ -11,18 +11,10 @@ bool ExactMotion<Real, Dim>::is_parabolic() const {
   return !companions_ && only_gravity(*world_);
 }
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> ExactMotion<Real, Dim>::engine(bool ballistic) const {
-  return ballistic ? event_driven(*world_, options_) : forced_flight(*world_, options_, companions_);
-}
-/// Contacts that last end with one engine and begin again with the other.
-template <class Real, int Dim>
-void ExactMotion<Real, Dim>::hand_over() {
-  engine_->let_go();
-  is_ballistic_ = !is_ballistic_;
-  auto next = engine(is_ballistic_);
-  next->statistics = engine_->statistics;
-  next->contacts = std::move(engine_->contacts);
-  engine_ = std::move(next);
+std::unique_ptr<ExactEngine<Real, Dim>> ExactMotion<Real, Dim>::engine() const {
+  if (!is_parabolic()) return forced_flight(*world_, options_, companions_);
+  if (world_->gravity == Vector<Real, Dim>{}) return event_driven(*world_, options_);
+  return islands(*world_, options_);
 }
 
 template <class Real, int Dim>
@@ -49,17 +41,13 @@ std::string ExactMotion<Real, Dim>::advance_to(const Real& t) {
     return "the time to advance to must be finite and not before the present";
   if (is_parabolic() != was_parabolic_) refresh();
   engine_->contacts.clear();
-  while (true) {
-    std::string fault = engine_->advance_to(t);
-    if (!fault.empty() || !engine_->hands_over) return fault;
-    hand_over();
-  }
+  return engine_->advance_to(t);
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::refresh() {
   const ExactStatistics so_far = engine_ ? engine_->statistics : ExactStatistics{};
-  was_parabolic_ = is_ballistic_ = is_parabolic();
-  engine_ = engine(is_ballistic_);
+  was_parabolic_ = is_parabolic();
+  engine_ = engine();
   engine_->statistics = so_far;
 }
 template <class Real, int Dim>
@@ -78,22 +66,21 @@ std::size_t ExactMotion<Real, Dim>::lost_contact_events() const {
 
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::save(ByteWriter& writer) const {
-  writer(engine_->statistics), writer(is_ballistic_);
+  writer(engine_->statistics), writer(was_parabolic_);
   engine_->save(writer);
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::load(ByteReader& reader) {
   ExactStatistics statistics;
-  bool ballistic = false;
-  reader(statistics), reader(ballistic);
-  reader.expect(!ballistic || is_parabolic(), "parabolas where there are other forces than gravity");
+  bool parabolic = false;
+  reader(statistics), reader(parabolic);
+  reader.expect(parabolic == is_parabolic(), "parabolas where there are other forces than gravity, or none where not");
   if (!reader.ok()) return;
-  auto next = engine(ballistic);
+  auto next = engine();
   next->load(reader);
   reader.expect_end();
   if (!reader.ok()) return;
-  was_parabolic_ = is_parabolic();
-  is_ballistic_ = ballistic;
+  was_parabolic_ = parabolic;
   engine_ = std::move(next);
   engine_->statistics = statistics;
 }

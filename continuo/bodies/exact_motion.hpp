@@ -17,8 +17,9 @@
 //
 // Where energy is lost, collisions can pile up without end (inelastic collapse): see pile_up.hpp. Without gravity, all
 // that touch are struck together then. Under gravity a ball that would leave a wall for less than the contact time
-// stays on it; one that would leave a body for less than that moves on no parabola: then all go on as under other
-// forces, until for some time no two have lain on each other.
+// stays on it; one that would leave a body for less than that moves on no parabola: the two, and whoever comes near, go
+// on as under other forces, until for some time they have not lain on each other. All others stay on their parabolas,
+// see islands.cpp.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -70,6 +71,11 @@ struct ExactStatistics {
   std::size_t crossings = 0;        // of cells
   std::size_t outdated = 0;         // predictions made again
 
+  ExactStatistics& operator+=(const ExactStatistics& more) {
+    collisions += more.collisions, wall_collisions += more.wall_collisions;
+    crossings += more.crossings, outdated += more.outdated;
+    return *this;
+  }
   template <class Archive>
   void transfer(Archive& archive) {
     archive(collisions), archive(wall_collisions), archive(crossings), archive(outdated);
@@ -107,12 +113,11 @@ class ExactMotion {
 
  private:
   bool is_parabolic() const;
-  std::unique_ptr<ExactEngine<Real, Dim>> engine(bool ballistic) const;
-  void hand_over();
+  std::unique_ptr<ExactEngine<Real, Dim>> engine() const;
 
   World<Real, Dim>* world_;
   Companions<Real, Dim>* companions_ = nullptr;
-  bool was_parabolic_ = true, is_ballistic_ = true;  // the only force was gravity; the engine is that for parabolas
+  bool was_parabolic_ = true;  // the only force was gravity
   ExactOptions<Real> options_;
   std::unique_ptr<ExactEngine<Real, Dim>> engine_;
 };

@@ -47,7 +47,9 @@ Real edge_of_cells(const World<Real, Dim>& world) {
   }
   using std::pow;
   const Real spacing = Real(pow(room / static_cast<Real>(n), Real(1) / Real(Dim)));
-  return std::max(Real(2) * widest, std::min(spacing, 1000 * widest)) * Real(1.0001);
+  // Spheres in place of bodies that are set aside are wider by a quarter, see islands.cpp.
+  const Real more = world.gravity == Vector<Real, Dim>{} ? Real(1) : Real(1.25);
+  return std::max(2 * more * widest, std::min(spacing, 1000 * widest)) * Real(1.0001);
 }
 
 // Who the next collision is with: a body below first_wall, a wall from there on, nobody known yet.
@@ -65,8 +67,8 @@ struct alignas(sizeof(Real) * (Dim == 3 ? 8 : 2)) Path {
   Real t{}, radius{};
 };
 
-/// How a body is accelerated.
-enum class Act : std::uint8_t { falls, rests, is_fixed };
+/// How a body is accelerated. Set aside: somebody else moves it, see aside.hpp.
+enum class Act : std::uint8_t { falls, rests, is_fixed, is_aside };
 
 /// What every event of a body reads and writes: two cache lines, of which the first tells what comes next.
 template <class Real, int Dim>

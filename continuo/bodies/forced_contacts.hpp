@@ -16,7 +16,7 @@
 namespace continuo {
 
 template <class Real, int Dim>
-class ForcedContacts : public ExactEngine<Real, Dim> {
+class ForcedContacts : public ContactEngine<Real, Dim> {
  public:
   using V = Vector<Real, Dim>;
   using S = Spin<Real, Dim>;
@@ -25,10 +25,13 @@ class ForcedContacts : public ExactEngine<Real, Dim> {
   static constexpr Real never = std::numeric_limits<Real>::infinity();
 
   ForcedContacts(World<Real, Dim>& world, const ExactOptions<Real>& options)
-      : ExactEngine<Real, Dim>(options), world_(world), last_(world.size(), -never) {}
+      : ContactEngine<Real, Dim>(options), world_(world), last_(world.size(), -never) {
+    together.assign(world.size(), -never);
+  }
 
   using ExactEngine<Real, Dim>::statistics;
   using ExactEngine<Real, Dim>::contacts;
+  using ContactEngine<Real, Dim>::together;
 
   /// A contact that is held, and its impulse so far.
   struct Lasting {
@@ -44,6 +47,16 @@ class ForcedContacts : public ExactEngine<Real, Dim> {
   static auto find(Contacts& contacts, const Touching& pair) -> decltype(&contacts[0]) {
     const auto at = std::ranges::lower_bound(contacts, pair, {}, &Lasting::pair);
     return at != contacts.end() && at->pair == pair ? &*at : nullptr;
+  }
+
+  /// See ContactEngine: pairs keep their order.
+  void take_over_contacts(const ForcedContacts& other, std::span<const std::uint32_t> to) {
+    for (std::size_t i = 0; i < to.size(); ++i)
+      if (to[i] != this->nowhere) last_[to[i]] = other.last_[i], together[to[i]] = other.together[i];
+    for (const Lasting& one : other.lasting_)
+      if (const auto pair = one.pair.moved(to)) lasting_.push_back({*pair, one.impulse, one.press});
+    std::ranges::sort(lasting_, {}, &Lasting::pair);
+    left_by_steps_ = std::max(left_by_steps_, other.left_by_steps_);
   }
 
   Real greatest_acceleration(std::span<const V> force) const {
@@ -119,6 +132,7 @@ class ForcedContacts : public ExactEngine<Real, Dim> {
       const Lasting* const known = find(lasting_, held[k]);
       now.push_back({held[k], known ? known->impulse : Real(0), Real(0)});
       if (!known) note(held[k], ContactChange::begin, Real(0));
+      if (!held[k].with_wall()) together[held[k].a] = together[held[k].b] = world_.time;
     }
     for (const Lasting& one : lasting_)
       if (!find(now, one.pair)) note(one.pair, ContactChange::end, one.impulse);

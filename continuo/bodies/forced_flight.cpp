@@ -37,8 +37,6 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
       : Base(world, options), companions_(companions), options_(options) {
     const Real usual = usual_contact_time();
     contact_time_ = options.contact_time.value_or(usual);
-    together_ = world.time;
-    only_gravity_ = !companions && only_gravity(world);
     stride_ = std::max(contact_time_, Real(steps_of_contact_time * usual));
   }
 
@@ -49,28 +47,48 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
     while (world_.time < t) {
       if (++events > options_.most_events) return "more events than `most_events`: bodies may be caught between others";
       if (options_.is_interrupted()) return "interrupted";
-      if (is_steady_) return stay(t);
-      if (hands_over = is_ballistic(); hands_over) return {};
+      if (is_steady_ && !(room_ < never)) return stay(t);
+      if (is_steady_ || farthest_from(begin_) > room_ / 2) return {};
       if (std::string fault = crowding_.is_in_steps() ? step(t) : fly(t); !fault.empty()) return fault;
     }
     return {};
   }
 
-  void let_go() override { note_lasting(std::span<const Touching>{}); }
+  std::unique_ptr<ContactEngine<Real, Dim>> clone() const override { return std::make_unique<ForcedFlight>(*this); }
+  void keep_within(const Real& room) override {
+    room_ = room;
+    begin_ = world_.position;
+  }
+  bool is_steady() const override { return is_steady_; }
+  void let_go(const std::vector<bool>& leaves) override {
+    std::vector<Touching> stay;
+    for (const Lasting& one : lasting_)
+      if (!leaves[one.pair.a] && !leaves[one.pair.b]) stay.push_back(one.pair);
+    note_lasting(stay);
+  }
+  void take_over(const ContactEngine<Real, Dim>& other, std::span<const std::uint32_t> to) override {
+    const auto& from = static_cast<const ForcedFlight&>(other);
+    Base::take_over_contacts(from, to);
+    steps_.take_over(from.steps_, to);
+    if (from.world_.size() <= greatest_before_) return;  // the pace is that of the greatest
+    greatest_before_ = from.world_.size();
+    step_ = from.step_, lasted_ = from.lasted_, crowding_ = from.crowding_;
+  }
 
   void save(ByteWriter& writer) override {
     writer(contact_time_), writer(stride_), writer(left_by_steps_), writer(step_), writer(lasted_), writer(last_),
         writer(lasting_);
-    writer(together_), writer(crowding_), writer(steps_), writer(is_slow_), writer(is_steady_);
+    writer(together), writer(crowding_), writer(steps_), writer(is_slow_), writer(is_steady_);
   }
   void load(ByteReader& reader) override {
     reader(contact_time_), reader(stride_), reader(left_by_steps_), reader(step_), reader(lasted_), reader(last_),
         reader(lasting_);
-    reader(together_), reader(crowding_), reader(steps_), reader(is_slow_), reader(is_steady_);
+    reader(together), reader(crowding_), reader(steps_), reader(is_slow_), reader(is_steady_);
     for (const auto& one : steps_.pushed()) reader.expect(one.pair.is_of(world_), "contacts of other bodies");
     reader.expect(crowding_.is_possible(), "steps that cannot be");
     reader.expect(contact_time_ >= Real(0) && stride_ >= Real(0) && stride_ < never && lasted_ >= Real(0) &&
-                      step_ >= Real(0) && step_ < never && last_.size() == world_.size(),
+                      step_ >= Real(0) && step_ < never && last_.size() == world_.size() &&
+                      together.size() == world_.size(),
                   "a motion of other bodies");
     for (const Lasting& one : lasting_) reader.expect(one.pair.is_of(world_), "contacts of other bodies");
     reader.expect(std::ranges::is_sorted(lasting_, {}, &Lasting::pair), "contacts out of order");
@@ -80,8 +98,7 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
   using Base::allowance_, Base::contact_time_, Base::last_, Base::lasting_, Base::left_by_steps_, Base::never,
       Base::world_;
   using Base::approaches, Base::find, Base::greatest_acceleration, Base::material_now, Base::note_lasting, Base::strike,
-      Base::strike_all, Base::touches;
-  using Base::hands_over;
+      Base::strike_all, Base::together, Base::touches;
   using typename Base::Lasting;
   static constexpr Real steps_of_contact_time = 100;  // a thousandth of the time in which a body falls its radius
 
@@ -103,7 +120,7 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
     std::vector<Real> radii = world_.radius;
     std::ranges::nth_element(radii, radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2));
     const Real median = radii.empty() ? Real(1) : radii[radii.size() / 2];
-    const Real reach = std::max(median, Real(4 * sqrt(fastest) * step_));
+    const Real reach = std::min(std::max(median, Real(4 * sqrt(fastest) * step_)), Real(room_ / 2));
     candidates_.clear();
     for (const Touching& pair : pairs_within(world_, reach)) candidates_.push_back({.pair = pair});
     HeldContacts<Real, Dim> held = resolved_ ? std::move(*resolved_) : resolve();
@@ -185,12 +202,12 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
     return {};
   }
 
-  /// Under gravity alone, where for some steps no two bodies have lain on each other.
-  bool is_ballistic() {
-    if (!only_gravity_) return false;
-    const auto is_of_two = [](const Lasting& one) { return !one.pair.with_wall(); };
-    if (std::ranges::any_of(lasting_, is_of_two)) together_ = world_.time;
-    return world_.time - together_ > 32 * stride_;
+  Real farthest_from(const std::vector<V>& before) const {
+    using std::sqrt;
+    Real farthest(0);
+    for (std::size_t i = 0; i < before.size(); ++i)
+      farthest = std::max(farthest, squared(V(world_.position[i] - before[i])));
+    return sqrt(farthest);
   }
   /// Not where equations move beside, nor where the steps are the user's: those of first order are not for them.
   bool may_step() const {
@@ -267,19 +284,20 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
       world_.velocity[i] = {};
       if (world_.spin[i] != S{}) world_.orientation[i] = turned(world_.orientation[i], world_.spin[i], duration);
     }
-    for (Lasting& one : lasting_) one.impulse += one.press * duration;
+    for (Lasting& one : lasting_) {
+      one.impulse += one.press * duration;
+      if (!one.pair.with_wall()) together[one.pair.a] = together[one.pair.b] = t;
+    }
     world_.time = t;
     return {};
   }
   /// Those that may meet in the next step, and have been listed for some.
   void list_near(const Real& pull) {
     using std::sqrt;
-    Real fastest(0), farthest = listed_.empty() ? never : Real(0);
+    Real fastest(0);
     for (const V& v : world_.velocity) fastest = std::max(fastest, squared(v));
     const Real needed = 4 * stride_ * (sqrt(fastest) + 2 * pull * stride_);
-    for (std::size_t i = 0; i < listed_.size(); ++i)
-      farthest = std::max(farthest, squared(V(world_.position[i] - listed_[i])));
-    if (!(sqrt(farthest) > listed_reach_ - needed)) return;
+    if (!listed_.empty() && !(farthest_from(listed_) > listed_reach_ - needed)) return;
     listed_reach_ = std::max(8 * needed, Real(std::ranges::min(world_.radius) / 8));
     listed_ = world_.position;
     near_ = pairs_within(world_, listed_reach_);
@@ -333,10 +351,11 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
   Companions<Real, Dim>* companions_;
   ExactOptions<Real> options_;
 
-  Real step_{}, lasted_ = never;  // the last step of a flight as its error wanted it, and the last flight
-  Real stride_{};                 // of steps through contacts
-  Real together_{};               // when two bodies lay on each other last
-  bool only_gravity_ = false;
+  Real step_{}, lasted_ = never;     // the last step of a flight as its error wanted it, and the last flight
+  Real stride_{};                    // of steps through contacts
+  std::size_t greatest_before_ = 0;  // bodies of the one whose pace was taken over
+  Real room_ = never;                // in which bodies keep round where they began
+  std::vector<V> begin_;
   std::vector<Candidate<Real>> candidates_;
   std::optional<HeldContacts<Real, Dim>> resolved_;  // at the end of the last flight
   Crowding crowding_;
@@ -350,18 +369,18 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
 }  // namespace
 
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> forced_flight(World<Real, Dim>& world, const ExactOptions<Real>& options,
-                                                      Companions<Real, Dim>* companions) {
+std::unique_ptr<ContactEngine<Real, Dim>> forced_flight(World<Real, Dim>& world, const ExactOptions<Real>& options,
+                                                        Companions<Real, Dim>* companions) {
   return std::make_unique<ForcedFlight<Real, Dim>>(world, options, companions);
 }
 
-template std::unique_ptr<ExactEngine<float, 2>> forced_flight(World<float, 2>&, const ExactOptions<float>&,
-                                                              Companions<float, 2>*);
-template std::unique_ptr<ExactEngine<float, 3>> forced_flight(World<float, 3>&, const ExactOptions<float>&,
-                                                              Companions<float, 3>*);
-template std::unique_ptr<ExactEngine<double, 2>> forced_flight(World<double, 2>&, const ExactOptions<double>&,
-                                                               Companions<double, 2>*);
-template std::unique_ptr<ExactEngine<double, 3>> forced_flight(World<double, 3>&, const ExactOptions<double>&,
-                                                               Companions<double, 3>*);
+template std::unique_ptr<ContactEngine<float, 2>> forced_flight(World<float, 2>&, const ExactOptions<float>&,
+                                                                Companions<float, 2>*);
+template std::unique_ptr<ContactEngine<float, 3>> forced_flight(World<float, 3>&, const ExactOptions<float>&,
+                                                                Companions<float, 3>*);
+template std::unique_ptr<ContactEngine<double, 2>> forced_flight(World<double, 2>&, const ExactOptions<double>&,
+                                                                 Companions<double, 2>*);
+template std::unique_ptr<ContactEngine<double, 3>> forced_flight(World<double, 3>&, const ExactOptions<double>&,
+                                                                 Companions<double, 3>*);
 
 }  // namespace continuo

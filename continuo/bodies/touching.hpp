@@ -4,6 +4,8 @@
 #include <compare>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -21,6 +23,12 @@ struct Touching {
   friend bool operator==(const Touching&, const Touching&) = default;
   friend std::strong_ordering operator<=>(const Touching& one, const Touching& other) {
     return std::tuple(one.a, one.wall, one.b) <=> std::tuple(other.a, other.wall, other.b);
+  }
+  /// Of bodies that have other numbers; nothing where one has none.
+  std::optional<Touching> moved(std::span<const std::uint32_t> to) const {
+    constexpr auto nowhere = std::numeric_limits<std::uint32_t>::max();
+    if (to[a] == nowhere || to[b] == nowhere) return {};
+    return Touching{.a = to[a], .b = to[b], .wall = wall};
   }
   template <class Archive>
   void transfer(Archive& archive) {

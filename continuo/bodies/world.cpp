@@ -99,6 +99,22 @@ bool World<Real, Dim>::remove(BodyHandle body) {
 }
 
 template <class Real, int Dim>
+World<Real, Dim> World<Real, Dim>::part(std::span<const std::uint32_t> bodies) const {
+  World some;
+  some.gravity = gravity, some.meeting = meeting, some.time = time;
+  some.walls_ = walls_, some.ignored_ = ignored_;
+  const auto copy = [&](auto& to, const auto& from) {
+    for (const std::uint32_t i : bodies) to.push_back(from[i]);
+  };
+  copy(some.position, position), copy(some.velocity, velocity), copy(some.constant_force, constant_force);
+  copy(some.orientation, orientation), copy(some.spin, spin), copy(some.radius, radius), copy(some.mass, mass);
+  copy(some.inverse_mass, inverse_mass), copy(some.inverse_inertia, inverse_inertia), copy(some.material, material);
+  copy(some.group_, group_);
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) some.slot_of_.push_back(i), some.slots_.push_back({.index = i});
+  return some;
+}
+
+template <class Real, int Dim>
 std::string World<Real, Dim>::add_wall(Wall<Real, Dim> wall) {
   const Real size_of_normal = length(wall.normal);
   if (!is_positive(size_of_normal)) return "the normal of a wall must be finite and not 0";

@@ -129,6 +129,9 @@ class World {
   std::size_t index(BodyHandle handle) const { return slots_[handle.slot].index; }
   BodyHandle handle(std::size_t index) const { return {slot_of_[index], slots_[slot_of_[index]].generation}; }
 
+  /// Some of the bodies, in this order, with all walls, under gravity alone.
+  World part(std::span<const std::uint32_t> bodies) const;
+
   /// Empty where it was added: the normal must be finite and not zero; it is made a unit.
   std::string add_wall(Wall<Real, Dim> wall);
   /// The inside of a box with its faces along the axes.

@@ -189,6 +189,7 @@ TEST(Snapshot, TheFuzzersInputsAreOfThisVersion) {
   FastMotion fast(world, {.contact_events = 10});
   EXPECT_EQ(restore(input("exact"), world, exact), "");
   EXPECT_EQ(restore(input("exact_heap"), world, exact), "");
+  EXPECT_EQ(restore(input("exact_islands"), world, exact), "");
   EXPECT_EQ(restore(input("fast"), world, fast), "");
   ExactMotion exact_flat(flat, {.contact_events = 10});
   FastMotion fast_flat(flat, {.contact_events = 10});

@@ -74,7 +74,8 @@ bool renew_snapshots(const std::filesystem::path& folder) {
   return write(folder / "world", snapshot(few<double, 3>(true))) &&
          write(folder / "exact", exact<double, 3>(0.1, false)) &&
          write(folder / "exact_flat", exact<float, 2>(0.1F, false)) &&
-         write(folder / "exact_heap", exact<double, 3>(0.6, true)) && write(folder / "fast", fast<double, 3>()) &&
+         write(folder / "exact_heap", exact<double, 3>(0.6, true)) &&
+         write(folder / "exact_islands", exact<double, 3>(0.6, false)) && write(folder / "fast", fast<double, 3>()) &&
          write(folder / "fast_flat", fast<float, 2>());
 }
 
