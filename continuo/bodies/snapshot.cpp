@@ -54,25 +54,21 @@ void transfer(Archive& archive, Spring<Real, Dim>& spring) {
   transfer(archive, spring.a);
   auto is_body = static_cast<std::uint8_t>(spring.b.index() == 0);
   archive(is_body);
-  BodyHandle body{};
-  Vector<Real, Dim> point{};
-  if constexpr (!Archive::reads) {
-    if (is_body == 1) body = std::get<BodyHandle>(spring.b);
-    if (is_body == 0) point = std::get<Vector<Real, Dim>>(spring.b);
-  }
-  transfer(archive, body);
-  archive(point);
-  archive(spring.rest_length), archive(spring.stiffness), archive(spring.damping);
   if constexpr (Archive::reads) {
     archive.expect(is_body <= 1, "a spring that ends at nothing known");
-    archive.expect(
-        is_finite(point) && is_number(spring.rest_length) && is_number(spring.stiffness) && is_number(spring.damping),
-        "a spring that is not finite");
-    if (is_body == 1) {
-      spring.b = body;
-    } else {
-      spring.b = point;
-    }
+    if (is_body == 1) spring.b = BodyHandle{};
+  }
+  bool is_right = true;
+  if (auto* const point = std::get_if<Vector<Real, Dim>>(&spring.b)) {
+    archive(*point);
+    is_right = is_finite(*point);
+  } else {
+    transfer(archive, std::get<BodyHandle>(spring.b));
+  }
+  archive(spring.rest_length), archive(spring.stiffness), archive(spring.damping);
+  if constexpr (Archive::reads) {
+    is_right = is_right && is_number(spring.rest_length) && is_number(spring.stiffness) && is_number(spring.damping);
+    archive.expect(is_right, "a spring that is not finite");
   }
 }
 

@@ -266,7 +266,7 @@ double OutputTimes::operator[](std::size_t k) const {
   // One part in a million of an interval is rounding, not another row.
   constexpr double slack = 1e-6;
   const auto within = [this](double t, double room) {
-    return t <= plan_.to ? t : t <= plan_.to + slack * room ? plan_.to : none;
+    return t <= plan_.to ? t : t < none && t <= plan_.to + slack * room ? plan_.to : none;
   };
   if (plan_.output == OutputPlan::Kind::every) {
     return within(plan_.from + static_cast<double>(k) * plan_.interval, plan_.interval);

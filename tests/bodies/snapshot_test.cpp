@@ -174,6 +174,28 @@ TEST(Snapshot, CorruptBytesAreRefused) {
   }
 }
 
+// Every byte of a spring's two ends says something: what is read is written as it was.
+TEST(Snapshot, OfSpringsHasNoBytesThatMeanNothing) {
+  World<double, 2> world;
+  const auto ball = world.add({}), other = world.add({.position = {{3, 0}}});
+  world.springs.push_back({.a = ball.handle, .b = other.handle, .stiffness = 2});
+  world.springs.push_back({.a = ball.handle, .b = Vector<double, 2>{{1, 2}}});
+  const Bytes bytes = snapshot(world);
+  std::size_t taken = 0;
+  for (std::size_t at = 15; at + 8 < bytes.size(); ++at) {  // behind whose snapshot it is
+    Bytes wrong(bytes.begin(), bytes.end() - 8);
+    wrong[at] ^= std::byte{1};
+    ByteWriter sum;
+    sum(checksum(wrong));
+    wrong.insert(wrong.end(), sum.bytes().begin(), sum.bytes().end());
+    World<double, 2> again;
+    if (!restore(wrong, again).empty()) continue;
+    ++taken;
+    EXPECT_EQ(snapshot(again), wrong) << at;
+  }
+  EXPECT_GT(taken, 100u);  // of most numbers
+}
+
 // What the fuzzer starts from is of the format as it is, or it would get no further than the version.
 TEST(Snapshot, TheFuzzersInputsAreOfThisVersion) {
   const auto input = [](const std::string& name) {
