@@ -50,17 +50,12 @@ void put_body(Flights<Real, Dim>& flights, std::uint32_t i) {
 /// Numbers of those that overlap with body i now, but for those that pass through it.
 template <class Real, int Dim>
 void find_overlapping(const Flights<Real, Dim>& flights, std::uint32_t i, std::vector<std::uint32_t>& found) {
-  const auto place_now = [&](std::uint32_t k) {
-    Path<Real, Dim> path = flights.paths[k];
-    Flights<Real, Dim>::advance(path, flights.plans[k].acceleration, flights.now);
-    return path.x;
-  };
-  const Vector<Real, Dim> x = place_now(i);
+  const Vector<Real, Dim> x = flights.place_now(i);
   std::vector<std::uint32_t> near;
   found.clear();
   flights.for_each_near(i, near, [&](std::uint32_t j) {
     const Real reach = flights.paths[i].radius + flights.paths[j].radius;
-    if (j == i || !(squared(Vector<Real, Dim>(place_now(j) - x)) < reach * reach)) return;
+    if (j == i || !(squared(Vector<Real, Dim>(flights.place_now(j) - x)) < reach * reach)) return;
     const std::uint32_t a = flights.plans[i].number, b = flights.plans[j].number;
     if (flights.world.collide(a, b)) found.push_back(b);
   });

@@ -30,7 +30,7 @@ class Cluster {
     for (std::size_t k = 0; k < members_.size(); ++k) {
       const std::uint32_t a = members_[k];
       const std::uint32_t number = flights.plans[a].number;
-      const V x = place(flights, a);
+      const V x = flights.place_now(a);
       for (std::uint32_t w = 0; w < flights.world.walls().size(); ++w) {
         const Wall<Real, Dim> wall = facing(flights.world.walls()[w], x);
         const Real radius = flights.paths[a].radius, gap = dot(wall.normal, x) - wall.offset - radius;
@@ -39,7 +39,7 @@ class Cluster {
           pairs_.push_back({.a = number, .b = number, .wall = w});
       }
       flights.for_each_near(a, near_, [&](std::uint32_t b) {
-        const V apart = place(flights, b) - x;
+        const V apart = flights.place_now(b) - x;
         const Real distance = length(apart), sum = flights.paths[a].radius + flights.paths[b].radius;
         const std::uint32_t other = flights.plans[b].number;
         if (a == b || !(distance <= sum + reach + rounding(x, sum)) || !(distance > Real(0))) return;
@@ -82,11 +82,6 @@ class Cluster {
   std::span<const Touching> pairs() const { return pairs_; }
 
  private:
-  static V place(const Flights<Real, Dim>& flights, std::uint32_t i) {
-    Path<Real, Dim> path = flights.paths[i];
-    Flights<Real, Dim>::advance(path, flights.plans[i].acceleration, flights.now);
-    return path.x;
-  }
   static Real rounding(const V& x, const Real& radius) {
     return 64 * std::numeric_limits<Real>::epsilon() * (length(x) + radius);
   }

@@ -165,6 +165,11 @@ class Flights {
     path.v += acceleration * dt;
     path.t = t;
   }
+  V place_now(std::uint32_t i) const {
+    Path<Real, Dim> path = paths[i];
+    advance(path, plans[i].acceleration, now);
+    return path.x;
+  }
   void move_to_now(std::uint32_t i) { advance(paths[i], plans[i].acceleration, now); }
 
   static bool is_support(const Plan<Real, Dim>& plan, std::uint32_t w) {

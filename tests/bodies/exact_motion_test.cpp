@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tests/bodies/overlap.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 
@@ -41,15 +42,6 @@ World<double, Dim> gas(std::size_t count, double edge, const Material<double>& m
   return world;
 }
 
-template <int Dim>
-double deepest_overlap(const World<double, Dim>& world) {
-  double deepest = 0;
-  for (std::size_t i = 0; i < world.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      deepest = std::max(deepest, world.radius[i] + world.radius[j] - length(world.position[i] - world.position[j]));
-  return deepest;
-}
-
 // Each collision changes the energy of its balls by an ulp or two: the normal is a unit to that. Places are right to an
 // ulp of the edge of the box.
 template <int Dim>
@@ -61,7 +53,7 @@ void keeps_energy_and_room(std::size_t count, double edge, double duration) {
   EXPECT_GT(motion.statistics().collisions, 20 * count);
   const double collisions_of_each = static_cast<double>(2 * motion.statistics().collisions / count);
   EXPECT_NEAR(kinetic_energy(world) / energy, 1, 2 * epsilon * collisions_of_each);
-  EXPECT_LT(deepest_overlap(world), 4 * 20 * epsilon);
+  EXPECT_LT(deepest_overlap_of_bodies(world), 4 * 20 * epsilon);
   for (const auto& x : world.position)
     for (std::size_t axis = 0; axis < x.size(); ++axis) {
       EXPECT_GT(x[axis], 0.5 - 20 * epsilon);
@@ -240,7 +232,7 @@ TEST(ExactMotion, FindsFixedSpheresOnCurvedPaths) {
   for (int second = 1; second <= 60; ++second) {
     ASSERT_EQ(motion.advance_to(second), "");
     EXPECT_NEAR((kinetic_energy(world) + potential_energy(world)) / energy, 1, 1e-12);
-    EXPECT_LT(deepest_overlap(world), 1e-12);
+    EXPECT_LT(deepest_overlap_of_bodies(world), 1e-12);
   }
   EXPECT_GT(motion.statistics().collisions, 10u);
 }
@@ -300,7 +292,7 @@ TEST(ExactMotion, ABallDoesNotSinkIntoOneThatLies) {
   ExactMotion motion(world);
   for (const double t : {0.1, 0.2, 0.3, 0.35, 0.4}) {
     ASSERT_EQ(motion.advance_to(t), "");
-    EXPECT_LT(deepest_overlap(world), 2e-10 * 0.5) << t;
+    EXPECT_LT(deepest_overlap_of_bodies(world), 2e-10 * 0.5) << t;
   }
 }
 

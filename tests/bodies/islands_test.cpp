@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tests/bodies/overlap.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
@@ -20,18 +21,6 @@ using Space = World<double, 3>;
 
 const Material<double> smooth{.restitution = 0, .friction = 0}, rough{.restitution = 0, .friction = 0.5},
     elastic{.restitution = 1, .friction = 0};
-
-template <int Dim>
-double deepest_overlap(const World<double, Dim>& world) {
-  double deepest = 0;
-  for (std::size_t i = 0; i < world.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j)
-      deepest = std::max(deepest, world.radius[i] + world.radius[j] - length(world.position[i] - world.position[j]));
-    for (const auto& wall : world.walls())
-      deepest = std::max(deepest, world.radius[i] + wall.offset - dot(wall.normal, world.position[i]));
-  }
-  return deepest;
-}
 
 using Group = std::vector<BodyDefinition<double, 2>>;
 /// Groups that never meet: a pyramid that falls apart, one that stands, a column that is dropped, a ball that rolls

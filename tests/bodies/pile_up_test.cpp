@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tests/bodies/overlap.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 
@@ -143,11 +144,7 @@ void collapses(std::size_t count, Material<double> material) {
     EXPECT_LE(kinetic_energy(world), energy * (1 + 1e-12));
     energy = kinetic_energy(world);
     for (const auto& event : motion.contact_events()) struck += event.impulse;
-    double deepest = 0;
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        deepest = std::max(deepest, 1 - length(world.position[i] - world.position[j]));
-    EXPECT_LT(deepest, 1e-12) << material.restitution << " " << k;
+    EXPECT_LT(deepest_overlap_of_bodies(world), 1e-12) << material.restitution << " " << k;
   }
   constexpr double lever = 2 * 1e-5 * 0.5;
   EXPECT_EQ(motion.lost_contact_events(), 0u);

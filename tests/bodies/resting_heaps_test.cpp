@@ -9,24 +9,13 @@
 #include <tuple>
 
 #include <gtest/gtest.h>
+#include <tests/bodies/overlap.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
 
 namespace continuo::resting_heaps_test {
 namespace {
-
-template <int Dim>
-double deepest_overlap(const World<double, Dim>& world) {
-  double deepest = 0;
-  for (std::size_t i = 0; i < world.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j)
-      deepest = std::max(deepest, world.radius[i] + world.radius[j] - length(world.position[i] - world.position[j]));
-    for (const auto& wall : world.walls())
-      deepest = std::max(deepest, world.radius[i] + wall.offset - dot(wall.normal, world.position[i]));
-  }
-  return deepest;
-}
 
 // A column that is dropped ball on ball comes to stand, and stands: another 1000 s take hardly an event.
 TEST(RestingHeaps, AColumnStands) {
