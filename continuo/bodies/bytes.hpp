@@ -43,9 +43,11 @@ class ByteWriter {
 
   template <detail::Number T>
   void operator()(const T& value) {
-    const auto bits = std::bit_cast<detail::UnsignedOf<sizeof(T)>>(value);
-    for (std::size_t i = 0; i < sizeof(T); ++i)
-      bytes_.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(bits) >> (8 * i) & 0xff));
+    put(std::bit_cast<detail::UnsignedOf<sizeof(T)>>(value), sizeof(T));
+  }
+  void operator()(const Bytes& bytes) {
+    (*this)(static_cast<std::uint64_t>(bytes.size()));
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
   }
   template <class T, std::size_t Size>
   void operator()(const std::array<T, Size>& values) {
@@ -70,6 +72,8 @@ class ByteWriter {
   Bytes take() { return std::move(bytes_); }
 
  private:
+  void put(std::uint64_t bits, std::size_t size);
+
   Bytes bytes_;
 };
 
@@ -81,11 +85,7 @@ class ByteReader {
 
   template <detail::Number T>
   void operator()(T& value) {
-    value = T{};
-    if (!takes(sizeof(T))) return;
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < sizeof(T); ++i) bits |= std::to_integer<std::uint64_t>(bytes_[at_ + i]) << (8 * i);
-    at_ += sizeof(T);
+    const std::uint64_t bits = get(sizeof(T));
     if constexpr (std::is_same_v<T, bool>) {
       if (bits > 1) fail("a truth value that is neither 0 nor 1");
       value = bits == 1;
@@ -103,11 +103,12 @@ class ByteReader {
   }
   template <class T, class Allocator>
   void operator()(std::vector<T, Allocator>& values) {
-    std::uint64_t count = 0;
-    (*this)(count);
     values.clear();
-    if (count > left()) return fail("a list longer than the bytes that are left");  // an element has one at least
-    for (std::uint64_t i = 0; i < count && ok(); ++i) (*this)(values.emplace_back());
+    for (std::uint64_t i = 0, count = list_size(); i < count && ok(); ++i) (*this)(values.emplace_back());
+  }
+  void operator()(Bytes& bytes) {
+    const auto taken = take(list_size());
+    bytes.assign(taken.begin(), taken.end());
   }
   template <class T>
     requires detail::Transferable<T, ByteReader>
@@ -120,26 +121,19 @@ class ByteReader {
   std::size_t position() const { return at_; }
   std::size_t left() const { return bytes_.size() - at_; }
   /// The first fault counts.
-  void fail(const std::string& what) {
-    if (ok()) error_ = "byte " + std::to_string(at_) + ": " + what;
-  }
+  void fail(const std::string& what);
   void expect(bool is_right, const char* what) {
     if (!is_right) fail(what);
   }
   void expect_end() { expect(left() == 0, "bytes after the end"); }
-  std::span<const std::byte> take(std::uint64_t count) {
-    if (!takes(count)) return {};
-    at_ += static_cast<std::size_t>(count);
-    return bytes_.subspan(at_ - static_cast<std::size_t>(count), static_cast<std::size_t>(count));
-  }
+  std::span<const std::byte> take(std::uint64_t count);
 
  private:
-  bool takes(std::uint64_t count) {
-    if (!ok()) return false;
-    if (count <= left()) return true;
-    fail("the bytes end too early");
-    return false;
-  }
+  bool takes(std::uint64_t count);
+  /// Of the next bytes; 0 where there are none.
+  std::uint64_t get(std::size_t size);
+  /// An element has one byte at least.
+  std::uint64_t list_size();
 
   std::span<const std::byte> bytes_;
   std::size_t at_ = 0;
@@ -147,10 +141,6 @@ class ByteReader {
 };
 
 /// FNV-1a, 64 bits (G. Fowler, L. Noll, K.-P. Vo): finds what went wrong by accident.
-inline std::uint64_t checksum(std::span<const std::byte> bytes) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const std::byte byte : bytes) hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 1099511628211u;
-  return hash;
-}
+std::uint64_t checksum(std::span<const std::byte> bytes);
 
 }  // namespace continuo

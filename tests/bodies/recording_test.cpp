@@ -13,9 +13,8 @@ namespace continuo::recording_test {
 namespace {
 
 Bytes bytes_of(const std::string& text) {
-  Bytes bytes;
-  for (const char c : text) bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  return {first, first + text.size()};
 }
 
 /// Ten frames of balls that fall; before the sixth one comes.

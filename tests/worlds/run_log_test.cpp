@@ -15,9 +15,8 @@ namespace continuo::worlds::run_log_test {
 namespace {
 
 Bytes bytes_of(const std::string& text) {
-  Bytes bytes;
-  for (const char c : text) bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  return {first, first + text.size()};
 }
 
 /// Discs in a box, equations beside them, events of every kind: all that a run remembers.
