@@ -11,6 +11,7 @@
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/impacts.hpp>
+#include <continuo/bodies/prefetch.hpp>
 #include <continuo/bodies/sleep.hpp>
 #include <continuo/bodies/touch_log.hpp>
 #include <continuo/bodies/twist.hpp>
@@ -177,13 +178,25 @@ class FastMotion<Real, Dim>::Stepper {
       for (std::size_t k = from; k < to; ++k) act(k);
     });
   }
+  /// act(k, i) for all bodies k, which have the number i in the world: there they stand in another order, so what is
+  /// read or written of these arrays is asked for early.
+  template <class Act, class... Arrays>
+  void for_each_in_world(Act&& act, const Arrays&... arrays) {
+    constexpr std::size_t ahead = 20;
+    const std::vector<std::uint32_t>& order = list_.order();
+    team_.for_each(0, bodies_.size(), 1024, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k) {
+        if (k + ahead < to) (prefetch(&arrays[order[k + ahead]]), ...);
+        act(k, order[k]);
+      }
+    });
+  }
   /// The bodies from the world, in the order of the list.
   void load() {
     const std::vector<std::uint32_t>& order = list_.order();
     bodies_.resize(order.size(), world_.walls().size(), list_.blocks());
     bodies_.gravity = world_.gravity;
-    for_each_body([&](std::size_t k) {
-      const std::size_t i = order[k];
+    const auto load_body = [&](std::size_t k, std::size_t i) {
       const Real radius = world_.radius[i];
       BodyMotion<Real>& motion = bodies_.motion[k];
       BodyPlace<Real>& place = bodies_.place[k];
@@ -194,7 +207,9 @@ class FastMotion<Real, Dim>::Stepper {
       const bool is_asleep = sleep_.is_asleep(i);  // then it is like a fixed one
       motion.linear[3] = is_asleep ? Real(0) : world_.inverse_mass[i];
       motion.rim[3] = is_asleep ? Real(0) : radius * radius * world_.inverse_inertia[i];
-    });
+    };
+    for_each_in_world(load_body, world_.position, world_.velocity, world_.spin, world_.radius, world_.inverse_mass,
+                      world_.inverse_inertia);
     for (std::size_t w = 0; w < world_.walls().size(); ++w)
       put(V(world_.walls()[w].normal * world_.walls()[w].offset), bodies_.place[bodies_.wall(w)].x_and_radius);
     for (std::size_t k = bodies_.wall(world_.walls().size()); k < bodies_.motion.size(); ++k) {  // the stand-ins
@@ -205,17 +220,16 @@ class FastMotion<Real, Dim>::Stepper {
     if (!has_other_forces_) bodies_.accelerations.clear();
   }
   void store() {
-    const std::vector<std::uint32_t>& order = list_.order();
-    for_each_body([&](std::size_t k) {
+    const auto store_body = [&](std::size_t k, std::size_t i) {
       if (!bodies_.moves(k)) return;
-      const std::size_t i = order[k];
       const Spin<Real, Dim> spin = vector_of<Spin<Real, Dim>::size()>(bodies_.motion[k].rim) * (1 / bodies_.radius(k));
       world_.orientation[i] =
           twist_.acts() ? twist_.orientation(i) : turned(world_.orientation[i], spin, options_.step);
       world_.position[i] = bodies_.x(k);
       world_.velocity[i] = bodies_.v(k);
       world_.spin[i] = spin;
-    });
+    };
+    for_each_in_world(store_body, world_.orientation, world_.position, world_.velocity, world_.spin);
   }
 
   void make_list() {

@@ -64,6 +64,7 @@ class PairList {
   void list(Team& team, const World<Real, Dim>& world, const Bodies& bodies, const Reach& reach, ContactRows& rows) {
     ++lists_;
     walls_ = world.walls().size();
+    all_collide_ = !world.has_ignored_groups();
     reach_.resize(bodies.size());
     x_of_list_.resize(bodies.size());
     bool all_move = true;
@@ -161,7 +162,7 @@ class PairList {
 
   bool may_meet(const World<Real, Dim>& world, const Bodies& bodies, std::uint32_t i, std::uint32_t j) const {
     const Real near = bodies.radius(i) + reach_[i] + bodies.radius(j) + reach_[j];
-    return squared(bodies.x(j) - bodies.x(i)) < near * near && world.collide(order_[i], order_[j]);
+    return squared(bodies.x(j) - bodies.x(i)) < near * near && (all_collide_ || world.collide(order_[i], order_[j]));
   }
   /// visit(j) for those at places from `from` on that do not reach far, and may come within `out` of x.
   template <class Visit>
@@ -207,6 +208,7 @@ class PairList {
   std::vector<V> x_of_list_;
   Real median_ = Real(1), usual_ = Real(0);
   std::size_t walls_ = 0, lists_ = 0;
+  bool all_collide_ = true;  // no groups pass through each other
   ContactBlocks blocks_{};
   SortedCells<Real, Dim> cells_;
 };
