@@ -119,7 +119,7 @@ class ContactList {
     };
     team.share(blocks.count, [&](std::size_t block) {
       for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
-        fill_row(k, bodies, walls, meeting_of, impulse_of);
+        fill_row(block, k, bodies, walls, meeting_of, impulse_of);
     });
     kept_ = {};
     has_kept_ = false;
@@ -245,7 +245,7 @@ class ContactList {
           entry.lane = number(with_wall, block, std::min(at_walls++, last_colour));
         } else if (!bodies.moves(j)) {
           entry.lane = number(with_fixed, block, std::min(fixed++, last_colour)) | fixed_bit;
-        } else if (const std::size_t group = blocks.group_of(k, j); group == block) {
+        } else if (const std::size_t group = blocks.group_of(block, k - begin, j - begin); group == block) {
           entry.lane = number(group, within[k - begin], within[j - begin]);
         } else if (group != blocks.rest()) {
           entry.lane = number(group, across[k - begin - blocks.half], across[j - begin - blocks.half]);
@@ -275,8 +275,6 @@ class ContactList {
     const std::uint32_t lane = packs.is_shared(colour) ? 0 : number % lanes;
     packs.packs[p].a[lane] = a;
     packs.packs[p].b[lane] = b;
-    packs.bins[p] |= blocks.bit_of(group, a);
-    if (&packs == &between_movers) packs.bins[p] |= blocks.bit_of(group, b);
     if (RarePack<Real, Dim>* rare = packs.rare_of(p)) {
       const Material<Real> both = meeting_of(a, b);
       rare->friction.lane[lane] = both.friction;
@@ -322,14 +320,17 @@ class ContactList {
   }
 
   template <class MeetingOf, class ImpulseOf>
-  void fill_row(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-                const MeetingOf& meeting_of, const ImpulseOf& impulse_of) {
+  void fill_row(std::size_t block, std::uint32_t k, const SolverBodies<Real, Dim>& bodies,
+                std::span<const Wall<Real, Dim>> walls, const MeetingOf& meeting_of, const ImpulseOf& impulse_of) {
+    const std::uint32_t begin = blocks.first(block);
     for (ContactEntry& entry : rows.row(k)) {
       if (entry.lane == nowhere) continue;
       auto& packs = packs_of(entry, entry.lane);
       const std::uint32_t bit = &packs == &with_fixed ? fixed_bit : 0, j = entry.other;
-      const std::size_t group = &packs == &between_movers ? blocks.group_of(k, j) : blocks.block_of(k);
+      const std::size_t group = &packs == &between_movers ? blocks.group_of(block, k - begin, j - begin) : block;
       const std::uint32_t lane = fill(packs, group, entry.lane & ~bit, k, j, meeting_of);
+      packs.bins[lane / width] |= blocks.bit_of(group, k - begin);
+      if (&packs == &between_movers) packs.bins[lane / width] |= blocks.bit_of(group, j - begin);
       if (j >= bodies.size())
         put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), packs.packs[lane / width].normal,
                     lane % width);

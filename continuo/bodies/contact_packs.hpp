@@ -58,7 +58,7 @@ struct ColouredPacks : PackedImpulses<Real, Dim> {
   };
   LargeArray<ContactPack<Real, Dim>> packs{};
   PackedImpulses<Real, Dim> before{};  // those of the step before
-  std::vector<std::uint32_t> bins{};   // of a pack's bodies, see contact_blocks.hpp
+  std::vector<std::uint64_t> bins{};   // of a pack's bodies, see contact_blocks.hpp
   std::vector<Group> groups{};
   std::vector<std::array<std::uint32_t, most_colours>> count{};  // of each group's contacts, until there is room
   std::size_t contacts = 0;

@@ -169,7 +169,8 @@ void mark_disturbed(const ContactPack<Real, Dim>& pack, const ContactLanes<Real>
     if (way[lane] <= step.disturbance) continue;
     const auto mark = [&](std::uint32_t body) {
       bodies.disturbed[body] = step.sweep;
-      bodies.disturbances[body / bodies.blocks.half].now |= 1u << bodies.blocks.bin_of(body);
+      const ContactBlocks& blocks = bodies.blocks;
+      bodies.disturbances[body / blocks.half].now |= 1u << blocks.bin_of(body % blocks.half);
     };
     mark(pack.a[lane]);
     if (kind == ContactKind::between_movers) mark(pack.b[lane]);
@@ -293,11 +294,12 @@ void for_each_ahead(const ColouredPacks<Real, Dim>& packs, const SolverBodies<Re
 template <class Real, int Dim, class Act>
 void for_each_disturbed(const ColouredPacks<Real, Dim>& packs, std::size_t group, const SolverBodies<Real, Dim>& bodies,
                         const Act& act) {
+  if (bodies.disturbed_bins(group) == 0) return;
   const auto& first = packs.groups[group].first;
   std::array<std::uint32_t, 256> meant;
   for (std::size_t c = 0; c < packs.most_colours && first[c] < first.back(); ++c)
     for (std::size_t from = first[c]; from < first[c + 1]; from += meant.size()) {
-      const std::uint32_t bins = packs.is_shared(c) ? ~std::uint32_t{0} : bodies.disturbed_bins(group);
+      const std::uint64_t bins = packs.is_shared(c) ? ~std::uint64_t{0} : bodies.disturbed_bins(group);
       const std::size_t to = std::min<std::size_t>(from + meant.size(), first[c + 1]);
       std::size_t count = 0;
       for (std::size_t p = from; p < to; ++p) {

@@ -90,10 +90,10 @@ struct SolverBodies {
   }
 
   /// What sweeps have disturbed among the bodies of a group, see contact_blocks.hpp.
-  std::uint32_t disturbed_bins(std::size_t group) const {
-    if (group == blocks.rest()) return ~std::uint32_t{0};
+  std::uint64_t disturbed_bins(std::size_t group) const {
+    if (group == blocks.rest()) return ~std::uint64_t{0};
     const Disturbances* half = &disturbances[blocks.first_half(group)];
-    return half[0].any() | half[1].any() << 16;
+    return half[0].any() | std::uint64_t{half[1].any()} << 32;
   }
 
   V x(std::size_t k) const { return vector_of<Dim>(place[k].x_and_radius); }
