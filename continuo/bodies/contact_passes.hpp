@@ -25,8 +25,7 @@ class ContactPasses {
   /// push_body(k) for all bodies, then contacts begin and push.
   template <class Push>
   void push(const ContactStep<Real>& step, const Push& push_body) {
-    run(std::array{begin(push_body), solve<ContactPass::push>(step)});
-    push_again(step);
+    run_pushing({begin(push_body), solve<ContactPass::push>(step)}, step);
   }
   /// move_body(k) for all bodies, then contacts relax.
   template <class Move>
@@ -36,8 +35,7 @@ class ContactPasses {
   /// The end of a substep and the next one's beginning.
   template <class Move, class Push>
   void relax_and_push(const ContactStep<Real>& step, const Move& move_body, const Push& push_body) {
-    run(std::array{relaxing(step, move_body), begin(push_body), solve<ContactPass::push>(step)});
-    push_again(step);
+    run_pushing({relaxing(step, move_body), begin(push_body), solve<ContactPass::push>(step)}, step);
   }
 
  private:
@@ -79,6 +77,21 @@ class ContactPasses {
     return pass;
   }
 
+  /// What is pushed again at first follows block by block, while the blocks are in the cache. Not where several threads
+  /// have chunks of them: each sweep more leaves more over at the ends of these; nor where sweeps wait for a rest.
+  void run_pushing(std::vector<Pass> passes, const ContactStep<Real>& step) {
+    std::vector<ContactStep<Real>> again(team_.is_alone() && !contacts_.has_rest() ? 10 : 0, step);
+    std::uint8_t sweep = step.sweep;
+    for (ContactStep<Real>& next : again) {
+      next.sweep = ++sweep;
+      Pass& pass = passes.emplace_back(solve<ContactPass::push_again>(next));
+      pass.before = [this](std::size_t block) { begin_sweep(block); };
+    }
+    run(passes);
+    ContactStep<Real> rest = step;
+    rest.sweep = sweep;
+    push_again(rest);
+  }
   void run(std::span<const Pass> passes) {
     std::vector<Sweep> sweeps;
     for (std::size_t i = 0; i <= passes.size(); ++i) {
@@ -120,12 +133,17 @@ class ContactPasses {
     const auto is_disturbed = [](const Disturbances& half) { return half.now != 0; };
     while (std::ranges::any_of(halves, is_disturbed) && step.sweep < most_sweeps) {
       ++step.sweep;
-      for (Disturbances& half : halves) half = {half.now, 0};
+      for (std::size_t block = 0; block < blocks_.count; ++block) begin_sweep(block);
       share(0, [&](std::size_t block) { contacts_.in_group(block, again); });
       share(1, [&](std::size_t block) { contacts_.in_group(blocks_.across(block), again); });
       contacts_.in_group(blocks_.rest(), again);
       share(0, [&](std::size_t block) { contacts_.at_border(block, again); });
     }
+  }
+  /// From here on what was disturbed is what the last sweep has.
+  void begin_sweep(std::size_t block) {
+    for (std::size_t half = 2 * block; half < 2 * block + 2; ++half)
+      bodies_.disturbances[half] = {bodies_.disturbances[half].now, 0};
   }
   void forget_disturbances(std::size_t block) {
     for_each_body(block, [&](std::uint32_t k) { bodies_.disturbed[k] = 0; });
