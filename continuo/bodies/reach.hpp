@@ -26,15 +26,16 @@ Real step_reach(const SolverBodies<Real, Dim>& bodies, std::size_t k, const Real
   return length(bodies.v(k)) * step + length(bodies.acceleration(k)) * step * step / 2;
 }
 
-/// Pairs are listed for as long as nobody has come further than this. Where all move fast that is not much more than a
-/// step; where few do, they reach as many steps ahead as leaves them few: else a ball that rolls over a heap at rest
-/// would have all pairs listed anew every other step.
+/// Pairs are listed for as long as nobody has come further than this. Where all move fast that is four steps, also
+/// while gravity makes them faster, if that is no long way, else not much more than one. Where few do, they reach as
+/// many steps ahead as leaves them few: else a ball that rolls over a heap at rest would have all pairs listed anew
+/// every other step.
 template <class Real>
 class ListReach {
  public:
   template <int Dim>
   ListReach(const SolverBodies<Real, Dim>& bodies, const Real& step) : reach_(bodies.size()) {
-    constexpr auto fewest = static_cast<Real>(1.7), most = static_cast<Real>(12);  // steps
+    constexpr auto fewest = static_cast<Real>(1.7), four = static_cast<Real>(4.5), most = static_cast<Real>(12);
     std::vector<Real> steps(bodies.size());
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       reach_[k] = step_reach(bodies, k, step);
@@ -46,7 +47,10 @@ class ListReach {
       std::nth_element(steps.begin(), last, steps.end());
       ahead = std::clamp(*last, fewest, most);
     }
-    for (std::size_t k = 0; k < bodies.size(); ++k) reach_[k] = std::max(skin(bodies.radius(k)), ahead * reach_[k]);
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const Real radius = bodies.radius(k), short_way = std::min(four * reach_[k], Real(0.6) * radius);
+      reach_[k] = std::max({skin(radius), ahead * reach_[k], short_way});
+    }
   }
   Real operator()(std::size_t k) const { return reach_[k]; }
 
