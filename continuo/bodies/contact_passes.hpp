@@ -78,9 +78,11 @@ class ContactPasses {
   }
 
   /// What is pushed again at first follows block by block, while the blocks are in the cache. Not where several threads
-  /// have chunks of them: each sweep more leaves more over at the ends of these; nor where sweeps wait for a rest.
+  /// have chunks of them: each sweep more leaves more over at the ends of these; nor where sweeps wait for a rest, nor
+  /// where blocks are so few that they stay in the cache anyway.
   void run_pushing(std::vector<Pass> passes, const ContactStep<Real>& step) {
-    std::vector<ContactStep<Real>> again(team_.is_alone() && !contacts_.has_rest() ? 10 : 0, step);
+    const bool pays = team_.is_alone() && !contacts_.has_rest() && blocks_.count >= 16;
+    std::vector<ContactStep<Real>> again(pays ? 10 : 0, step);
     std::uint8_t sweep = step.sweep;
     for (ContactStep<Real>& next : again) {
       next.sweep = ++sweep;
