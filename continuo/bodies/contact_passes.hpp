@@ -81,7 +81,7 @@ class ContactPasses {
   /// have chunks of them: each sweep more leaves more over at the ends of these; nor where sweeps wait for a rest, nor
   /// where blocks are so few that they stay in the cache anyway.
   void run_pushing(std::vector<Pass> passes, const ContactStep<Real>& step) {
-    const bool pays = team_.is_alone() && !contacts_.has_rest() && blocks_.count >= 16;
+    const bool pays = team_.is_alone() && !contacts_.has_rest() && blocks_.count >= 4;
     std::vector<ContactStep<Real>> again(pays ? 10 : 0, step);
     std::uint8_t sweep = step.sweep;
     for (ContactStep<Real>& next : again) {
