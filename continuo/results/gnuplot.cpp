@@ -7,7 +7,9 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -234,15 +236,29 @@ struct TemporaryFile {
   }
 };
 
+/// The variables of this process, but the locale that knows UTF-8, as our scripts are written in it: in the locale C,
+/// that of a bare machine, gnuplot warns that it cannot convert its sign of a degree.
+std::vector<std::string> environment_for_utf8() {
+  std::vector<std::string> variables{"LC_ALL=C.UTF-8"};
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (!std::string_view(*variable).starts_with("LC_ALL=")) variables.emplace_back(*variable);
+  }
+  return variables;
+}
+
 std::optional<std::string> run_gnuplot(const std::string& script_path) {
   std::string program = "gnuplot";
   std::string argument = script_path;
   char* arguments[] = {program.data(), argument.data(), nullptr};
+  std::vector<std::string> variables = environment_for_utf8();
+  std::vector<char*> environment;
+  for (std::string& variable : variables) environment.push_back(variable.data());
+  environment.push_back(nullptr);
   pid_t process = 0;
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);  // standard output is for data
-  const int problem = posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environ);
+  const int problem = posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environment.data());
   posix_spawn_file_actions_destroy(&actions);
   if (problem == ENOENT) return "gnuplot draws the plots and is not installed: apt-get install gnuplot-nox";
   if (problem != 0) return fmt::format("gnuplot could not be started: {}", std::strerror(problem));

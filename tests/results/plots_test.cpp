@@ -130,6 +130,24 @@ TEST(Plots, WithoutGnuplotTheMessageSaysWhatToInstall) {
   EXPECT_THAT(failure.value_or(""), HasSubstr("apt-get install gnuplot-nox"));
 }
 
+// A bare machine has no locale but C, in which gnuplot warns of the script's UTF-8.
+TEST(Plots, InTheLocaleCNothingIsSaidOfUtf8) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
+  const Folder folder;
+  const char* const before = std::getenv("LC_ALL");
+  const std::string locale = before == nullptr ? "" : before;
+  setenv("LC_ALL", "C", 1);
+  testing::internal::CaptureStderr();
+  const auto failure = draw(states_figure(falling_ball().run), folder / "ball.svg");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(failure.value_or(""), "");
+  if (before == nullptr) {
+    unsetenv("LC_ALL");
+  } else {
+    setenv("LC_ALL", locale.c_str(), 1);
+  }
+}
+
 TEST(Plots, BothFormatsAreDrawn) {
   if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
   const Folder folder;
