@@ -84,7 +84,7 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
     reader(contact_time_), reader(stride_), reader(left_by_steps_), reader(step_), reader(lasted_), reader(last_),
         reader(lasting_);
     reader(together), reader(crowding_), reader(steps_), reader(is_slow_), reader(is_steady_);
-    for (const auto& one : steps_.pushed()) reader.expect(one.pair.is_of(world_), "contacts of other bodies");
+    reader.expect(steps_.is_of(world_), "contacts of other bodies");
     reader.expect(crowding_.is_possible(), "steps that cannot be");
     reader.expect(contact_time_ >= Real(0) && stride_ >= Real(0) && stride_ < never && lasted_ >= Real(0) &&
                       step_ >= Real(0) && step_ < never && last_.size() == world_.size() &&
@@ -307,7 +307,7 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
     for (const auto& one : steps_.pushed()) pairs.push_back(one.pair);
     note_lasting(pairs);
     for (std::size_t k = 0; k < lasting_.size(); ++k) {
-      lasting_[k].press = steps_.pushed()[k].press;
+      lasting_[k].press = steps_.pushed()[k].force.press;
       lasting_[k].impulse += lasting_[k].press * h;
     }
   }

@@ -21,7 +21,7 @@
 
 namespace continuo {
 
-inline constexpr std::uint32_t snapshot_version = 7;
+inline constexpr std::uint32_t snapshot_version = 8;
 
 template <class Real, int Dim>
 Bytes snapshot(const World<Real, Dim>& world);
