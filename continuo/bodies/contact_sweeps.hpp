@@ -163,6 +163,7 @@ class ContactSweeps {
     const Real parting = dot(rate, row.normal);
     Impulse change;
     const Real press = std::max(Real(0), Real(row.impulse.press + (row.least - parting) / row.of_normal));
+    if (press == Real(0) && row.impulse.press == Real(0)) return Real(0);  // as of most that are near, but apart
     change.press = press - row.impulse.press;
     row.impulse.press = press;
     Real greatest = square(change.press * row.of_normal);
