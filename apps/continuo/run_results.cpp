@@ -44,8 +44,7 @@ bool write_files(const RunOutputs& outputs, const model::ModelProgram& program, 
     fine = written(results::write_file(manifest_path, results::manifest(model, run, CONTINUO_VERSION))) && fine;
   }
   if (!outputs.plot.empty()) {
-    const auto plots = results::plots_of(program, run);
-    fine = written(results::draw(results::figure_of(model.name, run, plots), outputs.plot)) && fine;
+    fine = written(results::draw(results::figure_of(program, run), outputs.plot)) && fine;
   }
   return fine;
 }

@@ -16,10 +16,15 @@ struct Curve {
   std::string label;
   std::vector<double> x, y;  // of equal length; a NaN breaks the line
   std::string color{};       // "#rrggbb"; empty: the next of the palette
-  /// An area is a closed path, lightly filled.
-  enum class Style { line, dashed_line, thin_line, full_points, empty_points, dots, area };
+  /// An area is a closed path, lightly filled. Discs have a radius each, on the scale of x, and a colour.
+  enum class Style { line, dashed_line, thin_line, full_points, empty_points, dots, area, discs };
   Style style = Style::line;
   bool widens_axes = true;  // false: the axes do not reach for it
+  struct Disc {
+    double radius = 0;
+    std::string_view color;  // "#rrggbb", of a text that lasts
+  };
+  std::vector<Disc> discs{};  // one for each point of that style
 };
 
 struct Panel {
@@ -32,6 +37,7 @@ struct Panel {
   bool logarithmic_y = false;
   bool tall = false;        // as high as wide pictures allow: for planes
   bool zero_lines = false;  // through the origin
+  bool no_numbers = false;  // at the axes
 };
 
 struct Figure {

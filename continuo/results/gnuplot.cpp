@@ -70,6 +70,12 @@ bool has_place(const Panel& panel, const Curve& curve, std::size_t i) {
          std::isfinite(place_of(panel.logarithmic_y, curve.y[i]));
 }
 
+void append_disc(std::string& script, const Curve::Disc& disc) {
+  script += ' ';
+  append_number(script, disc.radius);
+  script += fmt::format(" 0x{}", disc.color.substr(1));  // without its '#'
+}
+
 void append_data(std::string& script, const Panel& panel, const std::string& name, const Curve& curve) {
   script += fmt::format("{} << END\n", name);
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -77,6 +83,7 @@ void append_data(std::string& script, const Panel& panel, const std::string& nam
       append_number(script, curve.x[i]);
       script += ' ';
       append_number(script, curve.y[i]);
+      if (curve.style == Curve::Style::discs) append_disc(script, curve.discs[i]);
     }
     script += '\n';  // an empty line breaks the curve
   }
@@ -101,6 +108,8 @@ std::string style_of(Curve::Style style, std::string_view own, std::size_t numbe
       return fmt::format("points pt 7 ps 0.45 lc rgb '{}'", color);
     case Curve::Style::area:
       return fmt::format("filledcurves closed fs transparent solid 0.12 noborder lc rgb '{}'", color);
+    case Curve::Style::discs:
+      return "circles fs solid border lc rgb '#ffffff' lw 0.5 lc rgb variable";
     case Curve::Style::line:
       break;
   }
@@ -111,8 +120,10 @@ std::string style_of(Curve::Style style, std::string_view own, std::size_t numbe
 Range range_of(const Panel& panel, std::vector<double> Curve::* values, double air) {
   double low = INFINITY, high = -INFINITY;
   for (const Curve& curve : panel.curves) {
-    for (const double v : curve.*values) {
-      if (std::isfinite(v) && curve.widens_axes) low = std::min(low, v), high = std::max(high, v);
+    if (!curve.widens_axes) continue;
+    for (std::size_t i = 0; i < (curve.*values).size(); ++i) {
+      const double v = (curve.*values)[i], around = curve.discs.empty() ? 0 : curve.discs[i].radius;
+      if (std::isfinite(v)) low = std::min(low, v - around), high = std::max(high, v + around);
     }
   }
   return axis_over(low, high, air);
@@ -202,6 +213,7 @@ void append_panel(std::string& script, const Panel& panel, std::size_t number, d
   script += panel.zero_lines ? "set zeroaxis lw 1 dt 1 lc rgb '#999999'\n" : "unset zeroaxis\n";
   script += panel.logarithmic_x ? "set logscale x\nset format x '%.0e'\n" : "unset logscale x\nset format x '%h'\n";
   script += panel.logarithmic_y ? "set logscale y\nset format y '%.0e'\n" : "unset logscale y\nset format y '%h'\n";
+  if (panel.no_numbers) script += "set format ''\n";
   script += fmt::format("set mxtics {}\nset mytics {}\n", small_ticks(panel, &Curve::x, panel.logarithmic_x),
                         small_ticks(panel, &Curve::y, panel.logarithmic_y));
   script +=
@@ -219,7 +231,9 @@ void append_panel(std::string& script, const Panel& panel, std::size_t number, d
     const std::size_t points = shown_points(panel, panel.curves[i]);
     if (points == 1 && is_line(style)) style = Curve::Style::full_points;  // a line to nowhere is none
     script += fmt::format(
-        "{}{} with {} {}", i > 0 ? ", " : "", points > 0 ? fmt::format("$curve{}_{} using 1:2", number, i) : "NaN",
+        "{}{} with {} {}", i > 0 ? ", " : "",
+        points > 0 ? fmt::format("$curve{}_{} using {}", number, i, style == Curve::Style::discs ? "1:2:3:4" : "1:2")
+                   : "NaN",
         style_of(style, panel.curves[i].color, i), label.empty() ? "notitle" : "title " + in_quotes(label));
   }
   if (!marks.empty())

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include <continuo/model/simulate.hpp>
+#include <continuo/model/world.hpp>
+#include <continuo/results/bodies_panel.hpp>
 #include <continuo/results/plots.hpp>
 
 namespace continuo::results {
@@ -90,9 +92,15 @@ Panel drift_panel(const model::Run& run, const std::vector<double>& marks) {
           .logarithmic_x = has_logarithmic_time(run)};
 }
 
-PlotData states_plot(const model::Run& run) {
+bool is_of_fixed_body(const model::Model& model, std::size_t state) {
+  if (!model.world || state >= model.world->body_states()) return false;
+  return model.world->bodies[state / model::WorldDescription::states_of_body(model.world->dimension)].fixed;
+}
+
+PlotData states_plot(const model::Model& model, const model::Run& run) {
   PlotData plot{.against = run.motion.columns.front(), .x = column_of(run.motion, 0), .curves = {}, .y = {}};
-  for (std::size_t i = 0; i < std::min(run.motion.states, most_default_curves); ++i) {
+  for (std::size_t i = 0; i < run.motion.states && plot.curves.size() < most_default_curves; ++i) {
+    if (is_of_fixed_body(model, i)) continue;
     plot.curves.push_back(run.motion.columns[1 + i]);
     plot.y.push_back(column_of(run.motion, 1 + i));
   }
@@ -106,7 +114,7 @@ std::string label_of(const model::Column& column) {
 }
 
 std::vector<PlotData> plots_of(const model::ModelProgram& program, const model::Run& run) {
-  if (program.model.plots.empty()) return {states_plot(run)};
+  if (program.model.plots.empty()) return {states_plot(program.model, run)};
   std::vector<PlotData> plots;
   for (const model::Plot& plot : program.model.plots) {
     std::vector<model::NodeId> nodes{plot.against.node};
@@ -129,6 +137,16 @@ Figure figure_of(std::string title, const model::Run& run, std::span<const PlotD
   const auto marks = event_times(run);
   for (const PlotData& plot : plots) append_panels(plot, run, marks, figure.panels);
   if (!run.total_energy.empty()) figure.panels.push_back(drift_panel(run, marks));
+  return figure;
+}
+
+Figure figure_of(const model::ModelProgram& program, const model::Run& run) {
+  const model::Model& model = program.model;
+  if (!model.plots.empty() || !model.world || run.motion.rows() == 0)
+    return figure_of(model.name, run, plots_of(program, run));
+  const bool shows_states = std::ranges::count(model.world->bodies, false, &model::BodyDescription::fixed) <= 2;
+  Figure figure = figure_of(model.name, run, shows_states ? plots_of(program, run) : std::vector<PlotData>{});
+  figure.panels.insert(figure.panels.begin(), bodies_panel(model, run));
   return figure;
 }
 

@@ -1,0 +1,233 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <continuo/model/model.hpp>
+#include <continuo/model/world.hpp>
+#include <continuo/results/bodies_panel.hpp>
+#include <continuo/results/plots.hpp>
+
+namespace continuo::results {
+namespace {
+
+using Flat = std::array<double, 2>;
+
+constexpr std::size_t most_ways = 20;  // of more bodies the picture would be a tangle
+constexpr std::size_t most_discs = 3000;
+constexpr std::string_view still_color = "#8a8a8a";
+
+std::string_view family_of(std::string_view body) {
+  return body.substr(0, body.find('['));
+}
+
+struct Seen {
+  Flat at{};
+  double radius = 0, nearness = 0;
+  std::size_t number = 0;
+  std::string_view color;
+};
+
+class BodiesPanel {
+ public:
+  BodiesPanel(const model::Model& model, const model::Run& run) : model_(model), run_(run), world_(*model.world) {
+    for (const model::BodyDescription& body : world_.bodies) {
+      const std::string_view family = family_of(body.name);
+      if (std::ranges::find(families_, family) == families_.end()) families_.push_back(family);
+    }
+  }
+
+  Panel panel() {
+    add_ways();
+    add_bodies();
+    add_walls();
+    add_names();
+    const auto& columns = run_.motion.columns;
+    const std::string when = fmt::format("at {} = {:.4g}{}", columns[0].name, run_.motion.row(last_row())[0],
+                                         columns[0].unit.empty() ? "" : " " + columns[0].unit);
+    const bool is_flat = world_.dimension == 2;
+    panel_.x_label = is_flat ? label_of(axis(0)) + ", " + when : when + ", seen along (-1, -1, -1)";
+    panel_.y_label = is_flat ? label_of(axis(1)) : "";
+    panel_.equal_scale = true;
+    panel_.no_numbers = !is_flat;
+    return std::move(panel_);
+  }
+
+ private:
+  std::size_t last_row() const { return run_.motion.rows() - 1; }
+  /// "x [m]" of whatever body.
+  model::Column axis(std::size_t k) const { return {k == 0 ? "x" : "y", world_.length_unit}; }
+  std::string_view color_of_body(std::size_t i) const {
+    if (world_.bodies[i].fixed) return still_color;
+    return color_of(
+        static_cast<std::size_t>(std::ranges::find(families_, family_of(world_.bodies[i].name)) - families_.begin()));
+  }
+  double coordinate(std::size_t body, std::size_t axis, std::size_t row) const {
+    return run_.motion.row(row)[1 + world_.bodies[body].first_state + 2 * axis];
+  }
+  Flat place(std::size_t body, std::size_t row) const {
+    const double x = coordinate(body, 0, row), y = coordinate(body, 1, row);
+    if (world_.dimension == 2) return {x, y};
+    return {(x - y) * std::sqrt(0.75), coordinate(body, 2, row) - (x + y) / 2};
+  }
+  double nearness(std::size_t body) const {
+    if (world_.dimension == 2) return 0;
+    return coordinate(body, 0, last_row()) + coordinate(body, 1, last_row()) + coordinate(body, 2, last_row());
+  }
+
+  void add_ways() {
+    if (std::ranges::count(world_.bodies, false, &model::BodyDescription::fixed) > static_cast<int>(most_ways)) return;
+    for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
+      if (world_.bodies[i].fixed) continue;
+      Curve way{
+          .label = "", .x = {}, .y = {}, .color = std::string(color_of_body(i)), .style = Curve::Style::thin_line};
+      for (std::size_t row = 0; row <= last_row(); ++row) {
+        const Flat at = place(i, row);
+        way.x.push_back(at[0]), way.y.push_back(at[1]);
+      }
+      panel_.curves.push_back(std::move(way));
+    }
+  }
+  void add_bodies() {
+    std::vector<model::NodeId> nodes;
+    for (const model::BodyDescription& body : world_.bodies) nodes.push_back(body.radius);
+    const std::vector<double> radii = evaluate(model_, nodes, run_.plan.variables);
+    const double size = world_.dimension == 2 ? 1 : std::sqrt(1.5);  // of a unit of length, as seen
+    std::vector<Seen> all(world_.bodies.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      all[i] = {place(i, last_row()), radii[i] * size, nearness(i), i, color_of_body(i)};
+    if (world_.dimension == 3) {
+      std::ranges::sort(all, {}, [](const Seen& body) { return std::pair(body.nearness, body.number); });
+      all = seen_of(all);
+    }
+    if (all.size() > most_discs) return add_dots(all);
+    Curve bodies{.label = "", .x = {}, .y = {}, .style = Curve::Style::discs};
+    for (const Seen& body : all) {
+      bodies.x.push_back(body.at[0]), bodies.y.push_back(body.at[1]);
+      bodies.discs.push_back({body.radius, body.color});
+    }
+    panel_.curves.push_back(std::move(bodies));
+  }
+  /// As a picture file has a hundred numbers for a disc, so many are dots.
+  void add_dots(const std::vector<Seen>& all) {
+    std::vector<std::string_view> colors;
+    for (const Seen& body : all)
+      if (std::ranges::find(colors, body.color) == colors.end()) colors.push_back(body.color);
+    for (const std::string_view color : colors) {
+      Curve dots{.label = "", .x = {}, .y = {}, .color = std::string(color), .style = Curve::Style::dots};
+      for (const Seen& body : all)
+        if (body.color == color) dots.x.push_back(body.at[0]), dots.y.push_back(body.at[1]);
+      panel_.curves.push_back(std::move(dots));
+    }
+  }
+  /// Those of which something is not hidden by nearer ones, to a part in 700 of the picture; from far to near.
+  static std::vector<Seen> seen_of(const std::vector<Seen>& all) {
+    constexpr int pixels = 700;
+    Flat low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+    for (const Seen& body : all)
+      for (const std::size_t k : {0U, 1U})
+        low[k] = std::min(low[k], body.at[k] - body.radius), high[k] = std::max(high[k], body.at[k] + body.radius);
+    const double pixel = std::max(high[0] - low[0], high[1] - low[1]) / pixels;
+    if (!(pixel > 0) || !std::isfinite(pixel)) return all;
+    std::vector<bool> is_hidden(static_cast<std::size_t>(pixels + 1) * (pixels + 1));
+    const auto to_pixel = [&](double at, std::size_t k) { return static_cast<int>((at - low[k]) / pixel); };
+    std::vector<Seen> seen;
+    for (auto body = all.rbegin(); body != all.rend(); ++body) {
+      bool shows = body->radius < pixel;
+      for (int row = to_pixel(body->at[1] - body->radius, 1); row <= to_pixel(body->at[1] + body->radius, 1); ++row) {
+        const double up = low[1] + (row + 0.5) * pixel - body->at[1];
+        const double half = std::sqrt(std::max(0.0, body->radius * body->radius - up * up));
+        for (int column = to_pixel(body->at[0] - half, 0); column < to_pixel(body->at[0] + half, 0); ++column) {
+          auto hidden = is_hidden[static_cast<std::size_t>(row * (pixels + 1) + column)];
+          shows = shows || !hidden;
+          hidden = true;
+        }
+      }
+      if (shows) seen.push_back(*body);
+    }
+    std::ranges::reverse(seen);
+    return seen;
+  }
+
+  /// Walls of the plane, as far as bodies come.
+  void add_walls() {
+    if (world_.dimension != 2 || world_.walls.empty()) return;
+    std::vector<model::NodeId> nodes;
+    for (const model::WallDescription& wall : world_.walls)
+      nodes.insert(nodes.end(), {wall.normal[0], wall.normal[1], wall.offset});
+    const std::vector<double> values = evaluate(model_, nodes, run_.plan.variables);
+    const Flat low = corner(-1), high = corner(1);
+    for (std::size_t w = 0; w < world_.walls.size(); ++w) {
+      const double size = std::hypot(values[3 * w], values[3 * w + 1]);
+      add_line({values[3 * w] / size, values[3 * w + 1] / size}, values[3 * w + 2] / size, low, high);
+    }
+  }
+  /// Of what is drawn so far, with room for a wall beside it.
+  Flat corner(double side) const {
+    Flat result;
+    for (const std::size_t k : {0U, 1U}) {
+      double low = INFINITY, high = -INFINITY;
+      for (const Curve& curve : panel_.curves)
+        for (std::size_t i = 0; i < curve.x.size(); ++i) {
+          const double at = k == 0 ? curve.x[i] : curve.y[i], around = curve.discs.empty() ? 0 : curve.discs[i].radius;
+          if (std::isfinite(at)) low = std::min(low, at - around), high = std::max(high, at + around);
+        }
+      result[k] = side < 0 ? low - 0.02 * (high - low) : high + 0.02 * (high - low);
+    }
+    return result;
+  }
+  /// The points with normal . x = offset in a box: its sides cut the line at parameters along it.
+  void add_line(Flat normal, double offset, Flat low, Flat high) {
+    const Flat from{normal[0] * offset, normal[1] * offset}, along{-normal[1], normal[0]};
+    double first = -INFINITY, last = INFINITY;
+    for (const std::size_t k : {0U, 1U}) {
+      if (along[k] == 0) {
+        if (from[k] < low[k] || from[k] > high[k]) return;
+        continue;
+      }
+      const double a = (low[k] - from[k]) / along[k], b = (high[k] - from[k]) / along[k];
+      first = std::max(first, std::min(a, b)), last = std::min(last, std::max(a, b));
+    }
+    if (!(first < last) || !std::isfinite(last - first)) return;
+    panel_.curves.push_back({.label = "",
+                             .x = {from[0] + first * along[0], from[0] + last * along[0]},
+                             .y = {from[1] + first * along[1], from[1] + last * along[1]},
+                             .color = std::string(still_color)});
+  }
+
+  /// A line of the key for each family that moves, where there are several.
+  void add_names() {
+    if (families_.size() < 2 || families_.size() > most_ways) return;
+    for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
+      const std::string_view family = family_of(world_.bodies[i].name);
+      if (world_.bodies[i].fixed || std::ranges::find(panel_.curves, family, &Curve::label) != panel_.curves.end())
+        continue;
+      panel_.curves.push_back({.label = std::string(family),
+                               .x = {},
+                               .y = {},
+                               .color = std::string(color_of_body(i)),
+                               .style = Curve::Style::full_points});
+    }
+  }
+
+  const model::Model& model_;
+  const model::Run& run_;
+  const model::WorldDescription& world_;
+  std::vector<std::string_view> families_;
+  Panel panel_{.x_label = "", .y_label = "", .curves = {}};
+};
+
+}  // namespace
+
+Panel bodies_panel(const model::Model& model, const model::Run& run) {
+  return BodiesPanel(model, run).panel();
+}
+
+}  // namespace continuo::results

@@ -1,0 +1,13 @@
+// The bodies of a world where they are at the end of a run, with the ways of a few: in the plane as they lie, in space
+// seen along (-1, -1, -1), the nearer before the farther.
+#pragma once
+#include <continuo/model/model.hpp>
+#include <continuo/model/run.hpp>
+#include <continuo/results/figure.hpp>
+
+namespace continuo::results {
+
+/// Of a model with a world, and a run with a row.
+Panel bodies_panel(const model::Model& model, const model::Run& run);
+
+}  // namespace continuo::results

@@ -1,0 +1,120 @@
+// The picture of a world at the end of a run, from rows made by hand.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <string>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "example.hpp"
+#include <continuo/model/load.hpp>
+#include <continuo/model/world.hpp>
+#include <continuo/results/bodies_panel.hpp>
+
+namespace continuo::results::bodies_panel_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+model::Model model_of(const std::string& text) {
+  model::Loaded loaded = model::load(model::Source("model.sim", text));
+  EXPECT_TRUE(loaded) << loaded.text();
+  return std::move(loaded.model).value();
+}
+
+/// Two rows: the start, and the same with every place along the first axis greater by 1.
+model::Run moved_by_one(const model::Model& model) {
+  model::Run run;
+  run.plan.variables = start_values(model);
+  run.motion.states = model.states.size();
+  run.motion.columns = {{"t", "s"}};
+  for (const model::State& state : model.states) run.motion.columns.push_back({state.column, state.unit});
+  for (const double row : {0.0, 1.0}) {
+    run.motion.values.push_back(row);
+    const std::size_t first = run.motion.values.size();
+    for (std::size_t k = 0; k < model.states.size(); ++k)
+      run.motion.values.push_back(
+          k < model.world->body_states() ? evaluate(model, model.states[k].initial, run.plan.variables) : 0);
+    for (const model::BodyDescription& body : model.world->bodies) run.motion.values[first + body.first_state] += row;
+  }
+  return run;
+}
+
+const Curve& discs_of(const Panel& panel) {
+  for (const Curve& curve : panel.curves)
+    if (curve.style == Curve::Style::discs) return curve;
+  ADD_FAILURE() << "no discs";
+  return panel.curves.front();
+}
+
+TEST(BodiesPanel, ShowsBodiesAsLargeAsTheyAreAndTheirWays) {
+  const model::Model model = model_of(
+      "world { wall floor (0, 2) at 3\nwall (1, 1) at -1000\nbody ball at (1, 2) [m] radius 0.5\n"
+      "bodies peg grid 2 from (4, 2) spacing (2, 0) radius 0.25 fixed\nbody other at (3, 5) radius 1 }\nrun 0..1 "
+      "[s]\n");
+  const Panel panel = bodies_panel(model, moved_by_one(model));
+  EXPECT_TRUE(panel.equal_scale);
+  EXPECT_EQ(panel.x_label, "x [m], at t = 1 s");
+  const Curve& discs = discs_of(panel);
+  EXPECT_THAT(discs.x, ElementsAre(2, 5, 7, 4));
+  EXPECT_THAT(discs.y, ElementsAre(2, 2, 2, 5));
+  ASSERT_EQ(discs.discs.size(), 4u);
+  EXPECT_EQ(discs.discs[0].radius, 0.5);
+  EXPECT_EQ(discs.discs[1].radius, 0.25);
+  EXPECT_EQ(discs.discs[1].color, discs.discs[2].color);  // what is fixed is grey, whoever it is
+  EXPECT_NE(discs.discs[0].color, discs.discs[3].color);
+  EXPECT_THAT(panel.curves[0].x, ElementsAre(1, 2));  // the way of the ball
+  // The floor y = 3/2, from the least to the greatest x with a fiftieth of that on both sides; the other is far away.
+  const Curve& floor = panel.curves[3];
+  EXPECT_THAT(floor.y, ElementsAre(1.5, 1.5));
+  EXPECT_NEAR(std::min(floor.x[0], floor.x[1]), 1 - 0.02 * 6.25, 1e-12);
+  EXPECT_NEAR(std::max(floor.x[0], floor.x[1]), 7.25 + 0.02 * 6.25, 1e-12);
+  ASSERT_EQ(panel.curves.size(), 6u);
+  EXPECT_EQ(panel.curves[4].label, "ball");
+  EXPECT_EQ(panel.curves[5].label, "other");
+}
+
+// Along (-1, -1, -1) a large body hides a small one behind it, and not the one beside. Two far ones make the picture.
+TEST(BodiesPanel, InSpaceLeavesOutWhatIsHidden) {
+  const model::Model model = model_of(
+      "world { dimension 3\nbody hidden at (-5, -5, -5) radius 0.5\nbody beside at (-5, -5, 0) radius 0.5\n"
+      "body large at (0, 0, 0) radius 2\nbody before at (5, 5, 5) radius 1 }\nrun 0..1\n");
+  const Panel panel = bodies_panel(model, moved_by_one(model));
+  const Curve& discs = discs_of(panel);
+  // From far to near; the place of (x, y, z) is sqrt(3/4) (x - y), z - (x + y)/2.
+  const double shift = std::sqrt(0.75);
+  ASSERT_EQ(discs.x.size(), 3u);
+  for (const double x : discs.x) EXPECT_NEAR(x, shift, 1e-14);
+  EXPECT_THAT(discs.y, ElementsAre(4.5, -0.5, -0.5));
+  EXPECT_NEAR(discs.discs[1].radius, 2 * std::sqrt(1.5), 1e-14);
+  EXPECT_NEAR(discs.discs[2].radius, std::sqrt(1.5), 1e-14);
+}
+
+TEST(BodiesPanel, SoManyAreDots) {
+  const model::Model model =
+      model_of("world { bodies grain grid 60 x 60 from (0, 0) spacing (1, 1) radius 0.4 }\nrun 0..1\n");
+  const Panel panel = bodies_panel(model, moved_by_one(model));
+  ASSERT_EQ(panel.curves.size(), 1u);
+  EXPECT_EQ(panel.curves[0].style, Curve::Style::dots);
+  EXPECT_EQ(panel.curves[0].x.size(), 3600u);
+}
+
+TEST(BodiesPanel, IsDrawnWithoutAWord) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
+  const model::Model model = model_of(
+      "world { dimension 3\nbodies a grid 2 x 2 from (0, 0, 0) spacing (2, 2, 2)\nbody b at (0, 0, 5) }\nrun 0..1\n");
+  const Folder folder;
+  testing::internal::CaptureStderr();
+  const auto failure = draw({.title = "", .panels = {bodies_panel(model, moved_by_one(model))}}, folder / "bodies.svg");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(failure.value_or(""), "");
+  const std::string svg = content(folder / "bodies.svg");
+  EXPECT_THAT(svg, HasSubstr("rgb(  0, 114, 178)"));
+}
+
+}  // namespace
+}  // namespace continuo::results::bodies_panel_test
