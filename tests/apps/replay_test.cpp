@@ -60,8 +60,9 @@ TEST(Replay, GoesOnWithWhatWasInterrupted) {
   EXPECT_EQ(shell.run("resume bounce.run --at 1 --until 5 -o c.csv").exit, 0);
   EXPECT_THAT(shell.read("c.csv"), HasSubstr("\n5,"));
   EXPECT_TRUE(rows(shell.read("c.csv")).starts_with(rows(shell.read("a.csv"))));
-  // Ctrl-C, as timeout sends it.
-  const Result interrupted = shell.run("run long.sim --record long.run", "timeout -s INT 3");
+  // Ctrl-C, and once more at nearly the same moment: `timeout` sends one to the process and one to its group.
+  const Result interrupted = shell.run("run long.sim --record long.run",
+                                       "sh -c '\"$@\" & sleep 3; kill -INT $!; sleep 0.02; kill -INT $!; wait $!' sh");
   EXPECT_THAT(interrupted.err, HasSubstr("interrupted"));
   const Result kept = shell.run("replay long.run");
   EXPECT_EQ(kept.exit, 130);
