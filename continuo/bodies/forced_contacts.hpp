@@ -132,11 +132,26 @@ class ForcedContacts : public ContactEngine<Real, Dim> {
       const Lasting* const known = find(lasting_, held[k]);
       now.push_back({held[k], known ? known->impulse : Real(0), Real(0)});
       if (!known) note(held[k], ContactChange::begin, Real(0));
-      if (!held[k].with_wall()) together[held[k].a] = together[held[k].b] = world_.time;
     }
     for (const Lasting& one : lasting_)
       if (!find(now, one.pair)) note(one.pair, ContactChange::end, one.impulse);
     lasting_ = std::move(now);
+    note_together(world_.time);
+  }
+  /// Who lies on another, or on two walls of which one rubs: what event_driven.cpp has no parabola for.
+  void note_together(const Real& t) {
+    const auto friction = [&](const Touching& at) {
+      return combined(world_.meeting.friction, world_.material[at.a].friction,
+                      world_.walls()[at.wall].material.friction);
+    };
+    for (std::size_t k = 0; k < lasting_.size(); ++k) {
+      const Touching& at = lasting_[k].pair;
+      if (!at.with_wall()) {
+        together[at.a] = together[at.b] = t;
+      } else if (k > 0 && lasting_[k - 1].pair.a == at.a) {  // on that wall, too
+        if (friction(lasting_[k - 1].pair) > Real(0) || friction(at) > Real(0)) together[at.a] = t;
+      }
+    }
   }
   void note(const Touching& at, ContactChange change, const Real& impulse) {
     if (contacts.is_kept()) contacts.add(event_of(world_, at, world_.time, change, impulse));

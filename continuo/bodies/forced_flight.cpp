@@ -97,8 +97,8 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
  private:
   using Base::allowance_, Base::contact_time_, Base::last_, Base::lasting_, Base::left_by_steps_, Base::never,
       Base::world_;
-  using Base::approaches, Base::find, Base::greatest_acceleration, Base::material_now, Base::note_lasting, Base::strike,
-      Base::strike_all, Base::together, Base::touches;
+  using Base::approaches, Base::find, Base::greatest_acceleration, Base::material_now, Base::note_lasting,
+      Base::note_together, Base::strike, Base::strike_all, Base::together, Base::touches;
   using typename Base::Lasting;
   static constexpr Real steps_of_contact_time = 100;  // a thousandth of the time in which a body falls its radius
 
@@ -198,6 +198,7 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
       lasting_[k].impulse += integrator.system().impulse(integrator.x(), k);
     integrator.system().store(integrator.x(), world_, companions_, lasted_);
     world_.time = integrator.t();
+    note_together(world_.time);
     resolved_ = resolve();
     return {};
   }
@@ -284,10 +285,8 @@ class ForcedFlight final : public ForcedContacts<Real, Dim> {
       world_.velocity[i] = {};
       if (world_.spin[i] != S{}) world_.orientation[i] = turned(world_.orientation[i], world_.spin[i], duration);
     }
-    for (Lasting& one : lasting_) {
-      one.impulse += one.press * duration;
-      if (!one.pair.with_wall()) together[one.pair.a] = together[one.pair.b] = t;
-    }
+    for (Lasting& one : lasting_) one.impulse += one.press * duration;
+    note_together(t);
     world_.time = t;
     return {};
   }

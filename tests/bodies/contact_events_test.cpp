@@ -123,6 +123,32 @@ TEST(ContactEvents, OfTheFastMotionTellOfWeight) {
   }
 }
 
+// A ball rolls off one that is fixed: a contact that lasts begins once and ends once, however long a call takes.
+TEST(ContactEvents, OfAnIslandBeginAndEndOnce) {
+  double when = 0;
+  for (const int calls : {1, 300}) {
+    const Material<double> rough{.restitution = 0, .friction = 0.5};
+    World<double, 2> world;
+    world.gravity = {{0, -10}};
+    ASSERT_TRUE(world.add({.shape = Sphere<double>{1}, .fixed = true, .material = rough}));
+    ASSERT_TRUE(world.add({.position = {{1.5 * std::sin(0.1), 1.5 * std::cos(0.1)}}, .material = rough}));
+    ExactMotion motion(world, {.contact_events = 100});
+    std::vector<ContactEvent<double, 2>> all;
+    for (int k = 1; k <= calls; ++k) {
+      ASSERT_EQ(motion.advance_to(3.0 * k / calls), "");
+      for (const auto& event : motion.contact_events())
+        if (event.change != ContactChange::impact) all.push_back(event);
+    }
+    ASSERT_EQ(all.size(), 2u) << calls;
+    EXPECT_EQ(all[0].change, ContactChange::begin);
+    EXPECT_EQ(all[1].change, ContactChange::end);
+    if (calls > 1) {
+      EXPECT_NEAR(all[1].time, when, 1e-4);  // flights end where calls do, to the contact time and the tolerance
+    }
+    when = all[1].time;
+  }
+}
+
 TEST(ContactEvents, AreBounded) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
