@@ -332,9 +332,9 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
       impulse = collide(mover(i, rubs), of_wall, V(-wall.normal), material);
     note_collision(i);
     if (contacts.is_kept() && impulse > Real(0)) note_wall(i, w, ContactChange::impact, impulse);
-    if (caught) {
-      is_heavy() ? stop_at(i, i) : freeze(i);
-    } else if (rest_on_walls(flights_, i, w, contact_time_) && contacts.is_kept())
+    const Rest rest = caught ? Rest::flies : rest_on_walls(flights_, i, w, contact_time_);
+    if (caught || rest == Rest::lies_in_groove) is_heavy() ? stop_at(i, i) : freeze(i);
+    if (rest == Rest::lies && contacts.is_kept())
       for (std::uint32_t k = 0; k < flights_.plans[i].support_count; ++k)
         note_wall(i, flights_.plans[i].supports[k], ContactChange::begin, Real(0));
     predict(i);

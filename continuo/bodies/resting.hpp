@@ -14,7 +14,8 @@
 
 namespace continuo {
 
-/// Body i rests: how it goes on from here along what carries it. In a groove or a corner, on several walls, it slides.
+/// Body i rests: how it goes on from here along what carries it. In a groove or a corner, on several walls without
+/// friction, it slides.
 template <class Real, int Dim>
 void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& contact_time) {
   using V = Vector<Real, Dim>;
@@ -30,10 +31,13 @@ void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& conta
              press, flights.now, contact_time);
 }
 
+/// What becomes of a body that has met a wall. In a groove, on several walls that rub, no parabola is known.
+enum class Rest : std::uint8_t { flies, lies, lies_in_groove };
+
 /// Lets body i rest on wall `hit`, which it has just met, and on whatever others it touches, where it would leave none
-/// of them for `contact_time`. False where it flies on.
+/// of them for `contact_time`. In a groove it only moves along them then.
 template <class Real, int Dim>
-bool rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t hit, const Real& contact_time) {
+Rest rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t hit, const Real& contact_time) {
   using V = Vector<Real, Dim>;
   const World<Real, Dim>& world = flights.world;
   Path<Real, Dim>& path = flights.paths[i];
@@ -49,7 +53,7 @@ bool rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t h
   };
   const auto leaves = [&](std::uint32_t w, const Real& press) { return !(2 * speed(w) < contact_time * press); };
   const Real press_on_hit = -dot(world.gravity, wall_at(hit).normal);
-  if (!(press_on_hit > Real(0)) || leaves(hit, press_on_hit)) return false;
+  if (!(press_on_hit > Real(0)) || leaves(hit, press_on_hit)) return Rest::flies;
 
   // One wall after the other, the one that gravity presses on most first: each takes its part of what is left of
   // gravity across those before.
@@ -78,12 +82,19 @@ bool rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t h
     pull -= direction * dot(pull, direction);
     path.v -= direction * dot(path.v, direction);
   }
-  if (plan.support_count == 0) return false;
+  if (plan.support_count == 0) return Rest::flies;
+  const auto rubs = [&](std::uint32_t w) {
+    return combined(world.meeting.friction, flights.material(i).friction, world.walls()[w].material.friction) > Real(0);
+  };
+  if (plan.support_count > 1 && std::any_of(plan.supports.begin(), plan.supports.begin() + plan.support_count, rubs)) {
+    plan.support_count = 0;
+    return Rest::lies_in_groove;
+  }
   plan.acceleration = pull;
   flights.turnings[i].rests_since = flights.now;
   flights.acts[i] = Act::rests;
   go_on_along(flights, i, contact_time);
-  return true;
+  return Rest::lies;
 }
 
 /// With which force each wall carries body i that rests: mass * (acceleration - gravity) = sum of forces along normals.
