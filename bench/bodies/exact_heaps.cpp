@@ -2,12 +2,13 @@
 // and what is left wrong: overlaps, and energy from nowhere.
 //   exact_heaps [SECONDS]
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <string>
 
+#include <bench/bodies/overlap.hpp>
+#include <bench/bodies/scenes.hpp>
 #include <bench/processor_time.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
@@ -15,20 +16,8 @@
 namespace continuo::bench {
 namespace {
 
-/// Balls of radius 1/2 above a box `edge` wide.
 World<double, 3> boxful(int count, double edge, const Material<double>& material) {
-  World<double, 3> world;
-  world.gravity = {{0, 0, -9.81}};
-  world.add_container({}, {{edge, edge, 1000}}, material);
-  std::mt19937 engine(1);
-  std::uniform_real_distribution<double> jitter(-0.04, 0.04);
-  const int side = static_cast<int>(edge / 1.1);
-  const double spacing = edge / side;
-  for (int i = 0; i < count; ++i)
-    world.add({.position = {{(i % side + 0.5) * spacing + jitter(engine),
-                             (i / side % side + 0.5) * spacing + jitter(engine), 1 + 1.1 * (i / side / side)}},
-               .material = material});
-  return world;
+  return world_of<double>(dropped(count, edge, static_cast<int>(edge / 1.1), 0.04, material));
 }
 
 /// Rows of a dozen discs above two slopes of 45 degrees.
@@ -43,19 +32,6 @@ World<double, 2> funnelful(int count, const Material<double>& material) {
                .position = {{-2.75 + 0.5 * (i % 12) + jitter(engine), 4 + 0.5 * (i / 12)}},
                .material = material});
   return world;
-}
-
-template <int Dim>
-double deepest_overlap(const World<double, Dim>& world) {
-  double deepest = 0;
-  for (std::size_t i = 0; i < world.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j)
-      deepest = std::max(deepest, world.radius[i] + world.radius[j] -
-                                      length(Vector<double, Dim>(world.position[i] - world.position[j])));
-    for (const auto& wall : world.walls())
-      deepest = std::max(deepest, world.radius[i] + wall.offset - dot(wall.normal, world.position[i]));
-  }
-  return deepest;
 }
 
 template <int Dim>

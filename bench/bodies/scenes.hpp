@@ -31,13 +31,11 @@ inline Scene gas(int count, double edge, double duration) {
   return scene;
 }
 
-/// Dropped from a jittered grid into an open box, 40 x 40 for 10,000: 36 x 36 balls a layer.
-inline Scene heap(int count) {
-  const double edge = 40 * std::sqrt(count / 10000.0);
-  const int side = static_cast<int>(std::lround(edge * 0.9));
-  Scene scene{.gravity = {{0, 0, -9.81}}, .upper = {{edge, edge, 1e4}}, .material = {0, 0.5, 0}, .duration = 10};
+/// Dropped from a jittered grid, side x side balls a layer, into an open box.
+inline Scene dropped(int count, double edge, int side, double jitter_width, const Material<double>& material) {
+  Scene scene{.gravity = {{0, 0, -9.81}}, .upper = {{edge, edge, 1e4}}, .material = material, .duration = 10};
   std::mt19937 engine(1);
-  std::uniform_real_distribution<double> jitter(-0.02, 0.02);
+  std::uniform_real_distribution<double> jitter(-jitter_width, jitter_width);
   for (int i = 0; i < count; ++i) {
     const double spacing = edge / side;
     scene.position.push_back({{(i % side + 0.5) * spacing + jitter(engine),
@@ -45,6 +43,11 @@ inline Scene heap(int count) {
     scene.velocity.push_back({});
   }
   return scene;
+}
+/// The field's: 40 x 40 for 10,000, of 36 x 36 balls a layer.
+inline Scene heap(int count) {
+  const double edge = 40 * std::sqrt(count / 10000.0);
+  return dropped(count, edge, static_cast<int>(std::lround(edge * 0.9)), 0.02, {0, 0.5, 0});
 }
 
 template <class Real>

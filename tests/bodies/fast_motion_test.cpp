@@ -6,8 +6,9 @@
 #include <limits>
 #include <random>
 
+#include <bench/bodies/overlap.hpp>
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
+#include <tests/bodies/heaps.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
@@ -157,24 +158,6 @@ TEST(FastMotion, KeepsMomentumAndAngularMomentum) {
   EXPECT_LT(length(momentum(world) - p), 1e-11);
 }
 
-template <class Real>
-World<Real, 3> heap(int count, int side, std::uint32_t seed) {
-  World<Real, 3> world;
-  world.reserve(static_cast<std::size_t>(count));
-  world.gravity = {{0, 0, Real(-9.81)}};
-  EXPECT_EQ(
-      world.add_container({}, {{static_cast<Real>(1.15 * side + 0.25), static_cast<Real>(1.15 * side + 0.25), 1000}}),
-      "");
-  std::mt19937 engine(seed);
-  std::uniform_real_distribution<double> uniform(-0.1, 0.1);
-  for (int i = 0; i < count; ++i) {
-    const double x = 0.7 + 1.15 * (i % side) + uniform(engine), y = 0.7 + 1.15 * (i / side % side) + uniform(engine);
-    const double z = 1.0 + 1.2 * (i / side / side);
-    EXPECT_TRUE(world.add({.position = {{static_cast<Real>(x), static_cast<Real>(y), static_cast<Real>(z)}}}));
-  }
-  return world;
-}
-
 // A heap comes to rest without sinking in: 200 balls, the deepest overlap of all steps a hundredth of a radius,
 // although balls fall on others, at up to 4 m/s, that the floor holds.
 TEST(FastMotion, AHeapComesToRest) {
@@ -225,39 +208,17 @@ TEST(FastMotion, WhatCanBounceDoesNotSink) {
             {.position = {{0.7 + 1.15 * (i % 5) + 0.02 * (i * 7 % 11), 1 + 1.2 * (i / 5)}}, .material = material}));
       FastMotion<double, 2> motion(world, {.step = dt});
       while (world.time < 4) ASSERT_EQ(motion.advance(), "");
-      double deepest = 0;
-      for (std::size_t i = 0; i < world.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-          deepest = std::max(deepest, 1 - length(world.position[i] - world.position[j]));
-      EXPECT_LT(deepest, 0.005) << dt << ' ' << restitution;
+      EXPECT_LT(deepest_overlap_of_bodies(world), 0.005) << dt << ' ' << restitution;
       EXPECT_LT(kinetic_energy(world), 0.01 * 40) << dt << ' ' << restitution;
     }
   }
 }
 
-// More threads than the machine may have, so that loops are really cut in so many parts.
-void expect_the_same_for_any_number_of_threads(const World<float, 3>& start) {
-  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, 8);
-  std::uint64_t expected = 0;
-  for (const int threads : {1, 2, 4, 7}) {
-    World<float, 3> world = start;
-    FastMotion<float, 3> motion(world, {.threads = threads});
-    for (int step = 0; step < 60; ++step) ASSERT_EQ(motion.advance(), "");
-    EXPECT_GT(motion.statistics().contacts, 4000u);
-    if (threads == 1) expected = state_hash(world);
-    EXPECT_EQ(state_hash(world), expected) << threads;
-  }
-}
 TEST(FastMotion, APlainHeapIsTheSameForAnyNumberOfThreads) {
-  expect_the_same_for_any_number_of_threads(heap<float>(4000, 20, 1));
+  expect_the_same_for_any_number_of_threads(heap<float>(4000, 20, 1), {}, 60);
 }
-// Bounces, rolling resistance, a fixed ball and a force take the ways that a plain heap does not.
 TEST(FastMotion, AMixedHeapIsTheSameForAnyNumberOfThreads) {
-  World<float, 3> world = heap<float>(4000, 20, 1);
-  world.material[17] = {.restitution = 0.5f, .friction = 0.3f, .rolling_resistance = 0.1f};
-  ASSERT_TRUE(world.add({.shape = Sphere<float>{2.0f}, .position = {{5, 5, 2}}, .fixed = true}));
-  world.drag.linear = 0.01f;
-  expect_the_same_for_any_number_of_threads(world);
+  expect_the_same_for_any_number_of_threads(mixed(heap<float>(4000, 20, 1)), {}, 60);
 }
 
 // Every build moves a world the same way: debug and release, g++ and clang, on any machine without instructions that
@@ -282,6 +243,7 @@ TEST(FastMotion, IsTheSameInEveryBuild) {
   }
   EXPECT_EQ(hash_without_orientation(single), 0x94e0847a59355ae8u);
   EXPECT_EQ(hash_without_orientation(twice), 0x46cbe774bc5eb302u);
+
   World<double, 2> exact;
   exact.gravity = {{0, -9.81}};
   ASSERT_EQ(exact.add_container({{0, 0}}, {{10, 10}}), "");

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
+#include <bench/bodies/overlap.hpp>
 #include <gtest/gtest.h>
-#include <tests/bodies/overlap.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>

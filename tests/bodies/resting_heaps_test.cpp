@@ -8,8 +8,8 @@
 #include <random>
 #include <tuple>
 
+#include <bench/bodies/overlap.hpp>
 #include <gtest/gtest.h>
-#include <tests/bodies/overlap.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
