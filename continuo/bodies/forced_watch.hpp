@@ -44,6 +44,8 @@ class ForcedWatch {
   std::string_view name(std::size_t i) const { return i + 1 < size() ? "contact" : "list"; }
   Direction direction(std::size_t) const { return Direction::falls; }
   bool is_guard(std::size_t) const { return true; }
+  bool can_restart(std::size_t) const { return true; }  // each stops the flight
+  bool can_assign(std::size_t) const { return false; }
   template <class System>
   bool active(const System&, std::size_t) const {
     return true;
@@ -63,7 +65,7 @@ class ForcedWatch {
     known_.push_back({t, state, {values.begin(), values.end()}});
   }
   template <class System>
-  EventResponse fire(System&, std::span<const std::size_t>, Real, const X&, X&) {
+  EventResponse fire(System&, std::size_t, Real, const X&, X&) {
     return {.stop = true};
   }
 

@@ -197,6 +197,7 @@ class Checker {
   void make_event(const ast::Initially& text, Scope& scope, Span span);
   void make_scheduled(Scheduled event, const std::vector<ast::Action>& actions, Scope& scope);
   Value guard(const ast::Expression& condition, Scope& scope);
+  bool changes_at_events_only(NodeId node) const;
   Block block(const std::vector<ast::Action>& actions, Scope& scope);
   Block actions_of(const std::vector<ast::Action>& actions, Scope& scope);
   void add_action(Block& to, const ast::Action& action, Scope& scope);

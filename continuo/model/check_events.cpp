@@ -69,7 +69,10 @@ void Checker::make_event(const ast::When& text, Scope& scope, Span span) {
     event.direction = *text.direction;
   } else {
     const Value condition = guard(text.subject, scope);
-    if (!condition.bad) event.guard = condition.node;
+    if (!condition.bad) {
+      event.guard = condition.node;
+      event.truth = condition_of(text.subject, scope).node;
+    }
   }
   event.actions = actions_of(text.actions, scope);
   if (event.guard.valid() && model_.graph.value(event.guard)) {
@@ -108,6 +111,24 @@ void Checker::make_event(const ast::Initially& text, Scope& scope, Span span) {
   make_scheduled({Scheduled::Kind::initially, event_name(text), {}, {}, {}, span}, text.actions, scope);
 }
 
+/// Only actions change it: it is made of parameters, of inputs that follow no straight lines, and of states that stand
+/// still in every mode.
+bool Checker::changes_at_events_only(NodeId node) const {
+  const Layout& layout = model_.layout;
+  return std::ranges::all_of(variables_of(model_.graph, node), [&](std::uint32_t v) {
+    if (v >= layout.parameters && v < layout.inputs) return true;
+    if (v >= layout.inputs && v < layout.samples) {
+      const auto input = std::ranges::find(model_.inputs, v, &Input::variable);
+      return !input->points || input->points->between() == Table::Between::step;
+    }
+    if (v < layout.states || v >= layout.unknowns) return false;
+    const std::size_t state = v - layout.states;
+    return !model_.states[state].in_world && std::ranges::all_of(model_.modes, [&](const Mode& mode) {
+      return model_.graph.is(mode.derivatives[state], 0);
+    });
+  });
+}
+
 /// A number that rises through zero where the condition becomes true. Comparisons stay smooth, so that the instant is
 /// found as precisely as that of a level.
 Value Checker::guard(const ast::Expression& condition, Scope& scope) {
@@ -131,13 +152,14 @@ Value Checker::guard(const ast::Expression& condition, Scope& scope) {
     if (a.value.bad || b.value.bad || !align(a, b, condition.span, scope)) return bad();
     return {.node = less_than ? g.subtract(b.value.node, a.value.node) : g.subtract(a.value.node, b.value.node)};
   }
-  if (node && (node->op == equal || node->op == not_equal)) {
-    fail("E217", condition.span, "an event cannot wait for equality", "two numbers are equal at single instants only",
-         "write: when A crosses B");
+  Value value = condition_of(condition, scope);
+  if (value.bad) return value;
+  if (node && (node->op == equal || node->op == not_equal) && !changes_at_events_only(value.node)) {
+    fail("E217", condition.span, "an event cannot wait for equality of what moves",
+         "two such numbers are equal at single instants only", "write: when A crosses B");
     return bad();
   }
-  Value value = condition_of(condition, scope);
-  if (!value.bad) value.node = g.select(value.node, g.constant(1), g.constant(-1));
+  value.node = g.select(value.node, g.constant(1), g.constant(-1));
   return value;
 }
 

@@ -143,6 +143,7 @@ struct Action {
 struct When {
   std::string name;  // for tables: "h falls through 0"
   NodeId guard;
+  NodeId truth{};  // of a condition: whether it holds, which decides where the guard is zero; not valid for a level
   Direction direction;
   std::optional<std::size_t> mode;  // nothing: in every mode
   Block actions;

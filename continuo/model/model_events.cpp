@@ -13,6 +13,7 @@ ModelEvents::Entry ModelEvents::entry_of(const When& when, std::size_t index) co
   entry.direction = when.direction;
   entry.in_one_mode = when.mode.has_value();
   entry.mode = when.mode.value_or(0);
+  entry.is_condition = when.truth.valid();
   return entry;
 }
 
@@ -27,13 +28,44 @@ ModelEvents::Entry ModelEvents::entry_of(const ModelProgram& program, const Sche
     case Scheduled::Kind::at:
       entry.times = {value(*scheduled.time)};
       break;
-    case Scheduled::Kind::every:
-      entry.period = value(*scheduled.time);
-      entry.period_from = scheduled.first ? value(*scheduled.first) : from + entry.period;
+    case Scheduled::Kind::every: {
+      const double period = value(*scheduled.time);
+      const double first = scheduled.first ? value(*scheduled.first) : DecimalTicks<double>(from, period)[1];
+      entry.ticks = DecimalTicks<double>(first, period);
       break;
+    }
   }
   return entry;
 }
+
+namespace {
+
+bool assigns(const std::vector<ProgramAction>& actions) {
+  return std::ranges::any_of(actions, [](const ProgramAction& action) {
+    return action.kind == ProgramAction::Kind::assign || action.kind == ProgramAction::Kind::go ||
+           assigns(action.then) || assigns(action.otherwise);
+  });
+}
+
+/// Whether the actions may do more than to mark and to count.
+bool may_restart(const ModelProgram& program, const std::vector<ProgramAction>& actions) {
+  return std::ranges::any_of(actions, [&](const ProgramAction& action) {
+    switch (action.kind) {
+      case ProgramAction::Kind::mark:
+        return false;
+      case ProgramAction::Kind::assign:
+        return program.counters[action.target] == 0;
+      case ProgramAction::Kind::branch:
+        return may_restart(program, action.then) || may_restart(program, action.otherwise);
+      case ProgramAction::Kind::go:
+      case ProgramAction::Kind::stop:
+        break;
+    }
+    return true;
+  });
+}
+
+}  // namespace
 
 ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> variables, double from) : begin_(from) {
   const Model& model = program.model;
@@ -50,8 +82,8 @@ ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> va
     events_.push_back(place.scheduled ? entry_of(program, model.schedule[place.index], place.index, variables, from)
                                       : entry_of(model.events[place.index], place.index));
     const auto& block = place.scheduled ? program.schedule_blocks[place.index] : program.event_blocks[place.index];
-    events_.back().only_notes = std::ranges::all_of(
-        block.actions, [](const ProgramAction& action) { return action.kind == ProgramAction::Kind::mark; });
+    events_.back().can_restart = may_restart(program, block.actions);
+    events_.back().can_assign = assigns(block.actions);
   }
   guard_values_.resize(model.events.size());
   stop_counts_.resize(program.stops);
@@ -60,16 +92,10 @@ ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> va
 double ModelEvents::next_time(std::size_t i, double t, bool inclusive) const {
   const Entry& entry = events_[i];
   if (t == resumed_) inclusive = false;
-  const auto past = [&](double time) { return inclusive ? time >= t : time > t; };
   double next = std::numeric_limits<double>::infinity();
   const auto found = inclusive ? std::ranges::lower_bound(entry.times, t) : std::ranges::upper_bound(entry.times, t);
   if (found != entry.times.end()) next = *found;
-  if (entry.period > 0) {
-    // k * period afresh each time: a million periods do not drift.
-    double k = std::max(0.0, std::floor((t - entry.period_from) / entry.period));
-    while (!past(entry.period_from + k * entry.period)) k += 1;
-    next = std::min(next, entry.period_from + k * entry.period);
-  }
+  if (entry.ticks.period() > 0) next = std::min(next, entry.ticks.next(t, inclusive));
   return next;
 }
 
@@ -103,29 +129,31 @@ void ModelEvents::perform(const std::vector<ProgramAction>& actions, std::span<c
   }
 }
 
-EventResponse ModelEvents::fire(ModelSystem& system, std::span<const std::size_t> fired, double t, const X& before,
-                                X& x) {
-  Effect effect{.mode = system.mode()};
-  bool changed = false;
-  for (const std::size_t i : fired) {
-    const Entry& entry = events_[i];
-    if (entry.kind == Kind::input) {
-      const TableInput& input = system.program().step_inputs[entry.index];
-      system.set(input.variable, input.table.value(t));
-      changed = true;
-      continue;
-    }
-    effect.event = i;
-    const bool guard = entry.kind == Kind::guard;
-    const ProgramBlock& block =
-        guard ? system.program().event_blocks[entry.index] : system.program().schedule_blocks[entry.index];
-    const std::vector<double> values =
-        guard ? system.event_expressions(entry.index, t, before) : system.schedule_expressions(entry.index, t, before);
-    perform(block.actions, values, t, x, effect);
+EventResponse ModelEvents::fire(ModelSystem& system, std::size_t i, double t, const X& before, X& x) {
+  const Entry& entry = events_[i];
+  if (entry.kind == Kind::input) {
+    const TableInput& input = system.program().step_inputs[entry.index];
+    const double value = input.table.value(t);
+    const bool changes = system.value(input.variable) != value;
+    if (changes) system.set(input.variable, value);
+    return {.restart = changes};
   }
-  changed = changed || effect.mode != system.mode() || x != before;
+  Effect effect{.event = i, .mode = system.mode()};
+  const bool guard = entry.kind == Kind::guard;
+  const ProgramBlock& block =
+      guard ? system.program().event_blocks[entry.index] : system.program().schedule_blocks[entry.index];
+  const std::vector<double> values =
+      guard ? system.event_expressions(entry.index, t, before) : system.schedule_expressions(entry.index, t, before);
+  perform(block.actions, values, t, x, effect);
+  EventResponse response{.stop = effect.stop, .restart = effect.mode != system.mode()};
+  const std::vector<char>& counters = system.program().counters;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (x[k] == before[k]) continue;
+    response.changed = true;
+    response.restart = response.restart || counters[k] == 0;
+  }
   system.go(effect.mode);
-  return {effect.stop, changed};
+  return response;
 }
 
 }  // namespace continuo::model

@@ -1,6 +1,6 @@
 // continuo/model/model_events.hpp
 // A model's `when`, `at`, `every` and `initially`, and the steps of its inputs, as the source of events that solve/
-// asks for. Actions read the state from before the event and take effect together, a change of mode too.
+// asks for. The actions of an event read the state from before it and take effect together, a change of mode too.
 #pragma once
 #include <cstddef>
 #include <limits>
@@ -32,13 +32,15 @@ class ModelEvents {
   std::string_view name(std::size_t i) const { return events_[i].name; }
   Direction direction(std::size_t i) const { return events_[i].direction; }
   bool is_guard(std::size_t i) const { return events_[i].kind == Kind::guard; }
-  bool only_notes(std::size_t i) const { return events_[i].only_notes; }
+  bool can_restart(std::size_t i) const { return events_[i].can_restart; }
+  bool can_assign(std::size_t i) const { return events_[i].can_assign; }
+  bool is_condition(std::size_t i) const { return events_[i].is_condition; }
   bool active(const ModelSystem& system, std::size_t i) const {
     return !events_[i].in_one_mode || events_[i].mode == system.mode();
   }
   double next_time(std::size_t i, double t, bool inclusive) const;
   void guards(ModelSystem& system, double t, const X& x, std::span<double> values);
-  EventResponse fire(ModelSystem& system, std::span<const std::size_t> fired, double t, const X& before, X& x);
+  EventResponse fire(ModelSystem& system, std::size_t i, double t, const X& before, X& x);
 
   /// When the run began.
   double begin() const { return begin_; }
@@ -62,11 +64,13 @@ class ModelEvents {
     std::size_t index;  // into Model::events, Model::schedule, or the step inputs
     std::string name;
     Direction direction = Direction::crosses;
-    bool only_notes = false;  // its actions are marks
+    bool can_restart = true;  // its actions can change what the equations read, or stop the run
+    bool can_assign = true;   // or a state
+    bool is_condition = false;
     bool in_one_mode = false;
     std::size_t mode = 0;
-    std::vector<double> times{};         // of scheduled ones, ascending
-    double period = 0, period_from = 0;  // `every`
+    std::vector<double> times{};   // of scheduled ones, ascending
+    DecimalTicks<double> ticks{};  // of `every`
   };
   struct Effect {
     std::size_t event = 0;

@@ -89,13 +89,18 @@ void compile_equations(ModelProgram& program) {
   for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
     program.derivatives.push_back(program.tape_of(model.modes[mode].derivatives));
     ProgramGuards guards;
-    std::vector<NodeId> nodes;
+    std::vector<NodeId> nodes, truths;
     for (std::size_t i = 0; i < model.events.size(); ++i) {
       if (model.events[i].mode.value_or(mode) != mode) continue;
+      if (model.events[i].truth.valid()) {
+        guards.conditions.push_back(guards.events.size());
+        truths.push_back(model.events[i].truth);
+      }
       guards.events.push_back(i);
       nodes.push_back(model.events[i].guard);
     }
     guards.tape = program.tape_of(nodes);
+    guards.truths = program.tape_of(truths);
     program.guards.push_back(std::move(guards));
   }
 }
@@ -185,6 +190,23 @@ bool is_autonomous(const ModelProgram& program) {
   });
 }
 
+/// Which states are only of interest to events and outputs.
+std::vector<char> find_counters(const Model& model) {
+  std::vector<char> counters(model.states.size(), 0);
+  if (model.has_world()) return counters;
+  const Graph& graph = model.graph;
+  for (std::size_t i = 0; i < counters.size(); ++i) {
+    counters[i] = !model.states[i].algebraic && std::ranges::all_of(model.modes, [&](const Mode& mode) {
+      return graph.is(mode.derivatives[i], 0);
+    });
+  }
+  for (const Mode& mode : model.modes) {
+    for (const std::uint32_t v : variables_of(graph, mode.derivatives))
+      if (v >= model.layout.states && v < model.layout.parameters) counters[v - model.layout.states] = 0;
+  }
+  return counters;
+}
+
 }  // namespace
 
 std::shared_ptr<const ModelProgram> compile(Model model) {
@@ -194,6 +216,7 @@ std::shared_ptr<const ModelProgram> compile(Model model) {
   compile_equations(*program);
   compile_blocks(*program);
   program->autonomous = is_autonomous(*program);
+  program->counters = find_counters(program->model);
   return program;
 }
 

@@ -33,7 +33,9 @@ struct ProgramBlock {
 /// The guards that are watched in one mode.
 struct ProgramGuards {
   std::shared_ptr<const Tape> tape;
-  std::vector<std::size_t> events;  // which of Model::events each output is
+  std::vector<std::size_t> events;      // which of Model::events each output is
+  std::shared_ptr<const Tape> truths;   // of those that are conditions: whether they hold
+  std::vector<std::size_t> conditions;  // which of `events` each output of `truths` is
 };
 
 /// An input that follows a table over time.
@@ -58,6 +60,7 @@ struct ModelProgram {
   std::vector<NodeId> always;  // what `check always` watches: each side minus the other, in the order of the checks
   NodeId energy_scale;         // the sum of the energies' absolute values; not valid without any
   std::size_t stops = 0;       // number of `stop` actions
+  std::vector<char> counters;  // by state: it stands still between events and no equation reads it, like a counter
   std::vector<std::uint32_t> families;  // as TapeVariables says: u[1], u[2], ... are one, their derivatives another
 
   TapeVariables tape_variables() const {

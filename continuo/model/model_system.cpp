@@ -14,7 +14,10 @@ ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<
       mode_(program_->model.start_mode),
       variables_(variables.begin(), variables.end()) {
   for (const auto& tape : program_->derivatives) derivatives_.emplace_back(tape, variables);
-  for (const ProgramGuards& guards : program_->guards) guards_.emplace_back(guards.tape, variables);
+  for (const ProgramGuards& guards : program_->guards) {
+    guards_.emplace_back(guards.tape, variables);
+    truths_.emplace_back(guards.truths, variables);
+  }
   for (const ProgramBlock& block : program_->event_blocks) event_blocks_.emplace_back(block.tape, variables);
   for (const ProgramBlock& block : program_->schedule_blocks) {
     schedule_blocks_.emplace_back(block.tape, variables);
@@ -24,7 +27,7 @@ ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<
 
 template <class Visit>
 void ModelSystem::for_each(Visit&& visit) {
-  for (auto* list : {&derivatives_, &guards_, &event_blocks_, &schedule_blocks_}) std::ranges::for_each(*list, visit);
+  for (auto* list : {&derivatives_, &guards_, &truths_, &event_blocks_, &schedule_blocks_}) std::ranges::for_each(*list, visit);
 }
 
 void ModelSystem::set(std::uint32_t variable, double value) {
@@ -37,6 +40,15 @@ void ModelSystem::guards(double t, const X& x, std::span<double> values) {
   const std::vector<std::size_t>& events = program_->guards[mode_].events;
   if (events.empty()) return;
   guards_[mode_](t, x, std::span(guard_values_).first(events.size()));
+  const std::vector<std::size_t>& conditions = program_->guards[mode_].conditions;
+  const auto is_zero = [&](std::size_t k) { return guard_values_[k] == 0; };
+  if (std::ranges::any_of(conditions, is_zero)) {
+    const std::vector<double> truths = truths_[mode_](t, x);
+    for (std::size_t c = 0; c < conditions.size(); ++c) {
+      constexpr double least = std::numeric_limits<double>::denorm_min();
+      if (is_zero(conditions[c])) guard_values_[conditions[c]] = truths[c] != 0 ? least : -least;
+    }
+  }
   for (std::size_t k = 0; k < events.size(); ++k) values[events[k]] = guard_values_[k];
 }
 

@@ -37,12 +37,14 @@ class ModelSystem {
   void go(std::size_t mode) { mode_ = mode; }
   /// A parameter or an input.
   void set(std::uint32_t variable, double value);
+  double value(std::uint32_t variable) const { return variables_[variable]; }
   /// Parameters and inputs as in this register file.
   void set_all(std::span<const double> variables);
   /// These states stand still from now on, whatever the equations say: somebody holds them.
   void hold(std::vector<std::size_t> states) { held_ = std::move(states); }
 
-  /// The guards that are active in the present mode; values[i] for Model::events[i], the others are left alone.
+  /// The guards that are active in the present mode; values[i] for Model::events[i], the others are left alone. That of
+  /// a condition is never zero: its sign says whether the condition holds.
   void guards(double t, const X& x, std::span<double> values);
   /// The expressions of the block of Model::events[i] or Model::schedule[i].
   std::vector<double> event_expressions(std::size_t i, double t, const X& x) { return event_blocks_[i](t, x); }
@@ -75,7 +77,7 @@ class ModelSystem {
   std::size_t mode_;
   std::vector<double> variables_;  // parameters and inputs as they are now
   std::optional<ModelDerivatives> derivatives_of_f_;
-  std::vector<Evaluation> derivatives_, guards_, event_blocks_, schedule_blocks_;
+  std::vector<Evaluation> derivatives_, guards_, truths_, event_blocks_, schedule_blocks_;
   std::vector<double> guard_values_;
   std::vector<std::size_t> held_;
 };

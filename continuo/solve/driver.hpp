@@ -9,13 +9,11 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include <continuo/solve/accumulation.hpp>
 #include <continuo/solve/consistent.hpp>
-#include <continuo/solve/guard_watch.hpp>
+#include <continuo/solve/event_logic.hpp>
 #include <continuo/solve/observer.hpp>
 #include <continuo/solve/steps.hpp>
 
@@ -26,7 +24,8 @@ class Driver {
  public:
   using Real = Scalar<X>;
 
-  /// Takes one step, cut short at an event that changes the state, never beyond interval.to. True while there is more.
+  /// Takes one step, cut short at an event that changes what f reads, never beyond interval.to. True while there is
+  /// more.
   template <class Observer = NoObserver>
   bool advance(Observer&& observer = {}) {
     if (!started_) start(observer);
@@ -36,10 +35,13 @@ class Driver {
     if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) return end(Ending::interrupted);
     if (statistics().steps + statistics().rejected >= options_.max_steps)
       return end(Ending::too_many_steps, steps().stiff() ? stiff_hint : "raise max_steps or loosen the tolerance");
-    const Real limit = any_scheduled_ ? next_scheduled(t_, false) : interval_.to;
-    // An event with an action could change everything; without one it is no use to go on to the limit of steps.
-    if (const Real needed = any_turning_guard_ ? Real(0) : steps().endless(limit, options_); needed > 0) [[unlikely]]
+    const Real limit = logic_.next_restart(t_, interval_.to);
+    // An event that restarts the motion could change everything; without one it is no use to go on to the limit of
+    // steps.
+    if (const Real needed = logic_.any_turning_guard() ? Real(0) : steps().endless(limit, options_); needed > 0)
+        [[unlikely]]
       return end(Ending::too_many_steps, hint_of_endless(needed));
+    begin_step();
     if (!steps().take(limit, options_, outcome_)) {
       ended_ = true;
       return false;
@@ -52,23 +54,37 @@ class Driver {
   Real t() const { return t_; }
   const X& x() const { return x_; }
   const System& system() const { return steps().system(); }
-  const Events& events() const { return events_; }
+  const Events& events() const { return logic_.events(); }
   const Outcome<Real>& outcome() const { return outcome_; }
   const Statistics& statistics() const { return steps().statistics(); }
   const Interval<Real>& interval() const { return interval_; }
   const Options<X>& options() const { return options_; }
 
-  /// x at a time of the last step, on the dense output; after an event still what was before it, but for t().
+  /// x at a time of the last step, on the dense output, the unknowns of algebraic equations solved for; at an event what
+  /// was before it, but for t().
   void at(Real t, X& x) {
     if (t == t_) {
       x = x_;
-    } else {
-      steps().at(t, x);
+      return;
     }
+    steps().at(t, x);
+    for (const Shift& shift : shifts_)
+      if (shift.earlier || forward() * (t - shift.t) > 0) x.data()[shift.component] = shift.value;
+    solve_unknowns(t, x);
   }
 
-  /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant.
-  std::span<const X> dense_output() { return steps().dense_output(); }
+  /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant. Unknowns of algebraic
+  /// equations are not solved for: they are as near as the method's polynomial.
+  std::span<const X> dense_output() {
+    const std::span<const X> output = steps().dense_output();
+    if (shifts_.empty()) return output;
+    shifted_output_.assign(output.begin(), output.end());
+    for (const Shift& shift : shifts_) {
+      shifted_output_[0].data()[shift.component] = shift.value;
+      for (std::size_t j = 1; j < shifted_output_.size(); ++j) shifted_output_[j].data()[shift.component] = Real(0);
+    }
+    return shifted_output_;
+  }
   Real step_begin() const { return steps().begin(); }
   Real step_size() const { return steps().size(); }
 
@@ -97,28 +113,32 @@ class Driver {
         x_(x0),
         before_(std::move(x0)),
         steps_(std::move(steps)),
-        events_(std::move(events)),
-        watch_(events_.size()),
-        accumulation_(events_.size()),
-        guard_values_(events_.size()) {
-    fired_.reserve(events_.size());
-    next_fired_.reserve(events_.size());
+        logic_(std::move(events), x_, interval.to < interval.from ? Real(-1) : Real(1), length_of(interval)),
+        guard_values_(logic_.events().size()),
+        later_values_(logic_.events().size()) {
     if (settle_algebraic()) this->steps().jump(t_, x_, options_);
-    for (std::size_t i = 0; i < events_.size(); ++i) {
-      any_guard_ = any_guard_ || events_.is_guard(i);
-      any_turning_guard_ = any_turning_guard_ || (events_.is_guard(i) && can_change(events_, i));
-      any_scheduled_ = any_scheduled_ || !events_.is_guard(i);
-    }
   }
 
   Steps<System, X>& steps() { return *steps_; }
   const Steps<System, X>& steps() const { return *steps_; }
 
  private:
-  static constexpr int most_rounds = 20, most_slides = 100;
   static constexpr const char* stiff_hint =
       "the system is stiff: stability, not accuracy, holds the steps of this method; name no method, or take rodas5p, "
       "radau or bdf";
+
+  /// A component that f does not read and that stands still has been changed by an event: the steps know nothing of it.
+  struct Shift {
+    bool earlier;  // than the present step
+    Real t;
+    std::size_t component;
+    Real value;
+  };
+
+  static Real length_of(const Interval<Real>& interval) {
+    using std::abs;
+    return abs(interval.to - interval.from);
+  }
 
   static std::string hint_of_endless(Real steps) {
     using std::floor, std::log10;
@@ -141,7 +161,10 @@ class Driver {
   template <class Observer>
   void start(Observer& observer) {
     started_ = true;
-    if (const std::string why = wrong_input(steps().needs(x_), system(), x_, interval_, options_); !why.empty()) {
+    std::string why = wrong_input(steps().needs(x_), system(), x_, interval_, options_);
+    if constexpr (requires { events().schedule_problem(interval_.to); })
+      if (why.empty()) why = events().schedule_problem(interval_.to);
+    if (!why.empty()) {
       end(Ending::invalid_input, why);
       return;
     }
@@ -149,18 +172,20 @@ class Driver {
       end_inconsistent();
       return;
     }
-    arm_all();
-    if (!any_scheduled_) return;
-    fired_.clear();
-    for (std::size_t i = 0; i < events_.size(); ++i)
-      if (!events_.is_guard(i) && events_.next_time(i, t_, true) == t_) fired_.push_back(i);
-    if (!fired_.empty()) fire(observer);
+    logic_.begin_instant(t_);
+    logic_.arm(steps(), t_, x_);
+    fire(observer);
   }
 
   void restart() {
     settle_algebraic();
+    begin_anew();
+    logic_.arm(steps(), t_, x_);
+    logic_.clear();
+  }
+  void begin_anew() {
     steps().jump(t_, x_, options_);
-    arm_all();
+    shifts_end_ = true;
   }
 
   // Unknowns of algebraic equations follow the rest of the state wherever a run begins anew. True where there are any.
@@ -173,205 +198,254 @@ class Driver {
     }
     return false;
   }
+  // Between steps: what the polynomial gives for the unknowns is only where the search for them begins. Where it does
+  // not lead to them, the polynomial stands.
+  void solve_unknowns(Real t, X& x) {
+    if constexpr (HasMassDiagonal<System, X>) {
+      if (!has_mass<X>(system())) return;
+      solved_ = x;
+      const Consistency found = make_consistent(steps().system(), t, solved_, steps().tolerance(options_));
+      steps().statistics().evaluations += static_cast<std::size_t>(found.evaluations);
+      if (found) x = solved_;
+    }
+  }
   bool end_inconsistent() {
     end(Ending::nonlinear_solve_failed, hint_of(consistent_));
     outcome_.component = component_name(system(), consistent_.equation);
     return false;
   }
 
-  // A guard that is zero now is no event until it has left zero.
-  void arm_all() {
-    if (!any_guard_) return;
-    events_.guards(steps().system(), t_, x_, std::span<Real>(guard_values_));
-    for (std::size_t i = 0; i < events_.size(); ++i) arm(i);
-  }
-  void arm(std::size_t i) {
-    GuardState<Real>& state = watch_.states()[i];
-    state = {};
-    state.active = events_.is_guard(i) && events_.active(steps().system(), i);
-    if (state.active) state.side = sign_of(guard_values_[i]);
-  }
-
-  Real next_scheduled(Real t, bool inclusive) const {
-    Real next = interval_.to;
-    for (std::size_t i = 0; i < events_.size(); ++i) {
-      if (events_.is_guard(i)) continue;
-      const Real time = events_.next_time(i, t, inclusive);
-      if (time < next) next = time;
-    }
-    return next;
+  void begin_step() {
+    if (std::exchange(shifts_end_, false)) shifts_.clear();
+    for (Shift& shift : shifts_) shift.earlier = true;
   }
 
   // The events of the step that was just taken, in the order of time.
   template <class Observer>
   void pass_events(Observer& observer) {
     using std::abs;
-    const Real begin = steps().begin(), length = steps().end() - begin;
+    const Real begin = steps().begin();
+    Real length = steps().end() - begin, from = t_, offset = t_ - begin;
     const Real instant = 4 * std::numeric_limits<Real>::epsilon() * abs(steps().end());
-    const auto evaluate_guards = [&](Real offset, std::span<Real> values) {
-      state_at(offset, length, before_);
-      events_.guards(steps().system(), offset == length ? steps().end() : begin + offset, before_, values);
-    };
-    Real from = t_, offset = t_ - begin;
-    while (any_guard_) {
-      const Crossing<Real>* crossing = watch_.first_crossing(offset, length, instant, evaluate_guards,
-                                                             [this](std::size_t i) { return events_.direction(i); });
-      if (!crossing) break;
-      offset = crossing->offset;
-      t_ = offset == length ? steps().end() : begin + offset;
-      state_at(offset, length, x_);
+    const auto evaluate = [&](Real place, std::span<Real> values) { guards_at(place, length, values); };
+    while (true) {
+      const std::optional<Real> tick = logic_.next_quiet(t_, steps().end());
+      const bool to_tick = tick && *tick != steps().end();
+      const Real to = to_tick ? *tick - begin : length;
+      const Crossing<Real>* crossing =
+          logic_.any_guard() ? logic_.first_crossing(offset, to, instant, evaluate) : nullptr;
+      if (!crossing && !to_tick) break;
+      if (crossing && !is_event(*crossing, length)) {
+        offset = crossing->offset;
+        continue;
+      }
+      if (crossing) {
+        logic_.look_at(*crossing, guards_at(crossing->offset, length, guard_values_),
+                       guards_at(crossing->offset + few_units(*crossing), length, later_values_));
+        offset = land(*crossing, length);
+        length = steps().end() - begin;
+        t_ = offset == length ? steps().end() : begin + offset;
+        if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
+        state_at(offset, length, x_);
+      } else {
+        offset = to;
+        t_ = *tick;
+        state_at(offset, length, x_);
+        if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
+      }
       observer.stretch(*this, from, t_);
-      fired_ = crossing->guards;
-      add_scheduled();
-      if (fire(observer)) return;
-      if (t_ == steps().end()) return;
+      logic_.begin_instant(t_);
+      logic_.arrive(steps(), t_, x_, crossing);
+      if (fire(observer) || t_ == steps().end()) return;
       from = t_;
     }
+    end_step(from, observer);
+  }
+
+  template <class Observer>
+  void end_step(Real from, Observer& observer) {
     t_ = steps().end();
     x_ = steps().x_end();
+    shift(x_);
     observer.stretch(*this, from, t_);
-    if (any_guard_) {
-      events_.guards(steps().system(), t_, x_, std::span<Real>(guard_values_));
-      watch_.settle(guard_values_);
-    }
-    if (!any_scheduled_) return;
-    fired_.clear();
-    add_scheduled();
-    if (fired_.empty()) return;
+    if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
+    logic_.begin_instant(t_);
+    if (logic_.fired().empty()) return;
     steps().dense_output();  // while the state and f are those of the step: `at` promises it
+    logic_.arrive(steps(), t_, x_, nullptr);
     fire(observer);
+  }
+
+  // Whether there is an event at a crossing, and not only a guard that leaves a zero it began at.
+  bool is_event(const Crossing<Real>& found, Real length) {
+    state_at(found.offset, length, before_);
+    return logic_.keep_true_crossings(steps(), steps().begin() + found.offset, before_);
+  }
+
+  std::span<const Real> guards_at(Real offset, Real length, std::span<Real> values) {
+    state_at(offset, length, before_);
+    logic_.events().guards(steps().system(), offset == length ? steps().end() : steps().begin() + offset, before_,
+                           values);
+    return values;
+  }
+
+  Real few_units(const Crossing<Real>& crossing) const {
+    using std::abs;
+    return forward() * 8 * std::numeric_limits<Real>::epsilon() * abs(crossing.offset);
   }
 
   // x at an offset into the last step: by theta, which keeps what is lost in begin + offset.
   void state_at(Real offset, Real length, X& x) {
     if (offset == length) {
       x = steps().x_end();
-    } else {
-      steps().at_part(offset / steps().size(), x);
+      shift(x);
+      return;
     }
+    steps().at_part(offset / steps().size(), x);
+    shift(x);
+    solve_unknowns(steps().begin() + offset, x);
+  }
+  void shift(X& x) const {
+    for (const Shift& one : shifts_) x.data()[one.component] = one.value;
   }
 
-  void add_scheduled() {
-    if (!any_scheduled_ || t_ != steps().end()) return;
-    const std::size_t guards = fired_.size();
-    for (std::size_t i = 0; i < events_.size(); ++i)
-      if (!events_.is_guard(i) && events_.next_time(i, t_, true) == t_) fired_.push_back(i);
-    if (guards > 0) std::sort(fired_.begin(), fired_.end());
+  // The polynomial of a stiff step leaves the slow path between its ends: where an event begins the motion anew, a step
+  // of the method is taken to it, and the instant follows that step's end. The offset of the event.
+  Real land(const Crossing<Real>& crossing, Real length) {
+    using std::abs;
+    const Real place = crossing.offset;
+    const bool restarts =
+        std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
+    if (!restarts || place == length || !steps().lands()) return place;
+    const std::size_t guard = crossing.guards.front();
+    // The slope of the guard by a difference over a thousandth of the step.
+    const Real apart = length / 1000;
+    const Real slope = (guards_at(place, length, guard_values_)[guard] -
+                        guards_at(place - apart, length, later_values_)[guard]) / apart;
+    Real h = place, best = place, taken{}, least = std::numeric_limits<Real>::infinity();
+    for (int tries = 0; tries < 4 && steps().retake(h, options_); ++tries) {
+      taken = h;
+      events_guards(steps().end(), steps().x_end());
+      const Real g = guard_values_[guard];
+      if (!(abs(g) < least)) break;
+      least = abs(g);
+      best = h;
+      const Real next = h - g / slope;
+      const Real unit = 2 * std::numeric_limits<Real>::epsilon() * abs(steps().end());
+      if (!(forward() * next > 0) || forward() * (next - length) >= 0 || abs(next - h) <= unit) break;
+      h = next;
+    }
+    if (taken != best && !steps().retake(best, options_)) {
+      steps().retake(length, options_);
+      return place;
+    }
+    return steps().end() - steps().begin();
+  }
+  void events_guards(Real t, X x) {
+    shift(x);
+    logic_.events().guards(steps().system(), t, x, std::span<Real>(guard_values_));
   }
 
-  // Fires what stands in fired_ at (t_, x_), round by round. True where the step ends here.
+  // Fires the list of the instant at (t_, x_), round by round. True where the step ends here.
   template <class Observer>
   bool fire(Observer& observer) {
     bool restarted = false;
-    for (int round = 0; !fired_.empty(); ++round) {
-      if (round == most_rounds) return accumulate(fired_.front(), t_, "its action and others keep firing each other");
-      before_ = x_;
-      const EventResponse response = events_.fire(steps().system(), fired_, t_, before_, x_);
-      steps().statistics().events += fired_.size();
-      if (response.restart) settle_algebraic();
-      observer.happening(*this, Happening<X>{t_, fired_, before_, x_});
-      restarted = restarted || response.restart;
-      if (!consistent_) return !end_inconsistent();
-      if (response.stop) {
-        end(Ending::stopped_by_event);
-        outcome_.event = events_.name(fired_.front());
-        return true;
+    while (!logic_.fired().empty()) {
+      logic_.begin_round();
+      std::optional<std::size_t> stopped;
+      for (const std::size_t i : logic_.fired()) {
+        const EventResponse response = act(i, observer, false);
+        restarted = restarted || response.restart;
+        if (!consistent_) return !end_inconsistent();
+        if (response.stop && !stopped) stopped = i;
       }
-      for (const std::size_t i : fired_)
-        if (const auto limit = limit_of(i); limit && events_.is_guard(i))
-          return accumulate(i, *limit, "give the model a mode to rest in, or stop at the event");
-      if (any_guard_) after_round(response.restart);
-      std::swap(fired_, next_fired_);
-      if (!any_guard_) fired_.clear();
+      if (stopped) return stop(*stopped);
+      if (ended_) return true;
+      logic_.end_round(steps(), t_, x_);
+      if (statistics().events >= options_.max_steps || interrupted()) return end_among_events();
     }
-    if (restarted) steps().jump(t_, x_, options_);
+    if (restarted) begin_anew();
     return restarted;
   }
 
-  std::optional<Real> limit_of(std::size_t event) {
-    if (watch_.states()[event].slides >= most_slides) return t_;
-    return accumulation_.fired(event, t_);
+  // One event, and where its firings accumulate what it does at the limit.
+  template <class Observer>
+  EventResponse act(std::size_t i, Observer& observer, bool at_limit) {
+    before_ = x_;
+    EventResponse response = at_limit ? limit_action(i) : logic_.events().fire(steps().system(), i, t_, before_, x_);
+    if (!at_limit) ++steps().statistics().events;
+    if (response.restart) settle_algebraic();
+    if (response.changed && !response.restart) note_shifts();
+    observer.happening(*this, Happening<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
+    logic_.acted(steps(), i, response, t_, x_);
+    if (at_limit || !logic_.events().is_guard(i)) return response;
+    std::optional<Real> limit = logic_.accumulation().fired(i, t_);
+    if (!limit && ((logic_.is_held(i) && !response.restart) || logic_.stays(i))) limit = t_;
+    if (!limit) return response;
+    logic_.accumulation().forget(i);
+    if (!has_limit_action(i)) {
+      if (!ended_) accumulate(i, *limit);
+      return response;
+    }
+    const EventResponse further = act(i, observer, true);
+    return {response.stop || further.stop, response.restart || further.restart, response.changed || further.changed};
   }
 
-  bool accumulate(std::size_t event, Real limit, std::string hint) {
-    end(Ending::events_accumulate, std::move(hint));
-    outcome_.event = events_.name(event);
-    outcome_.limit_time = limit;
+  bool has_limit_action(std::size_t i) const {
+    if constexpr (requires { logic_.events().has_limit_action(i); }) {
+      return logic_.events().has_limit_action(i);
+    } else {
+      return false;
+    }
+  }
+  EventResponse limit_action(std::size_t i) {
+    if constexpr (requires { logic_.events().at_limit(steps().system(), i, t_, before_, x_); }) {
+      return logic_.events().at_limit(steps().system(), i, t_, before_, x_);
+    } else {
+      return {};
+    }
+  }
+
+  void note_shifts() {
+    for (std::size_t k = 0; k < dimension(x_); ++k)
+      if (x_.data()[k] != before_.data()[k]) shifts_.push_back({false, t_, k, x_.data()[k]});
+  }
+
+  bool stop(std::size_t event) {
+    end(Ending::stopped_by_event);
+    outcome_.event = events().name(event);
     return true;
   }
-
-  // Guards after a round of actions: those that fired are disarmed, those pushed through zero fire next.
-  void after_round(bool changed) {
-    events_.guards(steps().system(), t_, x_, std::span<Real>(guard_values_));
-    next_fired_.clear();
-    for (std::size_t i = 0; i < events_.size(); ++i) {
-      if (!events_.is_guard(i)) continue;
-      GuardState<Real>& state = watch_.states()[i];
-      const bool was_active = state.active;
-      const bool fired = std::find(fired_.begin(), fired_.end(), i) != fired_.end();
-      if (!was_active || !events_.active(steps().system(), i)) {
-        arm(i);
-      } else if (fired) {
-        disarm(i, changed);
-      } else if (const int side = sign_of(guard_values_[i]); side != 0 && state.side == -side) {
-        state.side = state.far_side = side;
-        const Direction direction = events_.direction(i);
-        if (direction == Direction::crosses || (direction == Direction::falls) == (side < 0)) next_fired_.push_back(i);
-      }
+  void accumulate(std::size_t event, Real limit) {
+    end(Ending::events_accumulate, "give the event a `then` for what happens at the limit, or stop at it");
+    outcome_.event = events().name(event);
+    outcome_.limit_time = limit;
+  }
+  bool interrupted() const {
+    return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed);
+  }
+  bool end_among_events() {
+    if (interrupted()) {
+      end(Ending::interrupted);
+    } else {
+      end(Ending::too_many_steps, "as many events as the run may have steps: look for one that fires without end");
     }
-  }
-
-  void disarm(std::size_t i, bool changed) {
-    using std::abs, std::max;
-    GuardState<Real>& state = watch_.states()[i];
-    const Real g = guard_values_[i];
-    const int far_side = state.far_side;
-    state = {.far_side = far_side, .band = 4 * rounding_of(i, g), .slides = state.slides};
-    if (changed && Real(far_side) * rate_of(i, g) <= 0) {
-      // Beyond zero by the last bits of t: the turned trajectory has to come back through there.
-      state.turned_back = true;
-      if (sign_of(g) == far_side) state.band = max(state.band, abs(g));
-    }
-    if (abs(g) > state.band) state.side = sign_of(g);
-  }
-
-  // What g loses by rounding at this state: its change when t and x move by two units in the last place.
-  Real rounding_of(std::size_t i, Real g) {
-    using std::abs;
-    const Real part = 1 + 4 * std::numeric_limits<Real>::epsilon();
-    X& moved = before_;
-    for (std::size_t k = 0; k < dimension(x_); ++k) moved.data()[k] = part * x_.data()[k];
-    return abs(guard_at(i, part * t_, moved) - g);
-  }
-
-  // The sign of dg/dt along f after the action, by a difference over a thousandth of the last step.
-  Real rate_of(std::size_t i, Real g) {
-    const Real dt = Real(1e-3) * (steps().size() != 0 ? steps().size() : Real(1e-6) * (interval_.to - interval_.from));
-    const X& slope = steps().slope(t_, x_);
-    X& moved = before_;
-    for (std::size_t k = 0; k < dimension(x_); ++k) moved.data()[k] = x_.data()[k] + dt * slope.data()[k];
-    return forward() * (guard_at(i, t_ + dt, moved) - g);
-  }
-
-  Real guard_at(std::size_t i, Real t, const X& x) {
-    rate_values_.resize(events_.size());
-    events_.guards(steps().system(), t, x, std::span<Real>(rate_values_));
-    return rate_values_[i];
+    return true;
   }
 
   Options<X> options_;
   Interval<Real> interval_;
   Real t_;
   X x_, before_;
+  X solved_ = x_;
   StepsValue<System, X> steps_;
-  Events events_;
-  GuardWatch<Real> watch_;
-  AccumulationWatch<Real> accumulation_;
-  std::vector<Real> guard_values_, rate_values_;
-  std::vector<std::size_t> fired_, next_fired_;
+  EventLogic<System, X, Events> logic_;
+  std::vector<Real> guard_values_, later_values_;
+  std::vector<Shift> shifts_;
+  std::vector<X> shifted_output_;
   Consistency consistent_;
-  bool started_ = false, ended_ = false, any_guard_ = false, any_scheduled_ = false;
-  bool any_turning_guard_ = false;  // one that can change the run
+  bool started_ = false, ended_ = false;
+  bool shifts_end_ = false;  // the next step begins with the whole state
   Outcome<Real> outcome_;
 };
 

@@ -1,13 +1,13 @@
-// continuo/solve/event.hpp
-// When something happens, and what. The order of things at an event, as everywhere in Continuo:
-//   1. x before: the state at the event's time t, on the far side of the root (the condition is true there).
-//   2. Every event of that instant reads x before and writes x after, in the order of declaration.
-//   3. Guards that the new state pushed through zero fire in a further round, until none does.
+// When something happens, and what. docs/events.md states the rules; in short:
+//   1. A guard has a side, the sign of g, at every point of the motion and before and after every action. It fires where
+//      its side changes in the watched direction, whether the motion or an action changed it.
+//   2. The state at an event lies on the far side of its root.
+//   3. Events of one instant fire in the order of declaration, each on the state that the one before has left; within
+//      one event `before` is the state from before it. What an action has carried across zero fires in the next round.
 //
 //   auto floor = falls<X>("floor", [](double, const X& x) { return x[0]; },
 //                         [](auto& now) { now.x[0] = 0; now.x[1] = -0.9 * now.before[1]; });
 #pragma once
-#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/numerics/decimal_ticks.hpp>
 #include <continuo/numerics/state.hpp>
 #include <continuo/solve/direction.hpp>
 
@@ -47,6 +48,7 @@ struct Event {
   std::vector<Scalar<X>> times{};  // scheduled, in ascending order
   Scalar<X> period{}, from{};      // scheduled at from, from + period, ... where period > 0
   std::size_t stop_after = 0;      // the run stops at this many firings; 0: never
+  Action<X> at_limit{};            // where the firings accumulate; empty: the run ends there
 };
 
 template <State X>
@@ -67,7 +69,7 @@ template <State X>
 Event<X> at(std::string name, std::vector<Scalar<X>> times, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .times = std::move(times)};
 }
-/// Fires at from, from + period, from + 2 period, ...
+/// Fires at from, from + period, from + 2 period, ...: where these are decimals, at the decimals (DecimalTicks).
 template <State X>
 Event<X> every(std::string name, Scalar<X> period, Scalar<X> from, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .period = period, .from = from};
@@ -76,7 +78,8 @@ Event<X> every(std::string name, Scalar<X> period, Scalar<X> from, Action<X> act
 /// What firing did.
 struct EventResponse {
   bool stop = false;
-  bool restart = false;  // the state or f changed
+  bool restart = false;  // what f reads has changed: the motion begins anew
+  bool changed = false;  // something else has: a state that f does not read and that stands still between events
 };
 
 /// The driver asks a source of events these things. `size()` counts guards and scheduled ones together, in the order
@@ -84,20 +87,24 @@ struct EventResponse {
 ///   name(i), direction(i), active(system, i)
 ///   is_guard(i); guards(system, t, x, span of size() values): g_i, anything for those not guards or not active
 ///   next_time(i, t, inclusive): the first scheduled time > t (>= t where inclusive), infinity where none
-///   fire(system, fired, t, before, x) -> EventResponse
-/// and, where it knows, only_notes(i): firing changes nothing and never stops the run.
+///   fire(system, i, t, before, x) -> EventResponse; x begins as `before`
+/// and, where it knows better than the default in brackets,
+///   can_restart(i) [true]: firing may change what f reads, or stop the run
+///   can_assign(i) [can_restart(i)]: firing may change a state
+///   carried(system, i, t, x, forward) [by differences]: the side to which the motion takes guard i from zero
+///   has_limit_action(i) [false], at_limit(system, i, t, before, x) -> EventResponse: where the firings accumulate
 template <class S, class System, class X>
-concept EventSource = State<X> && requires(S& s, const S& constant, System& system, const X& before, X& x,
-                                           std::span<Scalar<X>> values, std::span<const std::size_t> fired) {
-  { constant.size() } -> std::convertible_to<std::size_t>;
-  { constant.name(std::size_t{}) } -> std::convertible_to<std::string_view>;
-  { constant.direction(std::size_t{}) } -> std::same_as<Direction>;
-  { constant.is_guard(std::size_t{}) } -> std::convertible_to<bool>;
-  { constant.active(system, std::size_t{}) } -> std::convertible_to<bool>;
-  { constant.next_time(std::size_t{}, Scalar<X>{}, true) } -> std::convertible_to<Scalar<X>>;
-  s.guards(system, Scalar<X>{}, before, values);
-  { s.fire(system, fired, Scalar<X>{}, before, x) } -> std::same_as<EventResponse>;
-};
+concept EventSource =
+    State<X> && requires(S& s, const S& constant, System& system, const X& before, X& x, std::span<Scalar<X>> values) {
+      { constant.size() } -> std::convertible_to<std::size_t>;
+      { constant.name(std::size_t{}) } -> std::convertible_to<std::string_view>;
+      { constant.direction(std::size_t{}) } -> std::same_as<Direction>;
+      { constant.is_guard(std::size_t{}) } -> std::convertible_to<bool>;
+      { constant.active(system, std::size_t{}) } -> std::convertible_to<bool>;
+      { constant.next_time(std::size_t{}, Scalar<X>{}, true) } -> std::convertible_to<Scalar<X>>;
+      s.guards(system, Scalar<X>{}, before, values);
+      { s.fire(system, std::size_t{}, Scalar<X>{}, before, x) } -> std::same_as<EventResponse>;
+    };
 
 /// The source that a list of `Event` makes.
 template <State X>
@@ -105,13 +112,17 @@ class EventList {
  public:
   using Real = Scalar<X>;
   EventList() = default;
-  explicit EventList(std::vector<Event<X>> events) : events_(std::move(events)), fired_(events_.size(), 0) {}
+  explicit EventList(std::vector<Event<X>> events) : events_(std::move(events)), fired_(events_.size(), 0) {
+    for (const Event<X>& event : events_) ticks_.emplace_back(event.from, event.period);
+  }
 
   std::size_t size() const { return events_.size(); }
   std::string_view name(std::size_t i) const { return events_[i].name; }
   Direction direction(std::size_t i) const { return events_[i].direction; }
   bool is_guard(std::size_t i) const { return static_cast<bool>(events_[i].guard); }
-  bool only_notes(std::size_t i) const { return !events_[i].action && events_[i].stop_after == 0; }
+  bool can_restart(std::size_t i) const { return events_[i].action || events_[i].stop_after != 0; }
+  bool can_assign(std::size_t i) const { return static_cast<bool>(events_[i].action); }
+  bool has_limit_action(std::size_t i) const { return static_cast<bool>(events_[i].at_limit); }
   template <class System>
   bool active(const System&, std::size_t) const {
     return true;
@@ -125,46 +136,44 @@ class EventList {
 
   Real next_time(std::size_t i, Real t, bool inclusive) const {
     const Event<X>& event = events_[i];
-    const auto past = [&](Real time) { return inclusive ? time >= t : time > t; };
     Real next = std::numeric_limits<Real>::infinity();
     for (const Real& time : event.times)
-      if (past(time) && time < next) next = time;
-    if (event.period > 0) {
-      using std::floor;
-      // k * period is computed afresh each time, so a million periods do not drift.
-      Real k = floor((t - event.from) / event.period);
-      if (k < 0) k = 0;
-      while (!past(event.from + k * event.period)) k += 1;
-      if (event.from + k * event.period < next) next = event.from + k * event.period;
-    }
+      if ((inclusive ? time >= t : time > t) && time < next) next = time;
+    if (event.period > 0 && ticks_[i].next(t, inclusive) < next) next = ticks_[i].next(t, inclusive);
     return next;
+  }
+  /// Why the times of an event cannot be kept in a run that ends at `to`; empty where they can.
+  std::string schedule_problem(Real to) const {
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (events_[i].period > 0 && !ticks_[i].advances(to))
+        return "the period of the event `" + events_[i].name + "` is below the spacing of numbers at its times";
+    return {};
   }
 
   template <class System>
-  EventResponse fire(System&, std::span<const std::size_t> fired, Real t, const X& before, X& x) {
+  EventResponse fire(System&, std::size_t i, Real t, const X& before, X& x) {
     EventAction<X> now{t, before, x};
-    for (const std::size_t i : fired) {
-      if (events_[i].action) events_[i].action(now);
-      if (++fired_[i] == events_[i].stop_after) now.stop = true;
-    }
-    bool changed = now.restart;
-    for (std::size_t k = 0; k < dimension(x); ++k) changed = changed || x.data()[k] != before.data()[k];
-    return {now.stop, changed};
+    if (events_[i].action) events_[i].action(now);
+    if (++fired_[i] == events_[i].stop_after) now.stop = true;
+    return response(now);
+  }
+  template <class System>
+  EventResponse at_limit(System&, std::size_t i, Real t, const X& before, X& x) {
+    EventAction<X> now{t, before, x};
+    events_[i].at_limit(now);
+    return response(now);
   }
 
  private:
+  static EventResponse response(const EventAction<X>& now) {
+    bool changed = now.restart;
+    for (std::size_t k = 0; k < dimension(now.x); ++k) changed = changed || now.x.data()[k] != now.before.data()[k];
+    return {.stop = now.stop, .restart = changed, .changed = false};
+  }
+
   std::vector<Event<X>> events_;
+  std::vector<DecimalTicks<Real>> ticks_;  // of those with a period
   std::vector<std::size_t> fired_;
 };
-
-/// Whether an event of the source can change the run; so it is where nobody knows better.
-template <class Source>
-bool can_change(const Source& source, std::size_t i) {
-  if constexpr (requires { source.only_notes(i); }) {
-    return !source.only_notes(i);
-  } else {
-    return true;
-  }
-}
 
 }  // namespace continuo

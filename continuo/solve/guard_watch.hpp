@@ -1,27 +1,21 @@
-// continuo/solve/guard_watch.hpp
-// Watches the guards of events along one step and finds the first that truly crosses zero.
+// Finds the first place of a step where a guard changes its side.
 //
-// A guard is armed once it has been away from zero: `side` is the sign it had there. It crosses when it takes the other
-// sign strictly; zero itself belongs to the side it came from, so a root on a step's end is found by one of the two
-// steps, once. After its event a guard within `band` (the rounding of g at that state) of zero is not armed.
-//
-// The floor that is never pierced: where the action turned the trajectory back (the rate of g points away from the
-// far side, or is zero), leaving the band by the far side is the event again. Bounces too small for the number format
-// therefore accumulate and are named; they never pass.
+// The side of a guard is kept by the driver (GuardState). Zero belongs to the side it was reached from, so that a root
+// on a step's end is found by one of the two steps, once. A guard that is at zero after an event has the side to which
+// the motion carries it; until it has left the band around zero, which is the rounding of g, it crosses where it leaves
+// the band by the other side: a bounce too small for the number format does not pass.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <continuo/numerics/bernstein.hpp>
 #include <continuo/numerics/root_bracketing.hpp>
-#include <continuo/solve/event.hpp>
+#include <continuo/solve/direction.hpp>
 
 namespace continuo {
 
@@ -30,15 +24,22 @@ int sign_of(Real value) {
   return (value > Real(0)) - (value < Real(0));
 }
 
+/// Whether an event that watches this direction fires where the side becomes `side`.
+constexpr bool watches(Direction direction, int side) {
+  return direction == Direction::crosses || (direction == Direction::falls) == (side < 0);
+}
+
 /// What is remembered of one guard.
 template <class Real>
 struct GuardState {
-  int side = 0;              // sign of g when last armed; 0: not armed
-  int far_side = 0;          // sign of g beyond its last event
-  bool turned_back = false;  // not armed, and leaving by far_side is the event again
+  int side = 0;          // 0: g has been zero since the run began
+  bool at_zero = false;  // within `band` of zero since its last event, or since the run began
   bool active = true;
-  Real band{};     // |g| up to here is zero for a guard that is not armed
-  int slides = 0;  // firings in a row by leaving the band: the trajectory is held at zero
+  Real band{};
+  int returns = 0;  // crossings in a row out of the band, to the far side, without having left it by the other
+
+  /// What g has to pass for the side to change.
+  Real level() const { return at_zero && side != 0 ? -Real(side) * band : Real(0); }
 };
 
 /// Where the first crossing of a stretch lies and which guards take part.
@@ -64,6 +65,12 @@ class GuardWatch {
   }
 
   std::vector<GuardState<Real>>& states() { return states_; }
+  const std::vector<GuardState<Real>>& states() const { return states_; }
+  /// The crossing that was found last.
+  Crossing<Real>& crossing() { return crossing_; }
+  /// The side on which a guard of the last crossing arrived.
+  int side_after(std::size_t i) const { return scanned_[i].side; }
+  int returns_after(std::size_t i) const { return scanned_[i].returns; }
 
   /// The first crossing on from..to (negative when time runs backwards), or null. `direction(i)` says which crossings
   /// of guard i count; the others only move its side. Crossings less than `instant` apart are one.
@@ -88,12 +95,11 @@ class GuardWatch {
 
   /// After a stretch without an event: the guards as they stand at its end.
   void settle(std::span<const Real> g) {
-    using std::abs;
     for (std::size_t i = 0; i < states_.size(); ++i) {
       GuardState<Real>& state = states_[i];
-      if (state.active) state = scanned_[i];
-      if (!state.active || !(abs(g[i]) > state.band)) continue;
-      state = {.side = sign_of(g[i])};
+      if (!state.active) continue;
+      state = scanned_[i];
+      if (state.at_zero && Real(state.side) * g[i] > state.band) state.at_zero = false, state.returns = 0;
     }
   }
 
@@ -104,8 +110,9 @@ class GuardWatch {
     Direction direction;
     Real crossing = std::numeric_limits<Real>::quiet_NaN();
 
-    bool counts(int new_side) const {
-      return direction == Direction::crosses || (direction == Direction::falls) == (new_side < 0);
+    void arrive_at(int side) {
+      const int returns = state.at_zero && state.side == -side ? state.returns + 1 : 0;
+      state = {.side = side, .at_zero = false, .active = true, .band = state.band, .returns = returns};
     }
   };
 
@@ -117,9 +124,11 @@ class GuardWatch {
 
   static Real time(Real from, Real to, double part) { return part == 1 ? to : from + Real(part) * (to - from); }
 
-  std::array<double, bernstein::count> values(std::size_t guard) const {
+  std::array<double, bernstein::count> values(const Scan& scan) const {
     std::array<double, bernstein::count> value;
-    for (std::size_t k = 0; k < bernstein::count; ++k) value[k] = static_cast<double>(samples_[k][guard]);
+    const Real level = scan.state.level();
+    for (std::size_t k = 0; k < bernstein::count; ++k)
+      value[k] = static_cast<double>(samples_[k][scan.guard] - level);
     return value;
   }
 
@@ -146,36 +155,60 @@ class GuardWatch {
   // Searches one stretch whose samples stand in samples_; halves it where nine points do not resolve g near zero.
   template <class Evaluate>
   bool search(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
-    auto value = values(scan.guard);
-    // Within its band a guard that is not armed is at zero: only then the root it comes from is no root of its own.
-    if (scan.state.side == 0 && std::abs(value[0]) <= static_cast<double>(scan.state.band)) value[0] = 0;
-    // Zero belongs to the side it was reached from.
-    if (scan.state.side != 0 && value[0] == 0) value[0] = scan.state.side * std::numeric_limits<double>::min();
+    if (scan.state.side == 0) return leave_zero(scan, from, to, evaluate, depth);
+    auto value = values(scan);
+    // Zero belongs to the side it was reached from, and so does what lies within the band.
+    if (!(value[0] * scan.state.side > 0)) value[0] = scan.state.side * std::numeric_limits<double>::min();
     const auto b = bernstein::from_values(value);
     const double error = bernstein::interpolation_error(value);
     double largest = 0, nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < bernstein::count; ++k) {
       largest = std::fmax(largest, std::abs(value[k]));
-      nearest = std::fmin(nearest, b[k] * (scan.state.side != 0 ? scan.state.side : sign_of(b[k])));
+      nearest = std::fmin(nearest, b[k] * scan.state.side);
     }
-    if (scan.state.side != 0 && nearest > error) return false;
-    if (!(error <= 1e-6 * largest) && depth < 4) {
-      const Real middle = time(from, to, 0.5);
-      resampled_ = true;
-      for (const auto& [start, end] : {std::pair{from, middle}, std::pair{middle, to}}) {
-        for (std::size_t k = 0; k < bernstein::count; ++k) evaluate(time(start, end, bernstein::nodes[k]), samples_[k]);
-        if (search(scan, start, end, evaluate, depth + 1)) return true;
-      }
-      return false;
-    }
+    if (nearest > error) return false;
+    if (!(error <= 1e-6 * largest) && depth < 4) return search_halves(scan, from, to, evaluate, depth);
     const auto visit = [&](double left, double right) {
-      return pass_samples(scan, value, left, from, to, evaluate) ||
-             cross(scan, time(from, to, left), time(from, to, right), evaluate);
+      return cross(scan, time(from, to, left), time(from, to, right), evaluate);
     };
     const bool smooth = error <= 0.1 * largest;
     if (smooth ? bernstein::isolate_sign_changes(b, visit) : between_samples(value, visit)) return true;
     // The last net: whatever the polynomial said, a guard that ends on the other side has crossed.
-    return pass_samples(scan, value, 1, from, to, evaluate) || cross(scan, from, to, evaluate);
+    return cross(scan, from, to, evaluate);
+  }
+
+  template <class Evaluate>
+  bool search_halves(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
+    const Real middle = time(from, to, 0.5);
+    return search_anew(scan, from, middle, evaluate, depth + 1) || search_anew(scan, middle, to, evaluate, depth + 1);
+  }
+
+  template <class Evaluate>
+  bool search_anew(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
+    sample(from, to, evaluate);
+    resampled_ = true;
+    return search(scan, from, to, evaluate, depth);
+  }
+
+  // A guard that has been zero since the run began: where it leaves its band it gets a side.
+  template <class Evaluate>
+  bool leave_zero(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
+    using std::abs;
+    const Real band = scan.state.band;
+    for (std::size_t k = 1; k < bernstein::count; ++k) {
+      const Real g = samples_[k][scan.guard];
+      if (!(abs(g) > band)) continue;
+      const auto beyond = [&](Real s) { return abs(guard_at(scan.guard, s, evaluate)) - band; };
+      const Real near = time(from, to, bernstein::nodes[k - 1]), far = time(from, to, bernstein::nodes[k]);
+      const Real place = enclose_root(beyond, near, far, Real(-band), Real(abs(g) - band)).far;
+      scan.arrive_at(sign_of(guard_at(scan.guard, place, evaluate)));
+      if (watches(scan.direction, scan.state.side)) {
+        scan.crossing = place;
+        return true;
+      }
+      return place != to && search_anew(scan, place, to, evaluate, depth);
+    }
+    return false;
   }
 
   // The changes of sign that the samples themselves show, for a guard with jumps.
@@ -187,42 +220,16 @@ class GuardWatch {
     return false;
   }
 
-  // A guard that is not armed comes to `part` of the stretch: somewhere before it may have left its band.
-  template <class Evaluate>
-  bool pass_samples(Scan& scan, const std::array<double, bernstein::count>& value, double part, Real from, Real to,
-                    Evaluate& evaluate) {
-    for (std::size_t k = 1; k < bernstein::count && bernstein::nodes[k] <= part && scan.state.side == 0; ++k)
-      if (pass(scan, from, time(from, to, bernstein::nodes[k]), Real(value[k]), evaluate)) return true;
-    if (scan.state.side != 0 || part == 1) return false;
-    const Real t = time(from, to, part);
-    return pass(scan, from, t, guard_at(scan.guard, t, evaluate), evaluate);
-  }
-
-  template <class Evaluate>
-  bool pass(Scan& scan, Real from, Real t, Real g, Evaluate& evaluate) {
-    using std::abs, std::min;
-    const Real band = scan.state.band;
-    if (!(abs(g) > band)) return false;
-    scan.state.side = sign_of(g);
-    const int slides = std::exchange(scan.state.slides, 0);
-    if (!scan.state.turned_back || scan.state.side != scan.state.far_side) return false;
-    scan.state.slides = slides + 1;
-    const Real side = Real(scan.state.side);
-    const auto beyond = [&](Real s) { return side * guard_at(scan.guard, s, evaluate) - band; };
-    scan.crossing = enclose_root(beyond, from, t, min(Real(0), beyond(from)), side * g - band).far;
-    return true;
-  }
-
   template <class Evaluate>
   bool cross(Scan& scan, Real near, Real far, Evaluate& evaluate) {
     using std::min;
-    if (scan.state.side == 0) return false;
-    const Real g_far = guard_at(scan.guard, far, evaluate);
+    const Real level = scan.state.level();
+    const Real g_far = guard_at(scan.guard, far, evaluate) - level;
     const int side = sign_of(g_far);
     if (side == 0 || side == scan.state.side) return false;
-    scan.state.side = side;
-    if (!scan.counts(side)) return false;
-    const auto beyond = [&](Real s) { return Real(side) * guard_at(scan.guard, s, evaluate); };
+    scan.arrive_at(side);
+    if (!watches(scan.direction, side)) return false;
+    const auto beyond = [&](Real s) { return Real(side) * (guard_at(scan.guard, s, evaluate) - level); };
     scan.crossing = enclose_root(beyond, near, far, min(Real(0), beyond(near)), Real(side) * g_far).far;
     return true;
   }
@@ -237,8 +244,6 @@ class GuardWatch {
     for (std::size_t i = 0; i < first_.size(); ++i) {
       if (!(forward * (first_[i] - first) <= instant)) continue;
       crossing_.guards.push_back(i);
-      states_[i].far_side = scanned_[i].side;
-      states_[i].slides = scanned_[i].slides;
       if (forward * first_[i] > forward * crossing_.offset) crossing_.offset = first_[i];
     }
     return &crossing_;

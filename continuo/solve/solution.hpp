@@ -22,14 +22,14 @@ struct EventRecord {
   X before, after;
 };
 
-/// One step's polynomial: x(t) = sum_j coefficients[j] theta^j, theta = (t - begin) / h, valid from begin to end.
+/// A piece of a step's polynomial: x(t) = sum_j coefficients[j] theta^j, theta = (t - origin) / h, from begin to end.
 template <State X>
 struct DenseSegment {
-  Scalar<X> begin, end, h;
+  Scalar<X> begin, end, origin, h;
   std::vector<X> coefficients;
 
   void operator()(Scalar<X> t, X& x) const {
-    const Scalar<X> theta = (t - begin) / h;
+    const Scalar<X> theta = (t - origin) / h;
     x = coefficients.back();
     for (std::size_t j = coefficients.size() - 1; j-- > 0;)
       for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] = x.data()[i] * theta + coefficients[j].data()[i];

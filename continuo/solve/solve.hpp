@@ -42,7 +42,7 @@ class Keeper {
       case Save<X>::Kind::dense: {
         const std::span<const X> output = integrator.dense_output();
         solution_.segments.push_back(
-            {integrator.step_begin(), to, integrator.step_size(), {output.begin(), output.end()}});
+            {from, to, integrator.step_begin(), integrator.step_size(), {output.begin(), output.end()}});
         integrator.at(to, x_);
         keep(to, x_);
         break;
@@ -57,7 +57,6 @@ class Keeper {
       case Save<X>::Kind::end:
         break;
     }
-    static_cast<void>(from);
   }
 
   template <class I>

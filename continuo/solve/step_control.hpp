@@ -52,6 +52,16 @@ class StepControl final : public Steps<System, X> {
   std::span<const X> dense_output() override { return interpolant().c; }
   void at_part(Real theta, X& x) override { interpolant()(theta, x); }
 
+  bool lands() const override { return detail::is_implicit<M>(); }
+  bool retake(Real size, const Options<X>& options) override {
+    if constexpr (requires { M::rejected(work_, size); }) M::rejected(work_, size);
+    attempt(size, options);
+    interpolated_ = false;
+    end_ = begin_ + size;
+    carried_ = 0;
+    return detail::status_of<M>(work_) == StepStatus::done && finite_end();
+  }
+
  private:
   using Base::accepted, Base::fail, Base::fail_to_solve, Base::finite_end, Base::first_not_finite, Base::fixed,
       Base::interrupted, Base::singular_hint, Base::tolerance;

@@ -38,6 +38,12 @@ class Steps {
   /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant.
   virtual std::span<const X> dense_output() = 0;
   virtual void at_part(Real theta, X& x) = 0;
+  /// Whether the state between the ends of a step is to be found by a shorter step, not on the dense output: the
+  /// polynomial of an implicit method leaves the slow path of a stiff system.
+  virtual bool lands() const = 0;
+  /// The last step once more, from its beginning and of this size. False where its equations could not be solved: then
+  /// the step is to be taken again at another size.
+  virtual bool retake(Real size, const Options<X>& options) = 0;
 
   System& system() { return system_; }
   const System& system() const { return system_; }

@@ -178,46 +178,38 @@ void SensitiveEvents::perform(const std::vector<SensitiveAction>& actions, std::
   }
 }
 
-EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::span<const std::size_t> fired, double t,
-                                    const X& before, X& x) {
+EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x) {
   const auto of_model = [this](const X& wide) {
     return X(wide.begin(), wide.begin() + static_cast<std::ptrdiff_t>(n_));
   };
-  const bool follows =
-      last_changed_ && t == last_t_ && before == last_after_;  // set off by the jump before, not by a crossing
-  std::size_t mode = system.mode();
-  X rates(before.size()), old_rates(before.size()), new_rates(before.size());
+  // Set off by the jump before, not by a crossing.
+  const bool follows = last_changed_ && t == last_t_ && before == last_after_;
+  const std::size_t mode = system.mode();
+  X rates(before.size()), new_rates(before.size());
   system.rates(mode, t, before, rates);
   const X plain_before = of_model(before);
   X plain_after = plain_before;
   const EventResponse response = plain_.fire(system.plain(), fired, t, plain_before, plain_after);
-  // Values of expressions are those before the instant, rates those between one event and the next.
   X now = before;
-  old_rates = rates;
-  for (const std::size_t i : fired) {
-    if (!plain_.is_declared(i)) {
-      const model::TableInput& input = program_->program().step_inputs[i];
-      system.set(input.variable, input.table.value(t));
-      system.rates(mode, t, now, old_rates);
-      last_moves_.assign(count_, 0);
-      continue;
-    }
-    const std::size_t event = i - inputs_;
+  if (!plain_.is_declared(fired)) {
+    const model::TableInput& input = program_->program().step_inputs[fired];
+    system.set(input.variable, input.table.value(t));
+    last_moves_.assign(count_, 0);
+  } else {
+    const std::size_t event = fired - inputs_;
     const std::vector<double> values = system.event(event, t, before);
     const std::vector<double> moves = follows ? last_moves_ : time_moves(event, values, t, rates);
     Jump jump{now, mode, std::vector<double>(n_ * count_), std::vector<char>(n_)};
     perform(program_->events()[event].actions, values, rates, moves, jump);
-    mode = jump.mode;
-    system.rates(mode, t, now, new_rates);
+    system.rates(jump.mode, t, now, new_rates);
     for (std::size_t k = 0; k < count_; ++k) {
       for (std::size_t s = 0; s < n_; ++s) {
         double& sensitivity = now[program_->place(s, k)];
-        const double total = jump.assigned[s] != 0 ? jump.total[k * n_ + s] : sensitivity + old_rates[s] * moves[k];
+        const double total = jump.assigned[s] != 0 ? jump.total[k * n_ + s] : sensitivity + rates[s] * moves[k];
         // Where nothing bends, nothing may be lost to rounding either.
-        if (jump.assigned[s] != 0 || old_rates[s] != new_rates[s]) sensitivity = total - new_rates[s] * moves[k];
+        if (jump.assigned[s] != 0 || rates[s] != new_rates[s]) sensitivity = total - new_rates[s] * moves[k];
       }
     }
-    std::swap(old_rates, new_rates);
     last_moves_ = moves;
     happened_.push_back({event, t, moves});
   }

@@ -91,10 +91,12 @@ class SensitiveEvents {
   std::string_view name(std::size_t i) const { return plain_.name(i); }
   Direction direction(std::size_t i) const { return plain_.direction(i); }
   bool is_guard(std::size_t i) const { return plain_.is_guard(i); }
+  bool can_assign(std::size_t i) const { return plain_.can_assign(i); }
+  bool is_condition(std::size_t i) const { return plain_.is_condition(i); }
   bool active(const SensitiveSystem& system, std::size_t i) const { return plain_.active(system.plain(), i); }
   double next_time(std::size_t i, double t, bool inclusive) const { return plain_.next_time(i, t, inclusive); }
   void guards(SensitiveSystem& system, double t, const X& x, std::span<double> values);
-  EventResponse fire(SensitiveSystem& system, std::span<const std::size_t> fired, double t, const X& before, X& x);
+  EventResponse fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x);
 
   std::span<const SensitiveHappening> happened() const { return happened_; }
   bool is_declared(std::size_t i) const { return plain_.is_declared(i); }

@@ -1,0 +1,418 @@
+// What fires, and when: the sides of guards from event to event, and the schedule. docs/events.md states the rules. The
+// driver moves the state; what stands here only reads it.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/solve/accumulation.hpp>
+#include <continuo/solve/event.hpp>
+#include <continuo/solve/guard_motion.hpp>
+#include <continuo/solve/guard_watch.hpp>
+#include <continuo/solve/steps.hpp>
+
+namespace continuo {
+
+template <class System, State X, class Events>
+class EventLogic {
+ public:
+  using Real = Scalar<X>;
+  using StepsOf = Steps<System, X>;
+
+  EventLogic(Events events, const X& x, Real forward, Real longest)
+      : events_(std::move(events)),
+        watch_(events_.size()),
+        accumulation_(events_.size()),
+        g_(events_.size()),
+        rounding_(events_.size()),
+        scratch_(events_.size()),
+        jump_(events_.size()),
+        marks_(events_.size()),
+        held_(events_.size()),
+        forward_(forward),
+        longest_(longest),
+        moved_(x),
+        first_(x),
+        second_(x) {
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      any_guard_ = any_guard_ || events_.is_guard(i);
+      any_turning_guard_ = any_turning_guard_ || (events_.is_guard(i) && can_restart(i));
+      any_scheduled_ = any_scheduled_ || !events_.is_guard(i);
+    }
+    fired_.reserve(events_.size());
+    next_.reserve(events_.size());
+  }
+
+  const Events& events() const { return events_; }
+  Events& events() { return events_; }
+  bool any_guard() const { return any_guard_; }
+  /// One that can change the motion.
+  bool any_turning_guard() const { return any_turning_guard_; }
+  AccumulationWatch<Real>& accumulation() { return accumulation_; }
+
+  bool can_restart(std::size_t i) const {
+    if constexpr (requires { events_.can_restart(i); }) {
+      return events_.can_restart(i);
+    } else {
+      return true;
+    }
+  }
+
+  // ---- the schedule --------------------------------------------------------------------------------------------------
+
+  /// The first scheduled time after t of an event that can change the motion, at most `to`: a step ends there.
+  Real next_restart(Real t, Real to) const {
+    return next_scheduled(t, to, [&](std::size_t i) { return can_restart(i); });
+  }
+  /// Of the others, which happen within steps; infinity where there is none up to `to`.
+  std::optional<Real> next_quiet(Real t, Real to) const {
+    const Real none = forward_ * std::numeric_limits<Real>::infinity();
+    const Real next = next_scheduled(t, none, [&](std::size_t i) { return !can_restart(i); });
+    return forward_ * (next - to) <= 0 ? std::optional<Real>(next) : std::nullopt;
+  }
+
+  /// Begins the list of an instant: what is scheduled for t.
+  void begin_instant(Real t) {
+    fired_.clear();
+    for (std::size_t i = 0; any_scheduled_ && i < events_.size(); ++i)
+      if (!events_.is_guard(i) && events_.next_time(i, t, true) == t) fired_.push_back(i);
+  }
+  std::span<const std::size_t> fired() const { return fired_; }
+
+  // ---- guards over a step --------------------------------------------------------------------------------------------
+
+  /// The first crossing on offsets from..to of the present step; evaluate(offset, values) gives the guards.
+  template <class Evaluate>
+  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, Evaluate&& evaluate) {
+    return watch_.first_crossing(from, to, instant, evaluate, [this](std::size_t i) { return events_.direction(i); });
+  }
+  /// No event up to the offset that was searched last: the sides there, where the guards are as at (t, x).
+  void settle(StepsOf& steps, Real t, const X& x) {
+    evaluate(steps, t, x, g_);
+    watch_.settle(g_);
+  }
+
+  // ---- an instant ----------------------------------------------------------------------------------------------------
+
+  /// The run begins, or somebody has changed the state: every guard gets its side. One at zero, which the motion takes
+  /// to the side that its event watches, is no crossing, unless the event would turn the motion back: a ball that lies
+  /// on the floor does not fall through it. Those are added to the list of the instant.
+  void arm(StepsOf& steps, Real t, const X& x) {
+    if (!any_guard_) return;
+    evaluate(steps, t, x, g_);
+    find_rounding(steps, t, x);
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      if (!place(steps, i, t, x)) continue;
+      GuardState<Real>& state = watch_.states()[i];
+      if (!state.at_zero || state.side == 0) continue;
+      const bool starts_false = is_condition(i) && sign_of(g_[i]) < 0 && state.side > 0;
+      held_[i] = watches(events_.direction(i), state.side) && restores(steps, i, t, x, -state.side);
+      if (starts_false || held_[i]) add(fired_, i);
+    }
+    std::sort(fired_.begin(), fired_.end());
+  }
+
+  /// Looks at located crossings on the dense output: `values` are the guards there, `later` a few units in the last
+  /// place of t later. What g still is at its far side is what those units and rounding make of it, but where g jumps.
+  void look_at(const Crossing<Real>& crossing, std::span<const Real> values, std::span<const Real> later) {
+    using std::abs;
+    for (const std::size_t i : crossing.guards) {
+      const Real beyond = values[i] - watch_.states()[i].level();
+      jump_[i] = abs(beyond) - 4 * abs(later[i] - values[i]);
+    }
+  }
+  /// The motion has come to the instant t, before any action: guards that cross here are added to the list. `crossing`
+  /// are those that were located, null where the instant is a scheduled one.
+  void arrive(StepsOf& steps, Real t, const X& x, const Crossing<Real>* crossing) {
+    if (!any_guard_) return;
+    evaluate(steps, t, x, g_);
+    find_rounding(steps, t, x);
+    std::ranges::fill(marks_, char{0});
+    if (crossing)
+      for (const std::size_t i : crossing->guards) cross(i);
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (marks_[i] == 0) pass(steps, i, t, x);
+    std::sort(fired_.begin(), fired_.end());
+  }
+
+  /// Takes out of the crossing that was found last those guards that leave a zero they had from the start of the run and whose events would
+  /// not turn the motion back: these only get their side. False where no guard is left.
+  bool keep_true_crossings(StepsOf& steps, Real t, const X& x) {
+    std::vector<std::size_t>& guards = watch_.crossing().guards;
+    std::erase_if(guards, [&](std::size_t i) {
+      GuardState<Real>& state = watch_.states()[i];
+      if (state.side != 0 || restores(steps, i, t, x, -watch_.side_after(i))) return false;
+      state = {.side = watch_.side_after(i)};
+      return true;
+    });
+    return !guards.empty();
+  }
+
+  /// A round of the instant begins: `fired()` are to act, one after the other.
+  void begin_round() {
+    next_.clear();
+    std::ranges::fill(marks_, char{0});
+    for (const std::size_t i : fired_) marks_[i] = pending;
+    jumped_ = restarted_ = false;
+  }
+  /// Event i has acted and left x.
+  void acted(StepsOf& steps, std::size_t i, const EventResponse& response, Real t, const X& x) {
+    marks_[i] = response.restart ? turned : done;
+    restarted_ = restarted_ || response.restart;
+    if (!any_guard_ || !(response.restart || response.changed)) return;
+    jumped_ = true;
+    evaluate(steps, t, x, g_);
+    bool rounded = false;
+    for (std::size_t k = 0; k < events_.size(); ++k) {
+      if (marks_[k] == pending || !watched(k)) continue;
+      GuardState<Real>& state = watch_.states()[k];
+      if (!state.active || sign_of(g_[k]) == state.side) continue;
+      if (!std::exchange(rounded, true)) find_rounding(steps, t, x);
+      jump(k);
+    }
+  }
+  /// Every event of the round has acted. What is at zero now goes where the motion takes it; then `fired()` is the next
+  /// round's list.
+  void end_round(StepsOf& steps, Real t, const X& x) {
+    std::ranges::fill(held_, char{0});
+    if (any_guard_ && jumped_) {
+      evaluate(steps, t, x, g_);
+      find_rounding(steps, t, x);
+      for (std::size_t i = 0; i < events_.size(); ++i) carry(steps, i, t, x);
+    }
+    last_event_ = t;
+    std::swap(fired_, next_);
+    std::sort(fired_.begin(), fired_.end());
+  }
+  /// Event i fires since the motion, not turned back, would leave zero by the far side at once: a ball without
+  /// restitution on its floor. If its action changes nothing either, it would fire for ever.
+  bool is_held(std::size_t i) const { return held_[i] != 0; }
+  /// Event i has fired too often without its guard having left zero in between: the motion stays there.
+  bool stays(std::size_t i) const { return watch_.states()[i].returns >= most_returns; }
+  void clear() { fired_.clear(); }
+
+ private:
+  static constexpr int most_returns = 20;
+  static constexpr char pending = 1, done = 2, turned = 3;
+
+  static void add(std::vector<std::size_t>& list, std::size_t i) {
+    if (std::ranges::find(list, i) == list.end()) list.push_back(i);
+  }
+
+  bool watched(std::size_t i) const { return events_.is_guard(i); }
+
+  /// A guard that was made of a condition: its sign at zero itself says whether the condition holds.
+  bool is_condition(std::size_t i) const {
+    if constexpr (requires { events_.is_condition(i); }) {
+      return events_.is_condition(i);
+    } else {
+      return false;
+    }
+  }
+
+  template <class Counts>
+  Real next_scheduled(Real t, Real to, Counts&& counts) const {
+    Real next = to;
+    for (std::size_t i = 0; any_scheduled_ && i < events_.size(); ++i) {
+      if (events_.is_guard(i) || !counts(i)) continue;
+      const Real time = events_.next_time(i, t, false);
+      if (time < next) next = time;
+    }
+    return next;
+  }
+
+  void evaluate(StepsOf& steps, Real t, const X& x, std::vector<Real>& values) {
+    events_.guards(steps.system(), t, x, std::span<Real>(values));
+  }
+
+  void find_rounding(StepsOf& steps, Real t, const X& x) {
+    using std::abs, std::max;
+    std::ranges::fill(rounding_, Real(0));
+    for_each_rounded(t, x, moved_, [&](Real moved_t, const X& moved) {
+      evaluate(steps, moved_t, moved, scratch_);
+      for (std::size_t i = 0; i < events_.size(); ++i)
+        if (watched(i)) rounding_[i] = max(rounding_[i], abs(scratch_[i] - g_[i]));
+    });
+  }
+
+  Carried carried(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    if constexpr (requires { events_.carried(steps.system(), i, t, x, forward_); }) {
+      return events_.carried(steps.system(), i, t, x, forward_);
+    } else {
+      using std::abs, std::min;
+      Real length = steps.size() != 0 ? min(abs(steps.size()), longest_) : longest_ / Real(1e6);
+      if (last_event_ && abs(t - *last_event_) > 0) length = min(length, abs(t - *last_event_));
+      return carried_by_differences(
+          t, x, forward_ * length, rounding_[i], first_, second_, moved_,
+          [&](Real at, const X& y) {
+            evaluate(steps, at, y, scratch_);
+            return scratch_[i];
+          },
+          [&](Real at, const X& y, X& out) { out = steps.slope(at, y); });
+    }
+  }
+
+  bool at_zero(std::size_t i) const {
+    using std::abs;
+    return !(abs(g_[i]) > rounding_[i]);
+  }
+
+  // A guard as it is found, without a past. False where it is not watched now.
+  bool place(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    GuardState<Real>& state = watch_.states()[i];
+    state = {};
+    state.active = watched(i) && events_.active(steps.system(), i);
+    if (!state.active) return false;
+    state.at_zero = at_zero(i);
+    state.band = rounding_[i];
+    state.side = state.at_zero ? carried(steps, i, t, x).side : sign_of(g_[i]);
+    if (state.side == 0 && is_condition(i)) state.side = sign_of(g_[i]);
+    return true;
+  }
+
+  // A located crossing. A step taken to the instant may leave g a little on either side of zero: that is zero.
+  void cross(std::size_t i) {
+    using std::abs;
+    GuardState<Real>& state = watch_.states()[i];
+    state.side = watch_.side_after(i);
+    state.returns = watch_.returns_after(i);
+    state.band = jump_[i] <= 4 * rounding_[i] ? rounding_[i] + abs(g_[i]) : rounding_[i];
+    state.at_zero = abs(g_[i]) <= state.band;
+    rounding_[i] = state.band;
+    marks_[i] = turned;
+    add(fired_, i);
+  }
+
+  // Any other guard at an instant, before the actions: by now it may have moved to its other side, unwatched, or be at
+  // zero on its way there.
+  void pass(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    GuardState<Real>& state = watch_.states()[i];
+    if (!state.active || state.side == 0) return;
+    const bool zero = at_zero(i) || (state.at_zero && sign_of(g_[i]) != state.side);
+    if (!zero && sign_of(g_[i]) == state.side) {
+      if (state.at_zero && !(Real(state.side) * g_[i] <= state.band)) state.at_zero = false;
+      return;
+    }
+    const int side = !zero ? sign_of(g_[i]) : state.at_zero ? state.side : carried(steps, i, t, x).side;
+    if (side == 0 || side == state.side) return;
+    state = {.side = side, .at_zero = zero, .active = true, .band = rounding_[i]};
+    if (watches(events_.direction(i), side)) add(fired_, i);
+  }
+
+  // After an action: a guard that is on the other side of zero now, beyond what rounding does.
+  void jump(std::size_t i) {
+    GuardState<Real>& state = watch_.states()[i];
+    if (at_zero(i)) return;
+    const int side = sign_of(g_[i]);
+    const bool from_zero = state.side == 0;
+    state = {.side = side, .at_zero = false, .active = true, .band = rounding_[i]};
+    const Direction direction = events_.direction(i);
+    if (watches(direction, side) && !(from_zero && direction == Direction::crosses)) add(next_, i);
+  }
+
+  // At the end of a round: guards at zero go where the motion takes them.
+  void carry(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs, std::max;
+    GuardState<Real>& state = watch_.states()[i];
+    if (!watched(i)) return;
+    const bool was_active = std::exchange(state.active, events_.active(steps.system(), i));
+    if (!state.active) return;
+    if (!was_active) return enter(steps, i, t, x);
+    const bool fired = marks_[i] == done || marks_[i] == turned;
+    const Real band = fired && state.at_zero ? max(state.band, rounding_[i]) : rounding_[i];
+    state.at_zero = abs(g_[i]) <= band;
+    state.band = band;
+    if (!state.at_zero) {
+      if (fired) state.side = sign_of(g_[i]);
+      return;
+    }
+    if (!restarted_ && !is_condition(i)) return;
+    const Carried way = carried(steps, i, t, x);
+    marks_[i] == turned ? turn(i, way) : take(i, way);
+  }
+
+  // A guard that the present mode watches and the one before did not.
+  void enter(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    const Direction direction = events_.direction(i);
+    place(steps, i, t, x);
+    const GuardState<Real>& state = watch_.states()[i];
+    if (state.at_zero && state.side != 0 && direction != Direction::crosses && watches(direction, state.side))
+      add(next_, i);
+  }
+
+  // The guard of an event that has acted and is at zero.
+  void turn(std::size_t i, const Carried& way) {
+    GuardState<Real>& state = watch_.states()[i];
+    if (way.side == 0 && is_condition(i)) {
+      state.side = sign_of(g_[i]);
+    } else if (way.side != state.side) {
+      state.side = -state.side;  // turned back, or held at zero
+    } else if (way.order > 1) {
+      held_[i] = 1;  // of order 1, it goes on through
+      add(next_, i);
+    }
+  }
+  // Any other guard at zero.
+  void take(std::size_t i, const Carried& way) {
+    GuardState<Real>& state = watch_.states()[i];
+    const int side = way.side != 0 ? way.side : is_condition(i) ? sign_of(g_[i]) : 0;
+    if (side == 0 || side == state.side) return;
+    const bool from_zero = state.side == 0;
+    state.side = side;
+    const Direction direction = events_.direction(i);
+    if (watches(direction, side) && !(from_zero && direction == Direction::crosses)) add(next_, i);
+  }
+
+  // Whether the event of guard i, which the motion carries from zero to the far side, would turn it back: tried on
+  // copies, a little beyond zero.
+  bool restores(StepsOf& steps, std::size_t i, Real t, const X& x, int near) {
+    if constexpr (requires { events_.can_assign(i); }) {
+      if (!events_.can_assign(i)) return false;
+    } else if (!can_restart(i)) {
+      return false;
+    }
+    for (const double part : {1e-4, 1e-6, 1e-8})
+      if (restores_after(steps, i, t, x, near, forward_ * longest_ * Real(part))) return true;
+    return false;
+  }
+
+  bool restores_after(StepsOf& steps, std::size_t i, Real t, const X& x, int near, Real dt) {
+    Events events = events_;
+    System system = steps.system();
+    X slope = steps.slope(t, x), before = x;
+    for (std::size_t k = 0; k < dimension(x); ++k) before.data()[k] += dt * slope.data()[k];
+    const X later = steps.slope(t + dt, before);
+    for (std::size_t k = 0; k < dimension(x); ++k)
+      before.data()[k] = x.data()[k] + dt * (slope.data()[k] + later.data()[k]) / 2;
+    X after = before;
+    if (!events.fire(system, i, t + dt, before, after).restart) return false;
+    events.guards(system, t + dt, after, std::span<Real>(scratch_));
+    const Real g = scratch_[i];
+    continuo::evaluate(system, t + dt, after, slope);
+    divide_by_mass(system, slope);
+    for (std::size_t k = 0; k < dimension(x); ++k) after.data()[k] += dt * slope.data()[k];
+    events.guards(system, t + 2 * dt, after, std::span<Real>(scratch_));
+    return Real(near) * (scratch_[i] - g) > 0 || Real(near) * g > 0;
+  }
+
+  Events events_;
+  GuardWatch<Real> watch_;
+  AccumulationWatch<Real> accumulation_;
+  std::vector<Real> g_, rounding_, scratch_;
+  std::vector<Real> jump_;    // of the last crossing: what of g at its far side is more than t explains
+  std::vector<char> marks_;   // of the present round
+  std::vector<char> held_;    // the event fires because the motion would leave zero at once by its far side
+  std::vector<std::size_t> fired_, next_;
+  std::optional<Real> last_event_;
+  Real forward_, longest_;
+  X moved_, first_, second_;
+  bool any_guard_ = false, any_turning_guard_ = false, any_scheduled_ = false;
+  bool jumped_ = false, restarted_ = false;  // of the present round
+};
+
+}  // namespace continuo

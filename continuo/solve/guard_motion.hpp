@@ -1,0 +1,59 @@
+// Where the motion takes a guard that is zero now: for guards of which only values are known.
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <continuo/numerics/state.hpp>
+#include <continuo/solve/guard_watch.hpp>
+
+namespace continuo {
+
+/// The side to which the motion carries a guard from zero, by its first derivative along the motion that is not zero
+/// (to rounding), and the order of that derivative. Side 0: up to the third all are, or nobody knows.
+struct Carried {
+  int side = 0;
+  int order = 0;
+};
+
+/// How much g can be off by the rounding of t and x: the largest change over three moves of t and of every component by
+/// a few units in the last place, in different directions, since equal relative moves leave a difference of equals
+/// unchanged. `g_at(t, x)` gives the guard; `moved` is scratch.
+template <class Real, class X, class GuardAt>
+void for_each_rounded(Real t, const X& x, X& moved, GuardAt&& g_at) {
+  const Real unit = 4 * std::numeric_limits<Real>::epsilon();
+  for (int pattern = 0; pattern < 3; ++pattern) {
+    for (std::size_t k = 0; k < dimension(x); ++k) {
+      const bool up = pattern == 0 || (pattern == 1 ? k % 2 == 0 : k % 4 < 2);
+      moved.data()[k] = (up ? 1 + unit : 1 - unit) * x.data()[k];
+    }
+    g_at((pattern == 1 ? 1 - unit : 1 + unit) * t, moved);
+  }
+}
+
+/// By differences along the parabola x + s f + s^2/2 f', where f' is a difference of f as well. `length` is how far the
+/// motion may be followed: less than the flight to the next event. `rounding` is that of g. g_at(t, x) is the guard,
+/// slope_at(t, x, out) writes x'; first, second and moved are scratch.
+template <class Real, class X, class GuardAt, class SlopeAt>
+Carried carried_by_differences(Real t, const X& x, Real length, Real rounding, X& first, X& second, X& moved,
+                               GuardAt&& g_at, SlopeAt&& slope_at) {
+  using std::abs;
+  const Real dt = length / 100;
+  slope_at(t, x, first);
+  for (std::size_t k = 0; k < dimension(x); ++k) moved.data()[k] = x.data()[k] + dt * first.data()[k];
+  slope_at(t + dt, moved, second);
+  const auto g_after = [&](Real s) {
+    for (std::size_t k = 0; k < dimension(x); ++k)
+      moved.data()[k] = x.data()[k] + s * (first.data()[k] + s / (2 * dt) * (second.data()[k] - first.data()[k]));
+    return g_at(t + s, moved);
+  };
+  const Real g0 = g_after(Real(0)), g1 = g_after(dt), g2 = g_after(2 * dt);
+  // Three values are a parabola: its slope and its bend at s = 0, each times the way dt.
+  const Real slope = (4 * g1 - g2 - 3 * g0) / 2, bend = g0 - 2 * g1 + g2;
+  // The third derivative, which is not looked at, stays below a thousandth of the second at so short a way.
+  if (abs(slope) > 8 * rounding && abs(slope) > abs(bend) / 1000) return {sign_of(slope), 1};
+  if (abs(bend) > 8 * rounding) return {sign_of(bend), 2};
+  return {};
+}
+
+}  // namespace continuo
