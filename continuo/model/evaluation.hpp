@@ -42,6 +42,8 @@ class Evaluation {
     return outputs;
   }
 
+  /// Sets a variable that is no parameter: nothing was prepared with it.
+  void place(std::uint32_t variable, double value) { registers_[variable] = value; }
   /// Sets a parameter, an input or a sample.
   void set(std::uint32_t variable, double value) {
     if (!tape_) return;

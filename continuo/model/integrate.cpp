@@ -30,8 +30,8 @@ class Recording final : public StepWatcher {
     const ModelEvents& events = run.events();
     const auto marks = events.marks().subspan(marks_seen_);
     for (const std::size_t i : now.events) {
-      if (!events.is_declared(i)) continue;
       const auto mark = std::ranges::find(marks, i, &Marked::event);
+      if (!events.is_declared(i) && !(events.is_jump(i) && mark != marks.end())) continue;
       names_.push_back({std::string(events.name(i)), mark == marks.end() ? std::string() : mark->text});
     }
     marks_seen_ = events.marks().size();
@@ -70,7 +70,8 @@ class SteppingByName final : public Stepping {
     system.set_all(variables);
     system.go(instant.mode);
     system.hold({held.begin(), held.end()});
-    ModelEvents events(system.program(), variables, integrator_->events().begin());
+    system.settle_switches(instant.t, instant.x, nullptr);
+    ModelEvents events(system.program(), variables, integrator_->events().begin(), true);
     events.resume(instant.t, instant.stops);
     Options<X> options = integrator_->options();
     const Interval<double> interval{instant.t, integrator_->interval().to};

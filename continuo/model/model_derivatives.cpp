@@ -7,11 +7,23 @@
 
 namespace continuo::model {
 
-ModelDerivatives::ModelDerivatives(const ModelProgram& program, std::span<const double> variables) {
+namespace {
+/// Of a sliding motion each component may depend on each other one.
+constexpr std::size_t largest_full = 100;
+}  // namespace
+
+ModelDerivatives::ModelDerivatives(const ModelProgram& program, std::span<const double> variables, bool held) {
   // The derivatives are new nodes, so they need a graph of their own; inputs stay as they are: none is a state.
   ModelProgram own(program.model);
   own.tables = program.tables;
   own.linear_inputs = program.linear_inputs;
+  own.switch_variables = program.switch_variables;
+  bool slides = false;
+  for (std::size_t mode = 0; held && mode < own.model.modes.size(); ++mode) {
+    if (program.switches[mode].empty()) continue;
+    own.model.modes[mode].derivatives = program.switches[mode].derivatives;
+    slides = slides || program.switches[mode].slides;
+  }
   const Model& model = own.model;
   std::vector<std::uint32_t> columns(model.states.size());
   std::iota(columns.begin(), columns.end(), model.layout.states);
@@ -22,6 +34,8 @@ ModelDerivatives::ModelDerivatives(const ModelProgram& program, std::span<const 
     for (const JacobianEntry& entry : entries.emplace_back(model::jacobian(own.model.graph, mode.derivatives, columns)))
       all.push_back({entry.row, entry.column});
   }
+  for (std::uint32_t row = 0; slides && columns.size() <= largest_full && row < columns.size(); ++row)
+    for (std::uint32_t column = 0; column < columns.size(); ++column) all.push_back({row, column});
   pattern_ = SparsePattern(columns.size(), all);
   for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
     OfMode& mine = modes_.emplace_back();

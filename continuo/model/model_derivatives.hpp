@@ -17,7 +17,9 @@ namespace continuo::model {
 
 class ModelDerivatives {
  public:
-  ModelDerivatives(const ModelProgram& program, std::span<const double> variables);
+  /// `held`: of the equations with their switches held (SwitchedEquations), whose pattern is full where the motion may
+  /// slide and the matrix is small.
+  ModelDerivatives(const ModelProgram& program, std::span<const double> variables, bool held = false);
 
   /// Of all modes together.
   const SparsePattern& pattern() const { return pattern_; }
@@ -29,7 +31,7 @@ class ModelDerivatives {
   void jacobian(std::size_t mode, double t, std::span<const double> x, std::span<double> rows);
   void time_derivative(std::size_t mode, double t, std::span<const double> x, std::span<double> dfdt);
 
-  /// A parameter or an input.
+  /// A parameter, an input or a switch.
   void set(std::uint32_t variable, double value);
 
  private:

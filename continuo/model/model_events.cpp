@@ -14,6 +14,7 @@ ModelEvents::Entry ModelEvents::entry_of(const When& when, std::size_t index) co
   entry.in_one_mode = when.mode.has_value();
   entry.mode = when.mode.value_or(0);
   entry.is_condition = when.truth.valid();
+  entry.has_limit = when.has_limit;
   return entry;
 }
 
@@ -67,7 +68,34 @@ bool may_restart(const ModelProgram& program, const std::vector<ProgramAction>& 
 
 }  // namespace
 
-ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> variables, double from) : begin_(from) {
+/// `v = 0`, `t/2 at a whole number`.
+std::string name_of(const ModelProgram& program, const Switch& one) {
+  const auto name = [&](std::uint32_t v) {
+    return v < program.model.layout.size ? variable_name(program.model, v) : std::string("...");
+  };
+  constexpr std::size_t longest = 60;
+  const std::string text = to_text(program.model.graph, one.surface, name, longest);
+  return text + (one.kind == Switch::Kind::floor ? " at a whole number" : " = 0");
+}
+
+void ModelEvents::add_jumps(const ModelProgram& program) {
+  std::size_t most = 0;
+  for (std::size_t mode = 0; mode < program.switches.size(); ++mode) {
+    const std::vector<Switch>& switches = program.switches[mode].switches;
+    most = std::max(most, switches.size());
+    for (std::size_t k = 0; k < switches.size(); ++k) {
+      Entry entry{.kind = Kind::jump, .index = k, .name = name_of(program, switches[k])};
+      entry.in_one_mode = true;
+      entry.mode = mode;
+      entry.can_assign = false;
+      events_.push_back(std::move(entry));
+    }
+  }
+  switch_values_.resize(most);
+}
+
+ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> variables, double from, bool jumps)
+    : begin_(from) {
   const Model& model = program.model;
   // Inputs step first, so that the actions of the same instant see their new values.
   for (std::size_t i = 0; i < program.step_inputs.size(); ++i) {
@@ -76,6 +104,7 @@ ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> va
     entry.times.assign(input.table.x().begin(), input.table.x().end());
     events_.push_back(std::move(entry));
   }
+  if (jumps) add_jumps(program);
   guard_place_.resize(model.events.size());
   for (const EventOrder& place : model.event_order) {
     if (!place.scheduled) guard_place_[place.index] = events_.size();
@@ -102,6 +131,10 @@ double ModelEvents::next_time(std::size_t i, double t, bool inclusive) const {
 void ModelEvents::guards(ModelSystem& system, double t, const X& x, std::span<double> values) {
   system.guards(t, x, guard_values_);
   for (std::size_t k = 0; k < guard_place_.size(); ++k) values[guard_place_[k]] = guard_values_[k];
+  if (switch_values_.empty() || !system.has_switches()) return;
+  system.switch_guards(t, x, switch_values_);
+  for (std::size_t i = 0; i < events_.size(); ++i)
+    if (is_jump(i) && events_[i].mode == system.mode()) values[i] = switch_values_[events_[i].index];
 }
 
 void ModelEvents::perform(const std::vector<ProgramAction>& actions, std::span<const double> values, double t, X& x,
@@ -135,15 +168,29 @@ EventResponse ModelEvents::fire(ModelSystem& system, std::size_t i, double t, co
     const TableInput& input = system.program().step_inputs[entry.index];
     const double value = input.table.value(t);
     const bool changes = system.value(input.variable) != value;
-    if (changes) system.set(input.variable, value);
+    if (changes) {
+      system.set(input.variable, value);
+      system.settle_switches(t, before, &before);
+    }
     return {.restart = changes};
   }
-  Effect effect{.event = i, .mode = system.mode()};
+  if (entry.kind == Kind::jump) return pass(system, i, t, before);
   const bool guard = entry.kind == Kind::guard;
   const ProgramBlock& block =
       guard ? system.program().event_blocks[entry.index] : system.program().schedule_blocks[entry.index];
   const std::vector<double> values =
       guard ? system.event_expressions(entry.index, t, before) : system.schedule_expressions(entry.index, t, before);
+  return act(system, block, values, i, t, before, x);
+}
+
+EventResponse ModelEvents::at_limit(ModelSystem& system, std::size_t i, double t, const X& before, X& x) {
+  const std::size_t index = events_[i].index;
+  return act(system, system.program().limit_blocks[index], system.limit_expressions(index, t, before), i, t, before, x);
+}
+
+EventResponse ModelEvents::act(ModelSystem& system, const ProgramBlock& block, std::span<const double> values,
+                               std::size_t i, double t, const X& before, X& x) {
+  Effect effect{.event = i, .mode = system.mode()};
   perform(block.actions, values, t, x, effect);
   EventResponse response{.stop = effect.stop, .restart = effect.mode != system.mode()};
   const std::vector<char>& counters = system.program().counters;
@@ -152,8 +199,18 @@ EventResponse ModelEvents::fire(ModelSystem& system, std::size_t i, double t, co
     response.changed = true;
     response.restart = response.restart || counters[k] == 0;
   }
+  const bool same_mode = effect.mode == system.mode();
   system.go(effect.mode);
+  if (response.restart) system.settle_switches(t, x, same_mode ? &before : nullptr);
   return response;
+}
+
+/// The motion has come to a surface where the equations jump.
+EventResponse ModelEvents::pass(ModelSystem& system, std::size_t i, double t, const X& x) {
+  const Passage passage = system.pass_switch(events_[i].index, t, x);
+  if (passage == Passage::begins_to_slide) marks_.push_back({t, "begins to slide", i});
+  if (passage == Passage::leaves) marks_.push_back({t, "leaves", i});
+  return {.restart = passage != Passage::none};
 }
 
 }  // namespace continuo::model

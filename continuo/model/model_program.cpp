@@ -220,6 +220,8 @@ std::shared_ptr<const ModelProgram> compile(Model model) {
   compile_blocks(*program);
   program->autonomous = is_autonomous(*program);
   program->counters = find_counters(program->model);
+  for (std::size_t mode = 0; mode < program->model.modes.size(); ++mode)
+    program->switches.push_back(switched_equations(*program, mode));
   return program;
 }
 

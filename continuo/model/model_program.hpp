@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <continuo/model/model.hpp>
+#include <continuo/model/switches.hpp>
 #include <continuo/model/table.hpp>
 #include <continuo/model/tape.hpp>
 
@@ -54,6 +55,8 @@ struct ModelProgram {
   std::vector<TableInput> linear_inputs;  // part of the expressions
   std::vector<std::shared_ptr<const Tape>> derivatives;  // by mode
   bool autonomous = false;                               // no derivative hangs on the time
+  std::vector<SwitchedEquations> switches;               // by mode
+  std::uint32_t switch_variables = 0;                    // behind those of the model
   std::vector<ProgramGuards> guards;                     // by mode
   std::vector<ProgramBlock> event_blocks;                // by Model::events
   std::vector<ProgramBlock> limit_blocks;                // by Model::events; without actions where there is no `then`
@@ -65,7 +68,7 @@ struct ModelProgram {
   std::vector<std::uint32_t> families;  // as TapeVariables says: u[1], u[2], ... are one, their derivatives another
 
   TapeVariables tape_variables() const {
-    return {.variables = model.layout.size,
+    return {.variables = model.layout.size + switch_variables,
             .steady_begin = model.layout.parameters,
             .steady_end = model.layout.inputs,
             .states_begin = model.layout.states,

@@ -17,6 +17,7 @@
 #include <continuo/model/evaluation.hpp>
 #include <continuo/model/model_derivatives.hpp>
 #include <continuo/model/model_program.hpp>
+#include <continuo/model/switched_motion.hpp>
 #include <continuo/system/system.hpp>
 
 namespace continuo::model {
@@ -29,7 +30,11 @@ class ModelSystem {
   ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<const double> variables);
 
   void operator()(double t, const X& x, X& dxdt) {
-    derivatives_[mode_](t, x, dxdt);
+    if (switched_ && switched_->any(mode_)) {
+      switched_->rates(mode_, t, x, dxdt);
+    } else {
+      derivatives_[mode_](t, x, dxdt);
+    }
     for (const std::size_t i : held_) dxdt[i] = 0;
   }
 
@@ -48,7 +53,18 @@ class ModelSystem {
   void guards(double t, const X& x, std::span<double> values);
   /// The expressions of the block of Model::events[i] or Model::schedule[i].
   std::vector<double> event_expressions(std::size_t i, double t, const X& x) { return event_blocks_[i](t, x); }
+  std::vector<double> limit_expressions(std::size_t i, double t, const X& x) { return limit_blocks_[i](t, x); }
   std::vector<double> schedule_expressions(std::size_t i, double t, const X& x) { return schedule_blocks_[i](t, x); }
+
+  /// From now on the jumps of the equations are located: their switches are held until `pass` or `settle` says
+  /// otherwise (SwitchedMotion). Before, every evaluation decides them anew.
+  void hold_switches(double t, const X& x);
+  bool holds_switches() const { return switched_.has_value(); }
+  void settle_switches(double t, const X& x, const X* before);
+  Passage pass_switch(std::size_t k, double t, const X& x);
+  void switch_guards(double t, const X& x, std::span<double> values) { switched_->guards(mode_, t, x, values); }
+  bool has_switches() const { return switched_ && switched_->any(mode_); }
+  bool slides() const { return switched_ && switched_->slides(); }
 
   const ModelProgram& program() const { return *program_; }
   const Model& model() const { return program_->model; }
@@ -71,13 +87,16 @@ class ModelSystem {
  private:
   template <class Visit>
   void for_each(Visit&& visit);
+  void place_switches();
+  void difference_rows(double t, const X& x, std::span<double> rows);
   ModelDerivatives& derivatives_of_f();
 
   std::shared_ptr<const ModelProgram> program_;
   std::size_t mode_;
   std::vector<double> variables_;  // parameters and inputs as they are now
   std::optional<ModelDerivatives> derivatives_of_f_;
-  std::vector<Evaluation> derivatives_, guards_, truths_, event_blocks_, schedule_blocks_;
+  std::optional<SwitchedMotion> switched_;
+  std::vector<Evaluation> derivatives_, guards_, truths_, event_blocks_, limit_blocks_, schedule_blocks_;
   std::vector<double> guard_values_;
   std::vector<std::size_t> held_;
 };

@@ -80,9 +80,11 @@ Integration integration_of(const std::shared_ptr<const ModelProgram>& program, c
                            const Experiment& experiment) {
   const Model& model = program->model;
   const auto first = plan.variables.begin() + model.layout.states;
-  return {ModelSystem(program, plan.variables),
-          ModelSystem::X(first, first + static_cast<std::ptrdiff_t>(model.states.size())), options_of(plan, experiment),
-          ModelEvents(*program, plan.variables, plan.from)};
+  ModelSystem system(program, plan.variables);
+  ModelSystem::X x0(first, first + static_cast<std::ptrdiff_t>(model.states.size()));
+  system.hold_switches(plan.from, x0);
+  return {std::move(system), std::move(x0), options_of(plan, experiment),
+          ModelEvents(*program, plan.variables, plan.from, true)};
 }
 
 Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {

@@ -92,6 +92,8 @@ struct EventResponse {
 ///   can_restart(i) [true]: firing may change what f reads, or stop the run
 ///   can_assign(i) [can_restart(i)]: firing may change a state
 ///   carried(system, i, t, x, forward) [by differences]: the side to which the motion takes guard i from zero
+///   is_condition(i) [false]: the guard is positive where a condition holds, and never zero
+///   renews_guard(i) [false]: firing gives the guard another meaning
 ///   has_limit_action(i) [false], at_limit(system, i, t, before, x) -> EventResponse: where the firings accumulate
 template <class S, class System, class X>
 concept EventSource =

@@ -172,6 +172,7 @@ class EventLogic {
       if (marks_[k] == pending || !watched(k)) continue;
       GuardState<Real>& state = watch_.states()[k];
       if (!state.active || sign_of(g_[k]) == state.side) continue;
+      if (k == i && renews_guard(i)) continue;
       if (!std::exchange(rounded, true)) find_rounding(steps, t, x);
       jump(k);
     }
@@ -210,6 +211,15 @@ class EventLogic {
   bool is_condition(std::size_t i) const {
     if constexpr (requires { events_.is_condition(i); }) {
       return events_.is_condition(i);
+    } else {
+      return false;
+    }
+  }
+
+  /// Firing gives the guard another meaning: it has the side that it then has.
+  bool renews_guard(std::size_t i) const {
+    if constexpr (requires { events_.renews_guard(i); }) {
+      return events_.renews_guard(i);
     } else {
       return false;
     }
@@ -348,7 +358,9 @@ class EventLogic {
   // The guard of an event that has acted and is at zero.
   void turn(std::size_t i, const Carried& way) {
     GuardState<Real>& state = watch_.states()[i];
-    if (way.side == 0 && is_condition(i)) {
+    if (renews_guard(i)) {
+      if (way.side != 0) state.side = way.side;
+    } else if (way.side == 0 && is_condition(i)) {
       state.side = sign_of(g_[i]);
     } else if (way.side != state.side) {
       state.side = -state.side;  // turned back, or held at zero
