@@ -14,12 +14,15 @@ namespace {
 using Number = Rounded<double>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double units_of_state = 4, units_of_time = 1;
+/// Covers the roundings of the bounds and their squares, which the bounds leave out: some epsilon per operation.
+constexpr double margin = 1 + 0x1p-20;
 /// Passes over the coefficients. One is enough where f is smooth; each further one lets the branches that a coefficient
 /// has just decided bear on the next.
 constexpr int sweeps = 5;
 
 Number of_state(double x) {
-  return {x, 2 * epsilon * std::abs(x)};
+  return {x, units_of_state * epsilon * std::abs(x)};
 }
 
 bool is_same(const Number& a, const Number& b) {
@@ -92,7 +95,7 @@ void MotionSeries::guards(std::size_t mode, double t, std::span<const double> x,
     for (std::size_t j = 0; j <= TapeSeries::order; ++j) {
       motions[events[k]].c[j] = guards_[k].c[j].value;
       motions[events[k]].rounding[j] =
-          guards_[k].c[j].is_known() ? 2 * guards_[k].c[j].rounding : std::numeric_limits<double>::infinity();
+          guards_[k].c[j].is_known() ? margin * guards_[k].c[j].rounding : std::numeric_limits<double>::infinity();
     }
   }
 }
@@ -101,7 +104,7 @@ std::span<const TapeSeries> MotionSeries::states(std::size_t mode, double t, std
                                                  double forward) {
   mode_ = mode;
   forward_ = forward;
-  time_ = TapeSeries(Number(t, epsilon * std::abs(t)), Number(forward));
+  time_ = TapeSeries(Number(t, units_of_time * epsilon * std::abs(t)), Number(forward));
   for (std::size_t i = 0; i < x_.size(); ++i) {
     x_[i] = TapeSeries(of_state(x[i]));
     known_[i] = in_world_[i] ? 1 : TapeSeries::order + 1;

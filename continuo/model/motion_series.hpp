@@ -12,9 +12,9 @@
 // about to enter. A coefficient that is not determined, because f jumps where the motion stands and both sides lead
 // back, or because the equations of the unknowns are singular, is NaN with an infinite rounding.
 //
-// A state counts as known to two units in the last place, zero as exact. Values that are equal bit by bit are a tie,
-// which the motion decides; those within their rounding of each other may be either way round, and what hangs on that
-// is not known unless both ways agree in sign.
+// A state counts as known to four units in the last place, the time to one, zero as exact. Values that are equal bit by
+// bit are a tie, which the motion decides; those within their rounding of each other may be either way round, and what
+// hangs on that is not known unless both ways agree in sign.
 #pragma once
 #include <array>
 #include <cstddef>
