@@ -9,7 +9,7 @@
 // without rounding (T. Ogita, S. M. Rump, S. Oishi, "Accurate sum and dot product", SIAM J. Sci. Comput. 26 (2005),
 // algorithms 3.1 and 3.3), so what is computed exactly has rounding 0. The bound is of first order: the roundings of
 // the bounds themselves, underflow, and the squares of roundings in the functions below are left out. Who builds on it
-// doubles it.
+// adds a margin.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -129,18 +129,18 @@ struct Rounded {
   }
   friend Rounded pow(const Rounded& a, const Rounded& b) {
     const Real power = std::pow(a.value, b.value);
-    Real rounding = library(power);
-    if (a.rounding > 0) rounding += std::abs(b.value * std::pow(a.value, b.value - 1)) * a.rounding;
-    if (b.rounding > 0) rounding += std::abs(std::log(a.value) * power) * b.rounding;
-    return known(power, rounding);
+    Real bound = library(power);
+    if (a.rounding > 0) bound += std::abs(b.value * std::pow(a.value, b.value - 1)) * a.rounding;
+    if (b.rounding > 0) bound += std::abs(std::log(a.value) * power) * b.rounding;
+    return known(power, bound);
   }
   friend Rounded atan2(const Rounded& y, const Rounded& x) {
     const Real angle = std::atan2(y.value, x.value);
     if (y.value == 0 && y.rounding == 0) return known(angle, x.has_sign() ? library(angle) : anything().rounding);
     const Real square = x.value * x.value + y.value * y.value;
-    Real rounding = library(angle) + (std::abs(x.value) * y.rounding + std::abs(y.value) * x.rounding) / square;
-    if (x.value < 0 && y.value != 0 && std::abs(y.value) <= y.rounding) rounding += 2 * std::numbers::pi_v<Real>;
-    return known(angle, rounding);
+    Real bound = library(angle) + (std::abs(x.value) * y.rounding + std::abs(y.value) * x.rounding) / square;
+    if (x.value < 0 && y.value != 0 && std::abs(y.value) <= y.rounding) bound += 2 * std::numbers::pi_v<Real>;
+    return known(angle, bound);
   }
 
  private:
