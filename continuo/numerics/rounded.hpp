@@ -1,7 +1,7 @@
 // A number with a bound of its rounding: what was meant lies within value - rounding and value + rounding.
 //
 //   const Rounded<double> x(0.1, 1e-17), y(3);   // 3 is exact
-//   const auto z = x * y - 0.3;                  // value 5.6e-17, rounding 8.6e-17: it may be zero
+//   const auto z = x * y - 0.3;                  // value 5.55e-17, rounding 5.78e-17: it may be zero
 //   z > 0;                                       // Truth::undecided
 //
 // Midpoint and radius: F. Johansson, "Arb: efficient arbitrary-precision midpoint-radius interval arithmetic", IEEE

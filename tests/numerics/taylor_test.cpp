@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -234,6 +235,10 @@ TEST(Rounded, IsExactWhereTheArithmeticIs) {
   for (const auto& z : {x + y, x - y, x * y, (x * y) / y, sqrt(Rounded<double>(2.25))}) EXPECT_EQ(z.rounding, 0);
   EXPECT_GT((Rounded<double>(1) / Rounded<double>(3)).rounding, 0);
   EXPECT_GT((Rounded<double>(0.1) + Rounded<double>(0.2)).rounding, 0);
+  // As in the header: 0.1 and 0.3 are doubles beside the decimals.
+  const Rounded<double> z = Rounded<double>(0.1, 1e-17) * 3.0 - 0.3;
+  EXPECT_NEAR(z.value, 5.55e-17, 1e-19);
+  EXPECT_NEAR(z.rounding, 5.78e-17, 1e-19);
 }
 
 TEST(Rounded, SaysWhereItCannotDecide) {
