@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <continuo/numerics/taylor.hpp>
+
 namespace continuo::model::tape {
 
 enum class Code : std::uint16_t {
@@ -179,7 +181,8 @@ Real operate_function(const Real& a, const Real& b) {
   if constexpr (code == Code::absolute) return abs(a);
   if constexpr (code == Code::exponential) return exp(a);
   if constexpr (code == Code::power) return pow(a, b);
-  if constexpr (code == Code::hypotenuse) return sqrt(a * a + b * b);
+  if constexpr (code == Code::hypotenuse && is_taylor<Real>) return hypot(a, b);
+  if constexpr (code == Code::hypotenuse && !is_taylor<Real>) return sqrt(a * a + b * b);
   if constexpr (code == Code::arc_tangent2) return atan2(a, b);
   if constexpr (code == Code::modulo) return a - b * floor(a / b);
   if constexpr (code == Code::tangent) return tan(a);

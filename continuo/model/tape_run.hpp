@@ -4,15 +4,18 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <type_traits>
 #include <utility>
 
 #include <continuo/model/tape.hpp>
 #include <continuo/model/wide_vectors.hpp>
+#include <continuo/numerics/taylor.hpp>
 
 namespace continuo::model::tape {
 
@@ -123,6 +126,31 @@ inline constexpr auto manys = []<std::size_t... I>(std::index_sequence<I...>) {
   return std::array<Many<Real>, operations> { one_of.template operator()<static_cast<Code>(I)>()... };
 }(std::make_index_sequence<operations>());
 
+/// The straight piece of a table at x, or its slope.
+template <class Real>
+Real along(const Table::Piece& piece, const Real& x, bool slope) {
+  return slope ? Real(piece.slope) : piece.y + piece.slope * (x - piece.x);
+}
+
+/// A table along a motion of x: at a corner the piece that comes. Within the rounding of x, but not at it, either one.
+template <class Scalar, std::size_t order>
+Taylor<Scalar, order> look_up_along(const Table& table, const Taylor<Scalar, order>& x, bool slope) {
+  const auto at = static_cast<double>(midpoint(x.c[0]));
+  const Table::Piece& here = table.at(at);
+  const Table::Piece& before = table.at(std::nextafter(at, -std::numeric_limits<double>::infinity()));
+  const auto here_or = [&](auto condition, const Table::Piece& other) {
+    return choose(condition, along(other, x, slope), along(here, x, slope));
+  };
+  if (&before != &here) return here_or(x < Taylor<Scalar, order>(at), before);
+  if constexpr (std::is_floating_point_v<Scalar>) {
+    return along(here, x, slope);
+  } else {
+    const Table::Piece& low = table.at(at - x.c[0].rounding);
+    const Table::Piece& other = &low != &here ? low : table.at(at + x.c[0].rounding);
+    return here_or(&other != &here ? Truth::undecided : Truth::no, other);
+  }
+}
+
 /// A table at x; lanes one by one, derivatives along the piece that holds the value.
 template <class Real>
 Real look_up(const Table& table, const Real& x, bool slope) {
@@ -133,8 +161,9 @@ Real look_up(const Table& table, const Real& x, bool slope) {
                          x.v;
                          x.a;
                        }) {
-    const Table::Piece& piece_at = table.at(static_cast<double>(x.a));
-    return slope ? Real(piece_at.slope) : piece_at.y + piece_at.slope * (x - piece_at.x);
+    return along(table.at(static_cast<double>(x.a)), x, slope);
+  } else if constexpr (is_taylor<Real>) {
+    return look_up_along(table, x, slope);
   } else {
     Real y = x;
     for (std::size_t lane = 0; lane < Real::width; ++lane) y.set(lane, look_up(table, x[lane], slope));
