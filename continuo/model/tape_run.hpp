@@ -123,10 +123,12 @@ inline constexpr auto manys = []<std::size_t... I>(std::index_sequence<I...>) {
   return std::array<Many<Real>, operations> { one_of.template operator()<static_cast<Code>(I)>()... };
 }(std::make_index_sequence<operations>());
 
-/// A table at x; lanes one by one, derivatives along the piece that holds the value.
+/// A table at x; lanes one by one, derivatives along the piece that holds the value, enclosures by their own `enclose`.
 template <class Real>
 Real look_up(const Table& table, const Real& x, bool slope) {
-  if constexpr (std::is_arithmetic_v<Real>) {
+  if constexpr (requires { enclose(table, x, slope); }) {
+    return enclose(table, x, slope);
+  } else if constexpr (std::is_arithmetic_v<Real>) {
     const auto at = static_cast<double>(x);
     return static_cast<Real>(slope ? table.slope(at) : table.value(at));
   } else if constexpr (requires {
