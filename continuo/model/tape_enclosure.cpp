@@ -42,6 +42,7 @@ Values slopes(const Table& table, const Values& x) {
 }  // namespace
 
 Values enclose(const Table& table, const Values& x, bool slope) {
+  if (x.is_entire()) return x;
   if (slope) return slopes(table, x);
   Values range = nothing();
   for_each_piece(table, x, [&](const Table::Piece& piece, const Values& part) {

@@ -15,7 +15,9 @@
 // with the same operations is enclosed too.
 //
 // What is undefined somewhere (a division by what may be zero, a logarithm of what may be negative) or not a number is
-// the entire line. An operation on single numbers that is exact remains a single number: counters stay whole.
+// the entire line, and so is every function of the entire line, even one that is bounded: no comparison with it decides
+// anything, as none with NaN holds. An operation on single numbers that is exact remains a single number: counters stay
+// whole.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -44,6 +46,7 @@ struct Enclosure {
   static Enclosure entire() { return {-infinity, infinity}; }
 
   bool is_point() const { return lo == hi; }
+  bool is_entire() const { return !(lo > -infinity || hi < infinity); }
   bool is_bounded() const { return lo > -infinity && hi < infinity; }
   bool holds(Real value) const { return lo <= value && value <= hi; }
   /// The greatest absolute value.
@@ -138,6 +141,7 @@ Enclosure<Real> operator-(const Enclosure<Real>& a, const Enclosure<Real>& b) {
 
 template <class Real>
 Enclosure<Real> square(const Enclosure<Real>& a) {
+  if (a.is_entire()) return a;
   const Real lo = a.lo * a.lo, hi = a.hi * a.hi;
   if (a.is_point() && enclosing::is_exact_product(a.lo, a.lo, lo)) return Enclosure<Real>(lo);
   const bool around_zero = a.lo <= 0 && a.hi >= 0;

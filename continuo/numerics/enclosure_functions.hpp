@@ -28,6 +28,11 @@ template <class Real>
 Enclosure<Real> within(const Enclosure<Real>& a, Real least, Real greatest) {
   return {std::max(a.lo, least), std::min(a.hi, greatest)};
 }
+/// A function that grows between these bounds.
+template <class Real, class Function>
+Enclosure<Real> growing_within(const Enclosure<Real>& a, Real least, Real greatest, Function&& function) {
+  return a.is_entire() ? a : within(growing(a, function), least, greatest);
+}
 template <class Real>
 bool is_within(const Enclosure<Real>& a, Real least, Real greatest) {
   return a.lo >= least && a.hi <= greatest;
@@ -58,6 +63,7 @@ struct SineAndCosine {
 
 template <class Real>
 SineAndCosine<Real> sine_and_cosine(const Enclosure<Real>& a) {
+  if (a.is_entire()) return {a, a};
   if (!enclosing::is_short(a)) return {{-1, 1}, {-1, 1}};
   const Real sine_lo = std::sin(a.lo), cosine_lo = std::cos(a.lo), sine_hi = std::sin(a.hi), cosine_hi = std::cos(a.hi);
   return {enclosing::wave(sine_lo, sine_hi, cosine_lo, cosine_hi),
@@ -91,12 +97,12 @@ Enclosure<Real> acos(const Enclosure<Real>& a) {
 }
 template <class Real>
 Enclosure<Real> atan(const Enclosure<Real>& a) {
-  return enclosing::growing(a, [](Real x) { return std::atan(x); });
+  return enclosing::growing_within(a, Real(-2), Real(2), [](Real x) { return std::atan(x); });
 }
 
 template <class Real>
 Enclosure<Real> abs(const Enclosure<Real>& a) {
-  if (a.lo >= 0) return a;
+  if (a.lo >= 0 || a.is_entire()) return a;
   if (a.hi <= 0) return -a;
   return {Real(0), a.magnitude()};
 }
@@ -107,18 +113,16 @@ Enclosure<Real> sinh(const Enclosure<Real>& a) {
 }
 template <class Real>
 Enclosure<Real> cosh(const Enclosure<Real>& a) {
-  const auto range = enclosing::growing(abs(a), [](Real x) { return std::cosh(x); });
-  return {std::max(range.lo, Real(1)), range.hi};
+  return enclosing::growing_within(abs(a), Real(1), Enclosure<Real>::infinity, [](Real x) { return std::cosh(x); });
 }
 template <class Real>
 Enclosure<Real> tanh(const Enclosure<Real>& a) {
-  return enclosing::within(enclosing::growing(a, [](Real x) { return std::tanh(x); }), Real(-1), Real(1));
+  return enclosing::growing_within(a, Real(-1), Real(1), [](Real x) { return std::tanh(x); });
 }
 
 template <class Real>
 Enclosure<Real> exp(const Enclosure<Real>& a) {
-  const auto range = enclosing::growing(a, [](Real x) { return std::exp(x); });
-  return {std::max(range.lo, Real(0)), range.hi};
+  return enclosing::growing_within(a, Real(0), Enclosure<Real>::infinity, [](Real x) { return std::exp(x); });
 }
 template <class Real>
 Enclosure<Real> log(const Enclosure<Real>& a) {
@@ -146,10 +150,12 @@ Enclosure<Real> hypot(const Enclosure<Real>& a, const Enclosure<Real>& b) {
 
 template <class Real>
 Enclosure<Real> min(const Enclosure<Real>& a, const Enclosure<Real>& b) {
+  if (a.is_entire() || b.is_entire()) return Enclosure<Real>::entire();
   return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
 }
 template <class Real>
 Enclosure<Real> max(const Enclosure<Real>& a, const Enclosure<Real>& b) {
+  if (a.is_entire() || b.is_entire()) return Enclosure<Real>::entire();
   return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
 
@@ -163,6 +169,7 @@ Enclosure<Real> ceil(const Enclosure<Real>& a) {
 }
 template <class Real>
 Enclosure<Real> sign(const Enclosure<Real>& a) {
+  if (a.is_entire()) return a;
   const auto of = [](Real x) { return Real((x > 0) - (x < 0)); };
   return {of(a.lo), of(a.hi)};
 }
@@ -192,6 +199,7 @@ template <class Real>
 Enclosure<Real> whole_power(const Enclosure<Real>& x, Real n) {
   if (n == 0) return Enclosure<Real>(Real(1));
   if (n < 0 && x.lo <= 0 && x.hi >= 0) return Enclosure<Real>::entire();
+  if (x.is_entire()) return x;
   const bool is_even = std::fmod(n, Real(2)) == 0;
   const Enclosure<Real> base = is_even ? abs(x) : x;
   const Real first = std::pow(base.lo, n), last = std::pow(base.hi, n);
@@ -219,6 +227,7 @@ bool is_angle_continuous(const Enclosure<Real>& y, const Enclosure<Real>& x) {
 }
 template <class Real>
 Enclosure<Real> atan2(const Enclosure<Real>& y, const Enclosure<Real>& x) {
+  if (y.is_entire() || x.is_entire()) return Enclosure<Real>::entire();
   constexpr Real pi = std::numbers::pi_v<Real>;
   const Enclosure<Real> circle = enclosing::widened_by<enclosing::units>(-pi, pi);
   if (!is_angle_continuous(y, x) || !x.is_bounded() || !y.is_bounded()) return circle;

@@ -5,10 +5,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tests/numerics/random_number.hpp>
 
 #include <continuo/numerics/polynomial_enclosure.hpp>
-
-#include <tests/numerics/random_number.hpp>
 
 namespace continuo::polynomial_enclosure_test {
 namespace {

@@ -227,8 +227,8 @@ struct RandomFunction {
   }
 };
 
-// Samples 1e-4 apart see every change of side but pairs of roots closer than that. Where more are found, the function is
-// on the other side between the two.
+// Samples 1e-4 apart see every change of side but pairs of roots closer than that. Where more are found, the function
+// is on the other side between the two.
 TEST(RootIsolation, AgreesWithDenseSamplesOnRandomFunctions) {
   std::mt19937 random(2);
   for (int trial = 0; trial < 12; ++trial) {
@@ -249,7 +249,8 @@ TEST(RootIsolation, AgreesWithDenseSamplesOnRandomFunctions) {
       const long double t = 1e-4L * k, value = f(t);
       std::size_t here = 0;
       while (next < roots.size() && static_cast<long double>(roots[next]) <= t) ++next, ++here;
-      EXPECT_EQ(here % 2 == 1, (value > 0) != (before > 0)) << "trial " << trial << " before " << static_cast<double>(t);
+      EXPECT_EQ(here % 2 == 1, (value > 0) != (before > 0))
+          << "trial " << trial << " before " << static_cast<double>(t);
       before = value;
     }
     EXPECT_EQ(found.end.side, f(10.0L) > 0 ? 1 : -1);
