@@ -231,7 +231,7 @@ void expect_slope_held(const F& f, const Values& x, double a, double b, const st
   const long double at_a = f(static_cast<long double>(a)), at_b = f(static_cast<long double>(b));
   expect_held(range.value, at_a, what);
   if (std::isnan(at_a) || std::isnan(at_b) || std::isinf(at_a) || std::isinf(at_b) || a == b) return;
-  // The quotient of differences has a rounding of its own: powers are good to some units in the last place.
+  // The quotient of differences has a rounding of its own; powl multiplies, good to some hundred units.
   const long double distance = static_cast<long double>(a) - static_cast<long double>(b);
   const long double rounding =
       32 * std::numeric_limits<long double>::epsilon() * (std::abs(at_a) + std::abs(at_b)) / std::abs(distance);
