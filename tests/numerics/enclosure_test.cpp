@@ -234,7 +234,7 @@ void expect_slope_held(const F& f, const Values& x, double a, double b, const st
   // The quotient of differences has a rounding of its own; powl multiplies, good to some hundred units.
   const long double distance = static_cast<long double>(a) - static_cast<long double>(b);
   const long double rounding =
-      32 * std::numeric_limits<long double>::epsilon() * (std::abs(at_a) + std::abs(at_b)) / std::abs(distance);
+      256 * std::numeric_limits<long double>::epsilon() * (std::abs(at_a) + std::abs(at_b)) / std::abs(distance);
   const long double slope = (at_a - at_b) / distance;
   EXPECT_GE(slope, static_cast<long double>(range.slope.lo) - rounding) << what << " over " << text(x);
   EXPECT_LE(slope, static_cast<long double>(range.slope.hi) + rounding) << what << " over " << text(x);
