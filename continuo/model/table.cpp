@@ -25,6 +25,11 @@ const Table::Piece& Table::at(double x) const {
   return pieces_[static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end(), x) - x_.begin())];
 }
 
+std::span<const Table::Piece> Table::pieces(double from, double to) const {
+  const Piece *first = &at(from), *last = &at(to);
+  return {first, last + 1};
+}
+
 namespace {
 
 class Reader {

@@ -37,6 +37,8 @@ class Table {
     double x, y, slope;
   };
   const Piece& at(double x) const;
+  /// All that `at` may give from one x to another, in their order; each holds up to the x of the next.
+  std::span<const Piece> pieces(double from, double to) const;
 
   std::span<const double> x() const { return x_; }
   Between between() const { return between_; }

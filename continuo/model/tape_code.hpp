@@ -1,6 +1,7 @@
 // continuo/model/tape_code.hpp
 // What a tape is made of: instructions on numbered registers, and what each computes. Internal to the tape.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -157,6 +158,27 @@ Real choose(const Condition& condition, const Real& a, const Real& b) {
   }
 }
 
+/// a - b*floor(a/b). Enclosures bring their own, as the three do not know of each other there.
+template <class Real>
+Real modulus(const Real& a, const Real& b) {
+  using std::floor;
+  if constexpr (requires { mod(a, b); }) {
+    return mod(a, b);
+  } else {
+    return a - b * floor(a / b);
+  }
+}
+
+/// -1, 0 or 1.
+template <class Real>
+Real signum(const Real& a) {
+  if constexpr (requires { sign(a); }) {
+    return sign(a);
+  } else {
+    return choose(a > Real(0), Real(1), Real(choose(a < Real(0), Real(-1), a)));
+  }
+}
+
 template <Code code, class Real>
 Real operate_logic(const Real& a, const Real& b) {
   const Real one(1), zero(0);
@@ -171,20 +193,20 @@ Real operate_logic(const Real& a, const Real& b) {
 
 template <Code code, class Real>
 Real operate_function(const Real& a, const Real& b) {
-  using std::abs, std::exp, std::pow, std::atan2, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh,
-      std::tanh, std::log, std::log10, std::floor, std::ceil, std::sqrt, std::sin, std::cos;
+  using std::min, std::max, std::abs, std::exp, std::pow, std::atan2, std::tan, std::asin, std::acos, std::atan,
+      std::sinh, std::cosh, std::tanh, std::log, std::log10, std::floor, std::ceil, std::sqrt, std::sin, std::cos;
   if constexpr (code == Code::square_root) return sqrt(a);
   if constexpr (code == Code::sine) return sin(a);
   if constexpr (code == Code::cosine) return cos(a);
-  if constexpr (code == Code::minimum) return choose(b < a, b, a);
-  if constexpr (code == Code::maximum) return choose(a < b, b, a);
+  if constexpr (code == Code::minimum) return min(a, b);
+  if constexpr (code == Code::maximum) return max(a, b);
   if constexpr (code == Code::absolute) return abs(a);
   if constexpr (code == Code::exponential) return exp(a);
   if constexpr (code == Code::power) return pow(a, b);
   if constexpr (code == Code::hypotenuse && is_taylor<Real>) return hypot(a, b);
   if constexpr (code == Code::hypotenuse && !is_taylor<Real>) return sqrt(a * a + b * b);
   if constexpr (code == Code::arc_tangent2) return atan2(a, b);
-  if constexpr (code == Code::modulo) return a - b * floor(a / b);
+  if constexpr (code == Code::modulo) return modulus(a, b);
   if constexpr (code == Code::tangent) return tan(a);
   if constexpr (code == Code::arc_sine) return asin(a);
   if constexpr (code == Code::arc_cosine) return acos(a);
@@ -196,9 +218,7 @@ Real operate_function(const Real& a, const Real& b) {
   if constexpr (code == Code::logarithm10) return log10(a);
   if constexpr (code == Code::floor) return floor(a);
   if constexpr (code == Code::ceiling) return ceil(a);
-  if constexpr (code == Code::sign) {
-    return choose(a > Real(0), Real(1), Real(choose(a < Real(0), Real(-1), a)));
-  }
+  if constexpr (code == Code::sign) return signum(a);
 }
 
 /// The value of one instruction. Operands the code does not read may be anything.

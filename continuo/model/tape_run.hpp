@@ -151,10 +151,12 @@ Taylor<Scalar, order> look_up_along(const Table& table, const Taylor<Scalar, ord
   }
 }
 
-/// A table at x; lanes one by one, derivatives along the piece that holds the value.
+/// A table at x; lanes one by one, derivatives along the piece that holds the value, enclosures by their own `enclose`.
 template <class Real>
 Real look_up(const Table& table, const Real& x, bool slope) {
-  if constexpr (std::is_arithmetic_v<Real>) {
+  if constexpr (requires { enclose(table, x, slope); }) {
+    return enclose(table, x, slope);
+  } else if constexpr (std::is_arithmetic_v<Real>) {
     const auto at = static_cast<double>(x);
     return static_cast<Real>(slope ? table.slope(at) : table.value(at));
   } else if constexpr (requires {

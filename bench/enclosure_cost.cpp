@@ -1,0 +1,106 @@
+// What it costs to prove that a guard has no root in a step: a guard of ten operations enclosed over the whole step,
+// against the step itself, by dop853 on the same small model.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/methods/dop853.hpp>
+#include <continuo/model/load.hpp>
+#include <continuo/model/model_system.hpp>
+#include <continuo/model/step_enclosure.hpp>
+#include <continuo/solve/solve.hpp>
+
+namespace continuo::bench {
+namespace {
+
+using X = std::vector<double>;
+
+// Ten operations each, far from zero.
+const char* const oscillator = R"(
+param k = 4, c = 0.1, m = 2, g = 9.81, r = 3, drive = 0.5
+x'' = -k/m*x - c/m*x' + drive*sin(t)
+x(0) = 1; x'(0) = 0
+when r*r - x*x - x'*x' + 0.5*x*x' + k*t + 20 falls through 0 { mark "left" }
+)";
+const char* const pendulum = R"(
+param g = 9.81, l = 1.5, c = 0.05
+a'' = -g/l*sin(a) - c*a'
+a(0) = 1; a'(0) = 0
+when (a'^2*l - g*cos(a))*c*0.1 + l*sin(a) + 5 - a falls through 0 { mark "low" }
+)";
+const char* const lorenz = R"(
+param s = 10, r = 28, b = 2.6666666666666665
+x' = s*(y - x)
+y' = x*(r - z) - y
+z' = x*y - b*z
+x(0) = 1; y(0) = 1; z(0) = 1
+when x*x + y*y + (z - r)*(z - r) + s*z - x*y*0.1 + 1000 falls through 0 { mark "out" }
+)";
+
+/// Seconds of one call: the least of several runs.
+template <class F>
+double seconds(std::size_t calls, F&& f) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int repeat = 0; repeat < 500; ++repeat) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::size_t k = 0; k < calls; ++k) f();
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+    least = std::min(least, passed.count() / static_cast<double>(calls));
+  }
+  return least;
+}
+
+void compare(const char* title, const char* text, double end) {
+  model::Loaded loaded = model::load(model::Source(std::string(title) + ".sim", text));
+  if (!loaded.model) {
+    std::fputs(loaded.text().c_str(), stderr);
+    return;
+  }
+  const auto program = model::compile(std::move(*loaded.model));
+  const auto variables = model::start_values(program->model);
+  const model::ModelSystem system(program, variables);
+  const auto states = variables.begin() + program->model.layout.states;
+  const X start(states, states + static_cast<std::ptrdiff_t>(program->model.states.size()));
+
+  const Options<X> options{.rtol = 1e-6, .atol = 1e-6, .save = Save<X>::only_end()};
+  double step = std::numeric_limits<double>::infinity(), h = 0;
+  for (int repeat = 0; repeat < 100; ++repeat) {
+    const auto run = solve(system, start, {0, end}, Dop853{}, options);
+    h = end / static_cast<double>(run.statistics.steps);
+    step = std::min(step, run.statistics.seconds / static_cast<double>(run.statistics.steps));
+  }
+
+  // The dense output of a step of mean size.
+  Interpolant<X, Dop853::dense_degree> output(start);
+  X x_new = start;
+  auto work = Dop853::workspace(start);
+  model::ModelSystem of_step = system;
+  Dop853::step(of_step, 0, start, h, true, work, x_new);
+  Dop853::interpolate(of_step, 0, start, h, x_new, work, output);
+  const model::NodeId guard = program->model.events.front().guard;
+  model::StepEnclosure enclosure(*program, std::span(&guard, 1), variables);
+  const model::Step of{0, h, output.c};
+  double least = std::numeric_limits<double>::infinity();
+  const double with_slope = seconds(500, [&] { least = std::min(least, enclosure.over(of, 0, 1)[0].value.lo); });
+  const double value = seconds(500, [&] { least = std::min(least, enclosure.values_over(of, 0, 1)[0].lo); });
+  std::printf("| %s | %.0f | %.0f | %.0f | **%.2f** | %.2f |\n", title, 1e9 * step, 1e9 * value, 1e9 * with_slope,
+              value / step, with_slope / step);
+  if (!(least > 0)) std::puts("the guard is not proved to be free of roots");
+}
+
+}  // namespace
+}  // namespace continuo::bench
+
+int main() {
+  using namespace continuo::bench;
+  std::puts("| Model | Step, ns | Values, ns | Values and slopes, ns | Values : step | Values and slopes : step |");
+  std::puts("|---|---|---|---|---|---|");
+  compare("Oscillator", oscillator, 100);
+  compare("Pendulum", pendulum, 100);
+  compare("Lorenz", lorenz, 20);
+}

@@ -1,0 +1,221 @@
+// continuo/numerics/root_isolation.hpp
+// All changes of side of a function over an interval, by proof: where enclosures exclude the other side there is none,
+// where the slope excludes zero there is one at most, and the rest is divided.
+//
+//   using E = EnclosureWithSlope<double>;
+//   const auto f = [](const E& theta) { return theta * theta - E(2.0); };
+//   isolate_crossings(
+//       0.0, 4.0, -1, [&](double a, double b) { return f(E({a, b}, Enclosure(1.0))); },
+//       [&](double a) { return f(E(a)).value; },
+//       [](double a, double b) { return fmt::print("one from {} to {}\n", a, b), false; },  // true: enough
+//       [](double a, double b) { return fmt::print("perhaps some from {} to {}\n", a, b), false; });
+//
+// The function has a side, the sign that it had last for certain. Zero, and what is zero up to rounding, belongs to the
+// side that it was reached from: touches are no crossings. A jump from one side to the other is one, between
+// neighbouring numbers or a few roundings apart.
+//
+// R. E. Moore, R. B. Kearfott, M. J. Cloud, Introduction to Interval Analysis (2009), chapters 6 and 8.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <continuo/numerics/enclosure_with_slope.hpp>
+
+namespace continuo {
+
+template <class Real>
+struct IsolationLimits {
+  Real band = 0;              // the function is zero up to here, by its rounding
+  std::size_t budget = 2000;  // evaluations; no quarter of the interval takes from what the later ones need
+};
+
+struct Isolation {
+  int side;                     // at the end of what was looked at
+  bool proved = true;           // no stretch was left undecided
+  bool stopped = false;         // a callback asked for it; what lies beyond was not looked at
+  std::size_t evaluations = 0;  // of enclosures
+};
+
+namespace isolating {
+
+/// A part still to be looked at, with the sign at its start: 0 where it is not known for certain.
+template <class Real>
+struct Piece {
+  Real from, to;
+  int sign;
+};
+
+/// A walk from left to right over pieces, the leftmost on top of the pile.
+template <class Real, class Enclose, class Value, class Visit, class Undecided>
+class Walk {
+ public:
+  Walk(Real from, Real to, int side, Enclose& enclose, Value& value, Visit& visit, Undecided& undecided,
+       const IsolationLimits<Real>& limits)
+      : from_(from),
+        to_(to),
+        band_(std::max(limits.band, std::sqrt(std::numeric_limits<Real>::min()))),
+        least_width_(std::numeric_limits<Real>::epsilon() * std::max(std::abs(from), std::abs(to))),
+        budget_(limits.budget),
+        enclose_(enclose),
+        value_(value),
+        visit_(visit),
+        undecided_(undecided),
+        held_(from),
+        result_{.side = side} {}
+
+  Isolation run() {
+    push({from_, to_, 0});
+    while (count_ > 0 && !result_.stopped) {
+      const Piece<Real> piece = pile_[--count_];
+      if (piece.sign != 0) meet(piece.sign, piece.from);
+      if (result_.stopped || !(piece.from < piece.to)) continue;
+      while (piece.from >= end_of_part() && part_ < parts) ++part_;
+      if (result_.evaluations >= budget_ * part_ / parts) {
+        give_up(piece);
+      } else {
+        look_at(piece);
+      }
+    }
+    return result_;
+  }
+
+ private:
+  static constexpr std::size_t parts = 4;
+  static constexpr Real undefined_parts = 16;  // where the function has no value, no smaller ones are looked at
+  // Division goes down to the least width, which is reached by as many halvings as the format has digits.
+  static constexpr std::size_t deepest = 2 * std::numeric_limits<Real>::digits;
+
+  Real end_of_part() const { return from_ + (to_ - from_) * static_cast<Real>(part_) / parts; }
+
+  void push(const Piece<Real>& piece) { pile_[count_++] = piece; }
+
+  int certain_sign(const Enclosure<Real>& value) const { return (value.lo > band_) - (value.hi < -band_); }
+
+  /// Nowhere beyond zero, seen from the side.
+  bool is_free(const Enclosure<Real>& value) const {
+    return (result_.side < 0 || value.lo >= -band_) && (result_.side > 0 || value.hi <= band_);
+  }
+
+  /// The function has this sign there for certain.
+  void meet(int sign, Real where) {
+    if (sign == -result_.side) result_.stopped = visit_(held_, where);
+    result_.side = sign;
+    held_ = where;
+  }
+
+  Enclosure<Real> value_at(Real theta) {
+    ++result_.evaluations;
+    return value_(theta);
+  }
+
+  /// Whether that is all there is to know of the piece.
+  bool settles(const Enclosure<Real>& value, const Piece<Real>& piece) {
+    const int sign = certain_sign(value);
+    if (sign == 0 && !is_free(value)) return false;
+    if (sign != 0) meet(sign, piece.from);
+    if (!result_.stopped) held_ = piece.to;
+    return true;
+  }
+
+  void look_at(const Piece<Real>& piece) {
+    ++result_.evaluations;
+    const EnclosureWithSlope<Real> whole = enclose_(piece.from, piece.to);
+    if (settles(whole.value, piece)) return;
+    const bool is_first = piece.from == from_ && piece.to == to_;
+    if (is_first && contradicts_start()) return push(piece);
+    const int direction = (whole.slope.lo > 0) - (whole.slope.hi < 0);
+    if (direction != 0) {
+      pass_monotone(piece, direction);
+    } else {
+      look_from_middle(piece, whole);
+    }
+  }
+
+  /// A side that is not that of the start is left there.
+  bool contradicts_start() {
+    const int sign = certain_sign(value_at(from_));
+    if (sign == 0 || sign == result_.side) return false;
+    meet(sign, from_);
+    return true;
+  }
+
+  void pass_monotone(const Piece<Real>& piece, int direction) {
+    if (direction == result_.side) {
+      held_ = piece.to;
+    } else if (const int sign = certain_sign(value_at(piece.to)); sign != 0) {
+      meet(sign, piece.to);
+    }
+  }
+
+  void look_from_middle(const Piece<Real>& piece, const EnclosureWithSlope<Real>& whole) {
+    const Real middle = piece.from + (piece.to - piece.from) / 2;
+    const Enclosure<Real> centre = value_at(middle), &slope = whole.slope;
+    const Enclosure<Real> offset = Enclosure<Real>(piece.from, piece.to) - Enclosure<Real>(middle);
+    const Enclosure<Real> value = intersection(whole.value, centre + slope * offset);
+    if (settles(value, piece)) return;
+    // Where nothing jumps, the width of the value at a point is its rounding.
+    const int sign = certain_sign(centre);
+    const bool is_rounding = centre.holds(0) && slope.is_bounded() && value.magnitude() <= 4 * centre.magnitude();
+    if (is_rounding || piece.to - piece.from <= least_width_) return;
+    if (!centre.is_bounded() && piece.to - piece.from <= (to_ - from_) / undefined_parts)
+      return leave(piece.from, piece.to);
+    const Real reach = sign > 0 ? centre.lo : sign < 0 ? -centre.hi : Real(0);
+    const auto free_width = [&](Real steepness) {  // as far as the slope cannot bring the value in the middle to zero
+      constexpr Real rounding = 1 - 4 * std::numeric_limits<Real>::epsilon();
+      return steepness > 0 ? rounding * reach / steepness : sign == 0 ? Real(0) : piece.to - piece.from;
+    };
+    const Real left = free_width(sign > 0 ? slope.hi : -slope.lo), right = free_width(sign > 0 ? -slope.lo : slope.hi);
+    push({std::min(middle + right, piece.to), piece.to, sign});
+    push({piece.from, std::max(middle - left, piece.from), 0});
+  }
+
+  /// The part has used what it may: the rest of it remains undecided.
+  void give_up(const Piece<Real>& piece) {
+    Real end = piece.to;
+    const Real stop = std::min(end_of_part(), to_);
+    while (count_ > 0 && pile_[count_ - 1].from < stop) end = pile_[--count_].to;
+    leave(piece.from, end);
+  }
+
+  void leave(Real from, Real to) {
+    result_.proved = false;
+    result_.stopped = undecided_(from, to);
+    if (result_.stopped) return;
+    if (const int sign = certain_sign(value_at(to)); sign != 0) result_.side = sign;
+    held_ = to;
+  }
+
+  const Real from_, to_, band_, least_width_;
+  const std::size_t budget_;
+  Enclose& enclose_;
+  Value& value_;
+  Visit& visit_;
+  Undecided& undecided_;
+  Real held_;  // where the function was last on its side
+  Isolation result_;
+  std::size_t part_ = 1, count_ = 0;
+  std::array<Piece<Real>, deepest> pile_;
+};
+
+}  // namespace isolating
+
+/// Looks over from..to, where the function begins on `side` (0: on none, it takes the first that it comes to).
+///   enclose(a, b) -> EnclosureWithSlope over a..b
+///   value(a) -> Enclosure at a, its rounding included
+///   visit(a, b) -> stop?  Once for every change of side, from left to right: at a the function is on its old side, up
+///       to rounding, at b for certain on the new one, and between them it changes once. a = b where the function
+///       begins on the other side.
+///   undecided(a, b) -> stop?  In their place among the others: stretches on which nothing is known. The side after
+///       them is the one that the function has at b.
+template <class Real, class Enclose, class Value, class Visit, class Undecided>
+Isolation isolate_crossings(Real from, Real to, int side, Enclose&& enclose, Value&& value, Visit&& visit,
+                            Undecided&& undecided, const IsolationLimits<Real>& limits = {}) {
+  return isolating::Walk<Real, Enclose, Value, Visit, Undecided>(from, to, side, enclose, value, visit, undecided,
+                                                                 limits)
+      .run();
+}
+
+}  // namespace continuo
