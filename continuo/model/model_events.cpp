@@ -116,6 +116,34 @@ ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> va
   }
   guard_values_.resize(model.events.size());
   stop_counts_.resize(program.stops);
+  const auto number_of_jump = [&](std::size_t mode, std::size_t k) {
+    const auto found = std::ranges::find_if(
+        events_, [&](const Entry& entry) { return entry.kind == Kind::jump && entry.mode == mode && entry.index == k; });
+    return static_cast<std::size_t>(found - events_.begin());
+  };
+  auto guards = enclosed_guards(program, [&](std::size_t event) { return guard_place_[event]; }, number_of_jump);
+  for (auto& of_mode : guards)
+    std::erase_if(of_mode, [&](const GuardEnclosures::Guard& guard) { return guard.number == events_.size(); });
+  enclosures_ = GuardEnclosures(program, std::move(guards), events_.size());
+}
+
+std::optional<Carried> ModelEvents::carried(const ModelSystem& system, std::size_t i, double t, const X& x,
+                                            double forward) {
+  if (events_[i].kind != Kind::guard || system.slides()) return std::nullopt;
+  if (!series_) series_.emplace(system.program(), system.variables());
+  motions_.resize(guard_values_.size());
+  series_->guards(system.mode(), t, x, forward, motions_);
+  const GuardMotion& motion = motions_[events_[i].index];
+  const int side = model::carried(motion);
+  if (side == 0) {
+    const bool unknown = std::ranges::any_of(motion.rounding, [](double r) { return !std::isfinite(r); });
+    return unknown ? std::nullopt : std::optional(Carried{});
+  }
+  int order = 1;
+  while (order < 3 && std::abs(motion.c[static_cast<std::size_t>(order)]) <=
+                          motion.rounding[static_cast<std::size_t>(order)])
+    ++order;
+  return Carried{side, order};
 }
 
 double ModelEvents::next_time(std::size_t i, double t, bool inclusive) const {
@@ -170,6 +198,8 @@ EventResponse ModelEvents::fire(ModelSystem& system, std::size_t i, double t, co
     const bool changes = system.value(input.variable) != value;
     if (changes) {
       system.set(input.variable, value);
+      enclosures_.set(input.variable, value);
+      if (series_) series_->set(input.variable, value);
       system.settle_switches(t, before, &before);
     }
     return {.restart = changes};

@@ -4,13 +4,17 @@
 #pragma once
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <continuo/model/guard_enclosures.hpp>
 #include <continuo/model/model_system.hpp>
+#include <continuo/model/motion_series.hpp>
 #include <continuo/solve/event.hpp>
+#include <continuo/solve/guard_motion.hpp>
 
 namespace continuo::model {
 
@@ -41,6 +45,20 @@ class ModelEvents {
   }
   double next_time(std::size_t i, double t, bool inclusive) const;
   void guards(ModelSystem& system, double t, const X& x, std::span<double> values);
+  /// Where the motion carries guard i from zero, by its exact derivatives; empty for surfaces of jumps, and while the
+  /// motion slides.
+  std::optional<Carried> carried(const ModelSystem& system, std::size_t i, double t, const X& x, double forward);
+
+  // The guards over a step, enclosed (solve/guard_watch.hpp).
+  void take_step(const ModelSystem& system, double begin, double size, std::span<const X> coefficients) {
+    enclosures_.take(system, {begin, size, coefficients});
+  }
+  bool is_enclosed(std::size_t i) const { return enclosures_.has(i); }
+  void enclose_all(double from, double to) { enclosures_.enclose_all(from, to); }
+  const Enclosure<double>& whole(std::size_t i) const { return enclosures_.whole(i); }
+  EnclosureWithSlope<double> enclosure(std::size_t i, double from, double to) { return enclosures_.over(i, from, to); }
+  Enclosure<double> value_enclosure(std::size_t i, double at) { return enclosures_.value(i, at); }
+
   EventResponse fire(ModelSystem& system, std::size_t i, double t, const X& before, X& x);
   bool has_limit_action(std::size_t i) const { return events_[i].has_limit; }
   EventResponse at_limit(ModelSystem& system, std::size_t i, double t, const X& before, X& x);
@@ -97,6 +115,9 @@ class ModelEvents {
 
   double begin_, resumed_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Entry> events_;
+  GuardEnclosures enclosures_;
+  std::optional<MotionSeries> series_;
+  std::vector<GuardMotion> motions_;      // by Model::events
   std::vector<double> guard_values_;      // by Model::events
   std::vector<double> switch_values_;     // by switch of the mode
   std::vector<std::size_t> guard_place_;  // where in events_ each of Model::events stands

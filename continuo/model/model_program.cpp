@@ -160,6 +160,13 @@ ModelProgram::ModelProgram(Model model_) : model(std::move(model_)), families(mo
   }
 }
 
+bool ModelProgram::reads_unknowns(NodeId node) const {
+  return std::ranges::any_of(variables_of(model.graph, node), [&](std::uint32_t v) {
+    return v >= model.layout.states && v - model.layout.states < model.states.size() &&
+           model.states[v - model.layout.states].algebraic;
+  });
+}
+
 NodeId ModelProgram::with_inputs(Graph& graph, NodeId node) const {
   if (linear_inputs.empty()) return node;
   return substitute(graph, node, [&](std::uint32_t variable) -> std::optional<NodeId> {

@@ -75,6 +75,8 @@ struct ModelProgram {
             .states_end = model.layout.states + static_cast<std::uint32_t>(model.states.size()),
             .families = families};
   }
+  /// Whether the expression contains the unknown of an algebraic equation.
+  bool reads_unknowns(NodeId node) const;
   /// The expression with interpolated inputs in place, as functions of time.
   NodeId with_inputs(Graph& graph, NodeId node) const;
   /// A tape of these expressions, interpolated inputs in place.

@@ -65,6 +65,11 @@ class ModelSystem {
   void switch_guards(double t, const X& x, std::span<double> values) { switched_->guards(mode_, t, x, values); }
   bool has_switches() const { return switched_ && switched_->any(mode_); }
   bool slides() const { return switched_ && switched_->slides(); }
+  bool slides_along(std::size_t k) const { return switched_ && switched_->slides_along(k); }
+  std::span<const double> switch_values() const {
+    return has_switches() ? switched_->values() : std::span<const double>();
+  }
+  const std::vector<double>& variables() const { return variables_; }
 
   const ModelProgram& program() const { return *program_; }
   const Model& model() const { return program_->model; }

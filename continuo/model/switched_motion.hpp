@@ -7,6 +7,7 @@
 //   f = f0 + sum of w_k (f_k - f0),   z_j' of that = 0 for each j,
 // is a linear system for the weights w. It leaves surface k where w_k comes to 0 or to 1.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -33,6 +34,7 @@ class SwitchedMotion {
   /// Whether the equations of this mode have switches; without, the other members do nothing.
   bool any(std::size_t mode) const { return !program_->switches[mode].empty(); }
   bool slides() const { return !sliding_.empty(); }
+  bool slides_along(std::size_t k) const { return std::ranges::find(sliding_, k, &Sliding::k) != sliding_.end(); }
 
   /// x' with every switch held.
   void rates(std::size_t mode, double t, const X& x, X& dxdt);

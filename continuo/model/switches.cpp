@@ -178,6 +178,13 @@ SwitchedEquations switched_equations(ModelProgram& program, std::size_t mode) {
   approach.reserve(surfaces.size());
   for (const NodeId surface : surfaces) approach.push_back(approach_of(program, equations, surface));
   program.switch_variables = std::max(program.switch_variables, static_cast<std::uint32_t>(surfaces.size()));
+  Graph& g = program.model.graph;
+  for (const Switch& one : equations.switches) {
+    const NodeId half = g.constant(0.5), part = g.subtract(one.surface, g.variable(one.variable));
+    equations.guards.push_back(one.kind == Switch::Kind::floor
+                                   ? g.subtract(half, g.apply(Op::absolute, g.subtract(part, half)))
+                                   : one.surface);
+  }
   equations.rates = program.tape_of(equations.derivatives);
   equations.surfaces = program.tape_of(surfaces);
   equations.approach = program.tape_of(approach);

@@ -27,7 +27,8 @@ struct Switch {
 /// The switches of one mode and its equations with each of them held.
 struct SwitchedEquations {
   std::vector<Switch> switches;
-  std::vector<NodeId> derivatives;                        // as in Mode
+  std::vector<NodeId> guards;       // by switch: zero on its surface; of floor positive between two whole numbers
+  std::vector<NodeId> derivatives;  // as in Mode
   std::shared_ptr<const Tape> rates, surfaces, approach;  // of derivatives, surfaces, d surface/dt along the motion
   bool slides = false;                                    // a surface hangs on states: the motion may slide along it
 

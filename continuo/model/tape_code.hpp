@@ -198,8 +198,10 @@ Real operate_function(const Real& a, const Real& b) {
   if constexpr (code == Code::square_root) return sqrt(a);
   if constexpr (code == Code::sine) return sin(a);
   if constexpr (code == Code::cosine) return cos(a);
-  if constexpr (code == Code::minimum) return min(a, b);
-  if constexpr (code == Code::maximum) return max(a, b);
+  if constexpr (code == Code::minimum && is_taylor<Real>) return choose(b < a, b, a);
+  if constexpr (code == Code::maximum && is_taylor<Real>) return choose(a < b, b, a);
+  if constexpr (code == Code::minimum && !is_taylor<Real>) return min(a, b);
+  if constexpr (code == Code::maximum && !is_taylor<Real>) return max(a, b);
   if constexpr (code == Code::absolute) return abs(a);
   if constexpr (code == Code::exponential) return exp(a);
   if constexpr (code == Code::power) return pow(a, b);

@@ -123,6 +123,7 @@ class Driver {
   const Steps<System, X>& steps() const { return *steps_; }
 
  private:
+  using Logic = EventLogic<System, X, Events>;
   static constexpr const char* stiff_hint =
       "the system is stiff: stability, not accuracy, holds the steps of this method; name no method, or take rodas5p, "
       "radau or bdf";
@@ -229,6 +230,7 @@ class Driver {
     const Real instant = 4 * std::numeric_limits<Real>::epsilon() * abs(steps().end());
     const auto evaluate = [&](Real place, std::span<Real> values) { guards_at(place, length, values); };
     while (true) {
+      if (logic_.any_guard() && Logic::has_enclosures) logic_.take_step(steps(), dense_output());
       const std::optional<Real> tick = logic_.next_quiet(t_, steps().end());
       const bool to_tick = tick && *tick != steps().end();
       const Real to = to_tick ? *tick - begin : length;
@@ -439,7 +441,7 @@ class Driver {
   X x_, before_;
   X solved_ = x_;
   StepsValue<System, X> steps_;
-  EventLogic<System, X, Events> logic_;
+  Logic logic_;
   std::vector<Real> guard_values_, later_values_;
   std::vector<Shift> shifts_;
   std::vector<X> shifted_output_;

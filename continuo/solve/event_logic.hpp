@@ -89,8 +89,22 @@ class EventLogic {
   /// The first crossing on offsets from..to of the present step; evaluate(offset, values) gives the guards.
   template <class Evaluate>
   const Crossing<Real>* first_crossing(Real from, Real to, Real instant, Evaluate&& evaluate) {
-    return watch_.first_crossing(from, to, instant, evaluate, [this](std::size_t i) { return events_.direction(i); });
+    const auto direction = [this](std::size_t i) { return events_.direction(i); };
+    if constexpr (has_enclosures) {
+      return watch_.first_crossing(from, to, instant, evaluate, direction, EnclosedStep<Events, Real>{events_, size_});
+    } else {
+      return watch_.first_crossing(from, to, instant, evaluate, direction, NotEnclosed{});
+    }
   }
+  /// The step that is to be searched, by its dense output.
+  void take_step(StepsOf& steps, std::span<const X> dense_output) {
+    size_ = steps.size();
+    if constexpr (has_enclosures) events_.take_step(steps.system(), steps.begin(), size_, dense_output);
+  }
+  static constexpr bool has_enclosures = requires(Events& events, System& system, std::span<const X> coefficients) {
+    events.take_step(system, Real{}, Real{}, coefficients);
+  };
+
   /// No event up to the offset that was searched last: the sides there, where the guards are as at (t, x).
   void settle(StepsOf& steps, Real t, const X& x) {
     evaluate(steps, t, x, g_);
@@ -252,19 +266,22 @@ class EventLogic {
 
   Carried carried(StepsOf& steps, std::size_t i, Real t, const X& x) {
     if constexpr (requires { events_.carried(steps.system(), i, t, x, forward_); }) {
-      return events_.carried(steps.system(), i, t, x, forward_);
-    } else {
-      using std::abs, std::min;
-      Real length = steps.size() != 0 ? min(abs(steps.size()), longest_) : longest_ / Real(1e6);
-      if (last_event_ && abs(t - *last_event_) > 0) length = min(length, abs(t - *last_event_));
-      return carried_by_differences(
-          t, x, forward_ * length, rounding_[i], first_, second_, moved_,
-          [&](Real at, const X& y) {
-            evaluate(steps, at, y, scratch_);
-            return scratch_[i];
-          },
-          [&](Real at, const X& y, X& out) { out = steps.slope(at, y); });
+      if (const std::optional<Carried> known = events_.carried(steps.system(), i, t, x, forward_)) return *known;
     }
+    return carried_to_first_orders(steps, i, t, x);
+  }
+
+  Carried carried_to_first_orders(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs, std::min;
+    Real length = steps.size() != 0 ? min(abs(steps.size()), longest_) : longest_ / Real(1e6);
+    if (last_event_ && abs(t - *last_event_) > 0) length = min(length, abs(t - *last_event_));
+    return carried_by_differences(
+        t, x, forward_ * length, rounding_[i], first_, second_, moved_,
+        [&](Real at, const X& y) {
+          evaluate(steps, at, y, scratch_);
+          return scratch_[i];
+        },
+        [&](Real at, const X& y, X& out) { out = steps.slope(at, y); });
   }
 
   bool at_zero(std::size_t i) const {
@@ -421,7 +438,7 @@ class EventLogic {
   std::vector<char> held_;    // the event fires because the motion would leave zero at once by its far side
   std::vector<std::size_t> fired_, next_;
   std::optional<Real> last_event_;
-  Real forward_, longest_;
+  Real forward_, longest_, size_{};
   X moved_, first_, second_;
   bool any_guard_ = false, any_turning_guard_ = false, any_scheduled_ = false;
   bool jumped_ = false, restarted_ = false;  // of the present round

@@ -4,17 +4,23 @@
 // on a step's end is found by one of the two steps, once. A guard that is at zero after an event has the side to which
 // the motion carries it; until it has left the band around zero, which is the rounding of g, it crosses where it leaves
 // the band by the other side: a bounce too small for the number format does not pass.
+//
+// Guards that can be enclosed over parts of a step (a model's) are searched by proof (numerics/root_isolation.hpp): no
+// root of the dense output is missed. Others are sampled: nine points, more where these do not resolve g, so that two
+// roots in a step are found unless they lie closer than what a polynomial of degree eight over a part of it shows.
 #pragma once
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <continuo/numerics/bernstein.hpp>
 #include <continuo/numerics/root_bracketing.hpp>
+#include <continuo/numerics/root_isolation.hpp>
 #include <continuo/solve/direction.hpp>
 
 namespace continuo {
@@ -49,6 +55,26 @@ struct Crossing {
   std::vector<std::size_t> guards;  // in order of declaration
 };
 
+/// No guard can be enclosed.
+struct NotEnclosed {
+  static constexpr bool has(std::size_t) { return false; }
+};
+
+/// The guards of a source of events over the step of this size that it has taken, by offsets into the step.
+template <class Events, class Real>
+struct EnclosedStep {
+  Events& events;
+  Real size;
+
+  bool has(std::size_t i) const { return events.is_enclosed(i); }
+  void enclose_all(Real from, Real to) { events.enclose_all(from / size, to / size); }
+  /// Whether guard i stays beyond `level` on this side all the way.
+  bool stays(std::size_t i, int side, Real level) const {
+    const auto& whole = events.whole(i);
+    return side > 0 ? whole.lo > level : whole.hi < level;
+  }
+};
+
 /// The guards of one run. Places are offsets s from the start of the step: there the numbers lie denser than at t, and
 /// a ball at t = 1000 is found on the floor, not a hundred thousand roundings of h below it. `evaluate(s, span)` gives
 /// all guards at a place of the current stretch.
@@ -74,21 +100,28 @@ class GuardWatch {
 
   /// The first crossing on from..to (negative when time runs backwards), or null. `direction(i)` says which crossings
   /// of guard i count; the others only move its side. Crossings less than `instant` apart are one.
-  template <class Evaluate, class DirectionOf>
-  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, Evaluate&& evaluate, DirectionOf&& direction) {
-    sample(from, to, evaluate);
+  template <class Evaluate, class DirectionOf, class Enclosed>
+  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, Evaluate&& evaluate, DirectionOf&& direction,
+                                       Enclosed enclosed) {
+    resampled_ = true;
     bool found = false;
+    if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) enclosed.enclose_all(from, to);
     for (std::size_t i = 0; i < states_.size(); ++i) {
       first_[i] = std::numeric_limits<Real>::quiet_NaN();
       if (!states_[i].active) continue;
       scanned_[i] = states_[i];
       Scan scan{states_[i], i, direction(i)};
-      if (cheap_no(scan)) continue;
-      search(scan, from, to, evaluate, 0);
+      if (enclosed.has(i) && scan.state.side != 0) {
+        if (is_far(scan, enclosed)) continue;
+        isolate(scan, from, to, evaluate, enclosed);
+      } else {
+        if (resampled_) sample(from, to, evaluate);
+        if (cheap_no(scan)) continue;
+        search(scan, from, to, evaluate, 0);
+      }
       first_[i] = scan.crossing;
       scanned_[i] = scan.state;
       found = found || !std::isnan(static_cast<double>(scan.crossing));
-      if (resampled_) sample(from, to, evaluate);
     }
     return found ? gather(from, to, instant) : nullptr;
   }
@@ -136,6 +169,33 @@ class GuardWatch {
   Real guard_at(std::size_t guard, Real t, Evaluate& evaluate) {
     evaluate(t, scratch_);
     return scratch_[guard];
+  }
+
+  template <class Enclosed>
+  static bool is_far(const Scan& scan, const Enclosed& enclosed) {
+    if constexpr (std::is_same_v<Enclosed, NotEnclosed>) {
+      return false;
+    } else {
+      return enclosed.stays(scan.guard, scan.state.side, scan.state.level());
+    }
+  }
+
+  // By proof; what remains undecided is sampled.
+  template <class Evaluate, class Enclosed>
+  void isolate(Scan& scan, Real from, Real to, Evaluate& evaluate, Enclosed& enclosed) {
+    if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) {
+      const Real size = enclosed.size;
+      const auto offset = [&](double theta) {
+        return theta == from / size ? from : theta == to / size ? to : Real(theta) * size;
+      };
+      isolate_crossings(
+          from / size, to / size, scan.state.side,
+          [&](double a, double b) { return enclosed.events.enclosure(scan.guard, a, b); },
+          [&](double a) { return enclosed.events.value_enclosure(scan.guard, a); },
+          [&](double a, double b) { return cross(scan, offset(a), offset(b), evaluate); },
+          [&](double a, double b) { return search_anew(scan, offset(a), offset(b), evaluate, 0); },
+          {.band = scan.state.at_zero ? scan.state.band : Real(0)});
+    }
   }
 
   // A guard far from zero by all nine samples: its distance from zero exceeds what it could move between them, taken
