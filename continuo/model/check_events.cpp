@@ -129,10 +129,7 @@ bool Checker::changes_at_events_only(NodeId node) const {
       return !input->points || input->points->between() == Table::Between::step;
     }
     if (v < layout.states || v >= layout.unknowns) return false;
-    const std::size_t state = v - layout.states;
-    return !model_.states[state].in_world && std::ranges::all_of(model_.modes, [&](const Mode& mode) {
-      return model_.graph.is(mode.derivatives[state], 0);
-    });
+    return stands_still(model_, v - layout.states);
   });
 }
 

@@ -66,7 +66,7 @@ std::vector<std::vector<GuardEnclosures::Guard>> enclosed_guards(const ModelProg
   for (std::size_t mode = 0; mode < guards.size(); ++mode) {
     for (const std::size_t event : program.guards[mode].events)
       if (!program.reads_unknowns(program.model.events[event].guard))
-        guards[mode].push_back({number_of_event(event), program.model.events[event].guard});
+        guards[mode].push_back({number_of_event(event), program.enclosed[event]});
     const SwitchedEquations& equations = program.switches[mode];
     for (std::size_t k = 0; k < equations.switches.size(); ++k)
       guards[mode].push_back({number_of_jump(mode, k), equations.guards[k], k});

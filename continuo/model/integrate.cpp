@@ -32,7 +32,11 @@ class Recording final : public StepWatcher {
     for (const std::size_t i : now.events) {
       const auto mark = std::ranges::find(marks, i, &Marked::event);
       if (!events.is_declared(i) && !(events.is_jump(i) && mark != marks.end())) continue;
-      names_.push_back({std::string(events.name(i)), mark == marks.end() ? std::string() : mark->text});
+      if (events.is_jump(i)) {
+        names_.push_back({mark->text + " " + std::string(events.name(i)), {}});
+      } else {
+        names_.push_back({std::string(events.name(i)), mark == marks.end() ? std::string() : mark->text});
+      }
     }
     marks_seen_ = events.marks().size();
     recorder_.happening(now.t, names_, now.before, now.after);

@@ -356,6 +356,9 @@ struct Model {
   bool has_world() const { return world != nullptr; }
 };
 
+/// A state whose derivative is zero in every mode: only events change it.
+bool stands_still(const Model& model, std::size_t state);
+
 /// By name, `npos` where there is none: "h'" for states, "k" or "m[3]" for parameters.
 inline constexpr std::size_t npos = static_cast<std::size_t>(-1);
 std::size_t find_state(const Model& model, std::string_view column);

@@ -238,7 +238,7 @@ EventResponse ModelEvents::act(ModelSystem& system, const ProgramBlock& block, s
 /// The motion has come to a surface where the equations jump.
 EventResponse ModelEvents::pass(ModelSystem& system, std::size_t i, double t, const X& x) {
   const Passage passage = system.pass_switch(events_[i].index, t, x);
-  if (passage == Passage::begins_to_slide) marks_.push_back({t, "begins to slide", i});
+  if (passage == Passage::begins_to_slide) marks_.push_back({t, "begins to slide along", i});
   if (passage == Passage::leaves) marks_.push_back({t, "leaves", i});
   return {.restart = passage != Passage::none};
 }

@@ -84,8 +84,31 @@ ProgramBlock block_of(ModelProgram& program, const Block& block) {
   return compiled;
 }
 
+/// Whether a guard made of conditions can be zero for longer than an instant: one of its comparisons jumps, or is of
+/// what stands still.
+bool rests_at_zero(const Model& model, NodeId guard) {
+  const Node& node = model.graph[guard];
+  if (node.op == Op::minimum || node.op == Op::maximum)
+    return rests_at_zero(model, node.a) || rests_at_zero(model, node.b);
+  if (node.op == Op::negate) return rests_at_zero(model, node.a);
+  if (node.corners) return true;
+  return std::ranges::none_of(variables_of(model.graph, guard), [&](std::uint32_t v) {
+    const bool state = v >= model.layout.states && v - model.layout.states < model.states.size();
+    return v == Layout::time || (state && !stands_still(model, v - model.layout.states));
+  });
+}
+
+/// The guard of an event as it is enclosed: where that of a condition is zero, the condition itself decides the side.
+NodeId enclosed_guard(Model& model, const When& event) {
+  if (!event.truth.valid() || !rests_at_zero(model, event.guard)) return event.guard;
+  Graph& g = model.graph;
+  constexpr double least = 1e-150;  // more than nothing to the isolation of roots
+  return g.add(event.guard, g.select(event.truth, g.constant(least), g.constant(-least)));
+}
+
 void compile_equations(ModelProgram& program) {
-  const Model& model = program.model;
+  Model& model = program.model;
+  for (const When& event : model.events) program.enclosed.push_back(enclosed_guard(model, event));
   for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
     program.derivatives.push_back(program.tape_of(model.modes[mode].derivatives));
     ProgramGuards guards;
@@ -204,14 +227,9 @@ bool is_autonomous(const ModelProgram& program) {
 std::vector<char> find_counters(const Model& model) {
   std::vector<char> counters(model.states.size(), 0);
   if (model.has_world()) return counters;
-  const Graph& graph = model.graph;
-  for (std::size_t i = 0; i < counters.size(); ++i) {
-    counters[i] = !model.states[i].algebraic && std::ranges::all_of(model.modes, [&](const Mode& mode) {
-      return graph.is(mode.derivatives[i], 0);
-    });
-  }
+  for (std::size_t i = 0; i < counters.size(); ++i) counters[i] = stands_still(model, i) ? 1 : 0;
   for (const Mode& mode : model.modes) {
-    for (const std::uint32_t v : variables_of(graph, mode.derivatives))
+    for (const std::uint32_t v : variables_of(model.graph, mode.derivatives))
       if (v >= model.layout.states && v < model.layout.parameters) counters[v - model.layout.states] = 0;
   }
   return counters;

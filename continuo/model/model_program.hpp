@@ -58,6 +58,7 @@ struct ModelProgram {
   std::vector<SwitchedEquations> switches;               // by mode
   std::uint32_t switch_variables = 0;                    // behind those of the model
   std::vector<ProgramGuards> guards;                     // by mode
+  std::vector<NodeId> enclosed;                          // by Model::events: the guard for a search by enclosures
   std::vector<ProgramBlock> event_blocks;                // by Model::events
   std::vector<ProgramBlock> limit_blocks;                // by Model::events; without actions where there is no `then`
   std::vector<ProgramBlock> schedule_blocks;             // by Model::schedule

@@ -41,11 +41,7 @@ class Rewriting {
  public:
   Rewriting(ModelProgram& program, std::size_t mode)
       : program_(program), model_(program.model), g_(program.model.graph), still_(model_.states.size()) {
-    for (std::size_t i = 0; i < still_.size(); ++i) {
-      still_[i] = !model_.states[i].algebraic && std::ranges::all_of(model_.modes, [&](const Mode& other) {
-        return g_.is(other.derivatives[i], 0);
-      });
-    }
+    for (std::size_t i = 0; i < still_.size(); ++i) still_[i] = stands_still(model_, i) ? 1 : 0;
     for (const NodeId node : model_.modes[mode].derivatives) roots_.push_back(program.with_inputs(g_, node));
   }
 

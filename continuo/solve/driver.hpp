@@ -242,8 +242,7 @@ class Driver {
         continue;
       }
       if (crossing) {
-        logic_.look_at(*crossing, guards_at(crossing->offset, length, guard_values_),
-                       guards_at(crossing->offset + few_units(*crossing), length, later_values_));
+        look_at(*crossing, length);
         offset = land(*crossing, length);
         length = steps().end() - begin;
         t_ = offset == length ? steps().end() : begin + offset;
@@ -291,9 +290,11 @@ class Driver {
     return values;
   }
 
-  Real few_units(const Crossing<Real>& crossing) const {
-    using std::abs;
-    return forward() * 8 * std::numeric_limits<Real>::epsilon() * abs(crossing.offset);
+  void look_at(const Crossing<Real>& crossing, Real length) {
+    const std::span<const Real> values = guards_at(crossing.offset, length, guard_values_);
+    const Real later = crossing.offset + length / Real(1000000);
+    state_at(later, length, before_);
+    logic_.look_at(steps(), crossing, values, steps().begin() + later, before_);
   }
 
   // x at an offset into the last step: by theta, which keeps what is lost in begin + offset.

@@ -31,8 +31,8 @@ class EventLogic {
         g_(events_.size()),
         rounding_(events_.size()),
         scratch_(events_.size()),
-        jump_(events_.size()),
         marks_(events_.size()),
+        jumps_(events_.size()),
         held_(events_.size()),
         forward_(forward),
         longest_(longest),
@@ -131,13 +131,18 @@ class EventLogic {
     std::sort(fired_.begin(), fired_.end());
   }
 
-  /// Looks at located crossings on the dense output: `values` are the guards there, `later` a few units in the last
-  /// place of t later. What g still is at its far side is what those units and rounding make of it, but where g jumps.
-  void look_at(const Crossing<Real>& crossing, std::span<const Real> values, std::span<const Real> later) {
+  /// Looks at located crossings on the dense output: `values` are the guards there, `later` a millionth of the step
+  /// later, at `later_t` and `later_x`. What g still is at its far side is less than it becomes until then, or rounding,
+  /// but where g jumps.
+  void look_at(StepsOf& steps, const Crossing<Real>& crossing, std::span<const Real> values, Real later_t,
+               const X& later_x) {
     using std::abs;
+    std::ranges::fill(jumps_, char{0});
+    evaluate(steps, later_t, later_x, g_);
+    find_rounding(steps, later_t, later_x);
     for (const std::size_t i : crossing.guards) {
       const Real beyond = values[i] - watch_.states()[i].level();
-      jump_[i] = abs(beyond) - 4 * abs(later[i] - values[i]);
+      jumps_[i] = abs(beyond) > abs(g_[i] - values[i]) + 4 * rounding_[i];
     }
   }
   /// The motion has come to the instant t, before any action: guards that cross here are added to the list. `crossing`
@@ -147,6 +152,7 @@ class EventLogic {
     evaluate(steps, t, x, g_);
     find_rounding(steps, t, x);
     std::ranges::fill(marks_, char{0});
+    if (!crossing) std::ranges::fill(jumps_, char{0});
     if (crossing)
       for (const std::size_t i : crossing->guards) cross(i);
     for (std::size_t i = 0; i < events_.size(); ++i)
@@ -230,7 +236,8 @@ class EventLogic {
     }
   }
 
-  /// Firing gives the guard another meaning: it has the side that it then has.
+  /// The guard of a jump of the equations, which only the motion crosses: where an action changes the state, the source
+  /// settles the jumps by itself. Firing gives the guard another meaning: it has the side that it then has.
   bool renews_guard(std::size_t i) const {
     if constexpr (requires { events_.renews_guard(i); }) {
       return events_.renews_guard(i);
@@ -308,8 +315,8 @@ class EventLogic {
     GuardState<Real>& state = watch_.states()[i];
     state.side = watch_.side_after(i);
     state.returns = watch_.returns_after(i);
-    state.band = jump_[i] <= 4 * rounding_[i] ? rounding_[i] + abs(g_[i]) : rounding_[i];
-    state.at_zero = abs(g_[i]) <= state.band;
+    state.band = jumps_[i] ? Real(0) : rounding_[i] + abs(g_[i]);
+    state.at_zero = !jumps_[i];
     rounding_[i] = state.band;
     marks_[i] = turned;
     add(fired_, i);
@@ -339,6 +346,7 @@ class EventLogic {
     const bool from_zero = state.side == 0;
     state = {.side = side, .at_zero = false, .active = true, .band = rounding_[i]};
     const Direction direction = events_.direction(i);
+    if (renews_guard(i)) return;
     if (watches(direction, side) && !(from_zero && direction == Direction::crosses)) add(next_, i);
   }
 
@@ -351,6 +359,7 @@ class EventLogic {
     if (!state.active) return;
     if (!was_active) return enter(steps, i, t, x);
     const bool fired = marks_[i] == done || marks_[i] == turned;
+    if (fired && jumps_[i] && sign_of(g_[i]) == state.side) return;
     const Real band = fired && state.at_zero ? max(state.band, rounding_[i]) : rounding_[i];
     state.at_zero = abs(g_[i]) <= band;
     state.band = band;
@@ -380,7 +389,9 @@ class EventLogic {
     } else if (way.side == 0 && is_condition(i)) {
       state.side = sign_of(g_[i]);
     } else if (way.side != state.side) {
-      state.side = -state.side;  // turned back, or held at zero
+      // Turned back, which an event that watches both directions sees as well, or held at zero.
+      state.side = -state.side;
+      if (way.side != 0 && watches(events_.direction(i), state.side)) add(next_, i);
     } else if (way.order > 1) {
       held_[i] = 1;  // of order 1, it goes on through
       add(next_, i);
@@ -394,6 +405,7 @@ class EventLogic {
     const bool from_zero = state.side == 0;
     state.side = side;
     const Direction direction = events_.direction(i);
+    if (renews_guard(i)) return;
     if (watches(direction, side) && !(from_zero && direction == Direction::crosses)) add(next_, i);
   }
 
@@ -433,8 +445,8 @@ class EventLogic {
   GuardWatch<Real> watch_;
   AccumulationWatch<Real> accumulation_;
   std::vector<Real> g_, rounding_, scratch_;
-  std::vector<Real> jump_;    // of the last crossing: what of g at its far side is more than t explains
   std::vector<char> marks_;   // of the present round
+  std::vector<char> jumps_;   // of the guards of the last crossing: g jumps across zero
   std::vector<char> held_;    // the event fires because the motion would leave zero at once by its far side
   std::vector<std::size_t> fired_, next_;
   std::optional<Real> last_event_;
