@@ -248,6 +248,7 @@ class Driver {
         t_ = offset == length ? steps().end() : begin + offset;
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
         state_at(offset, length, x_);
+        if (offset == length) solve_unknowns(t_, x_);
       } else {
         offset = to;
         t_ = *tick;
@@ -268,6 +269,7 @@ class Driver {
     t_ = steps().end();
     x_ = steps().x_end();
     shift(x_);
+    if (logic_.any_guard()) solve_unknowns(t_, x_);
     observer.stretch(*this, from, t_);
     if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
     logic_.begin_instant(t_);
@@ -321,6 +323,11 @@ class Driver {
         std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
     if (!restarts || place == length || !steps().lands()) return place;
     const std::size_t guard = crossing.guards.front();
+    if (logic_.jumps(guard)) {
+      if (steps().retake(place, options_)) return steps().end() - steps().begin();
+      steps().retake(length, options_);
+      return place;
+    }
     // The slope of the guard by a difference over a thousandth of the step.
     const Real apart = length / 1000;
     const Real slope = (guards_at(place, length, guard_values_)[guard] -
@@ -346,6 +353,7 @@ class Driver {
   }
   void events_guards(Real t, X x) {
     shift(x);
+    solve_unknowns(t, x);
     logic_.events().guards(steps().system(), t, x, std::span<Real>(guard_values_));
   }
 

@@ -30,6 +30,7 @@ class EventLogic {
         accumulation_(events_.size()),
         g_(events_.size()),
         rounding_(events_.size()),
+        wide_(events_.size()),
         scratch_(events_.size()),
         marks_(events_.size()),
         jumps_(events_.size()),
@@ -145,6 +146,8 @@ class EventLogic {
       jumps_[i] = abs(beyond) > abs(g_[i] - values[i]) + 4 * rounding_[i];
     }
   }
+  /// Whether guard i of the crossing that was looked at jumps across zero.
+  bool jumps(std::size_t i) const { return jumps_[i] != 0; }
   /// The motion has come to the instant t, before any action: guards that cross here are added to the list. `crossing`
   /// are those that were located, null where the instant is a scheduled one.
   void arrive(StepsOf& steps, Real t, const X& x, const Crossing<Real>* crossing) {
@@ -262,13 +265,27 @@ class EventLogic {
   }
 
   void find_rounding(StepsOf& steps, Real t, const X& x) {
+    using std::abs, std::min;
+    constexpr Real few = 4, many = Real(1 << 20);
+    largest_changes(steps, t, x, few, rounding_);
+    const auto is_near = [&](std::size_t i) { return watched(i) && rounding_[i] > 0 && abs(g_[i]) <= rounding_[i]; };
+    bool any = false;
+    for (std::size_t i = 0; i < events_.size() && !any; ++i) any = is_near(i);
+    if (!any) return;
+    // A jump nearby changes a guard by as much over a longer way, which is no rounding.
+    largest_changes(steps, t, x, many, wide_);
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (is_near(i)) rounding_[i] = min(rounding_[i], wide_[i] / (many / (2 * few)));
+  }
+  void largest_changes(StepsOf& steps, Real t, const X& x, Real units, std::vector<Real>& changes) {
     using std::abs, std::max;
-    std::ranges::fill(rounding_, Real(0));
-    for_each_rounded(t, x, moved_, [&](Real moved_t, const X& moved) {
+    std::ranges::fill(changes, Real(0));
+    const auto look = [&](Real moved_t, const X& moved) {
       evaluate(steps, moved_t, moved, scratch_);
       for (std::size_t i = 0; i < events_.size(); ++i)
-        if (watched(i)) rounding_[i] = max(rounding_[i], abs(scratch_[i] - g_[i]));
-    });
+        if (watched(i)) changes[i] = max(changes[i], abs(scratch_[i] - g_[i]));
+    };
+    for_each_rounded(t, x, moved_, look, units);
   }
 
   Carried carried(StepsOf& steps, std::size_t i, Real t, const X& x) {
@@ -444,7 +461,7 @@ class EventLogic {
   Events events_;
   GuardWatch<Real> watch_;
   AccumulationWatch<Real> accumulation_;
-  std::vector<Real> g_, rounding_, scratch_;
+  std::vector<Real> g_, rounding_, wide_, scratch_;
   std::vector<char> marks_;   // of the present round
   std::vector<char> jumps_;   // of the guards of the last crossing: g jumps across zero
   std::vector<char> held_;    // the event fires because the motion would leave zero at once by its far side

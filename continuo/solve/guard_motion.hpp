@@ -16,12 +16,12 @@ struct Carried {
   int order = 0;
 };
 
-/// How much g can be off by the rounding of t and x: the largest change over three moves of t and of every component by
-/// a few units in the last place, in different directions, since equal relative moves leave a difference of equals
-/// unchanged. `g_at(t, x)` gives the guard; `moved` is scratch.
+/// Three moves of t and of every component by `units` units in the last place, in different directions, since equal
+/// relative moves leave a difference of equals unchanged: the largest change of a guard over them is what it can be off
+/// by rounding. `g_at(t, x)` looks at the guard; `moved` is scratch.
 template <class Real, class X, class GuardAt>
-void for_each_rounded(Real t, const X& x, X& moved, GuardAt&& g_at) {
-  const Real unit = 4 * std::numeric_limits<Real>::epsilon();
+void for_each_rounded(Real t, const X& x, X& moved, GuardAt&& g_at, Real units = 4) {
+  const Real unit = units * std::numeric_limits<Real>::epsilon();
   for (int pattern = 0; pattern < 3; ++pattern) {
     for (std::size_t k = 0; k < dimension(x); ++k) {
       const bool up = pattern == 0 || (pattern == 1 ? k % 2 == 0 : k % 4 < 2);
