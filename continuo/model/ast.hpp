@@ -152,13 +152,15 @@ struct Start {
 };
 
 /// `when h falls through 0 in flight { ... }`, or `when h < 0 { ... }`: without direction and level, `subject` is a
-/// condition and the event is that it becomes true.
+/// condition and the event is that it becomes true. `then { ... }` after it, or `then go rest`: what is done at the
+/// limit that its times close in on.
 struct When {
   Expression subject;
   std::optional<Direction> direction;
   std::optional<Expression> level;  // there iff direction is
   std::optional<Identifier> mode;
   std::vector<Action> actions;
+  std::optional<std::vector<Action>> limit_actions;
   Span head;  // from `when` to before the brace
 };
 

@@ -53,8 +53,13 @@ void Checker::make_event(const ast::When& text, Scope& scope, Span span) {
   ast::When written = text;
   write_out(written.subject, scope.indices);
   if (written.level) write_out(*written.level, scope.indices);
-  When event{
-      .name = event_name(written), .guard = {}, .direction = Direction::rises, .mode = {}, .actions = {}, .span = span};
+  When event{.name = event_name(written),
+             .guard = {},
+             .direction = Direction::rises,
+             .mode = {},
+             .actions = {},
+             .limit_actions = {},
+             .span = span};
   if (text.mode) {
     event.mode = mode_named(*text.mode);
     if (!event.mode) return;
@@ -72,6 +77,8 @@ void Checker::make_event(const ast::When& text, Scope& scope, Span span) {
     if (!condition.bad) event.guard = condition.node;
   }
   event.actions = actions_of(text.actions, scope);
+  if (text.limit_actions) event.limit_actions = actions_of(*text.limit_actions, scope);
+  event.has_limit = text.limit_actions.has_value();
   if (event.guard.valid() && model_.graph.value(event.guard)) {
     warn("E291", text.subject.span, "this event never happens", "its condition does not change");
   }

@@ -63,14 +63,11 @@ Fix: look at the initial values with the parameters of this run; `continuo info`
 speed at each bounce bounces infinitely often in finite time (Zeno). Or two events switch back and forth at one instant
 (chattering). No simulator can go beyond; going on would let the ball fall through the floor.
 
-Fix: say what happens then. A ball comes to rest in a mode of its own:
+Fix: say after `then` what happens at the limit. A ball comes to rest in a mode of its own:
 
   mode flight { h'' = -g }
   mode rest   { h'' = 0 }
-  when h falls through 0 in flight {
-    h := 0
-    if -e*h' > 0.01 { h' := -e*h' } else { h' := 0; go rest }
-  }
+  when h falls through 0 in flight { h := 0; h' := -e*h' } then { h := 0; h' := 0; go rest }
 
 A thermostat that clicks for ever needs a gap between `on` and `off`. `stop` and `stop after 10` end the run before.)"},
     Code{

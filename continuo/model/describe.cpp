@@ -217,7 +217,8 @@ class Writer {
         return {event.name, "{ " + actions(event.actions) + " }"};
       }
       const When& event = model_.events[order.index];
-      return {"when " + event.name, "{ " + actions(event.actions) + " }"};
+      const std::string then = event.has_limit ? " then { " + actions(event.limit_actions) + " }" : "";
+      return {"when " + event.name, "{ " + actions(event.actions) + " }" + then};
     });
   }
 

@@ -140,12 +140,15 @@ struct Action {
 
 /// `when lhs falls through rhs in MODE { ... }`: a root of guard = lhs - rhs. `when a < b { ... }`: the condition
 /// becomes true where guard = b - a rises through zero; `and`, `or`, `not` are min, max and the sign of guards.
+/// `then { ... }` after it: where its times close in on a limit, these are the actions there, and the run goes on.
 struct When {
   std::string name;  // for tables: "h falls through 0"
   NodeId guard;
   Direction direction;
   std::optional<std::size_t> mode;  // nothing: in every mode
   Block actions;
+  Block limit_actions;     // may be empty where
+  bool has_limit = false;  // the text says `then`
   Span span;
 };
 

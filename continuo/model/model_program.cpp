@@ -107,6 +107,9 @@ void compile_blocks(ModelProgram& program) {
   for (std::size_t i = 0; i < program.model.schedule.size(); ++i) {
     program.schedule_blocks.push_back(block_of(program, program.model.schedule[i].actions));
   }
+  for (std::size_t i = 0; i < program.model.events.size(); ++i) {
+    program.limit_blocks.push_back(block_of(program, program.model.events[i].limit_actions));
+  }
 }
 
 void place_watched(ModelProgram& program) {

@@ -54,6 +54,7 @@ struct ModelProgram {
   bool autonomous = false;                               // no derivative hangs on the time
   std::vector<ProgramGuards> guards;                     // by mode
   std::vector<ProgramBlock> event_blocks;                // by Model::events
+  std::vector<ProgramBlock> limit_blocks;                // by Model::events; without actions where there is no `then`
   std::vector<ProgramBlock> schedule_blocks;             // by Model::schedule
   std::vector<NodeId> always;  // what `check always` watches: each side minus the other, in the order of the checks
   NodeId energy_scale;         // the sum of the energies' absolute values; not valid without any

@@ -155,6 +155,8 @@ Statement Parser::parse_statement(Context context) {
       std::string help;
       if (word == "go" || word == "mark" || word == "stop")
         help = "it is an action: write it in an event, when ... { " + word + " ... }";
+      if (word == "then")
+        help = "it follows the `}` of a `when`: what happens where the times of that event close in on a limit";
       if (word == "if")
         help = "in an equation write x' = if c then a else b; actions stand in an event: when c { ... }";
       fail(error("E123", token.span, fmt::format("`{}` cannot stand here", word), "", help));

@@ -164,6 +164,7 @@ class Parser {
   // --- events (parser_events.cpp)
   ast::When parse_when();
   void parse_direction(ast::When& event);
+  std::optional<std::vector<ast::Action>> parse_limit_actions();
   ast::At parse_at();
   ast::Every parse_every();
   std::vector<ast::Action> parse_actions(std::string_view wanted);

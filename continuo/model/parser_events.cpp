@@ -40,7 +40,21 @@ ast::When Parser::parse_when() {
   }
   event.head = since(begin);
   event.actions = parse_actions("`{` with the actions of the event");
+  event.limit_actions = parse_limit_actions();
   return event;
+}
+
+/// `then { ... }`, or `then go rest`: at the limit of an event that accumulates.
+std::optional<std::vector<ast::Action>> Parser::parse_limit_actions() {
+  const Token& next = look_past_line_ends();
+  if (next.kind != TokenKind::name || spelled(next) != "then") return std::nullopt;
+  skip_line_ends();
+  advance();
+  const std::string_view wanted = "`{` with the actions at the limit, or `go` and a mode";
+  if (!at_word("go")) return parse_actions(wanted);
+  std::vector<ast::Action> actions;
+  actions.push_back(parse_action());
+  return actions;
 }
 
 void Parser::parse_direction(ast::When& event) {

@@ -91,7 +91,7 @@ std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::
                         "this event", "without it, or with the equations solved by hand, they can be had");
   };
   for (const model::When& when : model.events)
-    if (changes_something(when.actions)) return refuse(when.span);
+    if (changes_something(when.actions) || changes_something(when.limit_actions)) return refuse(when.span);
   for (const model::Scheduled& scheduled : model.schedule)
     if (changes_something(scheduled.actions)) return refuse(scheduled.span);
   return std::nullopt;

@@ -24,6 +24,19 @@ TEST(CheckEvents, ALevelIsAGuard) {
   EXPECT_EQ(std::get<Go>(event.actions[2].what).mode, 1U);
 }
 
+TEST(CheckEvents, WhatHappensAtALimitIsCheckedAsActions) {
+  const std::string head = ball + "when h falls through 0 in flight { h' := -e*h' } then ";
+  const Model model = good(head + "{ h := 0; h' := 0; go rest }\nwhen h > 20 { stop }\n");
+  EXPECT_TRUE(model.events[0].has_limit);
+  ASSERT_EQ(model.events[0].limit_actions.size(), 3U);
+  EXPECT_EQ(std::get<Go>(model.events[0].limit_actions[2].what).mode, 1U);
+  EXPECT_FALSE(model.events[1].has_limit);
+  EXPECT_TRUE(good(head + "{ }\n").events[0].has_limit);
+  EXPECT_EQ(good(head + "go rest\n").events[0].limit_actions.size(), 1U);
+  EXPECT_EQ(place(said(head + "{ h := 0; h := 1 }\n", "E251")), "6:65");
+  EXPECT_EQ(place(said(head + "go away\n", "E250")), "6:58");
+}
+
 TEST(CheckEvents, AConditionRisesThroughZeroWhereItBecomesTrue) {
   const Model model = good(ball + "when h < 3 and not h' > 2 { stop }\n");
   const auto guard_at = [&](double h, double v) {

@@ -42,6 +42,15 @@ at 3 { mark "three" }
   EXPECT_THAT(text, HasSubstr("{ mark \"three\" }"));
 }
 
+TEST(Describe, WhatHappensAtALimitStandsAfterThen) {
+  const std::string text = describe(good(R"(mode flight { h'' = -10 }
+mode rest { h'' = 0 }
+h(0) = 1; h'(0) = 0
+when h falls through 0 in flight { h' := -h'/2 } then { h' := 0; go rest }
+)"));
+  EXPECT_THAT(text, HasSubstr("{ h' := -0.5*h' } then { h' := 0; go rest }\n"));
+}
+
 TEST(Describe, LongFamiliesAreCounted) {
   const std::string text = describe(good("for i in 1..100 { u[i]' = 0\nu[i](0) = i }\n"), {.most_listed = 5});
   EXPECT_THAT(text, HasSubstr("States (100)"));

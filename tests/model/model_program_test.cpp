@@ -1,4 +1,5 @@
 // What a compiled model knows of itself.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,6 +25,30 @@ x(0) = 1
 when x falls through 0.5 { go driven }
 run 0..1
 )"));
+}
+
+TEST(ModelProgram, HasABlockForTheLimitOfEachEvent) {
+  const auto program = compile(good(R"(model Ball
+mode flight { h'' = -10 }
+mode rest { h'' = 0 }
+h(0) = 1; h'(0) = -3
+when h rises through 5 { stop }
+when h falls through 0 in flight { h' := -h'/2 } then { h := h'/4; if h > 0 { go rest } else { stop } }
+run 0..1
+)"));
+  ASSERT_EQ(program->limit_blocks.size(), 2U);
+  EXPECT_TRUE(program->limit_blocks[0].actions.empty());
+  EXPECT_EQ(program->limit_blocks[0].tape->output_count(), 0U);
+  const ProgramBlock& block = program->limit_blocks[1];
+  ASSERT_EQ(block.actions.size(), 2U);
+  EXPECT_EQ(block.actions[1].otherwise.at(0).target, 1U);  // the second `stop` of the model
+  EXPECT_EQ(program->stops, 2U);
+  std::vector<double> registers(block.tape->register_count()), values(block.tape->output_count());
+  const std::vector<double> start = start_values(program->model);
+  std::copy(start.begin(), start.end(), registers.begin());
+  block.tape->prepare<double>(registers);
+  block.tape->evaluate<double>(registers, values);
+  EXPECT_EQ(values.at(block.actions[0].expression), -0.75);
 }
 
 // Somebody holds one of them: its row is zero, in the order of the pattern and in the band.

@@ -140,6 +140,18 @@ TEST(Parsing, TheBraceOfABlockMayStandOnTheNextLine) {
   EXPECT_EQ(only<ast::When>("when h < 0\n{\n stop\n}").actions.size(), 1U);
 }
 
+TEST(Parsing, AnEventSaysAfterThenWhatHappensAtItsLimit) {
+  EXPECT_FALSE(only<ast::When>("when h falls through 0 { stop }").limit_actions);
+  const auto both = only<ast::When>("when h falls through 0 in flight { h' := -h' } then { h' := 0; go rest }");
+  EXPECT_EQ(both.actions.size(), 1U);
+  EXPECT_EQ(both.limit_actions.value().size(), 2U);
+  EXPECT_EQ(event_name(both), "h falls through 0 in flight");
+  const auto brief = only<ast::When>("when h < 0 {\n h' := -h'\n}\nthen go rest");
+  ASSERT_EQ(brief.limit_actions.value().size(), 1U);
+  EXPECT_EQ(std::get<ast::Go>(brief.limit_actions->front().node).mode.text, "rest");
+  EXPECT_TRUE(only<ast::When>("when h < 0 { h' := -h' } then { }").limit_actions.value().empty());
+}
+
 TEST(Parsing, TimesAndPeriodsAreEvents) {
   EXPECT_EQ(event_name(only<ast::At>("at 3 [s] { x := 1 }")), "at 3 [s]");
   EXPECT_EQ(event_name(only<ast::Every>("every 0.1 { x := 1 }")), "every 0.1");
