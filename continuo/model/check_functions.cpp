@@ -17,16 +17,16 @@ namespace {
 using enum Function::Units;
 constexpr std::size_t many = 1000;
 
-constexpr std::array<Function, 33> functions = {{
-    {"sin", 1, 1, pure},    {"cos", 1, 1, pure},   {"tan", 1, 1, pure},      {"asin", 1, 1, pure},
-    {"acos", 1, 1, pure},   {"atan", 1, 1, pure},  {"sinh", 1, 1, pure},     {"cosh", 1, 1, pure},
-    {"tanh", 1, 1, pure},   {"asinh", 1, 1, pure}, {"acosh", 1, 1, pure},    {"atanh", 1, 1, pure},
-    {"exp", 1, 1, pure},    {"log", 1, 1, pure},   {"ln", 1, 1, pure},       {"log2", 1, 1, pure},
-    {"log10", 1, 1, pure},  {"floor", 1, 1, pure}, {"ceil", 1, 1, pure},     {"round", 1, 1, pure},
-    {"sqrt", 1, 1, root},   {"cbrt", 1, 1, root},  {"abs", 1, 1, same},      {"min", 2, many, same},
-    {"max", 2, many, same}, {"mod", 2, 2, same},   {"hypot", 2, many, same}, {"atan2", 2, 2, ratio},
-    {"sign", 1, 1, sign},   {"pow", 2, 2, power},  {"if", 0, 0, pure},       {"not", 0, 0, pure},
-    {"interp", 2, 2, pure},
+constexpr std::array<Function, 34> functions = {{
+    {"sin", 1, 1, pure},    {"cos", 1, 1, pure},    {"tan", 1, 1, pure},      {"asin", 1, 1, pure},
+    {"acos", 1, 1, pure},   {"atan", 1, 1, pure},   {"sinh", 1, 1, pure},     {"cosh", 1, 1, pure},
+    {"tanh", 1, 1, pure},   {"asinh", 1, 1, pure},  {"acosh", 1, 1, pure},    {"atanh", 1, 1, pure},
+    {"exp", 1, 1, pure},    {"log", 1, 1, pure},    {"ln", 1, 1, pure},       {"log2", 1, 1, pure},
+    {"log10", 1, 1, pure},  {"floor", 1, 1, pure},  {"ceil", 1, 1, pure},     {"round", 1, 1, pure},
+    {"sqrt", 1, 1, root},   {"cbrt", 1, 1, root},   {"abs", 1, 1, same},      {"min", 2, many, same},
+    {"max", 2, many, same}, {"mod", 2, 2, same},    {"hypot", 2, many, same}, {"atan2", 2, 2, ratio},
+    {"sign", 1, 1, sign},   {"pow", 2, 2, power},   {"if", 0, 0, pure},       {"not", 0, 0, pure},
+    {"interp", 2, 2, pure}, {"smooth", 1, 1, same},
 }};
 
 std::string here(std::size_t count) {
@@ -39,7 +39,7 @@ NodeId logarithm_with_root(Graph& g, NodeId x, double shift) {  // log(x + sqrt(
 }
 
 NodeId one_argument(Graph& g, std::string_view name, NodeId x) {
-  static constexpr std::array<std::pair<std::string_view, Op>, 17> direct = {{
+  static constexpr std::array<std::pair<std::string_view, Op>, 18> direct = {{
       {"sin", Op::sine},
       {"cos", Op::cosine},
       {"tan", Op::tangent},
@@ -57,6 +57,7 @@ NodeId one_argument(Graph& g, std::string_view name, NodeId x) {
       {"ceil", Op::ceiling},
       {"abs", Op::absolute},
       {"sign", Op::sign},
+      {"smooth", Op::smooth},
   }};
   for (const auto& [known, op] : direct) {
     if (known == name) return g.apply(op, x);
@@ -67,7 +68,7 @@ NodeId one_argument(Graph& g, std::string_view name, NodeId x) {
   if (name == "log2") return g.divide(g.apply(Op::logarithm, x), g.constant(std::numbers::ln2));
   if (name == "asinh") {  // odd: taken from the positive side, where nothing cancels
     const NodeId size = g.apply(Op::absolute, x);
-    return g.multiply(g.apply(Op::sign, x), logarithm_with_root(g, size, 1));
+    return g.apply(Op::smooth, g.multiply(g.apply(Op::sign, x), logarithm_with_root(g, size, 1)));
   }
   if (name == "acosh") return logarithm_with_root(g, x, -1);
   if (name == "atanh") return g.multiply(half, g.apply(Op::logarithm, g.divide(g.add(one, x), g.subtract(one, x))));

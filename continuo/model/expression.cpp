@@ -63,11 +63,11 @@ NodeId Graph::variable(std::uint32_t number) {
 }
 
 NodeId Graph::interpolate(std::uint32_t table, NodeId x) {
-  return intern({.op = Op::interpolate, .finite = (*this)[x].finite, .number = table, .a = x});
+  return intern({.op = Op::interpolate, .finite = (*this)[x].finite, .corners = true, .number = table, .a = x});
 }
 
 NodeId Graph::interpolate_slope(std::uint32_t table, NodeId x) {
-  return intern({.op = Op::interpolate_slope, .finite = (*this)[x].finite, .number = table, .a = x});
+  return intern({.op = Op::interpolate_slope, .finite = (*this)[x].finite, .corners = true, .number = table, .a = x});
 }
 
 std::optional<double> Graph::value(NodeId id) const {

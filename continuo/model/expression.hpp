@@ -35,6 +35,7 @@ struct NodeId {
 struct Node {
   Op op = Op::constant;
   bool finite = false;       // it cannot be infinite or NaN where the variables are not
+  bool corners = false;      // it, or what it is made of, has jumps or kinks that no `smooth` stands around
   std::uint32_t number = 0;  // of a variable, or of a table
   NodeId a{}, b{}, c{};      // as many as arity(op)
   double value = 0;          // of a constant

@@ -40,6 +40,8 @@ Split split(Graph& g, const Node& node, const Split& a, const Split& b, const Sp
               .remainder = g.apply(node.op, a.remainder, b.remainder)};
     case Op::negate:
       return {.coefficient = g.negate(a.coefficient), .remainder = g.negate(a.remainder)};
+    case Op::smooth:
+      return {.coefficient = g.apply(Op::smooth, a.coefficient), .remainder = g.apply(Op::smooth, a.remainder)};
     case Op::multiply:
       if (a.coefficient.valid() && b.coefficient.valid()) return {.linear = false};
       return split_product(g, a, b);

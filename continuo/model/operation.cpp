@@ -78,6 +78,8 @@ double compute(Op op, double a, double b, double c) {
       return std::ceil(a);
     case Op::logical_not:
       return a == 0 ? 1 : 0;
+    case Op::smooth:
+      return a;
     case Op::select:
       return a != 0 ? b : c;
     case Op::constant:

@@ -48,6 +48,7 @@ enum class Op : std::uint8_t {
   floor,
   ceiling,
   logical_not,
+  smooth,  // its argument: what jumps in there needs no search for the instant
   // three arguments
   select,  // select(condition, value if true, value if false)
   // a table and one argument
@@ -73,13 +74,33 @@ constexpr bool is_logical(Op op) {
   return (op >= Op::less && op <= Op::logical_or) || op == Op::logical_not;
 }
 
+/// It has a jump somewhere, or a kink, where its arguments have none.
+constexpr bool has_corners(Op op) {
+  switch (op) {
+    case Op::minimum:
+    case Op::maximum:
+    case Op::arc_tangent2:  // jumps by 2*pi behind the origin
+    case Op::modulo:
+    case Op::absolute:
+    case Op::sign:
+    case Op::floor:
+    case Op::ceiling:
+    case Op::select:
+    case Op::interpolate:
+    case Op::interpolate_slope:
+      return true;
+    default:
+      return is_logical(op);
+  }
+}
+
 /// The name in a model: `sin`, `+`, `<=`.
 constexpr std::string_view name(Op op) {
   constexpr std::string_view names[] = {
-      "constant", "variable", "+",    "-",    "*",     "/",    "^",    "min",    "max",    "hypot",
-      "atan2",    "mod",      "<",    "<=",   "==",    "!=",   "and",  "or",     "-",      "sin",
-      "cos",      "tan",      "asin", "acos", "atan",  "sinh", "cosh", "tanh",   "exp",    "log",
-      "log10",    "sqrt",     "abs",  "sign", "floor", "ceil", "not",  "select", "interp", "interp_slope"};
+      "constant", "variable", "+",    "-",    "*",      "/",      "^",      "min",         "max",   "hypot", "atan2",
+      "mod",      "<",        "<=",   "==",   "!=",     "and",    "or",     "-",           "sin",   "cos",   "tan",
+      "asin",     "acos",     "atan", "sinh", "cosh",   "tanh",   "exp",    "log",         "log10", "sqrt",  "abs",
+      "sign",     "floor",    "ceil", "not",  "smooth", "select", "interp", "interp_slope"};
   return names[static_cast<std::size_t>(op)];
 }
 

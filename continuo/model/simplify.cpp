@@ -27,6 +27,7 @@ bool stays_finite(Op op) {
     case Op::sign:
     case Op::floor:
     case Op::ceiling:
+    case Op::smooth:
     case Op::select:
     case Op::interpolate:
     case Op::interpolate_slope:
@@ -58,7 +59,12 @@ struct Simplifier {
   NodeId make(Op what, NodeId a, NodeId b = {}, NodeId c = {}) const {
     Node node{.op = what, .a = a, .b = b, .c = c};
     node.finite = stays_finite(what) || (what == Op::divide && is_constant(b) && !is(b, 0));
-    for (const NodeId argument : arguments(node)) node.finite = node.finite && g[argument].finite;
+    node.corners = has_corners(what);
+    for (const NodeId argument : arguments(node)) {
+      node.finite = node.finite && g[argument].finite;
+      node.corners = node.corners || g[argument].corners;
+    }
+    if (what == Op::smooth) node.corners = false;
     return g.intern(node);
   }
 
@@ -193,6 +199,7 @@ struct Simplifier {
     if (what == Op::negate && argument == Op::multiply && is_constant(inner(a))) {
       return g.multiply(g.constant(-*g.value(inner(a))), second(a));
     }
+    if (what == Op::smooth && !g[a].corners) return a;
     if (what == Op::absolute && (argument == Op::absolute || argument == Op::square_root)) return a;
     if (what == Op::absolute && argument == Op::negate) return g.apply(Op::absolute, inner(a));
     if (what == Op::cosine && argument == Op::negate) return g.apply(Op::cosine, inner(a));

@@ -88,6 +88,7 @@ Code code_of(Op op) {
       return Code::interpolate_slope;
     case Op::constant:
     case Op::variable:
+    case Op::smooth:
       break;
   }
   return Code::stop;

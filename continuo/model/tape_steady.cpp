@@ -76,6 +76,8 @@ class Gatherer {
       }
       case Op::divide:
         return quotient(part(node.a), part(node.b));
+      case Op::smooth:  // says nothing about its value
+        return part(node.a);
       case Op::negate: {
         const Split a = part(node.a);
         return a.factor.valid() ? Split{.factor = to_.negate(a.factor), .rest = a.rest}

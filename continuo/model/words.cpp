@@ -14,10 +14,10 @@ constexpr std::array<Word, 20> statements = {"model",     "param", "let",  "outp
                                              "initially", "for",   "run",  "plot",   "draw",   "check"};
 constexpr std::array<Word, 5> actions = {"if", "go", "mark", "stop", "for"};
 constexpr std::array<Word, 11> inside = {"if", "then", "else", "and", "or", "not", "in", "from", "go", "mark", "stop"};
-constexpr std::array<Word, 32> functions = {"sin",  "cos",   "tan",   "asin",  "acos",  "atan", "atan2",  "sinh",
-                                            "cosh", "tanh",  "asinh", "acosh", "atanh", "exp",  "ln",     "log",
-                                            "log2", "log10", "sqrt",  "cbrt",  "hypot", "abs",  "min",    "max",
-                                            "sign", "floor", "ceil",  "round", "mod",   "erf",  "interp", "pow"};
+constexpr std::array<Word, 32> functions = {"sin",  "cos",   "tan",   "asin",  "acos",  "atan",   "atan2",  "sinh",
+                                            "cosh", "tanh",  "asinh", "acosh", "atanh", "exp",    "ln",     "log",
+                                            "log2", "log10", "sqrt",  "cbrt",  "hypot", "abs",    "min",    "max",
+                                            "sign", "floor", "ceil",  "round", "mod",   "smooth", "interp", "pow"};
 
 }  // namespace
 

@@ -55,6 +55,35 @@ TEST_F(Expression, ConstantsAreFolded) {
   EXPECT_EQ(g.select(g.less(number(1), number(2)), x, y), x);
 }
 
+TEST_F(Expression, SmoothStandsRoundWhatHasCornersAndNowhereElse) {
+  const NodeId jump = g.apply(Op::sign, x), kept = g.apply(Op::smooth, g.multiply(y, jump));
+  EXPECT_EQ(text(kept), "smooth(y*sign(x))");
+  EXPECT_EQ(g.apply(Op::smooth, kept), kept);
+  EXPECT_EQ(g.apply(Op::smooth, g.multiply(k, kept)), g.multiply(k, kept));
+  EXPECT_EQ(g.apply(Op::smooth, g.apply(Op::sine, g.divide(x, y))), g.apply(Op::sine, g.divide(x, y)));
+  EXPECT_TRUE(g.is(g.apply(Op::smooth, number(3)), 3));
+  EXPECT_TRUE(g[g.multiply(k, jump)].corners);
+  EXPECT_FALSE(g[kept].corners);
+  for (const NodeId corner : {g.apply(Op::minimum, x, y), g.apply(Op::absolute, x), g.apply(Op::modulo, t, k),
+                              g.select(g.less(x, y), x, y), g.interpolate(0, x), g.less_equal(x, y)}) {
+    EXPECT_NE(g.apply(Op::smooth, corner), corner);
+  }
+  const std::vector<double> at{0, -2, 3, 1};
+  EXPECT_EQ(evaluate(g, kept, at), -3);
+}
+
+TEST_F(Expression, SmoothIsSeenThroughWhereItsArgumentIsLinear) {
+  const NodeId jump = g.apply(Op::sign, x);
+  const auto linear = linear_in(g, g.apply(Op::smooth, g.add(g.multiply(jump, y), g.apply(Op::absolute, x))), 2);
+  ASSERT_TRUE(linear);
+  EXPECT_EQ(text(linear->coefficient), "smooth(sign(x))");
+  EXPECT_EQ(text(linear->remainder), "smooth(abs(x))");
+  const NodeId equation = g.subtract(g.apply(Op::smooth, g.multiply(g.add(jump, number(3)), y)), k);
+  const auto solved = solve_linear(g, std::vector{equation}, std::vector{2U});
+  ASSERT_TRUE(solved);
+  EXPECT_EQ(evaluate(g, solved->front(), std::vector<double>{0, 5, 0, 8}), 2);
+}
+
 TEST_F(Expression, PrintsAsAModelWouldWriteIt) {
   EXPECT_EQ(text(g.divide(g.negate(g.multiply(k, x)), y)), "-x*k/y");
   EXPECT_EQ(text(g.subtract(x, g.subtract(y, k))), "x - (y - k)");

@@ -132,6 +132,20 @@ TEST(Tape, WhatHangsOnParametersAloneIsPrepared) {
   EXPECT_EQ(Tape(g, std::vector{spelled_otherwise}, layout).size().single, 1u);
 }
 
+TEST(Tape, SmoothCostsNothing) {
+  Graph g;
+  const NodeId x = g.variable(1), y = g.variable(2), k = g.variable(1 + states);
+  const NodeId bare = g.multiply(k, g.apply(Op::absolute, x)), smooth = g.apply(Op::smooth, bare);
+  ASSERT_NE(bare, smooth);
+  const auto outputs = [&](NodeId e) { return std::vector{g.add(y, e), g.multiply(e, y), e}; };
+  const Tape with(g, outputs(smooth), layout), without(g, outputs(bare), layout);
+  EXPECT_EQ(with.size().single, without.size().single);
+  EXPECT_EQ(with.size().prepared, without.size().prepared);
+  EXPECT_EQ(with.register_count(), without.register_count());
+  const std::vector<double> values(variables, -3);
+  EXPECT_EQ(run<double>(with, values), run<double>(without, values));
+}
+
 TEST(Tape, ChangedParametersNeedNoNewTape) {
   Graph g;
   const Tape tape(g, std::vector{g.multiply(g.apply(Op::square_root, g.variable(1 + states)), g.variable(1))}, layout);

@@ -18,7 +18,7 @@ const ofWorlds = new Set([
 const shapes = new Set(["floor", "ball", "spring", "rod", "rope", "arrow", "trail", "box", "text"]);
 const functions = new Set([
   "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "log2", "log10", "sqrt", "cbrt",
-  "pow", "hypot", "abs", "min", "max", "sign", "floor", "ceil", "round", "mod", "erf", "interp", "distance", "within", "ray",
+  "pow", "hypot", "abs", "min", "max", "sign", "floor", "ceil", "round", "mod", "smooth", "interp", "distance", "within", "ray",
 ]);
 
 interface State {
