@@ -144,6 +144,13 @@ says something of the states alone. Its second derivative by time holds T:
   0 = x'^2 + y'^2 - T*(x^2 + y^2) - g*y
 
 and the states begin on the circle, with a velocity along it.)"},
+    Code{
+        "E237", "a mass matrix is singular",
+        R"(Coupled equations are solved together for their highest derivatives, which the matrix before them must allow: with
+m*x'' + m*y'' = F and m*x'' + m*y'' = G no x'' and y'' are determined, since only their sum is in the equations.
+
+Fix: see whether an equation was written twice or one is missing; a variable whose derivative no equation determines is
+an `unknown`, with an equation 0 = ... of its own.)"},
     Code{"E240", "an initial value is missing",
          R"(A variable of order n needs n values at the start: h'' needs h(0) and h'(0).)"},
     Code{"E241", "an initial value is given twice",
@@ -157,6 +164,12 @@ two for x''. A condition may name a state at another time (x(0) = x(10)). An `un
 constant to be found, and needs one condition more.)"},
     Code{"E245", "a condition stands outside of the run",
          R"(Every condition of a boundary-value problem is at a time between the ends of `run A..B`.)"},
+    Code{
+        "E246", "starts go in a circle",
+        R"(A start may name others at the same time, in whatever order they stand: S(0) = 1 - I(0) - R(0). Each is computed
+from those it names, so it cannot lead back to itself, not through a `let` either.
+
+Fix: give one state of the circle a start of its own, or solve for it by hand: x(0) = 1 - x(0)/2 is x(0) = 2/3.)"},
     Code{"E250", "there is no such mode",
          R"(`in MODE`, `go MODE` and `start in MODE` name a mode of the model: mode NAME { equations }.)"},
     Code{

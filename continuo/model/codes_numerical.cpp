@@ -125,6 +125,14 @@ that is not positive, a number of tolerances that is not that of the states.)"},
         R"(A world is moved `exact`, from collision to collision, where under forces the paths between are integrated by `dop853`
 to a tolerance or by `rk4` with a step; or `fast` in steps, its forces by semi_implicit_euler, implicit_euler,
 central_difference or explicit_euler. Each of these names may stand behind --method.)"},
+    Code{
+        "E335", "a mass matrix is singular at the start",
+        R"(The equations are solved for their highest derivatives: m*x'' = F by a division by m, coupled ones by the matrix
+before them. With the parameters and the state of the start that is 0, or the matrix is singular, so the equations say
+nothing of these derivatives.
+
+Fix: a mass, a capacity or an inertia of 0 leaves an equation without derivative: declare `unknown x = guess` and write
+0 = F. Where only this one state is singular, start beside it.)"},
     Code{"E340", "there is no such parameter",
          R"(--set takes the names of parameters, with their index where they have one: --set k=5 --set m[2]=3.
 `continuo info FILE` lists them. Initial values are set through the parameter they use.)"},

@@ -85,13 +85,9 @@ std::optional<Linear> linear_in(Graph& graph, NodeId node, std::uint32_t variabl
   return Linear{zero_if_absent(graph, result.coefficient), result.remainder};
 }
 
-namespace {
-
-using Rows = std::vector<std::vector<NodeId>>;  // one row per equation: a coefficient per unknown, then the remainder
-
-std::optional<Rows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
-                                std::span<const std::uint32_t> unknowns) {
-  Rows rows;
+std::optional<LinearRows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
+                                      std::span<const std::uint32_t> unknowns) {
+  LinearRows rows;
   for (NodeId remainder : residuals) {
     std::vector<NodeId> row;
     for (const std::uint32_t unknown : unknowns) {
@@ -111,29 +107,35 @@ std::optional<Rows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
   return rows;
 }
 
-/// Prefers a number as pivot: it is known not to vanish.
-bool bring_pivot(const Graph& graph, Rows& rows, std::size_t k) {
+namespace {
+
+/// Prefers a number as pivot, which is known not to vanish, and takes what does only where there is nothing else.
+bool bring_pivot(const Graph& graph, LinearRows& rows, std::size_t k, const Vanishes& vanishes) {
   std::size_t best = rows.size();
   for (std::size_t i = k; i < rows.size(); ++i) {
     if (graph.is(rows[i][k], 0)) continue;
     if (best == rows.size() || (graph.value(rows[i][k]) && !graph.value(rows[best][k]))) best = i;
   }
   if (best == rows.size()) return false;
+  const auto is_zero = [&](std::size_t i) { return graph.is(rows[i][k], 0) || vanishes(rows[i][k]); };
+  if (vanishes && !graph.value(rows[best][k]) && k + 1 < rows.size() && is_zero(best)) {
+    for (std::size_t i = best + 1; i < rows.size(); ++i) {
+      if (is_zero(i)) continue;
+      best = i;
+      break;
+    }
+  }
   std::swap(rows[k], rows[best]);
   return true;
 }
 
 }  // namespace
 
-std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const NodeId> residuals,
-                                                std::span<const std::uint32_t> unknowns) {
-  const std::size_t n = unknowns.size();
-  if (residuals.size() != n) return std::nullopt;
-  auto rows = linear_rows(graph, residuals, unknowns);
-  if (!rows) return std::nullopt;
-  Rows& r = *rows;
+std::optional<std::vector<NodeId>> solve_linear(Graph& graph, LinearRows rows, const Vanishes& vanishes) {
+  const std::size_t n = rows.size();
+  LinearRows& r = rows;
   for (std::size_t k = 0; k < n; ++k) {
-    if (!bring_pivot(graph, r, k)) return std::nullopt;
+    if (!bring_pivot(graph, r, k, vanishes)) return std::nullopt;
     for (std::size_t i = k + 1; i < n; ++i) {
       if (graph.is(r[i][k], 0)) continue;
       const NodeId factor = graph.divide(r[i][k], r[k][k]);
@@ -147,6 +149,13 @@ std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const No
     solution[k] = graph.divide(graph.negate(sum), r[k][k]);
   }
   return solution;
+}
+
+std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const NodeId> residuals,
+                                                std::span<const std::uint32_t> unknowns) {
+  if (residuals.size() != unknowns.size()) return std::nullopt;
+  auto rows = linear_rows(graph, residuals, unknowns);
+  return rows ? solve_linear(graph, std::move(*rows)) : std::nullopt;
 }
 
 }  // namespace continuo::model
