@@ -49,7 +49,7 @@ unknown a = 0 and write 0 = a - b - 1; if one of them changes with time on its o
     Code{
         "E215", "there is no such function",
         R"(sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp log ln log2 log10 sqrt cbrt pow hypot abs
-sign min max floor ceil round mod, and interp for tables. A product needs its sign: k*(x + 1), not k(x + 1).)"},
+sign min max floor ceil round mod smooth, and interp for tables. A product needs its sign: k*(x + 1), not k(x + 1).)"},
     Code{
         "E216", "wrong number of arguments",
         R"(atan2(y, x), hypot(x, y), mod(a, b), pow(a, b), interp(table, x) take two, min and max two or more, the others
@@ -78,7 +78,9 @@ A list of values must have as many as its param has members.)"},
     Code{
         "E222", "this must not change with time",
         R"(Sizes of families, indices, tolerances: numbers, params and lets made of these. The values of params, initial values
-and times of events may depend on params, too, and follow them. States, inputs and t change with time.)"},
+and times of events may depend on params, too, and follow them. States, inputs and t change with time. An initial value
+may also name other starts, y(0) = 2*x(0), and lets of states, inputs and t, which are what they are then; but no unknown,
+which is solved for when the starts are known.)"},
     Code{"E223", "there is no such body",
          R"(Bodies are declared in the world, one by one or by a pattern, whose members are counted from 1:
 
