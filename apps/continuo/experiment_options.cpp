@@ -105,11 +105,8 @@ void add_limits(CLI::App& verb, ExperimentOptions& options) {
   verb.add_option("--max-step", options.max_step, "The longest step a method may choose")
       ->type_name("H")
       ->transform(quotients())
-      ->check(CLI::PositiveNumber)
       ->excludes(verb.get_option("--step"));
-  verb.add_option("--max-steps", options.max_steps, "How many steps there may be")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  verb.add_option("--max-steps", options.max_steps, "How many steps there may be")->type_name("N");
 }
 
 void refuse_option(CLI::App& verb, const std::string& name, const std::string& why) {

@@ -54,6 +54,15 @@ bool is_known_at_start(const Model& model, const MassMatrix& mass) {
   });
 }
 
+/// `initially`, `at` or `every` at the start itself: the equations are not asked before it.
+bool acts_at_start(const Model& model, std::span<const double> variables) {
+  return std::ranges::any_of(model.schedule, [&](const Scheduled& event) {
+    const std::optional<Setting>& time = event.kind == Scheduled::Kind::every ? event.first : event.time;
+    if (event.kind == Scheduled::Kind::initially) return true;
+    return time && evaluate(model, time->node, variables) == variables[Layout::time];
+  });
+}
+
 std::string all_of(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -64,6 +73,7 @@ std::string all_of(const std::vector<std::string>& names) {
 }  // namespace
 
 std::optional<Diagnostic> singular_mass(const Model& model, std::span<const double> variables) {
+  if (model.masses.empty() || acts_at_start(model, variables)) return std::nullopt;
   for (const MassMatrix& mass : model.masses) {
     if (mass.mode != model.start_mode || !is_known_at_start(model, mass)) continue;
     const std::vector<double> a = evaluate(model, mass.coefficients, variables);

@@ -45,6 +45,8 @@ TEST(SingularMass, AMassOfZeroIsOne) {
   EXPECT_FALSE(said_of(text, {{"m", 1e-300}}));
   EXPECT_TRUE(said_of("x*x' = 1\nx(0) = 0\nrun 0..1\n"));
   EXPECT_FALSE(said_of("x*x' = 1\nx(0) = 1\nrun 0..1\n"));
+  EXPECT_FALSE(said_of("x*x' = 1\nx(0) = 0\ninitially { x := 1 }\nrun 0..1\n"));
+  EXPECT_FALSE(said_of("x*x' = 1\nx(2) = 0\nat 2 { x := 1 }\nrun 2..3\n"));
   EXPECT_FALSE(said_of("mode a { x*x' = 1 }\nmode b { (x - 1)*x' = 1 }\nx(0) = 1\nwhen x > 2 { go b }\nrun 0..1\n"));
 }
 
