@@ -182,7 +182,7 @@ class Checker {
   void sort_out_algebraic(ModeAtWork& work);
   void solve_one_by_one(ModeAtWork& work);
   void solve_for(ModeAtWork& work, const EquationAtWork& equation, std::uint32_t base);
-  bool vanishes_at_start(NodeId node);
+  Vanishes vanishing_beside(const LinearRows& rows);
   void solve_coupled(ModeAtWork& work);
   void solve_group(ModeAtWork& work, const std::vector<std::size_t>& members, std::vector<std::uint32_t> open);
   NodeId with_solved(const ModeAtWork& work, NodeId node);

@@ -2,6 +2,7 @@
 // Equations solved for their highest derivatives: each alone where it holds one, else together where they hang
 // together (accelerations coupled through a mass matrix). What has no such derivative determines an unknown.
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -150,12 +151,18 @@ void Checker::solve_for(ModeAtWork& work, const EquationAtWork& equation, std::u
   }
 }
 
-/// With the values of the start, where they are known.
-bool Checker::vanishes_at_start(NodeId node) {
+/// What is too small for a pivot, at the start, beside the largest of the rows: rounding may be all of it. Before the
+/// start is known nothing is.
+Vanishes Checker::vanishing_beside(const LinearRows& rows) {
   const bool known = std::ranges::all_of(model_.states, [](const State& state) { return state.initial.valid(); });
-  if (errors_ > 0 || !known || model_.needs_boundary_solver()) return false;
+  if (errors_ > 0 || !known || model_.needs_boundary_solver()) return {};
   if (start_values_.empty()) start_values_ = start_values(model_);
-  return evaluate(model_, node, start_values_) == 0;
+  std::vector<NodeId> entries;
+  for (const auto& row : rows) entries.insert(entries.end(), row.begin(), row.end() - 1);
+  double largest = 0;
+  for (const double entry : evaluate(model_, entries, start_values_)) largest = std::max(largest, std::abs(entry));
+  constexpr double smallest = 1e-10;
+  return [this, largest](NodeId node) { return std::abs(evaluate(model_, node, start_values_)) <= smallest * largest; };
 }
 
 /// What is left hangs together: groups of equations that share open derivatives.
@@ -211,8 +218,7 @@ void Checker::solve_group(ModeAtWork& work, const std::vector<std::size_t>& memb
     return;
   }
   const auto rows = linear_rows(model_.graph, residuals, unknowns);
-  const auto solution =
-      rows ? solve_linear(model_.graph, *rows, [this](NodeId node) { return vanishes_at_start(node); }) : std::nullopt;
+  const auto solution = rows ? solve_linear(model_.graph, *rows, vanishing_beside(*rows)) : std::nullopt;
   if (!solution) {
     auto* said = rows ? fail("E237", span, fmt::format("{} are not determined", listed(names)),
                              "the matrix before them is singular",

@@ -1,6 +1,8 @@
 // continuo/model/linear.cpp
 // Expressions that are linear in a variable, and small systems of them.
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include <continuo/model/expression.hpp>
@@ -109,7 +111,7 @@ std::optional<LinearRows> linear_rows(Graph& graph, std::span<const NodeId> resi
 
 namespace {
 
-/// Prefers a number as pivot, which is known not to vanish, and takes what does only where there is nothing else.
+/// Prefers a number as pivot, which stays what it is, and takes what vanishes only where there is nothing else.
 bool bring_pivot(const Graph& graph, LinearRows& rows, std::size_t k, const Vanishes& vanishes) {
   std::size_t best = rows.size();
   for (std::size_t i = k; i < rows.size(); ++i) {
@@ -118,8 +120,8 @@ bool bring_pivot(const Graph& graph, LinearRows& rows, std::size_t k, const Vani
   }
   if (best == rows.size()) return false;
   const auto is_zero = [&](std::size_t i) { return graph.is(rows[i][k], 0) || vanishes(rows[i][k]); };
-  if (vanishes && !graph.value(rows[best][k]) && k + 1 < rows.size() && is_zero(best)) {
-    for (std::size_t i = best + 1; i < rows.size(); ++i) {
+  if (vanishes && k + 1 < rows.size() && is_zero(best)) {
+    for (std::size_t i = k; i < rows.size(); ++i) {
       if (is_zero(i)) continue;
       best = i;
       break;
@@ -127,6 +129,14 @@ bool bring_pivot(const Graph& graph, LinearRows& rows, std::size_t k, const Vani
   }
   std::swap(rows[k], rows[best]);
   return true;
+}
+
+/// Of numbers what is left of rounding is nothing, and no pivot: 0.9 - 0.3/0.1*0.3.
+NodeId difference(Graph& graph, NodeId a, NodeId b) {
+  const auto p = graph.value(a), q = graph.value(b);
+  if (p && q && std::abs(*p - *q) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(*p))
+    return graph.constant(0);
+  return graph.subtract(a, b);
 }
 
 }  // namespace
@@ -139,7 +149,8 @@ std::optional<std::vector<NodeId>> solve_linear(Graph& graph, LinearRows rows, c
     for (std::size_t i = k + 1; i < n; ++i) {
       if (graph.is(r[i][k], 0)) continue;
       const NodeId factor = graph.divide(r[i][k], r[k][k]);
-      for (std::size_t j = k + 1; j <= n; ++j) r[i][j] = graph.subtract(r[i][j], graph.multiply(factor, r[k][j]));
+      for (std::size_t j = k + 1; j < n; ++j) r[i][j] = difference(graph, r[i][j], graph.multiply(factor, r[k][j]));
+      r[i][n] = graph.subtract(r[i][n], graph.multiply(factor, r[k][n]));
     }
   }
   std::vector<NodeId> solution(n);

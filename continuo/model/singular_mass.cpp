@@ -25,18 +25,21 @@ bool equilibrate(std::vector<double>& a, std::size_t n) {
   return true;
 }
 
-/// By elimination with exchange of rows, whose backward error is a small multiple of n*eps times the largest entry (N.
-/// Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 9.3): a pivot below is one of zero.
+/// By elimination with exchange of rows and columns, whose pivots show the rank: those of a singular matrix end with
+/// what rounding leaves, a modest multiple of n*eps times the largest entry (N. Higham, Accuracy and Stability of
+/// Numerical Algorithms, 2nd ed., section 9.3).
 bool is_singular(std::vector<double> a, std::size_t n) {
   if (n == 1) return a.front() == 0;
   if (!equilibrate(a, n)) return true;
-  const double zero = 4 * static_cast<double>(n) * std::numeric_limits<double>::epsilon();
+  const double zero = 16 * static_cast<double>(n) * std::numeric_limits<double>::epsilon();
   for (std::size_t k = 0; k < n; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < n; ++i)
-      if (std::abs(a[i * n + k]) > std::abs(a[pivot * n + k])) pivot = i;
-    if (std::abs(a[pivot * n + k]) <= zero) return true;
-    for (std::size_t j = k; j < n; ++j) std::swap(a[k * n + j], a[pivot * n + j]);
+    std::size_t row = k, column = k;
+    for (std::size_t i = k; i < n; ++i)
+      for (std::size_t j = k; j < n; ++j)
+        if (std::abs(a[i * n + j]) > std::abs(a[row * n + column])) row = i, column = j;
+    if (std::abs(a[row * n + column]) <= zero) return true;
+    for (std::size_t j = 0; j < n; ++j) std::swap(a[k * n + j], a[row * n + j]);
+    for (std::size_t i = 0; i < n; ++i) std::swap(a[i * n + k], a[i * n + column]);
     for (std::size_t i = k + 1; i < n; ++i) {
       const double factor = a[i * n + k] / a[k * n + k];
       for (std::size_t j = k; j < n; ++j) a[i * n + j] -= factor * a[k * n + j];

@@ -17,6 +17,7 @@ TEST(SingularMass, OfNumbersItIsSaidByTheCheck) {
   EXPECT_EQ(place(message), "1:1");
   EXPECT_EQ(message.message, "`x''` and `y''` are not determined");
   EXPECT_EQ(message.label, "the matrix before them is singular");
+  said("0.1*x' + 0.3*y' = 1\n0.3*x' + 0.9*y' = 2\nx(0) = 0; y(0) = 0\nrun 0..1\n", "E237");
   said("x'*y' = 1\nx' + y' = 2\nx(0) = 0; y(0) = 0\nrun 0..1\n", "E232");
 }
 
@@ -66,6 +67,15 @@ TEST(SingularMass, ARegularOneIsSolvedWhateverStandsFirst) {
   EXPECT_FALSE(singular_mass(model, start_values(model)));
   EXPECT_EQ(rate(model, "x"), 1);
   EXPECT_EQ(rate(model, "y"), 2);
+  // The second pivot, 0.9 - 0.3/0.1*0.3, is rounding alone; x' = 4, y' = -1, z' = 2 by substitution.
+  for (const auto* head : {"param a = 0.1, b = 0.3, c = 0.9\n", "let a = 0.1, b = 0.3, c = 0.9\n"}) {
+    const Model three = good(std::string(head) +
+                             "a*x' + b*y' = 0.1\nb*x' + c*y' + z' = 2.3\nx' + y' + z' = 5\n"
+                             "x(0) = 0; y(0) = 0; z(0) = 0\nrun 0..1\n");
+    EXPECT_NEAR(rate(three, "x"), 4, 1e-13);
+    EXPECT_NEAR(rate(three, "y"), -1, 1e-13);
+    EXPECT_NEAR(rate(three, "z"), 2, 1e-13);
+  }
 }
 
 }  // namespace
