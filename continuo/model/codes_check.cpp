@@ -79,8 +79,8 @@ A list of values must have as many as its param has members.)"},
         "E222", "this must not change with time",
         R"(Sizes of families, indices, tolerances: numbers, params and lets made of these. The values of params, initial values
 and times of events may depend on params, too, and follow them. States, inputs and t change with time. An initial value
-may also name other starts, y(0) = 2*x(0), and lets of states, inputs and t, which are what they are then; but no unknown,
-which is solved for when the starts are known.)"},
+may also name other starts, y(0) = 2*x(0), and lets of states, inputs and t, which are what they are then; but no
+unknown, which is solved for when the starts are known.)"},
     Code{"E223", "there is no such body",
          R"(Bodies are declared in the world, one by one or by a pattern, whose members are counted from 1:
 

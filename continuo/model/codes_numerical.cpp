@@ -29,8 +29,8 @@ a tolerance below 1e-14 wants to be larger.)"},
         "E303", "too many steps",
         R"(The run needs more steps than it may take: 10 million, or what `max steps` or --max-steps say. Most often
 the equations are stiff: a fast part of them has died out, and would come back and grow without end if the step were
-longer than about twice its time. An explicit method must then creep along although nothing happens; stability bounds its
-steps, not accuracy, and a looser tolerance does not help.
+longer than about twice its time. An explicit method must then creep along although nothing happens; stability bounds
+its steps, not accuracy, and a looser tolerance does not help.
 
   x'' = 1e6*(1 - x^2)*x' - x      between its jumps x hardly moves, and deviations die out within a microsecond
 
