@@ -25,9 +25,8 @@ the unknown has no solution beyond that place.
 
 Fix: a jump in a right-hand side wants an event (`when`, `at`); a true singularity wants `when ... { stop }` before it;
 a tolerance below 1e-14 wants to be larger.)"},
-    Code{
-        "E303", "too many steps",
-        R"(The run needs more steps than it may take: 10 million, or what `max steps` or --max-steps say. Most often
+    Code{"E303", "too many steps",
+         R"(The run needs more steps than it may take: 10 million, or what `max steps` or --max-steps say. Most often
 the equations are stiff: a fast part of them has died out, and would come back and grow without end if the step were
 longer than about twice its time. An explicit method must then creep along although nothing happens; stability bounds
 its steps, not accuracy, and a looser tolerance does not help.
