@@ -101,6 +101,14 @@ void add_method(CLI::App& verb, ExperimentOptions& options) {
       ->excludes(verb.get_option("--atol"));
 }
 
+void add_limits(CLI::App& verb, ExperimentOptions& options) {
+  verb.add_option("--max-step", options.max_step, "The longest step a method may choose")
+      ->type_name("H")
+      ->transform(quotients())
+      ->excludes(verb.get_option("--step"));
+  verb.add_option("--max-steps", options.max_steps, "How many steps there may be")->type_name("N");
+}
+
 void refuse_option(CLI::App& verb, const std::string& name, const std::string& why) {
   verb.add_option_function<std::string>(name,
                                         [name, why](const std::string&) { throw CLI::ValidationError(name, why); })
@@ -166,6 +174,8 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
                          .to = options.until,
                          .output = options.output,
                          .parameters = std::move(*values),
+                         .max_step = options.max_step,
+                         .max_steps = options.max_steps,
                          .interrupt = &interrupt_flag()};
   if (!read_tolerances(*prepared.loaded.model, options, prepared.experiment)) prepared.exit = usage;
   return prepared;

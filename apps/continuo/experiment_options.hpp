@@ -22,12 +22,14 @@ struct ExperimentOptions {
   std::vector<std::string> settings;  // "k=5"
   std::optional<std::string> method;
   std::vector<std::string> tolerances, absolute_tolerances;  // "1e-8", "y2=1e-10"
-  std::optional<double> step, until, output;
+  std::optional<double> step, until, output, max_step;
+  std::optional<std::size_t> max_steps;
 
   /// The motion is the one that the model describes, by its own method: then its checks are meant for this run. Which
   /// rows of it are wanted makes no difference.
   bool as_written() const {
-    return settings.empty() && !method && tolerances.empty() && absolute_tolerances.empty() && !step && !until;
+    return settings.empty() && !method && tolerances.empty() && absolute_tolerances.empty() && !step && !until &&
+           !max_step && !max_steps;
   }
 };
 
@@ -41,6 +43,8 @@ void refuse_option(CLI::App& verb, const std::string& name, const std::string& w
 void add_tolerances(CLI::App& verb, ExperimentOptions& options);
 /// --method, --step, --tol and --atol.
 void add_method(CLI::App& verb, ExperimentOptions& options);
+/// --max-step and --max-steps, after those.
+void add_limits(CLI::App& verb, ExperimentOptions& options);
 
 /// A model made ready for a run, or how the verb ends without one; what is wrong has been said.
 struct Prepared {

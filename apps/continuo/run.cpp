@@ -80,6 +80,7 @@ void add_run(CLI::App& app, ExitCode& exit) {
   auto request = std::make_shared<RunRequest>();
   add_experiment(*verb, request->experiment);
   add_method(*verb, request->experiment);
+  add_limits(*verb, request->experiment);
   add_outputs(*verb, request->outputs);
   add_record(*verb, request->record);
   verb->add_flag("--estimate-error", request->estimate_error,

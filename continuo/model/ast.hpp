@@ -195,7 +195,8 @@ struct OutputLogarithmic {
 struct OutputSteps {};
 using OutputTimes = std::variant<OutputEvery, OutputLogarithmic, OutputSteps>;
 
-/// `run 0..60 [s] output 0.02 method dop853 tol 1e-10, abs 1e-12 realtime`; every part but the interval may be absent.
+/// `run 0..60 [s] output 0.02 method dop853 tol 1e-10, abs 1e-12 max step 0.1 max steps 10000 realtime`; every part but
+/// the interval may be absent.
 struct Run {
   std::optional<Range> interval;  // absent only after an error
   std::optional<OutputTimes> output;
@@ -203,6 +204,8 @@ struct Run {
   std::optional<Expression> step;
   std::optional<Expression> relative_tolerance;
   std::vector<Expression> absolute_tolerance;  // empty, one for all states, or one per state
+  std::optional<Expression> max_step;
+  std::optional<Expression> max_steps;
   bool realtime = false;
 };
 

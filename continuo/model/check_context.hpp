@@ -129,6 +129,7 @@ class Checker {
   Value lookup(const ast::Name& name, Scope& scope);
   Value builtin(const ast::Name& name, const std::string& key, Scope& scope);
   Value not_constant(Span span, const std::string& name);
+  Value without_time(const ast::Name& name, const Scope& scope);
   Value unknown_name(const ast::Name& name, const std::string& key, std::string undeclared = {});
   Value not_a_value(const ast::Name& name);
   Value derivative(const ast::Name& name, std::size_t base);
@@ -170,6 +171,9 @@ class Checker {
   void count_conditions();
   void place_condition(std::size_t index, bool initial);
   void missing_conditions();
+  void solve_starts();  // check_starts.cpp
+  void refuse_in_start(std::uint32_t variable, std::string_view why, Span span);
+  void report_circle(const std::vector<std::uint32_t>& variables);
   void make_guesses();
 
   void make_equations();  // check_equations.cpp, check_counts.cpp, check_reduction.cpp
@@ -178,6 +182,7 @@ class Checker {
   void sort_out_algebraic(ModeAtWork& work);
   void solve_one_by_one(ModeAtWork& work);
   void solve_for(ModeAtWork& work, const EquationAtWork& equation, std::uint32_t base);
+  Vanishes vanishing_beside(const LinearRows& rows);
   void solve_coupled(ModeAtWork& work);
   void solve_group(ModeAtWork& work, const std::vector<std::size_t>& members, std::vector<std::uint32_t> open);
   NodeId with_solved(const ModeAtWork& work, NodeId node);
@@ -279,6 +284,7 @@ class Checker {
   void run_times(const ast::Run& run);
   void run_output(const ast::Run& run);
   void run_tolerances(const ast::Run& run);
+  void run_limits(const ast::Run& run);
   void check_method_fits();
 
   void make_plots();  // check_views.cpp
@@ -339,6 +345,7 @@ class Checker {
   std::vector<std::size_t> parameter_order_;   // definitions that are parameters, in the order of the text
   std::vector<std::size_t> evaluation_order_;  // definitions with a value, each after those it needs
   std::vector<double> registers_;              // parameters and inputs as written, the rest 0
+  std::vector<double> start_values_;           // of all variables, once the states have theirs; empty until asked for
   std::set<std::size_t> without_equation_;     // bases that have an initial value only
   std::map<std::pair<std::size_t, double>, Span> condition_seen_;  // by state and time
   std::string_view constant_what_;

@@ -2,6 +2,7 @@
 // Equations solved for their highest derivatives: each alone where it holds one, else together where they hang
 // together (accelerations coupled through a mass matrix). What has no such derivative determines an unknown.
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -73,8 +74,9 @@ void Checker::sort_out_algebraic(ModeAtWork& work) {
   const Layout& layout = model_.layout;
   for (std::size_t e = 0; e < work.equations.size(); ++e) {
     EquationAtWork& equation = work.equations[e];
-    if (!equation.holds.empty() || equation.bad) continue;
+    if (!equation.holds.empty()) continue;
     equation.used = true;
+    if (equation.bad) continue;
     const auto variables = variables_of(model_.graph, equation.residual);
     const bool has_unknown =
         std::ranges::any_of(variables, [&](std::uint32_t v) { return v >= layout.unknowns && v < layout.parameters; });
@@ -144,7 +146,23 @@ void Checker::solve_for(ModeAtWork& work, const EquationAtWork& equation, std::u
     fail("E233", equation.span, "this equation determines nothing", fmt::format("`{}` cancels", name));
   } else {
     work.solved[base] = g.divide(g.negate(linear->remainder), linear->coefficient);
+    if (!g.value(linear->coefficient))
+      model_.masses.push_back({{linear->coefficient}, {name}, work.mode, equation.span});
   }
+}
+
+/// What is too small for a pivot, at the start, beside the largest of the rows: rounding may be all of it. Before the
+/// start is known nothing is.
+Vanishes Checker::vanishing_beside(const LinearRows& rows) {
+  const bool known = std::ranges::all_of(model_.states, [](const State& state) { return state.initial.valid(); });
+  if (errors_ > 0 || !known || model_.needs_boundary_solver()) return {};
+  if (start_values_.empty()) start_values_ = start_values(model_);
+  std::vector<NodeId> entries;
+  for (const auto& row : rows) entries.insert(entries.end(), row.begin(), row.end() - 1);
+  double largest = 0;
+  for (const double entry : evaluate(model_, entries, start_values_)) largest = std::max(largest, std::abs(entry));
+  constexpr double smallest = 1e-10;
+  return [this, largest](NodeId node) { return std::abs(evaluate(model_, node, start_values_)) <= smallest * largest; };
 }
 
 /// What is left hangs together: groups of equations that share open derivatives.
@@ -199,17 +217,24 @@ void Checker::solve_group(ModeAtWork& work, const std::vector<std::size_t>& memb
          fmt::format("their highest derivatives are {}", listed(names)), "solve some of them by hand");
     return;
   }
-  const auto solution = solve_linear(model_.graph, residuals, unknowns);
+  const auto rows = linear_rows(model_.graph, residuals, unknowns);
+  const auto solution = rows ? solve_linear(model_.graph, *rows, vanishing_beside(*rows)) : std::nullopt;
   if (!solution) {
-    auto* said = fail("E232", span, fmt::format("{} cannot be solved for", listed(names)),
-                      "these equations are not linear in them, or do not determine them",
-                      "solve for the highest derivatives by hand, one equation each");
+    auto* said = rows ? fail("E237", span, fmt::format("{} are not determined", listed(names)),
+                             "the matrix before them is singular",
+                             "one of these equations repeats the others, or one of the variables is an `unknown`")
+                      : fail("E232", span, fmt::format("{} cannot be solved for", listed(names)),
+                             "these equations are not linear in them",
+                             "solve for the highest derivatives by hand, one equation each");
     for (std::size_t i = 1; said && i < members.size(); ++i) {
       said->related.push_back({work.equations[members[i]].span, "together with this"});
     }
     return;
   }
   for (std::size_t i = 0; i < open.size(); ++i) work.solved[open[i]] = (*solution)[i];
+  MassMatrix mass{{}, names, work.mode, span};
+  for (const auto& row : *rows) mass.coefficients.insert(mass.coefficients.end(), row.begin(), row.end() - 1);
+  model_.masses.push_back(std::move(mass));
 }
 
 }  // namespace continuo::model::detail

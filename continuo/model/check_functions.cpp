@@ -210,7 +210,8 @@ Value Checker::sample(const ast::Call& node, Span span, Scope& scope) {
     std::vector<std::string> names{"interp"};
     for (const Function& known : functions) names.emplace_back(known.name);
     if (world_.text) names.insert(names.end(), {"distance", "within", "ray"});
-    const std::string near = did_you_mean(node.callee.text, names);
+    std::string near = did_you_mean(node.callee.text, names);
+    if (const auto here = function_from_elsewhere(node.callee.text); !here.empty()) near = here;
     fail("E215", node.callee.span, fmt::format("there is no function `{}`", node.callee.text), {}, near);
     return bad();
   }
@@ -219,8 +220,11 @@ Value Checker::sample(const ast::Call& node, Span span, Scope& scope) {
          fmt::format("to multiply, write {}*(...)", source_.slice(node.callee.span)));
     return bad();
   }
-  Value value = lookup(node.callee, scope);
-  const auto when = time_setting(node.arguments[0], scope, "a time");
+  Scope inner = scope;
+  inner.samples = nullptr;
+  inner.moment = nullptr;
+  Value value = lookup(node.callee, inner);
+  const auto when = time_setting(node.arguments[0], inner, "a time");
   if (value.bad || !when) return bad();
   check_time_in_run(*when, node.arguments[0].span);
   const std::uint32_t variable = model_.layout.size++;

@@ -27,6 +27,9 @@ const Function* find_function(std::string_view name);
 bool is_function(std::string_view name);
 /// "one argument", "at least 2 arguments".
 std::string arguments_of(const Function& function);
+/// What is written here instead of a function, or of a number, that other languages have by this name; else nothing.
+std::string_view function_from_elsewhere(std::string_view name);
+std::string_view name_from_elsewhere(std::string_view name);
 /// How a call of it looks: "sin(...)", "atan2(..., ...)".
 std::string example_of_call(std::string_view function);
 

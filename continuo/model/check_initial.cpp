@@ -1,5 +1,6 @@
 // continuo/model/check_initial.cpp
 // x(0) = ...: initial values, or boundary values where they stand at several times.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ const Value& Checker::condition_value(std::size_t index) {
     const auto outer = std::exchange(highest_, {});
     Scope scope = condition.scope;
     scope.samples = &condition.samples;
+    scope.moment = &condition.text->time;
     condition.value = elaborate(condition.text->value, scope);
     want_number(condition.text->value, condition.value);
     highest_ = outer;
@@ -30,11 +32,14 @@ void Checker::make_conditions() {
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     ConditionText& condition = conditions_[i];
     condition.time = time_setting(condition.text->time, condition.scope, "the time of a condition");
-    if ((condition.time && condition.time->value != start_time_) || !condition.samples.empty()) all_at_start = false;
+    const auto is_elsewhere = [&](const Setting& time) { return time.value != start_time_; };
+    if (condition.time && is_elsewhere(*condition.time)) all_at_start = false;
+    if (std::ranges::any_of(condition.samples, is_elsewhere, &Sample::when)) all_at_start = false;
   }
   for (std::size_t i = 0; i < conditions_.size(); ++i) place_condition(i, all_at_start);
   if (all_at_start) {
     missing_conditions();
+    solve_starts();
   } else {
     count_conditions();
   }
@@ -64,7 +69,11 @@ void Checker::place_condition(std::size_t index, bool initial) {
   }
   const std::size_t state = base.first + static_cast<std::size_t>(primes);
   const Value& value = condition_value(index);
-  if (value.bad || !condition.time || !only_parameters(value.node, condition.text->value.span, "an initial value")) {
+  const auto stands_alone = [&] {
+    return only_parameters(value.node, condition.text->value.span, "a condition at several times",
+                           "name what changes with a time, as in x(0)");
+  };
+  if (value.bad || !condition.time || (!initial && !stands_alone())) {
     condition_seen_.try_emplace({state, 0.0}, condition.span);
     return;
   }
@@ -77,7 +86,7 @@ void Checker::place_condition(std::size_t index, bool initial) {
   }
   const NodeId node =
       in_unit(condition.text->value, value, measures_[state], "`" + with_primes(base.name, primes) + "`");
-  if (condition.time->value == start_time_ && condition.samples.empty()) {
+  if (condition.time->value == start_time_ && (initial || condition.samples.empty())) {
     model_.states[state].initial = node;
     model_.states[state].span = condition.span;
   }

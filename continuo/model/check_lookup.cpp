@@ -41,7 +41,7 @@ Value Checker::lookup(const ast::Name& name, Scope& scope) {
       if (scope.indices[i].name == name.text) return of_number(static_cast<double>(scope.indices[i].value));
     }
   }
-  if (!name.member.empty()) return member(name, scope);
+  if (!name.member.empty()) return scope.moment ? without_time(name, scope) : member(name, scope);
   const auto key = key_of(name, scope);
   if (!key) return bad();
   const Symbol* symbol = find(*key, scope.mode);
@@ -66,6 +66,7 @@ Value Checker::lookup(const ast::Name& name, Scope& scope) {
     return bad();
   }
   if (scope.constant) return not_constant(name.span, *key);
+  if (scope.moment) return without_time(name, scope);
   if (symbol->kind == Symbol::Kind::base) return derivative(name, symbol->index);
   if (name.primes > 0) {
     fail("E218", name.span, fmt::format("`{}` has no derivative", *key), "it is an unknown of an algebraic equation",
@@ -79,6 +80,14 @@ Value Checker::lookup(const ast::Name& name, Scope& scope) {
 Value Checker::not_constant(Span span, const std::string& name) {
   fail("E222", span, fmt::format("{} must be constant", constant_what_), fmt::format("`{}` changes with time", name),
        "use numbers and parameters only");
+  return bad();
+}
+
+/// In a condition `y(0) = x + 1` x is none of the numbers known at the start.
+Value Checker::without_time(const ast::Name& name, const Scope& scope) {
+  const std::string_view text = source_.slice(name.span);
+  fail("E222", name.span, "a condition names other states with their time", fmt::format("`{}` changes with time", text),
+       fmt::format("write {}({})", text, source_.slice(scope.moment->span)));
   return bad();
 }
 
@@ -147,7 +156,8 @@ Value Checker::unknown_name(const ast::Name& name, const std::string& key, std::
   if (!meaning_of_its_own(name.text).empty() || is_function(name.text)) return not_a_value(name);
   const auto family = families_.find(name.text);
   if (family == families_.end()) {
-    const std::string near = did_you_mean(name.text, all_names());
+    std::string near = did_you_mean(name.text, all_names());
+    if (const auto here = name_from_elsewhere(name.text); !here.empty()) near = here;
     if (undeclared.empty()) undeclared = fmt::format("declare it: param {} = ..., or give it an equation", name.text);
     fail("E210", name.span, fmt::format("there is no `{}`", key), {}, near.empty() ? undeclared : near);
     return bad();

@@ -144,6 +144,7 @@ void Checker::make_run() {
   run_times(*run_);
   run_output(*run_);
   run_tolerances(*run_);
+  run_limits(*run_);
   model_.run.realtime = run_->realtime;
   if (!run_->method) return;
   std::string name = run_->method->text;
@@ -166,6 +167,11 @@ void Checker::check_method_fits() {
     fail("E264", run_->method->span, "a world is moved by its own mode", {},
          "write `mode exact` or `mode fast step 1/60` in the world");
     return;
+  }
+  if (const auto& limit = run_ ? (run_->max_step ? run_->max_step : run_->max_steps) : std::nullopt; limit) {
+    if (world_.text) fail("E264", limit->span, "the steps of a world are those of its mode", {}, "leave this out");
+    if (model_.needs_boundary_solver())
+      fail("E264", limit->span, "conditions at several times are met without steps in time", {}, "leave this out");
   }
   if (!model_.run.method || !is_second_order(*model_.run.method) || errors_ > 0) return;
   const Span span = run_->method->span;
@@ -193,6 +199,26 @@ void Checker::run_times(const ast::Run& run) {
   if (model_.run.step && !(model_.run.step->value > 0)) {
     fail("E261", run.step->span, "the step must be greater than zero",
          fmt::format("this is {:g}", model_.run.step->value));
+  }
+}
+
+void Checker::run_limits(const ast::Run& run) {
+  Scope scope;
+  if (run.max_step) {
+    const Span span = run.max_step->span;
+    model_.run.max_step = time_setting(*run.max_step, scope, "the longest step");
+    if (model_.run.max_step && !(model_.run.max_step->value > 0)) {
+      fail("E261", span, "the longest step must be greater than zero",
+           fmt::format("this is {:g}", model_.run.max_step->value));
+    }
+    if (run.step) fail("E261", span, "steps that are given have no longest one", {}, "leave out `step` or `max step`");
+  }
+  if (!run.max_steps) return;
+  const auto count = whole_number(*run.max_steps, scope, "the number of steps");
+  if (count && *count < 1) {
+    fail("E261", run.max_steps->span, "at least one step is wanted", fmt::format("this is {}", *count));
+  } else if (count) {
+    model_.run.max_steps = static_cast<std::size_t>(*count);
   }
 }
 

@@ -27,8 +27,9 @@ struct Scope {
   static constexpr int no_mode = -1;
   std::vector<Index> indices = {};
   int mode = no_mode;
-  bool constant = false;                   // states and inputs are no constants; parameters are their values
-  std::vector<Sample>* samples = nullptr;  // where h(1) may stand: in checks and conditions
+  bool constant = false;                    // states and inputs are no constants; parameters are their values
+  std::vector<Sample>* samples = nullptr;   // where h(1) may stand: in checks and conditions
+  const ast::Expression* moment = nullptr;  // of a condition: what changes is named with its time, x(0)
 };
 
 /// A node with what it measures. `bad`: an error was reported, nothing more is said about it.

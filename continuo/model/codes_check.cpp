@@ -49,7 +49,7 @@ unknown a = 0 and write 0 = a - b - 1; if one of them changes with time on its o
     Code{
         "E215", "there is no such function",
         R"(sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp log ln log2 log10 sqrt cbrt pow hypot abs
-sign min max floor ceil round mod, and interp for tables. A product needs its sign: k*(x + 1), not k(x + 1).)"},
+sign min max floor ceil round mod smooth, and interp for tables. A product needs its sign: k*(x + 1), not k(x + 1).)"},
     Code{
         "E216", "wrong number of arguments",
         R"(atan2(y, x), hypot(x, y), mod(a, b), pow(a, b), interp(table, x) take two, min and max two or more, the others
@@ -78,7 +78,9 @@ A list of values must have as many as its param has members.)"},
     Code{
         "E222", "this must not change with time",
         R"(Sizes of families, indices, tolerances: numbers, params and lets made of these. The values of params, initial values
-and times of events may depend on params, too, and follow them. States, inputs and t change with time.)"},
+and times of events may depend on params, too, and follow them. States, inputs and t change with time. An initial value
+may also name other starts, y(0) = 2*x(0), and lets of states, inputs and t, which are what they are then; but no
+unknown, which is solved for when the starts are known.)"},
     Code{"E223", "there is no such body",
          R"(Bodies are declared in the world, one by one or by a pattern, whose members are counted from 1:
 
@@ -144,6 +146,13 @@ says something of the states alone. Its second derivative by time holds T:
   0 = x'^2 + y'^2 - T*(x^2 + y^2) - g*y
 
 and the states begin on the circle, with a velocity along it.)"},
+    Code{
+        "E237", "a mass matrix is singular",
+        R"(Coupled equations are solved together for their highest derivatives, which the matrix before them must allow: with
+m*x'' + m*y'' = F and m*x'' + m*y'' = G no x'' and y'' are determined, since only their sum is in the equations.
+
+Fix: see whether an equation was written twice or one is missing; a variable whose derivative no equation determines is
+an `unknown`, with an equation 0 = ... of its own.)"},
     Code{"E240", "an initial value is missing",
          R"(A variable of order n needs n values at the start: h'' needs h(0) and h'(0).)"},
     Code{"E241", "an initial value is given twice",
@@ -157,6 +166,12 @@ two for x''. A condition may name a state at another time (x(0) = x(10)). An `un
 constant to be found, and needs one condition more.)"},
     Code{"E245", "a condition stands outside of the run",
          R"(Every condition of a boundary-value problem is at a time between the ends of `run A..B`.)"},
+    Code{
+        "E246", "starts go in a circle",
+        R"(A start may name others at the same time, in whatever order they stand: S(0) = 1 - I(0) - R(0). Each is computed
+from those it names, so it cannot lead back to itself, not through a `let` either.
+
+Fix: give one state of the circle a start of its own, or solve for it by hand: x(0) = 1 - x(0)/2 is x(0) = 2/3.)"},
     Code{"E250", "there is no such mode",
          R"(`in MODE`, `go MODE` and `start in MODE` name a mode of the model: mode NAME { equations }.)"},
     Code{

@@ -25,11 +25,11 @@ the unknown has no solution beyond that place.
 
 Fix: a jump in a right-hand side wants an event (`when`, `at`); a true singularity wants `when ... { stop }` before it;
 a tolerance below 1e-14 wants to be larger.)"},
-    Code{
-        "E303", "too many steps",
-        R"(The run needs more steps than it may take. Most often the equations are stiff: a fast part of them has died out,
-and would come back and grow without end if the step were longer than about twice its time. An explicit method must then
-creep along although nothing happens; stability bounds its steps, not accuracy, and a looser tolerance does not help.
+    Code{"E303", "too many steps",
+         R"(The run needs more steps than it may take: 10 million, or what `max steps` or --max-steps say. Most often
+the equations are stiff: a fast part of them has died out, and would come back and grow without end if the step were
+longer than about twice its time. An explicit method must then creep along although nothing happens; stability bounds
+its steps, not accuracy, and a looser tolerance does not help.
 
   x'' = 1e6*(1 - x^2)*x' - x      between its jumps x hardly moves, and deviations die out within a microsecond
 
@@ -125,6 +125,14 @@ that is not positive, a number of tolerances that is not that of the states.)"},
         R"(A world is moved `exact`, from collision to collision, where under forces the paths between are integrated by `dop853`
 to a tolerance or by `rk4` with a step; or `fast` in steps, its forces by semi_implicit_euler, implicit_euler,
 central_difference or explicit_euler. Each of these names may stand behind --method.)"},
+    Code{
+        "E335", "a mass matrix is singular at the start",
+        R"(The equations are solved for their highest derivatives: m*x'' = F by a division by m, coupled ones by the matrix
+before them. With the parameters and the state of the start that is 0, or the matrix is singular, so the equations say
+nothing of these derivatives.
+
+Fix: a mass, a capacity or an inertia of 0 leaves an equation without derivative: declare `unknown x = guess` and write
+0 = F. Where only this one state is singular, start beside it.)"},
     Code{"E340", "there is no such parameter",
          R"(--set takes the names of parameters, with their index where they have one: --set k=5 --set m[2]=3.
 `continuo info FILE` lists them. Initial values are set through the parameter they use.)"},

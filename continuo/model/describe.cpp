@@ -238,6 +238,8 @@ class Writer {
     if (run.step) text += fmt::format(", step {:g}{}", run.step->value, unit);
     if (run.rtol) text += fmt::format(", tol {:g}", *run.rtol);
     if (!run.atol.empty()) text += fmt::format(", abs {:g}", fmt::join(run.atol, ", "));
+    if (run.max_step) text += fmt::format(", max step {:g}{}", run.max_step->value, unit);
+    if (run.max_steps) text += fmt::format(", max steps {}", *run.max_steps);
     if (run.realtime) text += ", in real time";
     line("\nRun\n{}", text);
     if (!model_.checks.empty()) {

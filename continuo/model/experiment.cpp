@@ -7,6 +7,7 @@
 
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/model_system.hpp>
+#include <continuo/model/singular_mass.hpp>
 #include <continuo/model/suggest.hpp>
 #include <continuo/model/world.hpp>
 #include <continuo/solve/catalogue.hpp>
@@ -34,8 +35,10 @@ class Planner {
     } else {
       set_accuracy();
       set_method();
+      set_limits();
     }
     set_output();
+    if (auto singular = singular_mass(model_, plan_.variables)) problems_.push_back(std::move(*singular));
     if (problems_.size() > before) return std::nullopt;
     return std::move(plan_);
   }
@@ -83,6 +86,25 @@ class Planner {
            experiment_.step.has_value());
     }
     set_tolerances();
+  }
+
+  /// A fixed step that a caller asks for takes the place of the model's longest one.
+  void set_limits() {
+    const bool limited = experiment_.max_step || experiment_.max_steps;
+    if (limited && model_.needs_boundary_solver())
+      fail("E333", "conditions at several times are met without steps in time", "leave out --max-step and --max-steps",
+           true);
+    plan_.max_steps = experiment_.max_steps.value_or(run_.max_steps.value_or(usual_max_steps));
+    if (plan_.max_steps == 0) fail("E333", "a run of no steps leads nowhere", "give at least --max-steps 1", true);
+    if (plan_.step > 0 && experiment_.max_step)
+      fail("E333", "steps that are given have no longest one", "leave out the step, or --max-step", true);
+    const auto longest = experiment_.max_step ? experiment_.max_step : value(run_.max_step);
+    if (plan_.step > 0 || !longest) return;
+    plan_.max_step = *longest;
+    if (!(*longest > 0)) {
+      fail("E333", fmt::format("steps of at most {} lead nowhere", *longest), "give a positive longest step",
+           experiment_.max_step.has_value());
+    }
   }
 
   bool asks_for_tolerance() const {
@@ -148,6 +170,8 @@ class Planner {
     const auto number = [&](NodeId node) {
       return node.valid() ? std::optional(evaluate(model_, node, plan_.variables)) : std::nullopt;
     };
+    if (experiment_.max_step || experiment_.max_steps)
+      return fail("E333", "the steps of a world are those of its mode", "leave out --max-step and --max-steps", true);
     plan_.method = experiment_.method.value_or(mode.fast ? "fast" : "exact");
     plan_.reason = experiment_.method ? "it was asked for" : "the world names it";
     const std::vector<std::string> names = world_methods();

@@ -27,13 +27,15 @@ struct Experiment {
   std::optional<double> output{};  // a row every so much time
   bool output_steps = false;       // a row at every step
   Overrides parameters{};
-  double max_step = std::numeric_limits<double>::infinity();
-  std::size_t max_steps = 10'000'000;
+  std::optional<double> max_step{};
+  std::optional<std::size_t> max_steps{};
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};  // of conditions at several times: with the part that is done, 0 to 1
   bool estimate_error = false;               // by a second run, a hundred times as strict
   bool keep_rows = true;                     // false: only the first and the last state, for sweeps
 };
+
+inline constexpr std::size_t usual_max_steps = 10'000'000;
 
 /// The experiment as it will run: nothing is left open.
 struct Plan {
@@ -43,6 +45,8 @@ struct Plan {
   std::vector<double> rtol_each;  // one per state where they differ, else empty
   std::vector<double> atol;       // one, or one per state
   double step = 0;                // > 0: fixed, and the tolerances say nothing
+  double max_step = std::numeric_limits<double>::infinity();
+  std::size_t max_steps = usual_max_steps;  // accepted and rejected together
   double from = 0, to = 0;
   OutputPlan::Kind output = OutputPlan::Kind::steps;
   double interval = 0;            // of Kind::every

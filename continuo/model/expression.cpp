@@ -126,31 +126,23 @@ std::vector<std::uint32_t> tables_of(const Graph& graph, NodeId node) {
   return numbers_of(graph, {&node, 1}, [](Op op) { return op >= Op::interpolate; });
 }
 
+NodeId with_arguments(Graph& graph, NodeId node, const std::function<NodeId(NodeId)>& image) {
+  const Node old = graph[node];  // a copy: the graph grows below
+  if (arity(old.op) == 0) return node;
+  const NodeId a = image(old.a);
+  if (old.op == Op::interpolate) return graph.interpolate(old.number, a);
+  if (old.op == Op::interpolate_slope) return graph.interpolate_slope(old.number, a);
+  if (arity(old.op) == 1) return graph.apply(old.op, a);
+  if (arity(old.op) == 2) return graph.apply(old.op, a, image(old.b));
+  return graph.select(a, image(old.b), image(old.c));
+}
+
 NodeId substitute(Graph& graph, NodeId node, const Replacement& replacement) {
   std::vector<NodeId> image(node.index + 1);
-  const auto of = [&](NodeId id) { return image[id.index]; };
+  const std::function<NodeId(NodeId)> of = [&](NodeId id) { return image[id.index]; };
   for (const NodeId id : reachable(graph, {&node, 1})) {
-    const Node old = graph[id];  // a copy: the graph grows below
-    NodeId& now = image[id.index];
-    switch (old.op) {
-      case Op::constant:
-        now = id;
-        break;
-      case Op::variable:
-        now = replacement(old.number).value_or(id);
-        break;
-      case Op::interpolate:
-        now = graph.interpolate(old.number, of(old.a));
-        break;
-      case Op::interpolate_slope:
-        now = graph.interpolate_slope(old.number, of(old.a));
-        break;
-      case Op::select:
-        now = graph.select(of(old.a), of(old.b), of(old.c));
-        break;
-      default:
-        now = arity(old.op) == 1 ? graph.apply(old.op, of(old.a)) : graph.apply(old.op, of(old.a), of(old.b));
-    }
+    image[id.index] =
+        graph[id].op == Op::variable ? replacement(graph[id].number).value_or(id) : with_arguments(graph, id, of);
   }
   return of(node);
 }

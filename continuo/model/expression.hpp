@@ -112,14 +112,26 @@ using Replacement = std::function<std::optional<NodeId>(std::uint32_t variable)>
 NodeId substitute(Graph& graph, NodeId node, const Replacement& replacement);
 NodeId substitute(Graph& graph, NodeId node, std::uint32_t variable, NodeId replacement);
 
+/// The same operation on the images of its arguments.
+NodeId with_arguments(Graph& graph, NodeId node, const std::function<NodeId(NodeId)>& image);
+
 /// node = coefficient*variable + remainder, neither of which contains the variable.
 struct Linear {
   NodeId coefficient, remainder;
 };
 std::optional<Linear> linear_in(Graph& graph, NodeId node, std::uint32_t variable);
 
-/// The values of `unknowns` at which every one of `residuals` is zero, if they are linear in all of them together
-/// (accelerations coupled through a mass matrix). Elimination without exchange for size: meant for a handful.
+/// One row for each of `residuals`: what stands before each of `unknowns`, and last what is left without them; if all
+/// are linear in all of them together.
+using LinearRows = std::vector<std::vector<NodeId>>;
+std::optional<LinearRows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
+                                      std::span<const std::uint32_t> unknowns);
+
+/// The values of the unknowns at which every one of the residuals is zero (accelerations coupled through a mass
+/// matrix); nothing where the matrix is singular. Elimination without exchange for size: meant for a handful. What
+/// `vanishes` says of is divided by only where nothing else is left.
+using Vanishes = std::function<bool(NodeId)>;
+std::optional<std::vector<NodeId>> solve_linear(Graph& graph, LinearRows rows, const Vanishes& vanishes = {});
 std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const NodeId> residuals,
                                                 std::span<const std::uint32_t> unknowns);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <continuo/model/format.hpp>
+#include <continuo/model/words.hpp>
 
 namespace continuo::model {
 
@@ -179,7 +180,9 @@ bool is_plain_number(const ast::Expression& expression) {
   if (const auto* binary = std::get_if<ast::Binary>(&node))
     return binary->op <= BinaryOperator::power && is_plain_number(*binary->left) && is_plain_number(*binary->right);
   const auto* call = std::get_if<ast::Call>(&node);
-  return call && std::all_of(call->arguments.begin(), call->arguments.end(), is_plain_number);
+  // Not y(0), which is what y is at a time.
+  return call && is_function(call->callee.text) && call->callee.primes == 0 && call->callee.indices.empty() &&
+         std::all_of(call->arguments.begin(), call->arguments.end(), is_plain_number);
 }
 
 std::string to_text(const ast::Expression& expression) {

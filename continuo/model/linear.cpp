@@ -1,6 +1,8 @@
 // continuo/model/linear.cpp
 // Expressions that are linear in a variable, and small systems of them.
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include <continuo/model/expression.hpp>
@@ -85,13 +87,9 @@ std::optional<Linear> linear_in(Graph& graph, NodeId node, std::uint32_t variabl
   return Linear{zero_if_absent(graph, result.coefficient), result.remainder};
 }
 
-namespace {
-
-using Rows = std::vector<std::vector<NodeId>>;  // one row per equation: a coefficient per unknown, then the remainder
-
-std::optional<Rows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
-                                std::span<const std::uint32_t> unknowns) {
-  Rows rows;
+std::optional<LinearRows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
+                                      std::span<const std::uint32_t> unknowns) {
+  LinearRows rows;
   for (NodeId remainder : residuals) {
     std::vector<NodeId> row;
     for (const std::uint32_t unknown : unknowns) {
@@ -111,33 +109,48 @@ std::optional<Rows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
   return rows;
 }
 
-/// Prefers a number as pivot: it is known not to vanish.
-bool bring_pivot(const Graph& graph, Rows& rows, std::size_t k) {
+namespace {
+
+/// Prefers a number as pivot, which stays what it is, and takes what vanishes only where there is nothing else.
+bool bring_pivot(const Graph& graph, LinearRows& rows, std::size_t k, const Vanishes& vanishes) {
   std::size_t best = rows.size();
   for (std::size_t i = k; i < rows.size(); ++i) {
     if (graph.is(rows[i][k], 0)) continue;
     if (best == rows.size() || (graph.value(rows[i][k]) && !graph.value(rows[best][k]))) best = i;
   }
   if (best == rows.size()) return false;
+  const auto is_zero = [&](std::size_t i) { return graph.is(rows[i][k], 0) || vanishes(rows[i][k]); };
+  if (vanishes && k + 1 < rows.size() && is_zero(best)) {
+    for (std::size_t i = k; i < rows.size(); ++i) {
+      if (is_zero(i)) continue;
+      best = i;
+      break;
+    }
+  }
   std::swap(rows[k], rows[best]);
   return true;
 }
 
+/// Of numbers what is left of rounding is nothing, and no pivot: 0.9 - 0.3/0.1*0.3.
+NodeId difference(Graph& graph, NodeId a, NodeId b) {
+  const auto p = graph.value(a), q = graph.value(b);
+  if (p && q && std::abs(*p - *q) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(*p))
+    return graph.constant(0);
+  return graph.subtract(a, b);
+}
+
 }  // namespace
 
-std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const NodeId> residuals,
-                                                std::span<const std::uint32_t> unknowns) {
-  const std::size_t n = unknowns.size();
-  if (residuals.size() != n) return std::nullopt;
-  auto rows = linear_rows(graph, residuals, unknowns);
-  if (!rows) return std::nullopt;
-  Rows& r = *rows;
+std::optional<std::vector<NodeId>> solve_linear(Graph& graph, LinearRows rows, const Vanishes& vanishes) {
+  const std::size_t n = rows.size();
+  LinearRows& r = rows;
   for (std::size_t k = 0; k < n; ++k) {
-    if (!bring_pivot(graph, r, k)) return std::nullopt;
+    if (!bring_pivot(graph, r, k, vanishes)) return std::nullopt;
     for (std::size_t i = k + 1; i < n; ++i) {
       if (graph.is(r[i][k], 0)) continue;
       const NodeId factor = graph.divide(r[i][k], r[k][k]);
-      for (std::size_t j = k + 1; j <= n; ++j) r[i][j] = graph.subtract(r[i][j], graph.multiply(factor, r[k][j]));
+      for (std::size_t j = k + 1; j < n; ++j) r[i][j] = difference(graph, r[i][j], graph.multiply(factor, r[k][j]));
+      r[i][n] = graph.subtract(r[i][n], graph.multiply(factor, r[k][n]));
     }
   }
   std::vector<NodeId> solution(n);
@@ -147,6 +160,13 @@ std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const No
     solution[k] = graph.divide(graph.negate(sum), r[k][k]);
   }
   return solution;
+}
+
+std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const NodeId> residuals,
+                                                std::span<const std::uint32_t> unknowns) {
+  if (residuals.size() != unknowns.size()) return std::nullopt;
+  auto rows = linear_rows(graph, residuals, unknowns);
+  return rows ? solve_linear(graph, std::move(*rows)) : std::nullopt;
 }
 
 }  // namespace continuo::model

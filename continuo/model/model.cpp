@@ -80,9 +80,11 @@ std::vector<double> start_values(const Model& model, const Overrides& overrides,
     variables[parameter.variable] =
         set != overrides.end() ? set->second : evaluate(model, parameter.expression, variables);
   }
-  for (const Input& input : model.inputs) variables[input.variable] = input.value;
+  const double start = from ? *from : model.run.from ? evaluate(model, model.run.from->node, variables) : 0.0;
+  variables[Layout::time] = start;
+  for (const Input& input : model.inputs)
+    variables[input.variable] = input.points ? input.points->value(start) : input.value;
   set_all(model, model.unknowns, &Unknown::guess, variables);
-  variables[Layout::time] = from ? *from : model.run.from ? evaluate(model, model.run.from->node, variables) : 0.0;
   set_all(model, model.states, &State::initial, variables);
   return variables;
 }

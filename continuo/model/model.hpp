@@ -85,7 +85,7 @@ struct State {
   std::string column;  // "h'"
   std::uint32_t variable;
   std::string unit;
-  NodeId initial;          // of parameters; re-evaluated when one changes
+  NodeId initial;          // of parameters, inputs at the start and t, the start; re-evaluated when one changes
   Span span;               // of its initial condition
   bool algebraic = false;  // the unknown of an equation `0 = ...`: `initial` is a guess, it stands after the others
   bool in_world = false;   // of a body, or a measure of the world: it has no equation
@@ -188,6 +188,8 @@ struct RunSettings {
   std::optional<std::string> method;  // one of the catalogue's names
   std::optional<double> rtol;
   std::vector<double> atol;  // empty, one, or one per state
+  std::optional<Setting> max_step;
+  std::optional<std::size_t> max_steps;
   bool realtime = false;
   Span span;
 };
@@ -296,6 +298,14 @@ struct AlgebraicEquation {
   Span span;
 };
 
+/// What stands before the highest derivatives of equations that were solved for them, `m*x'' + ... = 0`: row by row.
+struct MassMatrix {
+  std::vector<NodeId> coefficients;
+  std::vector<std::string> names;  // "x''"
+  std::size_t mode;
+  Span span;
+};
+
 /// `table NAME from "file.csv"`: the nodes of `interp(NAME, x)` carry its index.
 struct TableFile {
   std::string name, file;
@@ -348,6 +358,7 @@ struct Model {
   std::vector<Guess> guesses;
   std::vector<Unknown> unknowns;
   std::vector<AlgebraicEquation> algebraic;  // of every mode
+  std::vector<MassMatrix> masses;            // of every mode, those that are no numbers
 
   std::shared_ptr<const WorldDescription> world;  // null where the model has no bodies
 

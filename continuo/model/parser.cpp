@@ -44,6 +44,7 @@ constexpr std::array habits = {
     Habit{"container", "a container stands in a world: world { container (0, 0) to (20, 20) }"},
     Habit{"while", "an event is written: when h falls through 0 { ... }"},
     Habit{"method", "this is a part of the run statement: end its line with a comma to go on, or write it there"},
+    Habit{"max", "this is a part of the run statement: end its line with a comma to go on, or write it there"},
     Habit{"tol", "this is a part of the run statement: end its line with a comma to go on, or write it there"},
     Habit{"step", "this is a part of the run statement: end its line with a comma to go on, or write it there"},
     Habit{"realtime", "this is a part of the run statement: end its line with a comma to go on, or write it there"},

@@ -177,6 +177,7 @@ class Parser {
   // --- settings (parser_settings.cpp)
   ast::Run parse_run();
   bool parse_run_part(ast::Run& run);
+  void parse_limit_of_steps(ast::Run& run);
   ast::OutputTimes parse_output_times();
   void parse_tolerances(ast::Run& run, bool relative);
   ast::Plot parse_plot();

@@ -13,7 +13,7 @@ namespace {
 using ast::Expression;
 using Words = std::span<const std::string_view>;
 
-constexpr std::array<std::string_view, 6> run_parts = {"output", "method", "step", "tol", "abs", "realtime"};
+constexpr std::array<std::string_view, 7> run_parts = {"output", "method", "step", "tol", "abs", "max", "realtime"};
 
 constexpr std::array<std::string_view, 1> floor_attributes = {"color"};
 constexpr std::array<std::string_view, 4> ball_attributes = {"radius", "color", "label", "drag"};
@@ -58,14 +58,14 @@ ast::Run Parser::parse_run() {
     if (comma && current().goes_on) {
       const Span sign{current().goes_on_from, current().goes_on_from + 1};
       fail(error("E110", sign, "a part of the run is missing after `,`", "",
-                 "parts are output, method, step, tol, abs and realtime"));
+                 "parts are output, method, step, tol, abs, max step, max steps and realtime"));
     }
     if (comma && !at_statement_end() && at(TokenKind::name))
-      left_over({"output", "method", "step", "tol", "abs", "realtime"});
-    if (comma) unexpected("a part of the run after the comma: output, method, step, tol, abs or realtime");
+      left_over({"output", "method", "step", "tol", "abs", "max", "realtime"});
+    if (comma) unexpected("a part of the run after the comma: output, method, step, tol, abs, max or realtime");
     break;
   }
-  expect_statement_end({"output", "method", "step", "tol", "abs", "realtime"});
+  expect_statement_end({"output", "method", "step", "tol", "abs", "max", "realtime"});
   return run;
 }
 
@@ -78,7 +78,9 @@ bool Parser::parse_run_part(ast::Run& run) {
                      (word == "abs" && !run.absolute_tolerance.empty()) || (word == "realtime" && run.realtime);
   if (given) fail(error("E124", current().span, fmt::format("`{}` is given twice", word), "", "keep one of them"));
   advance();
-  if (word == "output") {
+  if (word == "max") {
+    parse_limit_of_steps(run);
+  } else if (word == "output") {
     run.output = parse_output_times();
   } else if (word == "method") {
     run.method = parse_identifier("the name of a method, as in `method dop853`");
@@ -90,6 +92,21 @@ bool Parser::parse_run_part(ast::Run& run) {
     parse_tolerances(run, word == "tol");
   }
   return true;
+}
+
+/// `max step 0.01`: none is longer; `max steps 10000`: there are no more.
+void Parser::parse_limit_of_steps(ast::Run& run) {
+  const bool length = at_word("step");
+  if (!length && !at_word("steps"))
+    unexpected("`step` or `steps`",
+               "write max step 0.01 for the longest step, max steps 10000 for how many there may be");
+  std::optional<Expression>& limit = length ? run.max_step : run.max_steps;
+  if (limit) {
+    fail(error("E124", current().span, fmt::format("`max {}` is given twice", spelled(current())), "",
+               "keep one of them"));
+  }
+  advance();
+  limit = parse_sum_of_terms();
 }
 
 ast::OutputTimes Parser::parse_output_times() {

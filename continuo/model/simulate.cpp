@@ -34,8 +34,8 @@ Options<ModelSystem::X> options_of(const Plan& plan, const Experiment& experimen
     }
   }
   options.step = plan.step;
-  options.max_step = experiment.max_step;
-  options.max_steps = experiment.max_steps;
+  options.max_step = std::min(plan.max_step, experiment.max_step.value_or(plan.max_step));
+  options.max_steps = experiment.max_steps.value_or(plan.max_steps);
   options.interrupt = experiment.interrupt;
   options.progress = experiment.progress;
   return options;

@@ -202,8 +202,10 @@ void append_cost(const model::Model& model, const model::Run& run, std::string& 
   const Statistics& s = run.statistics;
   const std::string control = run.plan.step > 0 ? fmt::format("step {}", short_number(run.plan.step))
                                                 : fmt::format("tol {}", range_of(run.plan.rtol_each, run.plan.rtol));
-  fmt::format_to(std::back_inserter(text), "cost    {} steps, {} rejected, {} evaluations, {} by {}, {}\n", s.steps,
-                 s.rejected, s.evaluations, duration(s.seconds), run.plan.method, control);
+  const std::string limit =
+      std::isfinite(run.plan.max_step) ? fmt::format(", max step {}", short_number(run.plan.max_step)) : "";
+  fmt::format_to(std::back_inserter(text), "cost    {} steps, {} rejected, {} evaluations, {} by {}, {}{}\n", s.steps,
+                 s.rejected, s.evaluations, duration(s.seconds), run.plan.method, control, limit);
 }
 
 }  // namespace

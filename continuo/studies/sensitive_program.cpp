@@ -100,7 +100,7 @@ void SensitiveProgram::add_equations() {
       const bool given = std::ranges::any_of(influences_, [&](const Influence& other) {
         return other.kind == Influence::Kind::initial && other.index == i;
       });
-      const NodeId node = model.states[i].initial;
+      const NodeId node = program_->with_inputs(graph, model.states[i].initial);
       NodeId start = own || given ? graph.constant(own ? 1 : 0) : by_parameters(graph, node, k);
       if (!given) {
         const NodeId by_time = model::differentiate(graph, node, model::Layout::time);

@@ -53,8 +53,8 @@ Options<std::vector<double>> options_of(const model::Plan& plan, const model::Ex
       options.rtol_each.push_back(plan.rtol_of(i));
     }
   }
-  options.max_step = experiment.max_step;
-  options.max_steps = experiment.max_steps;
+  options.max_step = plan.max_step;
+  options.max_steps = plan.max_steps;
   options.interrupt = experiment.interrupt;
   options.progress = experiment.progress;
   return options;

@@ -81,6 +81,20 @@ TEST(Run, OptionsOverrideTheModelItemByItem) {
   EXPECT_GE(lines_of(shell.read("out.csv")).size(), 2u + 9u);
 }
 
+TEST(Run, StepsMayBeLimited) {
+  const Shell shell;
+  shell.write("spring.sim", spring);
+  const auto steps = [](const Result& result) { return json::parse(result.out)["statistics"]["steps"].get<double>(); };
+  EXPECT_GE(steps(shell.run("run spring.sim --json --max-step 1/128 --until 2")), 256);
+  EXPECT_THAT(shell.run("run spring.sim --max-step 0.25").out, HasSubstr(", max step 0.25\n"));
+  const Result few = shell.run("run spring.sim --max-steps 5");
+  EXPECT_NE(few.exit, 0);
+  EXPECT_THAT(few.err, HasSubstr("error[E303]"));
+  for (const char* wrong : {"--max-step 0", "--max-step=-1", "--max-step x", "--max-steps 0", "--max-steps 2.5",
+                            "--max-step 0.1 --step 0.1"})
+    EXPECT_EQ(shell.run(std::string("run spring.sim ") + wrong).exit, 1) << wrong;
+}
+
 // Two decays, in m and in um: both end at exp(-1) of where they began.
 constexpr const char* two_sizes =
     "model TwoSizes\nparam k = 1 [1/s]\nlarge' = -k*large\nsmall' = -k*small\n"

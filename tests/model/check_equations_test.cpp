@@ -57,6 +57,11 @@ TEST(CheckEquations, TwoEquationsForOneDerivativeAreOneTooMany) {
   EXPECT_EQ(message.message, "`x'` has one equation too many");
 }
 
+TEST(CheckEquations, AnAlgebraicOneThatIsWrongIsNotOneTooMany) {
+  EXPECT_EQ(count_said("unknown v = 1\nx' = -v\n0 = v - q\nx(0) = 1\nrun 0..1\n"), 1U);
+  EXPECT_EQ(count_said("unknown v = 1 [V]\nx' = -x\n0 = v - 3 [A]\nx(0) = 1\nrun 0..1\n"), 1U);
+}
+
 TEST(CheckEquations, AMissingEquationIsNamed) {
   EXPECT_EQ(place(said("x' = v'\nx(0) = 0; v(0) = 0\nrun 0..1\n", "E230")), "1:1");
   const Said lonely = said("speed' = 1\nspeed(0) = 0\nsped(0) = 1\nrun 0..1\n", "E230");

@@ -27,12 +27,14 @@ TEST(CheckInitial, TheHighestDerivativeHasNone) {
   EXPECT_EQ(message.label, "it follows from its equation");
 }
 
-TEST(CheckInitial, ValuesMayDependOnParametersOnly) {
+TEST(CheckInitial, ValuesMayDependOnParametersAndNameStatesWithTheirTime) {
   const Model model = good("param a = 2, b = a^2\nx' = 1\nx(0) = b + 1\nrun 0..1\n");
   EXPECT_EQ(start_values(model)[1], 5);
   EXPECT_EQ(start_values(model, {{"a", 3.0}})[1], 10);
   EXPECT_EQ(start_values(model, {{"b", 7.0}})[1], 8);
-  EXPECT_EQ(place(said("x' = 1\ny' = 1\nx(0) = 1; y(0) = x + 1\nrun 0..1\n", "E222")), "3:18");
+  const Said message = said("x' = 1\ny' = 1\nx(0) = 1; y(0) = x + 1\nrun 0..1\n", "E222");
+  EXPECT_EQ(place(message), "3:18");
+  EXPECT_EQ(message.help, "write x(0)");
 }
 
 TEST(CheckInitial, TheRunMayStartElsewhere) {

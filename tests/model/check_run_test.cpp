@@ -27,6 +27,21 @@ TEST(CheckRun, EveryPartIsKept) {
   EXPECT_EQ(adaptive.run.output->per_decade, 10);
 }
 
+TEST(CheckRun, StepsMayBeLimited) {
+  const Model model = good("param d = 0.5\n" + decaying + "run 0..1 max step d/5, max steps 4*25 tol 1e-8\n");
+  EXPECT_EQ(model.run.max_step->value, 0.1);
+  EXPECT_EQ(model.run.max_steps, 100U);
+  EXPECT_EQ(model.run.rtol, 1e-8);
+  EXPECT_EQ(good("x' = 1 [m/s]\nx(0) = 0 [m]\nrun 0..1 [min] max step 6 [s]\n").run.max_step->value, 0.1);
+  for (const auto* wrong : {"max step 0", "max step -1 tol 1e-3", "max steps 0", "step 0.1 max step 0.2"})
+    EXPECT_EQ(said(decaying + "run 0..1 " + wrong + "\n", "E261").line, 4) << wrong;
+  EXPECT_EQ(place(said(decaying + "run 0..1 max steps 2.5\n", "E219")), "4:20");
+  EXPECT_EQ(place(said("x' = 1 [m/s]\nx(0) = 0 [m]\nrun 0..1 [s] max step 6 [m]\n", "E201")), "3:23");
+  EXPECT_EQ(place(said("x'' = -x\nx(0) = 0; x(1) = 1\nrun 0..1 max step 0.1\n", "E264")), "3:19");
+  EXPECT_EQ(place(said(decaying + "run 0..1 max stop 1\n", "E110")), "4:14");
+  EXPECT_EQ(place(said(decaying + "run 0..1 max step 1 max step 1\n", "E124")), "4:25");
+}
+
 TEST(CheckRun, TimesAreInTheUnitOfTheRun) {
   const Model model = good("x' = 1 [m/s]\nx(0) = 0 [m]\nat 30 [s] { mark \"half\" }\nrun 0..1 [min] output 6 [s]\n");
   EXPECT_EQ(model.run.output->interval->value, 0.1);

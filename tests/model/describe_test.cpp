@@ -42,13 +42,18 @@ at 3 { mark "three" }
   EXPECT_THAT(text, HasSubstr("{ mark \"three\" }"));
 }
 
+TEST(Describe, LimitsOfStepsAreToldWithTheRun) {
+  EXPECT_THAT(describe(good("x' = 1\nx(0) = 0\nrun 0..1 tol 1e-8 max step 0.01 max steps 5000\n")),
+              HasSubstr("tol 1e-08, max step 0.01, max steps 5000\n"));
+}
+
 TEST(Describe, WhatHappensAtALimitStandsAfterThen) {
   const std::string text = describe(good(R"(mode flight { h'' = -10 }
 mode rest { h'' = 0 }
 h(0) = 1; h'(0) = 0
-when h falls through 0 in flight { h' := -h'/2 } then { h' := 0; go rest }
+when h falls through 0 in flight { h' := -h' } then { h' := 0; go rest }
 )"));
-  EXPECT_THAT(text, HasSubstr("{ h' := -0.5*h' } then { h' := 0; go rest }\n"));
+  EXPECT_THAT(text, HasSubstr("{ h' := -h' } then { h' := 0; go rest }\n"));
 }
 
 TEST(Describe, LongFamiliesAreCounted) {

@@ -35,6 +35,17 @@ TEST(Manifest, SaysWhatWasRunAndHow) {
   EXPECT_EQ(object["hash"], manifest_hash(falling_ball().model, falling_ball().run, "0.1.0"));
 }
 
+TEST(Manifest, HoldsTheLimitsOfStepsThatWereSaid) {
+  Example limited = falling_ball();
+  json object = json::parse(manifest(limited.model, limited.run, "0.1.0"));
+  EXPECT_FALSE(object.contains("max_step") || object.contains("max_steps"));
+  limited.run.plan.max_step = 0.25;
+  limited.run.plan.max_steps = 1000;
+  object = json::parse(manifest(limited.model, limited.run, "0.1.0"));
+  EXPECT_EQ(object["max_step"], 0.25);
+  EXPECT_EQ(object["max_steps"], 1000);
+}
+
 TEST(Manifest, TheHashForgetsTheClockAndThePlaceButNotAParameter) {
   const auto hash = [](const Example& example, std::string_view version = "0.1.0") {
     return manifest_hash(example.model, example.run, version);
