@@ -6,7 +6,8 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 results=$root/build-bench/results
 cmake -S "$root" -B "$root/build-bench" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCONTINUO_BENCH=ON -DCONTINUO_TESTS=OFF \
   -DCONTINUO_APP=OFF
-cmake --build "$root/build-bench" --target event_cost tape_cost
+cmake --build "$root/build-bench" --target event_cost tape_cost enclosure_cost
 mkdir -p "$results"
 "$root/build-bench/bench/event_cost" | tee "$results/events.md"
 "$root/build-bench/bench/tape_cost" "$root/models" | tee "$results/tape.md"
+"$root/build-bench/bench/enclosure_cost" | tee "$results/enclosure.md"

@@ -40,10 +40,7 @@ std::span<const Enclosure<double>> StepEnclosure::values_over(const Step& step, 
   prepare(values_);
   auto& registers = values_.numbers;
   registers[Layout::time] = time_over(step, from, to);
-  for (const std::uint32_t i : components_) {
-    const std::span<const double> c = component(step, i);
-    registers[states_begin_ + i] = from == to ? polynomial_at(c, from) : enclose_polynomial(c, from, to).value;
-  }
+  for (const std::uint32_t i : components_) registers[states_begin_ + i] = component_over(step, i, from, to);
   tape_->evaluate<Enclosure<double>>(registers, values_.outputs);
   return values_.outputs;
 }
@@ -61,6 +58,14 @@ void StepEnclosure::prepare(Registers<Number>& registers) {
   std::ranges::transform(variables_, registers.numbers.begin(), [](double value) { return Number(value); });
   tape_->prepare<Number>(registers.numbers);
   registers.is_prepared = true;
+}
+
+Enclosure<double> StepEnclosure::component_over(const Step& step, std::size_t i, double from, double to) {
+  if (from == 0 && to == 1) {
+    const std::vector<double>* const c = step.coefficients.data();
+    return enclose_whole_polynomial<double>(step.coefficients.size(), [c, i](std::size_t j) { return c[j][i]; });
+  }
+  return from == to ? polynomial_at(component(step, i), from) : enclose_polynomial(component(step, i), from, to).value;
 }
 
 std::span<const double> StepEnclosure::component(const Step& step, std::size_t i) {
