@@ -20,7 +20,9 @@ StepEnclosure::StepEnclosure(const ModelProgram& program, std::span<const NodeId
       states_begin_(program.model.layout.states),
       variables_(variables.begin(), variables.end()),
       coefficients_(greatest_enclosed_degree + 1) {
+  reads_time_ = !program.linear_inputs.empty();  // whose tables are read by time
   for (const std::uint32_t variable : variables_of(program.model.graph, nodes)) {
+    reads_time_ = reads_time_ || variable == Layout::time;
     if (variable >= states_begin_ && variable - states_begin_ < program.model.states.size())
       components_.push_back(variable - states_begin_);
   }
@@ -29,7 +31,7 @@ StepEnclosure::StepEnclosure(const ModelProgram& program, std::span<const NodeId
 std::span<const EnclosureWithSlope<double>> StepEnclosure::over(const Step& step, double from, double to) {
   prepare(with_slopes_);
   auto& registers = with_slopes_.numbers;
-  registers[Layout::time] = {time_over(step, from, to), Enclosure<double>(step.size)};
+  if (reads_time_) registers[Layout::time] = {time_over(step, from, to), Enclosure<double>(step.size)};
   for (const std::uint32_t i : components_)
     registers[states_begin_ + i] = enclose_polynomial(component(step, i), from, to);
   tape_->evaluate<EnclosureWithSlope<double>>(registers, with_slopes_.outputs);
@@ -39,7 +41,7 @@ std::span<const EnclosureWithSlope<double>> StepEnclosure::over(const Step& step
 std::span<const Enclosure<double>> StepEnclosure::values_over(const Step& step, double from, double to) {
   prepare(values_);
   auto& registers = values_.numbers;
-  registers[Layout::time] = time_over(step, from, to);
+  if (reads_time_) registers[Layout::time] = time_over(step, from, to);
   for (const std::uint32_t i : components_) registers[states_begin_ + i] = component_over(step, i, from, to);
   tape_->evaluate<Enclosure<double>>(registers, values_.outputs);
   return values_.outputs;

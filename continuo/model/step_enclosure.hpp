@@ -54,6 +54,7 @@ class StepEnclosure {
 
   std::shared_ptr<const Tape> tape_;
   std::uint32_t states_begin_;
+  bool reads_time_;
   std::vector<std::uint32_t> components_;
   std::vector<double> variables_, coefficients_;
   Registers<EnclosureWithSlope<double>> with_slopes_;
