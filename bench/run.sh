@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Measures what events and the tape cost: bench/run.sh. Tables go to build-bench/results; RESULTS.md beside this file
-# says what they mean. Against the peers: nonstiff/run.sh and stiff/run.sh. Let the machine do nothing else meanwhile.
+# Measures what events, enclosures and the tape cost: bench/run.sh. Tables go to build-bench/results; RESULTS.md beside
+# this file says what they mean. Against the peers: nonstiff/run.sh and stiff/run.sh. Let the machine do nothing else meanwhile.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 results=$root/build-bench/results
