@@ -50,9 +50,11 @@ class StepEnclosure {
   template <class Number>
   void prepare(Registers<Number>& registers);
   std::span<const double> component(const Step& step, std::size_t i);
+  Enclosure<double> component_over(const Step& step, std::size_t i, double from, double to);
 
   std::shared_ptr<const Tape> tape_;
   std::uint32_t states_begin_;
+  bool reads_time_;
   std::vector<std::uint32_t> components_;
   std::vector<double> variables_, coefficients_;
   Registers<EnclosureWithSlope<double>> with_slopes_;

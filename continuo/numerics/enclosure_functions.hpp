@@ -38,50 +38,50 @@ bool is_within(const Enclosure<Real>& a, Real least, Real greatest) {
   return a.lo >= least && a.hi <= greatest;
 }
 
-/// The range of a wave between -1 and 1 from its values and its slopes at the ends of an interval shorter than half a
-/// period: its slope is zero once at most, and between the ends only if it has different signs there.
+/// The whole numbers k with (k + shift) pi in an angle, up to its rounding: those that just miss it may be among them.
 template <class Real>
-Enclosure<Real> wave(Real first, Real last, Real slope_first, Real slope_last) {
-  Enclosure<Real> range = widened_by<units>(std::min(first, last), std::max(first, last));
-  if (slope_first > 0 && slope_last < 0) range.hi = 1;
-  if (slope_first < 0 && slope_last > 0) range.lo = -1;
-  return within(range, Real(-1), Real(1));
+struct HalfTurns {
+  Real first, last;
+  bool none() const { return first > last; }
+  bool several() const { return first < last; }
+  bool one_is_even() const { return first == 2 * std::floor(first / 2); }
+};
+
+template <class Real>
+HalfTurns<Real> half_turns(const Enclosure<Real>& angle, Real shift) {
+  const Real from = angle.lo * std::numbers::inv_pi_v<Real>, to = angle.hi * std::numbers::inv_pi_v<Real>;
+  // A rounding each of 1/pi, of the product and of the sum, and as much again.
+  const Real rounding = 4 * std::numeric_limits<Real>::epsilon() * (std::max(std::abs(from), std::abs(to)) + 1);
+  return {std::ceil(from - shift - rounding), std::floor(to - shift + rounding)};
 }
 
-/// Shorter than half a period of sine, rounding included.
-template <class Real>
-bool is_short(const Enclosure<Real>& angle) {
-  return angle.is_bounded() && angle.hi - angle.lo < Real(3);
+/// Of a wave that has its extremes at (k + shift) pi, 1 for even k and -1 for odd.
+template <class Real, class Function>
+Enclosure<Real> wave(const Enclosure<Real>& angle, Real shift, Function&& function) {
+  if (angle.is_entire()) return angle;
+  const HalfTurns<Real> extremes = half_turns(angle, shift);
+  if (extremes.several()) return {Real(-1), Real(1)};
+  const Real first = function(angle.lo), last = function(angle.hi);
+  Enclosure<Real> range = widened_by<units>(std::min(first, last), std::max(first, last));
+  if (!extremes.none()) (extremes.one_is_even() ? range.hi : range.lo) = extremes.one_is_even() ? Real(1) : Real(-1);
+  return within(range, Real(-1), Real(1));
 }
 
 }  // namespace enclosing
 
 template <class Real>
-struct SineAndCosine {
-  Enclosure<Real> sine, cosine;
-};
-
-template <class Real>
-SineAndCosine<Real> sine_and_cosine(const Enclosure<Real>& a) {
-  if (a.is_entire()) return {a, a};
-  if (!enclosing::is_short(a)) return {{-1, 1}, {-1, 1}};
-  const Real sine_lo = std::sin(a.lo), cosine_lo = std::cos(a.lo), sine_hi = std::sin(a.hi), cosine_hi = std::cos(a.hi);
-  return {enclosing::wave(sine_lo, sine_hi, cosine_lo, cosine_hi),
-          enclosing::wave(cosine_lo, cosine_hi, -sine_lo, -sine_hi)};
-}
-
-template <class Real>
 Enclosure<Real> sin(const Enclosure<Real>& a) {
-  return sine_and_cosine(a).sine;
+  return enclosing::wave(a, Real(0.5), [](Real x) { return std::sin(x); });
 }
 template <class Real>
 Enclosure<Real> cos(const Enclosure<Real>& a) {
-  return sine_and_cosine(a).cosine;
+  return enclosing::wave(a, Real(0), [](Real x) { return std::cos(x); });
 }
 
+/// Poles are at (k + 1/2) pi.
 template <class Real>
 Enclosure<Real> tan(const Enclosure<Real>& a) {
-  if (!enclosing::is_short(a) || !(std::cos(a.lo) * std::cos(a.hi) > 0)) return Enclosure<Real>::entire();
+  if (!a.is_bounded() || !enclosing::half_turns(a, Real(0.5)).none()) return Enclosure<Real>::entire();
   return enclosing::growing(a, [](Real x) { return std::tan(x); });
 }
 
@@ -180,7 +180,7 @@ namespace enclosing {
 template <class Real>
 Enclosure<Real> any_remainder(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   const Real rounding = units * std::numeric_limits<Real>::epsilon() * a.magnitude() + underflow<Real>;
-  return {bounded_below(std::min(b.lo, Real(0)) - rounding), bounded_above(std::max(b.hi, Real(0)) + rounding)};
+  return bounded(std::min(b.lo, Real(0)) - rounding, std::max(b.hi, Real(0)) + rounding);
 }
 
 }  // namespace enclosing

@@ -183,13 +183,11 @@ EnclosureWithSlope<Real> log10(const EnclosureWithSlope<Real>& a) {
 }
 template <class Real>
 EnclosureWithSlope<Real> sin(const EnclosureWithSlope<Real>& a) {
-  const auto [sine, cosine] = sine_and_cosine(a.value);
-  return {sine, enclosing::times_slope(cosine, a)};
+  return {sin(a.value), enclosing::times_slope(cos(a.value), a)};
 }
 template <class Real>
 EnclosureWithSlope<Real> cos(const EnclosureWithSlope<Real>& a) {
-  const auto [sine, cosine] = sine_and_cosine(a.value);
-  return {cosine, enclosing::times_slope(-sine, a)};
+  return {cos(a.value), enclosing::times_slope(-sin(a.value), a)};
 }
 template <class Real>
 EnclosureWithSlope<Real> tan(const EnclosureWithSlope<Real>& a) {

@@ -106,6 +106,10 @@ class Walk {
     held_ = where;
   }
 
+  void meet_at(Real where) {
+    if (const int sign = certain_sign(value_at(where)); sign != 0) meet(sign, where);
+  }
+
   Enclosure<Real> value_at(Real theta) {
     ++result_.evaluations;
     return value_(theta);
@@ -143,10 +147,12 @@ class Walk {
   }
 
   void pass_monotone(const Piece<Real>& piece, int direction) {
+    if (held_ < piece.from) meet_at(piece.from);  // it may have jumped over what is too narrow to be looked at
+    if (result_.stopped) return;
     if (direction == result_.side) {
       held_ = piece.to;
-    } else if (const int sign = certain_sign(value_at(piece.to)); sign != 0) {
-      meet(sign, piece.to);
+    } else {
+      meet_at(piece.to);
     }
   }
 
@@ -165,7 +171,8 @@ class Walk {
     const Real reach = sign > 0 ? centre.lo : sign < 0 ? -centre.hi : Real(0);
     const auto free_width = [&](Real steepness) {  // as far as the slope cannot bring the value in the middle to zero
       constexpr Real rounding = 1 - 4 * std::numeric_limits<Real>::epsilon();
-      return steepness > 0 ? rounding * reach / steepness : sign == 0 ? Real(0) : piece.to - piece.from;
+      if (sign == 0) return Real(0);
+      return steepness > 0 ? std::max(rounding * reach / steepness - least_width_, Real(0)) : piece.to - piece.from;
     };
     const Real left = free_width(sign > 0 ? slope.hi : -slope.lo), right = free_width(sign > 0 ? -slope.lo : slope.hi);
     push({std::min(middle + right, piece.to), piece.to, sign});

@@ -146,7 +146,7 @@ TEST(Enclosure, IsTightOnSingleNumbers) {
 TEST(Enclosure, WavesAreTightOnIntervals) {
   RandomNumbers random(5);
   for (int trial = 0; trial < 500; ++trial) {
-    const double from = 100 * random.unit() - 50, width = 2.9 * random.unit();
+    const double from = 100 * random.unit() - 50, width = 8 * random.unit();
     double least = 1, greatest = -1;
     for (int k = 0; k <= 1000; ++k) {
       const double value = std::sin(from + width * k / 1000);

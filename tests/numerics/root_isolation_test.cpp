@@ -131,6 +131,16 @@ TEST(RootIsolation, KinksAndJumpsAreCrossed) {
   expect_roots(isolate([](const Curve& t) { return Curve(1.0) / (t - Curve(3.3)); }, 0, 10, -1), {3.3});
 }
 
+// From each jump down it grows through zero again, steadily: who looks only at slopes and ends of pieces sees nothing.
+TEST(RootIsolation, JumpsBackAreCrossingsOfTheirOwn) {
+  for (const double height : {0.5, 1e-3, 1e-9}) {
+    const auto teeth = [&](const Curve& t) { return mod(t, Curve(0.7)) - Curve(height); };
+    std::vector<double> roots;
+    for (int k = 1; k <= 4; ++k) roots.insert(roots.end(), {0.7 * k, 0.7 * k + height});
+    expect_roots(isolate(teeth, 0.65, 3.4, 1, {.budget = 10000}), roots);
+  }
+}
+
 TEST(RootIsolation, JumpsEndWithNeighbouringNumbersOrAFewRoundingsApart) {
   const Found found = isolate([](const Curve& t) { return sign(t - Curve(3.3)); }, 0, 10, -1);
   ASSERT_EQ(found.crossings.size(), 1u);
