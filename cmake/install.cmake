@@ -28,7 +28,9 @@ install(FILES ${PROJECT_BINARY_DIR}/ContinuoConfig.cmake ${PROJECT_BINARY_DIR}/C
         DESTINATION ${package_folder})
 
 if(TARGET continuo)
+  get_property(modules GLOBAL PROPERTY CONTINUO_MODULE_TARGETS)
   install(TARGETS continuo)
+  install(TARGETS ${modules} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/continuo OPTIONAL)

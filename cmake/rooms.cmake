@@ -3,34 +3,39 @@
 # a file proves that it includes what it uses.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 
-# continuo_room(NAME [FUZZED] [ROOMS ...] [PARTS ...] [BRIEF ...] [ALONE ...]): one library for a folder of continuo/,
-# static when it has sources. The target is continuo_NAME, Continuo::NAME to those who find the package.
+# continuo_room(NAME [FUZZED] [ROOMS ...] [PARTS ...] [BRIEF ...] [ALONE ...] [LOADED ...]): one library for a folder of
+# continuo/, static when it has sources. The target is continuo_NAME, Continuo::NAME to those who find the package.
 #   FUZZED  it reads what others wrote, and counts its branches for the fuzzer where the sanitizers are on.
 #   BRIEF   its sources (without .cpp, as patterns) that run for milliseconds: compiled in half the time, with -O1.
 #   ALONE   those that compute, or are large: never joined, so that what is inlined in them hangs on themselves alone.
+#   LOADED  those that the command loads when they are asked for (modules.cmake): alone, and fit for a shared library.
 function(continuo_room name)
-  cmake_parse_arguments(room "FUZZED" "" "ROOMS;PARTS;BRIEF;ALONE" ${ARGN})
+  cmake_parse_arguments(room "FUZZED" "" "ROOMS;PARTS;BRIEF;ALONE;LOADED" ${ARGN})
   set(folder ${PROJECT_SOURCE_DIR}/continuo/${name})
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   list(TRANSFORM room_ROOMS PREPEND continuo_)
   if(sources)
     continuo_sources(brief ${folder} ${room_BRIEF})
     continuo_sources(alone ${folder} ${room_ALONE})
-    list(REMOVE_ITEM sources ${brief})
+    continuo_sources(loaded ${folder} ${room_LOADED})
+    list(REMOVE_ITEM sources ${brief} ${loaded})
     set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     add_library(continuo_${name} STATIC ${sources})
     set(scope PUBLIC)
     continuo_room_flags(continuo_${name})
     if(brief)
-      add_library(continuo_${name}_brief OBJECT ${brief})
-      continuo_room_flags(continuo_${name}_brief)
-      target_include_directories(continuo_${name}_brief PRIVATE ${PROJECT_SOURCE_DIR})
-      target_link_libraries(continuo_${name}_brief PRIVATE ${room_ROOMS} ${room_PARTS})
+      continuo_room_objects(continuo_${name}_brief ${brief})
       if(NOT CONTINUO_SANITIZE)
         target_compile_options(continuo_${name}_brief PRIVATE -O1)
       endif()
-      target_sources(continuo_${name} PRIVATE $<TARGET_OBJECTS:continuo_${name}_brief>)
     endif()
+    foreach(source IN LISTS loaded)
+      cmake_path(GET source STEM stem)
+      continuo_room_objects(continuo_${name}_${stem} ${source})
+      # Other code than what the precompiled headers were made for.
+      set_target_properties(continuo_${name}_${stem} PROPERTIES POSITION_INDEPENDENT_CODE ON
+                                                                DISABLE_PRECOMPILE_HEADERS ON)
+    endforeach()
   else()
     add_library(continuo_${name} INTERFACE)
     set(scope INTERFACE)
@@ -53,6 +58,15 @@ function(continuo_sources result folder)
   endif()
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
+
+# Sources of the room that are compiled in their own way. With the arguments of continuo_room that it is called from.
+macro(continuo_room_objects target)
+  add_library(${target} OBJECT ${ARGN})
+  continuo_room_flags(${target})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE ${room_ROOMS} ${room_PARTS})
+  target_sources(continuo_${name} PRIVATE $<TARGET_OBJECTS:${target}>)
+endmacro()
 
 # With the arguments of continuo_room that it is called from.
 macro(continuo_room_flags target)

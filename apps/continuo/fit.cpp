@@ -11,6 +11,7 @@
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/influences.hpp>
 #include <apps/continuo/models.hpp>
+#include <apps/continuo/modules.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -287,7 +288,7 @@ bool strict_enough(const model::Experiment& experiment) {
 }
 
 ExitCode fit(const FitOptions& options) {
-  if (!drawable(options.plot)) return usage;
+  if (!drawable(options.plot) || !loadable(least_squares_module)) return usage;
   Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   if (!strict_enough(prepared.experiment)) return usage;

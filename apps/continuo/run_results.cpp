@@ -3,6 +3,7 @@
 
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/models.hpp>
+#include <apps/continuo/modules.hpp>
 #include <apps/continuo/run_results.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
@@ -89,6 +90,7 @@ void print_no_run(std::span<const model::Diagnostic> diagnostics, const model::S
 }
 
 bool can_be_written(const RunOutputs& outputs) {
+  if (results::is_netcdf(outputs.motion) && !loadable(netcdf_module)) return false;
   return writable(outputs.motion) && writable(outputs.events) && writable(outputs.manifest) && drawable(outputs.plot);
 }
 

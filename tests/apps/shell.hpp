@@ -35,9 +35,12 @@ class Shell {
 
   /// `before` stands before the command: variables, `timeout`.
   Result run(const std::string& arguments, const std::string& before = "") const {
-    const std::string line = "cd '" + folder_.string() + "' && " + before + " '" CONTINUO_COMMAND "' " + arguments +
-                             " >.out 2>.err </dev/null";
-    const int status = std::system(line.c_str());
+    return call(before + " '" CONTINUO_COMMAND "' " + arguments);
+  }
+  /// Any line of the shell's.
+  Result call(const std::string& line) const {
+    const std::string inside = "cd '" + folder_.string() + "' && { " + line + "; } >.out 2>.err </dev/null";
+    const int status = std::system(inside.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(".out"), read(".err")};
   }
 

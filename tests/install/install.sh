@@ -9,5 +9,17 @@ trap 'rm -rf "$prefix"' EXIT
 "$cmake" --install "$build" --prefix "$prefix" >/dev/null
 "$cmake" -S "$here/consumer" -B "$prefix/consumer" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 "$cmake" --build "$prefix/consumer"
-"$prefix/consumer/consumer"
-if [[ -x $prefix/bin/continuo ]]; then "$prefix/bin/continuo" --version; fi
+cd "$prefix"
+consumer/consumer
+if [[ ! -x bin/continuo ]]; then exit 0; fi
+
+# The parts that the command loads lie in another folder than beside it, as they did where it was built; and all of them
+# can be moved, and be called through a link.
+mkdir moved
+mv bin lib* moved/
+ln -s moved/bin/continuo command
+./command --version
+printf 'param a = 1\nx\x27 = -a*x\nx(0) = 1\nrun 0..2 output 1\n' >decay.sim
+printf 't,x\n0,1\n1,0.1353352832366127\n2,0.01831563888873418\n' >measured.csv
+./command run decay.sim -o decay_of_command.nc
+./command fit decay.sim measured.csv --param a

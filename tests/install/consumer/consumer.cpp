@@ -4,7 +4,9 @@
 #include <continuo/methods/tsitouras5.hpp>
 #include <continuo/model/load.hpp>
 #include <continuo/model/simulate.hpp>
+#include <continuo/results/netcdf.hpp>
 #include <continuo/solve/solve.hpp>
+#include <continuo/studies/least_squares.hpp>
 
 int main() {
   const auto decay = [](double, const std::array<double, 1>& x) { return std::array{-x[0]}; };
@@ -16,5 +18,17 @@ int main() {
   const double exact = std::exp(-1.0);
   const bool same =
       std::abs(solution.final_state()[0] - exact) < 1e-8 && std::abs(simulated.run->final_state()[0] - exact) < 1e-8;
-  return same ? 0 : 2;
+  if (!same) return 2;
+
+  // What the command loads when it is asked for, a program that links the library has in it.
+  const auto found = continuo::studies::least_squares(
+      {.start = {1},
+       .residuals = 1,
+       .evaluate = [](std::span<const double> p, std::span<double> r, std::span<double> rows) {
+         r[0] = p[0] - 2;
+         if (!rows.empty()) rows[0] = 1;
+         return true;
+       }});
+  if (!found.found || std::abs(found.p[0] - 2) > 1e-8) return 3;
+  return continuo::results::write_netcdf(*loaded.model, *simulated.run, "decay.nc", "") ? 4 : 0;
 }

@@ -1,0 +1,55 @@
+// A netCDF-4 file as a value, and its writing. Only netcdf_file.cpp knows the library; nothing here knows a model.
+//
+//   NetcdfFile file;
+//   const std::size_t time = file.dimension("time", 3);
+//   file.variable({.name = "x", .dimensions = {time}, .values = [] { return std::vector{0.0, 1.0, 4.0}; }});
+//   if (auto failure = write_netcdf_file(file, "x.nc")) fmt::print(stderr, "{}\n", *failure);
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace continuo::results {
+
+struct NetcdfAttribute {
+  std::string name, text;  // without text: left out
+};
+
+struct NetcdfDimension {
+  std::string name;
+  std::size_t size = 0;
+};
+
+struct NetcdfVariable {
+  /// Asked for when the file has come to them, so that those of one variable at a time are in memory.
+  using Numbers = std::function<std::vector<double>()>;
+  using Texts = std::vector<std::string>;
+
+  std::string name;
+  std::vector<std::size_t> dimensions{};  // places in NetcdfFile::dimensions; the last one's index runs fastest
+  std::vector<NetcdfAttribute> attributes{};
+  std::variant<Numbers, Texts> values{};
+  bool integers = false;  // stored as such
+};
+
+struct NetcdfFile {
+  std::vector<NetcdfAttribute> attributes;
+  std::vector<NetcdfDimension> dimensions;
+  std::vector<NetcdfVariable> variables;
+
+  /// Its place, for the variables over it.
+  std::size_t dimension(std::string name, std::size_t size) {
+    dimensions.push_back({std::move(name), size});
+    return dimensions.size() - 1;
+  }
+  void variable(NetcdfVariable variable) { variables.push_back(std::move(variable)); }
+};
+
+/// What went wrong, if anything.
+std::optional<std::string> write_netcdf_file(const NetcdfFile& file, const std::string& path);
+
+}  // namespace continuo::results

@@ -1,0 +1,94 @@
+// What is loaded when the command starts, and what when it is asked for.
+#include <filesystem>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shell.hpp"
+
+namespace continuo::app {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ContainsRegex;
+using ::testing::Each;
+using ::testing::Ge;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Le;
+using ::testing::Not;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+
+namespace fs = std::filesystem;
+
+constexpr const char* decay = "param a = 1 in 0..5\nx' = -a*x\nx(0) = 1\nrun 0..2 output 1\n";
+constexpr const char* measured = "t,x\n0,1\n1,0.1353352832366127\n2,0.01831563888873418\n";  // a = 2
+
+/// What the loader maps for a program or a library. Of the C library some parts hold nothing any more, and only the
+/// sanitizers ask for them: these are left out.
+std::vector<std::string> libraries_of(const fs::path& file) {
+  std::vector<std::string> libraries = lines_of(Shell().call("ldd '" + file.string() + "'").out);
+  const std::regex empty_ones(R"(^\s*lib(pthread|rt|dl|resolv)\.so)");
+  std::erase_if(libraries, [&](const std::string& line) { return std::regex_search(line, empty_ones); });
+  return libraries;
+}
+
+// Each costs the loader a tenth of a millisecond and more, every time that the command is called.
+TEST(Modules, StartingTheCommandLoadsFewLibraries) {
+  const std::vector<std::string> libraries = libraries_of(CONTINUO_COMMAND);
+  EXPECT_THAT(libraries, SizeIs(AllOf(Ge(8u), Le(15u)))) << ::testing::PrintToString(libraries);
+  for (const char* heavy : {"netcdf", "ceres", "glog", "blas", "lapack", "hdf5", "curl", "cholmod", "xml"})
+    EXPECT_THAT(libraries, Each(Not(HasSubstr(heavy))));
+  const fs::path folder = fs::path(CONTINUO_COMMAND).parent_path();
+  EXPECT_THAT(libraries_of(folder / "continuo_netcdf.so"), Contains(HasSubstr("libnetcdf")));
+  EXPECT_THAT(libraries_of(folder / "continuo_least_squares.so"), Contains(HasSubstr("libglog")));
+}
+
+TEST(Modules, AreFoundThroughALinkToTheCommand) {
+  Shell shell;
+  shell.write("decay.sim", decay);
+  shell.write("measured.csv", measured);
+  const Result run =
+      shell.call("ln -s '" CONTINUO_COMMAND "' link && env -u LD_LIBRARY_PATH ./link run decay.sim -o decay.nc");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(shell.read("decay.nc").substr(1), StartsWith("HDF"));
+  const Result fit = shell.call("./link fit decay.sim measured.csv --param a");
+  EXPECT_EQ(fit.exit, 0) << fit.err;
+  EXPECT_THAT(fit.out, ContainsRegex("a +(2|2\\.0000|1\\.9999)"));
+}
+
+TEST(Modules, OneThatIsMissingIsNamedBeforeTheRunWithThePlacesWhereItWasLookedFor) {
+  Shell shell;
+  shell.write("decay.sim", decay);
+  shell.write("measured.csv", measured);
+  ASSERT_EQ(shell.call("mkdir bin && cp '" CONTINUO_COMMAND "' bin").exit, 0);
+  for (const auto& [module, arguments] : {std::pair("netcdf", "run decay.sim -o decay.nc"),
+                                          std::pair("least_squares", "fit decay.sim measured.csv --param a")}) {
+    const Result result = shell.call(std::string("bin/continuo ") + arguments);
+    EXPECT_EQ(result.exit, 1);
+    EXPECT_THAT(result.out, IsEmpty());
+    const std::string file = std::string("continuo_") + module + ".so";
+    EXPECT_THAT(result.err, AllOf(HasSubstr("missing"), HasSubstr("/bin/" + file), HasSubstr("/continuo/" + file)));
+  }
+  EXPECT_FALSE(shell.has("decay.nc"));
+  const Result other = shell.call("bin/continuo run decay.sim");  // needs none of them
+  EXPECT_EQ(other.exit, 0) << other.err;
+}
+
+TEST(Modules, OneThatCannotBeOpenedIsNamedWithTheReason) {
+  Shell shell;
+  shell.write("decay.sim", decay);
+  ASSERT_EQ(shell.call("mkdir bin && cp '" CONTINUO_COMMAND "' bin").exit, 0);
+  shell.write("bin/continuo_netcdf.so", "no library");
+  const Result result = shell.call("bin/continuo run decay.sim -o decay.nc");
+  EXPECT_EQ(result.exit, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("cannot load"), HasSubstr("bin/continuo_netcdf.so: file too short")));
+}
+
+}  // namespace
+}  // namespace continuo::app
