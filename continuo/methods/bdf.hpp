@@ -349,6 +349,7 @@ struct BackwardDifferentiation {
       const Real weight = ndf::gamma<Real>(j) * one_over_alpha;
       for (std::size_t i = 0; i < n; ++i) past.data()[i] += weight * work.D[j].data()[i];
     }
+    work.memory.measures_anew = work.equations.has_mass();
     const Real asked = tolerance_as_number(work.tolerance);
     const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / asked, min(Real(0.03), sqrt(asked)));
     return newton(work.memory, target, most_iterations, [&] {

@@ -251,7 +251,8 @@ struct CollocationMethod {
 
   template <class System, State X>
   static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
-    const int evaluations = work.linear.evaluate(system, t, x, work.f, LeastIncrements(work.tolerance, h, x, work.f));
+    const int evaluations = work.linear.evaluate(system, t, x, work.f,
+                                                 LeastIncrements(work.tolerance, h, x, work.f, work.linear.has_mass()));
     ++work.costs.jacobians;
     work.has_jacobian = true;
     work.jacobian_age = 0;
@@ -264,6 +265,7 @@ struct CollocationMethod {
   static int solve(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
     collocation::guess<nodes, s>(h, work);
     if (!collocation::decompose<nodes, s>(h, work)) return 0;
+    work.memory.measures_anew = work.linear.has_mass();
     const bool converged = newton(work.memory, work.target, most_iterations<Scalar<X>>(s), [&] {
       collocation::stage_slopes<nodes, s>(system, t, x, h, work);
       return collocation::correct<nodes, s>(h, work);

@@ -228,33 +228,55 @@ struct DiagonallyImplicitRungeKutta {
     return evaluations;
   }
 
-  /// k_1 = x' where M x' = f with an M that may be singular: the increment of an implicit Euler step, so small that
-  /// only rounding is smaller, over its size; exact where M is diagonal and not zero.
+  /// k_1 = x' where M x' = f with an M that may be singular: of an unknown of an algebraic equation 0 = g it is what
+  /// keeps g at 0, g_x x' = -g_t. (c M - J) x' = c f + f_t says that for the rows without mass, and M x' = f for the
+  /// others as far as c is large. f itself is left out of the rows of a diagonal M that are 0: it is no more than what
+  /// the consistency of the start has left.
   template <class System, State X>
   static int divide_by_singular_mass(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
                                      Workspace<X>& work) {
     using Real = Scalar<X>;
-    using std::sqrt;
     X& k = work.k[0];
-    const Real small = h * sqrt(std::numeric_limits<Real>::epsilon());
+    const Real c = 1 / (h * sqrt_of_epsilon<Real>());
     work.base = k;
     int evaluations = 0;
+    for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] = is_algebraic<X>(system, i) ? Real(0) : c * k.data()[i];
     if (!is_autonomous(system)) {
-      evaluations = evaluate_time_derivative(system, t, h, x, work.base, work.z);
-      for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] += small * work.z.data()[i];
+      evaluations = slope_in_time(system, t, h, x, work.base, work.z);
+      for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] += work.z.data()[i];
     }
-    if (!work.solver.decompose(1 / small)) {
+    if (!work.solver.decompose(c)) {
       work.solver.status = StepStatus::done;
       for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] = Real(0);
     } else {
       work.solver.lu.solve(k.data());
-      for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] /= small;
     }
     if constexpr (HasMassDiagonal<System, X>) {
       for (std::size_t i = 0; i < dimension(x); ++i)
         if (!is_algebraic<X>(system, i)) k.data()[i] = work.base.data()[i] / system.mass(i);
     }
     return evaluations;
+  }
+
+  /// df/dt; of a difference with a length that h says more of than t: near t = 0 the other would be so short that
+  /// rounding is all there is to see.
+  template <class System, State X>
+  static int slope_in_time(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x, const X& fx, X& dfdt) {
+    using Real = Scalar<X>;
+    using std::abs;
+    if constexpr (HasTimeDerivative<System, X>) {
+      system.time_derivative(t, x, dfdt);
+      return 0;
+    } else {
+      const Real long_enough = Real(0.01) * abs(h);
+      const Real scale = long_enough / sqrt_of_epsilon<Real>();
+      return evaluate_time_derivative(system, t, abs(t) < scale ? (h < 0 ? -scale : scale) : h, x, fx, dfdt);
+    }
+  }
+  template <class Real>
+  static Real sqrt_of_epsilon() {
+    using std::sqrt;
+    return sqrt(std::numeric_limits<Real>::epsilon());
   }
 
   template <std::size_t s, class System, class Stiff, State X>

@@ -232,7 +232,8 @@ struct RosenbrockMethod {
     }
     if (!made_jump && work.linear_fresh) return evaluations;
     if (!work.linear.prepared()) work.linear.prepare(system, x);
-    evaluations += work.linear.evaluate(system, t, x, work.slope, LeastIncrements(work.tolerance, h, x, work.slope));
+    evaluations += work.linear.evaluate(system, t, x, work.slope,
+                                        LeastIncrements(work.tolerance, h, x, work.slope, work.linear.has_mass()));
     if (!is_autonomous(system)) evaluations += evaluate_time_derivative(system, t, h, x, work.slope, work.time_slope);
     ++work.costs.jacobians;
     work.linear_fresh = true;
