@@ -266,6 +266,7 @@ struct CollocationMethod {
     collocation::guess<nodes, s>(h, work);
     if (!collocation::decompose<nodes, s>(h, work)) return 0;
     work.memory.measures_anew = work.linear.has_mass();
+    work.memory.matrix_is_known = work.jacobian_age == 0 || !work.memory.measures_anew;
     const bool converged = newton(work.memory, work.target, most_iterations<Scalar<X>>(s), [&] {
       collocation::stage_slopes<nodes, s>(system, t, x, h, work);
       return collocation::correct<nodes, s>(h, work);

@@ -24,7 +24,8 @@ struct NewtonMemory {
   bool matrix_is_known = true;
   // Whether the rate must be that of this call, not of one before: of algebraic equations what an iteration leaves is
   // not made smaller by a smaller h, and where a diode begins to conduct, the rate of the step before says nothing. An
-  // unknown that is off stays off, and no h of the next step meets the tolerance then.
+  // unknown that is off stays off, and no h of the next step meets the tolerance then. Nor is a matrix taken at its
+  // word that lets only small corrections through, all of the same size.
   bool measures_anew = false;
 };
 
@@ -45,7 +46,9 @@ bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& 
     if (k > 0) {
       const Real rate = size / last;
       memory.rate = rate;
-      if (rate >= Real(0.99)) return memory.matrix_is_known && size <= target;  // diverging, or down to rounding
+      if (rate >= Real(0.99)) {  // diverging, or down to rounding
+        return memory.matrix_is_known && size <= (memory.measures_anew ? Real(1e-2) * target : target);
+      }
       remainder = rate / (1 - rate);
       memory.matrix_is_known = true;
       if (remainder * size * pow(rate, most - 2 - k) > target && k + 1 < most) return false;  // eq. 8.11
