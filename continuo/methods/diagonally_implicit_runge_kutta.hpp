@@ -22,6 +22,8 @@
 #include <continuo/methods/stage_solver.hpp>
 #include <continuo/methods/stiff_part.hpp>
 #include <continuo/methods/tolerance_proportionality.hpp>
+#include <continuo/methods/unknowns_between.hpp>
+#include <continuo/methods/weighted_norm.hpp>
 #include <continuo/methods/weighted_sum.hpp>
 #include <continuo/system/mass.hpp>
 
@@ -38,6 +40,7 @@ struct DiagonallyImplicitRungeKutta {
     std::array<X, Derived::tableau.is_additive() ? Derived::tableau.stages : 1> nonstiff;  // of a split system
     X base, z, error;
     StageSolver<X> solver;
+    UnknownsBetween<Derived, X> unknowns{};
     bool start_fresh = false;  // k[0] is x' at the start of the next step
     bool has_guess = false;    // k is that of the step before
   };
@@ -86,13 +89,14 @@ struct DiagonallyImplicitRungeKutta {
       const Scalar<X> part = work.error.data()[i] / tolerance.scale(i, x.data()[i], end);
       sum += part * part + (end - end);  // which is 0, if it is finite
     }
-    const Scalar<X> strict = strictness_of<Derived>(tolerance);
-    return strict * strict * sum * detail::one_over_dimension(x);
+    const Scalar<X> strict = strictness_of<Derived>(tolerance), between = work.unknowns.norm(x, x_new, tolerance);
+    return detail::greater(Scalar<X>(strict * strict * sum * detail::one_over_dimension(x)),
+                           Scalar<X>(between * between));
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     using std::abs;
-    return abs(work.error.data()[i]);
+    return detail::greater(Scalar<X>(abs(work.error.data()[i])), work.unknowns.error_of(i));
   }
 
   template <class System, State X, int Degree>
@@ -208,6 +212,11 @@ struct DiagonallyImplicitRungeKutta {
       evaluations += solver.evaluate_jacobian(stiff, t, x, h);
     }
     finish<System>(x, h, work, x_new);
+    if constexpr (Derived::error_order > 0) {
+      evaluations += work.unknowns.measure(system, t, h, x, solver.linear, solver.lu, [&](auto& interpolant) {
+        interpolate(system, t, x, h, x_new, work, interpolant);
+      });
+    }
     return evaluations;
   }
 

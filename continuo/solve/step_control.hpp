@@ -22,7 +22,7 @@ class StepControl final : public Steps<System, X> {
   using Real = Scalar<X>;
 
   StepControl(System f, X x0, Real t0, Real forward, const Options<X>& options)
-      : Base(std::move(f), x0, t0, forward), work_(M::workspace(x0)), interpolant_(x0) {
+      : Base(std::move(f), x0, t0, forward), work_(M::workspace(x0)), interpolant_(x0), origin_(t0) {
     this->jump(t0, x0, options);
   }
 
@@ -115,6 +115,7 @@ class StepControl final : public Steps<System, X> {
     return accepted();
   }
 
+  static constexpr int parts_of_run = 50;
   static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0;
 
   bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
@@ -124,8 +125,8 @@ class StepControl final : public Steps<System, X> {
     const Real room = limit - begin_;
     bool was_rejected = false, last_not_finite = false;
     Real error = 0, h = next_;
-    if (abs(h) > options.max_step) [[unlikely]]
-      h = forward_ * options.max_step;
+    if (const Real longest = longest_step(limit, options); abs(h) > longest) [[unlikely]]
+      h = forward_ * longest;
     for (std::size_t rejects = 0;; ++rejects) {
       // A step that would leave a crumb before the limit takes it along.
       const bool last = forward_ * (Real(1.01) * h - room) >= 0;
@@ -172,6 +173,16 @@ class StepControl final : public Steps<System, X> {
     }
   }
 
+  // What f does at a later time shows in no step before it: beside a solution at rest steps would grow until one of
+  // them takes a whole pulse of the input between its stages. A fiftieth of the run so far known is what somebody sees
+  // who looks at a plot of it.
+  Real longest_step(Real limit, const Options<X>& options) {
+    using std::abs, std::max, std::min;
+    if (is_autonomous(system_)) return options.max_step;
+    reach_ = max(reach_, Real(abs(limit - origin_)));
+    return min(options.max_step, reach_ / Real(parts_of_run));
+  }
+
   Real factor_after(float error_square, bool was_rejected, const Tolerance<Real>& weights, const Options<X>& options) {
     using std::min;
     float factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error_square);
@@ -213,6 +224,7 @@ class StepControl final : public Steps<System, X> {
 
   typename M::template Workspace<X> work_;
   Interpolant<X, M::dense_degree> interpolant_;
+  Real origin_, reach_{};  // the start of the run, and how far from it limits have been
 };
 
 }  // namespace continuo
