@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <continuo/solve/consistent.hpp>
 #include <continuo/solve/steps.hpp>
 
 namespace continuo {
@@ -116,6 +117,7 @@ class StepControl final : public Steps<System, X> {
   }
 
   static constexpr int parts_of_run = 50;
+  static constexpr std::size_t rejects_before_settling = 4;
   static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0;
 
   bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
@@ -167,10 +169,25 @@ class StepControl final : public Steps<System, X> {
       error = sqrt(square);
       h = h_ * factor_of_rejected(solved, finite, static_cast<float>(min(square, Real(1e30))), options);
       if constexpr (requires { M::rejected(work_, h); }) M::rejected(work_, h);
+      if constexpr (HasMassDiagonal<System, X>) {
+        if (rejects == rejects_before_settling) settle_unknowns(weights);
+      }
       if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
           interrupted(options))
         return give_up(rejects >= options.max_rejects_in_a_row, last_not_finite, error, weights, options, outcome);
     }
+  }
+
+  // An unknown that the step before has left off its equation is an error that no h makes smaller: where a diode begins
+  // to conduct, an estimate may have missed it. The unknowns alone are solved for once more, from the state as it is.
+  void settle_unknowns(const Tolerance<Real>& weights) {
+    if (!has_mass<X>(system_)) return;
+    X settled = x_begin_;
+    const Consistency found = make_consistent(system_, begin_, settled, weights);
+    statistics_.evaluations += static_cast<std::size_t>(found.evaluations);
+    if (!found) return;
+    x_begin_ = std::move(settled);
+    jumped_ = true;
   }
 
   // What f does at a later time shows in no step before it: beside a solution at rest steps would grow until one of
