@@ -56,6 +56,12 @@ struct CollocationMethod {
     }
     set_rtol(work, max(rtol, tolerance.atol_each ? rtol : tolerance.atol));
   }
+  /// Whether the fastest of the system is an oscillation, as far as somebody knows. What is left of one counts in full.
+  template <State X>
+  static void expect_oscillation(Workspace<X>& work, bool oscillates) {
+    if (work.oscillates != oscillates) work.rtol = Scalar<X>(-1);
+    work.oscillates = oscillates;
+  }
   template <State X>
   static StepStatus status(const Workspace<X>& work) {
     return work.status;
@@ -193,7 +199,8 @@ struct CollocationMethod {
 
   // The estimate is of order s + 1 in h and the method's error of order 2s: what the estimate must stay below for the
   // error to follow the tolerance is 0.1 rtol^((s+1)/2s), here as a factor on the tolerance. But the error of stiff
-  // components is of the order of the estimate, and about a tenth of it: a factor above 100 would show there.
+  // components is of the order of the estimate, and about a tenth of it: a factor above 100 would show there. That of
+  // an oscillation, which a step of several of its periods damps, is as large as the estimate.
   template <State X>
   static void set_rtol(Workspace<X>& work, const Scalar<X>& rtol) {
     using std::max, std::min, std::pow;
@@ -202,7 +209,9 @@ struct CollocationMethod {
     work.rtol = rtol;
     const Real epsilon = std::numeric_limits<Real>::epsilon();
     const Real least_rtol = max(rtol, epsilon), s = Real(static_cast<double>(work.stages));
-    work.looseness = radau ? min(Real(100), Real(0.1) * pow(min(least_rtol, Real(1)), (1 - s) / (2 * s))) : Real(1);
+    work.looseness = radau && !work.oscillates
+                         ? min(Real(100), Real(0.1) * pow(min(least_rtol, Real(1)), (1 - s) / (2 * s)))
+                         : Real(1);
     // Gauss keeps its invariants as far as its equations are solved.
     work.target = max(10 * epsilon / least_rtol, radau ? Real(0.03) * min(Real(1), work.looseness) : Real(1e-3));
   }
