@@ -20,6 +20,7 @@
 #include <continuo/methods/hermite.hpp>
 #include <continuo/methods/linearization.hpp>
 #include <continuo/methods/newton.hpp>
+#include <continuo/methods/tolerance_proportionality.hpp>
 #include <continuo/methods/weighted_norm.hpp>
 
 namespace continuo {
@@ -79,7 +80,10 @@ struct CollocationMethod {
   template <class System, State X>
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
                   Workspace<X>& work, X& x_new) {
-    if (!work.linear.prepared()) work.linear.prepare(system, x);
+    if (!work.linear.prepared()) {
+      work.linear.prepare(system, x);
+      if (work.linear.has_mass()) work.rtol = Scalar<X>(-1);  // whose looseness it is was not known yet
+    }
     if (made_jump) work.restart(least);
     int evaluations = 0;
     if (!work.has_f) {
@@ -213,6 +217,8 @@ struct CollocationMethod {
     work.looseness = radau && !work.oscillates
                          ? min(Real(100), Real(0.1) * pow(min(least_rtol, Real(1)), (1 - s) / (2 * s)))
                          : Real(1);
+    // With a mass there are constraints below the algebraic equations as a rule, and nothing holds a run to those.
+    if (work.linear.has_mass()) work.looseness = max(Real(1), work.looseness / Real(spare_of_constraints));
     // Gauss keeps its invariants as far as its equations are solved.
     work.target = max(10 * epsilon / least_rtol, radau ? Real(0.03) * min(Real(1), work.looseness) : Real(1e-3));
   }

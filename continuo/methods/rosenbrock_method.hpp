@@ -99,8 +99,9 @@ struct RosenbrockMethod {
       sum += ratio * ratio + (end - end);  // which is 0, if it is finite
     });
     const Scalar<X> between = work.unknowns.norm(x, x_new, tolerance);
+    const Scalar<X> spare(work.linear.has_mass() ? spare_of_constraints * spare_of_constraints : 1);
     const Scalar<X> square =
-        detail::greater(detail::total<X>(sum) * detail::one_over_dimension(x), Scalar<X>(between * between));
+        detail::greater(spare * detail::total<X>(sum) * detail::one_over_dimension(x), Scalar<X>(between * between));
     if constexpr (!estimates_its_own_error<Derived>()) return square;
     // Errors that die out must be below the tolerance; those that stay must be so once they are added up.
     const Scalar<X> lasting = strictness_of<Derived>(tolerance) * weighted_norm(work.product, x, x_new, tolerance);
