@@ -84,7 +84,8 @@ struct Switching {
       const bool change = work.is_stiff ? explicit_would_do(system, t, x, h, work, evaluations)
                                         : stiff_would_help(system, t, x, h, work, evaluations);
       work.in_favour = change ? work.in_favour + 1 : 0;
-      const bool felt_by_now = work.in_favour == 0 && work.watch.radius() * work.h > Scalar<X>(5 * felt);
+      const bool felt_by_now = work.steps >= least_probes_at_start && work.in_favour == 0 &&
+                               work.watch.radius() * work.h > Scalar<X>(5 * felt);
       work.begins = work.begins && work.steps + 1 < most_probes_at_start && !felt_by_now;
     }
     work.h = h < 0 ? -h : h;
@@ -169,12 +170,12 @@ struct Switching {
   static constexpr std::size_t probe_every = 8, least_patience = 3;
   // At the start there is a probe in each step until lambda is felt: before the errors of an explicit method have set
   // off an oscillation that the solution does not have.
-  static constexpr std::size_t most_probes_at_start = 12;
+  static constexpr std::size_t least_probes_at_start = 5, most_probes_at_start = 12;
   static constexpr double felt = 0.1, strictness_at_start = 10;
   static constexpr double least_part_of_turn = NonStiff::order < 8 ? 0.04 : 0.25;  // h |lambda|
   // Steps of an oscillation whose errors may be as large as the tolerance. Nothing damps them; from there on those of
   // the n-th are held below 1/n of that, so that their sum grows with log n alone.
-  static constexpr std::size_t free_turns = 6;
+  static constexpr std::size_t free_turns = 5;
   static constexpr int worthwhile = 8;  // a stiff step costs some three to ten explicit ones
 
   // Steps that have become a small part of a turn gain nothing any more: rounding is what they follow.
