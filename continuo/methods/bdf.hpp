@@ -183,6 +183,9 @@ struct BackwardDifferentiation {
   template <State X>
   static void rejected(Workspace<X>& work, const Scalar<X>&) {
     work.equal_steps = 0;
+    // A Jacobian of where the prediction went, far from the solution: a diode that conducts there by exp(400) lets no
+    // correction through, and whatever the next try begins with would pass for solved.
+    if (work.equations.has_mass()) work.has_jacobian = false;
     // The higher differences are the first to be spoilt where the solution is not smooth.
     if (++work.rejections >= 2 && work.order > 1) --work.order;
   }
@@ -349,6 +352,8 @@ struct BackwardDifferentiation {
       const Real weight = ndf::gamma<Real>(j) * one_over_alpha;
       for (std::size_t i = 0; i < n; ++i) past.data()[i] += weight * work.D[j].data()[i];
     }
+    work.memory.measures_anew = work.equations.has_mass();
+    work.memory.matrix_is_known = work.is_current || !work.memory.measures_anew;
     const Real asked = tolerance_as_number(work.tolerance);
     const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / asked, min(Real(0.03), sqrt(asked)));
     return newton(work.memory, target, most_iterations, [&] {

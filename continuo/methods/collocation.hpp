@@ -20,6 +20,8 @@
 #include <continuo/methods/hermite.hpp>
 #include <continuo/methods/linearization.hpp>
 #include <continuo/methods/newton.hpp>
+#include <continuo/methods/tolerance_proportionality.hpp>
+#include <continuo/methods/weighted_norm.hpp>
 
 namespace continuo {
 
@@ -56,6 +58,12 @@ struct CollocationMethod {
     }
     set_rtol(work, max(rtol, tolerance.atol_each ? rtol : tolerance.atol));
   }
+  /// Whether the fastest of the system is an oscillation, as far as somebody knows. What is left of one counts in full.
+  template <State X>
+  static void expect_oscillation(Workspace<X>& work, bool oscillates) {
+    if (work.oscillates != oscillates) work.rtol = Scalar<X>(-1);
+    work.oscillates = oscillates;
+  }
   template <State X>
   static StepStatus status(const Workspace<X>& work) {
     return work.status;
@@ -72,7 +80,10 @@ struct CollocationMethod {
   template <class System, State X>
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
                   Workspace<X>& work, X& x_new) {
-    if (!work.linear.prepared()) work.linear.prepare(system, x);
+    if (!work.linear.prepared()) {
+      work.linear.prepare(system, x);
+      if (work.linear.has_mass()) work.rtol = Scalar<X>(-1);  // whose looseness it is was not known yet
+    }
     if (made_jump) work.restart(least);
     int evaluations = 0;
     if (!work.has_f) {
@@ -193,7 +204,8 @@ struct CollocationMethod {
 
   // The estimate is of order s + 1 in h and the method's error of order 2s: what the estimate must stay below for the
   // error to follow the tolerance is 0.1 rtol^((s+1)/2s), here as a factor on the tolerance. But the error of stiff
-  // components is of the order of the estimate, and about a tenth of it: a factor above 100 would show there.
+  // components is of the order of the estimate, and about a tenth of it: a factor above 100 would show there. That of
+  // an oscillation, which a step of several of its periods damps, is as large as the estimate.
   template <State X>
   static void set_rtol(Workspace<X>& work, const Scalar<X>& rtol) {
     using std::max, std::min, std::pow;
@@ -202,7 +214,11 @@ struct CollocationMethod {
     work.rtol = rtol;
     const Real epsilon = std::numeric_limits<Real>::epsilon();
     const Real least_rtol = max(rtol, epsilon), s = Real(static_cast<double>(work.stages));
-    work.looseness = radau ? min(Real(100), Real(0.1) * pow(min(least_rtol, Real(1)), (1 - s) / (2 * s))) : Real(1);
+    work.looseness = radau && !work.oscillates
+                         ? min(Real(100), Real(0.1) * pow(min(least_rtol, Real(1)), (1 - s) / (2 * s)))
+                         : Real(1);
+    // With a mass there are constraints below the algebraic equations as a rule, and nothing holds a run to those.
+    if (work.linear.has_mass()) work.looseness = max(Real(1), work.looseness / Real(spare_of_constraints));
     // Gauss keeps its invariants as far as its equations are solved.
     work.target = max(10 * epsilon / least_rtol, radau ? Real(0.03) * min(Real(1), work.looseness) : Real(1e-3));
   }
@@ -251,7 +267,8 @@ struct CollocationMethod {
 
   template <class System, State X>
   static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
-    const int evaluations = work.linear.evaluate(system, t, x, work.f, LeastIncrements(work.tolerance, h, x, work.f));
+    const int evaluations = work.linear.evaluate(system, t, x, work.f,
+                                                 LeastIncrements(work.tolerance, h, x, work.f, work.linear.has_mass()));
     ++work.costs.jacobians;
     work.has_jacobian = true;
     work.jacobian_age = 0;
@@ -264,6 +281,8 @@ struct CollocationMethod {
   static int solve(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
     collocation::guess<nodes, s>(h, work);
     if (!collocation::decompose<nodes, s>(h, work)) return 0;
+    work.memory.measures_anew = work.linear.has_mass();
+    work.memory.matrix_is_known = work.jacobian_age == 0 || !work.memory.measures_anew;
     const bool converged = newton(work.memory, work.target, most_iterations<Scalar<X>>(s), [&] {
       collocation::stage_slopes<nodes, s>(system, t, x, h, work);
       return collocation::correct<nodes, s>(h, work);
@@ -299,8 +318,43 @@ struct CollocationMethod {
       collocation::estimate_dense<nodes, s>(h, work);
       return estimate_radau(system, t, x, work, x_new);
     } else {
-      return estimate_gauss(system, t, h, work, x_new);
+      const int evaluations = settle_unknowns(system, t, h, work, x_new);
+      return work.status == StepStatus::done ? evaluations + estimate_gauss(system, t, h, work, x_new) : evaluations;
     }
+  }
+
+  // The end of a step of Gauss is no stage: unknowns of algebraic equations are carried over from the start by a factor
+  // of modulus 1, with all errors they ever had. They are solved for from the rest of the state there, by iterations
+  // with c M - J of a c so large that nothing else moves (E. Hairer, G. Wanner, "Solving Ordinary Differential
+  // Equations II", VI.1, the state space form).
+  template <class System, State X>
+  static int settle_unknowns(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work, X& x_new) {
+    using Real = Scalar<X>;
+    using std::sqrt;
+    const std::size_t n = dimension(x_new);
+    bool any = false;
+    for (std::size_t i = 0; i < n && work.linear.has_mass(); ++i) any = any || work.linear.is_without_mass(i);
+    if (!any) return 0;
+    if (!work.lu.factor(work.linear, Real(1 / (h * sqrt(std::numeric_limits<Real>::epsilon()))))) {
+      work.status = StepStatus::singular_matrix;
+      return 0;
+    }
+    ++work.costs.decompositions;
+    NewtonMemory<Real> memory{};
+    memory.measures_anew = true;
+    const bool settled = newton(memory, work.target, 2 * most_iterations<Real>(2), [&] {
+      evaluate(system, Real(t + h), x_new, work.f_end);
+      for (std::size_t i = 0; i < n; ++i)
+        if (!work.linear.is_without_mass(i)) work.f_end.data()[i] = Real(0);
+      work.lu.solve(work.f_end.data());
+      for (std::size_t i = 0; i < n; ++i) {
+        if (!work.linear.is_without_mass(i)) work.f_end.data()[i] = Real(0);
+        x_new.data()[i] += work.f_end.data()[i];
+      }
+      return weighted_norm(work.f_end, x_new, x_new, work.tolerance);
+    });
+    if (!settled) work.status = memory.finite ? StepStatus::newton_diverged : StepStatus::not_finite;
+    return memory.iterations;
   }
 
   // f is to blame where one of its components is not finite: x_new takes it over, for the driver to name.

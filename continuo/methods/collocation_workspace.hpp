@@ -74,7 +74,7 @@ struct Workspace {
   std::size_t ahead_degree = 0;  // 0: there is none
   std::size_t steps_of_order = 0;
   std::size_t jacobian_age = 0;  // accepted steps since it was evaluated
-  bool has_jacobian = false, has_f = false, was_rejected = false;
+  bool has_jacobian = false, has_f = false, was_rejected = false, oscillates = false;
 
   void restart(std::size_t first_stages) {
     if (stages != first_stages) rtol = Real(-1);

@@ -46,6 +46,14 @@ class ConstantMass {
   /// Entry i of the diagonal, where M is one; entry i of the rows, where it is a matrix.
   const Real& operator[](std::size_t i) const { return entries_[i]; }
 
+  /// Whether row and column i are.
+  bool is_zero(std::size_t i, std::size_t size) const {
+    if (kind_ != Kind::matrix) return kind_ == Kind::diagonal && entries_[i] == Real(0);
+    for (std::size_t j = 0; j < size; ++j)
+      if (entries_[i * size + j] != Real(0) || entries_[j * size + i] != Real(0)) return false;
+    return true;
+  }
+
   /// Empty where M is the identity.
   std::span<const Real> diagonal() const {
     return kind_ == Kind::diagonal ? std::span<const Real>(entries_) : std::span<const Real>();

@@ -22,6 +22,8 @@
 #include <continuo/methods/stage_solver.hpp>
 #include <continuo/methods/stiff_part.hpp>
 #include <continuo/methods/tolerance_proportionality.hpp>
+#include <continuo/methods/unknowns_between.hpp>
+#include <continuo/methods/weighted_norm.hpp>
 #include <continuo/methods/weighted_sum.hpp>
 #include <continuo/system/mass.hpp>
 
@@ -38,6 +40,7 @@ struct DiagonallyImplicitRungeKutta {
     std::array<X, Derived::tableau.is_additive() ? Derived::tableau.stages : 1> nonstiff;  // of a split system
     X base, z, error;
     StageSolver<X> solver;
+    UnknownsBetween<Derived, X> unknowns{};
     bool start_fresh = false;  // k[0] is x' at the start of the next step
     bool has_guess = false;    // k is that of the step before
   };
@@ -86,13 +89,14 @@ struct DiagonallyImplicitRungeKutta {
       const Scalar<X> part = work.error.data()[i] / tolerance.scale(i, x.data()[i], end);
       sum += part * part + (end - end);  // which is 0, if it is finite
     }
-    const Scalar<X> strict = strictness_of<Derived>(tolerance);
-    return strict * strict * sum * detail::one_over_dimension(x);
+    const Scalar<X> strict = strictness_of<Derived>(tolerance), between = work.unknowns.norm(x, x_new, tolerance);
+    return detail::greater(Scalar<X>(strict * strict * sum * detail::one_over_dimension(x)),
+                           Scalar<X>(between * between));
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     using std::abs;
-    return abs(work.error.data()[i]);
+    return detail::greater(Scalar<X>(abs(work.error.data()[i])), work.unknowns.error_of(i));
   }
 
   template <class System, State X, int Degree>
@@ -208,6 +212,11 @@ struct DiagonallyImplicitRungeKutta {
       evaluations += solver.evaluate_jacobian(stiff, t, x, h);
     }
     finish<System>(x, h, work, x_new);
+    if constexpr (Derived::error_order > 0) {
+      evaluations += work.unknowns.measure(system, t, h, x, solver.linear, solver.lu, [&](auto& interpolant) {
+        interpolate(system, t, x, h, x_new, work, interpolant);
+      });
+    }
     return evaluations;
   }
 
@@ -228,33 +237,55 @@ struct DiagonallyImplicitRungeKutta {
     return evaluations;
   }
 
-  /// k_1 = x' where M x' = f with an M that may be singular: the increment of an implicit Euler step, so small that
-  /// only rounding is smaller, over its size; exact where M is diagonal and not zero.
+  /// k_1 = x' where M x' = f with an M that may be singular: of an unknown of an algebraic equation 0 = g it is what
+  /// keeps g at 0, g_x x' = -g_t. (c M - J) x' = c f + f_t says that for the rows without mass, and M x' = f for the
+  /// others as far as c is large. f itself is left out of the rows of a diagonal M that are 0: it is no more than what
+  /// the consistency of the start has left.
   template <class System, State X>
   static int divide_by_singular_mass(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
                                      Workspace<X>& work) {
     using Real = Scalar<X>;
-    using std::sqrt;
     X& k = work.k[0];
-    const Real small = h * sqrt(std::numeric_limits<Real>::epsilon());
+    const Real c = 1 / (h * sqrt_of_epsilon<Real>());
     work.base = k;
     int evaluations = 0;
+    for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] = is_algebraic<X>(system, i) ? Real(0) : c * k.data()[i];
     if (!is_autonomous(system)) {
-      evaluations = evaluate_time_derivative(system, t, h, x, work.base, work.z);
-      for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] += small * work.z.data()[i];
+      evaluations = slope_in_time(system, t, h, x, work.base, work.z);
+      for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] += work.z.data()[i];
     }
-    if (!work.solver.decompose(1 / small)) {
+    if (!work.solver.decompose(c)) {
       work.solver.status = StepStatus::done;
       for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] = Real(0);
     } else {
       work.solver.lu.solve(k.data());
-      for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] /= small;
     }
     if constexpr (HasMassDiagonal<System, X>) {
       for (std::size_t i = 0; i < dimension(x); ++i)
         if (!is_algebraic<X>(system, i)) k.data()[i] = work.base.data()[i] / system.mass(i);
     }
     return evaluations;
+  }
+
+  /// df/dt; of a difference with a length that h says more of than t: near t = 0 the other would be so short that
+  /// rounding is all there is to see.
+  template <class System, State X>
+  static int slope_in_time(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x, const X& fx, X& dfdt) {
+    using Real = Scalar<X>;
+    using std::abs;
+    if constexpr (HasTimeDerivative<System, X>) {
+      system.time_derivative(t, x, dfdt);
+      return 0;
+    } else {
+      const Real long_enough = Real(0.01) * abs(h);
+      const Real scale = long_enough / sqrt_of_epsilon<Real>();
+      return evaluate_time_derivative(system, t, abs(t) < scale ? (h < 0 ? -scale : scale) : h, x, fx, dfdt);
+    }
+  }
+  template <class Real>
+  static Real sqrt_of_epsilon() {
+    using std::sqrt;
+    return sqrt(std::numeric_limits<Real>::epsilon());
   }
 
   template <std::size_t s, class System, class Stiff, State X>

@@ -40,7 +40,7 @@ class DirectEquations {
   int linearize(System& system, const Real& t, const X& x, const Real& h, const Tolerance<Real>& tolerance, X& f) {
     evaluate(system, t, x, f);
     ++costs_.jacobians;
-    return 1 + linear_.evaluate(system, t, x, f, LeastIncrements(tolerance, h, x, f));
+    return 1 + linear_.evaluate(system, t, x, f, LeastIncrements(tolerance, h, x, f, has_mass()));
   }
   template <class System>
   StepStatus decompose(System&, const Real& c) {

@@ -136,6 +136,8 @@ class Linearization {
   std::span<const Real> entries() const { return rows_; }
   /// Entry p of the pattern.
   const Real& entry(std::size_t p) const { return rows_[place(p)]; }
+  /// Whether row and column i of M are zero: of the unknown of an algebraic equation.
+  bool is_without_mass(std::size_t i) const { return mass_.is_zero(i, size_); }
   Real mass(std::size_t i, std::size_t j) const {
     if (mass_.is_matrix()) return mass_[i * size_ + j];
     if (i != j) return Real(0);

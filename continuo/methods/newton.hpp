@@ -22,6 +22,11 @@ struct NewtonMemory {
   // that has nothing to do with the equations may let only tiny corrections through, and theta is near 1 or far below
   // by chance: neither says that z is near the solution.
   bool matrix_is_known = true;
+  // Whether the rate must be that of this call, not of one before: of algebraic equations what an iteration leaves is
+  // not made smaller by a smaller h, and where a diode begins to conduct, the rate of the step before says nothing. An
+  // unknown that is off stays off, and no h of the next step meets the tolerance then. Nor is a matrix taken at its
+  // word that lets only small corrections through, all of the same size.
+  bool measures_anew = false;
 };
 
 /// Iterates until what is still to come is below `target` (of a norm in which the tolerance is 1). `correct` makes one
@@ -41,12 +46,15 @@ bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& 
     if (k > 0) {
       const Real rate = size / last;
       memory.rate = rate;
-      if (rate >= Real(0.99)) return memory.matrix_is_known && size <= target;  // diverging, or down to rounding
+      if (rate >= Real(0.99)) {  // diverging, or down to rounding
+        return memory.matrix_is_known && size <= (memory.measures_anew ? Real(1e-2) * target : target);
+      }
       remainder = rate / (1 - rate);
       memory.matrix_is_known = true;
       if (remainder * size * pow(rate, most - 2 - k) > target && k + 1 < most) return false;  // eq. 8.11
     }
-    if ((memory.matrix_is_known && remainder * size <= target) || size == 0) {
+    const bool knows_rate = memory.matrix_is_known && (k > 0 || !memory.measures_anew || size <= Real(1e-4) * target);
+    if ((knows_rate && remainder * size <= target) || size == 0) {
       memory.remainder = remainder;
       if (k == 0) memory.rate = 0;
       return true;
@@ -57,19 +65,23 @@ bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& 
 }
 
 /// The least increments for a Jacobian by differences: the error of rounding in f, weighted, stays below a thousandth
-/// of 1/h in each column (A. Hindmarsh et al., "SUNDIALS", ACM TOMS 31 (2005), section 2.1, for CVODE). Where nobody
-/// takes differences, nothing is computed.
+/// of 1/h in each column (A. Hindmarsh et al., "SUNDIALS", ACM TOMS 31 (2005), section 2.1, for CVODE). That counts on
+/// 1/h, with which an error of J is compared; an algebraic equation has no such term, its column must be right by
+/// itself, and rounding is that of its terms, not of their sum f, which is near 0. So with a mass no increment is below
+/// that of Hairer & Wanner's RADAU5 for a component that is 0. Where nobody takes differences, nothing is computed.
 template <State X>
 class LeastIncrements {
  public:
   using Real = Scalar<X>;
 
-  LeastIncrements(const Tolerance<Real>& tolerance, const Real& h, const X& x, const X& fx)
-      : tolerance_(tolerance), x_(x), fx_(fx), h_(h) {}
+  LeastIncrements(const Tolerance<Real>& tolerance, const Real& h, const X& x, const X& fx, bool has_mass)
+      : tolerance_(tolerance), x_(x), fx_(fx), h_(h), has_mass_(has_mass) {}
 
   Real operator()(std::size_t j) const {
+    using std::max, std::sqrt;
     if (!(factor_ > 0)) factor_ = factor();
-    return factor_ * scale(j);
+    const Real least = factor_ * scale(j);
+    return has_mass_ ? max(least, Real(sqrt(std::numeric_limits<Real>::epsilon() / Real(100000)))) : least;
   }
 
  private:
@@ -89,6 +101,7 @@ class LeastIncrements {
   const Tolerance<Real>& tolerance_;
   const X &x_, &fx_;
   const Real h_;
+  const bool has_mass_;
   mutable Real factor_{0};
 };
 

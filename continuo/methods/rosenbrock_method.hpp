@@ -16,6 +16,7 @@
 #include <continuo/methods/newton.hpp>
 #include <continuo/methods/rosenbrock_tableau.hpp>
 #include <continuo/methods/tolerance_proportionality.hpp>
+#include <continuo/methods/unknowns_between.hpp>
 #include <continuo/methods/weighted_norm.hpp>
 #include <continuo/methods/weighted_sum.hpp>
 
@@ -35,6 +36,7 @@ struct RosenbrockMethod {
     Linearization<X> linear;
     Decomposition<X> lu;
     Tolerance<Scalar<X>> tolerance{Scalar<X>(1e-6), Scalar<X>(1e-9)};
+    UnknownsBetween<Derived, X> unknowns{};
     EquationCosts costs{};
     StepStatus status = StepStatus::done;
     bool start_fresh = false;   // slope is f at the start of the next step
@@ -72,6 +74,9 @@ struct RosenbrockMethod {
     work.costs.solutions += Derived::tableau.stages;
     if constexpr (takes_many_steps()) sum_with_rest(x, made_jump, work, x_new);
     if constexpr (estimates_its_own_error<Derived>()) filter_error(h, work);
+    evaluations += work.unknowns.measure(system, t, h, x, work.linear, work.lu, [&](auto& interpolant) {
+      interpolate(system, t, x, h, x_new, work, interpolant);
+    });
     return evaluations + static_cast<int>(Derived::tableau.stages) - 1;
   }
 
@@ -93,16 +98,19 @@ struct RosenbrockMethod {
       const detail::Unit<X> ratio = detail::row_sum<Error, X>(u, i) / detail::error_scale<X>(tolerance, i, x, x_new);
       sum += ratio * ratio + (end - end);  // which is 0, if it is finite
     });
-    const Scalar<X> square = detail::total<X>(sum) * detail::one_over_dimension(x);
+    const Scalar<X> between = work.unknowns.norm(x, x_new, tolerance);
+    const Scalar<X> spare(work.linear.has_mass() ? spare_of_constraints * spare_of_constraints : 1);
+    const Scalar<X> square =
+        detail::greater(spare * detail::total<X>(sum) * detail::one_over_dimension(x), Scalar<X>(between * between));
     if constexpr (!estimates_its_own_error<Derived>()) return square;
     // Errors that die out must be below the tolerance; those that stay must be so once they are added up.
     const Scalar<X> lasting = strictness_of<Derived>(tolerance) * weighted_norm(work.product, x, x_new, tolerance);
-    return square > lasting * lasting ? square : lasting * lasting;
+    return detail::greater(square, Scalar<X>(lasting * lasting));
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
-    return detail::size_of_sum<Error, X>(work.u, Scalar<X>(1), i);
+    return detail::greater(detail::size_of_sum<Error, X>(work.u, Scalar<X>(1), i), work.unknowns.error_of(i));
   }
 
   template <class System, State X, int Degree>
@@ -232,7 +240,8 @@ struct RosenbrockMethod {
     }
     if (!made_jump && work.linear_fresh) return evaluations;
     if (!work.linear.prepared()) work.linear.prepare(system, x);
-    evaluations += work.linear.evaluate(system, t, x, work.slope, LeastIncrements(work.tolerance, h, x, work.slope));
+    evaluations += work.linear.evaluate(system, t, x, work.slope,
+                                        LeastIncrements(work.tolerance, h, x, work.slope, work.linear.has_mass()));
     if (!is_autonomous(system)) evaluations += evaluate_time_derivative(system, t, h, x, work.slope, work.time_slope);
     ++work.costs.jacobians;
     work.linear_fresh = true;

@@ -63,7 +63,8 @@ struct StageSolver {
       evaluations = linear.evaluate(system, t, x, residual, [](std::size_t) { return Real(1); });
     } else {
       evaluate(system, t, x, residual);
-      evaluations = 1 + linear.evaluate(system, t, x, residual, LeastIncrements(tolerance, h, x, residual));
+      evaluations =
+          1 + linear.evaluate(system, t, x, residual, LeastIncrements(tolerance, h, x, residual, linear.has_mass()));
     }
     ++costs.jacobians;
     is_current = memory.matrix_is_known = true;
@@ -109,6 +110,7 @@ struct StageSolver {
       }
       return Real(sqrt(sum / Real(static_cast<double>(max<std::size_t>(n, 1)))));
     };
+    memory.measures_anew = linear.has_mass();
     bool arrived = newton(memory, target, most_iterations, correct);
     slowest = max(slowest, memory.rate);
     if (!arrived && insists && memory.finite) {

@@ -11,6 +11,10 @@
 // oscillation, of eigenvalues on the imaginary axis, that could happen and does not, or only about as far as the
 // tolerance lets it, which is what it comes to by rounding where steps are as long as stability allows: what moves with
 // lambda in x is |x''| / |lambda|^2 at most.
+//
+// Which of the two it is, decay or oscillation, is in the square of df/dx: its Rayleigh quotient along the direction of
+// the iteration is Re(lambda^2), positive for a decay and negative for an oscillation, whose own df/dx turns a
+// direction by a right angle or, where positions and velocities are measured in different units, by anything.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -27,7 +31,7 @@ class StiffnessWatch {
  public:
   using Real = Scalar<X>;
 
-  explicit StiffnessWatch(const X& x) : direction_(x), moved_(x), slope_(x) {}
+  explicit StiffnessWatch(const X& x) : direction_(x), moved_(x), slope_(x), before_(x) {}
 
   /// One evaluation of f at a distance of about one tolerance from x, where f(t, x) = fx; the direction is turned
   /// towards the dominant one.
@@ -50,16 +54,20 @@ class StiffnessWatch {
     }
     for (std::size_t i = 0; i < n; ++i) moved_.data()[i] = x.data()[i] + direction_.data()[i] / length;
     evaluate(system, t, moved_, slope_);
-    Real product(0), square(0), grown(0);
+    Real product(0), square(0), grown(0), turned(0);
     for (std::size_t i = 0; i < n; ++i) {
       const Real step = moved_.data()[i] - x.data()[i], change = slope_.data()[i] - fx.data()[i];
       const Real weight = Real(1) / squared(size_of(x.data()[i], i, tolerance));
       product += weight * step * change;
       square += weight * step * step;
       grown += weight * change * change;
+      turned += weight * before_.data()[i] * change;
       direction_.data()[i] = change;
+      before_.data()[i] = step;
     }
     if (!(square > 0)) return;
+    // With the direction before this one of the same length, of which df/dx has made this one times `length`.
+    turn_ = growth_ > 0 ? length * turned / square : Real(0);
     // Twice df/dx: of a position and its velocity each grows alone by what the other is, by 1 and by lambda^2.
     const Real growth = sqrt(grown / square);
     radius_ = growth_ > 0 ? sqrt(growth * growth_) : growth;
@@ -70,6 +78,8 @@ class StiffnessWatch {
   /// |lambda| and Re(lambda) of the dominant eigenvalue, as far as the iteration has come.
   Real radius() const { return radius_; }
   Real real_part() const { return real_part_; }
+  /// Whether it is nearer to the imaginary axis than to the real one.
+  bool oscillates() const { return turn_ < Real(-0.3) * squared(radius_); }
 
   /// Whether stiffness holds a step of this size, as of the last probe, which was made here. Adds to `evaluations`.
   template <class System>
@@ -86,7 +96,7 @@ class StiffnessWatch {
   /// the regions of the methods here reach from about 2 to 6 along the negative axis.
   bool bounds(const Real& h) const {
     using std::abs;
-    return radius_ * abs(h) > 1 && real_part_ * (h < 0 ? Real(-1) : Real(1)) < Real(-0.7) * growth_;
+    return radius_ * abs(h) > 1 && !oscillates() && real_part_ * (h < 0 ? Real(-1) : Real(1)) < Real(-0.7) * growth_;
   }
 
  private:
@@ -99,17 +109,22 @@ class StiffnessWatch {
   template <class System>
   bool follows_slow_solution(System& system, const Real& t, const X& x, const X& fx, const Real& h,
                              const Tolerance<Real>& tolerance) {
+    using std::max;
     const Real apart = (h < 0 ? Real(-felt) : Real(felt)) / radius_;
     const std::size_t n = dimension(x);
     for (std::size_t i = 0; i < n; ++i) moved_.data()[i] = x.data()[i] + apart * fx.data()[i];
     evaluate(system, t + apart, moved_, slope_);
-    Real bend(0), slope(0);  // squares of |x''| and |x'|, in tolerances
+    Real bend(0), slope(0), greatest(0);  // squares of |x''| and |x'|, in tolerances
     for (std::size_t i = 0; i < n; ++i) {
       const Real size = size_of(x.data()[i], i, tolerance);
-      bend += squared((slope_.data()[i] - fx.data()[i]) / (apart * size)) / Real(static_cast<double>(n));
+      const Real part = squared((slope_.data()[i] - fx.data()[i]) / (apart * size));
+      bend += part / Real(static_cast<double>(n));
+      greatest = max(greatest, part);
       slope += squared(fx.data()[i] / size) / Real(static_cast<double>(n));
     }
+    // A method that damps at infinity would damp an oscillation as well: it must not be there to be seen.
     const Real square = squared(radius_);
+    if (oscillates()) return greatest < squared(square);
     return squared(Real(much_slower)) * bend < square * slope || bend < squared(Real(unseen) * square);
   }
 
@@ -123,8 +138,8 @@ class StiffnessWatch {
     return max(tolerance.scale(i, x, x), sqrt(std::numeric_limits<Real>::epsilon()) * abs(x));
   }
 
-  X direction_, moved_, slope_;
-  Real growth_{}, radius_{}, real_part_{};
+  X direction_, moved_, slope_, before_;
+  Real growth_{}, radius_{}, real_part_{}, turn_{};
   bool begun_ = false;
 };
 

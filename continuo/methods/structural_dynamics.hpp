@@ -222,7 +222,7 @@ struct StructuralDynamics {
   static int linearize(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
     evaluate(system, t, x, work.f);
     const int evaluations =
-        work.linear.evaluate(system, t, x, work.f, LeastIncrements(work.tolerance, work.h, x, work.f));
+        work.linear.evaluate(system, t, x, work.f, LeastIncrements(work.tolerance, work.h, x, work.f, false));
     ++work.costs.jacobians;
     work.has_jacobian = work.is_current = true;
     work.decomposed_for = Scalar<X>(0);

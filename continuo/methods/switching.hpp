@@ -40,6 +40,8 @@ struct Switching {
     bool begun = false, has_mass = false;
     Scalar<X> h{};              // |h| of the last step
     std::size_t steps = 0;      // accepted, since the last change of method
+    std::size_t turns = 0;      // accepted steps of the explicit method by the clock of an oscillation
+    bool begins = true;         // no probe has told yet what the system is like
     std::size_t in_favour = 0;  // probes in a row that speak for a change
     std::size_t patience = least_patience;
     Scalar<X> worthwhile_h{};  // |h| from which the stiff method is the cheaper one, as it was when it took over
@@ -62,6 +64,8 @@ struct Switching {
   template <State X>
   static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.tolerance = tolerance;
+    if constexpr (requires { Stiff::expect_oscillation(work.stiff, true); })
+      Stiff::expect_oscillation(work.stiff, work.watch.oscillates());
     if constexpr (requires { Stiff::aim(work.stiff, tolerance); }) Stiff::aim(work.stiff, tolerance);
   }
 
@@ -76,10 +80,13 @@ struct Switching {
     const bool anew = made_jump || work.fresh;
     int evaluations = work.is_stiff ? Stiff::step(system, t, x, h, anew, work.stiff, x_new)
                                     : NonStiff::step(system, t, x, h, anew, work.nonstiff, x_new);
-    if (!work.has_mass && work.steps % probe_every == probe_every - 1) {
+    if (!work.has_mass && (work.begins || work.steps % probe_every == probe_every - 1)) {
       const bool change = work.is_stiff ? explicit_would_do(system, t, x, h, work, evaluations)
                                         : stiff_would_help(system, t, x, h, work, evaluations);
       work.in_favour = change ? work.in_favour + 1 : 0;
+      const bool felt_by_now = work.steps >= least_probes_at_start && work.in_favour == 0 &&
+                               work.watch.radius() * work.h > Scalar<X>(5 * felt);
+      work.begins = work.begins && work.steps + 1 < most_probes_at_start && !felt_by_now;
     }
     work.h = h < 0 ? -h : h;
     return evaluations;
@@ -101,7 +108,7 @@ struct Switching {
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
     return work.is_stiff ? Stiff::error_norm(work.stiff, h, x, x_new, tolerance)
-                         : NonStiff::error_norm(work.nonstiff, h, x, x_new, tolerance);
+                         : strictness_of_turns(work) * NonStiff::error_norm(work.nonstiff, h, x, x_new, tolerance);
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
@@ -139,6 +146,7 @@ struct Switching {
   static void accept(Workspace<X>& work) {
     work.fresh = false;
     ++work.steps;
+    if (!work.is_stiff && work.watch.oscillates()) count_turn(work);
     if (work.is_stiff && work.h >= work.worthwhile_h) work.worthwhile = true;
     if (work.in_favour >= work.patience) {
       work.is_stiff ? leave_stiff(work) : enter_stiff(work);
@@ -160,7 +168,31 @@ struct Switching {
 
  private:
   static constexpr std::size_t probe_every = 8, least_patience = 3;
+  // At the start there is a probe in each step until lambda is felt: before the errors of an explicit method have set
+  // off an oscillation that the solution does not have.
+  static constexpr std::size_t least_probes_at_start = 5, most_probes_at_start = 12;
+  static constexpr double felt = 0.1, strictness_at_start = 10;
+  static constexpr double least_part_of_turn = NonStiff::order < 8 ? 0.04 : 0.25;  // h |lambda|
+  // Steps of an oscillation whose errors may be as large as the tolerance. Nothing damps them; from there on those of
+  // the n-th are held below 1/n of that, so that their sum grows with log n alone.
+  static constexpr std::size_t free_turns = 5;
   static constexpr int worthwhile = 8;  // a stiff step costs some three to ten explicit ones
+
+  // Steps that have become a small part of a turn gain nothing any more: rounding is what they follow.
+  template <State X>
+  static void count_turn(Workspace<X>& work) {
+    if (work.watch.radius() * work.h > Scalar<X>(least_part_of_turn)) {
+      ++work.turns;
+    } else {
+      work.turns -= work.turns / 16;
+    }
+  }
+  template <State X>
+  static Scalar<X> strictness_of_turns(const Workspace<X>& work) {
+    if (work.begins && work.watch.oscillates()) return Scalar<X>(strictness_at_start);
+    if (work.turns <= free_turns) return Scalar<X>(1);
+    return Scalar<X>(static_cast<double>(work.turns) / static_cast<double>(free_turns));
+  }
 
   // The explicit method is held by stiffness, or its steps are far shorter than those of the stiff method were, even if
   // it is accuracy that shortens them.
@@ -182,13 +214,15 @@ struct Switching {
     using std::abs;
     work.watch.probe(system, t, x, Stiff::derivative(work.stiff), work.tolerance);
     ++evaluations;
-    return work.watch.radius() * abs(h) < Scalar<X>(1) || (!work.worthwhile && abs(h) < work.worthwhile_h);
+    // With h |lambda| below some periods a stiff method does no more than follow an oscillation, at a higher price.
+    const Scalar<X> followed(work.watch.oscillates() ? 6 : 1);
+    return work.watch.radius() * abs(h) < followed || (!work.worthwhile && abs(h) < work.worthwhile_h);
   }
 
   template <State X>
   static void enter_stiff(Workspace<X>& work) {
     work.worthwhile_h = worthwhile * work.h;
-    work.worthwhile = false;
+    work.worthwhile = work.begins = false;
   }
   // A stiff method that was of no use waits twice as long the next time: a system at the border is not tossed to and
   // fro, and one that only looks stiff costs a few attempts.

@@ -41,6 +41,10 @@ Real strictness(const Tolerance<Real>& tolerance, int p, int m, double spare = 1
 /// Of one-step methods; what a problem amplifies its errors by comes on top.
 inline constexpr double spare_of_one_step = 2;
 
+/// With algebraic equations of index 1 that came of differentiating others, errors of a step drift off those instead of
+/// dying out: what is held below the tolerance besides.
+inline constexpr double spare_of_constraints = 3;
+
 /// Whether the estimate of a method is that of the error of its own result.
 template <class M>
 constexpr bool estimates_its_own_error() {

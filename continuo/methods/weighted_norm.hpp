@@ -20,4 +20,14 @@ Scalar<X> weighted_norm(const X& v, const X& x, const X& x_new, const Tolerance<
   return n == 0 ? sum : sqrt(sum / Scalar<X>(static_cast<double>(n)));
 }
 
+namespace detail {
+
+/// The greater one; not a number where one of them is none.
+template <class Real>
+Real greater(const Real& a, const Real& b) {
+  return b <= a ? a : b + (a - a);
+}
+
+}  // namespace detail
+
 }  // namespace continuo

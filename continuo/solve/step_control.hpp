@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <continuo/solve/consistent.hpp>
 #include <continuo/solve/steps.hpp>
 
 namespace continuo {
@@ -22,7 +23,7 @@ class StepControl final : public Steps<System, X> {
   using Real = Scalar<X>;
 
   StepControl(System f, X x0, Real t0, Real forward, const Options<X>& options)
-      : Base(std::move(f), x0, t0, forward), work_(M::workspace(x0)), interpolant_(x0) {
+      : Base(std::move(f), x0, t0, forward), work_(M::workspace(x0)), interpolant_(x0), origin_(t0) {
     this->jump(t0, x0, options);
   }
 
@@ -125,6 +126,8 @@ class StepControl final : public Steps<System, X> {
     return accepted();
   }
 
+  static constexpr int parts_of_run = 50;
+  static constexpr std::size_t rejects_before_settling = 4;
   static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0;
 
   bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
@@ -134,8 +137,8 @@ class StepControl final : public Steps<System, X> {
     const Real room = limit - begin_;
     bool was_rejected = false, last_not_finite = false;
     Real error = 0, h = next_;
-    if (abs(h) > options.max_step) [[unlikely]]
-      h = forward_ * options.max_step;
+    if (const Real longest = longest_step(limit, options); abs(h) > longest) [[unlikely]]
+      h = forward_ * longest;
     for (std::size_t rejects = 0;; ++rejects) {
       // A step that would leave a crumb before the limit takes it along.
       const bool last = forward_ * (Real(1.01) * h - room) >= 0;
@@ -176,10 +179,35 @@ class StepControl final : public Steps<System, X> {
       error = sqrt(square);
       h = h_ * factor_of_rejected(solved, finite, static_cast<float>(min(square, Real(1e30))), options);
       if constexpr (requires { M::rejected(work_, h); }) M::rejected(work_, h);
+      if constexpr (HasMassDiagonal<System, X>) {
+        if (rejects == rejects_before_settling) settle_unknowns(weights);
+      }
       if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
           interrupted(options))
         return give_up(rejects >= options.max_rejects_in_a_row, last_not_finite, error, weights, options, outcome);
     }
+  }
+
+  // An unknown that the step before has left off its equation is an error that no h makes smaller: where a diode begins
+  // to conduct, an estimate may have missed it. The unknowns alone are solved for once more, from the state as it is.
+  void settle_unknowns(const Tolerance<Real>& weights) {
+    if (!has_mass<X>(system_)) return;
+    X settled = x_begin_;
+    const Consistency found = make_consistent(system_, begin_, settled, weights);
+    statistics_.evaluations += static_cast<std::size_t>(found.evaluations);
+    if (!found) return;
+    x_begin_ = std::move(settled);
+    jumped_ = true;
+  }
+
+  // What f does at a later time shows in no step before it: beside a solution at rest steps would grow until one of
+  // them takes a whole pulse of the input between its stages. A fiftieth of the run so far known is what somebody sees
+  // who looks at a plot of it.
+  Real longest_step(Real limit, const Options<X>& options) {
+    using std::abs, std::max, std::min;
+    if (is_autonomous(system_)) return options.max_step;
+    reach_ = max(reach_, Real(abs(limit - origin_)));
+    return min(options.max_step, reach_ / Real(parts_of_run));
   }
 
   Real factor_after(float error_square, bool was_rejected, const Tolerance<Real>& weights, const Options<X>& options) {
@@ -223,6 +251,7 @@ class StepControl final : public Steps<System, X> {
 
   typename M::template Workspace<X> work_;
   Interpolant<X, M::dense_degree> interpolant_;
+  Real origin_, reach_{};  // the start of the run, and how far from it limits have been
 };
 
 }  // namespace continuo

@@ -30,6 +30,26 @@ TEST(Stiffness, TheWatchFindsTheDominantEigenvalue) {
   EXPECT_FALSE(watch.bounds(0.0005));
 }
 
+// Positions and velocities are measured in different units: the Rayleigh quotient of df/dx itself is anything from -w^2
+// to w^2 here, that of its square is -w^2.
+TEST(Stiffness, TheWatchTellsAnOscillationFromADecay) {
+  const std::array<double, 2> x{1, 0.5};
+  const auto watched = [&x](const auto& f) {
+    StiffnessWatch<std::array<double, 2>> watch(x);
+    for (int i = 0; i < 4; ++i) watch.probe(f, 0.0, x, f(0, x), {1e-6, 1e-6});
+    return watch;
+  };
+  const auto oscillation =
+      watched([](double, const std::array<double, 2>& y) { return std::array{y[1], -1e8 * y[0]}; });
+  EXPECT_TRUE(oscillation.oscillates());
+  EXPECT_NEAR(oscillation.radius(), 1e4, 1);
+  EXPECT_FALSE(oscillation.bounds(1e-3));
+  const auto decay =
+      watched([](double, const std::array<double, 2>& y) { return std::array{-y[0], 999 * y[0] - 1000 * y[1]}; });
+  EXPECT_FALSE(decay.oscillates());
+  EXPECT_TRUE(decay.bounds(1e-2));
+}
+
 TEST(Stiffness, AnExplicitMethodThatRunsOutOfStepsNamesTheCause) {
   const auto solution = solve(bench::VanDerPolScaled<>{}, bench::VanDerPolScaled<>::start(), {0.0, 2.0}, Tsitouras5{},
                               {.rtol = 1e-4, .atol = 1e-4, .max_steps = 20'000});
