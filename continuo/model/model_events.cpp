@@ -136,7 +136,9 @@ std::optional<Carried> ModelEvents::carried(const ModelSystem& system, std::size
   const GuardMotion& motion = motions_[events_[i].index];
   const int side = model::carried(motion);
   if (side == 0) {
-    const bool unknown = std::ranges::any_of(motion.rounding, [](double r) { return !std::isfinite(r); });
+    // Unknowns are solved for to a tolerance, which hides what little a guard of theirs moves.
+    const bool unknown = system.has_mass() ||
+                         std::ranges::any_of(motion.rounding, [](double r) { return !std::isfinite(r); });
     return unknown ? std::nullopt : std::optional(Carried{});
   }
   int order = 1;

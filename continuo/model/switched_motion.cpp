@@ -144,8 +144,9 @@ Passage SwitchedMotion::choose(std::size_t mode, Sliding sides, double t, const 
     return Passage::begins_to_slide;
   }
   const double kept = values_[sides.k];
-  const bool up = below >= 0 && above >= 0 ? below + above > 0 : kept == sides.below;  // away from both: it goes on
-  if (below + above == 0 && kept != sides.below && kept != sides.above) return Passage::none;
+  if (below == 0 && above == 0 && kept != sides.below && kept != sides.above) return Passage::none;
+  // Where the motion leads away on both sides, it goes on in the direction that it came by.
+  const bool up = below >= 0 && above >= 0 ? below + above > 0 : below <= 0 && above <= 0 ? false : kept == sides.below;
   place(mode, sides.k, up ? sides.above : sides.below);
   return values_[sides.k] != kept ? Passage::crosses : Passage::none;
 }

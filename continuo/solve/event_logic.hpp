@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <continuo/solve/accumulation.hpp>
+#include <continuo/solve/consistent.hpp>
 #include <continuo/solve/event.hpp>
 #include <continuo/solve/guard_motion.hpp>
 #include <continuo/solve/guard_watch.hpp>
@@ -301,11 +302,22 @@ class EventLogic {
     if (last_event_ && abs(t - *last_event_) > 0) length = min(length, abs(t - *last_event_));
     return carried_by_differences(
         t, x, forward_ * length, rounding_[i], first_, second_, moved_,
-        [&](Real at, const X& y) {
+        [&](Real at, X& y) {
+          solve_unknowns(steps, at, y);
           evaluate(steps, at, y, scratch_);
           return scratch_[i];
         },
-        [&](Real at, const X& y, X& out) { out = steps.slope(at, y); });
+        [&](Real at, X y, X& out) {
+          solve_unknowns(steps, at, y);
+          out = steps.slope(at, y);
+        });
+  }
+
+  static void solve_unknowns(StepsOf& steps, Real t, X& x) {
+    if constexpr (HasMassDiagonal<System, X>) {
+      const Tolerance<Real> close{std::numeric_limits<Real>::epsilon() * 1000, std::numeric_limits<Real>::epsilon()};
+      if (has_mass<X>(steps.system())) make_consistent(steps.system(), t, x, close);
+    }
   }
 
   bool at_zero(std::size_t i) const {
