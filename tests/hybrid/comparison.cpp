@@ -97,7 +97,7 @@ std::string difference(const HybridModel& abstract, const Expected& expected, co
     experiment.atol = {asked.tolerance};
   }
   experiment.keep_rows = false;
-  experiment.max_steps = 300'000;
+  experiment.max_steps = 100'000;
   const model::Simulated simulated = simulate(*loaded.model, experiment);
   if (!simulated.run) return "no run:\n" + render(simulated.diagnostics, loaded.source);
   const model::Run& run = *simulated.run;

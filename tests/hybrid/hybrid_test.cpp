@@ -1,12 +1,17 @@
 // Random hybrid systems against the referee: every event at its time and no other, by five methods. `hybrid_attack`
 // asks as many as one likes.
 #include <algorithm>
+#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <tests/hybrid/comparison.hpp>
 
 namespace continuo::hybrid {
+void PrintTo(const Asked& asked, std::ostream* out) {
+  *out << (asked.method.empty() ? "default" : asked.method);
+}
+
 namespace {
 
 class HybridSystems : public testing::TestWithParam<Asked> {};

@@ -202,11 +202,15 @@ class Referee {
       if (signs_now() != signs_) reject("a guard that turns where the equations switch");
       return;
     }
-    signs_[root.function] = -signs_[root.function];
+    const int before = std::exchange(signs_[root.function], 0);
+    const std::vector<int> at_root = signs_;
+    signs_[root.function] = -before;
     std::vector<std::size_t> due;
     for (std::size_t e = 0; e < model_.events.size(); ++e) {
       const int turned = side(e, signs_, sides_[e]);
       if (is_active(e) && fires(e, sides_[e], turned)) due.push_back(e);
+      if (turned == sides_[e] && turned != side(e, at_root, turned))
+        reject("a condition that is another at a single instant");
       sides_[e] = turned;
     }
     restart();
