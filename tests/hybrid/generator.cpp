@@ -1,7 +1,6 @@
 // tests/hybrid/generator.cpp
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <set>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 #include <tests/hybrid/flow.hpp>
 #include <tests/hybrid/generator.hpp>
+#include <tests/hybrid/random.hpp>
 
 namespace continuo::hybrid {
 namespace {
@@ -34,23 +34,15 @@ class Generator {
   }
 
  private:
-  // ---- numbers: from the generator's bits alone, as distributions differ between libraries ----
-  long whole(long least, long most) {
-    return least + static_cast<long>(random_() % static_cast<std::uint64_t>(most - least + 1));
-  }
-  int whole_int(int least, int most) { return static_cast<int>(whole(least, most)); }
-  bool chance(double probability) { return static_cast<double>(random_() % 1000000) < probability * 1e6; }
-  /// A decimal with three digits.
-  double decimal(double least, double most) {
-    return static_cast<double>(whole(std::lround(least * 1000), std::lround(most * 1000))) / 1000;
-  }
-  double signed_decimal(double least, double most) {
-    const double size = decimal(least, most);
-    return chance(0.5) ? size : -size;
-  }
+  // ---- numbers ----
+  int whole_int(int least, int most) { return static_cast<int>(random_.whole(least, most)); }
+  long whole(long least, long most) { return random_.whole(least, most); }
+  bool chance(double probability) { return random_.chance(probability); }
+  double decimal(double least, double most) { return random_.decimal(least, most); }
+  double signed_decimal(double least, double most) { return random_.signed_decimal(least, most); }
   template <class T>
   const T& any_of(const std::vector<T>& list) {
-    return list[static_cast<std::size_t>(whole(0, static_cast<long>(list.size()) - 1))];
+    return random_.any_of(list);
   }
 
   double rate() { return decimal(0.3, ability_.any_rate ? 7 : 3); }
@@ -451,7 +443,7 @@ class Generator {
     return {.target = x, .value = value};
   }
 
-  std::mt19937_64 random_;
+  Random random_;
   Ability ability_;
   HybridModel model_{};
   std::vector<int> plain_{}, moved_{}, flags_{}, counters_{}, directed_{};
