@@ -55,7 +55,8 @@ std::optional<std::string> different_event(const Occurrence& expected, const mod
   return {};
 }
 
-std::string different_run(const Expected& expected, const model::Run& run, const Asked& asked) {
+std::string different_run(const HybridModel& abstract, const Expected& expected, const model::Run& run,
+                          const Asked& asked) {
   const auto found = marked(run);
   for (std::size_t i = 0; i < std::min(found.size(), expected.events.size()); ++i) {
     if (const auto what = different_event(expected.events[i], found[i], asked.time_error))
@@ -63,11 +64,15 @@ std::string different_run(const Expected& expected, const model::Run& run, const
   }
   if (found.size() != expected.events.size())
     return fmt::format("{} events in place of {}:\n", found.size(), expected.events.size()) + listed(expected, found);
-  const auto state = run.final_state();
+  const auto last = run.motion.row(run.motion.rows() - 1);
   for (std::size_t i = 0; i < expected.end.size(); ++i) {
-    const double value = static_cast<double>(expected.end[i]), off = std::fabs(state[i] - value);
+    // The columns stand in an order of their own.
+    const auto column = std::ranges::find(run.motion.columns, abstract.names[i], &model::Column::name);
+    if (column == run.motion.columns.end()) return abstract.names[i] + " is no column\n";
+    const double found_value = last[static_cast<std::size_t>(column - run.motion.columns.begin())];
+    const double value = static_cast<double>(expected.end[i]), off = std::fabs(found_value - value);
     if (!(off <= asked.end_error * (1 + std::fabs(value))))
-      return fmt::format("{} ends at {:.12g} in place of {:.12g}\n", run.motion.columns[i + 1].name, state[i], value);
+      return fmt::format("{} ends at {:.12g} in place of {:.12g}\n", abstract.names[i], found_value, value);
   }
   return {};
 }
@@ -104,7 +109,7 @@ std::string difference(const HybridModel& abstract, const Expected& expected, co
   if (!succeeded(run.outcome.ending))
     return fmt::format("the run ends: {} ({})\n", describe(run.outcome), run.statistics.steps) +
            listed(expected, marked(run));
-  return different_run(expected, run, asked);
+  return different_run(abstract, expected, run, asked);
 }
 
 Attack attack(const Asked& asked, std::size_t count, std::uint64_t seed, std::size_t failures_to_tell) {

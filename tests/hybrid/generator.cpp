@@ -153,7 +153,7 @@ class Generator {
     b.with_position = chance(0.5);
     b.variant = whole_int(0, 2);
     b.level = chance(0.5) ? 0 : signed_decimal(0.1, 0.5);
-    b.state = add_state("y", b.level + signed_decimal(0.1, 1.5));
+    b.state = add_state("y", std::round((b.level + signed_decimal(0.1, 1.5)) * 1000) / 1000);
     moved_.push_back(b.state);
     if (b.with_position) moved_.push_back(add_state("p", signed_decimal(0, 1)));
     Parameters p;
