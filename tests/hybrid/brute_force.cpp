@@ -50,6 +50,10 @@ class Reading {
         return std::fabs(left) - right;
       case Form::pulse:
         return std::exp(-(left / width) * (left / width)) - right;
+      case Form::steps:
+        return std::floor(left / width) - right;
+      case Form::square:
+        return (left - width * std::floor(left / width) < right ? 1 : 0) - 0.5L;
       case Form::modulo:
         return left - width * std::floor(left / width) - right;
     }
@@ -84,7 +88,11 @@ class Reading {
   std::vector<long> branches() const {
     std::vector<long> found;
     for (const Block& b : model_.blocks) {
-      if (b.kind == Block::Kind::switched) found.push_back(value(b.surface) > 0);
+      if (b.kind == Block::Kind::switched) {
+        const bool alone = b.also.kind == Expression::Kind::number;
+        found.push_back(value(b.surface) > 0 && (alone || value(b.also) > 0));
+      }
+      if (b.kind == Block::Kind::kink) found.push_back(value(b.surface) > 0 ? 1 : -1);
       if (b.kind == Block::Kind::staircase || b.kind == Block::Kind::sawtooth)
         found.push_back(std::lround(std::floor(value(b.surface) / b.width)));
     }
@@ -106,7 +114,7 @@ class Reading {
           f[i] = p.a + push;
           break;
         case Block::Kind::decay:
-          f[i] = -p.k * x + p.c + push;
+          f[i] = b.through == none ? -p.k * x + p.c + push : value(unknown(b.through));
           break;
         case Block::Kind::driven:
           f[i] = p.a * std::cos(p.w * t_) + p.c;
@@ -121,6 +129,9 @@ class Reading {
           break;
         case Block::Kind::switched:
           f[i] = branches[next++] != 0 ? p.a : p.c;
+          break;
+        case Block::Kind::kink:
+          f[i] = p.a * value(b.surface) * static_cast<Real>(branches[next++]) + p.c;
           break;
         case Block::Kind::staircase:
           f[i] = p.a * static_cast<Real>(branches[next++]);

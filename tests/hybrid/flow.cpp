@@ -16,7 +16,7 @@ void add_cosine(Closed& x, Real amplitude, Real w, Real phase) {
   x.b -= amplitude * std::sin(phase);
 }
 
-/// The antiderivative that has the value `start` at s = 0, of a motion without exponential whose cubic term is 0.
+/// The antiderivative that has the value `start` at s = 0, of a motion whose cubic term is 0.
 Closed integral(const Closed& v, Real start) {
   Closed x;
   for (std::size_t i = 0; i < 3; ++i) x.p[i + 1] = v.p[i] / static_cast<Real>(i + 1);
@@ -25,8 +25,22 @@ Closed integral(const Closed& v, Real start) {
     x.a = -v.b / v.w;
     x.b = v.a / v.w;
   }
-  x.p[0] = start - x.a;
+  if (v.c != 0) {
+    x.k = v.k;
+    x.c = -v.c / v.k;
+  }
+  x.p[0] = start - x.a - x.c;
   return x;
+}
+
+/// factor * v + constant
+Closed scaled(Closed v, Real factor, Real constant) {
+  for (Real& p : v.p) p *= factor;
+  v.c *= factor;
+  v.a *= factor;
+  v.b *= factor;
+  v.p[0] += constant;
+  return v;
 }
 
 }  // namespace
@@ -86,6 +100,10 @@ Jet evaluate(const Comparison& c, const Quantities& q) {
       return left * left - right * right;
     case Form::pulse:
       return Jet::constant(width * width * std::log(2.0L)) - left * left;
+    case Form::steps:
+      return left - Jet::constant(width * (right.value() + 0.5L));
+    case Form::square:
+      return sine_cosine(pi / width * left).sine * sine_cosine(pi / width * (right - left)).sine;
     case Form::modulo:
       // For left/width = n + f: the signs of the two sines are equal iff f > right/width.
       return sine_cosine(pi / width * left).sine * sine_cosine(pi / width * (left - right)).sine;
@@ -172,6 +190,7 @@ void Flow::start(const Block& block, std::span<const Real> x) {
       closed_[i + 1].b = -w * f.a;
       break;
     case Kind::switched:
+    case Kind::kink:
     case Kind::staircase:
     case Kind::sawtooth:
     case Kind::relay:
@@ -181,13 +200,27 @@ void Flow::start(const Block& block, std::span<const Real> x) {
 
 void Flow::start_switching(const Block& block, std::span<const Real> x, const Quantities& now) {
   using Kind = Block::Kind;
-  if (block.kind != Kind::switched && block.kind != Kind::staircase && block.kind != Kind::sawtooth) return;
+  if (block.kind != Kind::switched && block.kind != Kind::kink && block.kind != Kind::staircase &&
+      block.kind != Kind::sawtooth)
+    return;
   const Block::Parameters& p = block.parameters(mode_);
   const Real x0 = x[static_cast<std::size_t>(block.state)], width = block.width;
   Closed& f = closed(block.state);
   const Jet s = evaluate(block.surface, now);
   if (block.kind == Kind::switched) {
-    f.p = {x0, sign(s) > 0 ? p.a : p.c, 0, 0};
+    bool above = sign(s) > 0;
+    surfaces_.push_back({block.surface, false});
+    if (block.also.kind != Expression::Kind::number) {
+      above = sign(evaluate(block.also, now)) > 0 && above;
+      surfaces_.push_back({block.also, false});
+    }
+    f.p = {x0, above ? p.a : p.c, 0, 0};
+    return;
+  }
+  if (block.kind == Kind::kink) {
+    // S is a state less a number.
+    const Real factor = sign(s) > 0 ? p.a : -p.a, level = block.surface.parts[1].number;
+    f = integral(scaled(closed(block.surface.parts[0].index), factor, p.c - factor * level), x0);
     surfaces_.push_back({block.surface, false});
     return;
   }
@@ -206,7 +239,9 @@ void Flow::start_switching(const Block& block, std::span<const Real> x, const Qu
 void Flow::start_relay(const Block& block, std::span<const Real> x, const Quantities& now) {
   const Block::Parameters& p = block.parameters(mode_);
   const auto i = static_cast<std::size_t>(block.state);
-  const Expression drive = number(p.a) * sine(number(p.w) * time_now()) + number(p.c);
+  const Real constant = p.c + (block.flag == none ? 0 : p.b * x[static_cast<std::size_t>(block.flag)]);
+  const Expression moving = number(p.a) * (block.drive == none ? sine(number(p.w) * time_now()) : state(block.drive));
+  const Expression drive = moving + number(static_cast<double>(constant));
   const Expression beyond_above = drive - number(p.mu), beyond_below = drive + number(p.mu);
   const Real distance = x[i] - block.level;
   int side = std::fabs(distance) > value_margin.zero ? (distance > 0 ? 1 : -1) : 0;
@@ -227,8 +262,12 @@ void Flow::start_relay(const Block& block, std::span<const Real> x, const Quanti
     ++sliding_;
   } else {
     Closed slope;
-    slope.p[0] = p.c - side * p.mu;
-    add_cosine(slope, p.a, p.w, p.w * t0_ - pi / 2);
+    if (block.drive == none) {
+      add_cosine(slope, p.a, p.w, p.w * t0_ - pi / 2);
+    } else {
+      slope = scaled(closed(block.drive), p.a, 0);
+    }
+    slope.p[0] += constant - side * p.mu;
     f = integral(slope, x[i]);
     surfaces_.push_back({state(block.state) - number(block.level), false});
   }

@@ -28,6 +28,7 @@ class Generator {
       blocks();
     }
     if (ability_.algebraic && !plain_.empty() && chance(0.6)) unknowns();
+    if (ability_.algebraic && chance(0.2)) decay_through_unknown();
     const int count = whole_int(1, 5);
     for (int i = 0; i < count; ++i) events();
     return std::move(model_);
@@ -68,7 +69,7 @@ class Generator {
     const int moving = whole_int(1, 3);
     for (int i = 0; i < moving; ++i) plain_block(i);
     if (chance(0.3)) switching_block();
-    if (chance(0.25)) relay_block();
+    for (int relays = 0; relays < 2 && chance(0.25); ++relays) relay_block(relays);
   }
 
   void plain_block(int i) {
@@ -111,7 +112,7 @@ class Generator {
   void switching_block() {
     using Kind = Block::Kind;
     Block b;
-    b.kind = any_of(std::vector<Kind>{Kind::switched, Kind::switched, Kind::staircase, Kind::sawtooth});
+    b.kind = any_of(std::vector<Kind>{Kind::switched, Kind::switched, Kind::kink, Kind::staircase, Kind::sawtooth});
     b.state = add_state("s", signed_decimal(0.1, 1));
     b.variant = whole_int(0, 2);
     b.in_mode.push_back(parameters(b.kind, false));
@@ -123,8 +124,11 @@ class Generator {
       b.surface = chance(0.3) ? time_now() : state(any_of(plain_));
       b.width = decimal(0.4, 2);
       seen(10 / b.width);
+    } else if (b.kind == Kind::kink) {
+      b.surface = state(any_of(plain_)) - number(signed_decimal(0, 1));
     } else {
       b.surface = surface();
+      if (chance(0.3)) b.also = surface();
     }
     moved_.push_back(b.state);
     model_.blocks.push_back(b);
@@ -147,22 +151,46 @@ class Generator {
     return state(any_of(plain_)) - number(signed_decimal(0, 1));
   }
 
-  void relay_block() {
+  void relay_block(int which) {
     Block b;
     b.kind = Block::Kind::relay;
     b.with_position = chance(0.5);
     b.variant = whole_int(0, 2);
     b.level = chance(0.5) ? 0 : signed_decimal(0.1, 0.5);
-    b.state = add_state("y", std::round((b.level + signed_decimal(0.1, 1.5)) * 1000) / 1000);
+    b.state = add_state(fmt::format("y{}", which), std::round((b.level + signed_decimal(0.1, 1.5)) * 1000) / 1000);
     moved_.push_back(b.state);
-    if (b.with_position) moved_.push_back(add_state("p", signed_decimal(0, 1)));
+    if (b.with_position) moved_.push_back(add_state(fmt::format("p{}", which), signed_decimal(0, 1)));
     Parameters p;
     p.a = signed_decimal(0.2, 3);
     p.w = rate();
     p.mu = decimal(0.3, 2);
     p.c = chance(0.5) ? 0 : signed_decimal(0.1, 1);
-    seen(2 * p.w);
+    if (!flags_.empty() && chance(0.4)) {
+      b.flag = any_of(flags_);
+      p.b = signed_decimal(0.2, 2);
+    }
+    if (!b.with_position && chance(0.4)) {
+      b.drive = any_of(plain_);
+    } else {
+      seen(2 * p.w);
+    }
     b.in_mode.push_back(p);
+    model_.blocks.push_back(b);
+  }
+
+  /// x' = u, 0 = u + k*x - c.
+  void decay_through_unknown() {
+    Block b;
+    b.kind = Block::Kind::decay;
+    b.state = add_state("d", signed_decimal(0.1, 2));
+    Parameters p;
+    p.k = decimal(0.2, 4);
+    seen(p.k);
+    p.c = signed_decimal(0.1, 2);
+    b.in_mode.push_back(p);
+    b.through = static_cast<int>(model_.unknowns.size());
+    model_.unknowns.push_back({.source = number(p.c) - number(p.k) * state(b.state), .offset = {0}});
+    moved_.push_back(b.state);
     model_.blocks.push_back(b);
   }
 
@@ -242,7 +270,7 @@ class Generator {
     if (!counters_.empty() && chance(0.15))
       return {.left = state(any_of(counters_)), .right = number(whole_int(0, 4) + 0.5), .discrete = true};
     Comparison c;
-    const int kind = whole_int(0, 11);
+    const int kind = whole_int(0, 13);
     if (kind <= 3) {
       c.left = moving();
     } else if (kind == 4) {
@@ -272,8 +300,14 @@ class Generator {
       c.right = number(0.5);
       c.width = chance(0.5) ? 0.01 : decimal(0.01, 0.3);
       return c;
+    } else if (kind == 11) {
+      c.form = Form::steps;
+      c.width = decimal(0.4, 2);
+      c.left = moving();
+      c.right = number(std::floor(level_of(c.left) / c.width) + 0.5);
+      return c;
     } else {
-      c.form = Form::modulo;
+      c.form = kind == 12 ? Form::square : Form::modulo;
       c.width = decimal(0.4, 2);
       c.left = chance(0.5) ? time_now() : moving();
       c.right = number(std::round(c.width * decimal(0.1, 0.9) * 1000) / 1000);

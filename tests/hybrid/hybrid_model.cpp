@@ -69,6 +69,8 @@ class Writer {
     return {};
   }
 
+  std::string right(const Comparison& c) const { return c.form == Comparison::Form::square ? "0.5" : written(c.right); }
+
   std::string left(const Comparison& c) const {
     using Form = Comparison::Form;
     switch (c.form) {
@@ -78,6 +80,10 @@ class Writer {
         return fmt::format("abs({})", written(c.left));
       case Form::pulse:
         return fmt::format("exp(-({}/{})^2)", written(c.left), c.width);
+      case Form::steps:
+        return fmt::format("floor({}/{})", written(c.left), c.width);
+      case Form::square:
+        return fmt::format("(if mod({}, {}) < {} then 1 else 0)", written(c.left), c.width, written(c.right));
       case Form::modulo:
         return fmt::format("mod({}, {})", written(c.left), c.width);
     }
@@ -101,7 +107,7 @@ class Writer {
                        : c.kind == Kind::greater       ? ">"
                        : c.kind == Kind::greater_equal ? ">="
                                                        : "==";
-    return fmt::format("{} {} {}", left(sides), sign, written(sides.right));
+    return fmt::format("{} {} {}", left(sides), sign, right(sides));
   }
 
   std::string actions(const std::vector<Action>& list) const {
@@ -139,7 +145,7 @@ class Writer {
       const char* direction = e.kind == Event::Kind::falls   ? "falls"
                               : e.kind == Event::Kind::rises ? "rises"
                                                              : "crosses";
-      head = fmt::format("when {} {} through {}", left(sides), direction, written(sides.right));
+      head = fmt::format("when {} {} through {}", left(sides), direction, right(sides));
     }
     if (e.in_mode != none) head += fmt::format(" in m{}", e.in_mode);
     const std::string list = actions(e.actions);
@@ -166,6 +172,7 @@ class Writer {
       case Kind::drift:
         return fmt::format("{}' = {}{}\n", x, p.a, flag);
       case Kind::decay:
+        if (b.through != none) return fmt::format("{}' = u{}\n", x, b.through);
         return fmt::format("{}' = -{}*{} + {}{}\n", x, p.k, x, p.c, flag);
       case Kind::driven:
         return fmt::format("{}' = {}*cos({}*t) + {}\n", x, p.a, p.w, p.c);
@@ -177,6 +184,9 @@ class Writer {
         return fmt::format("{}'' = -{}*{}*({} - {})\n", x, p.w, p.w, x, p.c);
       case Kind::switched:
         return switched(b, p, x);
+      case Kind::kink:
+        if (b.variant == 0) return fmt::format("{}' = {}*abs({}) + {}\n", x, p.a, written(b.surface), p.c);
+        return fmt::format("{}' = {}*max({}, -{}) + {}\n", x, p.a, written(b.surface), written(b.surface), p.c);
       case Kind::staircase:
         return fmt::format("{}' = {}*floor({}/{})\n", x, p.a, written(b.surface), b.width);
       case Kind::sawtooth:
@@ -189,6 +199,8 @@ class Writer {
 
   std::string switched(const Block& b, const Block::Parameters& p, const std::string& x) const {
     const std::string s = written(b.surface);
+    if (b.also.kind != Expression::Kind::number)
+      return fmt::format("{}' = if {} > 0 and {} > 0 then {} else {}\n", x, s, written(b.also), p.a, p.c);
     if (b.variant == 0) return fmt::format("{}' = if {} > 0 then {} else {}\n", x, s, p.a, p.c);
     if (b.variant == 1) return fmt::format("{}' = if not ({} > 0) then {} else {}\n", x, s, p.c, p.a);
     // The mean of the two and half their difference, written out: sums of decimals that are exact enough.
@@ -196,7 +208,9 @@ class Writer {
   }
 
   std::string relay(const Block& b, const Block::Parameters& p, const std::string& x) const {
-    const std::string drive = fmt::format("{}*sin({}*t) + {}", p.a, p.w, p.c);
+    const std::string flag = b.flag == none ? "" : fmt::format(" + {}*{}", p.b, name(b.flag));
+    const std::string drive = b.drive == none ? fmt::format("{}*sin({}*t) + {}{}", p.a, p.w, p.c, flag)
+                                              : fmt::format("{}*{} + {}{}", p.a, name(b.drive), p.c, flag);
     std::string text;
     if (b.variant == 0) {
       text = fmt::format("{}' = {} - {}*sign({} - {})\n", x, drive, p.mu, x, b.level);

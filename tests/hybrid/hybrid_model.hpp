@@ -34,6 +34,8 @@ struct Comparison {
     plain,     // left against right
     absolute,  // abs(left) against right: left^2 - right^2
     pulse,     // exp(-(left/width)^2) against 0.5: width^2 log(2) - left^2
+    steps,     // floor(left/width) against right, a whole number and a half: left - width (right + 1/2)
+    square,    // if mod(left, width) < right then 1 else 0, against 0.5: as modulo, upside down
     modulo,    // mod(left, width) against right: sin(pi left/width) sin(pi (left - right)/width)
   };
   Form form = Form::plain;
@@ -80,15 +82,16 @@ struct Block {
   enum class Kind {
     discrete,      // x' = 0, changed by events only
     drift,         // x' = a + b*flag
-    decay,         // x' = -k*x + c + b*flag
+    decay,         // x' = -k*x + c + b*flag; or x' = u with the unknown u = -k*x + c
     driven,        // x' = a*cos(w*t) + c
     driven_decay,  // x' = -k*(x - a*cos(w*t)) + c
     fall,          // x'' = a + b*flag
     oscillator,    // x'' = -w^2*(x - c)
-    switched,      // x' = if S > 0 then a else c, or with sign
+    switched,      // x' = if S > 0 then a else c, or with sign; or if S > 0 and also > 0
+    kink,          // x' = a*abs(S) + c, or with max
     staircase,     // x' = a*floor(z/width)
     sawtooth,      // x' = a*mod(z, width)
-    relay,         // x' = a*sin(w*t) + c - mu*sign(x - level), and perhaps y' = x
+    relay,         // x' = a*sin(w*t) + c + b*flag - mu*sign(x - level), and perhaps y' = x; or driven by a*state + c
   };
   struct Parameters {
     double a = 0, b = 0, c = 0, k = 0, w = 1, mu = 0;
@@ -98,6 +101,9 @@ struct Block {
   int flag = none;
   std::vector<Parameters> in_mode{};  // one, or one for each mode
   Expression surface{};               // S or z of switched equations: of blocks that do not switch
+  Expression also{};                  // a second S; a number where there is none
+  int drive = none;                   // the state that drives a relay
+  int through = none;                 // the unknown through which a state decays
   double width = 1, level = 0;
   bool with_position = false;  // of a relay
   int variant = 0;             // of the ways to write it

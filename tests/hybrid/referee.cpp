@@ -428,13 +428,17 @@ class Referee {
 /// Every start and rate moved by about `size` of itself, always in the same way. What stands exactly at a threshold by
 /// construction still does.
 HybridModel moved(HybridModel model, double size) {
+  // A decay through an unknown has its rate in two places.
+  const auto is_constructed = [](const Block& b) {
+    return b.kind == Block::Kind::discrete || b.constructed || b.through != none;
+  };
   unsigned seed = 12345;
   const auto factor = [&] {
     seed = seed * 1664525U + 1013904223U;
     return 1 + size * ((seed >> 8) % 2001 / 1000.0 - 1);
   };
   for (Block& block : model.blocks) {
-    if (block.kind == Block::Kind::discrete || block.constructed) continue;
+    if (is_constructed(block)) continue;
     for (Block::Parameters& p : block.in_mode) {
       for (double* value : {&p.a, &p.b, &p.c, &p.k, &p.w, &p.mu}) *value *= factor();
     }

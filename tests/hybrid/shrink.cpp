@@ -35,7 +35,10 @@ template <class Visit>
 void each_index(HybridModel& model, Expression::Kind kind, const Visit& visit) {
   for (Block& block : model.blocks) {
     each_index(block.surface, kind, visit);
+    each_index(block.also, kind, visit);
     if (kind == Expression::Kind::state && block.flag != none) visit(block.flag);
+    if (kind == Expression::Kind::state && block.drive != none) visit(block.drive);
+    if (kind == Expression::Kind::unknown && block.through != none) visit(block.through);
   }
   for (Unknown& u : model.unknowns) each_index(u.source, kind, visit);
   for (Comparison& c : model.comparisons) {
