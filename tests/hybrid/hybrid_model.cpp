@@ -19,6 +19,7 @@ class Writer {
   std::string text() const {
     std::string text;
     for (std::size_t u = 0; u < model_.unknowns.size(); ++u) text += fmt::format("unknown u{} = 0\n", u);
+    for (std::size_t c = 0; c < model_.comparisons.size(); ++c) text += square_wave(c);
     for (const Block& block : model_.blocks) {
       if (block.in_mode.size() == 1) text += equations(block, 0);
     }
@@ -33,6 +34,13 @@ class Writer {
   }
 
  private:
+  std::string square_wave(std::size_t index) const {
+    const Comparison& c = model_.comparisons[index];
+    if (c.form != Comparison::Form::square) return "";
+    return fmt::format("let w{} = if mod({}, {}) < {} then 1 else 0\n", index, written(c.left), c.width,
+                       written(c.right));
+  }
+
   std::string mode_text(int mode) const {
     std::string text = fmt::format("mode m{} {{\n", mode);
     for (const Block& block : model_.blocks) {
@@ -83,7 +91,7 @@ class Writer {
       case Form::steps:
         return fmt::format("floor({}/{})", written(c.left), c.width);
       case Form::square:
-        return fmt::format("(if mod({}, {}) < {} then 1 else 0)", written(c.left), c.width, written(c.right));
+        return fmt::format("w{}", &c - model_.comparisons.data());
       case Form::modulo:
         return fmt::format("mod({}, {})", written(c.left), c.width);
     }
