@@ -304,7 +304,7 @@ class BruteForce {
   void act(std::vector<std::size_t> due) {
     for (int round = 0; !due.empty() && round < 20; ++round) {
       for (const std::size_t e : due) {
-        found_.events.push_back({static_cast<int>(e), t_, false});
+        if (!model_.events[e].is_step) found_.events.push_back({static_cast<int>(e), t_, false});
         State next = x_;
         int mode = mode_;
         assign(model_.events[e].actions, reading(t_, x_), next, mode);

@@ -3,11 +3,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
 #include <tests/hybrid/comparison.hpp>
 #include <tests/hybrid/shrink.hpp>
+#include <unistd.h>
 
 #include <continuo/model/load.hpp>
 #include <continuo/model/simulate.hpp>
@@ -66,6 +69,9 @@ std::string different_run(const HybridModel& abstract, const Expected& expected,
     return fmt::format("{} events in place of {}:\n", found.size(), expected.events.size()) + listed(expected, found);
   const auto last = run.motion.row(run.motion.rows() - 1);
   for (std::size_t i = 0; i < expected.end.size(); ++i) {
+    const bool is_input = std::ranges::any_of(
+        abstract.blocks, [&](const Block& b) { return b.is_input && b.state == static_cast<int>(i); });
+    if (is_input) continue;
     // The columns stand in an order of their own.
     const auto column = std::ranges::find(run.motion.columns, abstract.names[i], &model::Column::name);
     if (column == run.motion.columns.end()) return abstract.names[i] + " is no column\n";
@@ -90,8 +96,41 @@ std::span<const Asked> asked_methods() {
   return all;
 }
 
+namespace {
+
+/// Inputs step by tables in files, which stand beside the text in a folder of this process.
+model::Loaded loaded_from_files(const HybridModel& abstract) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("continuo_hybrid_{}", ::getpid());
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path path = folder / "hybrid.sim";
+  std::ofstream(path) << text_of(abstract);
+  for (const Block& block : abstract.blocks) {
+    if (block.is_input) std::ofstream(folder / input_file(abstract, block)) << input_table(abstract, block);
+  }
+  model::Loaded loaded = model::load(path);
+  std::filesystem::remove_all(folder);
+  return loaded;
+}
+
+model::Loaded loaded_model(const HybridModel& abstract) {
+  const bool reads_files = std::ranges::any_of(abstract.blocks, [](const Block& b) { return b.is_input; });
+  return reads_files ? loaded_from_files(abstract) : model::load(model::Source("hybrid.sim", text_of(abstract)));
+}
+
+/// The text with the tables that it reads.
+std::string whole_text(const HybridModel& abstract) {
+  std::string text = text_of(abstract);
+  for (const Block& block : abstract.blocks) {
+    if (block.is_input) text += "# " + input_file(abstract, block) + ":\n" + input_table(abstract, block);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string difference(const HybridModel& abstract, const Expected& expected, const Asked& asked) {
-  const model::Loaded loaded = model::load(model::Source("hybrid.sim", text_of(abstract)));
+  const model::Loaded loaded = loaded_model(abstract);
   if (!loaded) return std::string(refusal) + ":\n" + loaded.text();
   model::Experiment experiment;
   if (!asked.method.empty()) experiment.method = std::string(asked.method);
@@ -141,7 +180,7 @@ Attack attack(const Asked& asked, std::size_t count, std::uint64_t seed, std::si
       const std::string other = answer(smaller);
       return !other.empty() && other.starts_with(refusal) == what.starts_with(refusal);
     });
-    result.failures.push_back(text_of(small) + answer(small));
+    result.failures.push_back(whole_text(small) + answer(small));
   }
   return result;
 }

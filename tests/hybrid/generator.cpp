@@ -31,6 +31,7 @@ class Generator {
     if (ability_.algebraic && chance(0.2)) decay_through_unknown();
     const int count = whole_int(1, 5);
     for (int i = 0; i < count; ++i) events();
+    if (!counters_.empty() && chance(0.05)) dominoes();
     return std::move(model_);
   }
 
@@ -66,11 +67,36 @@ class Generator {
       (is_flag ? flags_ : counters_).push_back(b.state);
       model_.blocks.push_back(b);
     }
+    if (chance(0.15)) stepping_input();
     const int moving = whole_int(1, 3);
     for (int i = 0; i < moving; ++i) plain_block(i);
     if (chance(0.3)) switching_block();
     for (int relays = 0; relays < 2 && chance(0.25); ++relays) relay_block(relays);
   }
+
+  /// By the table of a file, at times that no tick has.
+  void stepping_input() {
+    Block b;
+    b.is_input = true;
+    b.in_mode.resize(1);
+    const bool is_switch = chance(0.6);
+    b.state = add_state("F", is_switch ? 0 : signed_decimal(0, 1));
+    const int steps = whole_int(1, 5);
+    long time = 0;
+    for (int i = 0; i < steps; ++i) {
+      time += 2 * whole(20, 700) + 1;
+      if (time >= model_.end) break;
+      Event e{.kind = Event::Kind::at, .time = time, .is_step = true};
+      e.actions.push_back({.target = b.state, .value = number(is_switch ? (i + 1) % 2 : signed_decimal(0, 1))});
+      model_.events.push_back(e);
+    }
+    inputs_.push_back(b.state);
+    model_.blocks.push_back(b);
+  }
+
+  /// What may push an equation.
+  int any_push() { return !inputs_.empty() && (flags_.empty() || chance(0.6)) ? inputs_[0] : any_of(flags_); }
+  bool has_push() const { return !flags_.empty() || !inputs_.empty(); }
 
   void plain_block(int i) {
     using Kind = Block::Kind;
@@ -84,8 +110,8 @@ class Generator {
     if (b.states() == 2) {
       plain_.push_back(add_state(name + "'", signed_decimal(0.1, 2)));
     }
-    if (!flags_.empty() && chance(0.4) && (b.kind == Kind::drift || b.kind == Kind::decay || b.kind == Kind::fall))
-      b.flag = any_of(flags_);
+    if (has_push() && chance(0.4) && (b.kind == Kind::drift || b.kind == Kind::decay || b.kind == Kind::fall))
+      b.flag = any_push();
     const bool stiff = b.kind == Kind::driven_decay && ability_.stiff && chance(0.5);
     const int versions = model_.modes > 1 && chance(0.7) ? model_.modes : 1;
     for (int m = 0; m < versions; ++m) b.in_mode.push_back(parameters(b.kind, stiff));
@@ -165,8 +191,8 @@ class Generator {
     p.w = rate();
     p.mu = decimal(0.3, 2);
     p.c = chance(0.5) ? 0 : signed_decimal(0.1, 1);
-    if (!flags_.empty() && chance(0.4)) {
-      b.flag = any_of(flags_);
+    if (has_push() && chance(0.4)) {
+      b.flag = any_push();
       p.b = signed_decimal(0.2, 2);
     }
     if (!b.with_position && chance(0.4)) {
@@ -269,6 +295,8 @@ class Generator {
     if (!flags_.empty() && chance(0.15)) return {.left = state(any_of(flags_)), .right = number(0.5), .discrete = true};
     if (!counters_.empty() && chance(0.15))
       return {.left = state(any_of(counters_)), .right = number(whole_int(0, 4) + 0.5), .discrete = true};
+    if (!inputs_.empty() && chance(0.2))
+      return {.left = state(inputs_[0]), .right = number(chance(0.7) ? 0.5 : 0.0005), .discrete = true};
     Comparison c;
     const int kind = whole_int(0, 13);
     if (kind <= 3) {
@@ -397,6 +425,28 @@ class Generator {
     model_.events.push_back(e);
   }
 
+  /// Each falls because the one before has fallen, all at one instant; written down in any order.
+  void dominoes() {
+    const int n = any_of(counters_), count = whole_int(3, 6);
+    std::vector<Event> row;
+    for (int i = 0; i < count; ++i) {
+      Event e{.kind = Event::Kind::condition};
+      const Comparison fallen{.left = state(n), .right = number(100 + i), .discrete = true};
+      e.condition = {.kind = Condition::Kind::equal, .comparison = add(fallen)};
+      e.actions.push_back({.target = n, .value = number(101 + i)});
+      if (chance(0.4)) e.actions.push_back({.target = any_of(plain_), .value = number(signed_decimal(0.1, 2))});
+      row.push_back(e);
+    }
+    Event first{.kind = Event::Kind::at, .time = 100 * whole(1, model_.end / 100)};
+    first.actions.push_back({.target = n, .value = number(100)});
+    row.push_back(first);
+    while (!row.empty()) {
+      const auto next = row.begin() + whole(0, static_cast<long>(row.size()) - 1);
+      model_.events.push_back(*next);
+      row.erase(next);
+    }
+  }
+
   std::vector<Action> actions(const Event& e) {
     std::vector<Action> list;
     assigned_.clear();
@@ -480,7 +530,7 @@ class Generator {
   Random random_;
   Ability ability_;
   HybridModel model_{};
-  std::vector<int> plain_{}, moved_{}, flags_{}, counters_{}, directed_{};
+  std::vector<int> plain_{}, moved_{}, flags_{}, inputs_{}, counters_{}, directed_{};
   std::set<int> assigned_{};  // by the event in work
 };
 

@@ -27,13 +27,21 @@ class Writer {
       if (model_.unknowns[u].offset.size() == 1) text += algebraic(u, 0);
     }
     for (int mode = 0; model_.modes > 1 && mode < model_.modes; ++mode) text += mode_text(mode);
-    for (std::size_t i = 0; i < model_.names.size(); ++i)
-      text += fmt::format("{}(0) = {}\n", model_.names[i], model_.initial[i]);
+    for (const Block& block : model_.blocks) {
+      if (!block.is_input) text += starts(block);
+    }
     for (std::size_t e = 0; e < model_.events.size(); ++e) text += event(e);
     return text + fmt::format("run 0..{}\n", model_.end_time());
   }
 
  private:
+  std::string starts(const Block& b) const {
+    std::string text;
+    for (int s = b.state; s < b.state + b.states(); ++s)
+      text += fmt::format("{}(0) = {}\n", name(s), model_.initial[static_cast<std::size_t>(s)]);
+    return text;
+  }
+
   std::string square_wave(std::size_t index) const {
     const Comparison& c = model_.comparisons[index];
     if (c.form != Comparison::Form::square) return "";
@@ -139,6 +147,7 @@ class Writer {
 
   std::string event(std::size_t index) const {
     const Event& e = model_.events[index];
+    if (e.is_step) return "";
     const auto decimal = [](long thousandths) { return static_cast<double>(thousandths) / 1000; };
     std::string head;
     if (e.kind == Event::Kind::at) {
@@ -176,6 +185,7 @@ class Writer {
     const std::string flag = b.flag == none ? "" : fmt::format(" + {}*{}", p.b, name(b.flag));
     switch (b.kind) {
       case Kind::discrete:
+        if (b.is_input) return fmt::format("input {} = 0 from \"{}\" step\n", x, input_file(model_, b));
         return fmt::format("{}' = 0\n", x);
       case Kind::drift:
         return fmt::format("{}' = {}{}\n", x, p.a, flag);
@@ -266,6 +276,19 @@ Expression sine(Expression a) {
 
 bool operator==(const Expression& a, const Expression& b) {
   return a.kind == b.kind && a.number == b.number && a.index == b.index && a.parts == b.parts;
+}
+
+std::string input_file(const HybridModel& model, const Block& block) {
+  return model.names[static_cast<std::size_t>(block.state)] + ".csv";
+}
+
+std::string input_table(const HybridModel& model, const Block& block) {
+  std::string text = fmt::format("t,v\n0,{}\n", model.initial[static_cast<std::size_t>(block.state)]);
+  for (const Event& e : model.events) {
+    if (e.is_step && e.actions[0].target == block.state)
+      text += fmt::format("{},{}\n", static_cast<double>(e.time) / 1000, e.actions[0].value.number);
+  }
+  return text;
 }
 
 std::string text_of(const HybridModel& model) {

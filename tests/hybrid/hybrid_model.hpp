@@ -75,6 +75,7 @@ struct Event {
   Condition condition{};
   int in_mode = none;
   std::vector<Action> actions{};
+  bool is_step = false;  // of an input: `at` a time that the table of the input has, not in the text
 };
 
 /// One equation, or two: a piece of the system with a closed solution. Parameters may differ from mode to mode.
@@ -107,6 +108,7 @@ struct Block {
   double width = 1, level = 0;
   bool with_position = false;  // of a relay
   int variant = 0;             // of the ways to write it
+  bool is_input = false;       // a discrete one that steps by the table of a file, in place of an equation
   bool constructed = false;    // its start and rates make things happen at one instant
 
   const Parameters& parameters(int mode) const {
@@ -136,6 +138,11 @@ struct HybridModel {
 
   double end_time() const { return static_cast<double>(end) / 1000; }
 };
+
+/// Where the table of an input is read from, beside the model.
+std::string input_file(const HybridModel& model, const Block& block);
+/// What stands in it.
+std::string input_table(const HybridModel& model, const Block& block);
 
 /// The text of the model. Each event marks itself: `mark "e2"` is that of events[2].
 std::string text_of(const HybridModel& model);

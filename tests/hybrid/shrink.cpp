@@ -195,7 +195,9 @@ Candidates smaller_models(const HybridModel& model) {
     found.push_back(model);
     found.back().events.erase(found.back().events.begin() + static_cast<std::ptrdiff_t>(e));
   }
-  for (std::size_t e = 0; e < model.events.size(); ++e) with_smaller_event(model, e, found);
+  for (std::size_t e = 0; e < model.events.size(); ++e) {
+    if (!model.events[e].is_step) with_smaller_event(model, e, found);
+  }
   for (std::size_t u = 0; u < model.unknowns.size(); ++u) without_unknown(model, u, found);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) without_block(model, b, found);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
