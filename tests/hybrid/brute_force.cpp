@@ -289,6 +289,7 @@ class BruteForce {
       const Real middle = (least + most) / 2;
       (changed_after(middle) ? most : least) = middle;
     }
+    if (changed) most += past_root;
     x_ = moved(most, branches);
     t_ = most >= until - t_ ? until : t_ + most;
     if (!changed) return;
@@ -333,6 +334,7 @@ class BruteForce {
   }
 
   static constexpr Real soon = 1e-8L;
+  static constexpr Real past_root = 1e-14L;  // where a root is exact `<` and `<=` differ
   static constexpr int parts = 4;
   const HybridModel& model_;
   State x_{};

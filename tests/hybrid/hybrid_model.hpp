@@ -26,6 +26,7 @@ Expression operator+(Expression a, Expression b);
 Expression operator-(Expression a, Expression b);
 Expression operator*(Expression a, Expression b);
 Expression sine(Expression a);
+bool operator==(const Expression& a, const Expression& b);
 
 /// Two sides that are compared. All forms but the plain one have a smooth function of the same sign, which the referee
 /// watches in place of the written one.
@@ -46,7 +47,6 @@ struct Comparison {
 
   bool operator==(const Comparison&) const = default;
 };
-bool operator==(const Expression& a, const Expression& b);
 
 /// Comparisons joined by `and`, `or`, `not`.
 struct Condition {

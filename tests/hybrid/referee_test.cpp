@@ -49,7 +49,7 @@ TEST(Referee, AgreesWithTheWrittenEquationsInTinySteps) {
     const Expected expected = referee_of_well_conditioned(model);
     if (!expected.rejected.empty()) continue;
     // "Soon" moves a root by 1e-8, and what follows by up to twenty times that at each event.
-    expect_same(model, expected, brute_force(model), 2e-6);
+    expect_same(model, expected, brute_force(model), 1e-6);
     ++compared;
   }
   EXPECT_GE(compared, 25);
@@ -86,7 +86,7 @@ Real velocity_by_moreau(const HybridModel& model, const Block& block, Real end) 
 
 TEST(Referee, SlidesAsMoreausStepsDo) {
   int compared = 0;
-  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 90; ++seed) {
     HybridModel model = random_model(seed, everything);
     model.events.clear();
     const Expected expected = referee(model);
@@ -99,7 +99,7 @@ TEST(Referee, SlidesAsMoreausStepsDo) {
       ++compared;
     }
   }
-  EXPECT_GE(compared, 15);
+  EXPECT_GE(compared, 10);
 }
 
 }  // namespace
