@@ -356,7 +356,9 @@ class Generator {
     const std::vector<Kind> all{Kind::less, Kind::greater, Kind::less_equal, Kind::greater_equal};
     Kind kind = any_of(all);
     if (strict) kind = chance(0.5) ? Kind::less : Kind::greater;
-    return {.kind = kind, .comparison = add(comparison())};
+    // What a directed guard watches as well turns both at one instant.
+    const bool shared = !directed_.empty() && chance(0.12);
+    return {.kind = kind, .comparison = shared ? any_of(directed_) : add(comparison())};
   }
 
   /// Two to four comparisons, or a narrow window.
