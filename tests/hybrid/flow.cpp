@@ -99,7 +99,7 @@ Jet evaluate(const Comparison& c, const Quantities& q) {
     case Form::absolute:
       return left * left - right * right;
     case Form::pulse:
-      return Jet::constant(width * width * std::log(2.0L)) - left * left;
+      return Jet::constant(width * std::log(2.0L)) - (1 / width) * left * left;
     case Form::steps:
       return left - Jet::constant(width * (right.value() + 0.5L));
     case Form::square:

@@ -34,7 +34,7 @@ struct Comparison {
   enum class Form {
     plain,     // left against right
     absolute,  // abs(left) against right: left^2 - right^2
-    pulse,     // exp(-(left/width)^2) against 0.5: width^2 log(2) - left^2
+    pulse,     // exp(-(left/width)^2) against 0.5: width log(2) - left^2/width
     steps,     // floor(left/width) against right, a whole number and a half: left - width (right + 1/2)
     square,    // if mod(left, width) < right then 1 else 0, against 0.5: as modulo, upside down
     modulo,    // mod(left, width) against right: sin(pi left/width) sin(pi (left - right)/width)
