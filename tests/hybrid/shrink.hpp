@@ -1,0 +1,13 @@
+// tests/hybrid/shrink.hpp
+// A smaller model with the same fault, so that a person can read it.
+#pragma once
+#include <functional>
+
+#include <tests/hybrid/hybrid_model.hpp>
+
+namespace continuo::hybrid {
+
+/// Leaves out events, actions, comparisons, equations and time for as long as `fails` holds.
+HybridModel shrink(HybridModel model, const std::function<bool(const HybridModel&)>& fails);
+
+}  // namespace continuo::hybrid
