@@ -145,7 +145,8 @@ std::optional<Carried> ModelEvents::carried(const ModelSystem& system, std::size
   while (order < 3 && std::abs(motion.c[static_cast<std::size_t>(order)]) <=
                           motion.rounding[static_cast<std::size_t>(order)])
     ++order;
-  return Carried{side, order};
+  const auto k = static_cast<std::size_t>(order);
+  return Carried{side, order, std::abs(motion.c[k]) > Carried::far_beyond * motion.rounding[k]};
 }
 
 double ModelEvents::next_time(std::size_t i, double t, bool inclusive) const {

@@ -249,6 +249,7 @@ class Driver {
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
         state_at(offset, length, x_);
         if (offset == length) solve_unknowns(t_, x_);
+        if (steps().lands()) logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
       } else {
         offset = to;
         t_ = *tick;
@@ -323,11 +324,7 @@ class Driver {
         std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
     if (!restarts || place == length || !steps().lands()) return place;
     const std::size_t guard = crossing.guards.front();
-    if (logic_.jumps(guard)) {
-      if (steps().retake(place, options_)) return steps().end() - steps().begin();
-      steps().retake(length, options_);
-      return place;
-    }
+    if (logic_.jumps(guard)) return land_beyond_jump(guard, place, length);
     // The slope of the guard by a difference over a thousandth of the step.
     const Real apart = length / 1000;
     const Real slope = (guards_at(place, length, guard_values_)[guard] -
@@ -350,6 +347,23 @@ class Driver {
       return place;
     }
     return steps().end() - steps().begin();
+  }
+  // Of a guard that jumps there is nothing but its side: the first step, some units in the last place longer, that ends
+  // beyond.
+  Real land_beyond_jump(std::size_t guard, Real place, Real length) {
+    using std::abs;
+    const int far = sign_of(guards_at(place, length, guard_values_)[guard]);
+    Real longer = 2 * std::numeric_limits<Real>::epsilon() * abs(place);
+    constexpr int most_tries = 24;
+    Real h = place;
+    for (int tries = 0; tries < most_tries && steps().retake(h, options_); ++tries) {
+      events_guards(steps().end(), steps().x_end());
+      if (sign_of(guard_values_[guard]) == far) return steps().end() - steps().begin();
+      h = place + forward() * longer;
+      longer *= 4;
+    }
+    steps().retake(length, options_);
+    return place;
   }
   void events_guards(Real t, X x) {
     shift(x);

@@ -33,6 +33,7 @@ class EventLogic {
         rounding_(events_.size()),
         wide_(events_.size()),
         scratch_(events_.size()),
+        slack_(events_.size()),
         marks_(events_.size()),
         jumps_(events_.size()),
         held_(events_.size()),
@@ -78,11 +79,13 @@ class EventLogic {
     return forward_ * (next - to) <= 0 ? std::optional<Real>(next) : std::nullopt;
   }
 
-  /// Begins the list of an instant: what is scheduled for t.
+  /// Begins the list of an instant: what is scheduled for t and has not happened yet.
   void begin_instant(Real t) {
     fired_.clear();
-    for (std::size_t i = 0; any_scheduled_ && i < events_.size(); ++i)
+    if (!any_scheduled_ || scheduled_at_ == t) return;
+    for (std::size_t i = 0; i < events_.size(); ++i)
       if (!events_.is_guard(i) && events_.next_time(i, t, true) == t) fired_.push_back(i);
+    if (!fired_.empty()) scheduled_at_ = t;
   }
   std::span<const std::size_t> fired() const { return fired_; }
 
@@ -140,11 +143,25 @@ class EventLogic {
                const X& later_x) {
     using std::abs;
     std::ranges::fill(jumps_, char{0});
+    std::ranges::fill(slack_, Real(0));
     evaluate(steps, later_t, later_x, g_);
     find_rounding(steps, later_t, later_x);
     for (const std::size_t i : crossing.guards) {
       const Real beyond = values[i] - watch_.states()[i].level();
       jumps_[i] = abs(beyond) > abs(g_[i] - values[i]) + 4 * rounding_[i];
+    }
+  }
+  /// A step was taken to the instant, whose state is off by the tolerance: guards may be off by as much as that makes.
+  void allow_for(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance) {
+    using std::abs, std::max;
+    evaluate(steps, t, x, g_);
+    for (int pattern = 0; pattern < 2; ++pattern) {
+      for (std::size_t k = 0; k < dimension(x); ++k) {
+        const Real part = tolerance.scale(k, x.data()[k], x.data()[k]);
+        moved_.data()[k] = x.data()[k] + (pattern == 0 || k % 2 == 0 ? part : -part);
+      }
+      evaluate(steps, t, moved_, scratch_);
+      for (std::size_t i = 0; i < events_.size(); ++i) slack_[i] = max(slack_[i], 2 * abs(scratch_[i] - g_[i]));
     }
   }
   /// Whether guard i of the crossing that was looked at jumps across zero.
@@ -156,7 +173,10 @@ class EventLogic {
     evaluate(steps, t, x, g_);
     find_rounding(steps, t, x);
     std::ranges::fill(marks_, char{0});
-    if (!crossing) std::ranges::fill(jumps_, char{0});
+    if (!crossing) {
+      std::ranges::fill(jumps_, char{0});
+      std::ranges::fill(slack_, Real(0));
+    }
     if (crossing)
       for (const std::size_t i : crossing->guards) cross(i);
     for (std::size_t i = 0; i < events_.size(); ++i)
@@ -396,6 +416,7 @@ class EventLogic {
       if (fired) state.side = sign_of(g_[i]);
       return;
     }
+    if (marks_[i] == done) state.band = max(state.band, slack_[i]);
     if (!restarted_ && !is_condition(i)) return;
     const Carried way = carried(steps, i, t, x);
     marks_[i] == turned ? turn(i, way) : take(i, way);
@@ -421,9 +442,11 @@ class EventLogic {
       // Turned back, which an event that watches both directions sees as well, or held at zero.
       state.side = -state.side;
       if (way.side != 0 && watches(events_.direction(i), state.side)) add(next_, i);
-    } else if (way.order > 1) {
-      held_[i] = 1;  // of order 1, it goes on through
+    } else if (way.order > 1 || !way.surely) {
+      held_[i] = 1;
       add(next_, i);
+    } else {
+      state.band = std::max(state.band, slack_[i]);  // it goes on through
     }
   }
   // Any other guard at zero.
@@ -474,11 +497,12 @@ class EventLogic {
   GuardWatch<Real> watch_;
   AccumulationWatch<Real> accumulation_;
   std::vector<Real> g_, rounding_, wide_, scratch_;
+  std::vector<Real> slack_;   // of the last instant that a step was taken to
   std::vector<char> marks_;   // of the present round
   std::vector<char> jumps_;   // of the guards of the last crossing: g jumps across zero
   std::vector<char> held_;    // the event fires because the motion would leave zero at once by its far side
   std::vector<std::size_t> fired_, next_;
-  std::optional<Real> last_event_;
+  std::optional<Real> last_event_, scheduled_at_;
   Real forward_, longest_, size_{};
   X moved_, first_, second_;
   bool any_guard_ = false, any_turning_guard_ = false, any_scheduled_ = false;
