@@ -19,6 +19,7 @@
 
 #include <continuo/methods/direct_equations.hpp>
 #include <continuo/methods/newton.hpp>
+#include <continuo/methods/slope_in_time.hpp>
 #include <continuo/methods/tolerance_proportionality.hpp>
 #include <continuo/methods/weighted_norm.hpp>
 #include <continuo/system/mass.hpp>
@@ -271,6 +272,7 @@ struct BackwardDifferentiation {
 
   template <class System, State X>
   static int begin(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+    work.decomposed_for = Scalar<X>(0);
     evaluate(system, t, x, work.f);
     divide_by_mass(system, work.f);
     work.D[0] = x;
@@ -281,7 +283,32 @@ struct BackwardDifferentiation {
     work.next_order = work.equal_steps = work.rejections = 0;
     work.has_jacobian = false;
     work.memory = {};
-    return 1;
+    return 1 + (work.equations.has_mass() ? add_slope_of_unknowns(system, t, x, h, work) : 0);
+  }
+
+  // Of an unknown of 0 = g it is what keeps g at 0, g_x x' = -g_t: a prediction that lets it stand still would be off
+  // by h times that, and where it moves fast no h is short enough. (c M - J) x' = c M x' + f_t says the same for a c so
+  // large that x' of the others stays.
+  template <class System, State X>
+  static int add_slope_of_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                   Workspace<X>& work) {
+    using Real = Scalar<X>;
+    const Real c = 1 / (h * detail::sqrt_of_epsilon<Real>());
+    X& slope = work.correction;
+    slope = work.f;
+    int evaluations = work.equations.linearize(system, t, x, h, work.tolerance, work.f);
+    if (work.equations.decompose(system, c) != StepStatus::done) return evaluations;
+    work.equations.multiply_mass(slope, work.end);
+    slope = work.end;
+    for (std::size_t i = 0; i < dimension(x); ++i) slope.data()[i] *= c;
+    if (!is_autonomous(system)) {
+      evaluations += detail::slope_in_time(system, t, h, x, work.f, work.end);
+      for (std::size_t i = 0; i < dimension(x); ++i) slope.data()[i] += work.end.data()[i];
+    }
+    evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, Real(1e-2), slope);
+    for (std::size_t i = 0; i < dimension(x); ++i)
+      if (is_algebraic<X>(system, i)) work.D[1].data()[i] = h * slope.data()[i];
+    return evaluations;
   }
 
   // The same polynomial at `ratio` times the spacing: D_new = (R(ratio) U)^T D with U = R(1), R_ij = product over

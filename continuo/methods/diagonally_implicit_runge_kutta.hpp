@@ -19,6 +19,7 @@
 
 #include <continuo/methods/diagonal_tableau.hpp>
 #include <continuo/methods/method.hpp>
+#include <continuo/methods/slope_in_time.hpp>
 #include <continuo/methods/stage_solver.hpp>
 #include <continuo/methods/stiff_part.hpp>
 #include <continuo/methods/tolerance_proportionality.hpp>
@@ -246,12 +247,12 @@ struct DiagonallyImplicitRungeKutta {
                                      Workspace<X>& work) {
     using Real = Scalar<X>;
     X& k = work.k[0];
-    const Real c = 1 / (h * sqrt_of_epsilon<Real>());
+    const Real c = 1 / (h * detail::sqrt_of_epsilon<Real>());
     work.base = k;
     int evaluations = 0;
     for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] = is_algebraic<X>(system, i) ? Real(0) : c * k.data()[i];
     if (!is_autonomous(system)) {
-      evaluations = slope_in_time(system, t, h, x, work.base, work.z);
+      evaluations = detail::slope_in_time(system, t, h, x, work.base, work.z);
       for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] += work.z.data()[i];
     }
     if (!work.solver.decompose(c)) {
@@ -265,27 +266,6 @@ struct DiagonallyImplicitRungeKutta {
         if (!is_algebraic<X>(system, i)) k.data()[i] = work.base.data()[i] / system.mass(i);
     }
     return evaluations;
-  }
-
-  /// df/dt; of a difference with a length that h says more of than t: near t = 0 the other would be so short that
-  /// rounding is all there is to see.
-  template <class System, State X>
-  static int slope_in_time(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x, const X& fx, X& dfdt) {
-    using Real = Scalar<X>;
-    using std::abs;
-    if constexpr (HasTimeDerivative<System, X>) {
-      system.time_derivative(t, x, dfdt);
-      return 0;
-    } else {
-      const Real long_enough = Real(0.01) * abs(h);
-      const Real scale = long_enough / sqrt_of_epsilon<Real>();
-      return evaluate_time_derivative(system, t, abs(t) < scale ? (h < 0 ? -scale : scale) : h, x, fx, dfdt);
-    }
-  }
-  template <class Real>
-  static Real sqrt_of_epsilon() {
-    using std::sqrt;
-    return sqrt(std::numeric_limits<Real>::epsilon());
   }
 
   template <std::size_t s, class System, class Stiff, State X>

@@ -81,15 +81,16 @@ class StiffnessWatch {
   /// Whether it is nearer to the imaginary axis than to the real one.
   bool oscillates() const { return turn_ < Real(-0.3) * squared(radius_); }
 
-  /// Whether stiffness holds a step of this size, as of the last probe, which was made here. Adds to `evaluations`.
+  /// Whether stiffness holds a step of this size, as of the last probe, which was made here; an oscillation that is
+  /// below so many tolerances is none. Adds to `evaluations`.
   template <class System>
   bool holds(System& system, const Real& t, const X& x, const X& fx, const Real& h, const Tolerance<Real>& tolerance,
-             int& evaluations) {
+             int& evaluations, double unseen = unseen_by_default) {
     if (bounds(h)) return true;
     using std::abs;
     if (!(radius_ * abs(h) > Real(felt))) return false;
     ++evaluations;
-    return follows_slow_solution(system, t, x, fx, h, tolerance);
+    return follows_slow_solution(system, t, x, fx, h, tolerance, Real(unseen));
   }
 
   /// Whether a step h is at the boundary of an explicit method's stability region, on the side where solutions decay:
@@ -103,12 +104,12 @@ class StiffnessWatch {
   // From this h |lambda| on, lambda can be what a step goes by. A stiff method costs some ten times as much a step, and
   // takes steps of about a third of the solution's own time.
   static constexpr double felt = 0.1, much_slower = 30;
-  static constexpr double unseen = 10;  // tolerances
+  static constexpr double unseen_by_default = 10;  // tolerances
 
   // x'' by a difference along the solution, so short that it does not leave it as seen by lambda.
   template <class System>
   bool follows_slow_solution(System& system, const Real& t, const X& x, const X& fx, const Real& h,
-                             const Tolerance<Real>& tolerance) {
+                             const Tolerance<Real>& tolerance, const Real& unseen) {
     using std::max;
     const Real apart = (h < 0 ? Real(-felt) : Real(felt)) / radius_;
     const std::size_t n = dimension(x);
@@ -124,8 +125,8 @@ class StiffnessWatch {
     }
     // A method that damps at infinity would damp an oscillation as well: it must not be there to be seen.
     const Real square = squared(radius_);
-    if (oscillates()) return greatest < squared(square);
-    return squared(Real(much_slower)) * bend < square * slope || bend < squared(Real(unseen) * square);
+    if (oscillates()) return greatest < squared(unseen * square);
+    return squared(Real(much_slower)) * bend < square * slope || bend < squared(Real(unseen_by_default) * square);
   }
 
   static Real squared(const Real& x) { return x * x; }

@@ -148,7 +148,9 @@ struct Switching {
     ++work.steps;
     if (!work.is_stiff && work.watch.oscillates()) count_turn(work);
     if (work.is_stiff && work.h >= work.worthwhile_h) work.worthwhile = true;
-    if (work.in_favour >= work.patience) {
+    // Of an oscillation a probe may meet the moment that it is least to be seen: several phases are asked.
+    const bool several_phases = !work.is_stiff && work.watch.oscillates();
+    if (work.in_favour >= (several_phases ? 2 * work.patience : work.patience)) {
       work.is_stiff ? leave_stiff(work) : enter_stiff(work);
       work.is_stiff = !work.is_stiff;
       work.fresh = true;
@@ -173,6 +175,7 @@ struct Switching {
   static constexpr std::size_t least_probes_at_start = 5, most_probes_at_start = 12;
   static constexpr double felt = 0.1, strictness_at_start = 10;
   static constexpr double least_part_of_turn = NonStiff::order < 8 ? 0.04 : 0.25;  // h |lambda|
+  static constexpr double unseen = 1;  // tolerances: what the stiff method may damp
   // Steps of an oscillation whose errors may be as large as the tolerance. Nothing damps them; from there on those of
   // the n-th are held below 1/n of that, so that their sum grows with log n alone.
   static constexpr std::size_t free_turns = 5;
@@ -203,7 +206,7 @@ struct Switching {
     const auto& slope = NonStiff::derivative(work.nonstiff);
     work.watch.probe(system, t, x, slope, work.tolerance);
     ++evaluations;
-    return work.watch.holds(system, t, x, slope, h, work.tolerance, evaluations) ||
+    return work.watch.holds(system, t, x, slope, h, work.tolerance, evaluations, unseen) ||
            worthwhile * abs(h) < work.h_of_stiff;
   }
 

@@ -14,6 +14,7 @@ using X = std::array<double, 2>;
 
 // x'' = -x from (1, 0): x = cos t. One type for all tests keeps the templates few.
 struct Oscillator {
+  static constexpr bool autonomous = true;
   void operator()(double, const X& x, X& dxdt) const { dxdt = {x[1], -x[0]}; }
 };
 

@@ -102,7 +102,7 @@ TEST(Events, AScheduledEventAtTheStartFires) {
   const auto set = at<X1>("set", {0, 0.5}, [](EventAction<X1>& now) { now.x[0] += 10; });
   const auto solution = solve(clock_system, X1{0}, {0, 1}, Tsitouras5{}, {.events = {set}});
   EXPECT_EQ(times(solution), (std::vector<double>{0, 0.5}));
-  EXPECT_NEAR(solution.final_state()[0], 21, 1e-14);
+  EXPECT_NEAR(solution.final_state()[0], 21, 1e-13);  // some fifty steps, each with a rounding of 21
 }
 
 // DiffEqBase.jl#634: g exactly zero at the start is no event until it has left.
