@@ -409,7 +409,10 @@ class EventLogic {
     if (!was_active) return enter(steps, i, t, x);
     const bool fired = marks_[i] == done || marks_[i] == turned;
     if (fired && jumps_[i] && sign_of(g_[i]) == state.side) return;
-    const Real band = fired && state.at_zero ? max(state.band, rounding_[i]) : rounding_[i];
+    Real band = fired && state.at_zero ? max(state.band, rounding_[i]) : rounding_[i];
+    // Unknowns that were solved for anew, or a step to the instant, may have moved g by as much as the tolerance lets
+    // them.
+    if (fired && state.at_zero && abs(g_[i]) <= slack_[i]) band = max(band, abs(g_[i]) + rounding_[i]);
     state.at_zero = abs(g_[i]) <= band;
     state.band = band;
     if (!state.at_zero) {

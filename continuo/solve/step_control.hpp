@@ -200,12 +200,13 @@ class StepControl final : public Steps<System, X> {
     jumped_ = true;
   }
 
-  // What f does at a later time shows in no step before it: beside a solution at rest steps would grow until one of
+  // What f does at a later time shows in no step before it, if f is known to hang on the time (a model says so, a
+  // function alone does not): beside a solution at rest steps would grow until one of
   // them takes a whole pulse of the input between its stages. A fiftieth of the run so far known is what somebody sees
   // who looks at a plot of it.
   Real longest_step(Real limit, const Options<X>& options) {
     using std::abs, std::max, std::min;
-    if (is_autonomous(system_)) return options.max_step;
+    if (!is_known_to_depend_on_time(system_)) return options.max_step;
     reach_ = max(reach_, Real(abs(limit - origin_)));
     return min(options.max_step, reach_ / Real(parts_of_run));
   }

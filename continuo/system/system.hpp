@@ -109,6 +109,16 @@ constexpr bool is_autonomous(const F& f) {
   }
 }
 
+/// Whether the system says that f depends on t; a function alone says neither.
+template <class F>
+constexpr bool is_known_to_depend_on_time(const F& f) {
+  if constexpr (KnowsAutonomous<F>) {
+    return !f.autonomous;
+  } else {
+    return false;
+  }
+}
+
 /// The system knows how large the eigenvalues of df/dx become: f.spectral_radius(t, x), not below the greatest of
 /// their sizes. Stabilised explicit methods choose their stages by it.
 template <class F, class X>
