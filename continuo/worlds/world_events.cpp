@@ -136,7 +136,11 @@ void WorldEvents::happen_now(WorldRun& world, const std::vector<std::size_t>& fi
   const X before = world.state();
   X after = before;
   const double t = world.time();
-  const auto response = events_.fire(system_, fired, t, before, after);
+  bool stops = false;
+  for (const std::size_t i : fired) {  // each on the state that the one before has left
+    const X left = after;
+    stops = events_.fire(system_, i, t, left, after).stop || stops;
+  }
   for (const model::TableInput& input : program_->step_inputs) {
     const double value = input.table.value(t);
     if (world.variables()[input.variable] != value) world.set(input.variable, value);
@@ -152,7 +156,7 @@ void WorldEvents::happen_now(WorldRun& world, const std::vector<std::size_t>& fi
   }
   marks_seen_ = events_.marks().size();
   if (!names_.empty() || after != before) sink({t, names_, before});
-  if (!response.stop) return;
+  if (!stops) return;
   stopped_by_ = names_.empty() ? std::string() : names_.front().event;
   stopped_ = true;
 }
