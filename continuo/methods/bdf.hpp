@@ -379,7 +379,7 @@ struct BackwardDifferentiation {
       const Real weight = ndf::gamma<Real>(j) * one_over_alpha;
       for (std::size_t i = 0; i < n; ++i) past.data()[i] += weight * work.D[j].data()[i];
     }
-    work.memory.measures_anew = work.equations.has_mass();
+    if (work.equations.has_mass()) work.memory.measure_anew(work.tolerance);
     work.memory.matrix_is_known = work.is_current || !work.memory.measures_anew;
     const Real asked = tolerance_as_number(work.tolerance);
     const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / asked, min(Real(0.03), sqrt(asked)));

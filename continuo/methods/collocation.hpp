@@ -281,7 +281,7 @@ struct CollocationMethod {
   static int solve(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
     collocation::guess<nodes, s>(h, work);
     if (!collocation::decompose<nodes, s>(h, work)) return 0;
-    work.memory.measures_anew = work.linear.has_mass();
+    if (work.linear.has_mass()) work.memory.measure_anew(work.tolerance);
     work.memory.matrix_is_known = work.jacobian_age == 0 || !work.memory.measures_anew;
     const bool converged = newton(work.memory, work.target, most_iterations<Scalar<X>>(s), [&] {
       collocation::stage_slopes<nodes, s>(system, t, x, h, work);
@@ -341,7 +341,7 @@ struct CollocationMethod {
     }
     ++work.costs.decompositions;
     NewtonMemory<Real> memory{};
-    memory.measures_anew = true;
+    memory.measure_anew(work.tolerance);
     const bool settled = newton(memory, work.target, 2 * most_iterations<Real>(2), [&] {
       evaluate(system, Real(t + h), x_new, work.f_end);
       for (std::size_t i = 0; i < n; ++i)

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include <continuo/methods/method.hpp>
+#include <continuo/methods/tolerance_proportionality.hpp>
 
 namespace continuo {
 
@@ -27,13 +28,20 @@ struct NewtonMemory {
   // unknown that is off stays off, and no h of the next step meets the tolerance then. Nor is a matrix taken at its
   // word that lets only small corrections through, all of the same size.
   bool measures_anew = false;
+  Real rounding = 0;  // then: corrections that may be no more than it, in tolerances
+
+  /// Of equations that may be algebraic.
+  void measure_anew(const Tolerance<Real>& tolerance) {
+    measures_anew = true;
+    rounding = 100 * std::numeric_limits<Real>::epsilon() / tolerance_as_number(tolerance);
+  }
 };
 
 /// Iterates until what is still to come is below `target` (of a norm in which the tolerance is 1). `correct` makes one
 /// correction and returns its norm. False where it diverges, or would need more than `most` iterations.
 template <class Real, class Correct>
 bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& correct) {
-  using std::max, std::pow;
+  using std::max, std::min, std::pow;
   const Real epsilon = std::numeric_limits<Real>::epsilon();
   // eq. 8.10': an estimate before the second correction is there.
   Real remainder = pow(max(memory.remainder, epsilon), Real(0.8));
@@ -47,7 +55,7 @@ bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& 
       const Real rate = size / last;
       memory.rate = rate;
       if (rate >= Real(0.99)) {  // diverging, or down to rounding
-        return memory.matrix_is_known && size <= (memory.measures_anew ? Real(1e-2) * target : target);
+        return memory.matrix_is_known && size <= (memory.measures_anew ? min(target, memory.rounding) : target);
       }
       remainder = rate / (1 - rate);
       memory.matrix_is_known = true;

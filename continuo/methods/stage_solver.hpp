@@ -110,7 +110,7 @@ struct StageSolver {
       }
       return Real(sqrt(sum / Real(static_cast<double>(max<std::size_t>(n, 1)))));
     };
-    memory.measures_anew = linear.has_mass();
+    if (linear.has_mass()) memory.measure_anew(tolerance);
     bool arrived = newton(memory, target, most_iterations, correct);
     slowest = max(slowest, memory.rate);
     if (!arrived && insists && memory.finite) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <continuo/methods/weighted_norm.hpp>
 #include <continuo/solve/consistent.hpp>
 #include <continuo/solve/steps.hpp>
 
@@ -128,6 +129,7 @@ class StepControl final : public Steps<System, X> {
 
   static constexpr int parts_of_run = 50;
   static constexpr std::size_t rejects_before_settling = 4;
+  static constexpr double least_off = 1e-3;  // tolerances
   static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0;
 
   bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
@@ -196,8 +198,10 @@ class StepControl final : public Steps<System, X> {
     const Consistency found = make_consistent(system_, begin_, settled, weights);
     statistics_.evaluations += static_cast<std::size_t>(found.evaluations);
     if (!found) return;
-    x_begin_ = std::move(settled);
-    jumped_ = true;
+    std::swap(x_begin_, settled);
+    for (std::size_t i = 0; i < dimension(settled); ++i) settled.data()[i] -= x_begin_.data()[i];
+    // A method begins anew where its start was off, and only there.
+    jumped_ = jumped_ || weighted_norm(settled, x_begin_, x_begin_, weights) > least_off;
   }
 
   // What f does at a later time shows in no step before it, if f is known to hang on the time (a model says so, a
