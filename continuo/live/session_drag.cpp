@@ -135,7 +135,8 @@ void Session::stop_at_guards(const Grip& grip, const std::vector<double>& from, 
   const auto fires = [&](const std::vector<double>& x) {
     guards.guards(system, cursor_, x, after);
     for (std::size_t i = 0; i < guards.size(); ++i) {
-      if (!guards.is_guard(i) || !(guards.can_assign(i) || guards.can_restart(i)) || !guards.active(system, i)) continue;
+      if (!guards.is_guard(i) || !(guards.can_assign(i) || guards.can_restart(i)) || !guards.active(system, i))
+        continue;
       const Direction direction = guards.direction(i);
       if (direction != Direction::rises && is_crossed(before[i], after[i])) return true;
       if (direction != Direction::falls && is_crossed(-before[i], -after[i])) return true;

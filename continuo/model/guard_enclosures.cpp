@@ -5,8 +5,7 @@
 
 namespace continuo::model {
 
-GuardEnclosures::GuardEnclosures(const ModelProgram& program, std::vector<std::vector<Guard>> guards,
-                                 std::size_t count)
+GuardEnclosures::GuardEnclosures(const ModelProgram& program, std::vector<std::vector<Guard>> guards, std::size_t count)
     : program_(&program), place_(count, none) {
   for (std::vector<Guard>& of_mode : guards) modes_.push_back({.guards = std::move(of_mode), .all = {}, .alone = {}});
 }

@@ -32,9 +32,8 @@ bool is_dragged(const DrawItem& item) {
 
 bool stands_still(const Model& model, std::size_t state) {
   const State& one = model.states[state];
-  return !one.algebraic && !one.in_world && std::ranges::all_of(model.modes, [&](const Mode& mode) {
-    return model.graph.is(mode.derivatives[state], 0);
-  });
+  return !one.algebraic && !one.in_world &&
+         std::ranges::all_of(model.modes, [&](const Mode& mode) { return model.graph.is(mode.derivatives[state], 0); });
 }
 
 std::size_t find_state(const Model& model, std::string_view column) {

@@ -117,8 +117,9 @@ ModelEvents::ModelEvents(const ModelProgram& program, std::span<const double> va
   guard_values_.resize(model.events.size());
   stop_counts_.resize(program.stops);
   const auto number_of_jump = [&](std::size_t mode, std::size_t k) {
-    const auto found = std::ranges::find_if(
-        events_, [&](const Entry& entry) { return entry.kind == Kind::jump && entry.mode == mode && entry.index == k; });
+    const auto found = std::ranges::find_if(events_, [&](const Entry& entry) {
+      return entry.kind == Kind::jump && entry.mode == mode && entry.index == k;
+    });
     return static_cast<std::size_t>(found - events_.begin());
   };
   auto guards = enclosed_guards(program, [&](std::size_t event) { return guard_place_[event]; }, number_of_jump);
@@ -137,13 +138,13 @@ std::optional<Carried> ModelEvents::carried(const ModelSystem& system, std::size
   const int side = model::carried(motion);
   if (side == 0) {
     // Unknowns are solved for to a tolerance, which hides what little a guard of theirs moves.
-    const bool unknown = system.has_mass() ||
-                         std::ranges::any_of(motion.rounding, [](double r) { return !std::isfinite(r); });
+    const bool unknown =
+        system.has_mass() || std::ranges::any_of(motion.rounding, [](double r) { return !std::isfinite(r); });
     return unknown ? std::nullopt : std::optional(Carried{});
   }
   int order = 1;
-  while (order < 3 && std::abs(motion.c[static_cast<std::size_t>(order)]) <=
-                          motion.rounding[static_cast<std::size_t>(order)])
+  while (order < 3 &&
+         std::abs(motion.c[static_cast<std::size_t>(order)]) <= motion.rounding[static_cast<std::size_t>(order)])
     ++order;
   const auto k = static_cast<std::size_t>(order);
   return Carried{side, order, std::abs(motion.c[k]) > Carried::far_beyond * motion.rounding[k]};

@@ -28,7 +28,8 @@ ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<
 
 template <class Visit>
 void ModelSystem::for_each(Visit&& visit) {
-  for (auto* list : {&derivatives_, &guards_, &truths_, &event_blocks_, &limit_blocks_, &schedule_blocks_}) std::ranges::for_each(*list, visit);
+  for (auto* list : {&derivatives_, &guards_, &truths_, &event_blocks_, &limit_blocks_, &schedule_blocks_})
+    std::ranges::for_each(*list, visit);
 }
 
 void ModelSystem::set(std::uint32_t variable, double value) {

@@ -41,9 +41,9 @@ class SwitchedMotion {
   /// For each switch of the mode a number that changes its sign where the motion comes to the surface, or leaves it.
   void guards(std::size_t mode, double t, const X& x, std::span<double> values);
 
-  /// The motion begins anew in this mode: every switch gets the value that the state asks for; on a surface, that of the
-  /// side to which the motion leads, or it slides. What was on a surface it slid along, and has not been moved off it
-  /// since `before`, still is (null: nothing slid).
+  /// The motion begins anew in this mode: every switch gets the value that the state asks for; on a surface, that of
+  /// the side to which the motion leads, or it slides. What was on a surface it slid along, and has not been moved off
+  /// it since `before`, still is (null: nothing slid).
   void settle(std::size_t mode, double t, const X& x, const X* before);
   /// The motion has come to the surface of switch k, or to the end of its sliding.
   Passage pass(std::size_t mode, std::size_t k, double t, const X& x);
@@ -70,8 +70,7 @@ class SwitchedMotion {
   double approach_of(std::size_t mode, std::size_t k, double value, double t, const X& x);
   Passage choose(std::size_t mode, Sliding sides, double t, const X& x);
   Sliding sides_of(std::size_t mode, std::size_t k, double surface) const;
-  bool settle_one(std::size_t mode, std::size_t k, double t, const X& x, const X* before,
-                  std::span<const char> slid);
+  bool settle_one(std::size_t mode, std::size_t k, double t, const X& x, const X* before, std::span<const char> slid);
   double rounding(std::size_t mode, std::size_t k, double t, const X& x);
   double surface(std::size_t mode, std::size_t k, double t, const X& x);
 

@@ -108,8 +108,7 @@ class Rewriting {
 
   NodeId corner(const Node& n) {
     const NodeId a = of(n.a);
-    if (n.op == Op::absolute)
-      return g_.select(relation(a, true, g_.less_equal(g_.constant(0), a)), a, g_.negate(a));
+    if (n.op == Op::absolute) return g_.select(relation(a, true, g_.less_equal(g_.constant(0), a)), a, g_.negate(a));
     const NodeId b = of(n.b), a_first = relation(g_.subtract(b, a), true, g_.less_equal(a, b));
     return n.op == Op::minimum ? g_.select(a_first, a, b) : g_.select(a_first, b, a);
   }

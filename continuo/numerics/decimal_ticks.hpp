@@ -1,5 +1,5 @@
-// Instants at equal distances as people write them: `every 0.1` means 0.1, 0.2, 0.3, and not the multiples of the double
-// nearest to 0.1, of which the third is 0.30000000000000004.
+// Instants at equal distances as people write them: `every 0.1` means 0.1, 0.2, 0.3, and not the multiples of the
+// double nearest to 0.1, of which the third is 0.30000000000000004.
 #pragma once
 #include <charconv>
 #include <cmath>

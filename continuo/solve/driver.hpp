@@ -60,8 +60,8 @@ class Driver {
   const Interval<Real>& interval() const { return interval_; }
   const Options<X>& options() const { return options_; }
 
-  /// x at a time of the last step, on the dense output, the unknowns of algebraic equations solved for; at an event what
-  /// was before it, but for t().
+  /// x at a time of the last step, on the dense output, the unknowns of algebraic equations solved for; at an event
+  /// what was before it, but for t().
   void at(Real t, X& x) {
     if (t == t_) {
       x = x_;
@@ -320,15 +320,15 @@ class Driver {
   Real land(const Crossing<Real>& crossing, Real length) {
     using std::abs;
     const Real place = crossing.offset;
-    const bool restarts =
-        std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
+    const bool restarts = std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
     if (!restarts || place == length || !steps().lands()) return place;
     const std::size_t guard = crossing.guards.front();
     if (logic_.jumps(guard)) return land_beyond_jump(guard, place, length);
     // The slope of the guard by a difference over a thousandth of the step.
     const Real apart = length / 1000;
-    const Real slope = (guards_at(place, length, guard_values_)[guard] -
-                        guards_at(place - apart, length, later_values_)[guard]) / apart;
+    const Real slope =
+        (guards_at(place, length, guard_values_)[guard] - guards_at(place - apart, length, later_values_)[guard]) /
+        apart;
     Real h = place, best = place, taken{}, least = std::numeric_limits<Real>::infinity();
     for (int tries = 0; tries < 4 && steps().retake(h, options_); ++tries) {
       taken = h;
@@ -446,9 +446,7 @@ class Driver {
     outcome_.event = events().name(event);
     outcome_.limit_time = limit;
   }
-  bool interrupted() const {
-    return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed);
-  }
+  bool interrupted() const { return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed); }
   bool end_among_events() {
     if (interrupted()) {
       end(Ending::interrupted);

@@ -1,5 +1,6 @@
 // When something happens, and what. docs/events.md states the rules; in short:
-//   1. A guard has a side, the sign of g, at every point of the motion and before and after every action. It fires where
+//   1. A guard has a side, the sign of g, at every point of the motion and before and after every action. It fires
+//   where
 //      its side changes in the watched direction, whether the motion or an action changed it.
 //   2. The state at an event lies on the far side of its root.
 //   3. Events of one instant fire in the order of declaration, each on the state that the one before has left; within

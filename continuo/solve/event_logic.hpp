@@ -66,7 +66,8 @@ class EventLogic {
     }
   }
 
-  // ---- the schedule --------------------------------------------------------------------------------------------------
+  // ---- the schedule
+  // --------------------------------------------------------------------------------------------------
 
   /// The first scheduled time after t of an event that can change the motion, at most `to`: a step ends there.
   Real next_restart(Real t, Real to) const {
@@ -89,7 +90,8 @@ class EventLogic {
   }
   std::span<const std::size_t> fired() const { return fired_; }
 
-  // ---- guards over a step --------------------------------------------------------------------------------------------
+  // ---- guards over a step
+  // --------------------------------------------------------------------------------------------
 
   /// The first crossing on offsets from..to of the present step; evaluate(offset, values) gives the guards.
   template <class Evaluate>
@@ -116,7 +118,8 @@ class EventLogic {
     watch_.settle(g_);
   }
 
-  // ---- an instant ----------------------------------------------------------------------------------------------------
+  // ---- an instant
+  // ----------------------------------------------------------------------------------------------------
 
   /// The run begins, or somebody has changed the state: every guard gets its side. One at zero, which the motion takes
   /// to the side that its event watches, is no crossing, unless the event would turn the motion back: a ball that lies
@@ -137,8 +140,8 @@ class EventLogic {
   }
 
   /// Looks at located crossings on the dense output: `values` are the guards there, `later` a millionth of the step
-  /// later, at `later_t` and `later_x`. What g still is at its far side is less than it becomes until then, or rounding,
-  /// but where g jumps.
+  /// later, at `later_t` and `later_x`. What g still is at its far side is less than it becomes until then, or
+  /// rounding, but where g jumps.
   void look_at(StepsOf& steps, const Crossing<Real>& crossing, std::span<const Real> values, Real later_t,
                const X& later_x) {
     using std::abs;
@@ -184,8 +187,8 @@ class EventLogic {
     std::sort(fired_.begin(), fired_.end());
   }
 
-  /// Takes out of the crossing that was found last those guards that leave a zero they had from the start of the run and whose events would
-  /// not turn the motion back: these only get their side. False where no guard is left.
+  /// Takes out of the crossing that was found last those guards that leave a zero they had from the start of the run
+  /// and whose events would not turn the motion back: these only get their side. False where no guard is left.
   bool keep_true_crossings(StepsOf& steps, Real t, const X& x) {
     std::vector<std::size_t>& guards = watch_.crossing().guards;
     std::erase_if(guards, [&](std::size_t i) {
@@ -500,10 +503,10 @@ class EventLogic {
   GuardWatch<Real> watch_;
   AccumulationWatch<Real> accumulation_;
   std::vector<Real> g_, rounding_, wide_, scratch_;
-  std::vector<Real> slack_;   // of the last instant that a step was taken to
-  std::vector<char> marks_;   // of the present round
-  std::vector<char> jumps_;   // of the guards of the last crossing: g jumps across zero
-  std::vector<char> held_;    // the event fires because the motion would leave zero at once by its far side
+  std::vector<Real> slack_;  // of the last instant that a step was taken to
+  std::vector<char> marks_;  // of the present round
+  std::vector<char> jumps_;  // of the guards of the last crossing: g jumps across zero
+  std::vector<char> held_;   // the event fires because the motion would leave zero at once by its far side
   std::vector<std::size_t> fired_, next_;
   std::optional<Real> last_event_, scheduled_at_;
   Real forward_, longest_, size_{};

@@ -54,7 +54,7 @@ Carried carried_by_differences(Real t, const X& x, Real length, Real rounding, X
   // Three values are a parabola: its slope and its bend at s = 0, each times the way dt.
   const Real slope = (4 * g1 - g2 - 3 * g0) / 2, bend = g0 - 2 * g1 + g2;
   // The third derivative, which is not looked at, stays below a thousandth of the second at so short a way.
-  if (abs(slope) > 8 * rounding && abs(slope) > abs(bend) / 1000) 
+  if (abs(slope) > 8 * rounding && abs(slope) > abs(bend) / 1000)
     return {sign_of(slope), 1, abs(slope) > Real(Carried::far_beyond) * rounding};
   if (abs(bend) > 8 * rounding) return {sign_of(bend), 2, false};
   return {};

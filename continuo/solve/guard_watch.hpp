@@ -160,8 +160,7 @@ class GuardWatch {
   std::array<double, bernstein::count> values(const Scan& scan) const {
     std::array<double, bernstein::count> value;
     const Real level = scan.state.level();
-    for (std::size_t k = 0; k < bernstein::count; ++k)
-      value[k] = static_cast<double>(samples_[k][scan.guard] - level);
+    for (std::size_t k = 0; k < bernstein::count; ++k) value[k] = static_cast<double>(samples_[k][scan.guard] - level);
     return value;
   }
 
