@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -262,6 +263,67 @@ TEST(Events, EveryFiresAtItsMultiplesWithoutDrift) {
   const auto solution = solve(clock_system, X1{0}, {0, 1000}, Tsitouras5{}, {.events = {tick}});
   EXPECT_EQ(count, 10001);
   EXPECT_EQ(solution.events[9998].t, 999.8);  // the decimal, not 9998 times the double nearest to 0.1
+}
+
+// An action that carries a guard across zero is a crossing, however far, and as often as it happens.
+TEST(Events, AJumpAcrossZeroFiresEachTime) {
+  const Slope<X2> still = [](double, const X2&) { return X2{0, 0}; };
+  const auto square = every<X2>("square", 1, 1, [](EventAction<X2>& now) { now.x[0] = 1 - now.before[0]; });
+  const auto count =
+      rises<X2>("count", [](double, const X2& x) { return x[0] - 0.5; }, [](EventAction<X2>& now) { now.x[1] += 1; });
+  const auto solution = solve(still, X2{0, 0}, {0, 10.5}, Tsitouras5{}, {.events = {square, count}});
+  EXPECT_EQ(solution.outcome.ending, Ending::reached_end);
+  EXPECT_EQ(solution.final_state()[1], 5);
+}
+
+// A hundred different events at one instant are no accumulation.
+TEST(Events, ManyAtOneInstantAllAct) {
+  std::vector<Event<X1>> events;
+  for (int i = 0; i < 150; ++i)
+    events.push_back(
+        rises<X1>("one", [](double t, const X1&) { return t - 0.5; }, [](EventAction<X1>& now) { now.x[0] += 1; }));
+  const Slope<X1> still = [](double, const X1&) { return X1{0}; };
+  const auto solution = solve(still, X1{0}, {0, 1}, Tsitouras5{}, {.events = events});
+  EXPECT_EQ(solution.outcome.ending, Ending::reached_end);
+  EXPECT_EQ(solution.final_state()[0], 150);
+}
+
+// A ball without restitution on a moving table, concave and convex: it never passes, the run names the event.
+TEST(Events, ABallWithoutRestitutionDoesNotPassATable) {
+  const Slope<X2> f = [](double, const X2& x) { return X2{x[1], -9.81}; };
+  const auto table = [](double t) { return 0.1 * std::sin(10 * t); };
+  const auto hit = falls<X2>(
+      "table", [=](double t, const X2& x) { return x[0] - table(t); },
+      [=](EventAction<X2>& now) { now.x = {table(now.t), std::cos(10 * now.t)}; });
+  const auto solution = solve(f, X2{1, 0}, {0, 3}, Dop853{}, {.rtol = 1e-10, .events = {hit}});
+  for (std::size_t i = 0; i < solution.t.size(); ++i) EXPECT_GT(solution.x[i][0] - table(solution.t[i]), -1e-9);
+  if (solution.outcome.ending != Ending::reached_end) {
+    EXPECT_EQ(solution.outcome.ending, Ending::events_accumulate);
+    EXPECT_EQ(solution.outcome.event, "table");
+  }
+}
+
+// What the event says for the limit happens there, and the run goes on.
+TEST(Events, AccumulationGoesOnWhereTheEventSaysHow) {
+  bool rests = false;
+  const Slope<X2> f = [&rests](double, const X2& x) { return rests ? X2{0, 0} : X2{x[1], -10}; };
+  auto floor = falls<X2>(
+      "floor", [](double, const X2& x) { return x[0]; }, [](EventAction<X2>& now) { now.x[1] = -0.5 * now.before[1]; });
+  floor.at_limit = [&rests](EventAction<X2>& now) {
+    rests = now.restart = true;
+    now.x = {0, 0};
+  };
+  const auto solution = solve(f, X2{5, 0}, {0, 10}, Dop853{}, {.rtol = 1e-10, .events = {floor}});
+  EXPECT_EQ(solution.outcome.ending, Ending::reached_end);
+  EXPECT_EQ(solution.final_state(), (X2{0, 0}));
+  EXPECT_NEAR(solution.events.back().t, 3, 1e-7);  // 1 + 2 (1/2 + 1/4 + ...), less what is left at the limit
+}
+
+TEST(Events, APeriodBelowTheSpacingOfNumbersIsRefused) {
+  const auto tick = every<X1>("tick", 1e-17, -1, [](EventAction<X1>&) {});
+  const auto solution = solve(clock_system, X1{0}, {0, 1}, Tsitouras5{}, {.events = {tick}});
+  EXPECT_EQ(solution.outcome.ending, Ending::invalid_input);
+  EXPECT_NE(solution.outcome.hint.find("tick"), std::string::npos);
 }
 
 }  // namespace
