@@ -110,7 +110,7 @@ class GuardWatch {
       first_[i] = std::numeric_limits<Real>::quiet_NaN();
       if (!states_[i].active) continue;
       scanned_[i] = states_[i];
-      Scan scan{states_[i], i, direction(i)};
+      Scan scan{.state = states_[i], .guard = i, .direction = direction(i), .from = from};
       if (enclosed.has(i) && scan.state.side != 0) {
         if (is_far(scan, enclosed)) continue;
         isolate(scan, from, to, evaluate, enclosed);
@@ -143,10 +143,9 @@ class GuardWatch {
     Direction direction;
     Real crossing = std::numeric_limits<Real>::quiet_NaN();
 
-    void arrive_at(int side) {
-      const int returns = state.at_zero && state.side == -side ? state.returns + 1 : 0;
-      state = {.side = side, .at_zero = false, .active = true, .band = state.band, .returns = returns};
-    }
+    Real from{};  // where the search began
+
+    void arrive_at(int side) { state = {.side = side, .band = state.band}; }
   };
 
   template <class Evaluate>
@@ -286,10 +285,15 @@ class GuardWatch {
     const Real g_far = guard_at(scan.guard, far, evaluate) - level;
     const int side = sign_of(g_far);
     if (side == 0 || side == scan.state.side) return false;
+    const GuardState<Real> before = scan.state;
     scan.arrive_at(side);
     if (!watches(scan.direction, side)) return false;
     const auto beyond = [&](Real s) { return Real(side) * (guard_at(scan.guard, s, evaluate) - level); };
     scan.crossing = enclose_root(beyond, near, far, min(Real(0), beyond(near)), Real(side) * g_far).far;
+    // A guard that began at zero has left its band if it is beyond it half way.
+    const Real half_way = scan.from + (scan.crossing - scan.from) / 2;
+    const bool stayed = before.at_zero && !(Real(before.side) * guard_at(scan.guard, half_way, evaluate) > before.band);
+    scan.state.returns = stayed ? before.returns + 1 : 0;
     return true;
   }
 

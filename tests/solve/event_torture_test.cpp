@@ -319,6 +319,16 @@ TEST(Events, AccumulationGoesOnWhereTheEventSaysHow) {
   EXPECT_NEAR(solution.events.back().t, 3, 1e-7);  // 1 + 2 (1/2 + 1/4 + ...), less what is left at the limit
 }
 
+// A hundred flights of one step each are no motion that stays at zero.
+TEST(Events, AHundredBouncesOfOneStepEachAreAllSeen) {
+  const Slope<X2> f = [](double, const X2& x) { return X2{x[1], -10}; };
+  const auto floor = falls<X2>(
+      "floor", [](double, const X2& x) { return x[0]; }, [](EventAction<X2>& now) { now.x[1] = -now.before[1]; });
+  const auto solution = solve(f, X2{5, 0}, {0, 200}, Dop853{}, {.first_step = 100, .events = {floor}});
+  EXPECT_EQ(solution.outcome.ending, Ending::reached_end);
+  EXPECT_EQ(solution.events.size(), 100U);  // at 1, 3, 5, ..., 199
+}
+
 TEST(Events, APeriodBelowTheSpacingOfNumbersIsRefused) {
   const auto tick = every<X1>("tick", 1e-17, -1, [](EventAction<X1>&) {});
   const auto solution = solve(clock_system, X1{0}, {0, 1}, Tsitouras5{}, {.events = {tick}});
