@@ -28,7 +28,7 @@ constexpr std::string_view special =
 constexpr std::string_view table = "declare table NAME from \"file.csv\" and write interp(NAME, x)";
 constexpr std::string_view choice = "write if c then a else b";
 
-constexpr Elsewhere functions[] = {
+constexpr Elsewhere elsewhere[] = {
     {"arccos", "write acos(x)"},
     {"arcsin", "write asin(x)"},
     {"arctan", "write atan(x)"},
@@ -114,7 +114,7 @@ std::string_view find_in(std::span<const Elsewhere> list, std::string_view name)
 }  // namespace
 
 std::string_view function_from_elsewhere(std::string_view name) {
-  return find_in(functions, name);
+  return find_in(elsewhere, name);
 }
 std::string_view name_from_elsewhere(std::string_view name) {
   return find_in(names, name);

@@ -290,7 +290,7 @@ class EventLogic {
 
   void find_rounding(StepsOf& steps, Real t, const X& x) {
     using std::abs, std::min;
-    constexpr Real few = 4, many = Real(1 << 20);
+    const Real few(4), many(1 << 20);
     largest_changes(steps, t, x, few, rounding_);
     const auto is_near = [&](std::size_t i) { return watched(i) && rounding_[i] > 0 && abs(g_[i]) <= rounding_[i]; };
     bool any = false;

@@ -203,6 +203,7 @@ RealOf<M> error_within_step(std::size_t k, int n, std::size_t component, const a
 template <class Error>
 std::optional<double> order_of(const Error& error) {
   using Real = decltype(error(1));
+  using std::pow;
   const Real least = pow(std::numeric_limits<Real>::epsilon(), Real(0.65));
   std::optional<double> order;
   Real before = error(1);
