@@ -54,7 +54,8 @@ ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program,
     for (const double atol : run.plan.atol) strict.atol.push_back(atol / stricter);
     strict.atol_of.clear();
   }
-  strict.max_steps = std::max(run.plan.max_steps, usual_max_steps);  // a limit of the run's is none of its estimate's
+  if (!again)
+    strict.max_steps = std::max(run.plan.max_steps, usual_max_steps);  // a limit of the run's is none of its estimate's
   const Simulated second = again ? again(strict) : simulate(program, strict);
   if (!second.run || second.run->outcome.ending != run.outcome.ending) {
     estimate.message = second.run ? describe(second.run->outcome) : "the second run could not begin";

@@ -178,12 +178,21 @@ void SensitiveEvents::perform(const std::vector<SensitiveAction>& actions, std::
   }
 }
 
+/// An event whose guard the event before it at the same instant has carried across zero; else its own crossing brought
+/// it there, and its time moves by itself.
+bool SensitiveEvents::set_off_by_jump(SensitiveSystem& system, std::size_t fired, double t, const X& before) {
+  if (!plain_.is_guard(fired) || !last_changed_ || t != last_t_ || before != last_after_) return false;
+  std::vector<double> now(size()), earlier(size());
+  guards(system, t, before, now);
+  guards(system, t, last_before_, earlier);
+  return now[fired] != earlier[fired];
+}
+
 EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x) {
   const auto of_model = [this](const X& wide) {
     return X(wide.begin(), wide.begin() + static_cast<std::ptrdiff_t>(n_));
   };
-  // Set off by the jump before, not by a crossing.
-  const bool follows = last_changed_ && t == last_t_ && before == last_after_;
+  const bool follows = set_off_by_jump(system, fired, t, before);
   const std::size_t mode = system.mode();
   X rates(before.size()), new_rates(before.size());
   system.rates(mode, t, before, rates);
@@ -215,6 +224,7 @@ EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::size_t fired, 
   }
   std::ranges::copy(plain_after, now.begin());
   last_t_ = t;
+  last_before_ = before;
   last_after_ = now;
   last_changed_ = response.restart || now != before;
   x = std::move(now);

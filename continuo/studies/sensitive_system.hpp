@@ -105,6 +105,7 @@ class SensitiveEvents {
 
  private:
   struct Jump;
+  bool set_off_by_jump(SensitiveSystem& system, std::size_t fired, double t, const X& before);
   std::vector<double> time_moves(std::size_t event, std::span<const double> values, double t,
                                  std::span<const double> rates);
   void perform(const std::vector<SensitiveAction>& actions, std::span<const double> values,
@@ -122,7 +123,7 @@ class SensitiveEvents {
   std::vector<SensitiveHappening> happened_;
   bool last_changed_ = false;
   double last_t_;
-  X last_after_;
+  X last_before_, last_after_;
   std::vector<double> last_moves_;
   std::string problem_;
 };

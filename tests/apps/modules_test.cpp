@@ -26,8 +26,8 @@ using ::testing::StartsWith;
 
 namespace fs = std::filesystem;
 
-constexpr const char* decay = "param a = 1 in 0..5\nx' = -a*x\nx(0) = 1\nrun 0..2 output 1\n";
-constexpr const char* measured = "t,x\n0,1\n1,0.1353352832366127\n2,0.01831563888873418\n";  // a = 2
+constexpr const char* fading = "param a = 1 in 0..5\nx' = -a*x\nx(0) = 1\nrun 0..2 output 1\n";
+constexpr const char* fading_rows = "t,x\n0,1\n1,0.1353352832366127\n2,0.01831563888873418\n";  // a = 2
 
 /// What the loader maps for a program or a library. Of the C library some parts hold nothing any more, and only the
 /// sanitizers ask for them: these are left out.
@@ -51,8 +51,8 @@ TEST(Modules, StartingTheCommandLoadsFewLibraries) {
 
 TEST(Modules, AreFoundThroughALinkToTheCommand) {
   Shell shell;
-  shell.write("decay.sim", decay);
-  shell.write("measured.csv", measured);
+  shell.write("decay.sim", fading);
+  shell.write("measured.csv", fading_rows);
   const Result run =
       shell.call("ln -s '" CONTINUO_COMMAND "' link && env -u LD_LIBRARY_PATH ./link run decay.sim -o decay.nc");
   EXPECT_EQ(run.exit, 0) << run.err;
@@ -64,8 +64,8 @@ TEST(Modules, AreFoundThroughALinkToTheCommand) {
 
 TEST(Modules, OneThatIsMissingIsNamedBeforeTheRunWithThePlacesWhereItWasLookedFor) {
   Shell shell;
-  shell.write("decay.sim", decay);
-  shell.write("measured.csv", measured);
+  shell.write("decay.sim", fading);
+  shell.write("measured.csv", fading_rows);
   ASSERT_EQ(shell.call("mkdir bin && cp '" CONTINUO_COMMAND "' bin").exit, 0);
   for (const auto& [module, arguments] : {std::pair("netcdf", "run decay.sim -o decay.nc"),
                                           std::pair("least_squares", "fit decay.sim measured.csv --param a")}) {
@@ -82,7 +82,7 @@ TEST(Modules, OneThatIsMissingIsNamedBeforeTheRunWithThePlacesWhereItWasLookedFo
 
 TEST(Modules, OneThatCannotBeOpenedIsNamedWithTheReason) {
   Shell shell;
-  shell.write("decay.sim", decay);
+  shell.write("decay.sim", fading);
   ASSERT_EQ(shell.call("mkdir bin && cp '" CONTINUO_COMMAND "' bin").exit, 0);
   shell.write("bin/continuo_netcdf.so", "no library");
   const Result result = shell.call("bin/continuo run decay.sim -o decay.nc");

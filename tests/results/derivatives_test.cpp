@@ -29,7 +29,7 @@ TEST(Derivatives, WrongOnesAreNamedWithBothValues) {
   EXPECT_THAT(text, HasSubstr("  wrong   d(x')/d(y) at t = 0.5 in mode flight: -3, by differences 3\n"));
   EXPECT_THAT(text, Not(HasSubstr("right")));
   const auto json = nlohmann::json::parse(derivatives_json(report_of(1)));
-  EXPECT_FALSE(json["agrees"]);
+  EXPECT_FALSE(json["agrees"].get<bool>());
   EXPECT_EQ(json["wrong"][0]["exact"], -3);
   EXPECT_EQ(json["wrong"][0]["mode"], "flight");
   EXPECT_TRUE(json["furthest"].is_null());
