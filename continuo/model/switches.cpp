@@ -40,7 +40,7 @@ std::vector<NodeId> in_sight(const Graph& graph, std::span<const NodeId> roots) 
 class Rewriting {
  public:
   Rewriting(ModelProgram& program, std::size_t mode)
-      : program_(program), model_(program.model), g_(program.model.graph), still_(model_.states.size()) {
+      : model_(program.model), g_(program.model.graph), still_(model_.states.size()) {
     for (std::size_t i = 0; i < still_.size(); ++i) still_[i] = stands_still(model_, i) ? 1 : 0;
     for (const NodeId node : model_.modes[mode].derivatives) roots_.push_back(program.with_inputs(g_, node));
   }
@@ -139,7 +139,6 @@ class Rewriting {
     return any;
   }
 
-  ModelProgram& program_;
   const Model& model_;
   Graph& g_;
   std::vector<char> still_;
