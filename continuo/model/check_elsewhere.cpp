@@ -13,6 +13,8 @@ struct Elsewhere {
   std::string_view name, here;
 };
 
+namespace other_languages {
+
 constexpr std::string_view random =
     "a run is the same each time: read a random course from a file, as in input noise = 0 from \"noise.csv\"";
 constexpr std::string_view jump = "write if x < 0 then 0 else 1; what happens at a time is an event: at 3 { ... }";
@@ -28,7 +30,7 @@ constexpr std::string_view special =
 constexpr std::string_view table = "declare table NAME from \"file.csv\" and write interp(NAME, x)";
 constexpr std::string_view choice = "write if c then a else b";
 
-constexpr Elsewhere elsewhere[] = {
+constexpr Elsewhere functions[] = {
     {"arccos", "write acos(x)"},
     {"arcsin", "write asin(x)"},
     {"arctan", "write atan(x)"},
@@ -106,6 +108,8 @@ constexpr Elsewhere names[] = {
     {"time", "time is `t`"},
 };
 
+}  // namespace other_languages
+
 std::string_view find_in(std::span<const Elsewhere> list, std::string_view name) {
   const auto found = std::ranges::find(list, name, &Elsewhere::name);
   return found == list.end() ? std::string_view() : found->here;
@@ -114,10 +118,10 @@ std::string_view find_in(std::span<const Elsewhere> list, std::string_view name)
 }  // namespace
 
 std::string_view function_from_elsewhere(std::string_view name) {
-  return find_in(elsewhere, name);
+  return find_in(other_languages::functions, name);
 }
 std::string_view name_from_elsewhere(std::string_view name) {
-  return find_in(names, name);
+  return find_in(other_languages::names, name);
 }
 
 }  // namespace continuo::model::detail
