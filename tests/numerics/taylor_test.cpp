@@ -103,7 +103,7 @@ TEST(Taylor, HasTheDerivativesThatDifferencesShow) {
     for (int trial = 0; trial < 20; ++trial) {
       const auto [a, b] = arguments_of<Wide>(function, engine);
       const auto at = [](const Wide& x, long double s) { return x.c[0] + s * (x.c[1] + s * (x.c[2] + s * x.c[3])); };
-      const auto f = [&, a = a, b = b](long double s) { return function.number(at(a, s), at(b, s)); };
+      const auto f = [&, x = a, y = b](long double s) { return function.number(at(x, s), at(y, s)); };
       const Wide found = function.wide(a, b);
       EXPECT_NEAR(static_cast<double>(found.c[0] - f(0)), 0, 1e-15) << function.name;
       long double scale = 1;
