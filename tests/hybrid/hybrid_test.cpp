@@ -19,7 +19,7 @@ namespace {
 class HybridSystems : public testing::TestWithParam<Asked> {};
 
 TEST_P(HybridSystems, HaveEveryEventAtItsTimeAndNoOther) {
-  const Attack result = attack(GetParam(), 500, 2, 3);
+  const Attack result = attack(GetParam(), 200, 1, 3);
   EXPECT_EQ(result.failed, 0u) << "of " << result.asked;
   for (const std::string& failure : result.failures) ADD_FAILURE() << failure;
   // What is left out is less than half, and every class is among the rest.
