@@ -77,9 +77,9 @@ class Driver {
   /// equations are not solved for: they are as near as the method's polynomial.
   std::span<const X> dense_output() {
     const std::span<const X> output = steps().dense_output();
-    if (shifts_.empty()) return output;
+    if (shifted_.empty()) return output;
     shifted_output_.assign(output.begin(), output.end());
-    for (const Shift& shift : shifts_) {
+    for (const Shift& shift : shifted_) {
       shifted_output_[0].data()[shift.component] = shift.value;
       for (std::size_t j = 1; j < shifted_output_.size(); ++j) shifted_output_[j].data()[shift.component] = Real(0);
     }
@@ -217,8 +217,9 @@ class Driver {
   }
 
   void begin_step() {
-    if (std::exchange(shifts_end_, false)) shifts_.clear();
-    for (Shift& shift : shifts_) shift.earlier = true;
+    if (std::exchange(shifts_end_, false)) shifted_.clear();
+    for (Shift& shift : shifted_) shift.earlier = true;
+    shifts_ = shifted_;
   }
 
   // The events of the step that was just taken, in the order of time.
@@ -312,7 +313,7 @@ class Driver {
     solve_unknowns(steps().begin() + offset, x);
   }
   void shift(X& x) const {
-    for (const Shift& one : shifts_) x.data()[one.component] = one.value;
+    for (const Shift& one : shifted_) x.data()[one.component] = one.value;
   }
 
   // The polynomial of a stiff step leaves the slow path between its ends: where an event begins the motion anew, a step
@@ -432,8 +433,12 @@ class Driver {
   }
 
   void note_shifts() {
-    for (std::size_t k = 0; k < dimension(x_); ++k)
-      if (x_.data()[k] != before_.data()[k]) shifts_.push_back({false, t_, k, x_.data()[k]});
+    for (std::size_t k = 0; k < dimension(x_); ++k) {
+      if (x_.data()[k] == before_.data()[k]) continue;
+      shifts_.push_back({false, t_, k, x_.data()[k]});
+      const auto known = std::ranges::find(shifted_, k, &Shift::component);
+      known == shifted_.end() ? shifted_.push_back(shifts_.back()) : void(*known = shifts_.back());
+    }
   }
 
   bool stop(std::size_t event) {
@@ -464,7 +469,7 @@ class Driver {
   StepsValue<System, X> steps_;
   Logic logic_;
   std::vector<Real> guard_values_, later_values_;
-  std::vector<Shift> shifts_;
+  std::vector<Shift> shifts_, shifted_;  // those of the present step in order; the last one of each component
   std::vector<X> shifted_output_;
   Consistency consistent_;
   bool started_ = false, ended_ = false;
