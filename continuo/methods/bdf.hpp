@@ -183,12 +183,16 @@ struct BackwardDifferentiation {
 
   template <State X>
   static void rejected(Workspace<X>& work, const Scalar<X>&) {
+    retaken(work);
+    // The higher differences are the first to be spoilt where the solution is not smooth.
+    if (++work.rejections >= 2 && work.order > 1) --work.order;
+  }
+  template <State X>
+  static void retaken(Workspace<X>& work) {
     work.equal_steps = 0;
     // A Jacobian of where the prediction went, far from the solution: a diode that conducts there by exp(400) lets no
     // correction through, and whatever the next try begins with would pass for solved.
     if (work.equations.has_mass()) work.has_jacobian = false;
-    // The higher differences are the first to be spoilt where the solution is not smooth.
-    if (++work.rejections >= 2 && work.order > 1) --work.order;
   }
 
   template <class System, State X>

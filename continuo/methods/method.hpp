@@ -83,6 +83,8 @@ struct EquationCosts {
 ///       factor for the next h, where `factor` is what the controller wants. A method of variable order chooses its
 ///       next order here; one that keeps a decomposition may answer 1.
 ///   M::rejected(work, h_next) the last step was not accepted and will be tried again
+///   M::retaken(work)  the last step was good and is taken once more, to end at an event; where there is none, nothing
+///       needs to be done
 template <class M, class X>
 concept Method = State<X> && requires(const X& x) {
   typename M::template Workspace<X>;

@@ -129,6 +129,13 @@ struct Switching {
     }
   }
 
+  template <State X>
+  static void retaken(Workspace<X>& work) {
+    if constexpr (requires { Stiff::retaken(work.stiff); }) {
+      if (work.is_stiff) Stiff::retaken(work.stiff);
+    }
+  }
+
   template <class System, State X>
   static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, const X& x_new,
                          Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {

@@ -244,7 +244,9 @@ class Driver {
       }
       if (crossing) {
         look_at(*crossing, length);
-        offset = land(*crossing, length);
+        const std::optional<Real> landed = land(*crossing, length);
+        if (!landed) return end_before_event();
+        offset = *landed;
         length = steps().end() - begin;
         t_ = offset == length ? steps().end() : begin + offset;
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
@@ -317,8 +319,9 @@ class Driver {
   }
 
   // The polynomial of a stiff step leaves the slow path between its ends: where an event begins the motion anew, a step
-  // of the method is taken to it, and the instant follows that step's end. The offset of the event.
-  Real land(const Crossing<Real>& crossing, Real length) {
+  // of the method is taken to it, and the instant follows that step's end. The offset of the event; none where the
+  // equations of no step can be solved any more.
+  std::optional<Real> land(const Crossing<Real>& crossing, Real length) {
     using std::abs;
     const Real place = crossing.offset;
     const bool restarts = std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
@@ -330,7 +333,7 @@ class Driver {
     const Real slope =
         (guards_at(place, length, guard_values_)[guard] - guards_at(place - apart, length, later_values_)[guard]) /
         apart;
-    Real h = place, best = place, taken{}, least = std::numeric_limits<Real>::infinity();
+    Real h = place, best = place, taken = length, least = std::numeric_limits<Real>::infinity();
     for (int tries = 0; tries < 4 && steps().retake(h, options_); ++tries) {
       taken = h;
       events_guards(steps().end(), steps().x_end());
@@ -343,15 +346,22 @@ class Driver {
       if (!(forward() * next > 0) || forward() * (next - length) >= 0 || abs(next - h) <= unit) break;
       h = next;
     }
-    if (taken != best && !steps().retake(best, options_)) {
-      steps().retake(length, options_);
-      return place;
-    }
+    if (taken != best && !steps().retake(best, options_)) return stay(place, length);
     return steps().end() - steps().begin();
+  }
+  // The step as it was, with the event on its dense output.
+  std::optional<Real> stay(Real place, Real length) {
+    return steps().retake(length, options_) ? std::optional<Real>(place) : std::nullopt;
+  }
+  void end_before_event() {
+    t_ = steps().begin();
+    x_ = steps().x_begin();
+    end(Ending::nonlinear_solve_failed,
+        "Newton's iteration does not converge on a step to the event: take smaller steps");
   }
   // Of a guard that jumps there is nothing but its side: the first step, some units in the last place longer, that ends
   // beyond.
-  Real land_beyond_jump(std::size_t guard, Real place, Real length) {
+  std::optional<Real> land_beyond_jump(std::size_t guard, Real place, Real length) {
     using std::abs;
     const int far = sign_of(guards_at(place, length, guard_values_)[guard]);
     Real longer = 2 * std::numeric_limits<Real>::epsilon() * abs(place);
@@ -363,8 +373,7 @@ class Driver {
       h = place + forward() * longer;
       longer *= 4;
     }
-    steps().retake(length, options_);
-    return place;
+    return stay(place, length);
   }
   void events_guards(Real t, X x) {
     shift(x);

@@ -126,6 +126,7 @@ class EventLogic {
   /// on the floor does not fall through it. Those are added to the list of the instant.
   void arm(StepsOf& steps, Real t, const X& x) {
     if (!any_guard_) return;
+    std::ranges::fill(slack_, Real(0));
     evaluate(steps, t, x, g_);
     find_rounding(steps, t, x);
     for (std::size_t i = 0; i < events_.size(); ++i) {
@@ -156,16 +157,13 @@ class EventLogic {
   }
   /// A step was taken to the instant, whose state is off by the tolerance: guards may be off by as much as that makes.
   void allow_for(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance) {
-    using std::abs, std::max;
+    using std::min;
+    const Real few(2), many(1 << 10);
     evaluate(steps, t, x, g_);
-    for (int pattern = 0; pattern < 2; ++pattern) {
-      for (std::size_t k = 0; k < dimension(x); ++k) {
-        const Real part = tolerance.scale(k, x.data()[k], x.data()[k]);
-        moved_.data()[k] = x.data()[k] + (pattern == 0 || k % 2 == 0 ? part : -part);
-      }
-      evaluate(steps, t, moved_, scratch_);
-      for (std::size_t i = 0; i < events_.size(); ++i) slack_[i] = max(slack_[i], 2 * abs(scratch_[i] - g_[i]));
-    }
+    changes_by_tolerance(steps, t, x, tolerance, few, slack_);
+    // A jump nearby changes a guard by as much over a longer way, which is no inaccuracy.
+    changes_by_tolerance(steps, t, x, tolerance, many, wide_);
+    for (std::size_t i = 0; i < events_.size(); ++i) slack_[i] = min(slack_[i], wide_[i] / (many / (2 * few)));
   }
   /// Whether guard i of the crossing that was looked at jumps across zero.
   bool jumps(std::size_t i) const { return jumps_[i] != 0; }
@@ -301,6 +299,20 @@ class EventLogic {
     for (std::size_t i = 0; i < events_.size(); ++i)
       if (is_near(i)) rounding_[i] = min(rounding_[i], wide_[i] / (many / (2 * few)));
   }
+  void changes_by_tolerance(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance, Real times,
+                            std::vector<Real>& changes) {
+    using std::abs, std::max;
+    std::ranges::fill(changes, Real(0));
+    for (int pattern = 0; pattern < 2; ++pattern) {
+      for (std::size_t k = 0; k < dimension(x); ++k) {
+        const Real part = times * tolerance.scale(k, x.data()[k], x.data()[k]);
+        moved_.data()[k] = x.data()[k] + (pattern == 0 || k % 2 == 0 ? part : -part);
+      }
+      evaluate(steps, t, moved_, scratch_);
+      for (std::size_t i = 0; i < events_.size(); ++i)
+        if (watched(i)) changes[i] = max(changes[i], abs(scratch_[i] - g_[i]));
+    }
+  }
   void largest_changes(StepsOf& steps, Real t, const X& x, Real units, std::vector<Real>& changes) {
     using std::abs, std::max;
     std::ranges::fill(changes, Real(0));
@@ -343,9 +355,11 @@ class EventLogic {
     }
   }
 
+  /// What g can be off by at the present instant.
+  Real inaccuracy(std::size_t i) const { return std::max(rounding_[i], slack_[i]); }
   bool at_zero(std::size_t i) const {
     using std::abs;
-    return !(abs(g_[i]) > rounding_[i]);
+    return !(abs(g_[i]) > inaccuracy(i));
   }
 
   // A guard as it is found, without a past. False where it is not watched now.
@@ -363,11 +377,11 @@ class EventLogic {
 
   // A located crossing. A step taken to the instant may leave g a little on either side of zero: that is zero.
   void cross(std::size_t i) {
-    using std::abs;
+    using std::abs, std::max;
     GuardState<Real>& state = watch_.states()[i];
     state.side = watch_.side_after(i);
     state.returns = watch_.returns_after(i);
-    state.band = jumps_[i] ? Real(0) : rounding_[i] + abs(g_[i]);
+    state.band = jumps_[i] ? Real(0) : max(rounding_[i] + abs(g_[i]), slack_[i]);
     state.at_zero = !jumps_[i];
     rounding_[i] = state.band;
     marks_[i] = turned;
@@ -386,7 +400,7 @@ class EventLogic {
     }
     const int side = !zero ? sign_of(g_[i]) : state.at_zero ? state.side : carried(steps, i, t, x).side;
     if (side == 0 || side == state.side) return;
-    state = {.side = side, .at_zero = zero, .active = true, .band = rounding_[i]};
+    state = {.side = side, .at_zero = zero, .active = true, .band = inaccuracy(i)};
     if (watches(events_.direction(i), side)) add(fired_, i);
   }
 
@@ -412,17 +426,13 @@ class EventLogic {
     if (!was_active) return enter(steps, i, t, x);
     const bool fired = marks_[i] == done || marks_[i] == turned;
     if (fired && jumps_[i] && sign_of(g_[i]) == state.side) return;
-    Real band = fired && state.at_zero ? max(state.band, rounding_[i]) : rounding_[i];
-    // Unknowns that were solved for anew, or a step to the instant, may have moved g by as much as the tolerance lets
-    // them.
-    if (fired && state.at_zero && abs(g_[i]) <= slack_[i]) band = max(band, abs(g_[i]) + rounding_[i]);
+    const Real band = fired && state.at_zero ? max(state.band, inaccuracy(i)) : inaccuracy(i);
     state.at_zero = abs(g_[i]) <= band;
     state.band = band;
     if (!state.at_zero) {
       if (fired) state.side = sign_of(g_[i]);
       return;
     }
-    if (marks_[i] == done) state.band = max(state.band, slack_[i]);
     if (!restarted_ && !is_condition(i)) return;
     const Carried way = carried(steps, i, t, x);
     marks_[i] == turned ? turn(i, way) : take(i, way);
@@ -439,20 +449,21 @@ class EventLogic {
 
   // The guard of an event that has acted and is at zero.
   void turn(std::size_t i, const Carried& way) {
+    using std::abs;
     GuardState<Real>& state = watch_.states()[i];
     if (renews_guard(i)) {
       if (way.side != 0) state.side = way.side;
     } else if (way.side == 0 && is_condition(i)) {
       state.side = sign_of(g_[i]);
     } else if (way.side != state.side) {
-      // Turned back, which an event that watches both directions sees as well, or held at zero.
+      // Turned back, which an event that watches both directions sees as well, or held at zero. What it is beyond zero
+      // already is all that it may be.
       state.side = -state.side;
+      state.band = abs(g_[i]) + rounding_[i];
       if (way.side != 0 && watches(events_.direction(i), state.side)) add(next_, i);
     } else if (way.order > 1 || !way.surely) {
       held_[i] = 1;
       add(next_, i);
-    } else {
-      state.band = std::max(state.band, slack_[i]);  // it goes on through
     }
   }
   // Any other guard at zero.

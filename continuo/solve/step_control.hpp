@@ -56,8 +56,10 @@ class StepControl final : public Steps<System, X> {
 
   bool lands() const override { return detail::is_implicit<M>(); }
   bool retake(Real size, const Options<X>& options) override {
-    if constexpr (requires { M::rejected(work_, size); }) M::rejected(work_, size);
+    if constexpr (requires { M::retaken(work_); }) M::retaken(work_);
+    jumped_ = began_anew_;
     attempt(size, options);
+    jumped_ = false;
     interpolated_ = false;
     end_ = begin_ + size;
     carried_ = 0;
@@ -80,6 +82,7 @@ class StepControl final : public Steps<System, X> {
 
   void attempt(Real h, const Options<X>& options) {
     h_ = h;
+    began_anew_ = jumped_;
     if constexpr (requires { M::aim(work_, tolerance(options)); }) M::aim(work_, tolerance(options));
     statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
     if constexpr (requires { M::costs(work_); }) {
@@ -256,7 +259,8 @@ class StepControl final : public Steps<System, X> {
 
   typename M::template Workspace<X> work_;
   Interpolant<X, M::dense_degree> interpolant_;
-  Real origin_, reach_{};  // the start of the run, and how far from it limits have been
+  Real origin_, reach_{};   // the start of the run, and how far from it limits have been
+  bool began_anew_ = true;  // the last step: nothing was kept from before it
 };
 
 }  // namespace continuo
