@@ -214,7 +214,7 @@ class EventLogic {
     evaluate(steps, t, x, g_);
     bool rounded = false;
     for (std::size_t k = 0; k < events_.size(); ++k) {
-      if (marks_[k] == pending || !watched(k)) continue;
+      if (!watched(k)) continue;
       GuardState<Real>& state = watch_.states()[k];
       if (!state.active || sign_of(g_[k]) == state.side) continue;
       if (k == i && renews_guard(i)) continue;
@@ -381,9 +381,9 @@ class EventLogic {
     GuardState<Real>& state = watch_.states()[i];
     state.side = watch_.side_after(i);
     state.returns = watch_.returns_after(i);
-    state.band = jumps_[i] ? Real(0) : max(rounding_[i] + abs(g_[i]), slack_[i]);
+    slack_[i] = jumps_[i] ? Real(0) : max(rounding_[i] + abs(g_[i]), slack_[i]);
+    state.band = slack_[i];
     state.at_zero = !jumps_[i];
-    rounding_[i] = state.band;
     marks_[i] = turned;
     add(fired_, i);
   }
