@@ -56,7 +56,7 @@ class WorldTrack final : public Track {
         events_(program, plan.variables, plan.from, length() / looks),
         layout_(program->model.layout),
         chunk_(length() / looks) {
-    events_.begin(*run_, sink());
+    error_ = events_.begin(*run_, sink());
     remember();
     end_where_stopped();
   }
@@ -80,7 +80,7 @@ class WorldTrack final : public Track {
     chunk_ = std::clamp(chunk_, 1e-9 * length(), length());
     put_held();
     note_contacts();
-    if (error_.empty()) events_.happen(*run_, sink());
+    if (error_.empty()) error_ = events_.happen(*run_, sink());
     end_where_stopped();
     if (error_.empty() && run_->time() > before_t_) return !events_.stopped();
     if (events_.stopped()) return false;

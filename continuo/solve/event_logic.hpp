@@ -216,7 +216,7 @@ class EventLogic {
     for (std::size_t k = 0; k < events_.size(); ++k) {
       if (!watched(k)) continue;
       GuardState<Real>& state = watch_.states()[k];
-      if (!state.active || sign_of(g_[k]) == state.side) continue;
+      if (!state.active || !events_.active(steps.system(), k) || sign_of(g_[k]) == state.side) continue;
       if (k == i && renews_guard(i)) continue;
       if (!std::exchange(rounded, true)) find_rounding(steps, t, x);
       jump(k);

@@ -34,14 +34,13 @@ void for_each_rounded(Real t, const X& x, X& moved, GuardAt&& g_at, Real units =
   }
 }
 
-/// By differences along the parabola x + s f + s^2/2 f', where f' is a difference of f as well. `length` is how far the
-/// motion may be followed: less than the flight to the next event. `rounding` is that of g. g_at(t, x) is the guard,
-/// slope_at(t, x, out) writes x'; first, second and moved are scratch.
+namespace detail {
+
+/// By differences over the way dt, twice, along the parabola x + s f + s^2/2 f', where f' is a difference of f as well.
 template <class Real, class X, class GuardAt, class SlopeAt>
-Carried carried_by_differences(Real t, const X& x, Real length, Real rounding, X& first, X& second, X& moved,
-                               GuardAt&& g_at, SlopeAt&& slope_at) {
+Carried carried_over(Real t, const X& x, Real dt, Real rounding, X& first, X& second, X& moved, GuardAt& g_at,
+                     SlopeAt& slope_at) {
   using std::abs;
-  const Real dt = length / 100;
   slope_at(t, x, first);
   for (std::size_t k = 0; k < dimension(x); ++k) moved.data()[k] = x.data()[k] + dt * first.data()[k];
   slope_at(t + dt, moved, second);
@@ -58,6 +57,22 @@ Carried carried_by_differences(Real t, const X& x, Real length, Real rounding, X
     return {sign_of(slope), 1, abs(slope) > Real(Carried::far_beyond) * rounding};
   if (abs(bend) > 8 * rounding) return {sign_of(bend), 2, false};
   return {};
+}
+
+}  // namespace detail
+
+/// By differences. `length` is how far the motion may be followed: less than the flight to the next event. The shortest
+/// way over which g changes far beyond its `rounding` counts: over a longer one it may have turned. g_at(t, x) is the
+/// guard, slope_at(t, x, out) writes x'; first, second and moved are scratch.
+template <class Real, class X, class GuardAt, class SlopeAt>
+Carried carried_by_differences(Real t, const X& x, Real length, Real rounding, X& first, X& second, X& moved,
+                               GuardAt&& g_at, SlopeAt&& slope_at) {
+  Carried way;
+  for (const double part : {1e-8, 1e-6, 1e-4, 1e-2}) {
+    way = detail::carried_over(t, x, length * Real(part), rounding, first, second, moved, g_at, slope_at);
+    if (way.surely) return way;
+  }
+  return way;
 }
 
 }  // namespace continuo

@@ -63,7 +63,7 @@ class Simulation {
     for (; next_row() <= from; ++next_output_) {
     }
     while (next_sample_ < samples_.size() && samples_[next_sample_] <= from) ++next_sample_;
-    events_.begin(*world_, sink());
+    if (std::string error = events_.begin(*world_, sink()); !error.empty()) return fail(std::move(error));
     end_where_stopped();
     stand();
   }
@@ -141,6 +141,12 @@ class Simulation {
 
   bool is_interrupted() const { return experiment_.interrupt != nullptr && experiment_.interrupt->load(); }
 
+  void fail(std::string error) {
+    error_ = std::move(error);
+    end(Ending::invalid_input);
+    run_.outcome.hint = error_;
+  }
+
   /// To the next instant that somebody asks for.
   void advance() {
     if (is_interrupted()) {
@@ -154,13 +160,8 @@ class Simulation {
     note_contacts();
     arrive();
     if (!error.empty() && is_interrupted()) return end(Ending::interrupted);
-    if (!error.empty()) {
-      error_ = std::move(error);
-      end(Ending::invalid_input);
-      run_.outcome.hint = error_;
-      return;
-    }
-    events_.happen(*world_, sink());
+    if (error.empty()) error = events_.happen(*world_, sink());
+    if (!error.empty()) return fail(std::move(error));
     end_where_stopped();
     if (experiment_.progress) experiment_.progress(world_->time());
   }

@@ -111,7 +111,7 @@ class Follower {
   /// Empty, or what went wrong.
   std::string follow() {
     const auto nobody = [](const WorldHappening&) {};
-    events_.begin(world_, nobody);
+    if (std::string error = events_.begin(world_, nobody); !error.empty()) return error;
     stretch_.begin(world_.time(), world_.state());
     while (true) {
       const double wanted = next_time();
@@ -130,7 +130,7 @@ class Follower {
       if (std::string error = events_.advance(world_, to); !error.empty()) return error;
       stretch_.end(world_.time(), world_.state(), world_.contacts());
       keep_rows_of_stretch();
-      events_.happen(world_, nobody);
+      if (std::string error = events_.happen(world_, nobody); !error.empty()) return error;
       stretch_.begin(world_.time(), world_.state());
       if (request_.experiment.progress) request_.experiment.progress(world_.time());
     }

@@ -3,6 +3,9 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include <continuo/solve/guard_watch.hpp>
 #include <continuo/worlds/world_events.hpp>
 
 namespace continuo::worlds {
@@ -11,9 +14,16 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-bool has_passed(Direction direction, double before, double now) {
-  const bool fell = before > 0 && !(now > 0), rose = before < 0 && !(now < 0);
-  return (direction != Direction::rises && fell) || (direction != Direction::falls && rose);
+constexpr std::size_t most_rounds = 10'000;  // of an instant
+
+/// On its other side, or at zero on the way there.
+bool has_passed(Direction direction, int side, double now) {
+  return side != 0 && !(side * now > 0) && watches(direction, -side);
+}
+
+/// What is on this side of zero now, when it comes from `side`: zero belongs to the side that it leads to.
+int side_after(int side, double now) {
+  return now == 0 ? -side : sign_of(now);
 }
 
 }  // namespace
@@ -29,15 +39,25 @@ WorldEvents::WorldEvents(const std::shared_ptr<const model::ModelProgram>& progr
       events_(*program, variables, from),
       values_(events_.size()),
       before_(events_.size()),
+      sides_(events_.size()),
       scheduled_after_(from),
       look_(look) {
   for (std::size_t i = 0; i < events_.size(); ++i) any_guard_ = any_guard_ || events_.is_guard(i);
   find_watched();
 }
 
-void WorldEvents::begin(WorldRun& world, const Sink& sink) {
-  happen_scheduled(world, sink, true);
+std::string WorldEvents::begin(WorldRun& world, const Sink& sink) {
+  place_guards(world);
+  std::string error = happen_rounds(world, take_due(world.time() + slack_of(world), true), sink);
   if (any_guard_) read_guards(world, before_);
+  return error;
+}
+
+/// Guards without a past.
+void WorldEvents::place_guards(WorldRun& world) {
+  if (!any_guard_) return;
+  read_guards(world, before_);
+  std::ranges::transform(before_, sides_.begin(), [](double g) { return sign_of(g); });
 }
 
 double WorldEvents::next_scheduled() const {
@@ -72,7 +92,7 @@ void WorldEvents::read_guards(WorldRun& world, std::vector<double>& values) {
   events_.guards(system_, world.time(), world.state(), values);
 }
 bool WorldEvents::passed(std::size_t i) const {
-  return events_.is_guard(i) && events_.active(system_, i) && has_passed(events_.direction(i), before_[i], values_[i]);
+  return events_.is_guard(i) && events_.active(system_, i) && has_passed(events_.direction(i), sides_[i], values_[i]);
 }
 bool WorldEvents::any_passed() const {
   for (std::size_t i = 0; i < events_.size(); ++i)
@@ -98,48 +118,70 @@ std::string WorldEvents::go_back_to_event(WorldRun& world, const Snapshot& saved
   return move_to(high);
 }
 
-void WorldEvents::happen(WorldRun& world, const Sink& sink) {
-  if (any_guard_) happen_guards(world, sink);
-  if (!stopped_ && next_scheduled() <= world.time() + slack_of(world)) happen_scheduled(world, sink, false);
-}
-
-void WorldEvents::happen_guards(WorldRun& world, const Sink& sink) {
-  std::vector<std::size_t> fired;
-  for (std::size_t i = 0; i < events_.size(); ++i)
-    if (passed(i)) fired.push_back(i);
-  if (!fired.empty()) happen_now(world, fired, sink);
-  read_guards(world, before_);
-}
-
-void WorldEvents::happen_scheduled(WorldRun& world, const Sink& sink, bool inclusive) {
+std::string WorldEvents::happen(WorldRun& world, const Sink& sink) {
   const double until = world.time() + slack_of(world);
-  while (!stopped_) {
-    double next = never;
-    std::vector<std::size_t> due;
-    for (std::size_t i = 0; i < events_.size(); ++i) {
-      if (events_.is_guard(i)) continue;
-      const double time = events_.next_time(i, scheduled_after_, inclusive);
-      if (time > until || time > next) continue;
-      if (time < next) due.clear();
-      next = time;
-      due.push_back(i);
-    }
-    if (due.empty()) break;
-    scheduled_after_ = next;
-    inclusive = false;
-    happen_now(world, due, sink);
-  }
+  std::vector<std::size_t> fired = take_passed();
+  do {
+    const std::vector<std::size_t> due = take_due(until, false);
+    fired.insert(fired.end(), due.begin(), due.end());
+    std::ranges::sort(fired);
+    if (std::string error = happen_rounds(world, std::move(fired), sink); !error.empty()) return error;
+    fired.clear();
+  } while (!stopped_ && next_scheduled() <= until);
   if (any_guard_) read_guards(world, before_);
+  return {};
 }
 
-void WorldEvents::happen_now(WorldRun& world, const std::vector<std::size_t>& fired, const Sink& sink) {
+/// The guards that are on another side than at the last look; those whose events watch for that.
+std::vector<std::size_t> WorldEvents::take_passed() {
+  std::vector<std::size_t> fired;
+  for (std::size_t i = 0; any_guard_ && i < events_.size(); ++i) {
+    if (!events_.is_guard(i)) continue;
+    const bool is_fired = passed(i);
+    if (is_fired) fired.push_back(i);
+    if (is_fired || values_[i] != 0) sides_[i] = side_after(sides_[i], values_[i]);
+  }
+  return fired;
+}
+
+/// What is scheduled for the next time up to `until`, which is over now.
+std::vector<std::size_t> WorldEvents::take_due(double until, bool inclusive) {
+  std::vector<std::size_t> due;
+  double next = never;
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    if (events_.is_guard(i)) continue;
+    const double time = events_.next_time(i, scheduled_after_, inclusive);
+    if (time > until || time > next) continue;
+    if (time < next) due.clear();
+    next = time;
+    due.push_back(i);
+  }
+  if (!due.empty()) scheduled_after_ = next;
+  return due;
+}
+
+std::string WorldEvents::happen_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink) {
+  for (std::size_t round = 0; !fired.empty() && !stopped_; ++round) {
+    if (round == most_rounds)
+      return fmt::format("the events of t = {:.6g} set each other off without end: `{}` is among them", world.time(),
+                         events_.name(fired.front()));
+    fired = happen_round(world, fired, sink);
+  }
+  return {};
+}
+
+/// Those that fire in the next round.
+std::vector<std::size_t> WorldEvents::happen_round(WorldRun& world, const std::vector<std::size_t>& fired,
+                                                   const Sink& sink) {
   const X before = world.state();
   X after = before;
   const double t = world.time();
   bool stops = false;
+  std::vector<std::size_t> next;
   for (const std::size_t i : fired) {  // each on the state that the one before has left
     const X left = after;
     stops = events_.fire(system_, i, t, left, after).stop || stops;
+    if (any_guard_) carry_over(t, after, next);
   }
   for (const model::TableInput& input : program_->step_inputs) {
     const double value = input.table.value(t);
@@ -147,6 +189,29 @@ void WorldEvents::happen_now(WorldRun& world, const std::vector<std::size_t>& fi
   }
   if (system_.mode() != world.mode()) world.go(system_.mode());
   if (after != before) world.set_state(after);
+  tell(t, fired, before, after != before, sink);
+  if (stops) stopped_by_ = names_.empty() ? std::string() : names_.front().event;
+  stopped_ = stopped_ || stops;
+  std::ranges::sort(next);
+  return next;
+}
+
+/// An action has left this state: guards that are on their other side now.
+void WorldEvents::carry_over(double t, const X& state, std::vector<std::size_t>& next) {
+  events_.guards(system_, t, state, values_);
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    if (!events_.is_guard(i) || !events_.active(system_, i)) continue;
+    const int side = sign_of(values_[i]), from = sides_[i];
+    if (side == 0 || side == from) continue;
+    sides_[i] = side;
+    const Direction direction = events_.direction(i);
+    const bool fires = watches(direction, side) && !(from == 0 && direction == Direction::crosses);
+    if (fires && std::ranges::find(next, i) == next.end()) next.push_back(i);
+  }
+}
+
+void WorldEvents::tell(double t, const std::vector<std::size_t>& fired, const X& before, bool changed,
+                       const Sink& sink) {
   names_.clear();
   const auto marks = events_.marks().subspan(marks_seen_);
   for (const std::size_t i : fired) {
@@ -155,10 +220,7 @@ void WorldEvents::happen_now(WorldRun& world, const std::vector<std::size_t>& fi
     names_.push_back({std::string(events_.name(i)), mark == marks.end() ? std::string() : mark->text});
   }
   marks_seen_ = events_.marks().size();
-  if (!names_.empty() || after != before) sink({t, names_, before});
-  if (!stops) return;
-  stopped_by_ = names_.empty() ? std::string() : names_.front().event;
-  stopped_ = true;
+  if (!names_.empty() || changed) sink({t, names_, before});
 }
 
 void WorldEvents::go_on(WorldRun& world, std::span<const double> variables, std::span<const std::size_t> stops) {
@@ -171,7 +233,7 @@ void WorldEvents::go_on(WorldRun& world, std::span<const double> variables, std:
   scheduled_after_ = world.time() + slack_of(world);  // up to there it has happened
   stopped_ = false;
   stopped_by_.clear();
-  if (any_guard_) read_guards(world, before_);
+  place_guards(world);
 }
 
 }  // namespace continuo::worlds

@@ -43,14 +43,15 @@ class WorldEvents {
   WorldEvents(const std::shared_ptr<const model::ModelProgram>& program, std::span<const double> variables, double from,
               double look);
 
-  /// What happens at the very beginning.
-  void begin(WorldRun& world, const Sink& sink);
+  /// What happens at the very beginning. Empty, or why the run cannot go on; so with `happen`.
+  std::string begin(WorldRun& world, const Sink& sink);
   /// How far it may be advanced at once.
   double next(const WorldRun& world) const;
   /// To the first end of a step that is not before `to`; to the first instant of an event where one comes before.
   std::string advance(WorldRun& world, double to);
-  /// What is due now.
-  void happen(WorldRun& world, const Sink& sink);
+  /// What is due now, in the order of the text, each on what the one before has left; then, round by round, what these
+  /// actions carry to its other side (docs/events.md).
+  std::string happen(WorldRun& world, const Sink& sink);
 
   /// A `stop` has been reached: by which event, and what it says.
   bool stopped() const { return stopped_; }
@@ -64,6 +65,7 @@ class WorldEvents {
  private:
   double next_scheduled() const;
   void read_guards(WorldRun& world, std::vector<double>& values);
+  void place_guards(WorldRun& world);
   bool passed(std::size_t i) const;
   bool any_passed() const;
   std::string look_at_first_contact(WorldRun& world, const Snapshot& saved);  // world_looks.cpp
@@ -71,15 +73,19 @@ class WorldEvents {
   double slope(std::size_t i, double t, const X& state, double length);
   void find_watched();
   std::string go_back_to_event(WorldRun& world, const Snapshot& saved);
-  void happen_guards(WorldRun& world, const Sink& sink);
-  void happen_scheduled(WorldRun& world, const Sink& sink, bool inclusive);
-  void happen_now(WorldRun& world, const std::vector<std::size_t>& fired, const Sink& sink);
+  std::vector<std::size_t> take_passed();
+  std::vector<std::size_t> take_due(double until, bool inclusive);
+  std::string happen_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink);
+  std::vector<std::size_t> happen_round(WorldRun& world, const std::vector<std::size_t>& fired, const Sink& sink);
+  void carry_over(double t, const X& state, std::vector<std::size_t>& next);
+  void tell(double t, const std::vector<std::size_t>& fired, const X& before, bool changed, const Sink& sink);
 
   std::shared_ptr<const model::ModelProgram> program_;
   model::ModelSystem system_;  // its guards, actions and modes
   model::ModelEvents events_;
   std::vector<double> values_, before_;  // of guards: now, and at the last look
-  std::set<std::size_t> watched_;        // bodies that they read
+  std::vector<int> sides_;         // of guards, at the last look and after each action; 0: at zero since the start
+  std::set<std::size_t> watched_;  // bodies that they read
   std::vector<model::RunRecorder::Name> names_;
   std::size_t marks_seen_ = 0;
   double scheduled_after_, look_;
