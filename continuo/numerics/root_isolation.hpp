@@ -7,7 +7,7 @@
 //   isolate_crossings(
 //       0.0, 4.0, -1, [&](double a, double b) { return f(E({a, b}, Enclosure(1.0))); },
 //       [&](double a) { return f(E(a)).value; },
-//       [](double a, double b) { return fmt::print("one from {} to {}\n", a, b), false; },  // true: enough
+//       [](double a, double b, int) { return fmt::print("one from {} to {}\n", a, b), false; },  // true: enough
 //       [](double a, double b) { return fmt::print("perhaps some from {} to {}\n", a, b), false; });
 //
 // The function has a side, the sign that it had last for certain. Zero, and what is zero up to rounding, belongs to the
@@ -41,11 +41,13 @@ struct Isolation {
 
 namespace isolating {
 
-/// A part still to be looked at, with the sign at its start: 0 where it is not known for certain.
+/// A part still to be looked at, with the sign at its start: 0 where it is not known for certain. It is known from a
+/// place before, where the function is not as near to zero as it may be at the start.
 template <class Real>
 struct Piece {
   Real from, to;
-  int sign;
+  int sign = 0;
+  Real known_at = from;
 };
 
 /// A walk from left to right over pieces, the leftmost on top of the pile.
@@ -67,10 +69,10 @@ class Walk {
         result_{.side = side} {}
 
   Isolation run() {
-    push({from_, to_, 0});
+    push({from_, to_});
     while (count_ > 0 && !result_.stopped) {
       const Piece<Real> piece = pile_[--count_];
-      if (piece.sign != 0) meet(piece.sign, piece.from);
+      if (piece.sign != 0) meet(piece.sign, piece.known_at);
       if (result_.stopped || !(piece.from < piece.to)) continue;
       while (piece.from >= end_of_part() && part_ < parts) ++part_;
       if (result_.evaluations >= budget_ * part_ / parts) {
@@ -84,6 +86,7 @@ class Walk {
 
  private:
   static constexpr std::size_t parts = 4;
+  static constexpr Real width_of_jump = 64;
   static constexpr Real undefined_parts = 16;  // where the function has no value, no smaller ones are looked at
   // Division goes down to the least width, which is reached by as many halvings as the format has digits.
   static constexpr std::size_t deepest = 2 * std::numeric_limits<Real>::digits;
@@ -101,7 +104,7 @@ class Walk {
 
   /// The function has this sign there for certain.
   void meet(int sign, Real where) {
-    if (sign == -result_.side) result_.stopped = visit_(held_, where);
+    if (sign == -result_.side) result_.stopped = visit_(held_, where, sign);
     result_.side = sign;
     held_ = where;
   }
@@ -165,7 +168,10 @@ class Walk {
     // Where nothing jumps, the width of the value at a point is its rounding.
     const int sign = certain_sign(centre);
     const bool is_rounding = centre.holds(0) && slope.is_bounded() && value.magnitude() <= 4 * centre.magnitude();
-    if (is_rounding || piece.to - piece.from <= least_width_) return;
+    // At a jump the pieces on both sides of it may hold its place, up to the rounding of what jumps there: to divide
+    // all of them to the last would use up what is there for the rest.
+    const Real width = piece.to - piece.from;
+    if (is_rounding || width <= least_width_ || (sign == 0 && width <= width_of_jump * least_width_)) return;
     if (!centre.is_bounded() && piece.to - piece.from <= (to_ - from_) / undefined_parts)
       return leave(piece.from, piece.to);
     const Real reach = sign > 0 ? centre.lo : sign < 0 ? -centre.hi : Real(0);
@@ -175,8 +181,8 @@ class Walk {
       return steepness > 0 ? std::max(rounding * reach / steepness - least_width_, Real(0)) : piece.to - piece.from;
     };
     const Real left = free_width(sign > 0 ? slope.hi : -slope.lo), right = free_width(sign > 0 ? -slope.lo : slope.hi);
-    push({std::min(middle + right, piece.to), piece.to, sign});
-    push({piece.from, std::max(middle - left, piece.from), 0});
+    push({std::min(middle + right, piece.to), piece.to, sign, middle});
+    push({piece.from, std::max(middle - left, piece.from)});
   }
 
   /// The part has used what it may: the rest of it remains undecided.
@@ -212,9 +218,9 @@ class Walk {
 /// Looks over from..to, where the function begins on `side` (0: on none, it takes the first that it comes to).
 ///   enclose(a, b) -> EnclosureWithSlope over a..b
 ///   value(a) -> Enclosure at a, its rounding included
-///   visit(a, b) -> stop?  Once for every change of side, from left to right: at a the function is on its old side, up
-///       to rounding, at b for certain on the new one, and between them it changes once. a = b where the function
-///       begins on the other side.
+///   visit(a, b, side) -> stop?  Once for every change of side, from left to right: at a the function is on its old
+///       side, up to rounding, at b for certain on the new one, and between them it changes once. a = b where the
+///       function begins on the other side.
 ///   undecided(a, b) -> stop?  In their place among the others: stretches on which nothing is known. The side after
 ///       them is the one that the function has at b.
 template <class Real, class Enclose, class Value, class Visit, class Undecided>

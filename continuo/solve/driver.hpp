@@ -243,7 +243,7 @@ class Driver {
         continue;
       }
       if (crossing) {
-        look_at(*crossing, length);
+        look_at(*crossing, offset, length);
         const std::optional<Real> landed = land(*crossing, length);
         if (!landed) return end_before_event();
         offset = *landed;
@@ -296,7 +296,8 @@ class Driver {
     return values;
   }
 
-  void look_at(const Crossing<Real>& crossing, Real length) {
+  void look_at(const Crossing<Real>& crossing, Real from, Real length) {
+    logic_.leave_zero(crossing, guards_at(from + (crossing.offset - from) / 2, length, guard_values_));
     const std::span<const Real> values = guards_at(crossing.offset, length, guard_values_);
     const Real later = crossing.offset + length / Real(1000000);
     state_at(later, length, before_);

@@ -155,6 +155,15 @@ class EventLogic {
       jumps_[i] = abs(beyond) > abs(g_[i] - values[i]) + 4 * rounding_[i];
     }
   }
+  /// The guards half way to a crossing: of those that take no part in it, what is beyond its band has left zero.
+  void leave_zero(const Crossing<Real>& crossing, std::span<const Real> values) {
+    using std::abs;
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      GuardState<Real>& state = watch_.states()[i];
+      if (!state.active || !state.at_zero || !(abs(values[i]) > state.band)) continue;
+      if (std::ranges::find(crossing.guards, i) == crossing.guards.end()) state.at_zero = false;
+    }
+  }
   /// A step was taken to the instant, whose state is off by the tolerance: guards may be off by as much as that makes.
   void allow_for(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance) {
     using std::min;
@@ -326,17 +335,19 @@ class EventLogic {
 
   Carried carried(StepsOf& steps, std::size_t i, Real t, const X& x) {
     if constexpr (requires { events_.carried(steps.system(), i, t, x, forward_); }) {
-      if (const std::optional<Carried> known = events_.carried(steps.system(), i, t, x, forward_)) return *known;
+      if (const std::optional<Carried> known = events_.carried(steps.system(), i, t, x, forward_)) {
+        if (known->order != 1 || known->surely) return *known;
+        // What may be off by more than rounding, since a jump of the equations is near, shows by differences.
+        const Carried seen = carried_to_first_orders(steps, i, t, x);
+        return seen.surely ? seen : *known;
+      }
     }
     return carried_to_first_orders(steps, i, t, x);
   }
 
   Carried carried_to_first_orders(StepsOf& steps, std::size_t i, Real t, const X& x) {
-    using std::abs, std::min;
-    Real length = steps.size() != 0 ? min(abs(steps.size()), longest_) : longest_ / Real(1e6);
-    if (last_event_ && abs(t - *last_event_) > 0) length = min(length, abs(t - *last_event_));
     return carried_by_differences(
-        t, x, forward_ * length, rounding_[i], first_, second_, moved_,
+        t, x, forward_ * length_to_follow(steps, t), rounding_[i], first_, second_, moved_,
         [&](Real at, X& y) {
           solve_unknowns(steps, at, y);
           evaluate(steps, at, y, scratch_);
@@ -346,6 +357,30 @@ class EventLogic {
           solve_unknowns(steps, at, y);
           out = steps.slope(at, y);
         });
+  }
+
+  // Of a condition at zero that no derivative carries away: one part of it may stay at zero for good, and its sign
+  // there says whether it holds, while others leave. Which it is shows a little later.
+  int sign_a_little_later(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs;
+    const Real length = forward_ * length_to_follow(steps, t);
+    first_ = steps.slope(t, x);
+    for (const double part : {1e-8, 1e-6, 1e-4}) {
+      const Real dt = Real(part) * length;
+      for (std::size_t k = 0; k < dimension(x); ++k) moved_.data()[k] = x.data()[k] + dt * first_.data()[k];
+      solve_unknowns(steps, t + dt, moved_);
+      evaluate(steps, t + dt, moved_, scratch_);
+      if (abs(scratch_[i]) > rounding_[i]) break;
+    }
+    return sign_of(scratch_[i]);
+  }
+
+  /// How far the motion may be followed without coming to what happens next.
+  Real length_to_follow(const StepsOf& steps, Real t) const {
+    using std::abs, std::min;
+    const Real length = steps.size() != 0 ? min(abs(steps.size()), longest_) : longest_ / Real(1e6);
+    const Real same_instant = 1000 * std::numeric_limits<Real>::epsilon() * abs(t);
+    return last_event_ && abs(t - *last_event_) > same_instant ? min(length, abs(t - *last_event_)) : length;
   }
 
   static void solve_unknowns(StepsOf& steps, Real t, X& x) {
@@ -371,7 +406,7 @@ class EventLogic {
     state.at_zero = at_zero(i);
     state.band = rounding_[i];
     state.side = state.at_zero ? carried(steps, i, t, x).side : sign_of(g_[i]);
-    if (state.side == 0 && is_condition(i)) state.side = sign_of(g_[i]);
+    if (state.side == 0 && is_condition(i)) state.side = sign_a_little_later(steps, i, t, x);
     return true;
   }
 
@@ -391,9 +426,10 @@ class EventLogic {
   // Any other guard at an instant, before the actions: by now it may have moved to its other side, unwatched, or be at
   // zero on its way there.
   void pass(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs;
     GuardState<Real>& state = watch_.states()[i];
     if (!state.active || state.side == 0) return;
-    const bool zero = at_zero(i) || (state.at_zero && sign_of(g_[i]) != state.side);
+    const bool zero = at_zero(i) || (state.at_zero && abs(g_[i]) <= state.band);
     if (!zero && sign_of(g_[i]) == state.side) {
       if (state.at_zero && !(Real(state.side) * g_[i] <= state.band)) state.at_zero = false;
       return;
@@ -435,7 +471,7 @@ class EventLogic {
     }
     if (!restarted_ && !is_condition(i)) return;
     const Carried way = carried(steps, i, t, x);
-    marks_[i] == turned ? turn(i, way) : take(i, way);
+    marks_[i] == turned ? turn(steps, i, way, t, x) : take(steps, i, way, t, x);
   }
 
   // A guard that the present mode watches and the one before did not.
@@ -448,13 +484,13 @@ class EventLogic {
   }
 
   // The guard of an event that has acted and is at zero.
-  void turn(std::size_t i, const Carried& way) {
+  void turn(StepsOf& steps, std::size_t i, const Carried& way, Real t, const X& x) {
     using std::abs;
     GuardState<Real>& state = watch_.states()[i];
     if (renews_guard(i)) {
       if (way.side != 0) state.side = way.side;
     } else if (way.side == 0 && is_condition(i)) {
-      state.side = sign_of(g_[i]);
+      state.side = sign_a_little_later(steps, i, t, x);
     } else if (way.side != state.side) {
       // Turned back, which an event that watches both directions sees as well, or held at zero. What it is beyond zero
       // already is all that it may be.
@@ -467,9 +503,9 @@ class EventLogic {
     }
   }
   // Any other guard at zero.
-  void take(std::size_t i, const Carried& way) {
+  void take(StepsOf& steps, std::size_t i, const Carried& way, Real t, const X& x) {
     GuardState<Real>& state = watch_.states()[i];
-    const int side = way.side != 0 ? way.side : is_condition(i) ? sign_of(g_[i]) : 0;
+    const int side = way.side != 0 ? way.side : is_condition(i) ? sign_a_little_later(steps, i, t, x) : 0;
     if (side == 0 || side == state.side) return;
     const bool from_zero = state.side == 0;
     state.side = side;

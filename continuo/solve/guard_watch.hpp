@@ -183,14 +183,16 @@ class GuardWatch {
   void isolate(Scan& scan, Real from, Real to, Evaluate& evaluate, Enclosed& enclosed) {
     if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) {
       const Real size = enclosed.size;
-      const auto offset = [&](double theta) {
-        return theta == from / size ? from : theta == to / size ? to : Real(theta) * size;
-      };
+      // The ends of a step are rounded, and its polynomials end at 1.
+      const double first = from / size, last = std::fmin(to / size, 1.0);
+      const auto offset = [&](double theta) { return theta == first ? from : theta == last ? to : Real(theta) * size; };
       isolate_crossings(
-          from / size, to / size, scan.state.side,
-          [&](double a, double b) { return enclosed.events.enclosure(scan.guard, a, b); },
+          first, last, scan.state.side, [&](double a, double b) { return enclosed.events.enclosure(scan.guard, a, b); },
           [&](double a) { return enclosed.events.value_enclosure(scan.guard, a); },
-          [&](double a, double b) { return cross(scan, offset(a), offset(b), evaluate); },
+          [&](double a, double b, int side) {
+            if (b == last) return cross(scan, offset(a), to, evaluate);  // by what the next stretch begins with
+            return side != scan.state.side && arrive_beyond(scan, side, offset(a), offset(b), evaluate);
+          },
           [&](double a, double b) { return search_anew(scan, offset(a), offset(b), evaluate, 0); },
           {.band = scan.state.at_zero ? scan.state.band : Real(0)});
     }
@@ -280,16 +282,22 @@ class GuardWatch {
 
   template <class Evaluate>
   bool cross(Scan& scan, Real near, Real far, Evaluate& evaluate) {
+    const int side = sign_of(guard_at(scan.guard, far, evaluate) - scan.state.level());
+    return side != 0 && side != scan.state.side && arrive_beyond(scan, side, near, far, evaluate);
+  }
+
+  // Between near and far the guard changes to this side. Where it is known only by proof, its value at far may still be
+  // zero by rounding: then that is the place.
+  template <class Evaluate>
+  bool arrive_beyond(Scan& scan, int side, Real near, Real far, Evaluate& evaluate) {
     using std::min;
     const Real level = scan.state.level();
-    const Real g_far = guard_at(scan.guard, far, evaluate) - level;
-    const int side = sign_of(g_far);
-    if (side == 0 || side == scan.state.side) return false;
     const GuardState<Real> before = scan.state;
     scan.arrive_at(side);
     if (!watches(scan.direction, side)) return false;
     const auto beyond = [&](Real s) { return Real(side) * (guard_at(scan.guard, s, evaluate) - level); };
-    scan.crossing = enclose_root(beyond, near, far, min(Real(0), beyond(near)), Real(side) * g_far).far;
+    const Real at_far = beyond(far);
+    scan.crossing = at_far > 0 ? enclose_root(beyond, near, far, min(Real(0), beyond(near)), at_far).far : far;
     // A guard that began at zero has left its band if it is beyond it half way.
     const Real half_way = scan.from + (scan.crossing - scan.from) / 2;
     const bool stayed = before.at_zero && !(Real(before.side) * guard_at(scan.guard, half_way, evaluate) > before.band);
