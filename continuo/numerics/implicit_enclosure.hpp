@@ -1,0 +1,252 @@
+// What equations F(theta, u) = 0 make of u, over an interval of theta: where the solution lies, and how steep it is.
+//
+//   ImplicitEnclosure<double> root(1);        // u^2 = 2 + theta for theta within 0.1 of 0, near 1.4
+//   const std::array guess{Enclosure(1.3, 1.5)};
+//   const std::array start{1.4};
+//   const Enclosure<double> part(-0.1, 0.1);
+//   root.over(guess, start, part,
+//       [](auto u, auto f) { f[0] = square(Enclosure(u[0])) - Enclosure(2.0); },         // at the middle, theta = 0
+//       [](auto u, auto by_u, auto by_theta) { by_u[0] = u[0] + u[0], by_theta[0] = Enclosure(-1.0); });
+//   root.values()[0], root.slopes()[0]        // 1.378..1.450, 0.34..0.37
+//
+// By the operator of Krawczyk, with a Newton iterate m at the middle of the interval and Y near the inverse of dF/du:
+//   K(U) = m - Y F(0, m) - Y S theta + (I - Y A)(U - m),
+// where A holds the slopes of F by u over the box U, S those by theta. If K(U) lies inside U there is one solution in U
+// for every theta, it lies in K(U), and it is continuous: u - Y F(theta, u) maps U into K(U), so Brouwer gives one; two
+// would differ by (I - Y A) times their difference, but |I - Y A| d <= radius of K(U) < d with d the radii of U. For
+// the slopes v of the solution, A v = -S, hence v = -Y S + (I - Y A) v, and |v| <= d max(|Y S|/d)/(1 - rho) with rho =
+// max of (|I - Y A| d)/d. U is guessed, and inflated until the test holds or has failed too often.
+//
+// R. Krawczyk, Computing 4 (1969), 187-201; R. E. Moore, R. B. Kearfott, M. J. Cloud, Introduction to Interval Analysis
+// (2009), chapter 8; A. Neumaier, Interval Methods for Systems of Equations (1990), chapter 5.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <continuo/numerics/dense_lu.hpp>
+#include <continuo/numerics/enclosure.hpp>
+
+namespace continuo {
+
+template <class Real>
+class ImplicitEnclosure {
+ public:
+  using Range = Enclosure<Real>;
+
+  explicit ImplicitEnclosure(std::size_t size)
+      : size_(size),
+        middle_(size),
+        weights_(size),
+        rounding_(size),
+        inverse_(size * size),
+        lu_(size),
+        box_(size),
+        image_(size),
+        residuals_(size),
+        by_part_(size),
+        values_(size),
+        slopes_(size),
+        by_unknowns_(size * size),
+        rest_(size * size) {}
+
+  /// True where it is proved that there is one solution for each theta of `part`, which holds 0, the middle. Of several
+  /// branches that near `start` at the middle; what `guess` holds, roughly the range over the part, belongs to the box
+  /// in which the solution is the only one.
+  ///   residuals(u, f): F at the middle for numbers u, enclosed.
+  ///   slopes(box, by_u, by_theta): F(u) - F(v) is in by_u (u - v) for all u and v of the box and every theta of the
+  ///       part, row by row, and by_theta the same for every u; unbounded where F may jump.
+  template <class Residuals, class Slopes>
+  bool over(std::span<const Range> guess, std::span<const Real> start, const Range& part, Residuals&& residuals,
+            Slopes&& slopes) {
+    is_proved_ = false;
+    if (find_middle(start, residuals, slopes)) {
+      for (std::size_t i = 0; i < size_; ++i) {
+        const Range shifted = guess[i] + Range(middle_[i] - start[i]);
+        box_[i] = inflated(hull(hull(guess[i], shifted), Range(middle_[i])), 2 * rounding_[i]);
+      }
+      is_proved_ = prove(part, slopes);
+    }
+    if (!is_proved_) std::ranges::fill(values_, Range::entire());
+    return is_proved_;
+  }
+
+  /// Of the solution over the last part, wider by the rounding of an iteration that solves for it in the number format;
+  /// entire where nothing is proved.
+  std::span<const Range> values() const { return values_; }
+  std::span<const Range> slopes() {
+    if (is_proved_) {
+      bound_slopes();
+    } else {
+      std::ranges::fill(slopes_, Range::entire());
+    }
+    return slopes_;
+  }
+
+ private:
+  static constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+  static constexpr int most_matrices = 4, most_steps = 4, most_boxes = 6;
+  static constexpr Real greatest_contraction = Real(0.99);
+
+  static Real width(const Range& a) { return a.hi - a.lo; }
+  static Real mid(const Range& a) { return a.lo + width(a) / 2; }
+  static Range inflated(const Range& a, Real further) {
+    const Real by = width(a) / 8 + 8 * epsilon * a.magnitude() + further + underflow<Real>;
+    return {a.lo - by, a.hi + by};
+  }
+
+  /// Newton's iteration at the middle, down to rounding, with the matrix that is at hand as long as it serves.
+  template <class Residuals, class Slopes>
+  bool find_middle(std::span<const Real> start, Residuals& residuals, Slopes& slopes) {
+    std::ranges::copy(start, middle_.begin());
+    if (has_inverse_ && iterate(residuals)) return true;
+    std::ranges::copy(start, middle_.begin());
+    for (int matrix = 0; matrix < most_matrices; ++matrix) {
+      std::ranges::transform(middle_, box_.begin(), [](Real u) { return Range(u); });
+      if (!look(slopes) || !invert()) return false;
+      if (iterate(residuals)) return true;
+    }
+    return false;
+  }
+
+  template <class Residuals>
+  bool iterate(Residuals& residuals) {
+    for (int step = 0; step < most_steps; ++step) {
+      residuals(std::span<const Real>(middle_), std::span<Range>(residuals_));
+      bool is_rounding = true;
+      for (std::size_t i = 0; i < size_; ++i) {
+        Real correction = 0, rounding = 0;
+        for (std::size_t k = 0; k < size_; ++k) {
+          correction += inverse_[i * size_ + k] * mid(residuals_[k]);
+          rounding += std::abs(inverse_[i * size_ + k]) * width(residuals_[k]);
+        }
+        rounding_[i] = rounding + 4 * epsilon * std::abs(middle_[i]);
+        values_[i] = Range(middle_[i] - correction);
+        is_rounding = is_rounding && std::abs(correction) <= rounding_[i];
+      }
+      if (is_rounding) return true;
+      std::ranges::transform(values_, middle_.begin(), [](const Range& u) { return mid(u); });
+    }
+    return false;
+  }
+
+  /// The slopes over the box.
+  template <class Slopes>
+  bool look(Slopes& slopes) {
+    slopes(std::span<const Range>(box_), std::span<Range>(by_unknowns_), std::span<Range>(by_part_));
+    const auto is_bounded = [](const Range& slope) { return slope.is_bounded(); };
+    return std::ranges::all_of(by_unknowns_, is_bounded) && std::ranges::all_of(by_part_, is_bounded);
+  }
+
+  bool invert() {
+    std::ranges::transform(by_unknowns_, lu_.matrix().begin(), [](const Range& slope) { return mid(slope); });
+    has_inverse_ = lu_.factor();
+    for (std::size_t j = 0; has_inverse_ && j < size_; ++j) {
+      std::ranges::fill(weights_, Real(0));
+      weights_[j] = 1;
+      lu_.solve(weights_.data());
+      for (std::size_t i = 0; i < size_; ++i) inverse_[i * size_ + j] = weights_[i];
+    }
+    return has_inverse_;
+  }
+
+  template <class Slopes>
+  bool prove(const Range& part, Slopes& slopes) {
+    bool is_proved = false;
+    for (int tries = 0; tries < most_boxes; ++tries) {
+      if (!look(slopes)) return false;
+      // The slopes over a part of the proved box are among its slopes, and so the same Y needs no further proof.
+      if (!is_proved && !invert()) return false;
+      if (!map(part)) return false;
+      if (!is_proved && !is_inside()) {
+        for (std::size_t i = 0; i < size_; ++i)
+          box_[i] = inflated(hull(image_[i], Range(middle_[i])), 2 * rounding_[i]);
+        continue;
+      }
+      if (!is_proved) std::ranges::transform(box_, weights_.begin(), [](const Range& u) { return width(u) / 2; });
+      is_proved = true;
+      if (!take_image()) break;
+    }
+    return is_proved && contraction() < greatest_contraction;
+  }
+
+  /// Y times a column of enclosures.
+  Range times_inverse(std::size_t i, std::span<const Range> column, std::size_t stride = 1) const {
+    Range sum;
+    for (std::size_t k = 0; k < size_; ++k) sum = sum + Range(inverse_[i * size_ + k]) * column[k * stride];
+    return sum;
+  }
+
+  /// K(U), and I - Y A.
+  bool map(const Range& part) {
+    for (std::size_t i = 0; i < size_; ++i) {
+      Range image = Range(middle_[i]) - times_inverse(i, residuals_) - times_inverse(i, by_part_) * part;
+      for (std::size_t j = 0; j < size_; ++j) {
+        Range& rest = rest_[i * size_ + j];
+        rest = Range(i == j ? Real(1) : Real(0)) -
+               times_inverse(i, std::span<const Range>(by_unknowns_).subspan(j), size_);
+        image = image + rest * (box_[j] - Range(middle_[j]));
+      }
+      image_[i] = image;
+      if (!image.is_bounded()) return false;
+    }
+    return true;
+  }
+
+  bool is_inside() const {
+    for (std::size_t i = 0; i < size_; ++i)
+      if (!(image_[i].lo > box_[i].lo && image_[i].hi < box_[i].hi)) return false;
+    return true;
+  }
+
+  /// The box becomes what the image leaves of it. True where that is so much less that another look pays.
+  bool take_image() {
+    bool is_much_less = false;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Range left = intersection(image_[i], box_[i]);
+      is_much_less = is_much_less || (width(left) < width(box_[i]) / 2 && width(left) > 16 * rounding_[i]);
+      box_[i] = left;
+      values_[i] = {left.lo - 2 * rounding_[i], left.hi + 2 * rounding_[i]};
+    }
+    return is_much_less;
+  }
+
+  Real contraction() const {
+    Real greatest = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      Real sum = 0;
+      for (std::size_t j = 0; j < size_; ++j) sum += rest_[i * size_ + j].magnitude() * weights_[j];
+      greatest = std::max(greatest, sum / weights_[i]);
+    }
+    return greatest;
+  }
+
+  void bound_slopes() {
+    Real steepest = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      image_[i] = -times_inverse(i, by_part_);
+      steepest = std::max(steepest, image_[i].magnitude() / weights_[i]);
+    }
+    constexpr Real rounding = 1 + Real(1) / 1024;
+    const Real bound = steepest / (1 - contraction()) * rounding;
+    for (std::size_t i = 0; i < size_; ++i) slopes_[i] = {-bound * weights_[i], bound * weights_[i]};
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::size_t i = 0; i < size_; ++i) {
+        Range slope = image_[i];
+        for (std::size_t j = 0; j < size_; ++j) slope = slope + rest_[i * size_ + j] * slopes_[j];
+        slopes_[i] = intersection(slopes_[i], slope);
+      }
+    }
+  }
+
+  std::size_t size_;
+  std::vector<Real> middle_, weights_, rounding_, inverse_;
+  DenseLU<Real> lu_;
+  std::vector<Range> box_, image_, residuals_, by_part_, values_, slopes_, by_unknowns_, rest_;
+  bool has_inverse_ = false, is_proved_ = false;
+};
+
+}  // namespace continuo
