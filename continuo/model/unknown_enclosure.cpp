@@ -21,6 +21,28 @@ UnknownEnclosure::UnknownEnclosure(const ModelProgram& program, UnknownBlock blo
       states_.push_back(variable - states_begin_);
   }
   moving_.resize(states_.size() + 1);
+  find_columns(program.model.graph);
+}
+
+/// Columns that share no row are found by one evaluation (A. R. Curtis, M. J. D. Powell, J. K. Reid, IMA Journal of
+/// Applied Mathematics 13 (1974), 117-119).
+void UnknownEnclosure::find_columns(const Graph& graph) {
+  const std::size_t n = block_.components.size();
+  std::vector<std::vector<std::size_t>> rows(n);  // by column
+  for (std::size_t row = 0; row < n; ++row) {
+    const std::vector<std::uint32_t> read = variables_of(graph, block_.residuals[row]);
+    for (std::size_t column = 0; column < n; ++column)
+      if (std::ranges::binary_search(read, states_begin_ + block_.components[column])) rows[column].push_back(row);
+  }
+  for (std::size_t column = 0; column < n; ++column) {
+    const auto shares_none = [&](const std::vector<Place>& places) {
+      return std::ranges::none_of(
+          places, [&](const Place& place) { return std::ranges::binary_search(rows[column], place.row); });
+    };
+    const auto fitting = std::ranges::find_if(together_, shares_none);
+    std::vector<Place>& places = fitting == together_.end() ? together_.emplace_back() : *fitting;
+    for (const std::size_t row : rows[column]) places.push_back({row, column});
+  }
 }
 
 bool UnknownEnclosure::over(const Step& step, double from, double to) {
@@ -69,12 +91,16 @@ void UnknownEnclosure::enclose_slopes(std::span<const Enclosure<double>> box, st
   };
   for (std::size_t k = 0; k < n; ++k) over_part_[states_begin_ + block_.components[k]] = {box[k], Enclosure<double>()};
   place_moving(false);
-  for (std::size_t j = 0; j < n; ++j) {
-    EnclosureWithSlope<double>& unknown = over_part_[states_begin_ + block_.components[j]];
-    unknown.slope = Enclosure<double>(1.0);
-    const std::span<const EnclosureWithSlope<double>> column = over_part_.evaluate(*tape_);
-    for (std::size_t i = 0; i < n; ++i) by_unknowns[i * n + j] = column[i].slope;
-    unknown.slope = {};
+  const auto let_move = [&](const std::vector<Place>& places, double slope) {
+    for (const Place& place : places)
+      over_part_[states_begin_ + block_.components[place.column]].slope = Enclosure<double>(slope);
+  };
+  std::ranges::fill(by_unknowns, Enclosure<double>());
+  for (const std::vector<Place>& places : together_) {
+    let_move(places, 1);
+    const std::span<const EnclosureWithSlope<double>> moved = over_part_.evaluate(*tape_);
+    for (const Place& place : places) by_unknowns[place.row * n + place.column] = moved[place.row].slope;
+    let_move(places, 0);
   }
   std::ranges::fill(by_theta, Enclosure<double>());
   if (is_instant_) return;

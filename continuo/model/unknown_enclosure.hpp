@@ -5,6 +5,7 @@
 //   unknowns.over({t, h, driver.dense_output()}, 0, 0.5);
 //   unknowns.values()[k], unknowns.slopes()[k]          // of block.components[k], for theta in 0..0.5
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -34,6 +35,11 @@ class UnknownEnclosure {
   void set(std::uint32_t variable, double value);
 
  private:
+  /// An entry of the matrix.
+  struct Place {
+    std::size_t row, column;
+  };
+  void find_columns(const Graph& graph);
   void place_middle(const Step& step, double middle);
   void enclose_residuals(std::span<const double> unknowns, std::span<Enclosure<double>> residuals);
   void enclose_slopes(std::span<const Enclosure<double>> box, std::span<Enclosure<double>> by_unknowns,
@@ -42,7 +48,8 @@ class UnknownEnclosure {
   UnknownBlock block_;
   std::shared_ptr<const Tape> tape_;
   std::uint32_t states_begin_;
-  std::vector<std::uint32_t> states_;  // that the equations read, beside the unknowns
+  std::vector<std::uint32_t> states_;         // that the equations read, beside the unknowns
+  std::vector<std::vector<Place>> together_;  // columns that share no row, by their entries
   std::vector<double> variables_, middle_;
   StepComponent component_;
   ImplicitEnclosure<double> solution_;

@@ -249,7 +249,6 @@ class Driver {
         t_ = offset == length ? steps().end() : begin + offset;
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
         state_at(offset, length, x_);
-        if (offset == length) solve_unknowns(t_, x_);
         if (steps().lands()) logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
       } else {
         offset = to;
@@ -306,6 +305,7 @@ class Driver {
     if (offset == length) {
       x = steps().x_end();
       shift(x);
+      solve_unknowns(steps().end(), x);
       return;
     }
     steps().at_part(offset / steps().size(), x);
