@@ -6,6 +6,14 @@
 
 namespace continuo::model {
 
+namespace {
+
+double middle_of(const Enclosure<double>& a) {
+  return a.lo + (a.hi - a.lo) / 2;
+}
+
+}  // namespace
+
 UnknownEnclosure::UnknownEnclosure(const ModelProgram& program, UnknownBlock block, std::span<const double> variables)
     : block_(std::move(block)),
       tape_(program.tape_of(block_.residuals)),
@@ -46,6 +54,7 @@ void UnknownEnclosure::find_columns(const Graph& graph) {
 }
 
 bool UnknownEnclosure::over(const Step& step, double from, double to) {
+  numbers_at_middle_.prepare(*tape_, variables_);
   at_middle_.prepare(*tape_, variables_);
   over_part_.prepare(*tape_, variables_);
   const double middle = from + (to - from) / 2;
@@ -57,18 +66,28 @@ bool UnknownEnclosure::over(const Step& step, double from, double to) {
   for (std::size_t k = 0; k < block_.components.size(); ++k) {
     const std::span<const double> polynomial = component_.of(step, block_.components[k]);
     guess_[k] = enclose_polynomial(polynomial, from, to).value;
-    const Enclosure<double> there = polynomial_at(polynomial, middle);
-    middle_[k] = there.lo + (there.hi - there.lo) / 2;
+    middle_[k] = middle_of(polynomial_at(polynomial, middle));
   }
   return solution_.over(
       guess_, middle_, Enclosure<double>(from, to) - Enclosure<double>(middle),
+      [this](auto unknowns, auto residuals) { compute_residuals(unknowns, residuals); },
       [this](auto unknowns, auto residuals) { enclose_residuals(unknowns, residuals); },
       [this](auto box, auto by_unknowns, auto by_theta) { enclose_slopes(box, by_unknowns, by_theta); });
 }
 
 void UnknownEnclosure::place_middle(const Step& step, double middle) {
-  at_middle_[Layout::time] = step.time(middle, middle);
-  for (const std::uint32_t i : states_) at_middle_[states_begin_ + i] = polynomial_at(component_.of(step, i), middle);
+  const auto place = [this](std::uint32_t variable, const Enclosure<double>& value) {
+    at_middle_[variable] = value;
+    numbers_at_middle_[variable] = middle_of(value);
+  };
+  place(Layout::time, step.time(middle, middle));
+  for (const std::uint32_t i : states_) place(states_begin_ + i, polynomial_at(component_.of(step, i), middle));
+}
+
+void UnknownEnclosure::compute_residuals(std::span<const double> unknowns, std::span<double> residuals) {
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    numbers_at_middle_[states_begin_ + block_.components[k]] = unknowns[k];
+  std::ranges::copy(numbers_at_middle_.evaluate(*tape_), residuals.begin());
 }
 
 void UnknownEnclosure::enclose_residuals(std::span<const double> unknowns, std::span<Enclosure<double>> residuals) {
@@ -111,6 +130,7 @@ void UnknownEnclosure::enclose_slopes(std::span<const Enclosure<double>> box, st
 
 void UnknownEnclosure::set(std::uint32_t variable, double value) {
   variables_[variable] = value;
+  numbers_at_middle_.forget();
   at_middle_.forget();
   over_part_.forget();
 }

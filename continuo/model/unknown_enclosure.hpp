@@ -41,6 +41,7 @@ class UnknownEnclosure {
   };
   void find_columns(const Graph& graph);
   void place_middle(const Step& step, double middle);
+  void compute_residuals(std::span<const double> unknowns, std::span<double> residuals);
   void enclose_residuals(std::span<const double> unknowns, std::span<Enclosure<double>> residuals);
   void enclose_slopes(std::span<const Enclosure<double>> box, std::span<Enclosure<double>> by_unknowns,
                       std::span<Enclosure<double>> by_theta);
@@ -55,6 +56,7 @@ class UnknownEnclosure {
   ImplicitEnclosure<double> solution_;
   std::vector<Enclosure<double>> guess_;
   std::vector<EnclosureWithSlope<double>> moving_;  // time and those states over the part
+  TapeRegisters<double> numbers_at_middle_;
   TapeRegisters<Enclosure<double>> at_middle_;
   TapeRegisters<EnclosureWithSlope<double>> over_part_;
   bool is_instant_ = false;

@@ -5,7 +5,8 @@
 //   const std::array start{1.4};
 //   const Enclosure<double> part(-0.1, 0.1);
 //   root.over(guess, start, part,
-//       [](auto u, auto f) { f[0] = square(Enclosure(u[0])) - Enclosure(2.0); },         // at the middle, theta = 0
+//       [](auto u, auto f) { f[0] = u[0]*u[0] - 2; },                                    // at the middle, theta = 0
+//       [](auto u, auto f) { f[0] = square(Enclosure(u[0])) - Enclosure(2.0); },
 //       [](auto u, auto by_u, auto by_theta) { by_u[0] = u[0] + u[0], by_theta[0] = Enclosure(-1.0); });
 //   root.values()[0], root.slopes()[0]        // 1.378..1.450, 0.34..0.37
 //
@@ -40,6 +41,8 @@ class ImplicitEnclosure {
   explicit ImplicitEnclosure(std::size_t size)
       : size_(size),
         middle_(size),
+        numbers_(size),
+        correction_(size),
         weights_(size),
         rounding_(size),
         least_width_(size),
@@ -59,14 +62,15 @@ class ImplicitEnclosure {
   /// True where it is proved that there is one solution for each theta of `part`, which holds 0, the middle. Of several
   /// branches that near `start` at the middle; what `guess` holds, roughly the range over the part, belongs to the box
   /// in which the solution is the only one.
-  ///   residuals(u, f): F at the middle for numbers u, enclosed.
+  ///   numbers(u, f): F at the middle, as near as the format has it.
+  ///   residuals(u, f): the same enclosed.
   ///   slopes(box, by_u, by_theta): F(u) - F(v) is in by_u (u - v) for all u and v of the box and every theta of the
   ///       part, row by row, and by_theta the same for every u; unbounded where F may jump.
-  template <class Residuals, class Slopes>
-  bool over(std::span<const Range> guess, std::span<const Real> start, const Range& part, Residuals&& residuals,
-            Slopes&& slopes) {
+  template <class Numbers, class Residuals, class Slopes>
+  bool over(std::span<const Range> guess, std::span<const Real> start, const Range& part, Numbers&& numbers,
+            Residuals&& residuals, Slopes&& slopes) {
     is_proved_ = false;
-    if (find_middle(start, residuals, slopes)) {
+    if (find_middle(start, numbers, residuals, slopes)) {
       for (std::size_t i = 0; i < size_; ++i) {
         const Range shifted = guess[i] + Range(middle_[i] - start[i]);
         box_[i] = inflated(hull(hull(guess[i], shifted), Range(middle_[i])), 2 * rounding_[i]);
@@ -102,38 +106,49 @@ class ImplicitEnclosure {
   }
 
   /// Newton's iteration at the middle, down to rounding, with the matrix that is at hand as long as it serves.
-  template <class Residuals, class Slopes>
-  bool find_middle(std::span<const Real> start, Residuals& residuals, Slopes& slopes) {
+  template <class Numbers, class Residuals, class Slopes>
+  bool find_middle(std::span<const Real> start, Numbers& numbers, Residuals& residuals, Slopes& slopes) {
     std::ranges::copy(start, middle_.begin());
-    if (has_inverse_ && iterate(residuals)) return true;
+    if (has_inverse_ && iterate(numbers, residuals)) return true;
     std::ranges::copy(start, middle_.begin());
     for (int matrix = 0; matrix < most_matrices; ++matrix) {
       std::ranges::transform(middle_, box_.begin(), [](Real u) { return Range(u); });
       if (!look(slopes) || !invert()) return false;
-      if (iterate(residuals)) return true;
+      if (iterate(numbers, residuals)) return true;
     }
     return false;
   }
 
-  template <class Residuals>
-  bool iterate(Residuals& residuals) {
-    for (int step = 0; step < most_steps; ++step) {
-      residuals(std::span<const Real>(middle_), std::span<Range>(residuals_));
-      bool is_rounding = true;
+  template <class Numbers, class Residuals>
+  bool iterate(Numbers& numbers, Residuals& residuals) {
+    bool is_rounding = false;
+    for (int step = 0; step < most_steps && !is_rounding; ++step) {
+      numbers(std::span<const Real>(middle_), std::span<Real>(numbers_));
+      is_rounding = true;
       for (std::size_t i = 0; i < size_; ++i) {
-        Real correction = 0, rounding = 0;
-        for (std::size_t k = 0; k < size_; ++k) {
-          correction += columns_[k * size_ + i] * mid(residuals_[k]);
-          rounding += std::abs(columns_[k * size_ + i]) * width(residuals_[k]);
-        }
-        rounding_[i] = rounding + 4 * epsilon * std::abs(middle_[i]);
-        values_[i] = Range(middle_[i] - correction);
-        is_rounding = is_rounding && std::abs(correction) <= rounding_[i];
+        correction_[i] = 0;
+        for (std::size_t k = 0; k < size_; ++k) correction_[i] += columns_[k * size_ + i] * numbers_[k];
+        is_rounding = is_rounding && std::abs(correction_[i]) <= 4 * epsilon * std::abs(middle_[i]);
       }
-      if (is_rounding) return true;
-      std::ranges::transform(values_, middle_.begin(), [](const Range& u) { return mid(u); });
+      for (std::size_t i = 0; i < size_ && !is_rounding; ++i) middle_[i] -= correction_[i];
     }
-    return false;
+    residuals(std::span<const Real>(middle_), std::span<Range>(residuals_));
+    return is_solved();
+  }
+
+  /// Whether the residuals at the middle are no more than their rounding.
+  bool is_solved() {
+    bool solved = true;
+    for (std::size_t i = 0; i < size_; ++i) {
+      Real correction = 0, rounding = 0;
+      for (std::size_t k = 0; k < size_; ++k) {
+        correction += columns_[k * size_ + i] * mid(residuals_[k]);
+        rounding += std::abs(columns_[k * size_ + i]) * width(residuals_[k]);
+      }
+      rounding_[i] = rounding + 4 * epsilon * std::abs(middle_[i]);
+      solved = solved && std::abs(correction) <= rounding_[i];
+    }
+    return solved;
   }
 
   /// The slopes over the box.
@@ -271,7 +286,7 @@ class ImplicitEnclosure {
   }
 
   std::size_t size_;
-  std::vector<Real> middle_, weights_, rounding_, least_width_;
+  std::vector<Real> middle_, numbers_, correction_, weights_, rounding_, least_width_;
   std::vector<Real> columns_, centres_, radii_;  // of Y, and of the product Y A: column by column
   DenseLU<Real> lu_;
   std::vector<Range> box_, image_, residuals_, by_part_, values_, slopes_, by_unknowns_, rest_;

@@ -1,4 +1,5 @@
 // Solutions of equations enclosed over an interval, against Newton's iteration in long double.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -93,6 +94,7 @@ bool enclose(ImplicitEnclosure<double>& solution, const F& f, double from, doubl
   }
   return solution.over(
       guess, start, Range(from, to) - Range(middle),
+      [&](std::span<const double> u, std::span<double> out) { std::ranges::copy(f(middle, u), out.begin()); },
       [&](std::span<const double> u, std::span<Range> out) {
         std::vector<Range> numbers;
         for (const double one : u) numbers.emplace_back(one);
@@ -171,7 +173,7 @@ TEST(ImplicitEnclosure, TheExcessIsOfSecondOrder) {
 
 // u^2 = 1 + theta.
 const auto parabola = []<class Number>(const Number& theta, std::span<const Number> u) {
-  return std::vector<Number>{square(u[0]) - Number(1.0) - theta};
+  return std::vector<Number>{u[0] * u[0] - Number(1.0) - theta};
 };
 
 TEST(ImplicitEnclosure, TheBranchIsThatOfTheGuess) {
@@ -201,6 +203,7 @@ TEST(ImplicitEnclosure, NothingIsSaidWhereTheMatrixIsSingular) {
 TEST(ImplicitEnclosure, NothingIsSaidWhereTheEquationsMayJump) {
   // u + floor(u)/2 = theta has no solution for theta in 1..1.5.
   const auto jumping = []<class Number>(const Number& theta, std::span<const Number> u) {
+    using std::floor;
     return std::vector<Number>{u[0] + Number(0.5) * floor(u[0]) - theta};
   };
   ImplicitEnclosure<double> solution(1);
@@ -212,6 +215,7 @@ TEST(ImplicitEnclosure, NothingIsSaidWhereTheEquationsMayJump) {
 // u + abs(u)/2 = theta: slope 2/3 above zero, 2 below.
 TEST(ImplicitEnclosure, AKinkIsNoJump) {
   const auto bent = []<class Number>(const Number& theta, std::span<const Number> u) {
+    using std::abs;
     return std::vector<Number>{u[0] + Number(0.5) * abs(u[0]) - theta};
   };
   ImplicitEnclosure<double> solution(1);
