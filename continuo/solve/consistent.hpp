@@ -37,11 +37,16 @@ constexpr const char* hint_of(const Consistency& found) {
                "contradiction in the equations";
 }
 
+/// How far unknowns are solved for. For guards, which are looked at here and there in a step: to rounding, so that they
+/// have no other noise.
+enum class SolvedTo { tolerance, rounding };
+
 /// Solves for the unknowns without mass, the other components stay. Newton's iteration; a correction is halved until
 /// the next one, with the same matrix, is shorter (P. Deuflhard, "Newton Methods for Nonlinear Problems", 3.3: natural
 /// monotonicity, which does not depend on how the equations are scaled).
 template <class F, State X>
-Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance<Scalar<X>>& tolerance) {
+Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance<Scalar<X>>& tolerance,
+                            SolvedTo solved_to = SolvedTo::tolerance) {
   using Real = Scalar<X>;
   using std::abs, std::max, std::sqrt;
   constexpr int most_iterations = 50, most_halvings = 20, most_further = 4;
@@ -102,9 +107,8 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
     if (!(size < std::numeric_limits<Real>::infinity())) break;
     if (size <= target) {
       add(correction);
-      // On to rounding: a guard of theirs, looked at here and there in a step, shall have no other noise.
       Real last = size;
-      for (int more = 0; more < most_further; ++more) {
+      for (int more = 0; solved_to == SolvedTo::rounding && more < most_further; ++more) {
         residual(correction);
         lu.solve(correction.data());
         const Real left = size_of(correction);

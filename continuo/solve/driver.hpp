@@ -205,7 +205,8 @@ class Driver {
     if constexpr (HasMassDiagonal<System, X>) {
       if (!has_mass<X>(system())) return;
       solved_ = x;
-      const Consistency found = make_consistent(steps().system(), t, solved_, steps().tolerance(options_));
+      const Consistency found =
+          make_consistent(steps().system(), t, solved_, steps().tolerance(options_), SolvedTo::rounding);
       steps().statistics().evaluations += static_cast<std::size_t>(found.evaluations);
       if (found) x = solved_;
     }
