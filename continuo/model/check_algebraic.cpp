@@ -7,47 +7,10 @@
 
 #include <fmt/format.h>
 
+#include <continuo/model/assignment.hpp>
 #include <continuo/model/check_context.hpp>
 
 namespace continuo::model::detail {
-
-namespace {
-
-/// Assigns to each equation an unknown of its own among those it contains, as long as there is one (augmenting paths,
-/// C. Berge 1957).
-class Assignment {
- public:
-  Assignment(std::size_t unknowns, std::vector<std::vector<std::size_t>> contained)
-      : contained_(std::move(contained)), equation_of_(unknowns, npos) {}
-
-  /// The first equation that is left without one; npos where all have theirs. Where these are as many as the unknowns,
-  /// every unknown is determined then.
-  std::size_t first_left_over() {
-    for (std::size_t equation = 0; equation < contained_.size(); ++equation) {
-      visited_.assign(equation_of_.size(), false);
-      if (!find_for(equation)) return equation;
-    }
-    return npos;
-  }
-
- private:
-  bool find_for(std::size_t equation) {
-    for (const std::size_t unknown : contained_[equation]) {
-      if (visited_[unknown]) continue;
-      visited_[unknown] = true;
-      if (equation_of_[unknown] != npos && !find_for(equation_of_[unknown])) continue;
-      equation_of_[unknown] = equation;
-      return true;
-    }
-    return false;
-  }
-
-  std::vector<std::vector<std::size_t>> contained_;
-  std::vector<std::size_t> equation_of_;
-  std::vector<bool> visited_;
-};
-
-}  // namespace
 
 void Checker::append_unknowns() {
   if (errors_ > 0 || unknowns_.empty()) return;
@@ -86,7 +49,7 @@ void Checker::check_index(std::size_t mode) {
     }
   }
   const std::size_t left_over = Assignment(unknowns_.size(), contained).first_left_over();
-  if (left_over == npos) return;
+  if (left_over == Assignment::npos) return;
   std::string label = "this equation contains no unknown";
   if (!contained[left_over].empty()) {
     std::vector<std::string> names;

@@ -7,31 +7,25 @@ namespace continuo::model {
 
 GuardEnclosures::GuardEnclosures(const ModelProgram& program, std::vector<std::vector<Guard>> guards, std::size_t count)
     : program_(&program), place_(count, none) {
-  for (std::vector<Guard>& of_mode : guards) modes_.push_back({.guards = std::move(of_mode), .all = {}, .alone = {}});
+  for (std::vector<Guard>& of_mode : guards)
+    modes_.push_back({.guards = std::move(of_mode), .blocks = {}, .all = {}, .alone = {}});
 }
 
 void GuardEnclosures::take(const ModelSystem& system, const Step& step) {
   step_ = step;
   OfMode& mine = modes_[system.mode()];
   all_ = nullptr;
+  if (!mine.guards.empty() && !mine.all) make(mine, system);
   if (mine.guards.empty()) {
     if (std::exchange(mode_, system.mode()) != system.mode()) std::ranges::fill(place_, none);
     return;
-  }
-  if (!mine.all) {
-    variables_ = system.variables();
-    variables_.resize(program_->tape_variables().variables);
-    std::vector<NodeId> nodes;
-    for (const Guard& guard : mine.guards) nodes.push_back(guard.node);
-    mine.all.emplace(*program_, nodes, variables_);
-    mine.alone.resize(mine.guards.size());
   }
   all_ = &*mine.all;
   if (mode_ == system.mode() && !system.has_switches()) return;
   mode_ = system.mode();
   std::ranges::fill(place_, none);
   for (std::size_t k = 0; k < mine.guards.size(); ++k)
-    if (!mine.guards[k].surface || !system.slides_along(*mine.guards[k].surface)) place_[mine.guards[k].number] = k;
+    if (is_enclosed(mine, k, system)) place_[mine.guards[k].number] = k;
   const std::span<const double> values = system.switch_values();
   for (std::size_t k = 0; k < values.size(); ++k) {
     const std::uint32_t variable = program_->switches[mode_].switches[k].variable;
@@ -39,10 +33,62 @@ void GuardEnclosures::take(const ModelSystem& system, const Step& step) {
   }
 }
 
+namespace {
+
+/// Those that are not part of another.
+std::vector<UnknownBlock> greatest(std::span<const UnknownBlock> blocks) {
+  std::vector<UnknownBlock> found;
+  for (const UnknownBlock& block : blocks) {
+    const auto holds = [](const UnknownBlock& a, const UnknownBlock& b) {
+      return std::ranges::includes(a.components, b.components);
+    };
+    if (std::ranges::any_of(found, [&](const UnknownBlock& other) { return holds(other, block); })) continue;
+    std::erase_if(found, [&](const UnknownBlock& other) { return holds(block, other); });
+    if (!block.empty()) found.push_back(block);
+  }
+  return found;
+}
+
+}  // namespace
+
+void GuardEnclosures::make(OfMode& mine, const ModelSystem& system) {
+  if (variables_.empty()) {
+    variables_ = system.variables();
+    variables_.resize(program_->tape_variables().variables);
+  }
+  std::vector<Guard> guards;
+  std::optional<UnknownCoupling> coupling;
+  for (const Guard& guard : mine.guards) {
+    if (guard.reads_unknowns && !coupling) coupling.emplace(*program_, system.equations());
+    std::optional<UnknownBlock> block = guard.reads_unknowns ? coupling->block(guard.node) : UnknownBlock{};
+    if (!block) continue;
+    guards.push_back(guard);
+    mine.blocks.push_back(std::move(*block));
+  }
+  mine.guards = std::move(guards);
+  if (mine.guards.empty()) return;
+  std::vector<NodeId> nodes;
+  for (const Guard& guard : mine.guards) nodes.push_back(guard.node);
+  mine.all.emplace(*program_, nodes, variables_, greatest(mine.blocks));
+  mine.alone.resize(mine.guards.size());
+}
+
+bool GuardEnclosures::is_enclosed(const OfMode& mine, std::size_t k, const ModelSystem& system) {
+  const Guard& guard = mine.guards[k];
+  if (guard.surface) return !system.slides_along(*guard.surface);
+  if (!guard.reads_unknowns) return true;
+  const std::vector<std::uint32_t>& unknowns = mine.blocks[k].components;
+  return !system.slides() &&
+         std::ranges::none_of(system.held(), [&](std::size_t i) { return std::ranges::binary_search(unknowns, i); });
+}
+
 StepEnclosure& GuardEnclosures::alone(std::size_t number) {
   OfMode& mine = modes_[mode_];
   std::optional<StepEnclosure>& one = mine.alone[place_[number]];
-  if (!one) one.emplace(*program_, std::span(&mine.guards[place_[number]].node, 1), variables_);
+  if (!one) {
+    one.emplace(*program_, std::span(&mine.guards[place_[number]].node, 1), variables_,
+                std::span(&mine.blocks[place_[number]], mine.blocks[place_[number]].empty() ? 0 : 1));
+  }
   return *one;
 }
 

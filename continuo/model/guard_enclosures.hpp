@@ -1,6 +1,7 @@
-// The guards of a model enclosed over a step, for the proof that no root is missed. Those that read unknowns of
-// algebraic equations are not enclosed: between the ends of a step the polynomial is not what the unknowns are. Nor is
-// the guard of a surface while the motion slides along it.
+// The guards of a model enclosed over a step, for the proof that no root is missed. Unknowns of algebraic equations
+// that a guard reads are solved for there, by enclosures: where the equations are coupled so far that they would be too
+// many, while the motion slides, and where somebody holds an unknown, the guard is not enclosed. Nor is that of a
+// surface while the motion slides along it.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -19,6 +20,7 @@ class GuardEnclosures {
     std::size_t number;
     NodeId node;
     std::optional<std::size_t> surface{};  // of which switch of the mode
+    bool reads_unknowns = false;
   };
 
   GuardEnclosures() = default;
@@ -41,9 +43,12 @@ class GuardEnclosures {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   struct OfMode {
     std::vector<Guard> guards;
+    std::vector<UnknownBlock> blocks;  // that each guard hangs on
     std::optional<StepEnclosure> all;
     std::vector<std::optional<StepEnclosure>> alone;
   };
+  void make(OfMode& mine, const ModelSystem& system);
+  static bool is_enclosed(const OfMode& mine, std::size_t k, const ModelSystem& system);
   StepEnclosure& alone(std::size_t number);
 
   const ModelProgram* program_ = nullptr;
@@ -64,9 +69,10 @@ std::vector<std::vector<GuardEnclosures::Guard>> enclosed_guards(const ModelProg
                                                                  NumberOfJump&& number_of_jump) {
   std::vector<std::vector<GuardEnclosures::Guard>> guards(program.guards.size());
   for (std::size_t mode = 0; mode < guards.size(); ++mode) {
-    for (const std::size_t event : program.guards[mode].events)
-      if (!program.reads_unknowns(program.model.events[event].guard))
-        guards[mode].push_back({number_of_event(event), program.enclosed[event]});
+    for (const std::size_t event : program.guards[mode].events) {
+      const bool reads_unknowns = program.reads_unknowns(program.enclosed[event]);
+      guards[mode].push_back({number_of_event(event), program.enclosed[event], {}, reads_unknowns});
+    }
     const SwitchedEquations& equations = program.switches[mode];
     for (std::size_t k = 0; k < equations.switches.size(); ++k)
       guards[mode].push_back({number_of_jump(mode, k), equations.guards[k], k});

@@ -47,6 +47,7 @@ class ModelSystem {
   void set_all(std::span<const double> variables);
   /// These states stand still from now on, whatever the equations say: somebody holds them.
   void hold(std::vector<std::size_t> states) { held_ = std::move(states); }
+  std::span<const std::size_t> held() const { return held_; }
 
   /// The guards that are active in the present mode; values[i] for Model::events[i], the others are left alone. That of
   /// a condition is never zero: its sign says whether the condition holds.
@@ -68,6 +69,10 @@ class ModelSystem {
   bool slides_along(std::size_t k) const { return switched_ && switched_->slides_along(k); }
   std::span<const double> switch_values() const {
     return has_switches() ? switched_->values() : std::span<const double>();
+  }
+  /// The right-hand sides and residuals of the present mode, with its switches held where these are.
+  std::span<const NodeId> equations() const {
+    return has_switches() ? program_->switches[mode_].derivatives : model().modes[mode_].derivatives;
   }
   const std::vector<double>& variables() const { return variables_; }
 

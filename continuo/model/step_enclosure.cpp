@@ -6,60 +6,58 @@
 
 namespace continuo::model {
 
-namespace {
-
-Enclosure<double> time_over(const Step& step, double from, double to) {
-  return Enclosure<double>(step.begin) + Enclosure<double>(from, to) * Enclosure<double>(step.size);
-}
-
-}  // namespace
-
 StepEnclosure::StepEnclosure(const ModelProgram& program, std::span<const NodeId> nodes,
-                             std::span<const double> variables)
+                             std::span<const double> variables, std::span<const UnknownBlock> blocks)
     : tape_(program.tape_of(nodes)),
       states_begin_(program.model.layout.states),
-      variables_(variables.begin(), variables.end()),
-      coefficients_(greatest_enclosed_degree + 1) {
+      variables_(variables.begin(), variables.end()) {
+  for (const UnknownBlock& block : blocks) unknowns_.emplace_back(program, block, variables);
   reads_time_ = !program.linear_inputs.empty();  // whose tables are read by time
   for (const std::uint32_t variable : variables_of(program.model.graph, nodes)) {
     reads_time_ = reads_time_ || variable == Layout::time;
-    if (variable >= states_begin_ && variable - states_begin_ < program.model.states.size())
-      components_.push_back(variable - states_begin_);
+    const std::uint32_t component = variable - states_begin_;
+    if (variable >= states_begin_ && component < program.model.states.size() && !is_solved_for(component))
+      components_.push_back(component);
   }
 }
 
+bool StepEnclosure::is_solved_for(std::uint32_t component) const {
+  return std::ranges::any_of(unknowns_, [component](const UnknownEnclosure& block) {
+    return std::ranges::binary_search(block.components(), component);
+  });
+}
+
 std::span<const EnclosureWithSlope<double>> StepEnclosure::over(const Step& step, double from, double to) {
-  prepare(with_slopes_);
-  auto& registers = with_slopes_.numbers;
-  if (reads_time_) registers[Layout::time] = {time_over(step, from, to), Enclosure<double>(step.size)};
+  with_slopes_.prepare(*tape_, variables_);
+  if (reads_time_) with_slopes_[Layout::time] = {step.time(from, to), Enclosure<double>(step.size)};
   for (const std::uint32_t i : components_)
-    registers[states_begin_ + i] = enclose_polynomial(component(step, i), from, to);
-  tape_->evaluate<EnclosureWithSlope<double>>(registers, with_slopes_.outputs);
-  return with_slopes_.outputs;
+    with_slopes_[states_begin_ + i] = enclose_polynomial(component_.of(step, i), from, to);
+  for (UnknownEnclosure& block : unknowns_) {
+    block.over(step, from, to);
+    const std::span<const Enclosure<double>> values = block.values(), slopes = block.slopes();
+    for (std::size_t k = 0; k < values.size(); ++k)
+      with_slopes_[states_begin_ + block.components()[k]] = {values[k], slopes[k]};
+  }
+  return with_slopes_.evaluate(*tape_);
 }
 
 std::span<const Enclosure<double>> StepEnclosure::values_over(const Step& step, double from, double to) {
-  prepare(values_);
-  auto& registers = values_.numbers;
-  if (reads_time_) registers[Layout::time] = time_over(step, from, to);
-  for (const std::uint32_t i : components_) registers[states_begin_ + i] = component_over(step, i, from, to);
-  tape_->evaluate<Enclosure<double>>(registers, values_.outputs);
-  return values_.outputs;
+  values_.prepare(*tape_, variables_);
+  if (reads_time_) values_[Layout::time] = step.time(from, to);
+  for (const std::uint32_t i : components_) values_[states_begin_ + i] = component_over(step, i, from, to);
+  for (UnknownEnclosure& block : unknowns_) {
+    block.over(step, from, to);
+    for (std::size_t k = 0; k < block.components().size(); ++k)
+      values_[states_begin_ + block.components()[k]] = block.values()[k];
+  }
+  return values_.evaluate(*tape_);
 }
 
 void StepEnclosure::set(std::uint32_t variable, double value) {
   variables_[variable] = value;
-  with_slopes_.is_prepared = values_.is_prepared = false;
-}
-
-template <class Number>
-void StepEnclosure::prepare(Registers<Number>& registers) {
-  if (registers.is_prepared) return;
-  registers.numbers.resize(tape_->register_count());
-  registers.outputs.resize(tape_->output_count());
-  std::ranges::transform(variables_, registers.numbers.begin(), [](double value) { return Number(value); });
-  tape_->prepare<Number>(registers.numbers);
-  registers.is_prepared = true;
+  with_slopes_.forget();
+  values_.forget();
+  for (UnknownEnclosure& block : unknowns_) block.set(variable, value);
 }
 
 Enclosure<double> StepEnclosure::component_over(const Step& step, std::size_t i, double from, double to) {
@@ -67,12 +65,8 @@ Enclosure<double> StepEnclosure::component_over(const Step& step, std::size_t i,
     const std::vector<double>* const c = step.coefficients.data();
     return enclose_whole_polynomial<double>(step.coefficients.size(), [c, i](std::size_t j) { return c[j][i]; });
   }
-  return from == to ? polynomial_at(component(step, i), from) : enclose_polynomial(component(step, i), from, to).value;
-}
-
-std::span<const double> StepEnclosure::component(const Step& step, std::size_t i) {
-  for (std::size_t j = 0; j < step.coefficients.size(); ++j) coefficients_[j] = step.coefficients[j][i];
-  return std::span<const double>(coefficients_).first(step.coefficients.size());
+  const std::span<const double> polynomial = component_.of(step, i);
+  return from == to ? polynomial_at(polynomial, from) : enclose_polynomial(polynomial, from, to).value;
 }
 
 }  // namespace continuo::model

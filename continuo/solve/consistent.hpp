@@ -37,14 +37,19 @@ constexpr const char* hint_of(const Consistency& found) {
                "contradiction in the equations";
 }
 
+/// How far unknowns are solved for. For guards, which are looked at here and there in a step: to rounding, so that they
+/// have no other noise.
+enum class SolvedTo { tolerance, rounding };
+
 /// Solves for the unknowns without mass, the other components stay. Newton's iteration; a correction is halved until
 /// the next one, with the same matrix, is shorter (P. Deuflhard, "Newton Methods for Nonlinear Problems", 3.3: natural
 /// monotonicity, which does not depend on how the equations are scaled).
 template <class F, State X>
-Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance<Scalar<X>>& tolerance) {
+Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance<Scalar<X>>& tolerance,
+                            SolvedTo solved_to = SolvedTo::tolerance) {
   using Real = Scalar<X>;
   using std::abs, std::max, std::sqrt;
-  constexpr int most_iterations = 50, most_halvings = 20;
+  constexpr int most_iterations = 50, most_halvings = 20, most_further = 4;
   Consistency found;
   std::vector<std::size_t> unknown;
   for (std::size_t i = 0; i < dimension(x); ++i)
@@ -77,6 +82,10 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
     }
   };
 
+  const auto add = [&](std::span<const Real> step) {
+    for (std::size_t k = 0; k < m; ++k) x.data()[unknown[k]] += step[k];
+  };
+
   // A hundredth of the tolerance: the run's own errors shall be the larger ones.
   const Real target = Real(1) / Real(100);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -97,7 +106,16 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
     const Real size = size_of(correction);
     if (!(size < std::numeric_limits<Real>::infinity())) break;
     if (size <= target) {
-      for (std::size_t k = 0; k < m; ++k) x.data()[unknown[k]] += correction[k];
+      add(correction);
+      Real last = size;
+      for (int more = 0; solved_to == SolvedTo::rounding && more < most_further; ++more) {
+        residual(correction);
+        lu.solve(correction.data());
+        const Real left = size_of(correction);
+        if (!(left < last / 2)) break;
+        add(correction);
+        last = left;
+      }
       return found;
     }
     bool shorter = false;

@@ -205,7 +205,8 @@ class Driver {
     if constexpr (HasMassDiagonal<System, X>) {
       if (!has_mass<X>(system())) return;
       solved_ = x;
-      const Consistency found = make_consistent(steps().system(), t, solved_, steps().tolerance(options_));
+      const Consistency found =
+          make_consistent(steps().system(), t, solved_, steps().tolerance(options_), SolvedTo::rounding);
       steps().statistics().evaluations += static_cast<std::size_t>(found.evaluations);
       if (found) x = solved_;
     }
@@ -251,7 +252,6 @@ class Driver {
         t_ = offset == length ? steps().end() : begin + offset;
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
         state_at(offset, length, x_);
-        if (offset == length) solve_unknowns(t_, x_);
         if (steps().lands()) logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
       } else {
         offset = to;
@@ -309,6 +309,7 @@ class Driver {
     if (offset == length) {
       x = steps().x_end();
       shift(x);
+      solve_unknowns(steps().end(), x);
       return;
     }
     steps().at_part(offset / steps().size(), x);

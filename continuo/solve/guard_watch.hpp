@@ -6,8 +6,8 @@
 // the band by the other side: a bounce too small for the number format does not pass.
 //
 // Guards that can be enclosed over parts of a step (a model's) are searched by proof (numerics/root_isolation.hpp): no
-// root of the dense output is missed. Others are sampled: nine points, more where these do not resolve g, so that two
-// roots in a step are found unless they lie closer than what a polynomial of degree eight over a part of it shows.
+// root of the dense output is missed. Others are sampled, and so is what enclosures leave undecided: nine points, more
+// where these do not resolve g; two roots nearer than a polynomial of degree eight over a part can show are missed.
 #pragma once
 #include <array>
 #include <cmath>

@@ -6,6 +6,7 @@
 
 #include <continuo/methods/bdf.hpp>
 #include <continuo/methods/tsitouras5.hpp>
+#include <continuo/solve/consistent.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::consistent_test {
@@ -27,6 +28,17 @@ TEST(Consistency, UnknownsAreFoundFromAPoorGuess) {
     EXPECT_NEAR(integrator.x()[1], 2, 1e-11) << guess;
     EXPECT_EQ(integrator.x()[0], 5);
   }
+}
+
+// At z = 2 the slope is 13; the residual rounds to units of 10.
+TEST(Consistency, ForGuardsUnknownsAreSolvedForToRounding) {
+  const Tolerance<double> loose{1e-2, 1e-2};
+  Cubic system;
+  X x{5, 2.02}, close = x;
+  ASSERT_TRUE(make_consistent(system, 0.0, x, loose));
+  ASSERT_TRUE(make_consistent(system, 0.0, close, loose, SolvedTo::rounding));
+  EXPECT_GT(std::abs(x[1] - 2), 1e-12);  // one or two of Newton's corrections
+  EXPECT_LT(std::abs(close[1] - 2), 2e-15);
 }
 
 TEST(Consistency, IsKeptAlongTheRunAndAfterAnEvent) {
