@@ -58,20 +58,24 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
   if (m == 0) return found;
 
   X f = x, moved = x, slope = x;
-  std::vector<Real> rows(n * n), correction(m), next(m);
+  std::vector<Real> rows(n * n), correction(m), next(m), scale(m);
   DenseLU<Real> lu(m);
   const auto residual = [&](std::span<Real> g) {
     evaluate(system, t, x, f);
     ++found.evaluations;
     for (std::size_t k = 0; k < m; ++k) g[k] = f.data()[unknown[k]];
   };
-  const auto size_of = [&](std::span<const Real> step) {
-    Real sum(0);
+  // By the scale of the iterate: one that changed with what a correction leads to would call a correction towards zero
+  // longer than it is.
+  const auto take_scale = [&] {
     for (std::size_t k = 0; k < m; ++k) {
       const Real& value = x.data()[unknown[k]];
-      const Real part = step[k] / max(tolerance.scale(unknown[k], value, value), std::numeric_limits<Real>::min());
-      sum += part * part;
+      scale[k] = max(tolerance.scale(unknown[k], value, value), std::numeric_limits<Real>::min());
     }
+  };
+  const auto size_of = [&](std::span<const Real> step) {
+    Real sum(0);
+    for (std::size_t k = 0; k < m; ++k) sum += step[k] / scale[k] * (step[k] / scale[k]);
     return Real(sqrt(sum / Real(static_cast<double>(m))));
   };
   const auto name_worst = [&] {
@@ -103,6 +107,7 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
       return found;
     }
     lu.solve(correction.data());
+    take_scale();
     const Real size = size_of(correction);
     if (!(size < std::numeric_limits<Real>::infinity())) break;
     if (size <= target) {

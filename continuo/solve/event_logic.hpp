@@ -377,8 +377,8 @@ class EventLogic {
 
   /// How far the motion may be followed without coming to what happens next.
   Real length_to_follow(const StepsOf& steps, Real t) const {
-    using std::abs, std::min;
-    const Real length = steps.size() != 0 ? min(abs(steps.size()), longest_) : longest_ / Real(1e6);
+    using std::abs, std::max, std::min;
+    const Real length = min(max(abs(steps.size()), longest_ / Real(1e6)), longest_);  // a step to an event is short
     const Real same_instant = 1000 * std::numeric_limits<Real>::epsilon() * abs(t);
     return last_event_ && abs(t - *last_event_) > same_instant ? min(length, abs(t - *last_event_)) : length;
   }
@@ -391,7 +391,7 @@ class EventLogic {
   }
 
   /// What g can be off by at the present instant.
-  Real inaccuracy(std::size_t i) const { return std::max(rounding_[i], slack_[i]); }
+  Real inaccuracy(std::size_t i) const { return renews_guard(i) ? rounding_[i] : std::max(rounding_[i], slack_[i]); }
   bool at_zero(std::size_t i) const {
     using std::abs;
     return !(abs(g_[i]) > inaccuracy(i));
@@ -416,7 +416,7 @@ class EventLogic {
     GuardState<Real>& state = watch_.states()[i];
     state.side = watch_.side_after(i);
     state.returns = watch_.returns_after(i);
-    slack_[i] = jumps_[i] ? Real(0) : max(rounding_[i] + abs(g_[i]), slack_[i]);
+    slack_[i] = jumps_[i] ? Real(0) : max(rounding_[i] + abs(g_[i]), renews_guard(i) ? Real(0) : slack_[i]);
     state.band = slack_[i];
     state.at_zero = !jumps_[i];
     marks_[i] = turned;

@@ -131,9 +131,12 @@ std::string whole_text(const HybridModel& abstract) {
 bool is_resolved(const HybridModel& model, const Expected& expected) {
   constexpr int closer = 32;
   const Expected finer = referee(model, closer);
-  return finer.rejected.empty() && std::ranges::equal(finer.events, expected.events, [](const auto& a, const auto& b) {
-           return a.event == b.event && std::fabs(a.t - b.t) < 1e-9;
-         });
+  const auto same_event = [](const auto& a, const auto& b) {
+    return a.event == b.event && std::fabs(a.t - b.t) < 1e-9;
+  };
+  const auto same_value = [](Real a, Real b) { return std::fabs(a - b) < 1e-9 * (1 + std::fabs(b)); };
+  return finer.rejected.empty() && std::ranges::equal(finer.events, expected.events, same_event) &&
+         std::ranges::equal(finer.end, expected.end, same_value);
 }
 
 }  // namespace
