@@ -229,7 +229,7 @@ struct CollocationMethod {
     using std::max, std::sqrt;
     Scalar<X> sum(0), dense_sum(0);
     for (std::size_t i = 0; i < dimension(x); ++i) {
-      const Scalar<X> unit = Scalar<X>(1) / tolerance.scale(i, x.data()[i], x_new.data()[i]);
+      const Scalar<X> unit = Scalar<X>(1) / tolerance.scale_of_step(i, x.data()[i], x_new.data()[i]);
       const Scalar<X> part = work.error.data()[i] * unit;
       sum += part * part;
       if constexpr (radau) {
