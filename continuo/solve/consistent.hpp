@@ -53,7 +53,7 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
   if (m == 0) return found;
 
   X f = x, moved = x, slope = x;
-  std::vector<Real> rows(n * n), correction(m), next(m);
+  std::vector<Real> rows(n * n), correction(m), next(m), scale(m);
   DenseLU<Real> lu(m);
   const auto residual = [&](std::span<Real> g) {
     evaluate(system, t, x, f);
@@ -62,11 +62,7 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
   };
   const auto size_of = [&](std::span<const Real> step) {
     Real sum(0);
-    for (std::size_t k = 0; k < m; ++k) {
-      const Real& value = x.data()[unknown[k]];
-      const Real part = step[k] / max(tolerance.scale(unknown[k], value, value), std::numeric_limits<Real>::min());
-      sum += part * part;
-    }
+    for (std::size_t k = 0; k < m; ++k) sum += (step[k] / scale[k]) * (step[k] / scale[k]);
     return Real(sqrt(sum / Real(static_cast<double>(m))));
   };
   const auto name_worst = [&] {
@@ -94,6 +90,12 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
       return found;
     }
     lu.solve(correction.data());
+    // Of here, also for the corrections it is compared with: an unknown that comes from -3 towards 0 would be measured
+    // by ever less, and no part of a correction would make the next one shorter.
+    for (std::size_t k = 0; k < m; ++k) {
+      const Real& value = x.data()[unknown[k]];
+      scale[k] = max(tolerance.scale(unknown[k], value, value), std::numeric_limits<Real>::min());
+    }
     const Real size = size_of(correction);
     if (!(size < std::numeric_limits<Real>::infinity())) break;
     if (size <= target) {
