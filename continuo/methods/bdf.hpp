@@ -140,7 +140,8 @@ struct BackwardDifferentiation {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    return ndf::error_constant<Scalar<X>>(work.order) * strict_norm(work, work.d, x, x_new, tolerance) + not_finite(x_new);
+    return ndf::error_constant<Scalar<X>>(work.order) * strict_norm(work, work.d, x, x_new, tolerance) +
+           not_finite(x_new);
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
@@ -428,7 +429,9 @@ struct BackwardDifferentiation {
       }
       for (std::size_t i = 0; i < n; ++i) work.correction.data()[i] = work.f.data()[i] - work.end.data()[i];
       evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, target, work.correction);
-      const Real size = weighted_norm(work.correction, x, x, work.tolerance);
+      // Of where the step begins: a correction that leads to 1e20 and the one back would be small against what is
+      // there.
+      const Real size = weighted_norm(work.correction, work.D[0], work.D[0], work.tolerance);
       for (std::size_t i = 0; i < n; ++i) {
         work.d.data()[i] += work.correction.data()[i];
         x.data()[i] += work.correction.data()[i];

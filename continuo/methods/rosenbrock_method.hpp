@@ -101,8 +101,8 @@ struct RosenbrockMethod {
       sum += ratio * ratio + (end - end);  // which is 0, if it is finite
     });
     const Scalar<X> between = work.unknowns.norm(x, x_new, tolerance);
-    const Scalar<X> square =
-        detail::greater(spare * spare * detail::total<X>(sum) * detail::one_over_dimension(x), Scalar<X>(between * between));
+    const Scalar<X> square = detail::greater(spare * spare * detail::total<X>(sum) * detail::one_over_dimension(x),
+                                             Scalar<X>(between * between));
     if constexpr (!estimates_its_own_error<Derived>()) return square;
     // Errors that die out must be below the tolerance; those that stay must be so once they are added up.
     const Scalar<X> strict = strictness_of<Derived>(tolerance);
