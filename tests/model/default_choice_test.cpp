@@ -59,6 +59,17 @@ TEST(DefaultChoice, KeepsItsToleranceOnFastOscillations) {
   expect_right_of_kind("oscillator");
 }
 
+// The probe of an oscillation moves x by more than a strict tolerance, or rounding is all it sees: in all components by
+// the same number of tolerances, at every phase, or the oscillation is not known for one.
+TEST(DefaultChoice, KeepsAStrictToleranceOverAHundredThousand) {
+  const bench::ChoiceProblem problem{"harmonic oscillator",
+                                     "oscillator",
+                                     1e5,
+                                     "x' = v\nv' = -x\nx(0) = 1; v(0) = 0",
+                                     {{"x", std::cos(1e5)}, {"v", -std::sin(1e5)}}};
+  for (const double tolerance : {1e-8, 1e-10}) expect_right(problem, tolerance, "dop853_radau");
+}
+
 TEST(DefaultChoice, JumpsOverNoPulseOfTheInput) {
   expect_right_of_kind("pulse");
 }
