@@ -286,8 +286,8 @@ struct CollocationMethod {
     if (work.linear.has_mass()) work.memory.measure_anew(work.tolerance);
     work.memory.matrix_is_known = work.jacobian_age == 0 || !work.memory.measures_anew;
     // With a mass the target is closer, and rejecting a step costs more than an iteration or two.
-    const int most = most_iterations<Scalar<X>>(s) + (work.linear.has_mass() ? 3 : 0);
-    const bool converged = newton(work.memory, work.target, most, [&] {
+    const int iterations = most_iterations<Scalar<X>>(s) + (work.linear.has_mass() ? 3 : 0);
+    const bool converged = newton(work.memory, work.target, iterations, [&] {
       collocation::stage_slopes<nodes, s>(system, t, x, h, work);
       return collocation::correct<nodes, s>(h, work);
     });
