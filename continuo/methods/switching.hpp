@@ -179,8 +179,8 @@ struct Switching {
   static constexpr double unseen = 1;  // tolerances: what the stiff method may damp
   // Steps of an oscillation whose errors may be as large as the tolerance. Nothing damps them; from there on those of
   // the n-th are held below 1/n of that, so that their sum grows with log n alone.
-  // A method of high order, which gets strict tolerances, has the smaller errors against their estimate.
-  static constexpr std::size_t free_turns = NonStiff::error_order < 7 ? 5 : 15;
+  // dop853, which gets strict tolerances, has the smaller errors against their estimate.
+  static constexpr std::size_t free_turns = NonStiff::order < 8 || NonStiff::second_order ? 5 : 15;
   static constexpr int worthwhile = 8;  // a stiff step costs some three to ten explicit ones
 
   // Steps that have become a small part of a turn gain nothing any more: rounding is what they follow.
