@@ -64,6 +64,7 @@ struct BackwardDifferentiation {
     using Real = Scalar<X>;
     std::array<X, greatest_order + 3> D;
     X d, end, f, correction;  // of the last step: x_new - predicted, x_new; f and a scratch
+    X rounding;               // how far a step is off because t is rounded
     Equations<X> equations;
     NewtonMemory<Real> memory{};
     Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
@@ -79,7 +80,9 @@ struct BackwardDifferentiation {
 
   template <State X>
   static Workspace<X> workspace(const X& x) {
-    return {{x, x, x, x, x, x, x, x}, x, x, x, x, Equations<X>(x)};
+    Workspace<X> work{{x, x, x, x, x, x, x, x}, x, x, x, x, x, Equations<X>(x)};
+    for (std::size_t i = 0; i < dimension(x); ++i) work.rounding.data()[i] = Scalar<X>(0);
+    return work;
   }
 
   template <State X>
@@ -114,15 +117,15 @@ struct BackwardDifferentiation {
     work.is_current = work.equations.is_always_current(system);
     for (;;) {
       predict(work, x_new);
-      if (!work.has_jacobian || work.jacobian_age >= oldest_jacobian) {
-        evaluations += linearize(system, t + h, x_new, work);
-      }
+      const bool linearized = !work.has_jacobian || work.jacobian_age >= oldest_jacobian;
+      if (linearized) evaluations += linearize(system, t + h, x_new, work);
       const Scalar<X> c = Scalar<X>(ndf::alpha<Scalar<X>>(work.order)) / h;
       if (c != work.decomposed_for && !decompose(system, work, c)) {
         if (work.is_current) break;
         work.has_jacobian = false;
         continue;
       }
+      if (linearized && work.equations.has_mass()) evaluations += measure_rounding(system, t + h, h, x_new, work);
       const bool converged = solve(system, t + h, c, work, x_new, evaluations);
       work.status = converged            ? StepStatus::done
                     : work.memory.finite ? StepStatus::newton_diverged
@@ -137,7 +140,7 @@ struct BackwardDifferentiation {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    return strict(tolerance) * ndf::error_constant<Scalar<X>>(work.order) * weighted_norm(work.d, x, x_new, tolerance) +
+    return ndf::error_constant<Scalar<X>>(work.order) * strict_norm(work, work.d, x, x_new, tolerance) +
            not_finite(x_new);
   }
   template <State X>
@@ -159,10 +162,9 @@ struct BackwardDifferentiation {
     };
     const auto norm_of = [&](std::size_t order, auto&& component) {
       for (std::size_t i = 0; i < dimension(x); ++i) work.correction.data()[i] = component(i);
-      return strict(tolerance) * ndf::error_constant<Real>(order) * weighted_norm(work.correction, x, x_new, tolerance);
+      return ndf::error_constant<Real>(order) * strict_norm(work, work.correction, x, x_new, tolerance);
     };
-    Real best =
-        factor_of(k, strict(tolerance) * ndf::error_constant<Real>(k) * weighted_norm(work.d, x, x_new, tolerance));
+    Real best = factor_of(k, ndf::error_constant<Real>(k) * strict_norm(work, work.d, x, x_new, tolerance));
     if (k > 1) {  // the difference of order k after this step
       const Real lower =
           factor_of(k - 1, norm_of(k - 1, [&](std::size_t i) { return work.D[k].data()[i] + work.d.data()[i]; }));
@@ -246,6 +248,9 @@ struct BackwardDifferentiation {
   static constexpr int most_iterations = 4;
   static constexpr std::size_t oldest_jacobian = 50;
   static constexpr double least_worthwhile = 1.2;
+  // The root mean square of the rounding of t, and of a product with it, is 0.4 spacings; differences of order 6 have
+  // 30 times that, and their part in the estimate is a sixth. Three times that is rare.
+  static constexpr double times_rounded = 6;
   // The first step has order 1 and leaves an error of the size of h^2: what the higher orders would gain is lost there,
   // and of order 2 the formula is still A-stable.
   static constexpr std::size_t greatest_of_fixed_steps = order_of_fixed_steps;
@@ -269,9 +274,39 @@ struct BackwardDifferentiation {
   }
 
   // Whatever the order of the step: strict tolerances are met by the greatest.
-  template <class Real>
-  static Real strict(const Tolerance<Real>& tolerance) {
-    return strictness(tolerance, order, order + 1);
+  template <State X>
+  static Scalar<X> strict_norm(const Workspace<X>& work, const X& v, const X& x, const X& x_new,
+                               const Tolerance<Scalar<X>>& tolerance) {
+    using std::sqrt;
+    using Real = Scalar<X>;
+    const Real strict = strictness(tolerance, order, order + 1);
+    const std::size_t n = dimension(x);
+    // Of steps of a few spacings of t alone: the error of a state adds up.
+    const Real of_few = tolerance.rounding_of_time / Real(greatest_rounding_of_time);
+    const Tolerance<Real> weights = tolerance.of_error_times(strict * of_few);
+    Real sum(0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Real scale = weights.scale_of_step(i, x.data()[i], x_new.data()[i]);
+      const Real part = v.data()[i] / (scale + strict * work.rounding.data()[i]);
+      sum += part * part;
+    }
+    return n == 0 ? sum : strict * sqrt(sum / Real(static_cast<double>(n)));
+  }
+
+  // Where t is rounded by dt, the solution of the step's equations is off by dt (c M - J)^-1 f_t: of 0 = g(t, x) by
+  // dt g_t / g_x, whatever the step. Differences of order k show that multiplied, and a shorter step does not make them
+  // less: the order would fall, and h with it, until nothing is left of it.
+  template <class System, State X>
+  static int measure_rounding(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x, Workspace<X>& work) {
+    using Real = Scalar<X>;
+    using std::abs;
+    if (is_autonomous(system)) return 0;
+    int evaluations = detail::slope_in_time(system, t, h, x, work.f, work.correction);
+    evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, Real(1e-2), work.correction);
+    const Real spacing = std::numeric_limits<Real>::epsilon() * abs(t);
+    for (std::size_t i = 0; i < dimension(x); ++i)
+      work.rounding.data()[i] = Real(times_rounded) * spacing * abs(work.correction.data()[i]);
+    return evaluations;
   }
 
   template <class System, State X>
@@ -398,7 +433,9 @@ struct BackwardDifferentiation {
       }
       for (std::size_t i = 0; i < n; ++i) work.correction.data()[i] = work.f.data()[i] - work.end.data()[i];
       evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, target, work.correction);
-      const Real size = weighted_norm(work.correction, x, x, work.tolerance);
+      // Of where the step begins: a correction that leads to 1e20 and the one back would be small against what is
+      // there.
+      const Real size = weighted_norm(work.correction, work.D[0], work.D[0], work.tolerance);
       for (std::size_t i = 0; i < n; ++i) {
         work.d.data()[i] += work.correction.data()[i];
         x.data()[i] += work.correction.data()[i];

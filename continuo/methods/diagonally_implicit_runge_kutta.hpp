@@ -84,13 +84,14 @@ struct DiagonallyImplicitRungeKutta {
   template <State X>
   static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                                 const Tolerance<Scalar<X>>& tolerance) {
+    const Scalar<X> strict = strictness_of<Derived>(tolerance), between = work.unknowns.norm(x, x_new, tolerance);
+    const Tolerance<Scalar<X>> weights = tolerance.of_error_times(strict);
     Scalar<X> sum(0);
     for (std::size_t i = 0; i < dimension(x); ++i) {
       const Scalar<X>& end = x_new.data()[i];
-      const Scalar<X> part = work.error.data()[i] / tolerance.scale(i, x.data()[i], end);
+      const Scalar<X> part = work.error.data()[i] / weights.scale_of_step(i, x.data()[i], end);
       sum += part * part + (end - end);  // which is 0, if it is finite
     }
-    const Scalar<X> strict = strictness_of<Derived>(tolerance), between = work.unknowns.norm(x, x_new, tolerance);
     return detail::greater(Scalar<X>(strict * strict * sum * detail::one_over_dimension(x)),
                            Scalar<X>(between * between));
   }

@@ -31,6 +31,9 @@ struct Interpolant {
   }
 };
 
+/// Of Tolerance::rounding_of_time: a solution that ends or jumps is not to be passed by steps that measure nothing.
+inline constexpr double greatest_rounding_of_time = 0.1;
+
 /// Weights of the error norm: |error_i| is measured against atol_i + rtol_i max(|x_i|, |x_new_i|).
 /// One number each, or one per component (then the spans have the size of the state).
 template <class Real>
@@ -38,11 +41,24 @@ struct Tolerance {
   Real rtol, atol;
   const Real* rtol_each = nullptr;  // null, or one per component
   const Real* atol_each = nullptr;
+  Real rounding_of_time{};  // what rounding of t leaves undecided of a step, as a part of the change it makes
 
   Real scale(std::size_t i, const Real& x, const Real& x_new) const {
     using std::abs;
     using std::max;
     return (atol_each ? atol_each[i] : atol) + (rtol_each ? rtol_each[i] : rtol) * max(abs(x), abs(x_new));
+  }
+  /// Of a step from x to x_new. An unknown of 0 = g(t, x) is known no better than t is: to |x'| times the spacing of
+  /// numbers at t, which no shorter step makes less.
+  Real scale_of_step(std::size_t i, const Real& x, const Real& x_new) const {
+    using std::abs;
+    return scale(i, x, x_new) + rounding_of_time * abs(x_new - x);
+  }
+  /// For an error that is multiplied by a factor before it is measured: rounding is not.
+  Tolerance of_error_times(const Real& factor) const {
+    Tolerance result = *this;
+    result.rounding_of_time *= factor;
+    return result;
   }
 };
 

@@ -213,26 +213,41 @@ Scalar<X> total(const Unit<X>& unit) {
   }
 }
 
+/// The size of each component.
+template <State X>
+[[gnu::always_inline]] inline Unit<X> sizes(const Unit<X>& u) {
+  if constexpr (Packed<X>) {
+    using Bits = typename Register<Scalar<X>>::bits;
+    return std::bit_cast<Unit<X>>(std::bit_cast<Bits>(u) & Register<Scalar<X>>::without_sign);
+  } else {
+    using std::abs;
+    return abs(u);
+  }
+}
+
 /// What an error is measured against (Tolerance::scale) for a unit; 1 beyond the last component.
 template <State X>
 [[gnu::always_inline]] inline Unit<X> error_scale(const Tolerance<Scalar<X>>& tolerance, std::size_t i, const X& x,
                                                   const X& x_new) {
   if constexpr (Packed<X>) {
-    using Bits = typename Register<Scalar<X>>::bits;
     std::array<Scalar<X>, Packs<X>::size> atol, rtol;
     for (std::size_t j = 0; j < Packs<X>::size; ++j) {
       atol[j] = tolerance.atol_each ? tolerance.atol_each[j] : tolerance.atol;
       rtol[j] = tolerance.rtol_each ? tolerance.rtol_each[j] : tolerance.rtol;
     }
-    const auto magnitude = [](Unit<X> u) __attribute__((always_inline)) {
-      return std::bit_cast<Unit<X>>(std::bit_cast<Bits>(u) & Register<Scalar<X>>::without_sign);
-    };
-    const Unit<X> start = magnitude(load<X>(x.data(), i));
-    const Unit<X> end = magnitude(load<X>(x_new.data(), i));
+    const Unit<X> start = sizes<X>(load<X>(x.data(), i));
+    const Unit<X> end = sizes<X>(load<X>(x_new.data(), i));
     return gather<X>(atol.data(), i, 1) + gather<X>(rtol.data(), i, 0) * (start < end ? end : start);
   } else {
     return tolerance.scale(i, x.data()[i], x_new.data()[i]);
   }
+}
+/// The same of a step (Tolerance::scale_of_step).
+template <State X>
+[[gnu::always_inline]] inline Unit<X> step_scale(const Tolerance<Scalar<X>>& tolerance, std::size_t i, const X& x,
+                                                 const X& x_new) {
+  const Unit<X> change = load<X>(x_new.data(), i) - load<X>(x.data(), i);
+  return error_scale<X>(tolerance, i, x, x_new) + tolerance.rounding_of_time * sizes<X>(change);
 }
 
 }  // namespace continuo::detail

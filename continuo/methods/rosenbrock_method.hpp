@@ -92,19 +92,21 @@ struct RosenbrockMethod {
                                 const Tolerance<Scalar<X>>& tolerance) {
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
     const auto u = detail::stages_of<Error, X>(work.u);
+    const Scalar<X> spare(work.linear.has_mass() ? spare_of_constraints : 1);
+    const Tolerance<Scalar<X>> weights = tolerance.of_error_times(spare);
     detail::Unit<X> sum{};
     detail::for_each_unit(x, [&](std::size_t i) __attribute__((always_inline)) {
       const detail::Unit<X> end = detail::load<X>(x_new.data(), i);
-      const detail::Unit<X> ratio = detail::row_sum<Error, X>(u, i) / detail::error_scale<X>(tolerance, i, x, x_new);
+      const detail::Unit<X> ratio = detail::row_sum<Error, X>(u, i) / detail::step_scale<X>(weights, i, x, x_new);
       sum += ratio * ratio + (end - end);  // which is 0, if it is finite
     });
     const Scalar<X> between = work.unknowns.norm(x, x_new, tolerance);
-    const Scalar<X> spare(work.linear.has_mass() ? spare_of_constraints * spare_of_constraints : 1);
-    const Scalar<X> square =
-        detail::greater(spare * detail::total<X>(sum) * detail::one_over_dimension(x), Scalar<X>(between * between));
+    const Scalar<X> square = detail::greater(spare * spare * detail::total<X>(sum) * detail::one_over_dimension(x),
+                                             Scalar<X>(between * between));
     if constexpr (!estimates_its_own_error<Derived>()) return square;
     // Errors that die out must be below the tolerance; those that stay must be so once they are added up.
-    const Scalar<X> lasting = strictness_of<Derived>(tolerance) * weighted_norm(work.product, x, x_new, tolerance);
+    const Scalar<X> strict = strictness_of<Derived>(tolerance);
+    const Scalar<X> lasting = strict * weighted_norm(work.product, x, x_new, tolerance.of_error_times(strict));
     return detail::greater(square, Scalar<X>(lasting * lasting));
   }
   template <State X>

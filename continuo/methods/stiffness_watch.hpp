@@ -37,16 +37,22 @@ class StiffnessWatch {
   /// towards the dominant one.
   template <class System>
   void probe(System& system, const Real& t, const X& x, const X& fx, const Tolerance<Real>& tolerance) {
-    using std::sqrt;
+    using std::abs, std::max, std::sqrt;
     const std::size_t n = dimension(x);
+    const auto size = [&](std::size_t i) { return tolerance.scale(i, x.data()[i], x.data()[i]); };
     if (!begun_) {
       // Not along an axis, nor along f: both may be invariant.
-      for (std::size_t i = 0; i < n; ++i) direction_.data()[i] = size_of(x.data()[i], i, tolerance) * spread(i);
+      for (std::size_t i = 0; i < n; ++i) direction_.data()[i] = size(i) * spread(i);
       begun_ = true;
     }
-    Real length(0);
-    for (std::size_t i = 0; i < n; ++i) length += squared(direction_.data()[i] / size_of(x.data()[i], i, tolerance));
-    length = sqrt(length / Real(static_cast<double>(n)));
+    // So many tolerances that the difference stands out of rounding, of all components the same number: weights that
+    // change with the phase of an oscillation make it seem to grow.
+    Real length(0), tolerances(1);
+    for (std::size_t i = 0; i < n; ++i) {
+      length += squared(direction_.data()[i] / size(i));
+      tolerances = max(tolerances, sqrt(std::numeric_limits<Real>::epsilon()) * abs(x.data()[i]) / size(i));
+    }
+    length = sqrt(length / Real(static_cast<double>(n))) / tolerances;
     if (!(length > 0) || !(length < std::numeric_limits<Real>::infinity())) {
       begun_ = false;
       growth_ = Real(0);
@@ -57,7 +63,7 @@ class StiffnessWatch {
     Real product(0), square(0), grown(0), turned(0);
     for (std::size_t i = 0; i < n; ++i) {
       const Real step = moved_.data()[i] - x.data()[i], change = slope_.data()[i] - fx.data()[i];
-      const Real weight = Real(1) / squared(size_of(x.data()[i], i, tolerance));
+      const Real weight = Real(1) / squared(size(i));
       product += weight * step * change;
       square += weight * step * step;
       grown += weight * change * change;

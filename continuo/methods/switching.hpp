@@ -181,11 +181,13 @@ struct Switching {
   // off an oscillation that the solution does not have.
   static constexpr std::size_t least_probes_at_start = 5, most_probes_at_start = 12;
   static constexpr double felt = 0.1, strictness_at_start = 10;
-  static constexpr double least_part_of_turn = NonStiff::order < 8 ? 0.04 : 0.25;  // h |lambda|
+  // h |lambda|; where the error of a step is that of rounding.
+  static constexpr double least_part_of_turn = NonStiff::order < 8 ? 0.04 : NonStiff::second_order ? 0.25 : 0.1;
   static constexpr double unseen = 1;  // tolerances: what the stiff method may damp
   // Steps of an oscillation whose errors may be as large as the tolerance. Nothing damps them; from there on those of
   // the n-th are held below 1/n of that, so that their sum grows with log n alone.
-  static constexpr std::size_t free_turns = 5;
+  // dop853, which gets strict tolerances, has the smaller errors against their estimate.
+  static constexpr std::size_t free_turns = NonStiff::order < 8 || NonStiff::second_order ? 5 : 15;
   static constexpr int worthwhile = 8;  // a stiff step costs some three to ten explicit ones
 
   // Steps that have become a small part of a turn gain nothing any more: rounding is what they follow.

@@ -14,7 +14,7 @@ Scalar<X> weighted_norm(const X& v, const X& x, const X& x_new, const Tolerance<
   Scalar<X> sum(0);
   const std::size_t n = dimension(v);
   for (std::size_t i = 0; i < n; ++i) {
-    const Scalar<X> part = v.data()[i] / tolerance.scale(i, x.data()[i], x_new.data()[i]);
+    const Scalar<X> part = v.data()[i] / tolerance.scale_of_step(i, x.data()[i], x_new.data()[i]);
     sum += part * part;
   }
   return n == 0 ? sum : sqrt(sum / Scalar<X>(static_cast<double>(n)));

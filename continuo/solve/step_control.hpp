@@ -83,7 +83,7 @@ class StepControl final : public Steps<System, X> {
   void attempt(Real h, const Options<X>& options) {
     h_ = h;
     began_anew_ = jumped_;
-    if constexpr (requires { M::aim(work_, tolerance(options)); }) M::aim(work_, tolerance(options));
+    if constexpr (requires { M::aim(work_, tolerance(options)); }) M::aim(work_, tolerance_of_step(h, options));
     statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
     if constexpr (requires { M::costs(work_); }) {
       const EquationCosts costs = M::costs(work_);
@@ -91,6 +91,19 @@ class StepControl final : public Steps<System, X> {
       statistics_.decompositions = costs.decompositions;
       statistics_.solutions = costs.solutions;
     }
+  }
+
+  /// What a step of size h can be measured by.
+  Tolerance<Real> tolerance_of_step(const Real& h, const Options<X>& options) const {
+    using std::abs, std::max, std::min;
+    constexpr double times_rounded = 4;
+    Tolerance<Real> weights = tolerance(options);
+    if constexpr (detail::is_implicit<M>() && (HasMassDiagonal<System, X> || HasMassMatrix<System, X>)) {
+      if (!has_mass<X>(system_)) return weights;
+      const Real spacing = std::numeric_limits<Real>::epsilon() * max(abs(begin_), abs(begin_ + h));
+      weights.rounding_of_time = min(Real(greatest_rounding_of_time), Real(times_rounded) * spacing / abs(h));
+    }
+    return weights;
   }
 
   /// The square of M::error_norm, without its root where the method has it so.
@@ -138,7 +151,7 @@ class StepControl final : public Steps<System, X> {
   bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
     using std::abs, std::max, std::min, std::sqrt;
     const Real epsilon = std::numeric_limits<Real>::epsilon();
-    const Tolerance<Real> weights = tolerance(options);
+    Tolerance<Real> weights = tolerance(options);
     const Real room = limit - begin_;
     bool was_rejected = false, last_not_finite = false;
     Real error = 0, h = next_;
@@ -152,6 +165,7 @@ class StepControl final : public Steps<System, X> {
       } else {
         attempt(h, options);
       }
+      weights = tolerance_of_step(h_, options);
       const bool solved = detail::status_of<M>(work_) == StepStatus::done;
       const Real square = solved ? error_square(weights) : std::numeric_limits<Real>::infinity();
       // Neither true nor false of a number that is none: it is one where x_end_ is not finite.
@@ -251,7 +265,7 @@ class StepControl final : public Steps<System, X> {
     std::size_t worst = 0;
     Real greatest = -1;
     for (std::size_t i = 0; i < dimension(x_begin_); ++i) {
-      const Real part = abs(M::error_of(work_, h_, i)) / weights.scale(i, x_begin_.data()[i], x_end_.data()[i]);
+      const Real part = abs(M::error_of(work_, h_, i)) / weights.scale_of_step(i, x_begin_.data()[i], x_end_.data()[i]);
       if (part > greatest) greatest = part, worst = i;
     }
     return dimension(x_begin_) == 0 ? std::string{} : component_name(system_, worst);

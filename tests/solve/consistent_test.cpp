@@ -56,6 +56,23 @@ TEST(Consistency, IsKeptAlongTheRunAndAfterAnEvent) {
   EXPECT_TRUE(refilled);
 }
 
+// 0 = p - z - Is (exp(z / 0.05) - 1): a source p = x and a diode. Where p jumps from -3 to 10, z comes from -3 to 0.8,
+// and what a correction is measured by, 1 + |z|, becomes less on the way.
+TEST(Consistency, ADiodeIsSwitchedOnFromFarBelow) {
+  struct Diode : Cubic {
+    static double current(double z) { return 1e-6 * (std::exp(z / 0.05) - 1); }
+    void operator()(double, const X& x, X& out) const { out = {0, x[0] - x[1] - current(x[1])}; }
+  };
+  for (const double from : {-100.0, -3.0, -1.0, 0.0, 5.0}) {
+    Options<X> options{.rtol = 1e-8, .atol = 1e-8};
+    options.events.push_back(at<X>("jump", {0.5}, [](EventAction<X>& now) { now.x[0] = 10; }));
+    const auto solution = solve(Diode{}, X{from, 0}, {0.0, 1.0}, Bdf{}, options);
+    ASSERT_TRUE(solution.outcome) << from << ": " << describe(solution.outcome);
+    const double z = solution.final_state()[1], slope = 1 + (Diode::current(z) + 1e-6) / 0.05;
+    EXPECT_NEAR((10 - z - Diode::current(z)) / slope, 0, 1e-8 * (1 + z)) << from;
+  }
+}
+
 TEST(Consistency, AContradictionIsNamed) {
   // 0 = z^2 + x has no real solution at x = 1.
   struct None : Cubic {
