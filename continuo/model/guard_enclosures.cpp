@@ -8,7 +8,7 @@ namespace continuo::model {
 GuardEnclosures::GuardEnclosures(const ModelProgram& program, std::vector<std::vector<Guard>> guards, std::size_t count)
     : program_(&program), place_(count, none) {
   for (std::vector<Guard>& of_mode : guards)
-    modes_.push_back({.guards = std::move(of_mode), .blocks = {}, .all = {}, .alone = {}});
+    modes_.push_back({.guards = std::move(of_mode), .blocks = {}, .switches = {}, .all = {}, .alone = {}});
 }
 
 void GuardEnclosures::take(const ModelSystem& system, const Step& step) {
@@ -63,6 +63,7 @@ void GuardEnclosures::make(OfMode& mine, const ModelSystem& system) {
     std::optional<UnknownBlock> block = guard.reads_unknowns ? coupling->block(guard.node) : UnknownBlock{};
     if (!block) continue;
     guards.push_back(guard);
+    mine.switches.push_back(switches_of(*block, system.mode()));
     mine.blocks.push_back(std::move(*block));
   }
   mine.guards = std::move(guards);
@@ -73,12 +74,22 @@ void GuardEnclosures::make(OfMode& mine, const ModelSystem& system) {
   mine.alone.resize(mine.guards.size());
 }
 
+std::vector<std::size_t> GuardEnclosures::switches_of(const UnknownBlock& block, std::size_t mode) const {
+  std::vector<std::size_t> found;
+  const std::vector<std::uint32_t> read = variables_of(program_->model.graph, block.residuals);
+  const std::vector<Switch>& switches = program_->switches[mode].switches;
+  for (std::size_t k = 0; k < switches.size(); ++k)
+    if (std::ranges::find(read, switches[k].variable) != read.end()) found.push_back(k);
+  return found;
+}
+
 bool GuardEnclosures::is_enclosed(const OfMode& mine, std::size_t k, const ModelSystem& system) {
   const Guard& guard = mine.guards[k];
   if (guard.surface) return !system.slides_along(*guard.surface);
   if (!guard.reads_unknowns) return true;
   const std::vector<std::uint32_t>& unknowns = mine.blocks[k].components;
-  return !system.slides() &&
+  // Where the motion slides, the equations that read the switch are mixed.
+  return std::ranges::none_of(mine.switches[k], [&](std::size_t j) { return system.slides_along(j); }) &&
          std::ranges::none_of(system.held(), [&](std::size_t i) { return std::ranges::binary_search(unknowns, i); });
 }
 

@@ -43,11 +43,13 @@ class GuardEnclosures {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   struct OfMode {
     std::vector<Guard> guards;
-    std::vector<UnknownBlock> blocks;  // that each guard hangs on
+    std::vector<UnknownBlock> blocks;                // that each guard hangs on
+    std::vector<std::vector<std::size_t>> switches;  // that the equations of each block read
     std::optional<StepEnclosure> all;
     std::vector<std::optional<StepEnclosure>> alone;
   };
   void make(OfMode& mine, const ModelSystem& system);
+  std::vector<std::size_t> switches_of(const UnknownBlock& block, std::size_t mode) const;
   static bool is_enclosed(const OfMode& mine, std::size_t k, const ModelSystem& system);
   StepEnclosure& alone(std::size_t number);
 

@@ -390,7 +390,8 @@ class EventLogic {
     }
   }
 
-  /// What g can be off by at the present instant.
+  /// What g can be off by at the present instant. A surface of the equations that has not been come to is where the
+  /// system says that it is.
   Real inaccuracy(std::size_t i) const { return renews_guard(i) ? rounding_[i] : std::max(rounding_[i], slack_[i]); }
   bool at_zero(std::size_t i) const {
     using std::abs;
@@ -416,7 +417,7 @@ class EventLogic {
     GuardState<Real>& state = watch_.states()[i];
     state.side = watch_.side_after(i);
     state.returns = watch_.returns_after(i);
-    slack_[i] = jumps_[i] ? Real(0) : max(rounding_[i] + abs(g_[i]), renews_guard(i) ? Real(0) : slack_[i]);
+    slack_[i] = jumps_[i] ? Real(0) : max(rounding_[i] + abs(g_[i]), slack_[i]);
     state.band = slack_[i];
     state.at_zero = !jumps_[i];
     marks_[i] = turned;
