@@ -193,7 +193,7 @@ class Driver {
   bool settle_algebraic() {
     if constexpr (HasMassDiagonal<System, X>) {
       if (!has_mass<X>(system())) return false;
-      consistent_ = make_consistent(steps().system(), t_, x_, steps().tolerance(options_));
+      consistent_ = make_consistent(steps().system(), t_, x_, steps().tolerance(options_), SolvedTo::rounding);
       steps().statistics().evaluations += static_cast<std::size_t>(consistent_.evaluations);
       return true;
     }
@@ -327,14 +327,16 @@ class Driver {
     using std::abs;
     const Real place = crossing.offset;
     const bool restarts = std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
-    if (!restarts || place == length || !steps().lands()) return place;
+    // Within some roundings of t from its beginning no step is to be had, and the polynomial has not left it.
+    const Real nothing = 1000 * std::numeric_limits<Real>::epsilon() * abs(steps().begin());
+    if (!restarts || place == length || !steps().lands() || abs(place) <= nothing) return place;
     const std::size_t guard = crossing.guards.front();
     if (logic_.jumps(guard)) return land_beyond_jump(guard, place, length);
     // The slope of the guard by a difference over a thousandth of the step.
-    const Real apart = length / 1000;
-    const Real slope =
-        (guards_at(place, length, guard_values_)[guard] - guards_at(place - apart, length, later_values_)[guard]) /
-        apart;
+    const Real apart = length / 1000, before = guards_at(place - apart, length, later_values_)[guard];
+    const Real slope = (guards_at(place, length, guard_values_)[guard] - before) / apart;
+    // One part of a condition may hold it at zero until another leaves: as of a jump, there is only the side to go by.
+    if (abs(before) <= std::numeric_limits<Real>::min()) return land_beyond_jump(guard, place, length);
     Real h = place, best = place, taken = length, least = std::numeric_limits<Real>::infinity();
     for (int tries = 0; tries < 4 && steps().retake(h, options_); ++tries) {
       taken = h;
