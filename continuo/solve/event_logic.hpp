@@ -299,7 +299,9 @@ class EventLogic {
     using std::abs, std::min;
     const Real few(4), many(1 << 20);
     largest_changes(steps, t, x, few, rounding_);
-    const auto is_near = [&](std::size_t i) { return watched(i) && rounding_[i] > 0 && abs(g_[i]) <= rounding_[i]; };
+    const auto is_near = [&](std::size_t i) {
+      return watched(i) && rounding_[i] > 0 && abs(g_[i]) <= 8 * rounding_[i];
+    };
     bool any = false;
     for (std::size_t i = 0; i < events_.size() && !any; ++i) any = is_near(i);
     if (!any) return;
