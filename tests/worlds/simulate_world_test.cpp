@@ -56,6 +56,42 @@ run 0..100
   EXPECT_LE(last(run, "ball.y"), -10);
 }
 
+TEST(SimulateWorld, FiresWhatActionsCarryOverInTheNextRound) {
+  const model::Run run = run_of(R"(
+world { body ball at (0, 0) }
+F' = 0;  n' = 0;  k' = 0
+F(0) = 0;  n(0) = 0;  k(0) = 0
+initially { ball.x' := 1 }
+when F rises through 0.5 { n := n + 1 }
+when n > 1.5 { k := 10*n; ball.x' := 0 }
+at 1 { F := 1 }
+at 2 { F := 0 }
+at 2.5 { F := 1 }
+run 0..3
+check n at end = 2 within 0
+check k at end = 20 within 0
+check ball.x at end = 2.5 within 1e-14
+)");
+  EXPECT_EQ(failed_checks(run), "");
+  EXPECT_EQ(run.events.size(), 7u);
+}
+
+TEST(SimulateWorld, NamesEventsThatSetEachOtherOffWithoutEnd) {
+  const auto program = program_of(R"(
+world { body ball at (0, 0) }
+F' = 0
+F(0) = 0
+when F rises through 0.5 { F := 0 }
+when F falls through 0.5 { F := 1 }
+at 1 { F := 1 }
+run 0..3
+)");
+  const model::Simulated simulated = simulate_world(program, {});
+  ASSERT_EQ(simulated.diagnostics.size(), 1u);
+  EXPECT_NE(simulated.diagnostics[0].message.find("set each other off without end"), std::string::npos)
+      << simulated.diagnostics[0].message;
+}
+
 TEST(SimulateWorld, HitsScheduledTimesExactly) {
   const model::Run run = run_of(R"(
 world { body ball at (0, 0) }
