@@ -15,6 +15,7 @@
 #include <continuo/solve/consistent.hpp>
 #include <continuo/solve/event_logic.hpp>
 #include <continuo/solve/observer.hpp>
+#include <continuo/solve/step_marks.hpp>
 #include <continuo/solve/steps.hpp>
 
 namespace continuo {
@@ -34,7 +35,7 @@ class Driver {
     if (t_ == interval_.to) return end(Ending::reached_end, steps().stiff() ? stiff_hint : "");
     if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) return end(Ending::interrupted);
     if (statistics().steps + statistics().rejected >= options_.max_steps)
-      return end(Ending::too_many_steps, steps().stiff() ? stiff_hint : "raise max_steps or loosen the tolerance");
+      return end(Ending::too_many_steps, hint_of_too_many());
     const Real limit = logic_.next_restart(t_, interval_.to);
     // An event that restarts the motion could change everything; without one it is no use to go on to the limit of
     // steps.
@@ -46,6 +47,7 @@ class Driver {
       ended_ = true;
       return false;
     }
+    marks_.mark(statistics().steps + statistics().rejected, steps().end());
     pass_events(observer);
     if (!ended_ && t_ == interval_.to) return end(Ending::reached_end, steps().stiff() ? stiff_hint : "");
     return !ended_;
@@ -141,6 +143,21 @@ class Driver {
     return abs(interval.to - interval.from);
   }
 
+  /// Where the steps went, and what can be done about it.
+  std::string hint_of_too_many() {
+    const std::size_t all = statistics().steps + statistics().rejected;
+    const auto crowd = marks_.crowd();
+    std::string hint =
+        crowd ? where_steps_lie(static_cast<double>(crowd->first), static_cast<double>(crowd->second)) : std::string();
+    const auto add = [&](bool applies, const char* what) {
+      if (applies) hint += (hint.empty() ? "" : "; ") + std::string(what);
+    };
+    add(2 * statistics().rejected > all, "most of the steps were rejected");
+    add(2 * statistics().events > all, "most of the steps end at events");
+    add(steps().stiff(), stiff_hint);
+    add(!steps().stiff(), "raise max_steps or loosen the tolerance");
+    return hint;
+  }
   static std::string hint_of_endless(Real steps) {
     using std::floor, std::log10;
     const auto power = static_cast<int>(static_cast<double>(floor(log10(steps))));
@@ -485,6 +502,7 @@ class Driver {
   std::vector<Shift> shifts_, shifted_;  // those of the present step in order; the last one of each component
   std::vector<X> shifted_output_;
   Consistency consistent_;
+  StepMarks<Real> marks_;
   bool started_ = false, ended_ = false;
   bool shifts_end_ = false;  // the next step begins with the whole state
   Outcome<Real> outcome_;

@@ -39,6 +39,10 @@ std::string number(double value) {
 }
 }  // namespace
 
+std::string where_steps_lie(double from, double to) {
+  return "half of the steps lie between t = " + number(from) + " and t = " + number(to);
+}
+
 std::string describe(const Outcome<double>& outcome) {
   std::string text(to_string(outcome.ending));
   text += " at t = " + number(outcome.t);

@@ -42,6 +42,9 @@ struct Outcome {
   explicit operator bool() const { return succeeded(ending); }
 };
 
+/// "half of the steps lie between t = 1 and t = 1.01".
+std::string where_steps_lie(double from, double to);
+
 /// One sentence: what happened, where, why, what to try.
 std::string describe(const Outcome<double>& outcome);
 

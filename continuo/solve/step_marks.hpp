@@ -1,0 +1,52 @@
+// Where the steps of a run went, for a run that has too many of them.
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+namespace continuo {
+
+/// The time at every so many steps, at most 64 of them: when all are taken, every other one is dropped, and half as
+/// many are taken from then on.
+template <class Real>
+class StepMarks {
+ public:
+  /// `steps`: tries so far, rejected ones with them.
+  void mark(std::size_t steps, const Real& t) {
+    if (steps < next_) return;
+    if (count_ == most) thin_out();
+    times_[count_++] = t;
+    next_ = steps + every_;
+  }
+
+  /// Between these times lie half of the steps, where that is a tenth of the way at most.
+  std::optional<std::pair<Real, Real>> crowd() const {
+    if (count_ < least) return std::nullopt;
+    const std::size_t half = count_ / 2;
+    std::size_t densest = 0;
+    for (std::size_t k = 0; k + half < count_; ++k)
+      if (way(k, k + half) < way(densest, densest + half)) densest = k;
+    if (!(way(densest, densest + half) <= way(0, count_ - 1) / 10)) return std::nullopt;
+    return std::pair(times_[densest], times_[densest + half]);
+  }
+
+ private:
+  static constexpr std::size_t most = 64, least = 8;
+
+  Real way(std::size_t from, std::size_t to) const {
+    using std::abs;
+    return abs(times_[to] - times_[from]);
+  }
+  void thin_out() {
+    for (std::size_t k = 0; k < most / 2; ++k) times_[k] = times_[2 * k];
+    count_ = most / 2;
+    every_ *= 2;
+  }
+
+  std::array<Real, most> times_{};
+  std::size_t count_ = 0, every_ = 1, next_ = 0;
+};
+
+}  // namespace continuo
