@@ -41,13 +41,13 @@ struct Isolation {
 
 namespace isolating {
 
-/// A part still to be looked at, with the sign at its start: 0 where it is not known for certain. It is known from a
-/// place before, where the function is not as near to zero as it may be at the start.
+/// A part still to be looked at, with the sign at its start: 0 where it is not known for certain. It is known from
+/// `known_at` on, where the function is not as near to zero as it may be at the start.
 template <class Real>
 struct Piece {
   Real from, to;
-  int sign = 0;
-  Real known_at = from;
+  int sign;
+  Real known_at;
 };
 
 /// A walk from left to right over pieces, the leftmost on top of the pile.
@@ -69,10 +69,11 @@ class Walk {
         result_{.side = side} {}
 
   Isolation run() {
-    push({from_, to_});
+    push({from_, to_, 0, from_});
     while (count_ > 0 && !result_.stopped) {
       const Piece<Real> piece = pile_[--count_];
       if (piece.sign != 0) meet(piece.sign, piece.known_at);
+      if (piece.sign != 0 && !result_.stopped) held_ = piece.from;
       if (result_.stopped || !(piece.from < piece.to)) continue;
       while (piece.from >= end_of_part() && part_ < parts) ++part_;
       if (result_.evaluations >= budget_ * part_ / parts) {
@@ -182,7 +183,7 @@ class Walk {
     };
     const Real left = free_width(sign > 0 ? slope.hi : -slope.lo), right = free_width(sign > 0 ? -slope.lo : slope.hi);
     push({std::min(middle + right, piece.to), piece.to, sign, middle});
-    push({piece.from, std::max(middle - left, piece.from)});
+    push({piece.from, std::max(middle - left, piece.from), 0, piece.from});
   }
 
   /// The part has used what it may: the rest of it remains undecided.

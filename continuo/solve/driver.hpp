@@ -265,11 +265,12 @@ class Driver {
         const std::optional<Real> landed = land(*crossing, length);
         if (!landed) return end_before_event();
         offset = *landed;
+        const bool is_new_step = steps().end() - begin != length;
         length = steps().end() - begin;
         t_ = offset == length ? steps().end() : begin + offset;
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
         state_at(offset, length, x_);
-        if (steps().lands()) logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
+        if (is_new_step) logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
       } else {
         offset = to;
         t_ = *tick;

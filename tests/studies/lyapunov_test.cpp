@@ -27,7 +27,7 @@ TEST(Lyapunov, OfALinearSystemTheyAreTheRealParts) {  // eigenvalues -0.1 +- 2i 
 /// J. C. Sprott, "Chaos and Time-Series Analysis" (2003): 0.9056, 0, -14.5723; their sum is the trace, -41/3, at any
 /// time.
 TEST(Lyapunov, Lorenz) {
-  const auto found = lyapunov_exponents(lorenz(28), {1, 1, 1}, {.duration = 5000});
+  const auto found = lyapunov_exponents(lorenz(28), {1, 1, 1}, {.duration = 10'000});
   ASSERT_TRUE(found.outcome) << describe(found.outcome);
   EXPECT_NEAR(found.exponents[0] + found.exponents[1] + found.exponents[2], -41.0 / 3, 1e-5);
   // One per cent; four standard errors are less, or it would be luck.
