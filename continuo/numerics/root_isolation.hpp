@@ -169,12 +169,12 @@ class Walk {
     // Where nothing jumps, the width of the value at a point is its rounding.
     const int sign = certain_sign(centre);
     const bool is_rounding = centre.holds(0) && slope.is_bounded() && value.magnitude() <= 4 * centre.magnitude();
+    const Real width = piece.to - piece.from;
+    if (is_rounding || width <= least_width_) return;
+    if (!centre.is_bounded() && width <= (to_ - from_) / undefined_parts) return leave(piece.from, piece.to);
     // At a jump the pieces on both sides of it may hold its place, up to the rounding of what jumps there: to divide
     // all of them to the last would use up what is there for the rest.
-    const Real width = piece.to - piece.from;
-    if (is_rounding || width <= least_width_ || (sign == 0 && width <= width_of_jump * least_width_)) return;
-    if (!centre.is_bounded() && piece.to - piece.from <= (to_ - from_) / undefined_parts)
-      return leave(piece.from, piece.to);
+    if (sign == 0 && width <= width_of_jump * least_width_) return;
     const Real reach = sign > 0 ? centre.lo : sign < 0 ? -centre.hi : Real(0);
     const auto free_width = [&](Real steepness) {  // as far as the slope cannot bring the value in the middle to zero
       constexpr Real rounding = 1 - 4 * std::numeric_limits<Real>::epsilon();
