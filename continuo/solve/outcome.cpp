@@ -40,7 +40,9 @@ std::string number(double value) {
 }  // namespace
 
 std::string where_steps_lie(double from, double to) {
-  return "half of the steps lie between t = " + number(from) + " and t = " + number(to);
+  const std::string first = number(from), last = number(to);
+  return first == last ? "half of the steps lie at t = " + first
+                       : "half of the steps lie between t = " + first + " and t = " + last;
 }
 
 std::string describe(const Outcome<double>& outcome) {

@@ -81,7 +81,7 @@ TEST(Outcome, TheStepLimitHolds) {
 // x' = 1/(|t - 2| + 1e-9) takes its steps near 2.
 TEST(Outcome, TooManyStepsSayWhereTheyWent) {
   const Slope f = [](double t, const X&) { return X{1 / (std::abs(t - 2) + 1e-9)}; };
-  const auto solution = solve(f, X{0}, {0, 10}, Tsitouras5{}, {.rtol = 1e-12, .atol = {1e-12}, .max_steps = 2000});
+  const auto solution = solve(f, X{0}, {0, 10}, Tsitouras5{}, {.rtol = 1e-12, .atol = 1e-12, .max_steps = 2000});
   ASSERT_EQ(solution.outcome.ending, Ending::too_many_steps);
   const std::string& hint = solution.outcome.hint;
   const std::size_t at = hint.find("half of the steps lie between t = ");
