@@ -160,35 +160,31 @@ std::string number(double value) {
 
 const char* const methods[] = {"", "rodas5p", "radau", "bdf"};
 
-// d' = u = 0.204 - 2.612 d: u = u(0) exp(-2.612 t).
-TEST(UnknownGuards, NarrowWindowsOfALinearOneAreFoundWhereTheyBegin) {
-  const double first = 0.204 + 2.612 * 1.704;
+/// Once, at instant(width), u comes into a window from `low` on, by every method.
+template <class Instant>
+void expect_windows_found(const std::string& equations, double low, Instant&& instant, double error) {
   for (const double width : {1e-3, 1e-5, 1e-7}) {
+    const std::string window = "when u > " + number(low) + " and u < " + number(low + width) + " { mark \"in\" }\n";
     for (const char* method : methods) {
-      const auto found = times(
-          "unknown u = 0\nd' = u\nd(0) = -1.704\n0 = u - (0.204 - 2.612*d)\nrun 0..0.5\n"
-          "when u > 1.396 and u < " +
-              number(1.396 + width) + " { mark \"in\" }\n",
-          method);
+      const auto found = times(equations + window, method);
       ASSERT_EQ(found.size(), 1u) << method << width;
-      EXPECT_NEAR(found[0], std::log(first / (1.396 + width)) / 2.612, 1e-8) << method << width;
+      EXPECT_NEAR(found[0], instant(width), error) << method << width;
     }
   }
 }
 
+// d' = u = 0.204 - 2.612 d: u = u(0) exp(-2.612 t).
+TEST(UnknownGuards, NarrowWindowsOfALinearOneAreFoundWhereTheyBegin) {
+  const double first = 0.204 + 2.612 * 1.704;
+  expect_windows_found(
+      "unknown u = 0\nd' = u\nd(0) = -1.704\n0 = u - (0.204 - 2.612*d)\nrun 0..0.5\n", 1.396,
+      [&](double width) { return std::log(first / (1.396 + width)) / 2.612; }, 1e-8);
+}
+
 // u + u^3 = x = t: u goes through the window of u in a..a + width from t = a + a^3 on.
 TEST(UnknownGuards, NarrowWindowsOfACurvedOneAreFoundWhereTheyBegin) {
-  for (const double width : {1e-3, 1e-5, 1e-7}) {
-    for (const char* method : methods) {
-      const auto found = times(
-          "unknown u = 0\nx' = 1\nx(0) = 0\n0 = u + u^3 - x\nrun 0..3\n"
-          "when u > 0.7 and u < " +
-              number(0.7 + width) + " { mark \"in\" }\n",
-          method);
-      ASSERT_EQ(found.size(), 1u) << method << width;
-      EXPECT_NEAR(found[0], 0.7 + 0.343, 1e-14) << method << width;
-    }
-  }
+  expect_windows_found(
+      "unknown u = 0\nx' = 1\nx(0) = 0\n0 = u + u^3 - x\nrun 0..3\n", 0.7, [](double) { return 0.7 + 0.343; }, 1e-14);
 }
 
 // The slopes of the guard there are 1e-9, its rounding is that of u times as much.
