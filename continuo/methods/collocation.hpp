@@ -21,6 +21,7 @@
 #include <continuo/methods/linearization.hpp>
 #include <continuo/methods/newton.hpp>
 #include <continuo/methods/tolerance_proportionality.hpp>
+#include <continuo/methods/unknowns_at_end.hpp>
 #include <continuo/methods/weighted_norm.hpp>
 
 namespace continuo {
@@ -327,39 +328,18 @@ struct CollocationMethod {
     }
   }
 
-  // The end of a step of Gauss is no stage: unknowns of algebraic equations are carried over from the start by a factor
-  // of modulus 1, with all errors they ever had. They are solved for from the rest of the state there, by iterations
-  // with c M - J of a c so large that nothing else moves (E. Hairer, G. Wanner, "Solving Ordinary Differential
-  // Equations II", VI.1, the state space form).
+  // The end of a step of Gauss is no stage.
   template <class System, State X>
   static int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
                              X& x_new) {
-    using Real = Scalar<X>;
-    using std::sqrt;
-    const std::size_t n = dimension(x_new);
-    bool any = false;
-    for (std::size_t i = 0; i < n && work.linear.has_mass(); ++i) any = any || work.linear.is_without_mass(i);
-    if (!any) return 0;
-    if (!work.lu.factor(work.linear, Real(1 / (h * sqrt(std::numeric_limits<Real>::epsilon()))))) {
+    if (!detail::has_unknowns(work.linear, dimension(x))) return 0;
+    if (!work.lu.factor(work.linear, detail::shift_for_unknowns(h))) {
       work.status = StepStatus::singular_matrix;
       return 0;
     }
     ++work.costs.decompositions;
-    NewtonMemory<Real> memory{};
-    memory.measure_anew(work.tolerance);
-    const bool settled = newton(memory, work.target, 2 * most_iterations<Real>(2), [&] {
-      evaluate(system, Real(t + h), x_new, work.f_end);
-      for (std::size_t i = 0; i < n; ++i)
-        if (!work.linear.is_without_mass(i)) work.f_end.data()[i] = Real(0);
-      work.lu.solve(work.f_end.data());
-      for (std::size_t i = 0; i < n; ++i) {
-        if (!work.linear.is_without_mass(i)) work.f_end.data()[i] = Real(0);
-        x_new.data()[i] += work.f_end.data()[i];
-      }
-      return weighted_norm(work.f_end, x, x, work.tolerance);
-    });
-    if (!settled) work.status = memory.finite ? StepStatus::newton_diverged : StepStatus::not_finite;
-    return memory.iterations;
+    return detail::settle_unknowns(system, Scalar<X>(t + h), x, work.linear, work.lu, work.tolerance, work.target,
+                                   work.f_end, x_new, work.status);
   }
 
   // f is to blame where one of its components is not finite: x_new takes it over, for the driver to name.

@@ -23,6 +23,7 @@
 #include <continuo/methods/stage_solver.hpp>
 #include <continuo/methods/stiff_part.hpp>
 #include <continuo/methods/tolerance_proportionality.hpp>
+#include <continuo/methods/unknowns_at_end.hpp>
 #include <continuo/methods/unknowns_between.hpp>
 #include <continuo/methods/weighted_norm.hpp>
 #include <continuo/methods/weighted_sum.hpp>
@@ -214,6 +215,10 @@ struct DiagonallyImplicitRungeKutta {
       evaluations += solver.evaluate_jacobian(stiff, t, x, h);
     }
     finish<System>(x, h, work, x_new);
+    if constexpr (!Derived::tableau.stiffly_accurate()) {
+      if (detail::has_unknowns(solver.linear, dimension(x)))
+        return evaluations + settle_unknowns(system, t, x, h, work, x_new);
+    }
     if constexpr (Derived::error_order > 0) {
       evaluations += work.unknowns.measure(system, t, h, x, solver.linear, solver.lu, [&](auto& interpolant) {
         interpolate(system, t, x, h, x_new, work, interpolant);
@@ -315,6 +320,24 @@ struct DiagonallyImplicitRungeKutta {
         work.error.data()[i] = h * sum;
       }
     }
+  }
+
+  // With the Jacobian of the step; where that does not lead to the unknowns, with those of where it does lead.
+  template <class System, State X>
+  static int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
+                             X& x_new) {
+    constexpr int most_jacobians = 20;
+    auto& solver = work.solver;
+    int evaluations = 0;
+    for (int tries = 0; tries < most_jacobians; ++tries) {
+      if (tries > 0) evaluations += solver.evaluate_jacobian(system, Scalar<X>(t + h), x_new, h);
+      solver.status = StepStatus::done;
+      if (!solver.decompose(detail::shift_for_unknowns(h))) return evaluations;
+      evaluations += detail::settle_unknowns(system, Scalar<X>(t + h), x, solver.linear, solver.lu, solver.tolerance,
+                                             target(solver.tolerance), solver.residual, x_new, solver.status);
+      if (solver.status != StepStatus::newton_diverged) break;
+    }
+    return evaluations;
   }
 
   template <std::size_t n, class System, State X>
