@@ -295,17 +295,45 @@ struct BackwardDifferentiation {
 
   // Where t is rounded by dt, the solution of the step's equations is off by dt (c M - J)^-1 f_t: of 0 = g(t, x) by
   // dt g_t / g_x, whatever the step. Differences of order k show that multiplied, and a shorter step does not make them
-  // less: the order would fall, and h with it, until nothing is left of it.
+  // less: the order would fall, and h with it, until nothing is left of it. An unknown is off as well by what the
+  // iteration leaves the states off that it hangs on, which is little against their tolerances and may be much against
+  // its own.
   template <class System, State X>
   static int measure_rounding(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x, Workspace<X>& work) {
     using Real = Scalar<X>;
-    using std::abs;
-    if (is_autonomous(system)) return 0;
-    int evaluations = detail::slope_in_time(system, t, h, x, work.f, work.correction);
-    evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, Real(1e-2), work.correction);
-    const Real spacing = std::numeric_limits<Real>::epsilon() * abs(t);
-    for (std::size_t i = 0; i < dimension(x); ++i)
-      work.rounding.data()[i] = Real(times_rounded) * spacing * abs(work.correction.data()[i]);
+    using std::abs, std::max;
+    int evaluations = 0;
+    for (std::size_t i = 0; i < dimension(x); ++i) work.rounding.data()[i] = Real(0);
+    if (!is_autonomous(system)) {
+      evaluations += detail::slope_in_time(system, t, h, x, work.f, work.correction);
+      evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, Real(1e-2), work.correction);
+      const Real spacing = std::numeric_limits<Real>::epsilon() * abs(t);
+      for (std::size_t i = 0; i < dimension(x); ++i)
+        work.rounding.data()[i] = Real(times_rounded) * spacing * abs(work.correction.data()[i]);
+    }
+    bool any = false;
+    for (std::size_t i = 0; i < dimension(x); ++i) any = any || is_algebraic<X>(system, i);
+    if (!any) return evaluations;
+    // The states moved by what is left of them, many times over lest rounding hide it, in two patterns of signs.
+    const Real many(1000), left = target_of(work) * many;
+    X& moved = work.end;
+    for (std::size_t pattern = 1; pattern <= 2; ++pattern) {
+      for (std::size_t i = 0; i < dimension(x); ++i) {
+        const Real& value = x.data()[i];
+        const Real part = is_algebraic<X>(system, i) ? Real(0) : left * work.tolerance.scale(i, value, value);
+        moved.data()[i] = i % pattern == 0 ? value + part : value - part;
+      }
+      evaluate(system, t, x, work.f);
+      evaluate(system, t, moved, work.correction);
+      for (std::size_t i = 0; i < dimension(x); ++i)
+        work.correction.data()[i] = is_algebraic<X>(system, i) ? work.correction.data()[i] - work.f.data()[i] : Real(0);
+      evaluations += 2 + work.equations.solve(system, t, x, work.f, work.tolerance, Real(1e-2), work.correction);
+      for (std::size_t i = 0; i < dimension(x); ++i) {
+        if (!is_algebraic<X>(system, i)) continue;
+        Real& rounding = work.rounding.data()[i];
+        rounding = max(rounding, Real(times_rounded) / many * abs(work.correction.data()[i]));
+      }
+    }
     return evaluations;
   }
 
@@ -404,12 +432,20 @@ struct BackwardDifferentiation {
     return done;
   }
 
+  // How far the iteration goes, in tolerances.
+  template <State X>
+  static Scalar<X> target_of(const Workspace<X>& work) {
+    using Real = Scalar<X>;
+    using std::max, std::min, std::sqrt;
+    const Real asked = tolerance_as_number(work.tolerance);
+    return max(Real(10) * std::numeric_limits<Real>::epsilon() / asked, min(Real(0.03), sqrt(asked)));
+  }
+
   // x comes in as the prediction and leaves as the solution; c = alpha / h, M c (d + sum_j gamma_j D_j / alpha) = f.
   template <class System, State X>
   static bool solve(System& system, const Scalar<X>& t, const Scalar<X>& c, Workspace<X>& work, X& x,
                     int& evaluations) {
     using Real = Scalar<X>;
-    using std::max, std::min, std::sqrt;
     const std::size_t n = dimension(x), k = work.order;
     const Real one_over_alpha = Real(1) / ndf::alpha<Real>(k);
     X& past = work.D[greatest_order + 2];  // free until the step is accepted
@@ -420,8 +456,7 @@ struct BackwardDifferentiation {
     }
     if (work.equations.has_mass()) work.memory.measure_anew(work.tolerance);
     work.memory.matrix_is_known = work.is_current || !work.memory.measures_anew;
-    const Real asked = tolerance_as_number(work.tolerance);
-    const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / asked, min(Real(0.03), sqrt(asked)));
+    const Real target = target_of(work);
     return newton(work.memory, target, most_iterations, [&] {
       evaluate(system, t, x, work.f);
       ++evaluations;
