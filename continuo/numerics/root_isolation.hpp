@@ -7,7 +7,7 @@
 //   isolate_crossings(
 //       0.0, 4.0, -1, [&](double a, double b) { return f(E({a, b}, Enclosure(1.0))); },
 //       [&](double a) { return f(E(a)).value; },
-//       [](double a, double b, int) { return fmt::print("one from {} to {}\n", a, b), false; },  // true: enough
+//       [](double a, double b, int, bool) { return fmt::print("one from {} to {}\n", a, b), false; },  // true: enough
 //       [](double a, double b) { return fmt::print("perhaps some from {} to {}\n", a, b), false; });
 //
 // The function has a side, the sign that it had last for certain. Zero, and what is zero up to rounding, belongs to the
@@ -28,7 +28,7 @@ namespace continuo {
 
 template <class Real>
 struct IsolationLimits {
-  Real band = 0;              // the function is zero up to here, by its rounding
+  Real band = 0;              // where it begins the function is zero up to here, by its rounding
   std::size_t budget = 2000;  // evaluations; no quarter of the interval takes from what the later ones need
 };
 
@@ -58,7 +58,7 @@ class Walk {
        const IsolationLimits<Real>& limits)
       : from_(from),
         to_(to),
-        band_(std::max(limits.band, std::sqrt(std::numeric_limits<Real>::min()))),
+        band_(std::max(limits.band, least_band())),
         least_width_(std::numeric_limits<Real>::epsilon() * std::max(std::abs(from), std::abs(to))),
         budget_(limits.budget),
         enclose_(enclose),
@@ -98,16 +98,20 @@ class Walk {
 
   int certain_sign(const Enclosure<Real>& value) const { return (value.lo > band_) - (value.hi < -band_); }
 
-  /// Nowhere beyond zero, seen from the side.
+  /// Nowhere beyond zero, seen from the side, or all the way in the band where it began.
   bool is_free(const Enclosure<Real>& value) const {
-    return (result_.side < 0 || value.lo >= -band_) && (result_.side > 0 || value.hi <= band_);
+    const Real zero = least_band();
+    const bool on_side = (result_.side < 0 || value.lo >= -zero) && (result_.side > 0 || value.hi <= zero);
+    return on_side || (value.lo >= -band_ && value.hi <= band_);
   }
 
   /// The function has this sign there for certain.
   void meet(int sign, Real where) {
-    if (sign == -result_.side) result_.stopped = visit_(held_, where, sign);
+    if (sign == -result_.side) result_.stopped = visit_(held_, where, sign, !has_left_);
     result_.side = sign;
     held_ = where;
+    has_left_ = true;
+    band_ = least_band();
   }
 
   void meet_at(Real where) {
@@ -202,7 +206,11 @@ class Walk {
     held_ = to;
   }
 
-  const Real from_, to_, band_, least_width_;
+  static Real least_band() { return std::sqrt(std::numeric_limits<Real>::min()); }
+
+  const Real from_, to_;
+  Real band_;
+  const Real least_width_;
   const std::size_t budget_;
   Enclose& enclose_;
   Value& value_;
@@ -210,6 +218,7 @@ class Walk {
   Undecided& undecided_;
   Real held_;  // where the function was last on its side
   Isolation result_;
+  bool has_left_ = false;  // the zero that it began at
   std::size_t part_ = 1, count_ = 0;
   std::array<Piece<Real>, deepest> pile_;
 };
@@ -219,9 +228,9 @@ class Walk {
 /// Looks over from..to, where the function begins on `side` (0: on none, it takes the first that it comes to).
 ///   enclose(a, b) -> EnclosureWithSlope over a..b
 ///   value(a) -> Enclosure at a, its rounding included
-///   visit(a, b, side) -> stop?  Once for every change of side, from left to right: at a the function is on its old
-///       side, up to rounding, at b for certain on the new one, and between them it changes once. a = b where the
-///       function begins on the other side.
+///   visit(a, b, side, from_band) -> stop?  Once for every change of side, from left to right: at a the function is on
+///       its old side, up to rounding, at b for certain on the new one, and between them it changes once. a = b where
+///       the function begins on the other side. from_band: until a it has not left the band that it began in.
 ///   undecided(a, b) -> stop?  In their place among the others: stretches on which nothing is known. The side after
 ///       them is the one that the function has at b.
 template <class Real, class Enclose, class Value, class Visit, class Undecided>

@@ -68,10 +68,11 @@ struct EnclosedStep {
 
   bool has(std::size_t i) const { return events.is_enclosed(i); }
   void enclose_all(Real from, Real to) { events.enclose_all(from / size, to / size); }
-  /// Whether guard i stays beyond `level` on this side all the way.
-  bool stays(std::size_t i, int side, Real level) const {
+  /// Whether guard i stays on its side all the way: beyond zero, or in the band that it begins in.
+  bool stays(std::size_t i, const GuardState<Real>& state) const {
     const auto& whole = events.whole(i);
-    return side > 0 ? whole.lo > level : whole.hi < level;
+    if (state.side > 0 ? whole.lo > 0 : whole.hi < 0) return true;
+    return state.at_zero && whole.lo > -state.band && whole.hi < state.band;
   }
 };
 
@@ -174,7 +175,7 @@ class GuardWatch {
     if constexpr (std::is_same_v<Enclosed, NotEnclosed>) {
       return false;
     } else {
-      return enclosed.stays(scan.guard, scan.state.side, scan.state.level());
+      return enclosed.stays(scan.guard, scan.state);
     }
   }
 
@@ -189,7 +190,8 @@ class GuardWatch {
       isolate_crossings(
           first, last, scan.state.side, [&](double a, double b) { return enclosed.events.enclosure(scan.guard, a, b); },
           [&](double a) { return enclosed.events.value_enclosure(scan.guard, a); },
-          [&](double a, double b, int side) {
+          [&](double a, double b, int side, bool from_band) {
+            if (!from_band) scan.state.at_zero = false;
             if (b == last) return cross(scan, offset(a), to, evaluate);  // by what the next stretch begins with
             return side != scan.state.side && arrive_beyond(scan, side, offset(a), offset(b), evaluate);
           },

@@ -121,7 +121,8 @@ TEST(StepEnclosure, AWindowWithinAStepIsFound) {
   const Isolation end = isolate_crossings(
       0.0, 1.0, 1, [&](double a, double b) { return enclosure.over(one.step(), a, b)[0]; },
       [&](double a) { return enclosure.values_over(one.step(), a, a)[0]; },
-      [&](double a, double b, int) { return found.emplace_back(a, b), false; }, [](double, double) { return false; });
+      [&](double a, double b, int, bool) { return found.emplace_back(a, b), false; },
+      [](double, double) { return false; });
   EXPECT_TRUE(end.proved);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_TRUE(found[0].first * 5 <= 1.999 && 1.999 <= found[0].second * 5 + 1e-14);

@@ -132,7 +132,7 @@ TEST(UnknownGuards, NothingIsProvedWhereTheEquationsAreSingular) {
   const Isolation end = isolate_crossings(
       0.0, 1.0, -1, [&](double a, double b) { return one.enclosure.over(one.step(), a, b)[0]; },
       [&](double a) { return one.enclosure.values_over(one.step(), a, a)[0]; },
-      [&](double a, double b, int) { return found.push_back((a + b) / 2), b - a > 0.1; },
+      [&](double a, double b, int, bool) { return found.push_back((a + b) / 2), b - a > 0.1; },
       [&](double a, double b) { return undecided.emplace_back(a, b), false; });
   EXPECT_FALSE(end.proved);
   ASSERT_EQ(undecided.size(), 2u);  // beside x = 0, where the halving of the step ends

@@ -28,7 +28,7 @@ Found isolate(const F& f, double from, double to, int side, const IsolationLimit
   found.end = isolate_crossings(
       from, to, side, [&](double a, double b) { return f(Curve({a, b}, Values(1))); },
       [&](double a) { return f(Curve(Values(a), Values(1))).value; },
-      [&](double a, double b, int) { return found.crossings.emplace_back(a, b), false; },
+      [&](double a, double b, int, bool) { return found.crossings.emplace_back(a, b), false; },
       [&](double a, double b) { return found.undecided.emplace_back(a, b), false; }, limits);
   EXPECT_EQ(found.end.proved, found.undecided.empty());
   return found;
@@ -198,7 +198,7 @@ TEST(RootIsolation, StopsWhenTold) {
   const auto wave = [](const Curve& t) { return sin(t); };
   const Isolation end = isolate_crossings(
       1.0, 100.0, 1, [&](double a, double b) { return wave(Curve({a, b}, Values(1))); },
-      [&](double a) { return sin(Values(a)); }, [&](double, double, int) { return ++visits == 2; },
+      [&](double a) { return sin(Values(a)); }, [&](double, double, int, bool) { return ++visits == 2; },
       [](double, double) { return false; });
   EXPECT_TRUE(end.stopped);
   EXPECT_EQ(visits, 2);
