@@ -45,12 +45,8 @@ inline model::Loaded load_with_residuals(const ChoiceProblem& problem) {
   return model::load(model::Source("problem.sim", fmt::format("{}run 0..{} [s]\n", text, problem.duration)));
 }
 
-/// The largest residual of an algebraic equation over `instants` instants, in units of rtol = atol; nothing where the
-/// run does not reach its end.
-inline std::optional<double> largest_residual(const model::Model& model, double duration, std::string_view method,
-                                              double tolerance) {
-  model::Experiment experiment{.method = std::string(method), .rtol = tolerance, .atol = {tolerance}};
-  experiment.output = duration / static_cast<double>(instants);
+/// The largest residual of an algebraic equation over the rows of a run; nothing where it does not reach its end.
+inline std::optional<double> largest_residual(const model::Model& model, model::Experiment experiment) {
   experiment.max_steps = 1'000'000;
   const model::Simulated simulated = model::simulate(model, experiment);
   if (!simulated.run || simulated.run->outcome.ending != Ending::reached_end) return {};
@@ -60,7 +56,17 @@ inline std::optional<double> largest_residual(const model::Model& model, double 
     if (!motion.columns[column].name.starts_with("residual")) continue;
     for (std::size_t i = 0; i < motion.rows(); ++i) largest = std::max(largest, std::abs(motion.row(i)[column]));
   }
-  return largest / tolerance;
+  return largest;
+}
+
+/// The same over `instants` instants, in units of rtol = atol.
+inline std::optional<double> largest_residual(const model::Model& model, double duration, std::string_view method,
+                                              double tolerance) {
+  const std::optional<double> largest = largest_residual(model, {.method = std::string(method),
+                                                                 .rtol = tolerance,
+                                                                 .atol = {tolerance},
+                                                                 .output = duration / static_cast<double>(instants)});
+  return largest ? std::optional(*largest / tolerance) : std::nullopt;
 }
 
 }  // namespace continuo::bench

@@ -67,6 +67,7 @@ class Driver {
   void at(Real t, X& x) {
     if (t == t_) {
       x = x_;
+      if (!solved_to_rounding_) solve_unknowns(t, x);
       return;
     }
     steps().at(t, x);
@@ -153,7 +154,7 @@ class Driver {
       if (applies) hint += (hint.empty() ? "" : "; ") + std::string(what);
     };
     add(2 * statistics().rejected > all, "most of the steps were rejected");
-    add(2 * statistics().events > all, "most of the steps end at events");
+    add(2 * restarts_ > all, "most of the steps end at events");
     add(steps().stiff(), stiff_hint);
     add(!steps().stiff(), "raise max_steps or loosen the tolerance");
     return hint;
@@ -211,6 +212,7 @@ class Driver {
     if constexpr (HasMassDiagonal<System, X>) {
       if (!has_mass<X>(system())) return false;
       consistent_ = make_consistent(steps().system(), t_, x_, steps().tolerance(options_), SolvedTo::rounding);
+      solved_to_rounding_ = true;
       steps().statistics().evaluations += static_cast<std::size_t>(consistent_.evaluations);
       return true;
     }
@@ -270,11 +272,13 @@ class Driver {
         t_ = offset == length ? steps().end() : begin + offset;
         if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
         state_at(offset, length, x_);
+        solved_to_rounding_ = true;
         if (is_new_step) logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
       } else {
         offset = to;
         t_ = *tick;
         state_at(offset, length, x_);
+        solved_to_rounding_ = true;
         if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
       }
       observer.stretch(*this, from, t_);
@@ -292,6 +296,7 @@ class Driver {
     x_ = steps().x_end();
     shift(x_);
     if (logic_.any_guard()) solve_unknowns(t_, x_);
+    solved_to_rounding_ = logic_.any_guard();
     observer.stretch(*this, from, t_);
     if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
     logic_.begin_instant(t_);
@@ -315,7 +320,8 @@ class Driver {
   }
 
   void look_at(const Crossing<Real>& crossing, Real from, Real length) {
-    logic_.leave_zero(crossing, guards_at(from + (crossing.offset - from) / 2, length, guard_values_));
+    if (logic_.others_are_at_zero(crossing))
+      logic_.leave_zero(crossing, guards_at(from + (crossing.offset - from) / 2, length, guard_values_));
     const std::span<const Real> values = guards_at(crossing.offset, length, guard_values_);
     const Real later = crossing.offset + length / Real(1000000);
     state_at(later, length, before_);
@@ -378,6 +384,7 @@ class Driver {
   void end_before_event() {
     t_ = steps().begin();
     x_ = steps().x_begin();
+    solved_to_rounding_ = false;
     end(Ending::nonlinear_solve_failed,
         "Newton's iteration does not converge on a step to the event: take smaller steps");
   }
@@ -390,12 +397,30 @@ class Driver {
     constexpr int most_tries = 24;
     Real h = place;
     for (int tries = 0; tries < most_tries && steps().retake(h, options_); ++tries) {
-      events_guards(steps().end(), steps().x_end());
-      if (sign_of(guard_values_[guard]) == far) return steps().end() - steps().begin();
+      if (is_surely_on(far, guard)) return steps().end() - steps().begin();
       h = place + forward() * longer;
       longer *= 4;
     }
     return stay(place, length);
+  }
+  // At the end of the step, and wherever rounding may leave the unknowns when they are solved for once more.
+  bool is_surely_on(int side, std::size_t guard) {
+    events_guards(steps().end(), steps().x_end());
+    if (sign_of(guard_values_[guard]) != side) return false;
+    if constexpr (HasMassDiagonal<System, X>) {
+      if (!has_mass<X>(system())) return true;
+      X solved = steps().x_end();
+      shift(solved);
+      solve_unknowns(steps().end(), solved);
+      for (const Real roundings : {Real(-16), Real(16)}) {
+        before_ = solved;
+        for (std::size_t i = 0; i < dimension(before_); ++i)
+          if (is_algebraic<X>(system(), i)) before_.data()[i] *= 1 + roundings * std::numeric_limits<Real>::epsilon();
+        logic_.events().guards(steps().system(), steps().end(), before_, std::span<Real>(guard_values_));
+        if (sign_of(guard_values_[guard]) != side) return false;
+      }
+    }
+    return true;
   }
   void events_guards(Real t, X x) {
     shift(x);
@@ -421,7 +446,7 @@ class Driver {
       logic_.end_round(steps(), t_, x_);
       if (statistics().events >= options_.max_steps || interrupted()) return end_among_events();
     }
-    if (restarted) begin_anew();
+    if (restarted) begin_anew(), ++restarts_;
     return restarted;
   }
 
@@ -504,8 +529,10 @@ class Driver {
   std::vector<X> shifted_output_;
   Consistency consistent_;
   StepMarks<Real> marks_;
+  std::size_t restarts_ = 0;  // by events
   bool started_ = false, ended_ = false;
-  bool shifts_end_ = false;  // the next step begins with the whole state
+  bool solved_to_rounding_ = true;  // the unknowns in x_
+  bool shifts_end_ = false;         // the next step begins with the whole state
   Outcome<Real> outcome_;
 };
 

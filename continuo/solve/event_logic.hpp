@@ -155,6 +155,14 @@ class EventLogic {
       jumps_[i] = abs(beyond) > abs(g_[i] - values[i]) + 4 * rounding_[i];
     }
   }
+  /// Whether a guard that takes no part in a crossing may leave zero before it.
+  bool others_are_at_zero(const Crossing<Real>& crossing) const {
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (watch_.states()[i].active && watch_.states()[i].at_zero &&
+          std::ranges::find(crossing.guards, i) == crossing.guards.end())
+        return true;
+    return false;
+  }
   /// The guards half way to a crossing: of those that take no part in it, what is beyond its band has left zero.
   void leave_zero(const Crossing<Real>& crossing, std::span<const Real> values) {
     using std::abs;
@@ -347,6 +355,16 @@ class EventLogic {
     return carried_to_first_orders(steps, i, t, x);
   }
 
+  // Where the motion takes a guard at zero. Of a condition that only a step's inaccuracy keeps from zero, derivatives
+  // say which way the part of it goes that is nearest, not whether the condition comes to hold: `x > 1 and x < 1` rises
+  // until x = 1 and falls from there on. That shows where the motion has left the inaccuracy behind.
+  Carried way_from_zero(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs;
+    if (is_condition(i) && abs(g_[i]) > rounding_[i])
+      if (const int side = sign_beyond(steps, i, t, x, 2 * inaccuracy(i)); side != 0) return {side, 1, true};
+    return carried(steps, i, t, x);
+  }
+
   Carried carried_to_first_orders(StepsOf& steps, std::size_t i, Real t, const X& x) {
     return carried_by_differences(
         t, x, forward_ * length_to_follow(steps, t), rounding_[i], first_, second_, moved_,
@@ -364,17 +382,21 @@ class EventLogic {
   // Of a condition at zero that no derivative carries away: one part of it may stay at zero for good, and its sign
   // there says whether it holds, while others leave. Which it is shows a little later.
   int sign_a_little_later(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    sign_beyond(steps, i, t, x, rounding_[i]);
+    return sign_of(scratch_[i]);
+  }
+  // The sign of guard i, in scratch_, where the motion has taken it beyond the band; 0 where it does not soon.
+  int sign_beyond(StepsOf& steps, std::size_t i, Real t, const X& x, Real band) {
     using std::abs;
-    const Real length = forward_ * length_to_follow(steps, t);
+    const Real longest = forward_ * length_to_follow(steps, t) / 10000;
     first_ = steps.slope(t, x);
-    for (const double part : {1e-8, 1e-6, 1e-4}) {
-      const Real dt = Real(part) * length;
+    for (Real dt = longest / 10000; abs(dt) <= abs(longest); dt *= 4) {
       for (std::size_t k = 0; k < dimension(x); ++k) moved_.data()[k] = x.data()[k] + dt * first_.data()[k];
       solve_unknowns(steps, t + dt, moved_);
       evaluate(steps, t + dt, moved_, scratch_);
-      if (abs(scratch_[i]) > rounding_[i]) break;
+      if (abs(scratch_[i]) > band) return sign_of(scratch_[i]);
     }
-    return sign_of(scratch_[i]);
+    return 0;
   }
 
   /// How far the motion may be followed without coming to what happens next.
@@ -400,6 +422,13 @@ class EventLogic {
     return !(abs(g_[i]) > inaccuracy(i));
   }
 
+  /// The same, or in the band that it has not left since its last event.
+  bool is_still_zero(std::size_t i) const {
+    using std::abs;
+    const GuardState<Real>& state = watch_.states()[i];
+    return at_zero(i) || (state.at_zero && abs(g_[i]) <= state.band);
+  }
+
   // A guard as it is found, without a past. False where it is not watched now.
   bool place(StepsOf& steps, std::size_t i, Real t, const X& x) {
     GuardState<Real>& state = watch_.states()[i];
@@ -408,7 +437,7 @@ class EventLogic {
     if (!state.active) return false;
     state.at_zero = at_zero(i);
     state.band = rounding_[i];
-    state.side = state.at_zero ? carried(steps, i, t, x).side : sign_of(g_[i]);
+    state.side = state.at_zero ? way_from_zero(steps, i, t, x).side : sign_of(g_[i]);
     if (state.side == 0 && is_condition(i)) state.side = sign_a_little_later(steps, i, t, x);
     return true;
   }
@@ -432,12 +461,13 @@ class EventLogic {
     using std::abs;
     GuardState<Real>& state = watch_.states()[i];
     if (!state.active || state.side == 0) return;
-    const bool zero = at_zero(i) || (state.at_zero && abs(g_[i]) <= state.band);
+    const bool zero = is_still_zero(i);
     if (!zero && sign_of(g_[i]) == state.side) {
       if (state.at_zero && !(Real(state.side) * g_[i] <= state.band)) state.at_zero = false;
       return;
     }
-    const int side = !zero ? sign_of(g_[i]) : state.at_zero ? state.side : carried(steps, i, t, x).side;
+    int side = !zero ? sign_of(g_[i]) : state.at_zero ? state.side : way_from_zero(steps, i, t, x).side;
+    if (side == 0 && is_condition(i)) side = sign_a_little_later(steps, i, t, x);
     if (side == 0 || side == state.side) return;
     state = {.side = side, .at_zero = zero, .active = true, .band = inaccuracy(i)};
     if (watches(events_.direction(i), side)) add(fired_, i);
@@ -445,8 +475,8 @@ class EventLogic {
 
   // After an action: a guard that is on the other side of zero now, beyond what rounding does.
   void jump(std::size_t i) {
+    if (is_still_zero(i)) return;
     GuardState<Real>& state = watch_.states()[i];
-    if (at_zero(i)) return;
     const int side = sign_of(g_[i]);
     const bool from_zero = state.side == 0;
     state = {.side = side, .at_zero = false, .active = true, .band = rounding_[i]};
@@ -465,7 +495,7 @@ class EventLogic {
     if (!was_active) return enter(steps, i, t, x);
     const bool fired = marks_[i] == done || marks_[i] == turned;
     if (fired && jumps_[i] && sign_of(g_[i]) == state.side) return;
-    const Real band = fired && state.at_zero ? max(state.band, inaccuracy(i)) : inaccuracy(i);
+    const Real band = state.at_zero ? max(state.band, inaccuracy(i)) : inaccuracy(i);
     state.at_zero = abs(g_[i]) <= band;
     state.band = band;
     if (!state.at_zero) {
@@ -473,7 +503,7 @@ class EventLogic {
       return;
     }
     if (!restarted_ && !is_condition(i)) return;
-    const Carried way = carried(steps, i, t, x);
+    const Carried way = way_from_zero(steps, i, t, x);
     marks_[i] == turned ? turn(steps, i, way, t, x) : take(steps, i, way, t, x);
   }
 

@@ -70,7 +70,9 @@ class Keeper {
 
   template <class I>
   void finish(I& integrator) {
-    if (!kept_at(integrator.t())) keep(integrator.t(), integrator.x());
+    if (kept_at(integrator.t())) return;
+    integrator.at(integrator.t(), x_);  // with its unknowns solved for
+    keep(integrator.t(), x_);
   }
 
  private:

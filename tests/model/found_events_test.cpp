@@ -1,5 +1,6 @@
 // Models that random search has found events missed in, or found twice (tests/hybrid, whose referee gives the times),
 // made small. Each names what was wrong.
+#include <cmath>
 #include <cstddef>
 #include <ostream>
 #include <string>
@@ -140,6 +141,78 @@ when exp(-((x + 0.501)/0.01)^2) <= 0.5 or n > 3 { y := -0.956*y - 0.71*x; mark "
 run 0..0.01
 )";
 
+// The counter stands at its threshold: of the two parts that is the greater while the other does not hold, and the
+// guard is zero there. It came back from the event's band to that zero, by a jump, and was taken for one that had not
+// left.
+const char* const counter_at_its_threshold = R"(
+n' = 0
+x'' = -5.943*5.943*(x - 1.384)
+n(0.455) = 1;  x(0.455) = 2;  x'(0.455) = 14
+when mod(x', 1.146) <= 0.69 or n > 1 { mark "e" }
+run 0.455..0.6
+)";
+
+// The same in time alone: one step holds a window that a jump closes and another that a jump opens.
+const char* const counter_and_windows = R"(
+let w = if mod(t, 0.488) < 0.111 then 1 else 0
+n' = 0
+n(0) = 0
+when not (w >= 0.5 or n > 2 or mod(t, 1.035) < 0.546) { n := n + 1; mark "e" }
+run 0..2.1
+)";
+
+// Two events at one instant, of which one only passes: where the rest of its condition is a zero for good, no
+// derivative says that it does.
+const char* const counter_at_another_event = R"(
+n' = 0
+x' = 1
+n(0) = 2;  x(0) = 0
+when n >= 2 and mod(x, 1.035) < 0.546 { mark "e" }
+when n > 2 or mod(x, 1.035) < 0.546 { n := 2 }
+run 0..5
+)";
+
+// The event sets off a slide at its own instant, by which its guard, a rounding short of zero, seemed to turn back.
+const char* const slide_at_an_event = R"(
+n' = 0
+x' = 1.674*cos(4.447*t) - 0.625
+y' = -2.429*sin(4.044*t) + (if y > 0 then -1.681 else 1.681)
+n(0) = 0;  x(0) = 1.737;  y(0) = 1.285
+when not (x >= -0.893) { y := 0.363*y; n := n + 1; mark "e" }
+run 0..5
+)";
+
+// The state is solved for anew after the event, and rounding takes the unknown back over its jump.
+const char* const jump_of_an_unknown = R"(
+unknown u = 0
+x' = -1.612
+y' = -1.631*y + 1.255
+0 = u + u^3 - (1.2*y - sin(2.084*t))
+x(0) = 0.921;  y(0) = 1.122
+when floor(u/0.805) falls through 0.5 { x := -0.86*x; mark "e" }
+run 0..0.3
+)";
+
+// The unknown passes zero, where its tolerance is far less than what the states that it hangs on are solved to: the
+// steps of bdf shrank to nothing there.
+const char* const unknown_near_zero = R"(
+unknown u = 0
+x'' = -6.898*6.898*(x - 1.659)
+0 = u + u^3 - (0.556*x' - 0.802*x)
+x(0) = 1.446;  x'(0) = -0.661
+every 0.3 { x := -0.962*x + 0.511*x' - 0.026; mark "e" }
+run 0..1.6
+)";
+
+// At the event of another, the part of the condition that is nearest to zero rises; the condition never holds.
+const char* const never = R"(
+x' = 2 - x;  y' = -1000*(y - x*z);  z' = 0
+x(0) = 0;  y(0) = 0;  z(0) = 1
+when x rises through 1 { z := z + 0.1; mark "e" }
+when x > 1 and x < 1 { mark "never" }
+run 0..2
+)";
+
 std::vector<Found> cases() {
   std::vector<Found> all;
   for (const char* method : {"dop853", "radau", "bdf", "rk4"}) {
@@ -155,6 +228,20 @@ std::vector<Found> cases() {
     all.push_back({"jump_in_time_" + of, of, jump_in_time, {1.338}});
     all.push_back({"event_while_sliding_" + of, of, event_while_sliding, {2.1798001305968}});
     all.push_back({"order_kept_" + of, of, order_kept, {0.0342825277507, 0.1706905640340}});
+    all.push_back({"counter_at_its_threshold_" + of,
+                   of,
+                   counter_at_its_threshold,
+                   {0.4802314943895, 0.5085819234227, 0.5308966926569, 0.5501674319159, 0.5675650712736,
+                    0.5836963042036, 0.5989271956171}});
+    all.push_back({"counter_and_windows_" + of, of, counter_and_windows, {0.599, 1.581, 2.063}});
+    all.push_back(
+        {"counter_at_another_event_" + of, of, counter_at_another_event, {1.035, 2 * 1.035, 3 * 1.035, 4 * 1.035}});
+    all.push_back({"slide_at_an_event_" + of, of, slide_at_an_event, {3.7352313665773, 4.7180438686701}});
+    if (of == "radau" || of == "bdf") {
+      all.push_back({"jump_of_an_unknown_" + of, of, jump_of_an_unknown, {0.0071265470750}});
+      all.push_back({"unknown_near_zero_" + of, of, unknown_near_zero, {0.3, 0.6, 0.9, 1.2, 1.5}});
+    }
+    if (of != "rk4") all.push_back({"never_" + of, of, never, {std::log(2.0)}});
     if (of != "rk4") all.push_back({"held_at_zero_" + of, of, held_at_zero, {2.97121179248e-5}});
   }
   return all;

@@ -101,5 +101,38 @@ TEST(IndexOne, UnknownsAreSolvedForBetweenSteps) {
   }
 }
 
+TEST(IndexOne, UnknownsAreSolvedForAtTheEndsOfSteps) {
+  for (const auto& problem : bench::choice_problems()) {
+    if (problem.kind != "dae") continue;
+    const Loaded loaded = bench::load_with_residuals(problem);
+    ASSERT_TRUE(loaded) << loaded.text();
+    for (const auto& method : bench::algebraic_methods()) {
+      const double tolerance = method.order < 2 ? 1e-3 : 1e-5;
+      if (problem.name == "Robertson, mass conserved" && tolerance > 1e-5) continue;
+      const auto largest = bench::largest_residual(
+          *loaded.model,
+          {.method = std::string(method.name), .rtol = tolerance, .atol = {tolerance}, .output_steps = true});
+      ASSERT_TRUE(largest) << problem.name << ' ' << method.name;
+      EXPECT_LT(*largest, 10 * tolerance) << problem.name << ' ' << method.name;
+    }
+  }
+}
+
+// They have no estimate of their error, and steps of a size that is named.
+TEST(IndexOne, UnknownsAreSolvedForByMethodsOfFixedStepsToo) {
+  for (const auto& problem : bench::choice_problems()) {
+    if (problem.kind != "dae") continue;
+    const Loaded loaded = bench::load_with_residuals(problem);
+    ASSERT_TRUE(loaded) << loaded.text();
+    for (const MethodInfo& method : method_catalogue()) {
+      if (!method.implicit || method.second_order || method.error_order > 0) continue;
+      const auto largest = bench::largest_residual(
+          *loaded.model, {.method = std::string(method.name), .step = problem.duration / 4000, .output_steps = true});
+      if (!largest) continue;
+      EXPECT_LT(*largest, 1e-5) << problem.name << ' ' << method.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace continuo::model
