@@ -54,6 +54,7 @@ ExitCode run(const RunRequest& request) {
     Progress progress;
     prepared.experiment.progress = watcher_of(prepared, progress);
     prepared.experiment.estimate_error = request.estimate_error;
+    prepared.experiment.doubts = true;
     if (file.is_wanted()) return simulate_recorded(request, prepared, file);
     return studies::run_model(prepared.program, prepared.experiment, request.solution);
   }();

@@ -24,6 +24,25 @@ bool same_times(const Motion& a, const Motion& b) {
   return true;
 }
 
+/// The experiment with the method of the run and its tolerances, a hundred times as strict.
+Experiment stricter_run(const Experiment& experiment, const Run& run) {
+  Experiment strict = experiment;
+  strict.estimate_error = strict.doubts = false;
+  strict.method = run.plan.method;
+  if (run.plan.step > 0) return strict;
+  strict.rtol = std::max(run.plan.rtol / stricter, least_rtol);
+  strict.rtol_of.clear();
+  for (std::size_t i = 0; i < run.plan.rtol_each.size(); ++i)
+    strict.rtol_of[run.motion.columns[i + 1].name] = std::max(run.plan.rtol_each[i] / stricter, least_rtol);
+  strict.atol.clear();
+  for (const double atol : run.plan.atol) strict.atol.push_back(atol / stricter);
+  strict.atol_of.clear();
+  // A run of a model that hangs on time steps no further than a fiftieth of its length, which may be all that held the
+  // first run's steps.
+  strict.max_step = std::min(run.plan.max_step, std::abs(run.plan.to - run.plan.from) / 100);
+  return strict;
+}
+
 std::vector<double> differences(std::span<const double> a, std::span<const double> b, double factor) {
   std::vector<double> result(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) result[i] = factor * std::abs(a[i] - b[i]);
@@ -35,9 +54,7 @@ std::vector<double> differences(std::span<const double> a, std::span<const doubl
 ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
                              const Run& run, const RunAgain& again) {
   ErrorEstimate estimate;
-  Experiment strict = experiment;
-  strict.estimate_error = false;
-  strict.method = run.plan.method;
+  Experiment strict = stricter_run(experiment, run);
   double factor = 1;
   if (run.plan.step > 0) {
     strict.step = run.plan.step / 2;
@@ -45,14 +62,6 @@ ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program,
       const double power = std::exp2(find_method(run.plan.method)->order);
       factor = power / (power - 1);
     }
-  } else {
-    strict.rtol = std::max(run.plan.rtol / stricter, least_rtol);
-    strict.rtol_of.clear();
-    for (std::size_t i = 0; i < run.plan.rtol_each.size(); ++i)
-      strict.rtol_of[run.motion.columns[i + 1].name] = std::max(run.plan.rtol_each[i] / stricter, least_rtol);
-    strict.atol.clear();
-    for (const double atol : run.plan.atol) strict.atol.push_back(atol / stricter);
-    strict.atol_of.clear();
   }
   if (!again)
     strict.max_steps = std::max(run.plan.max_steps, usual_max_steps);  // a limit of the run's is none of its estimate's
@@ -73,6 +82,36 @@ ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program,
     for (std::size_t i = 0; i < here.size(); ++i) estimate.largest[i] = std::max(estimate.largest[i], here[i]);
   }
   return estimate;
+}
+
+std::string doubt_of(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment, const Run& run) {
+  constexpr double most_work = 1e7, most_tolerances = 30;
+  const std::span<const double> end = run.final_state();
+  const double work = static_cast<double>(run.statistics.evaluations) * static_cast<double>(end.size());
+  if (run.plan.step > 0 || work > most_work || run.plan.rtol < 10 * least_rtol) return {};
+  Experiment strict = stricter_run(experiment, run);
+  strict.keep_rows = false;
+  strict.progress = {};
+  strict.max_steps = 1000 + 20 * (run.statistics.steps + run.statistics.rejected);
+  const Simulated second = simulate(program, strict);
+  if (!second.run || second.run->outcome.ending == Ending::interrupted) return {};
+  if (second.run->outcome.ending != run.outcome.ending)
+    return fmt::format("a second run, a hundred times as strict, ends otherwise: {}", describe(second.run->outcome));
+  if (std::abs(second.run->final_time() - run.final_time()) > 1e-3 * std::abs(run.final_time()))
+    return fmt::format("a second run, a hundred times as strict, ends at t = {:.6g}", second.run->final_time());
+  std::size_t worst = 0;
+  double most = 0, error = 0;
+  for (std::size_t i = 0; i < end.size(); ++i) {
+    const double here = std::abs(end[i] - second.run->final_state()[i]);
+    const double tolerances = here / (run.plan.atol_of(i) + run.plan.rtol_of(i) * std::abs(end[i]));
+    if (tolerances > most) most = tolerances, error = here, worst = i;
+  }
+  if (most <= most_tolerances) return {};
+  return fmt::format(
+      "`{}` is off by some {:.1g} at the end, {:.1g} times its tolerance: the motion multiplies errors, as a second "
+      "run "
+      "shows that is a hundred times as strict; tighten the tolerance, and see --estimate-error",
+      program->model.states[worst].column, error, most);
 }
 
 }  // namespace continuo::model

@@ -32,6 +32,7 @@ struct Experiment {
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};  // of conditions at several times: with the part that is done, 0 to 1
   bool estimate_error = false;               // by a second run, a hundred times as strict
+  bool doubts = false;                       // Outcome::hint says where errors have grown: see error_estimate.hpp
   bool keep_rows = true;                     // false: only the first and the last state, for sweeps
 };
 

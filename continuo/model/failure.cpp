@@ -1,11 +1,18 @@
 // continuo/model/failure.cpp
 // Endings that are no success, as diagnostics with a code.
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <continuo/model/simulate.hpp>
+#include <continuo/model/switches.hpp>
 
 namespace continuo::model {
 
@@ -32,7 +39,89 @@ std::string with_component(std::string message, const Outcome<double>& outcome) 
   return outcome.component.empty() ? message : message + fmt::format("; `{}` is the worst", outcome.component);
 }
 
+/// A jump of the equation of a state: `surface` is zero there, or a whole number where the jump is that of a floor.
+struct Jump {
+  std::size_t state;
+  NodeId node, first, second;  // that of the jump, and its arguments; without a second one the first again
+};
+
+std::vector<Jump> jumps_of(const Model& model) {
+  std::vector<Jump> jumps;
+  for (const Mode& mode : model.modes) {
+    for (std::size_t i = 0; i < mode.derivatives.size(); ++i) {
+      for (const NodeId id : reachable(model.graph, std::span(&mode.derivatives[i], 1))) {
+        const Node& n = model.graph[id];
+        if (is_jump(n.op)) jumps.push_back({i, id, n.a, arity(n.op) == 2 ? n.b : n.a});
+      }
+    }
+  }
+  return jumps;
+}
+
+/// How far the arguments of a jump are from it: a difference, or a part of a whole number.
+double distance_to(Op op, double a, double b) {
+  switch (op) {
+    case Op::less:
+    case Op::less_equal:
+      return std::abs(a - b);
+    case Op::sign:
+      return std::abs(a);
+    case Op::modulo:
+      return std::abs(a / b - std::round(a / b));
+    default:
+      return std::abs(a - std::round(a));
+  }
+}
+
+/// The jump at which a run has come to stand: nearer than a ten-thousandth of the way that the run has been from it.
+std::optional<Jump> jump_at_end(const ModelProgram& program, const Run& run) {
+  constexpr double near = 1e-4;
+  const std::vector<Jump> jumps = jumps_of(program.model);
+  if (jumps.empty() || run.motion.rows() < 2) return std::nullopt;
+  std::vector<NodeId> nodes;
+  for (const Jump& jump : jumps) nodes.insert(nodes.end(), {jump.first, jump.second});
+  const std::vector<std::vector<double>> values = values_along(program, run, nodes);
+  std::optional<Jump> nearest;
+  double least = near;
+  for (std::size_t k = 0; k < jumps.size(); ++k) {
+    const Op op = program.model.graph[jumps[k].node].op;
+    double farthest = 0, last = 0;
+    for (std::size_t row = 0; row < run.motion.rows(); ++row) {
+      last = distance_to(op, values[2 * k][row], values[2 * k + 1][row]);
+      farthest = std::max(farthest, last);
+    }
+    if (last < least * farthest) least = last / farthest, nearest = jumps[k];
+  }
+  return nearest;
+}
+
+/// Endings that a motion comes to which is held at a jump of its equations.
+bool may_be_held(Ending ending) {
+  return ending == Ending::step_too_small || ending == Ending::too_many_steps || ending == Ending::too_many_rejects ||
+         ending == Ending::nonlinear_solve_failed;
+}
+
 }  // namespace
+
+Diagnostic failure(const ModelProgram& program, const Run& run) {
+  Diagnostic diagnostic = failure(program.model, run.outcome);
+  if (!may_be_held(run.outcome.ending)) return diagnostic;
+  const std::optional<Jump> jump = jump_at_end(program, run);
+  if (!jump) return diagnostic;
+  const Model& model = program.model;
+  const State& state = model.states[jump->state];
+  const std::string what =
+      to_text(model.graph, jump->node, [&](std::uint32_t v) { return variable_name(model, v); }, 80);
+  diagnostic.related.push_back(
+      {state.span, fmt::format("the equation of `{}` jumps with `{}`, and the run has come to stand there: where both "
+                               "sides lead back to a jump the motion slides along it",
+                               state.algebraic ? state.column : state.column + "'", what)});
+  diagnostic.help =
+      "jumps are located, and slid along, where they hang on states and the time, not on unknowns, stand outside of "
+      "`smooth`, and are at most 64; " +
+      diagnostic.help;
+  return diagnostic;
+}
 
 Diagnostic failure(const Model& model, const Outcome<double>& outcome) {
   const std::string at = in_units(outcome.t, model.time_unit);

@@ -95,7 +95,9 @@ void Parser::parse_direction(ast::When& event) {
   advance();
   if (!accept_word("through") && at(TokenKind::name) && look(1).kind != TokenKind::open_brace) {
     const std::string help = did_you_mean(spelled(current()), std::array<std::string_view, 1>{"through"});
-    const bool other = at_word("below") || at_word("above") || at_word("to") || at_word("under") || at_word("over");
+    constexpr std::array<std::string_view, 9> others{"below", "above", "to", "under", "over",
+                                                     "thru",  "past",  "by", "beyond"};
+    const bool other = std::ranges::any_of(others, [this](std::string_view known) { return at_word(known); });
     if (!help.empty() || other)
       fail(error("E125", current().span, fmt::format("`{}` is not known here", spelled(current())), "",
                  "write `through`"));

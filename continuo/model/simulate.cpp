@@ -99,8 +99,12 @@ Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Exp
   integrate(run.plan.method, integration_of(program, run.plan, experiment), recorder, run);
   recorder.give(run);
   run.checks = judge(model, run, recorder);
-  if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(model, run.outcome));
+  if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(*program, run));
   if (experiment.estimate_error && succeeded(run.outcome.ending)) run.error = estimate_error(program, experiment, run);
+  if (experiment.doubts && !run.error && succeeded(run.outcome.ending)) {
+    const std::string doubt = doubt_of(program, experiment, run);
+    if (!doubt.empty()) run.outcome.hint += (run.outcome.hint.empty() ? "" : "; ") + doubt;
+  }
   simulated.run = std::move(run);
   return simulated;
 }

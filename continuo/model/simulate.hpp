@@ -42,6 +42,8 @@ Diagnostic no_study_of_worlds(const Model& model);
 
 /// What an ending that is no success says as a diagnostic: E30x, E310.
 Diagnostic failure(const Model& model, const Outcome<double>& outcome);
+/// With the jump of the equations at which the run has come to stand, if there is one.
+Diagnostic failure(const ModelProgram& program, const Run& run);
 
 /// The values of expressions of the model at every row of the run: one list per expression.
 std::vector<std::vector<double>> values_along(const ModelProgram& program, const Run& run,

@@ -10,12 +10,13 @@
 
 namespace continuo::model {
 
-namespace {
-
 bool is_jump(Op op) {
   return op == Op::less || op == Op::less_equal || op == Op::sign || op == Op::floor || op == Op::ceiling ||
          op == Op::modulo;
 }
+
+namespace {
+
 bool is_corner(Op op) {
   return op == Op::absolute || op == Op::minimum || op == Op::maximum;
 }

@@ -40,6 +40,9 @@ struct SwitchedEquations {
 /// there error control sees to the jumps. `program` lends its graph, which grows.
 SwitchedEquations switched_equations(ModelProgram& program, std::size_t mode);
 
+/// Whether an operation jumps where its arguments meet something.
+bool is_jump(Op op);
+
 /// Above as many switches a mode is left as it is, above as many corners their part.
 inline constexpr std::size_t most_switches = 64, most_corners = 8;
 
