@@ -1,6 +1,7 @@
 // continuo linearize FILE: a model near one point as x' = A x + B u, y = C x + D u, and the modes of its motion.
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/linear_model.hpp>
 
 namespace continuo::app {
@@ -22,7 +24,7 @@ struct LinearizeOptions {
   ExperimentOptions experiment;
   std::string mode;
   std::vector<std::string> at;
-  double time = 0;
+  std::optional<double> time;
   bool start = false, json = false;
 };
 
@@ -96,9 +98,14 @@ ExitCode linearize(const LinearizeOptions& options) {
   if (studied.prepared.exit != done) return studied.prepared.exit;
   const model::Model& model = studied.prepared.program->model;
   std::vector<double> x = studied.start;
+  const double time = options.time.value_or(0);
   if (!set_states(model, options.at, x)) return usage;
   if (options.at.empty() && !options.start) {
-    auto search = studies::find_equilibrium(studied.system, x, studied.system.constants, options.time);
+    if (!options.time && !stands_still_in_time(studied, "a place of rest is looked for")) {
+      say("--time T holds the equations as they are then; --start and --at NAME=VALUE linearize elsewhere");
+      return wrong_model;
+    }
+    auto search = studies::find_equilibrium(studied.system, x, studied.system.constants, time);
     if (search.ending != studies::EquilibriumEnding::found) {
       say(fmt::format(
           "{}: no place of rest was found near the start ({}; `{}` still changes by {}); --start linearizes at "
@@ -109,7 +116,7 @@ ExitCode linearize(const LinearizeOptions& options) {
     }
     x = std::move(search.x);
   } else if (studied.system.algebraic > 0) {
-    auto search = studies::find_unknowns(studied.system, x, studied.system.constants, options.time);
+    auto search = studies::find_unknowns(studied.system, x, studied.system.constants, time);
     if (search.ending != studies::EquilibriumEnding::found) {
       say(fmt::format("the algebraic equations have no solution near this point ({}); --at {}=VALUE is a better guess",
                       to_string(search.ending), studied.system.name(search.worst)));
@@ -117,8 +124,13 @@ ExitCode linearize(const LinearizeOptions& options) {
     }
     x = std::move(search.x);
   }
-  const auto linear = studies::linearize_model(studied.prepared.program, x, options.time,
-                                               studied.prepared.experiment.parameters, studied.mode);
+  if (const auto jump =
+          studies::jump_at(*studied.prepared.program, studied.mode, x, studied.prepared.experiment.parameters)) {
+    say(fmt::format("the equations jump at this point, with `{}`: nothing there is linear", *jump));
+    return numerical_failure;
+  }
+  const auto linear =
+      studies::linearize_model(studied.prepared.program, x, time, studied.prepared.experiment.parameters, studied.mode);
   if (!linear.undetermined.equations.empty()) {
     say(describe_undetermined(studied, linear.undetermined));
     return numerical_failure;

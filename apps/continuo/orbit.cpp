@@ -20,6 +20,7 @@
 #include <continuo/results/figure.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/lyapunov.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 
@@ -51,14 +52,21 @@ ExitCode ended(const Outcome<double>& outcome) {
   return numerical_failure;
 }
 
+/// Whether the equations of one mode are not all that moves the model. Who names a mode means its equations alone.
+bool needs_all(const Studied& studied, const OrbitOptions& options) {
+  return options.mode.empty() && studies::unseen_of(*studied.prepared.program, studied.mode).has_value();
+}
+
 ExitCode show_exponents(const Studied& studied, const OrbitOptions& options) {
   const model::Model& model = studied.prepared.program->model;
   Progress progress;
-  const auto found = studies::lyapunov_exponents(studied.system, studied.start,
-                                                 {.duration = options.duration,
-                                                  .settle = *options.settle,
-                                                  .interrupt = &interrupt_flag(),
-                                                  .progress = progress.over(0, *options.settle + options.duration)});
+  const studies::LyapunovOptions averaging{.duration = options.duration,
+                                           .settle = *options.settle,
+                                           .interrupt = &interrupt_flag(),
+                                           .progress = progress.over(0, *options.settle + options.duration)};
+  const auto found = needs_all(studied, options)
+                         ? studies::lyapunov_exponents(studied.prepared.program, studied.prepared.experiment, averaging)
+                         : studies::lyapunov_exponents(studied.system, studied.start, averaging);
   if (found.exponents.empty()) return ended(found.outcome);
   std::string text = fmt::format("Lyapunov exponents over {}\n", with_time_unit(found.averaged, model));
   for (std::size_t i = 0; i < found.exponents.size(); ++i)
@@ -76,13 +84,15 @@ ExitCode show_section(const Studied& studied, const OrbitOptions& options) {
   const std::size_t component = *state_named(model, options.section.substr(0, equals));
   const auto section = [&] {
     Progress progress;
-    return studies::poincare_section(studied.system, studied.start, component,
-                                     {.level = levels[component],
-                                      .settle = *options.settle,
-                                      .duration = options.duration,
-                                      .rtol = options.tolerance,
-                                      .interrupt = &interrupt_flag(),
-                                      .progress = progress.over(0, *options.settle + options.duration)});
+    const studies::SectionOptions passing{.level = levels[component],
+                                          .settle = *options.settle,
+                                          .duration = options.duration,
+                                          .rtol = options.tolerance,
+                                          .interrupt = &interrupt_flag(),
+                                          .progress = progress.over(0, *options.settle + options.duration)};
+    if (needs_all(studied, options))
+      return studies::poincare_section(studied.prepared.program, studied.prepared.experiment, component, passing);
+    return studies::poincare_section(studied.system, studied.start, component, passing);
   }();
   std::string csv = "t";
   for (const model::State& state : model.states) csv += "," + state.column;
@@ -177,6 +187,8 @@ ExitCode orbit(OrbitOptions options) {
     say("--settle must not be negative, --tol must be greater than zero");
     return usage;
   }
+  const bool closed = !options.lyapunov && options.section.empty();
+  if (closed && !can_be_studied_alone(studied, options.mode, "an orbit is solved for")) return wrong_model;
   if (range)
     return show_orbit_branches(studied, {.range = *range,
                                          .search = search_of(options),

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include <continuo/model/simulate.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/phase_portrait.hpp>
 
 namespace continuo::app {
@@ -32,7 +34,7 @@ struct PhaseOptions {
   std::string mode, plot;
   std::vector<std::string> box, starts;
   std::size_t spread = 16;
-  double time = 0;
+  std::optional<double> time;
 };
 
 /// What the model's own run passes through, half as wide again; the ranges that were asked for.
@@ -144,9 +146,9 @@ std::string summary_of(const model::Model& model, const PhasePortrait& portrait,
                   results::short_number(plane.high[0]), model.states[1].column, results::short_number(plane.low[1]),
                   results::short_number(plane.high[1]));
   for (const studies::Equilibrium& e : portrait.equilibria) {
-    text +=
-        fmt::format("at rest  ({}, {}): {}, eigenvalues", results::short_number(std::abs(e.x[0]) < 1e-13 ? 0 : e.x[0]),
-                    results::short_number(std::abs(e.x[1]) < 1e-13 ? 0 : e.x[1]), to_string(e.stability));
+    text += fmt::format("at rest  ({}, {}): {}, {}", results::short_number(std::abs(e.x[0]) < 1e-13 ? 0 : e.x[0]),
+                        results::short_number(std::abs(e.x[1]) < 1e-13 ? 0 : e.x[1]), to_string(e.stability),
+                        e.eigenvalues.empty() ? "the equations jump here" : "eigenvalues");
     for (std::size_t i = 0; i < e.eigenvalues.size(); ++i)
       if (e.eigenvalues[i].imag() >= 0)
         text +=
@@ -166,13 +168,32 @@ ExitCode phase(const PhaseOptions& options) {
                     model.states.size()));
     return wrong_model;
   }
-  PhasePlane plane{.low = {}, .high = {}, .spread = options.spread, .t = options.time, .interrupt = &interrupt_flag()};
+  if (!options.time && !stands_still_in_time(studied, "a portrait is drawn")) {
+    say("--time T draws the equations as they are then");
+    return wrong_model;
+  }
+  const auto event = studies::changes_by_event(model, studied.mode);
+  if (event && options.mode.empty() && !options.time) {
+    say(fmt::format(
+        "{}: a portrait is drawn of equations alone, and this event changes the motion; --time 0 draws it "
+        "without{}",
+        place_text(studied.prepared, *event), model.modes.size() > 1 ? ", and so does --mode NAME of one mode" : ""));
+    return wrong_model;
+  }
+  PhasePlane plane{
+      .low = {}, .high = {}, .spread = options.spread, .t = options.time.value_or(0), .interrupt = &interrupt_flag()};
   if (!set_plane(studied, options, plane) || !set_starts(studied, options.starts, plane)) return usage;
-  const PhasePortrait portrait = [&] {
+  PhasePortrait portrait = [&] {
     Progress progress;
     plane.progress = progress.parts();
     return studies::phase_portrait(studied.system, plane);
   }();
+  for (studies::Equilibrium& e : portrait.equilibria) {
+    if (!studies::jump_at(*studied.prepared.program, studied.mode, e.x, studied.prepared.experiment.parameters))
+      continue;
+    e.stability = studies::Stability::undecided;
+    e.eigenvalues.clear();
+  }
   print(summary_of(model, portrait, plane));
   if (!options.plot.empty()) {
     if (!written(results::draw(figure_of(model, portrait, plane), options.plot))) return usage;

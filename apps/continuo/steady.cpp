@@ -19,6 +19,7 @@
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/continuation.hpp>
 #include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/hybrid_run.hpp>
 
 namespace continuo::app {
 namespace {
@@ -38,7 +39,10 @@ std::string table_of(const studies::Equilibria& found, const Studied& studied) {
   const std::size_t shown = std::min(found.equilibria.size(), most_shown);
   for (std::size_t k = 0; k < shown; ++k) {
     const studies::Equilibrium& e = found.equilibria[k];
-    text += fmt::format("{}  {}{}\n", k + 1, to_string(e.stability), e.isolated ? "" : ", not isolated");
+    const auto jump =
+        studies::jump_at(*studied.prepared.program, studied.mode, e.x, studied.prepared.experiment.parameters);
+    text += jump ? fmt::format("{}  undecided: the equations jump here, with `{}`\n", k + 1, *jump)
+                 : fmt::format("{}  {}{}\n", k + 1, to_string(e.stability), e.isolated ? "" : ", not isolated");
     for (std::size_t i = 0; i < e.x.size(); ++i) {
       const std::string& unit = model.states[i].unit;
       // What rounding leaves of a zero.
@@ -50,6 +54,7 @@ std::string table_of(const studies::Equilibria& found, const Studied& studied) {
       text += fmt::format("   {}\n", describe_undetermined(studied, e.undetermined));
       continue;
     }
+    if (jump) continue;
     text += "   eigenvalues";
     for (std::size_t i = 0; i < e.eigenvalues.size(); ++i) {
       if (e.eigenvalues[i].imag() < 0) continue;
@@ -141,6 +146,7 @@ ExitCode steady(const SteadyOptions& options) {
   }
   const Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
+  if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
   if (!set_box(studied, options.box, box)) return usage;
   const studies::Equilibria found = [&] {

@@ -12,6 +12,7 @@
 
 #include <continuo/model/simulate.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/of_model.hpp>
 
 namespace continuo::app {
@@ -70,6 +71,36 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
                                      {.constants = constants, .parameters = parameters, .mode = studied.mode});
   studied.start = studies::start_of(model, parameters);
   return studied;
+}
+
+bool stands_still_in_time(const Studied& studied, std::string_view what) {
+  const model::ModelProgram& program = *studied.prepared.program;
+  const auto follow = "`continuo orbit --section` and `--lyapunov` follow the motion as it is";
+  if (const auto span = studies::hangs_on_time(program, studied.mode)) {
+    say(fmt::format("{}: {} where no equation hangs on the time, and this one does; {}",
+                    place_text(studied.prepared, *span), what, follow));
+    return false;
+  }
+  if (const auto span = studies::changes_at_set_times(program.model)) {
+    say(fmt::format("{}: {} where nothing happens at set times, and this does; {}", place_text(studied.prepared, *span),
+                    what, follow));
+    return false;
+  }
+  return true;
+}
+
+bool can_be_studied_alone(const Studied& studied, const std::string& mode, std::string_view what) {
+  if (!stands_still_in_time(studied, what)) return false;
+  const auto unseen =
+      mode.empty() ? studies::unseen_of(*studied.prepared.program, studied.mode) : std::optional<studies::Unseen>();
+  if (!unseen) return true;
+  const bool has_modes = studied.prepared.program->model.modes.size() > 1;
+  say(fmt::format(
+      "{}: {} from the equations alone, and here {}; `continuo orbit --section` and `--lyapunov` follow the "
+      "motion as it is{}",
+      place_text(studied.prepared, unseen->span), what, unseen->what,
+      has_modes ? ", and --mode NAME studies one mode's equations by themselves" : ""));
+  return false;
 }
 
 std::string describe_undetermined(const Studied& studied, const studies::Undetermined& open) {

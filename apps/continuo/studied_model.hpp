@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,13 @@ struct Studied {
 /// `constants`: parameters that the study moves. exit in `prepared` where the verb ends here.
 Studied study(const ExperimentOptions& options, const std::string& mode, const std::vector<std::string>& constants = {},
               Equations equations = Equations::differential);
+
+/// Whether neither the equations of the studied mode hang on the time nor anything happens at set times; says what
+/// does, and where, if not. `what` is the study's: "an orbit is solved for".
+bool stands_still_in_time(const Studied& studied, std::string_view what);
+/// Whether beside that no event of the model changes the motion and no equation jumps. Who has named a mode means its
+/// equations alone.
+bool can_be_studied_alone(const Studied& studied, const std::string& mode, std::string_view what);
 
 /// Which equations, by their text and line, and which unknowns.
 std::string describe_undetermined(const Studied& studied, const studies::Undetermined& open);

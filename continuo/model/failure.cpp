@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <continuo/model/jumps.hpp>
 #include <continuo/model/simulate.hpp>
-#include <continuo/model/switches.hpp>
 
 namespace continuo::model {
 
@@ -39,44 +39,12 @@ std::string with_component(std::string message, const Outcome<double>& outcome) 
   return outcome.component.empty() ? message : message + fmt::format("; `{}` is the worst", outcome.component);
 }
 
-/// A jump of the equation of a state: `surface` is zero there, or a whole number where the jump is that of a floor.
-struct Jump {
-  std::size_t state;
-  NodeId node, first, second;  // that of the jump, and its arguments; without a second one the first again
-};
-
-std::vector<Jump> jumps_of(const Model& model) {
-  std::vector<Jump> jumps;
-  for (const Mode& mode : model.modes) {
-    for (std::size_t i = 0; i < mode.derivatives.size(); ++i) {
-      for (const NodeId id : reachable(model.graph, std::span(&mode.derivatives[i], 1))) {
-        const Node& n = model.graph[id];
-        if (is_jump(n.op)) jumps.push_back({i, id, n.a, arity(n.op) == 2 ? n.b : n.a});
-      }
-    }
-  }
-  return jumps;
-}
-
-/// How far the arguments of a jump are from it: a difference, or a part of a whole number.
-double distance_to(Op op, double a, double b) {
-  switch (op) {
-    case Op::less:
-    case Op::less_equal:
-      return std::abs(a - b);
-    case Op::sign:
-      return std::abs(a);
-    case Op::modulo:
-      return std::abs(a / b - std::round(a / b));
-    default:
-      return std::abs(a - std::round(a));
-  }
-}
-
 /// The jump at which a run has come to stand: nearer than a ten-thousandth of the way that the run has been from it.
 std::optional<Jump> jump_at_end(const ModelProgram& program, const Run& run) {
   constexpr double near = 1e-4;
-  const std::vector<Jump> jumps = jumps_of(program.model);
+  std::vector<Jump> jumps;
+  for (std::size_t mode = 0; mode < program.model.modes.size(); ++mode)
+    std::ranges::copy(jumps_of(program.model, mode), std::back_inserter(jumps));
   if (jumps.empty() || run.motion.rows() < 2) return std::nullopt;
   std::vector<NodeId> nodes;
   for (const Jump& jump : jumps) nodes.insert(nodes.end(), {jump.first, jump.second});
@@ -110,12 +78,10 @@ Diagnostic failure(const ModelProgram& program, const Run& run) {
   if (!jump) return diagnostic;
   const Model& model = program.model;
   const State& state = model.states[jump->state];
-  const std::string what =
-      to_text(model.graph, jump->node, [&](std::uint32_t v) { return variable_name(model, v); }, 80);
   diagnostic.related.push_back(
       {state.span, fmt::format("the equation of `{}` jumps with `{}`, and the run has come to stand there: where both "
                                "sides lead back to a jump the motion slides along it",
-                               state.algebraic ? state.column : state.column + "'", what)});
+                               state.algebraic ? state.column : state.column + "'", text_of(model, *jump))});
   diagnostic.help =
       "jumps are located, and slid along, where they hang on states and the time, not on unknowns, stand outside of "
       "`smooth`, and are at most 64; " +

@@ -6,63 +6,15 @@
 
 #include <continuo/studies/flow.hpp>
 #include <continuo/studies/lyapunov.hpp>
+#include <continuo/studies/orthonormal_columns.hpp>
 
 namespace continuo::studies {
 
 namespace {
 
-constexpr std::size_t parts = 20;
 // Between two orthogonalisations no direction may shrink against another by more than exp of this: else rounding of the
 // long one covers the short one.
 constexpr double most_apart = 8;
-
-/// The logarithms of one interval, and how long it was.
-struct Stretch {
-  double duration;
-  std::vector<double> logarithms;
-};
-
-/// The columns of z behind the state become orthonormal (Gram, Schmidt, modified); the logarithms of what each was
-/// long.
-std::vector<double> orthonormalise(std::vector<double>& z, std::size_t n) {
-  std::vector<double> logarithms(n);
-  const auto column = [&](std::size_t k) { return std::span(z).subspan(n * (1 + k), n); };
-  const auto product = [](Values a, Values b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); };
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t j = 0; j < k; ++j) {
-      const double share = product(column(j), column(k));
-      for (std::size_t i = 0; i < n; ++i) column(k)[i] -= share * column(j)[i];
-    }
-    const double length = std::sqrt(product(column(k), column(k)));
-    logarithms[k] = std::log(length);
-    for (double& entry : column(k)) entry /= length;
-  }
-  return logarithms;
-}
-
-/// Mean of each exponent over the parts of the run, and the standard error of that mean.
-void average(LyapunovExponents& result, const std::vector<Stretch>& stretches) {
-  const std::size_t count = stretches.size();
-  if (count == 0) return;
-  const std::size_t n = stretches.front().logarithms.size(), groups = std::min(parts, count);
-  for (const Stretch& stretch : stretches) result.averaged += stretch.duration;
-  for (std::size_t k = 0; k < n; ++k) {
-    double sum = 0, square = 0;
-    for (const Stretch& stretch : stretches) sum += stretch.logarithms[k];
-    const double mean = sum / result.averaged;
-    for (std::size_t g = 0; g < groups; ++g) {
-      double part = 0, duration = 0;
-      for (std::size_t s = g * count / groups; s < (g + 1) * count / groups; ++s) {
-        part += stretches[s].logarithms[k];
-        duration += stretches[s].duration;
-      }
-      square += std::pow(part / duration - mean, 2);
-    }
-    result.exponents.push_back(mean);
-    const auto of = static_cast<double>(groups);
-    result.spread.push_back(groups > 1 ? std::sqrt(square / (of * (of - 1))) : std::abs(mean));
-  }
-}
 
 }  // namespace
 
@@ -85,7 +37,8 @@ LyapunovExponents lyapunov_exponents(const ParametricSystem& system, std::vector
     const auto step = run_flow(varied, system.constants, z, {from, from + length}, run);
     result.outcome = step.outcome;
     if (!step.outcome) break;
-    std::vector<double> after = step.final_state(), logarithms = orthonormalise(after, n);
+    std::vector<double> after = step.final_state();
+    std::vector<double> logarithms = orthonormalise(std::span(after).subspan(n), n);
     const auto [least, most] = std::ranges::minmax(logarithms);
     if (most - least > 2 * most_apart && interval > 1e-9 * options.interval) {  // too far apart to be measured: again
       interval /= 4;

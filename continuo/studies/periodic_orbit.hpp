@@ -6,9 +6,12 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
 #include <continuo/studies/boundary_value.hpp>
 #include <continuo/studies/parametric_system.hpp>
 
@@ -55,5 +58,10 @@ struct SectionOptions {
 };
 Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component,
                          const SectionOptions& options);
+
+/// Of a model with all that happens in it: events, modes, jumps of the equations, the time. What an event carries over
+/// the plane has passed it.
+Section poincare_section(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
+                         std::size_t component, const SectionOptions& options);
 
 }  // namespace continuo::studies
