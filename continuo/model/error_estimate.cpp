@@ -37,10 +37,13 @@ Experiment stricter_run(const Experiment& experiment, const Run& run) {
   strict.atol.clear();
   for (const double atol : run.plan.atol) strict.atol.push_back(atol / stricter);
   strict.atol_of.clear();
-  // A run of a model that hangs on time steps no further than a fiftieth of its length, which may be all that held the
-  // first run's steps.
-  strict.max_step = std::min(run.plan.max_step, std::abs(run.plan.to - run.plan.from) / 100);
   return strict;
+}
+
+/// A run of a model that hangs on time steps no further than a fiftieth of its length, which may be all that held its
+/// steps.
+double half_of_longest(const Plan& plan) {
+  return std::min(plan.max_step, std::abs(plan.to - plan.from) / 100);
 }
 
 std::vector<double> differences(std::span<const double> a, std::span<const double> b, double factor) {
@@ -63,6 +66,7 @@ ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program,
       factor = power / (power - 1);
     }
   }
+  if (!again && !(run.plan.step > 0)) strict.max_step = half_of_longest(run.plan);
   if (!again)
     strict.max_steps = std::max(run.plan.max_steps, usual_max_steps);  // a limit of the run's is none of its estimate's
   const Simulated second = again ? again(strict) : simulate(program, strict);
@@ -90,6 +94,7 @@ std::string doubt_of(const std::shared_ptr<const ModelProgram>& program, const E
   const double work = static_cast<double>(run.statistics.evaluations) * static_cast<double>(end.size());
   if (run.plan.step > 0 || work > most_work || run.plan.rtol < 10 * least_rtol) return {};
   Experiment strict = stricter_run(experiment, run);
+  strict.max_step = half_of_longest(run.plan);
   strict.keep_rows = false;
   strict.progress = {};
   strict.max_steps = 1000 + 20 * (run.statistics.steps + run.statistics.rejected);
@@ -108,9 +113,9 @@ std::string doubt_of(const std::shared_ptr<const ModelProgram>& program, const E
   }
   if (most <= most_tolerances) return {};
   return fmt::format(
-      "`{}` is off by some {:.1g} at the end, {:.1g} times its tolerance: the motion multiplies errors, as a second "
-      "run "
-      "shows that is a hundred times as strict; tighten the tolerance, and see --estimate-error",
+      "`{}` is off by some {:.1g} at the end, {:.1g} times its tolerance, as a second run shows that is a hundred "
+      "times "
+      "as strict: errors of steps have added up, or the motion multiplies them; see --estimate-error",
       program->model.states[worst].column, error, most);
 }
 
