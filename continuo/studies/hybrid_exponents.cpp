@@ -21,10 +21,10 @@ using X = HybridRun::X;
 
 // Differences of two runs have an error of the tolerance, and one of the second order of the distance: both are a
 // millionth of it.
-constexpr double distance_part = 1e-6, tolerance = 1e-12;
+constexpr double distance_part = 1e-6, error_of_runs = 1e-12;
 // What a column may grow or shrink by between two orthogonalisations, as a logarithm; and where it is nothing but
 // error.
-constexpr double most_apart = 4, least_length = 1e-7;
+constexpr double most_parting = 4, least_length = 1e-7;
 
 bool reads(const model::Model& model, const model::Block& block, std::uint32_t variable) {
   return std::ranges::any_of(block, [&](const model::Action& action) {
@@ -175,7 +175,7 @@ class Neighbourhood {
 LyapunovExponents lyapunov_exponents(const std::shared_ptr<const model::ModelProgram>& program,
                                      const model::Experiment& experiment, const LyapunovOptions& options) {
   LyapunovExponents result;
-  model::Experiment exact = exactly(*program, experiment, tolerance);
+  model::Experiment exact = exactly(*program, experiment, error_of_runs);
   exact.interrupt = options.interrupt;
   std::vector<model::Diagnostic> problems;
   std::optional<model::Plan> plan = model::plan_run(*program, exact, problems);
@@ -196,8 +196,8 @@ LyapunovExponents lyapunov_exponents(const std::shared_ptr<const model::ModelPro
     goes_on = logarithms.has_value();
     if (!goes_on) break;
     const auto [least, most] = std::ranges::minmax(*logarithms);
-    if (most - least > most_apart) interval = std::max(interval / 2, 1e-3 * options.interval);
-    if (most - least < most_apart / 2) interval = std::min(1.5 * interval, options.interval);
+    if (most - least > most_parting) interval = std::max(interval / 2, 1e-3 * options.interval);
+    if (most - least < most_parting / 2) interval = std::min(1.5 * interval, options.interval);
     if (begin >= from + options.settle) stretches.push_back({neighbourhood.t() - begin, std::move(*logarithms)});
     if (options.progress) options.progress(neighbourhood.t() - from);
   }

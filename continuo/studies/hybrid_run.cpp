@@ -14,8 +14,6 @@
 
 namespace continuo::studies {
 
-namespace {
-
 bool changes_something(const model::Block& block) {
   return std::ranges::any_of(block, [](const model::Action& action) {
     if (const auto* branch = std::get_if<model::If>(&action.what))
@@ -23,8 +21,6 @@ bool changes_something(const model::Block& block) {
     return std::holds_alternative<model::Assign>(action.what) || std::holds_alternative<model::Go>(action.what);
   });
 }
-
-}  // namespace
 
 std::optional<model::Span> changes_at_set_times(const model::Model& model) {
   for (const model::Scheduled& scheduled : model.schedule)

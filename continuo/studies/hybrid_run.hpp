@@ -39,6 +39,8 @@ model::Experiment exactly(const model::ModelProgram& program, model::Experiment 
 std::optional<std::string> jump_at(const model::ModelProgram& program, std::size_t mode, std::span<const double> x,
                                    const model::Overrides& parameters = {});
 
+/// Whether actions set a state or go to a mode, in some branch.
+bool changes_something(const model::Block& block);
 /// The first event of a mode, at set times or not, that changes something.
 std::optional<model::Span> changes_by_event(const model::Model& model, std::size_t mode);
 /// The first one at set times.

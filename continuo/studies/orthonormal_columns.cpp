@@ -1,4 +1,4 @@
-// The modified process of Gram and Schmidt, and means over parts of a run.
+// The modified process of Gram and Schmidt, and means over parts_of_run of a run.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,9 +10,9 @@ namespace continuo::studies {
 
 namespace {
 
-constexpr std::size_t parts = 20;
+constexpr std::size_t parts_of_run = 20;
 
-double product(std::span<const double> a, std::span<const double> b) {
+double inner_product_of(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
@@ -20,7 +20,7 @@ double product(std::span<const double> a, std::span<const double> b) {
 void take_out(std::span<double> columns, std::size_t n, std::size_t k) {
   const auto column = [&](std::size_t j) { return columns.subspan(n * j, n); };
   for (std::size_t j = 0; j < k; ++j) {
-    const double share = product(column(j), column(k));
+    const double share = inner_product_of(column(j), column(k));
     for (std::size_t i = 0; i < n; ++i) column(k)[i] -= share * column(j)[i];
   }
 }
@@ -32,7 +32,7 @@ void renew(std::span<double> columns, std::size_t n, std::size_t k) {
     std::ranges::fill(column, 0.0);
     column[axis] = 1;
     take_out(columns, n, k);
-    if (product(column, column) > 0.5 / static_cast<double>(n)) return;
+    if (inner_product_of(column, column) > 0.5 / static_cast<double>(n)) return;
   }
 }
 
@@ -41,7 +41,7 @@ struct Mean {
   double value, error;
 };
 Mean mean_of(const std::vector<Stretch>& stretches, std::size_t k, double averaged) {
-  const std::size_t count = stretches.size(), groups = std::min(parts, count);
+  const std::size_t count = stretches.size(), groups = std::min(parts_of_run, count);
   double sum = 0, square = 0;
   for (const Stretch& stretch : stretches) sum += stretch.logarithms[k];
   const double mean = sum / averaged;
@@ -64,11 +64,11 @@ std::vector<double> orthonormalise(std::span<double> columns, std::size_t n) {
   for (std::size_t k = 0; k < logarithms.size(); ++k) {
     const auto column = columns.subspan(n * k, n);
     take_out(columns, n, k);
-    double length = std::sqrt(product(column, column));
+    double length = std::sqrt(inner_product_of(column, column));
     logarithms[k] = std::log(length);
     if (!(length > 0)) {
       renew(columns, n, k);
-      length = std::sqrt(product(column, column));
+      length = std::sqrt(inner_product_of(column, column));
     }
     for (double& entry : column) entry /= length;
   }

@@ -7,6 +7,7 @@
 #include <continuo/methods/automatic.hpp>
 #include <continuo/solve/choice.hpp>
 #include <continuo/studies/boundary_sensitivity.hpp>
+#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/sensitive_integration.hpp>
 #include <continuo/studies/sensitivity.hpp>
 #include <continuo/studies/world_sensitivity.hpp>
@@ -58,14 +59,6 @@ Options<std::vector<double>> options_of(const model::Plan& plan, const model::Ex
   options.interrupt = experiment.interrupt;
   options.progress = experiment.progress;
   return options;
-}
-
-bool changes_something(const model::Block& block) {
-  return std::ranges::any_of(block, [](const model::Action& action) {
-    if (const auto* branch = std::get_if<model::If>(&action.what))
-      return changes_something(branch->then) || changes_something(branch->otherwise);
-    return std::holds_alternative<model::Assign>(action.what) || std::holds_alternative<model::Go>(action.what);
-  });
 }
 
 }  // namespace
