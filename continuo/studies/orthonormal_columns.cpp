@@ -1,4 +1,4 @@
-// The modified process of Gram and Schmidt, and means over parts_of_run of a run.
+// The modified process of Gram and Schmidt, and means over parts of a run.
 #include <algorithm>
 #include <cmath>
 #include <functional>
