@@ -233,9 +233,8 @@ EventResponse ModelEvents::act(ModelSystem& system, const ProgramBlock& block, s
     response.changed = true;
     response.restart = response.restart || counters[k] == 0;
   }
-  const bool same_mode = effect.mode == system.mode();
   system.go(effect.mode);
-  if (response.restart) system.settle_switches(t, x, same_mode ? &before : nullptr);
+  if (response.restart) system.settle_switches(t, x, &before);
   return response;
 }
 

@@ -190,8 +190,12 @@ bool SwitchedMotion::settle_one(std::size_t mode, std::size_t k, double t, const
 void SwitchedMotion::settle(std::size_t mode, double t, const X& x, const X* before) {
   const std::size_t n = switches(mode).size();
   std::vector<char> slid(n, 0);
-  for (const Sliding& one : std::exchange(sliding_, {}))
-    if (one.k < n) slid[one.k] = 1;
+  const std::vector<Switch>& before_now = switches(std::exchange(mode_, mode));
+  for (const Sliding& one : std::exchange(sliding_, {})) {
+    const Switch& old = before_now[one.k];
+    for (std::size_t k = 0; k < n; ++k)
+      if (switches(mode)[k].kind == old.kind && switches(mode)[k].surface == old.surface) slid[k] = 1;
+  }
   values_.assign(n, 0);
   for (std::size_t k = 0; k < n; ++k) place(mode, k, 0);
   // A switch may stand in the surface of another: later passes see the values of earlier ones.

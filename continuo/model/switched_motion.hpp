@@ -77,6 +77,7 @@ class SwitchedMotion {
   const ModelProgram* program_;
   std::vector<OfMode> modes_;
   std::vector<double> values_;  // of the switches of the present mode
+  std::size_t mode_ = 0;        // that of `sliding_`
   std::vector<Sliding> sliding_;
   std::vector<double> surfaces_, approach_;
   X base_, other_, moved_;

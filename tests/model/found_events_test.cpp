@@ -204,6 +204,21 @@ every 0.3 { x := -0.962*x + 0.511*x' - 0.026; mark "e" }
 run 0..1.6
 )";
 
+// The event leaves a mode while y slides, and y goes on sliding in the other: between the two the guard seemed to turn.
+const char* const mode_left_while_sliding = R"(
+let w = if mod(t, 1.199) < 1.059 then 1 else 0
+n' = 0
+y' = 1.196*sin(4.523*t) - 1.909*sign(y + 0.233)
+mode m0 { x'' = -1.285*1.285*(x + 1.397) }
+mode m1 { x'' = -3.075*3.075*(x + 1.213) }
+n(0) = 0;  x(0) = -1.081;  x'(0) = -0.101;  y(0) = -0.968
+every 0.2 { if w > 0.5 { n := 2*n + 1 } else { go m0 } }
+when n rises through 4.5 { x' := x; x := x' }
+every 0.2 from 0.1 { n := n + 1; if x'*x' + x*x < 2.962 { y := -0.845*y + 0.537*x } else { go m1 } }
+when x' + 1.164*y crosses through 1.073 { go m0; mark "e" }
+run 0..1.8
+)";
+
 // At the event of another, the part of the condition that is nearest to zero rises; the condition never holds.
 const char* const never = R"(
 x' = 2 - x;  y' = -1000*(y - x*z);  z' = 0
@@ -237,6 +252,7 @@ std::vector<Found> cases() {
     all.push_back(
         {"counter_at_another_event_" + of, of, counter_at_another_event, {1.035, 2 * 1.035, 3 * 1.035, 4 * 1.035}});
     all.push_back({"slide_at_an_event_" + of, of, slide_at_an_event, {3.7352313665773, 4.7180438686701}});
+    all.push_back({"mode_left_while_sliding_" + of, of, mode_left_while_sliding, {1.6697218830926}});
     if (of == "radau" || of == "bdf") {
       all.push_back({"jump_of_an_unknown_" + of, of, jump_of_an_unknown, {0.0071265470750}});
       all.push_back({"unknown_near_zero_" + of, of, unknown_near_zero, {0.3, 0.6, 0.9, 1.2, 1.5}});
@@ -244,6 +260,7 @@ std::vector<Found> cases() {
     if (of != "rk4") all.push_back({"never_" + of, of, never, {std::log(2.0)}});
     if (of != "rk4") all.push_back({"held_at_zero_" + of, of, held_at_zero, {2.97121179248e-5}});
   }
+  all.push_back({"mode_left_while_sliding_by_choice", "dop853_radau", mode_left_while_sliding, {1.6697218830926}});
   return all;
 }
 
