@@ -14,8 +14,8 @@
 
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/equilibrium.hpp>
-#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/linear_model.hpp>
+#include <continuo/studies/unseen.hpp>
 
 namespace continuo::app {
 namespace {

@@ -20,9 +20,9 @@
 #include <continuo/results/figure.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/summary.hpp>
-#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/lyapunov.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
+#include <continuo/studies/unseen.hpp>
 
 namespace continuo::app {
 namespace {

@@ -18,8 +18,8 @@
 #include <continuo/model/simulate.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/summary.hpp>
-#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/phase_portrait.hpp>
+#include <continuo/studies/unseen.hpp>
 
 namespace continuo::app {
 namespace {

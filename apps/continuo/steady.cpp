@@ -19,7 +19,7 @@
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/continuation.hpp>
 #include <continuo/studies/equilibrium.hpp>
-#include <continuo/studies/hybrid_run.hpp>
+#include <continuo/studies/unseen.hpp>
 
 namespace continuo::app {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <continuo/model/simulate.hpp>
 #include <continuo/results/summary.hpp>
-#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/of_model.hpp>
+#include <continuo/studies/unseen.hpp>
 
 namespace continuo::app {
 

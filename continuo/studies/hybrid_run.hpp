@@ -1,16 +1,13 @@
 // A model's motion with all that happens in it, events, modes and jumps of the equations, run from instant to instant:
 // what a study needs that cannot look at x' = f(t, x, p) alone.
 //
-//   HybridRun run(program, plan);
+//   HybridRun run(program, plan, experiment);
 //   while (run.advance_to(t)) t += 1;
 #pragma once
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
 #include <continuo/model/experiment.hpp>
@@ -19,32 +16,9 @@
 
 namespace continuo::studies {
 
-/// What an equation-by-equation study would not see of a model in one of its modes, and where it stands: an event or a
-/// scheduled one that changes something, an equation that jumps. Nothing where x' = f(t, x, p) is all there is.
-struct Unseen {
-  model::Span span;
-  std::string what;  // "an event changes the motion"
-};
-std::optional<Unseen> unseen_of(const model::ModelProgram& program, std::size_t mode);
-
-/// The first equation of the mode that hangs on t, or on an input that a file moves.
-std::optional<model::Span> hangs_on_time(const model::ModelProgram& program, std::size_t mode);
-
 /// The experiment by a method that chooses its steps and takes whatever the model has, at rtol = atol = tolerance and
 /// without a limit of steps.
 model::Experiment exactly(const model::ModelProgram& program, model::Experiment experiment, double tolerance);
-
-/// A jump of the mode's equations that this state lies at, to nine digits, as it is written: "sign(x)". There no
-/// derivative says what happens nearby.
-std::optional<std::string> jump_at(const model::ModelProgram& program, std::size_t mode, std::span<const double> x,
-                                   const model::Overrides& parameters = {});
-
-/// Whether actions set a state or go to a mode, in some branch.
-bool changes_something(const model::Block& block);
-/// The first event of a mode, at set times or not, that changes something.
-std::optional<model::Span> changes_by_event(const model::Model& model, std::size_t mode);
-/// The first one at set times.
-std::optional<model::Span> changes_at_set_times(const model::Model& model);
 
 class HybridRun final : private model::StepWatcher {
  public:

@@ -7,9 +7,9 @@
 #include <continuo/methods/automatic.hpp>
 #include <continuo/solve/choice.hpp>
 #include <continuo/studies/boundary_sensitivity.hpp>
-#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/sensitive_integration.hpp>
 #include <continuo/studies/sensitivity.hpp>
+#include <continuo/studies/unseen.hpp>
 #include <continuo/studies/world_sensitivity.hpp>
 
 namespace continuo::studies {

@@ -1,8 +1,10 @@
 // Exponents and sections of models in which something happens, against closed forms; what other studies do not see.
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,9 +12,9 @@
 #include <continuo/model/load.hpp>
 #include <continuo/model/model_program.hpp>
 #include <continuo/model/simulate.hpp>
-#include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/lyapunov.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
+#include <continuo/studies/unseen.hpp>
 
 namespace continuo::studies {
 namespace {
