@@ -76,9 +76,11 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
 bool stands_still_in_time(const Studied& studied, std::string_view what) {
   const model::ModelProgram& program = *studied.prepared.program;
   const auto follow = "`continuo orbit --section` and `--lyapunov` follow the motion as it is";
-  if (const auto span = studies::hangs_on_time(program, studied.mode)) {
-    say(fmt::format("{}: {} where no equation hangs on the time, and this one does; {}",
-                    place_text(studied.prepared, *span), what, follow));
+  if (const auto i = studies::hangs_on_time(program, studied.mode)) {
+    const model::State& state = program.model.states[*i];
+    say(fmt::format("{}: {} where no equation hangs on the time, and that of `{}` does; {}",
+                    place_text(studied.prepared, state.span), what, state.algebraic ? state.column : state.column + "'",
+                    follow));
     return false;
   }
   if (const auto span = studies::changes_at_set_times(program.model)) {

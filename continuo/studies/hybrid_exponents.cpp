@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include <continuo/model/simulate.hpp>
 #include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/lyapunov.hpp>
 #include <continuo/studies/orthonormal_columns.hpp>
@@ -177,13 +176,8 @@ LyapunovExponents lyapunov_exponents(const std::shared_ptr<const model::ModelPro
   LyapunovExponents result;
   model::Experiment exact = exactly(*program, experiment, error_of_runs);
   exact.interrupt = options.interrupt;
-  std::vector<model::Diagnostic> problems;
-  std::optional<model::Plan> plan = model::plan_run(*program, exact, problems);
-  if (!plan) {
-    result.outcome.ending = Ending::invalid_input;
-    if (!problems.empty()) result.outcome.hint = problems.front().message;
-    return result;
-  }
+  std::optional<model::Plan> plan = plan_of(*program, exact, result.outcome);
+  if (!plan) return result;
   const double from = plan->from, end = from + options.settle + options.duration;
   plan->to = end + options.duration;  // the scout runs ahead
   Neighbourhood neighbourhood(program, *plan, exact);

@@ -19,6 +19,17 @@ model::Experiment exactly(const model::ModelProgram& program, model::Experiment 
   return experiment;
 }
 
+std::optional<model::Plan> plan_of(const model::ModelProgram& program, const model::Experiment& exact,
+                                   Outcome<double>& outcome) {
+  std::vector<model::Diagnostic> problems;
+  std::optional<model::Plan> plan = model::plan_run(program, exact, problems);
+  if (!plan) {
+    outcome.ending = Ending::invalid_input;
+    if (!problems.empty()) outcome.hint = problems.front().message;
+  }
+  return plan;
+}
+
 HybridRun::HybridRun(const std::shared_ptr<const model::ModelProgram>& program, const model::Plan& plan,
                      const model::Experiment& experiment)
     : variables_(plan.variables),

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <continuo/model/experiment.hpp>
@@ -19,6 +20,10 @@ namespace continuo::studies {
 /// The experiment by a method that chooses its steps and takes whatever the model has, at rtol = atol = tolerance and
 /// without a limit of steps.
 model::Experiment exactly(const model::ModelProgram& program, model::Experiment experiment, double tolerance);
+
+/// Of such an experiment; nothing where it cannot be run: `outcome` says why.
+std::optional<model::Plan> plan_of(const model::ModelProgram& program, const model::Experiment& exact,
+                                   Outcome<double>& outcome);
 
 class HybridRun final : private model::StepWatcher {
  public:

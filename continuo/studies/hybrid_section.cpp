@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/model/simulate.hpp>
 #include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 
@@ -66,13 +65,8 @@ Section poincare_section(const std::shared_ptr<const model::ModelProgram>& progr
   Section section;
   model::Experiment exact = exactly(*program, experiment, options.rtol);
   exact.interrupt = options.interrupt;
-  std::vector<model::Diagnostic> problems;
-  std::optional<model::Plan> plan = model::plan_run(*program, exact, problems);
-  if (!plan) {
-    section.outcome.ending = Ending::invalid_input;
-    if (!problems.empty()) section.outcome.hint = problems.front().message;
-    return section;
-  }
+  std::optional<model::Plan> plan = plan_of(*program, exact, section.outcome);
+  if (!plan) return section;
   const double from = plan->from + options.settle, end = from + options.duration;
   plan->to = end;
   HybridRun run(program, *plan, exact);

@@ -36,20 +36,24 @@ std::optional<model::Span> changes_by_event(const model::Model& model, std::size
 std::optional<Unseen> unseen_of(const model::ModelProgram& program, std::size_t mode) {
   const model::Model& model = program.model;
   if (const auto span = changes_by_event(model, mode)) return Unseen{*span, "an event changes the motion"};
-  if (const std::vector<model::Jump> jumps = model::jumps_of(model, mode); !jumps.empty())
-    return Unseen{model.states[jumps.front().state].span,
-                  fmt::format("an equation jumps with `{}`", model::text_of(model, jumps.front()))};
+  const std::vector<model::Jump> jumps = model::jumps_of(model, mode);
+  if (!jumps.empty()) {
+    const model::State& state = model.states[jumps.front().state];
+    return Unseen{state.span, fmt::format("the equation of `{}` jumps with `{}`",
+                                          state.algebraic ? state.column : state.column + "'",
+                                          model::text_of(model, jumps.front()))};
+  }
   return std::nullopt;
 }
 
-std::optional<model::Span> hangs_on_time(const model::ModelProgram& program, std::size_t mode) {
+std::optional<std::size_t> hangs_on_time(const model::ModelProgram& program, std::size_t mode) {
   const model::Model& model = program.model;
   const std::vector<model::NodeId>& equations = model.modes[mode].derivatives;
   for (std::size_t i = 0; i < equations.size(); ++i) {
     for (const std::uint32_t v : model::variables_of(model.graph, equations[i])) {
       const bool moved = std::ranges::any_of(
           model.inputs, [&](const model::Input& input) { return input.variable == v && input.points.has_value(); });
-      if (v == model::Layout::time || moved) return model.states[i].span;
+      if (v == model::Layout::time || moved) return i;
     }
   }
   return std::nullopt;

@@ -11,16 +11,17 @@
 
 namespace continuo::studies {
 
-/// What an equation-by-equation study would not see of a model in one of its modes, and where it stands: an event or a
-/// scheduled one that changes something, an equation that jumps. Nothing where x' = f(t, x, p) is all there is.
+/// What an equation-by-equation study would not see of a model in one of its modes: an event or a scheduled one that
+/// changes something, and where it stands; an equation that jumps, and where its state begins. Nothing where x' = f(t,
+/// x, p) is all there is.
 struct Unseen {
   model::Span span;
   std::string what;  // "an event changes the motion"
 };
 std::optional<Unseen> unseen_of(const model::ModelProgram& program, std::size_t mode);
 
-/// The first equation of the mode that hangs on t, or on an input that a file moves.
-std::optional<model::Span> hangs_on_time(const model::ModelProgram& program, std::size_t mode);
+/// The first state of the mode whose equation hangs on t, or on an input that a file moves.
+std::optional<std::size_t> hangs_on_time(const model::ModelProgram& program, std::size_t mode);
 
 /// A jump of the mode's equations that this state lies at, to nine digits, as it is written: "sign(x)". There no
 /// derivative says what happens nearby.
