@@ -308,6 +308,7 @@ class Driver {
 
   // Whether there is an event at a crossing, and not only a guard that leaves a zero it began at.
   bool is_event(const Crossing<Real>& found, Real length) {
+    if (!logic_.leaves_first_zero(found)) return true;
     state_at(found.offset, length, before_);
     return logic_.keep_true_crossings(steps(), steps().begin() + found.offset, before_);
   }

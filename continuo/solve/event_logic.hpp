@@ -202,6 +202,10 @@ class EventLogic {
     std::sort(fired_.begin(), fired_.end());
   }
 
+  /// Whether a guard of the crossing may leave a zero that it had from the start of the run.
+  bool leaves_first_zero(const Crossing<Real>& crossing) const {
+    return std::ranges::any_of(crossing.guards, [this](std::size_t i) { return watch_.states()[i].side == 0; });
+  }
   /// Takes out of the crossing that was found last those guards that leave a zero they had from the start of the run
   /// and whose events would not turn the motion back: these only get their side. False where no guard is left.
   bool keep_true_crossings(StepsOf& steps, Real t, const X& x) {
@@ -261,6 +265,7 @@ class EventLogic {
 
  private:
   static constexpr int most_returns = 20;
+  static constexpr double chatter = 1e-6;  // of the longest way that the motion is followed
   static constexpr char pending = 1, done = 2, turned = 3;
 
   static void add(std::vector<std::size_t>& list, std::size_t i) {
@@ -367,7 +372,7 @@ class EventLogic {
 
   Carried carried_to_first_orders(StepsOf& steps, std::size_t i, Real t, const X& x) {
     return carried_by_differences(
-        t, x, forward_ * length_to_follow(steps, t), rounding_[i], first_, second_, moved_,
+        t, x, g_[i], forward_ * length_to_follow(steps, t), rounding_[i], first_, second_, moved_,
         [&](Real at, X& y) {
           solve_unknowns(steps, at, y);
           evaluate(steps, at, y, scratch_);
@@ -524,6 +529,9 @@ class EventLogic {
       if (way.side != 0) state.side = way.side;
     } else if (way.side == 0 && is_condition(i)) {
       state.side = sign_a_little_later(steps, i, t, x);
+      // A part of the condition stays at zero for good. That it has not left zero since the event before shows no
+      // chatter, unless hardly any time has passed.
+      if (!last_event_ || abs(t - *last_event_) > longest_ * Real(chatter)) state.returns = 0;
     } else if (way.side != state.side) {
       // Turned back, which an event that watches both directions sees as well, or held at zero. What it is beyond zero
       // already is all that it may be.

@@ -37,11 +37,11 @@ void for_each_rounded(Real t, const X& x, X& moved, GuardAt&& g_at, Real units =
 namespace detail {
 
 /// By differences over the way dt, twice, along the parabola x + s f + s^2/2 f', where f' is a difference of f as well.
+/// `first` is f(t, x), g0 the guard there.
 template <class Real, class X, class GuardAt, class SlopeAt>
-Carried carried_over(Real t, const X& x, Real dt, Real rounding, X& first, X& second, X& moved, GuardAt& g_at,
-                     SlopeAt& slope_at) {
+Carried carried_over(Real t, const X& x, Real dt, Real rounding, const X& first, Real g0, X& second, X& moved,
+                     GuardAt& g_at, SlopeAt& slope_at) {
   using std::abs;
-  slope_at(t, x, first);
   for (std::size_t k = 0; k < dimension(x); ++k) moved.data()[k] = x.data()[k] + dt * first.data()[k];
   slope_at(t + dt, moved, second);
   const auto g_after = [&](Real s) {
@@ -49,7 +49,7 @@ Carried carried_over(Real t, const X& x, Real dt, Real rounding, X& first, X& se
       moved.data()[k] = x.data()[k] + s * (first.data()[k] + s / (2 * dt) * (second.data()[k] - first.data()[k]));
     return g_at(t + s, moved);
   };
-  const Real g0 = g_after(Real(0)), g1 = g_after(dt), g2 = g_after(2 * dt);
+  const Real g1 = g_after(dt), g2 = g_after(2 * dt);
   // Three values are a parabola: its slope and its bend at s = 0, each times the way dt.
   const Real slope = (4 * g1 - g2 - 3 * g0) / 2, bend = g0 - 2 * g1 + g2;
   // The third derivative, which is not looked at, stays below a thousandth of the second at so short a way.
@@ -63,13 +63,14 @@ Carried carried_over(Real t, const X& x, Real dt, Real rounding, X& first, X& se
 
 /// By differences. `length` is how far the motion may be followed: less than the flight to the next event. The shortest
 /// way over which g changes far beyond its `rounding` counts: over a longer one it may have turned. g_at(t, x) is the
-/// guard, slope_at(t, x, out) writes x'; first, second and moved are scratch.
+/// guard, g0 what it is at (t, x), slope_at(t, x, out) writes x'; first, second and moved are scratch.
 template <class Real, class X, class GuardAt, class SlopeAt>
-Carried carried_by_differences(Real t, const X& x, Real length, Real rounding, X& first, X& second, X& moved,
+Carried carried_by_differences(Real t, const X& x, Real g0, Real length, Real rounding, X& first, X& second, X& moved,
                                GuardAt&& g_at, SlopeAt&& slope_at) {
+  slope_at(t, x, first);
   Carried way;
   for (const double part : {1e-8, 1e-6, 1e-4, 1e-2}) {
-    way = detail::carried_over(t, x, length * Real(part), rounding, first, second, moved, g_at, slope_at);
+    way = detail::carried_over(t, x, length * Real(part), rounding, first, g0, second, moved, g_at, slope_at);
     if (way.surely) return way;
   }
   return way;

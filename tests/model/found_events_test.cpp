@@ -228,7 +228,18 @@ when x > 1 and x < 1 { mark "never" }
 run 0..2
 )";
 
+// One part of the condition stays at zero, so that its guard never leaves zero between events, of which there are more
+// than chatter may have.
+const char* const held_by_another_part = R"(
+x' = 1;  n' = 0
+x(0) = 0;  n(0) = 1
+when n > 1 or x > 0.1 { x := 0; mark "e" }
+run 0..3.05
+)";
+
 std::vector<Found> cases() {
+  std::vector<double> thirty;
+  for (int k = 1; k <= 30; ++k) thirty.push_back(0.1 * k);
   std::vector<Found> all;
   for (const char* method : {"dop853", "radau", "bdf", "rk4"}) {
     const std::string of = method;
@@ -252,6 +263,7 @@ std::vector<Found> cases() {
     all.push_back(
         {"counter_at_another_event_" + of, of, counter_at_another_event, {1.035, 2 * 1.035, 3 * 1.035, 4 * 1.035}});
     all.push_back({"slide_at_an_event_" + of, of, slide_at_an_event, {3.7352313665773, 4.7180438686701}});
+    all.push_back({"held_by_another_part_" + of, of, held_by_another_part, thirty});
     all.push_back({"mode_left_while_sliding_" + of, of, mode_left_while_sliding, {1.6697218830926}});
     if (of == "radau" || of == "bdf") {
       all.push_back({"jump_of_an_unknown_" + of, of, jump_of_an_unknown, {0.0071265470750}});
