@@ -48,6 +48,17 @@ TEST(Doubt, IsSaidWhereErrorsHaveGrownBeyondThirtyTolerances) {
   EXPECT_GT(said, 30);
 }
 
+// Rounding of x shakes v by 1e8 times as much: a run a hundred times as strict cannot be had.
+TEST(Doubt, IsSaidByALessStrictRunWhereRoundingHoldsTheStepsOfHugeNumbers) {
+  const Simulated simulated = run("x' = v - 0.01*x\nv' = -1e8*(x - cos(t))\nx(0) = 1; v(0) = 0.01\nrun 0..10\n",
+                                  {.rtol = 1e-10, .atol = {1e-10}, .doubts = true});
+  ASSERT_TRUE(simulated.run);
+  ASSERT_EQ(simulated.run->outcome.ending, Ending::reached_end);
+  EXPECT_THAT(simulated.run->outcome.hint, HasSubstr("ten times as strict"));
+  // The closed form, by the matrix exponential in forty digits.
+  EXPECT_GT(std::abs(simulated.run->final_state()[1] - 0.5356338015926568), 30 * 1.5e-10);
+}
+
 TEST(Doubt, IsNotAskedForUnlessWanted) {
   const Simulated simulated = run("x' = 5*(x - cos(t)) - sin(t)\nx(0) = 1\nrun 0..5 tol 1e-6\n", {});
   ASSERT_TRUE(simulated.run);
