@@ -110,7 +110,8 @@ std::optional<Run> second_run(const std::shared_ptr<const ModelProgram>& program
 }  // namespace
 
 std::string doubt_of(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment, const Run& run) {
-  constexpr double most_work = 1e7, most_tolerances = 30;
+  // The second run may have a third of the error of the first one: beyond thirty tolerances they differ by twenty.
+  constexpr double most_work = 1e7, most_tolerances = 20;
   const std::span<const double> end = run.final_state();
   const double work = static_cast<double>(run.statistics.evaluations) * static_cast<double>(end.size());
   if (run.plan.step > 0 || work > most_work || run.plan.rtol < 10 * least_rtol) return {};

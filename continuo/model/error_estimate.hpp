@@ -24,10 +24,10 @@ using RunAgain = std::function<Simulated(const Experiment& strict)>;
 ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
                              const Run& run, const RunAgain& again = {});
 
-/// A sentence where the final state of an adaptive run is off by more than 30 tolerances, since the motion multiplies
+/// A sentence where the final state of an adaptive run is off by more than 20 tolerances, since the motion multiplies
 /// the errors of its steps (a chaotic one, many periods of an orbit), or where a stricter run ends otherwise; else
-/// nothing. By a second run a hundred times as strict. Nothing is said of runs of more than 1e7 evaluations times
-/// states, which a second one would delay by more than some tenths of a second.
+/// nothing. By a second run a hundred times as strict, or ten where rounding lets none of those end. Nothing is said of
+/// runs of more than 1e7 evaluations times states, which a second one would delay by more than some tenths of a second.
 [[nodiscard]] std::string doubt_of(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
                                    const Run& run);
 
