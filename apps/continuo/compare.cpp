@@ -8,6 +8,7 @@
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/models.hpp>
+#include <apps/continuo/study_json.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -29,6 +30,7 @@ struct CompareOptions {
   std::vector<std::string> methods;
   std::vector<double> steps, tolerances;
   std::string plot;
+  bool json = false;
 };
 
 std::string control_of(const Contender& contender) {
@@ -109,7 +111,7 @@ ExitCode compare(const CompareOptions& options) {
     say("there is no reference run to compare with");
     return numerical_failure;
   }
-  print(table_of(prepared.program->model, comparison));
+  print(options.json ? comparison_json(comparison) : table_of(prepared.program->model, comparison));
   const ExitCode exit = exit_of(comparison);
   if (!options.plot.empty()) {
     if (!written(results::draw(figure_of(*prepared.program, comparison), options.plot)))
@@ -140,6 +142,7 @@ void add_compare(CLI::App& app, ExitCode& exit) {
       ->delimiter(',')
       ->type_name("RTOL,...")
       ->excludes(steps);
+  verb->add_flag("--json", options->json, "Every run and its errors over time as one JSON object");
   verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = compare(*options); });
 }

@@ -14,6 +14,7 @@
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/progress.hpp>
+#include <apps/continuo/study_json.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -31,7 +32,7 @@ struct ConvergeOptions {
   std::vector<std::string> methods;
   std::vector<double> tolerances;
   std::size_t most_steps = 65536;
-  bool in_float = false, in_long_double = false, all_points = false;
+  bool in_float = false, in_long_double = false, all_points = false, json = false;
   std::string derivative, plot;
   double at = 0;
 };
@@ -79,7 +80,8 @@ ExitCode converge(const ConvergeOptions& options) {
     say(study.problem);
     return numerical_failure;
   }
-  print(convergence_text(study, options.in_float, options.in_long_double, options.all_points));
+  print(options.json ? convergence_json(study)
+                     : convergence_text(study, options.in_float, options.in_long_double, options.all_points));
   const bool nothing = std::ranges::all_of(
       study.methods, [](const studies::MethodConvergence& method) { return !method.problem.empty(); });
   const ExitCode exit = study.interrupted ? interrupted : nothing ? usage : done;
@@ -110,9 +112,11 @@ void add_converge(CLI::App& app, ExitCode& exit) {
   verb->add_flag("--float", options->in_float, "Also with numbers of 24 bits, side by side")->excludes(tolerances);
   verb->add_flag("--long", options->in_long_double, "Also with numbers of 64 bits")->excludes(tolerances);
   verb->add_flag("--points", options->all_points, "Every step and its errors");
+  auto* json = verb->add_flag("--json", options->json, "Every step, its errors and the orders as one JSON object");
   auto* derivative = verb->add_option("--derivative", options->derivative,
                                       "No model: differences for the derivative of this function of x")
-                         ->type_name("EXPRESSION");
+                         ->type_name("EXPRESSION")
+                         ->excludes(json);
   verb->add_option("--at", options->at, "The x of --derivative (0)")->needs(derivative)->type_name("X");
   verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = converge(*options); });

@@ -11,6 +11,7 @@
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/studied_model.hpp>
+#include <apps/continuo/study_json.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -35,6 +36,7 @@ struct PhaseOptions {
   std::vector<std::string> box, starts;
   std::size_t spread = 16;
   std::optional<double> time;
+  bool json = false;
 };
 
 /// What the model's own run passes through, half as wide again; the ranges that were asked for.
@@ -194,7 +196,7 @@ ExitCode phase(const PhaseOptions& options) {
     e.stability = studies::Stability::undecided;
     e.eigenvalues.clear();
   }
-  print(summary_of(model, portrait, plane));
+  print(options.json ? portrait_json(model, portrait, plane) : summary_of(model, portrait, plane));
   if (!options.plot.empty()) {
     if (!written(results::draw(figure_of(model, portrait, plane), options.plot))) return usage;
   }
@@ -218,6 +220,7 @@ void add_phase(CLI::App& app, ExitCode& exit) {
       ->allow_extra_args(false);
   verb->add_option("--spread", options->spread, "Without --start: how many motions")->type_name("N");
   verb->add_option("--time", options->time, "At this time, where the equations depend on it")->type_name("T");
+  verb->add_flag("--json", options->json, "Rests, nullclines and motions as one JSON object");
   verb->add_option("--plot", options->plot, "The picture, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = phase(*options); });
 }

@@ -10,6 +10,7 @@
 #include <apps/continuo/influences.hpp>
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/progress.hpp>
+#include <apps/continuo/study_json.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -31,6 +32,7 @@ struct SenseOptions {
   ExperimentOptions experiment;
   std::vector<std::string> parameters, initial;
   std::string output, plot;
+  bool json = false;
 };
 
 model::Column column_of(const model::Model& model, std::size_t state, const studies::Influence& influence) {
@@ -148,7 +150,11 @@ ExitCode sense(const SenseOptions& options) {
     return usage;
   }
   ExitCode exit = done;
-  if (run.rows() > 0) print(table_of(model, run, *influences));
+  if (options.json) {
+    print(sensitivity_json(model, run, *influences));
+  } else if (run.rows() > 0) {
+    print(table_of(model, run, *influences));
+  }
   if (!run.good()) {
     exit = run.outcome.ending == Ending::interrupted ? interrupted : numerical_failure;
     say(run.problem.empty() ? describe(run.outcome) : fmt::format("at t = {}: {}", run.outcome.t, run.problem));
@@ -177,6 +183,7 @@ void add_sense(CLI::App& app, ExitCode& exit) {
   add_tolerances(*verb, options->experiment);
   verb->add_option("-o", options->output, "A CSV file of states and sensitivities; - is standard output")
       ->type_name("FILE");
+  verb->add_flag("--json", options->json, "Every row and event as one JSON object");
   verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = sense(*options); });
 }

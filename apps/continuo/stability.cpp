@@ -19,6 +19,7 @@
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/model/simulate.hpp>
 #include <continuo/results/figure.hpp>
@@ -35,6 +36,7 @@ struct StabilityOptions {
   ExperimentOptions experiment;  // its file: --model
   std::vector<std::string> methods;
   std::string plot;
+  bool json = false;
 };
 
 std::string limit_text(double limit) {
@@ -115,6 +117,27 @@ std::string confirmed_text(const std::vector<Confirmed>& all, const std::string&
     while (text[text.size() - 2] == ' ') text.erase(text.size() - 2, 1);
   }
   return text;
+}
+
+/// A limit that is not known is null, one that there is none of "none".
+std::string as_json(const std::vector<Region>& regions, const std::vector<Confirmed>& confirmed) {
+  const auto limit = [](double value) { return std::isinf(value) ? nlohmann::json("none") : nlohmann::json(value); };
+  auto methods = nlohmann::json::array();
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    methods.push_back({{"method", regions[i].method},
+                       {"real_axis_to", limit(-regions[i].region.real_limit)},
+                       {"imaginary_axis_to", limit(regions[i].region.imaginary_limit)}});
+    if (i >= confirmed.size()) continue;
+    const Confirmed& one = confirmed[i];
+    nlohmann::json step{{"step", limit(one.limit.step)}};
+    if (std::isfinite(one.limit.step) && one.limit.step > 0)
+      step.update({{"eigenvalue", {one.limit.eigenvalue.real(), one.limit.eigenvalue.imag()}},
+                   {"t", one.limit.time},
+                   {"just_below", studies::to_string(one.below)},
+                   {"just_above", studies::to_string(one.above)}});
+    methods.back()["largest"] = std::move(step);
+  }
+  return nlohmann::json{{"methods", methods}}.dump(2) + "\n";
 }
 
 /// Each region lightly filled, with its crossings of the axes. Returns the number of each method's colour.
@@ -222,8 +245,8 @@ ExitCode stability(const StabilityOptions& options) {
       confirmed.push_back(confirm(method, *studied, samples, spectrum));
       go_on = more();
     }
-  std::string text = regions_text(regions);
-  if (!confirmed.empty()) {
+  std::string text = options.json ? as_json(regions, confirmed) : regions_text(regions);
+  if (!confirmed.empty() && !options.json) {
     const std::string& unit = studied->prepared.program->model.time_unit;
     text += confirmed_text(confirmed, unit.empty() ? "" : " " + unit);
   }
@@ -254,6 +277,7 @@ void add_stability(CLI::App& app, ExitCode& exit) {
   verb->add_option("--set", options->experiment.settings, "A parameter of the model")
       ->needs(model)
       ->type_name("NAME=VALUE");
+  verb->add_flag("--json", options->json, "The limits as one JSON object");
   verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = stability(*options); });
 }
