@@ -67,6 +67,9 @@ class ModelSystem {
   bool has_switches() const { return switched_ && switched_->any(mode_); }
   bool slides() const { return switched_ && switched_->slides(); }
   bool slides_along(std::size_t k) const { return switched_ && switched_->slides_along(k); }
+  std::span<const SwitchedMotion::Sliding> sliding() const {
+    return has_switches() ? switched_->sliding() : std::span<const SwitchedMotion::Sliding>();
+  }
   std::span<const double> switch_values() const {
     return has_switches() ? switched_->values() : std::span<const double>();
   }

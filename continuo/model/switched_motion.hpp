@@ -50,19 +50,20 @@ class SwitchedMotion {
 
   /// A parameter or an input.
   void set(std::uint32_t variable, double value);
-  /// The values of the mode's switches; of one that slides that of the greater part.
+  /// The values of the mode's switches; of one that slides that of its lower side.
   std::span<const double> values() const { return values_; }
 
- private:
-  struct OfMode {
-    Evaluation rates, surfaces, approach;
-  };
   /// A surface the motion slides along: the values of the switch on its two sides.
   struct Sliding {
     std::size_t k;
     double below, above;
   };
+  std::span<const Sliding> sliding() const { return sliding_; }
 
+ private:
+  struct OfMode {
+    Evaluation rates, surfaces, approach;
+  };
   const std::vector<Switch>& switches(std::size_t mode) const { return program_->switches[mode].switches; }
   void place(std::size_t mode, std::size_t k, double value);
   void approach(std::size_t mode, double t, const X& x, std::span<double> values);

@@ -91,7 +91,7 @@ class VariedConditions {
     std::vector<double> at(y.begin() + static_cast<std::ptrdiff_t>(time * wide_),
                            y.begin() + static_cast<std::ptrdiff_t>((time + 1) * wide_));
     if (std::ranges::all_of(time_moves, [](double move) { return move == 0; })) return at;
-    system_.rates(program_->program().model.start_mode, times_[time], at, rates_);
+    system_.rates(times_[time], at, rates_);
     for (std::size_t k = 0; k < time_moves.size(); ++k)
       for (std::size_t i = 0; i < n_; ++i) at[(k + 1) * n_ + i] += rates_[i] * time_moves[k];
     return at;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <continuo/solve/integrator.hpp>
-#include <continuo/studies/sensitive_system.hpp>
+#include <continuo/studies/sensitive_events.hpp>
 
 namespace continuo::studies::detail {
 

@@ -9,6 +9,10 @@ namespace continuo::studies::detail {
 using model::Graph;
 using model::NodeId;
 
+namespace {
+constexpr std::size_t largest_full = 100;  // components of a matrix that is full where the motion slides
+}
+
 SensitiveProgram::SensitiveProgram(std::shared_ptr<const model::ModelProgram> program,
                                    std::vector<Influence> influences, const model::Overrides& overrides,
                                    bool start_is_given)
@@ -19,7 +23,7 @@ SensitiveProgram::SensitiveProgram(std::shared_ptr<const model::ModelProgram> pr
   const model::Model& model = program_->model;
   own_.tables = program_->tables;
   own_.linear_inputs = program_->linear_inputs;
-  own_.model.layout.size += static_cast<std::uint32_t>(n_ * count());
+  own_.model.layout.size = registers_of_s() + static_cast<std::uint32_t>(n_ * count());
   for (const model::State& state : model.states) names_.push_back(state.column);
   for (const Influence& influence : influences_)
     for (const model::State& state : model.states)
@@ -32,6 +36,7 @@ SensitiveProgram::SensitiveProgram(std::shared_ptr<const model::ModelProgram> pr
   }
   if (model.has_world()) return;  // whose motion nobody differentiates
   add_equations();
+  add_start();
   add_events();
 }
 
@@ -84,13 +89,44 @@ NodeId SensitiveProgram::variation(Graph& graph, NodeId node, std::size_t k) con
 void SensitiveProgram::add_equations() {
   Graph& graph = own_.model.graph;
   const model::Model& model = program_->model;
-  for (const model::Mode& mode : model.modes) {
+  const model::SwitchedEquations none{};
+  for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
+    // Collocation takes the equations as they stand.
+    const model::SwitchedEquations& held = model.needs_boundary_solver() ? none : program_->switches[mode];
     std::vector<NodeId>& nodes = rate_nodes_.emplace_back();
-    for (const NodeId node : mode.derivatives) nodes.push_back(program_->with_inputs(graph, node));
+    for (const NodeId node : held.empty() ? model.modes[mode].derivatives : held.derivatives)
+      nodes.push_back(program_->with_inputs(graph, node));
     for (std::size_t k = 0; k < count(); ++k)
       for (std::size_t i = 0; i < n_; ++i) nodes.push_back(variation(graph, nodes[i], k));
     rates_.push_back(own_.tape_of(nodes));
+    surfaces_.push_back(surfaces_of(held));
   }
+}
+
+SensitiveSurfaces SensitiveProgram::surfaces_of(const model::SwitchedEquations& equations) {
+  SensitiveSurfaces result;
+  Graph& graph = own_.model.graph;
+  const std::uint32_t states = program_->model.layout.states;
+  std::vector<NodeId> outputs, approach;
+  for (const model::Switch& one : equations.switches) {
+    result.surface.push_back(variation_of(one.surface, outputs));
+    NodeId rate = model::differentiate(graph, one.surface, model::Layout::time);
+    for (const std::uint32_t variable : model::variables_of(graph, one.surface)) {
+      if (variable < states || variable >= states + n_) continue;
+      rate = graph.add(rate, graph.multiply(model::differentiate(graph, one.surface, variable),
+                                            equations.derivatives[variable - states]));
+    }
+    approach.push_back(rate);
+    for (std::size_t k = 0; k < count(); ++k) approach.push_back(variation(graph, rate, k));
+  }
+  result.tape = own_.tape_of(outputs);
+  result.approach = own_.tape_of(approach);
+  return result;
+}
+
+void SensitiveProgram::add_start() {
+  Graph& graph = own_.model.graph;
+  const model::Model& model = program_->model;
   if (model.needs_boundary_solver()) return;  // there are no initial values
   for (std::size_t k = 0; k < count(); ++k) {
     for (std::size_t i = 0; i < n_; ++i) {
@@ -142,8 +178,6 @@ std::vector<SensitiveAction> SensitiveProgram::actions_of(const model::Block& bl
       made.then = actions_of(branch->then, outputs);
       made.otherwise = actions_of(branch->otherwise, outputs);
       actions.push_back(std::move(made));
-    } else if (const auto* go = std::get_if<model::Go>(&action.what)) {
-      actions.push_back({.kind = SensitiveAction::Kind::go, .target = go->mode});
     }
   }
   return actions;
@@ -204,6 +238,10 @@ const SensitiveProgram::Jacobians& SensitiveProgram::jacobians() const {
     const auto& places = made->by_state.back().places;
     all.insert(all.end(), places.begin(), places.end());
   }
+  // Where the motion slides everything may hang on everything.
+  const bool slides = std::ranges::any_of(program_->switches, &model::SwitchedEquations::slides);
+  for (std::uint32_t row = 0; slides && columns.size() <= largest_full && row < columns.size(); ++row)
+    for (std::uint32_t column = 0; column < columns.size(); ++column) all.push_back({row, column});
   made->pattern = SparsePattern(columns.size(), all);
   jacobians_ = std::move(made);
   return *jacobians_;

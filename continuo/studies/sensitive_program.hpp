@@ -7,7 +7,8 @@
 //   S+ = dA/dx (S- + f- tau') + dA/dt tau' + dA/dp - f+ tau'
 //
 // and g(tau, x-(tau, p), p) = 0 gives tau' = -(dg/dx S- + dg/dp) / (dg/dx f- + dg/dt). I. A. Hiskens, M. A. Pai,
-// "Trajectory sensitivity analysis of hybrid systems", IEEE Trans. Circuits Syst. I 47 (2000), eq. 34-41.
+// "Trajectory sensitivity analysis of hybrid systems", IEEE Trans. Circuits Syst. I 47 (2000), eq. 34-41. The same
+// holds at a surface z(t, x, p) = 0 where the equations jump, with A = x and g = z.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -32,13 +33,13 @@ struct Variation {
   std::vector<std::uint32_t> states;  // which ones by_state, by_state + 1, ... are of
 };
 
-/// An action that moves the state or the mode.
+/// An action that moves the state. The mode is the model's own run's.
 struct SensitiveAction {
-  enum class Kind { assign, branch, go };
+  enum class Kind { assign, branch };
   Kind kind = Kind::assign;
   Variation value{};          // of assign
   std::size_t condition = 0;  // of branch: an output
-  std::size_t target = 0;     // of assign: the state; of go: the mode
+  std::size_t target = 0;     // of assign: the state
   std::vector<SensitiveAction> then{}, otherwise{};
 };
 
@@ -49,6 +50,14 @@ struct SensitiveEvent {
   std::vector<SensitiveAction> actions{};
   /// A scheduled time is first + k period: the derivatives of both by each influence.
   std::vector<model::NodeId> first{}, period{};
+};
+
+/// Of one mode, the surfaces where its equations jump or bend, by switch (model/switches.hpp).
+struct SensitiveSurfaces {
+  std::shared_ptr<const model::Tape> tape;
+  std::vector<Variation> surface;
+  /// How fast the motion goes towards the upper side of each, a = dz/dt + dz/dx f, then da/dx S + da/dp by influence.
+  std::shared_ptr<const model::Tape> approach;
 };
 
 class SensitiveProgram {
@@ -67,11 +76,12 @@ class SensitiveProgram {
   /// "d x / d k"
   const std::string& name(std::size_t component) const { return names_[component]; }
 
-  /// x' and S' of a mode.
+  /// x' and S' of a mode, with its switches held.
   const std::shared_ptr<const model::Tape>& rates(std::size_t mode) const { return rates_[mode]; }
+  const SensitiveSurfaces& surfaces(std::size_t mode) const { return surfaces_[mode]; }
   const std::vector<SensitiveEvent>& events() const { return events_; }
-  /// Where the registers of S begin in the flat space of these tapes.
-  std::uint32_t registers_of_s() const { return program_->model.layout.size; }
+  /// Where the registers of S begin in the flat space of these tapes: behind those of the switches.
+  std::uint32_t registers_of_s() const { return program_->model.layout.size + program_->switch_variables; }
 
   /// Entries of d(x', S')/d(x, S) in every mode, and of d(x', S')/dt.
   struct Entries {
@@ -103,6 +113,8 @@ class SensitiveProgram {
   Variation variation_of(model::NodeId node, std::vector<model::NodeId>& outputs);
   std::vector<SensitiveAction> actions_of(const model::Block& block, std::vector<model::NodeId>& outputs);
   void add_equations();
+  void add_start();
+  SensitiveSurfaces surfaces_of(const model::SwitchedEquations& equations);
   void add_events();
 
   std::shared_ptr<const model::ModelProgram> program_;
@@ -115,6 +127,7 @@ class SensitiveProgram {
   std::vector<model::NodeId> start_, start_time_;
   std::vector<std::vector<model::NodeId>> rate_nodes_;
   std::vector<std::shared_ptr<const model::Tape>> rates_;
+  std::vector<SensitiveSurfaces> surfaces_;
   std::vector<SensitiveEvent> events_;
   mutable std::unique_ptr<Jacobians> jacobians_;
 };

@@ -2,8 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
-
+#include <continuo/numerics/dense_lu.hpp>
 #include <continuo/studies/sensitive_system.hpp>
 
 namespace continuo::studies::detail {
@@ -41,14 +40,109 @@ SensitiveSystem::SensitiveSystem(std::shared_ptr<const SensitiveProgram> program
     : program_(std::move(program)),
       plain_(program_->shared_program(), variables),
       variables_(variables.begin(), variables.end()) {
-  for (std::size_t mode = 0; mode < program_->program().model.modes.size(); ++mode)
-    rates_.emplace_back(program_->rates(mode), *program_, variables);
+  for (std::size_t mode = 0; mode < program_->program().model.modes.size(); ++mode) add_mode(mode);
   for (const SensitiveEvent& event : program_->events()) events_.emplace_back(event.tape, *program_, variables);
+}
+
+void SensitiveSystem::add_mode(std::size_t mode) {
+  rates_.emplace_back(program_->rates(mode), *program_, variables_);
+  const SensitiveSurfaces& surfaces = program_->surfaces(mode);
+  surfaces_.emplace_back(surfaces.tape, *program_, variables_);
+  approach_.emplace_back(surfaces.approach, *program_, variables_);
+}
+
+void SensitiveSystem::hold_switches(double t, const X& x) {
+  plain_.hold_switches(t, X(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(program_->size())));
+  place_switches();
+}
+
+void SensitiveSystem::place_switches() {
+  const std::span<const double> values = plain_.switch_values();
+  for (std::size_t k = 0; k < values.size(); ++k) place(k, values[k]);
+}
+
+void SensitiveSystem::place(std::size_t k, double value) {
+  const std::uint32_t variable = program_->program().switches[mode()].switches[k].variable;
+  rates_[mode()].place(variable, value);
+  surfaces_[mode()].place(variable, value);
+  approach_[mode()].place(variable, value);
+  if (jacobian_) jacobian_->by_state[mode()].place(variable, value), jacobian_->by_time[mode()].place(variable, value);
+}
+
+void SensitiveSystem::rates(double t, const X& x, X& dxdt) {
+  if (plain_.slides()) {
+    slide(t, x, dxdt);
+  } else {
+    rates_[mode()](t, x, dxdt);
+  }
+}
+
+void SensitiveSystem::slide(double t, const X& x, X& dxdt) {
+  const std::span<const model::SwitchedMotion::Sliding> sliding = plain_.sliding();
+  const std::size_t n = sliding.size(), width = 1 + program_->count(), states = program_->size();
+  for (const auto& one : sliding) place(one.k, one.below);
+  X base(x.size());
+  rates_[mode()](t, x, base);
+  const std::vector<double> below = approach_[mode()](t, x);
+  std::vector<X> beyond(n, X(x.size()));  // f and df above the i-th surface alone, less those below all
+  std::vector<std::vector<double>> change(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    place(sliding[i].k, sliding[i].above);
+    rates_[mode()](t, x, beyond[i]);
+    change[i] = approach_[mode()](t, x);
+    place(sliding[i].k, sliding[i].below);
+    for (std::size_t s = 0; s < x.size(); ++s) beyond[i][s] -= base[s];
+    for (std::size_t a = 0; a < change[i].size(); ++a) change[i][a] -= below[a];
+  }
+  DenseLU<double> matrix(n);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = 0; i < n; ++i) matrix.matrix()[j * n + i] = change[i][sliding[j].k * width];
+  dxdt = base;
+  if (!matrix.factor()) {
+    std::ranges::fill(dxdt, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  std::vector<double> weight(n), moved(n);
+  for (std::size_t j = 0; j < n; ++j) weight[j] = -below[sliding[j].k * width];
+  matrix.solve(weight.data());
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t s = 0; s < x.size(); ++s) dxdt[s] += weight[i] * beyond[i][s];
+  for (std::size_t k = 0; k < program_->count(); ++k) {
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::size_t place = sliding[j].k * width + 1 + k;
+      moved[j] = -below[place];
+      for (std::size_t i = 0; i < n; ++i) moved[j] -= weight[i] * change[i][place];
+    }
+    matrix.solve(moved.data());
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t s = 0; s < states; ++s) dxdt[program_->place(s, k)] += moved[i] * beyond[i][s];
+  }
+}
+
+/// The motion slides, and the pattern has a place for all that its weights hang on.
+bool SensitiveSystem::slides_in_full() const {
+  const std::size_t width = program_->size() * (1 + program_->count());
+  return plain_.slides() && program_->jacobians().pattern.entries() == width * width;
+}
+
+/// As in ModelSystem: the third root of the rounding balances it with the error of the difference.
+void SensitiveSystem::difference_rows(double t, const X& x, std::span<double> rows) {
+  X moved = x, above(x.size()), below(x.size());
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    const double h = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(std::abs(x[j]), 1e-3);
+    moved[j] = x[j] + h;
+    slide(t, moved, above);
+    moved[j] = x[j] - h;
+    slide(t, moved, below);
+    moved[j] = x[j];
+    for (std::size_t i = 0; i < x.size(); ++i) rows[i * x.size() + j] = (above[i] - below[i]) / (2 * h);
+  }
 }
 
 void SensitiveSystem::set(std::uint32_t variable, double value) {
   variables_[variable] = value;
-  for (WideEvaluation& rates : rates_) rates.set(variable, value);
+  for (auto* of_modes : {&rates_, &surfaces_, &approach_})
+    for (WideEvaluation& evaluation : *of_modes) evaluation.set(variable, value);
   for (WideEvaluation& event : events_) event.set(variable, value);
   if (!jacobian_) return;
   for (WideEvaluation& entries : jacobian_->by_state) entries.set(variable, value);
@@ -65,10 +159,19 @@ SensitiveSystem::Jacobian& SensitiveSystem::derivatives() {
     for (const MatrixPlace& place : entries.places) entry.push_back(shared.pattern.find(place.row, place.column));
   }
   for (const auto& entries : shared.by_time) jacobian_->by_time.emplace_back(entries.tape, *program_, variables_);
+  place_switches();
   return *jacobian_;
 }
 
 void SensitiveSystem::jacobian_values(double t, const X& x, std::span<double> values) {
+  if (slides_in_full()) {
+    std::vector<double> rows(x.size() * x.size());
+    difference_rows(t, x, rows);
+    const SparsePattern& pattern = program_->jacobians().pattern;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (std::size_t j = 0; j < x.size(); ++j) values[pattern.find(i, j)] = rows[i * x.size() + j];
+    return;
+  }
   Jacobian& mine = derivatives();
   const std::vector<double> entries = mine.by_state[mode()](t, x);
   std::ranges::fill(values, 0.0);
@@ -76,6 +179,7 @@ void SensitiveSystem::jacobian_values(double t, const X& x, std::span<double> va
 }
 
 void SensitiveSystem::jacobian(double t, const X& x, std::span<double> rows) {
+  if (plain_.slides()) return difference_rows(t, x, rows);
   const std::vector<double> entries = derivatives().by_state[mode()](t, x);
   const auto& places = program_->jacobians().by_state[mode()].places;
   std::ranges::fill(rows, 0.0);
@@ -83,152 +187,18 @@ void SensitiveSystem::jacobian(double t, const X& x, std::span<double> rows) {
 }
 
 void SensitiveSystem::time_derivative(double t, const X& x, X& dfdt) {
+  if (plain_.slides()) {
+    const double moved = t + std::sqrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));
+    X now(x.size());
+    slide(t, x, now);
+    slide(moved, x, dfdt);
+    for (std::size_t i = 0; i < x.size(); ++i) dfdt[i] = (dfdt[i] - now[i]) / (moved - t);
+    return;
+  }
   const std::vector<double> entries = derivatives().by_time[mode()](t, x);
   const auto& places = program_->jacobians().by_time[mode()].places;
   std::ranges::fill(dfdt, 0.0);
   for (std::size_t e = 0; e < entries.size(); ++e) dfdt[places[e].row] = entries[e];
-}
-
-SensitiveEvents::SensitiveEvents(const SensitiveProgram& program, std::span<const double> variables, double from)
-    : plain_(program.program(), variables, from),
-      inputs_(program.program().step_inputs.size()),
-      n_(program.size()),
-      count_(program.count()),
-      program_(&program),
-      last_t_(std::numeric_limits<double>::quiet_NaN()) {
-  const model::Model& model = program.program().model;
-  const std::vector<double> values(variables.begin(), variables.end());
-  for (std::size_t e = 0; e < model.event_order.size(); ++e) {
-    std::optional<Schedule>& schedule = schedules_.emplace_back();
-    if (!model.event_order[e].scheduled) continue;
-    const SensitiveEvent& event = program.events()[e];
-    const model::Scheduled& text = model.schedule[model.event_order[e].index];
-    schedule.emplace();
-    if (text.kind == model::Scheduled::Kind::every) {
-      schedule->period = evaluate(model, text.time->node, values);
-      schedule->first = text.first ? evaluate(model, text.first->node, values) : from + schedule->period;
-    }
-    schedule->first_moves = program.evaluate(event.first, values);
-    schedule->period_moves = program.evaluate(event.period, values);
-  }
-}
-
-void SensitiveEvents::guards(SensitiveSystem& system, double t, const X& x, std::span<double> values) {
-  x_.assign(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_));
-  plain_.guards(system.plain(), t, x_, values);
-}
-
-namespace {
-/// dv/dx x' + dv/dt.
-double rate_of(const Variation& variation, std::span<const double> values, std::span<const double> rates) {
-  double rate = values[variation.by_time];
-  for (std::size_t s = 0; s < variation.states.size(); ++s)
-    rate += values[variation.by_state + s] * rates[variation.states[s]];
-  return rate;
-}
-}  // namespace
-
-std::vector<double> SensitiveEvents::time_moves(std::size_t event, std::span<const double> values, double t,
-                                                std::span<const double> rates) {
-  std::vector<double> moves(count_);
-  if (const auto& schedule = schedules_[event]) {
-    const double number = schedule->period > 0 ? std::round((t - schedule->first) / schedule->period) : 0;
-    for (std::size_t k = 0; k < count_; ++k) moves[k] = schedule->first_moves[k] + number * schedule->period_moves[k];
-    return moves;
-  }
-  const Variation& guard = *program_->events()[event].guard;
-  const double rate = rate_of(guard, values, rates);
-  for (std::size_t k = 0; k < count_; ++k) {
-    const double along = values[guard.along + k];
-    moves[k] = along == 0 ? 0 : -along / rate;
-    if (!std::isfinite(moves[k]) && problem_.empty())
-      problem_ = fmt::format("`{}` is not crossed with a slope: the motion has no derivative there",
-                             plain_.name(event + inputs_));
-  }
-  return moves;
-}
-
-/// One event's effect on x, S and the mode, on top of what others of the same instant have done.
-struct SensitiveEvents::Jump {
-  X& x;  // wide
-  std::size_t mode;
-  std::vector<double> total;     // dA/dx (S- + f- tau') + dA/dt tau' + dA/dp of assigned states, by k n + i
-  std::vector<char> assigned{};  // by state
-};
-
-void SensitiveEvents::perform(const std::vector<SensitiveAction>& actions, std::span<const double> values,
-                              std::span<const double> rates, std::span<const double> moves, Jump& jump) const {
-  for (const SensitiveAction& action : actions) {
-    switch (action.kind) {
-      case SensitiveAction::Kind::assign: {
-        jump.x[action.target] = values[action.value.value];
-        jump.assigned[action.target] = 1;
-        const double rate = rate_of(action.value, values, rates);
-        for (std::size_t k = 0; k < count_; ++k)
-          jump.total[k * n_ + action.target] = values[action.value.along + k] + rate * moves[k];
-        break;
-      }
-      case SensitiveAction::Kind::branch:
-        perform(values[action.condition] != 0 ? action.then : action.otherwise, values, rates, moves, jump);
-        break;
-      case SensitiveAction::Kind::go:
-        jump.mode = action.target;
-        break;
-    }
-  }
-}
-
-/// An event whose guard the event before it at the same instant has carried across zero; else its own crossing brought
-/// it there, and its time moves by itself.
-bool SensitiveEvents::set_off_by_jump(SensitiveSystem& system, std::size_t fired, double t, const X& before) {
-  if (!plain_.is_guard(fired) || !last_changed_ || t != last_t_ || before != last_after_) return false;
-  std::vector<double> now(size()), earlier(size());
-  guards(system, t, before, now);
-  guards(system, t, last_before_, earlier);
-  return now[fired] != earlier[fired];
-}
-
-EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x) {
-  const auto of_model = [this](const X& wide) {
-    return X(wide.begin(), wide.begin() + static_cast<std::ptrdiff_t>(n_));
-  };
-  const bool follows = set_off_by_jump(system, fired, t, before);
-  const std::size_t mode = system.mode();
-  X rates(before.size()), new_rates(before.size());
-  system.rates(mode, t, before, rates);
-  const X plain_before = of_model(before);
-  X plain_after = plain_before;
-  const EventResponse response = plain_.fire(system.plain(), fired, t, plain_before, plain_after);
-  X now = before;
-  if (!plain_.is_declared(fired)) {
-    const model::TableInput& input = program_->program().step_inputs[fired];
-    system.set(input.variable, input.table.value(t));
-    last_moves_.assign(count_, 0);
-  } else {
-    const std::size_t event = fired - inputs_;
-    const std::vector<double> values = system.event(event, t, before);
-    const std::vector<double> moves = follows ? last_moves_ : time_moves(event, values, t, rates);
-    Jump jump{now, mode, std::vector<double>(n_ * count_), std::vector<char>(n_)};
-    perform(program_->events()[event].actions, values, rates, moves, jump);
-    system.rates(jump.mode, t, now, new_rates);
-    for (std::size_t k = 0; k < count_; ++k) {
-      for (std::size_t s = 0; s < n_; ++s) {
-        double& sensitivity = now[program_->place(s, k)];
-        const double total = jump.assigned[s] != 0 ? jump.total[k * n_ + s] : sensitivity + rates[s] * moves[k];
-        // Where nothing bends, nothing may be lost to rounding either.
-        if (jump.assigned[s] != 0 || rates[s] != new_rates[s]) sensitivity = total - new_rates[s] * moves[k];
-      }
-    }
-    last_moves_ = moves;
-    happened_.push_back({event, t, moves});
-  }
-  std::ranges::copy(plain_after, now.begin());
-  last_t_ = t;
-  last_before_ = before;
-  last_after_ = now;
-  last_changed_ = response.restart || now != before;
-  x = std::move(now);
-  return {response.stop || !problem_.empty(), last_changed_};
 }
 
 }  // namespace continuo::studies::detail

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <continuo/methods/automatic.hpp>
+#include <continuo/model/jumps.hpp>
+#include <continuo/model/switches.hpp>
 #include <continuo/solve/choice.hpp>
 #include <continuo/studies/boundary_sensitivity.hpp>
 #include <continuo/studies/sensitive_integration.hpp>
@@ -61,6 +63,36 @@ Options<std::vector<double>> options_of(const model::Plan& plan, const model::Ex
   return options;
 }
 
+/// A jump of the equations that a run does not locate (model/switches.hpp): it hangs on an unknown, or is one of too
+/// many. What the text calls smooth does not jump.
+std::optional<model::Jump> jump_not_located(const model::Model& model, std::size_t mode) {
+  const auto moves = [&](model::NodeId node) {
+    return std::ranges::any_of(model::variables_of(model.graph, node), [&](std::uint32_t v) {
+      return v == model::Layout::time || (v >= model.layout.states && v < model.layout.parameters);
+    });
+  };
+  const auto reads_unknown = [&](model::NodeId node) {
+    return std::ranges::any_of(model::variables_of(model.graph, node), [&](std::uint32_t v) {
+      return v >= model.layout.unknowns && v < model.layout.parameters;
+    });
+  };
+  std::vector<model::NodeId> smooth;
+  for (const model::NodeId id : model::reachable(model.graph, model.modes[mode].derivatives))
+    if (model.graph[id].op == model::Op::smooth) smooth.push_back(id);
+  const std::vector<model::NodeId> below = model::reachable(model.graph, smooth);
+  std::vector<model::Jump> jumps = model::jumps_of(model, mode);
+  std::erase_if(jumps, [&](const model::Jump& jump) {
+    return !moves(jump.node) || std::ranges::find(below, jump.node) != below.end();
+  });
+  std::vector<model::NodeId> different;
+  for (const model::Jump& jump : jumps) {
+    if (reads_unknown(jump.node)) return jump;
+    if (std::ranges::find(different, jump.node) == different.end()) different.push_back(jump.node);
+    if (different.size() > model::most_switches) return jump;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::span<const Influence> influences) {
@@ -77,6 +109,15 @@ std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::
     if (parameter.structural)
       return model::error("E361", parameter.span, fmt::format("nothing can be differentiated by `{}`", parameter.name),
                           {}, "it decides how many equations there are");
+  }
+  const bool by_events = !model.needs_boundary_solver() && !model.has_world();
+  for (std::size_t mode = 0; by_events && mode < model.modes.size(); ++mode) {
+    const std::optional<model::Jump> jump = jump_not_located(model, mode);
+    if (!jump) continue;
+    return model::error(
+        "E361", model.states[jump->state].span,
+        fmt::format("no sensitivities through the jump `{}`", model::text_of(model, *jump)), "in this equation",
+        "it hangs on an unknown, or is one of too many to be located: an event (`when`) can do the same");
   }
   if (!model.needs_dae_solver()) return std::nullopt;
   const auto refuse = [](const model::Span& span) {
@@ -138,7 +179,8 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   detail::SensitiveSystem system(program_, variables);
   std::vector<double> x0(run.states * (1 + run.influences)), rates(x0.size());
   std::copy_n(variables.begin() + model.layout.states, run.states, x0.begin());
-  system.rates(model.start_mode, planned->from, x0, rates);
+  system.hold_switches(planned->from, x0);
+  system.rates(planned->from, x0, rates);
   std::ranges::copy(program_->start(variables, rates), x0.begin() + static_cast<std::ptrdiff_t>(run.states));
 
   std::vector<double> sizes;
@@ -158,7 +200,7 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
     rows.time = [&](std::size_t row) { return output[row]; };
   }
   run.variables = variables;
-  detail::SensitiveEvents events(*program_, variables, planned->from);
+  detail::SensitiveEvents events(*program_, variables, planned->from, std::abs(planned->to - planned->from));
   const detail::SensitiveEnding ending = detail::integrate({std::move(system),
                                                             std::move(x0),
                                                             {planned->from, planned->to},

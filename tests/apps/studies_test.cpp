@@ -1,4 +1,5 @@
 // The verbs that study a model's equations, and boundary values by `run`: what they say of good and of bad questions.
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -196,6 +197,50 @@ TEST(Studies, HelpBeginsWithExamples) {
   const Shell shell;
   for (const std::string verb : {"steady", "linearize", "phase", "orbit"})
     EXPECT_THAT(shell.run(verb + " --help").out, testing::StartsWith("Examples:\n  continuo " + verb)) << verb;
+}
+
+TEST(StudiesAsJson, SayWhatTheirTablesSay) {
+  const Shell shell;
+  shell.write(
+      "friction.sim",
+      "param mu = 0.5\nv' = 2*sin(t) - mu*sign(v)\nv(0) = 0\nwhen v rises through 1 { mark \"one\" }\nrun 0..3\n");
+  const auto object = [&](const std::string& command, int exit = 0) {
+    const Result result = shell.run(command + " --json");
+    EXPECT_EQ(result.exit, exit) << command << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  const auto sense = object("sense friction.sim --param mu");
+  // It slips from sin t = mu/2 on: v = 2 (cos t0 - cos t) - mu (t - t0).
+  const double t0 = std::asin(0.25);
+  EXPECT_EQ(sense["by"], nlohmann::json({"mu"}));
+  EXPECT_NEAR(sense["rows"].back()["by"][0][0].get<double>(), -(3 - t0), 1e-5);
+  EXPECT_EQ(sense["events"][0]["name"], "v rises through 1");
+
+  const auto compare = object("compare " + gallery("mass_spring") + " --methods rk4,euler --step 0.1");
+  EXPECT_EQ(compare["contenders"].size(), 2u);
+  EXPECT_LT(compare["contenders"][0]["final_error"], compare["contenders"][1]["final_error"]);
+  const auto converge = object("converge " + gallery("mass_spring") + " --methods rk4 --most-steps 1024");
+  EXPECT_NEAR(converge["methods"][0]["global"]["order"].get<double>(), 4, 0.2);
+  const auto stability = object("stability rk4,bdf2 --model " + gallery("mass_spring_damper"));
+  EXPECT_NEAR(stability["methods"][0]["real_axis_to"].get<double>(), -2.785293563405282, 1e-9);
+  EXPECT_EQ(stability["methods"][1]["largest"]["step"], "none");
+  const auto phase = object("phase " + gallery("pendulum"));
+  EXPECT_EQ(phase["states"].size(), 2u);
+  EXPECT_FALSE(phase["motions"].empty());
+}
+
+TEST(Sense, RefusesAJumpThatNobodyLocates) {
+  const Shell shell;
+  shell.write("u.sim", "param q = 2\nunknown u = 1\nx' = if u > 1 then -q else q\n0 = u - x\nx(0) = 0\nrun 0..3\n");
+  const Result result = shell.run("sense u.sim --param q");
+  EXPECT_EQ(result.exit, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("E361"), HasSubstr("1 < u")));
+  shell.write(
+      "floor.sim",
+      "param q = 0.7\nx' = 1\ny' = 0\nx(0) = 0; y(0) = 0\nwhen floor(x/q) rises through 1.5 { y := x }\nrun 0..3\n");
+  const Result floor = shell.run("sense floor.sim --param q");
+  EXPECT_EQ(floor.exit, 3);
+  EXPECT_THAT(floor.err, HasSubstr("jumps across its threshold"));
 }
 
 }  // namespace
