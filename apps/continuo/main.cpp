@@ -42,6 +42,7 @@ int command(int argc, char** argv) {
   add_phase(app, exit);
   add_orbit(app, exit);
   add_report(app, exit);
+  add_explore(app, exit);
   add_sense(app, exit);
   add_fit(app, exit);
   add_methods(app, exit);

@@ -21,6 +21,7 @@ void add_linearize(CLI::App& app, ExitCode& exit);
 void add_phase(CLI::App& app, ExitCode& exit);
 void add_orbit(CLI::App& app, ExitCode& exit);
 void add_report(CLI::App& app, ExitCode& exit);
+void add_explore(CLI::App& app, ExitCode& exit);
 void add_sense(CLI::App& app, ExitCode& exit);
 void add_fit(CLI::App& app, ExitCode& exit);
 void add_methods(CLI::App& app, ExitCode& exit);
