@@ -118,6 +118,8 @@ void add_fit(CLI::App& app, ExitCode& exit) {
   list("--in", options->settings, "A parameter's value in one data file", "FILE:NAME=VALUE");
   verb->add_option("--loss", options->loss, "squares, or for outliers huber, soft_l1, cauchy, tukey")
       ->type_name("NAME");
+  verb->add_option("--likelihood", options->likelihood, "Of unknown deviations: restricted, or plain, which is biased")
+      ->type_name("NAME");
   verb->add_option("--starts", options->starts, "Search from this many places; else from ten others in doubt")
       ->type_name("N");
   verb->add_option("--iterations", options->iterations, "The limit of each search (500)")->type_name("N");

@@ -60,6 +60,13 @@ class FitRequestReader {
       say(no_such("loss", options_.loss, {std::begin(studies::loss_names), std::end(studies::loss_names)}));
       return {};
     }
+    const auto likelihood = place_in(studies::likelihood_names, options_.likelihood);
+    if (!likelihood) {
+      say(no_such("likelihood", options_.likelihood,
+                  {std::begin(studies::likelihood_names), std::end(studies::likelihood_names)}));
+      return {};
+    }
+    request_.likelihood = static_cast<studies::Likelihood>(*likelihood);
     if (options_.starts == 0U || options_.iterations == 0) {
       say(options_.iterations == 0 ? "--iterations: at least one" : "--starts: at least one, the start itself");
       return {};

@@ -14,7 +14,7 @@ struct FitOptions {
   ExperimentOptions experiment;
   std::vector<std::string> data, parameters, initial, columns, deviations, errors, bounds, settings, priors,
       logarithmic;
-  std::string loss = "squares", plot;
+  std::string loss = "squares", likelihood = "restricted", plot;
   std::optional<std::size_t> starts;
   std::size_t iterations = 500;
   bool json = false, profile = false, one_deviation = false;

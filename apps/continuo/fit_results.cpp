@@ -141,9 +141,9 @@ std::string profiles_text(const studies::FitRequest& request, const std::vector<
     }
     text += fmt::format("profile of {}: {}", name, interval_text(profile.low, profile.high));
     if (profile.low_is_bound || profile.high_is_bound)
-      text += fmt::format(", where {} its range ends", profile.low_is_bound == profile.high_is_bound ? "on both sides"
-                                                       : profile.low_is_bound                        ? "below"
-                                                                                                     : "above");
+      text += fmt::format(" (its range ends {})", !profile.high_is_bound  ? "below"
+                                                  : !profile.low_is_bound ? "above"
+                                                                          : "on both sides");
     text += profile.better ? "; on the way there the fit was better than the one above: take --starts\n" : "\n";
   }
   return text;
@@ -236,6 +236,7 @@ std::string fit_json(const studies::FitRequest& request, const studies::Fit& fit
   const studies::FitStatistics& s = fit.statistics;
   const auto known = [](const std::optional<double>& value) { return value ? json(*value) : json(); };
   const json result{{"model", model.name},
+                    {"likelihood", studies::likelihood_names[static_cast<std::size_t>(request.likelihood)]},
                     {"loss", studies::loss_names[static_cast<std::size_t>(request.options.loss)]},
                     {"converged", fit.least.converged},
                     {"interrupted", fit.least.interrupted},
@@ -299,12 +300,16 @@ results::Figure fit_figure(const studies::FitRequest& request, const studies::Fi
     for (std::size_t i = 0; i < met.residuals.size(); ++i) over.push_back(-met.residuals[i] / met.deviations[i]);
     figure.panels.push_back({.x_label = time,
                              .y_label = column.quantity + " off, in deviations",
-                             .curves = {{.label = "measured less fit",
+                             .curves = {{.label = "",  // from end to end, as above
+                                         .x = {curve.t.front(), curve.t.back()},
+                                         .y = {0, 0},
+                                         .color = grey,
+                                         .style = results::Curve::Style::thin_line},
+                                        {.label = "measured less fit",
                                          .x = met.times,
                                          .y = std::move(over),
                                          .color = grey,
-                                         .style = results::Curve::Style::empty_points}},
-                             .zero_lines = true});
+                                         .style = results::Curve::Style::empty_points}}});
   }
   for (const studies::Profile& profile : profiles) {
     if (profile.values.size() < 2) continue;

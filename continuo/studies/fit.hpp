@@ -67,6 +67,8 @@ struct FitRequest {
   std::vector<FitUnknown> unknowns;
   model::Experiment experiment{};
   LeastSquaresOptions options{};
+  /// By which unknown deviations are estimated: plain likelihood, as many programs do, makes them too small.
+  Likelihood likelihood = Likelihood::restricted;
   /// Columns of one quantity have one deviation in all sets, unless it is given.
   bool one_deviation = false;
   /// Where one start was asked for and its end is doubtful, so many others are tried.

@@ -225,7 +225,7 @@ double FitProblem::update_noise(std::span<const double> residuals, std::span<con
         std::all_of(begin, begin + static_cast<std::ptrdiff_t>(width), [](double x) { return x == 0; });
     noise_.rows[i].counts = !(is_fixed && std::abs(off[i]) <= digits * std::abs(measured_[i].value));
   }
-  estimate_variances(noise_, off, slopes, loss);
+  estimate_variances(noise_, off, slopes, loss, request_.likelihood);
   take_deviations();
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (std::size_t r = 0; r < before.size(); ++r) {

@@ -111,7 +111,7 @@ void estimate_variances(VarianceComponents& noise, std::span<const double> resid
     leverage.assign(found.begin(), found.end());
   };
   find_leverage();
-  if (robust && restricted) start_robustly(noise, residuals, leverage);
+  if (robust) start_robustly(noise, residuals, leverage);
   constexpr int most_rounds = 500;
   for (int round = 0; round < most_rounds; ++round) {
     std::vector<double> seen(count, 0), expected(count, 0);
@@ -268,8 +268,11 @@ Uncertainty uncertainty(const VarianceComponents& noise, std::span<const double>
     result.group_degrees[g] += 1 - parts.leverage[static_cast<Index>(r)];
     result.group_ratio[g] += counted_square(residuals[r] / std::sqrt(noise.variance(r)), loss != Loss::squares);
   }
-  for (std::size_t g = 0; g < noise.groups; ++g)
+  for (std::size_t g = 0; g < noise.groups; ++g) {
+    constexpr double rounding = 1e-9;
+    if (result.group_degrees[g] < rounding) result.group_degrees[g] = 0;
     result.group_ratio[g] = std::sqrt(result.group_ratio[g] / result.group_degrees[g]);
+  }
 
   const Estimated variances = estimated(noise, parts);
   Dense along = Dense::Identity(rank, rank) + variances.widening;  // the covariance along q

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <continuo/studies/robust_loss.hpp>
@@ -51,6 +52,7 @@ struct VarianceComponents {
 
 /// Restricted: unbiased by the unknowns that were fitted. Plain maximum likelihood is what AIC and BIC are of.
 enum class Likelihood { restricted, plain };
+inline constexpr std::string_view likelihood_names[] = {"restricted", "plain"};
 
 /// Sets the variances of the components that are not known. With a loss other than squares outliers count little.
 void estimate_variances(VarianceComponents& noise, std::span<const double> residuals, std::span<const double> jacobian,
