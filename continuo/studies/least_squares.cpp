@@ -94,9 +94,37 @@ struct Found {
   std::vector<double> p;
   double cost = std::numeric_limits<double>::infinity();
   std::string message;
-  bool is_usable = false, converged = false;
+  bool is_usable = false, converged = false, stopped = false;
   std::size_t iterations = 0, evaluations = 0;
 };
+
+bool is_at(double value, double bound) {
+  return std::isfinite(bound) && std::abs(value - bound) <= 1e-9 * std::abs(bound);
+}
+
+/// Unknowns at a bound of theirs.
+std::vector<int> held_by_bounds(const LeastSquares& problem, const std::vector<double>& p) {
+  std::vector<int> held;
+  for (std::size_t i = 0; i < p.size() && !problem.low.empty(); ++i)
+    if (is_at(p[i], problem.low[i]) || is_at(p[i], problem.high[i])) held.push_back(static_cast<int>(i));
+  return held;
+}
+
+void solve(ceres::Problem& least, ceres::Solver::Options& solver, Found& found) {
+  // Along a narrow bent valley Levenberg and Marquardt's steps stay short; Powell's go on from there.
+  for (const auto strategy : {ceres::LEVENBERG_MARQUARDT, ceres::DOGLEG}) {
+    solver.trust_region_strategy_type = strategy;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &least, &summary);
+    found.cost = summary.final_cost;
+    found.message = summary.message;
+    found.is_usable = summary.IsSolutionUsable();
+    found.converged = summary.termination_type == ceres::CONVERGENCE;
+    found.stopped = summary.termination_type == ceres::USER_SUCCESS;
+    found.iterations += summary.iterations.size();
+    if (found.converged || found.stopped) break;
+  }
+}
 
 Found search(const LeastSquares& problem, const LeastSquaresOptions& options, std::vector<double> p,
              std::size_t start) {
@@ -128,19 +156,21 @@ Found search(const LeastSquares& problem, const LeastSquaresOptions& options, st
   solver.max_num_consecutive_invalid_steps = 100;
   Watch watch(options, start);
   solver.callbacks.push_back(&watch);
+  solver.dogleg_type = ceres::SUBSPACE_DOGLEG;
   Found found{};
-  // Along a narrow bent valley Levenberg and Marquardt's steps stay short; Powell's go on from there.
-  for (const auto strategy : {ceres::LEVENBERG_MARQUARDT, ceres::DOGLEG}) {
-    solver.trust_region_strategy_type = strategy;
-    solver.dogleg_type = ceres::SUBSPACE_DOGLEG;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &least, &summary);
-    found.cost = summary.final_cost;
-    found.message = summary.message;
-    found.is_usable = summary.IsSolutionUsable();
-    found.converged = summary.termination_type == ceres::CONVERGENCE;
-    found.iterations += summary.iterations.size();
-    if (found.converged || summary.termination_type == ceres::USER_SUCCESS) break;
+  solve(least, solver, found);
+  // Steps that bounds cut off need not lead downhill, and a search among them may stand still: those at a bound are
+  // held while the others go on, and then all are free again.
+  constexpr int most_rounds = 5;
+  for (int round = 0; round < most_rounds && found.is_usable && !found.stopped; ++round) {
+    const std::vector<int> held = held_by_bounds(problem, p);
+    if (held.empty() || held.size() == p.size()) break;
+    const double before = found.cost;
+    least.SetManifold(p.data(), new ceres::SubsetManifold(static_cast<int>(p.size()), held));
+    solve(least, solver, found);
+    least.SetManifold(p.data(), nullptr);
+    if (found.stopped || !(found.cost < before * (1 - 1e-12))) break;
+    solve(least, solver, found);
   }
   found.p = std::move(p);
   found.evaluations = evaluations.count;
@@ -177,10 +207,6 @@ std::vector<std::vector<double>> other_starts(const LeastSquares& problem, std::
   return starts;
 }
 
-bool is_at(double value, double bound) {
-  return std::isfinite(bound) && std::abs(value - bound) <= 1e-9 * std::abs(bound);
-}
-
 }  // namespace
 
 LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquaresOptions& options) {
@@ -211,9 +237,8 @@ LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquares
   result.residuals.resize(problem.residuals);
   result.rows.resize(problem.residuals * result.p.size());
   result.found = problem.evaluate(result.p, result.residuals, result.rows);
-  for (std::size_t i = 0; i < result.p.size(); ++i)
-    result.at_bound.push_back(!problem.low.empty() &&
-                              (is_at(result.p[i], problem.low[i]) || is_at(result.p[i], problem.high[i])));
+  result.at_bound.assign(result.p.size(), 0);
+  for (const int i : held_by_bounds(problem, result.p)) result.at_bound[static_cast<std::size_t>(i)] = 1;
   result.interrupted = stopped();
   return result;
 }

@@ -129,5 +129,50 @@ TEST(FitPublished, HareAndLynx) {
   EXPECT_NEAR(found.columns[1].met, 0.25, 0.03);
 }
 
+// Dimers of STAT5A and STAT5B: M. E. Boehm et al., J. Proteome Res. 13 (2014), with deviations of its three columns
+// unknown, as in the collection of L. Schmiester et al., PLoS Comput. Biol. 17 (2021), whose best known -log L is
+// 138.222.
+TEST(FitPublished, DimersOfStat5) {
+  const std::vector<std::string> unknowns{"epo", "exp_hetero", "exp_homo", "imp_hetero", "imp_homo", "phos"};
+  FitRequest request = request_of(
+      "param epo = 0.02, exp_hetero = 1e-4, exp_homo = 5e-3\n"
+      "param imp_hetero = 0.02, imp_homo = 1e4, phos = 1e4\n"
+      "param ratio = 0.693, s = 0.107, cyt = 1.4, nuc = 0.45\n"
+      "let ba = 1.25e-7*exp(-epo*t)\n"
+      "a' = -2*ba*a^2*phos - ba*a*b*phos + 2*(nuc/cyt)*exp_homo*naa + (nuc/cyt)*exp_hetero*nab\n"
+      "b' = -2*ba*b^2*phos - ba*a*b*phos + 2*(nuc/cyt)*exp_homo*nbb + (nuc/cyt)*exp_hetero*nab\n"
+      "aa' = ba*a^2*phos - imp_homo*aa\n"
+      "ab' = ba*a*b*phos - imp_hetero*ab\n"
+      "bb' = ba*b^2*phos - imp_homo*bb\n"
+      "naa' = (cyt/nuc)*imp_homo*aa - exp_homo*naa\n"
+      "nab' = (cyt/nuc)*imp_hetero*ab - exp_hetero*nab\n"
+      "nbb' = (cyt/nuc)*imp_homo*bb - exp_homo*nbb\n"
+      "a(0) = 207.6*ratio; b(0) = 207.6*(1 - ratio)\n"
+      "aa(0) = 0; ab(0) = 0; bb(0) = 0; naa(0) = 0; nab(0) = 0; nbb(0) = 0\n"
+      "output pa = (100*ab + 200*aa*s)/(ab + a*s + 2*aa*s)\n"
+      "output pb = -(100*ab - 200*bb*(s - 1))/((b*(s - 1) - ab) + 2*bb*(s - 1))\n"
+      "output ra = (100*ab + 100*a*s + 200*aa*s)/(2*ab + a*s + 2*aa*s - b*(s - 1) - 2*bb*(s - 1))\n"
+      "run 0..240\n",
+      unknowns,
+      data_of(
+          {0, 2.5, 5, 10, 15, 20, 30, 40, 50, 60, 80, 100, 120, 160, 200, 240}, {"pa", "pb", "ra"},
+          {{7.90107299873911, 66.3634939682528, 81.1713239165337, 94.7303080627876, 95.1164830493244, 91.44171655392,
+            91.2570992263545, 93.672297840992, 88.754232823019, 85.2697032178279, 81.1323953369608, 76.135928475796,
+            65.2480591250229, 42.5996587097166, 25.1577975445976, 15.4301823994994},
+           {4.59653334288927, 29.6345459874189, 46.0438064695701, 81.9747336191685, 80.5716092952489, 79.0357196371442,
+            75.6723803658298, 71.6247198618303, 69.0628632755742, 67.1473843168934, 60.8994762938824, 54.8092577721492,
+            43.9812899778025, 29.7714581636675, 20.089016562771, 10.961845166698},
+           {14.7231682180584, 33.762342293107, 36.7998512942493, 49.7176022859654, 46.9281200952955, 47.8365745550135,
+            46.9287272497385, 40.5977529351181, 43.783663885071, 44.4573876523855, 41.3271592618297, 41.0627332148332,
+            39.2358300289377, 36.6194605442418, 34.8937144010561, 32.2110771608676}}));
+  for (FitUnknown& unknown : request.unknowns) unknown.low = 1e-5, unknown.high = 1e5, unknown.logarithmic = true;
+  request.likelihood = Likelihood::plain;
+  request.starts_in_doubt = 0;
+  const Fit found = fit(request);
+  ASSERT_TRUE(found.found()) << found.problem;
+  EXPECT_NEAR(*found.statistics.log_likelihood, -138.222, 2e-3);
+  EXPECT_TRUE(found.estimates[1].at_bound);  // as the best known has it
+}
+
 }  // namespace
 }  // namespace continuo::studies::fit_published_test
