@@ -123,7 +123,7 @@ int main(int count, char** words) {
     for (const Loss loss : losses)
       for (const std::size_t rows : lengths) run(cases[0], rows, loss, "x", 1);
     for (const Loss loss : losses)
-      for (const std::size_t rows : {20, 50, 100}) run(contaminated, static_cast<std::size_t>(rows), loss, "x", 1);
+      for (const std::size_t rows : {20U, 50U, 100U}) run(contaminated, rows, loss, "x", 1);
   }
   if (only.empty() || only == "columns")
     for (const auto& [first, second] : {std::pair{5, 5}, {5, 100}, {100, 5}, {10, 20}, {8, 8}}) {

@@ -66,7 +66,7 @@ Straight straight(const std::vector<double>& t, const std::vector<double>& y, do
 // Linear problems are solved in one step: what is left is the rounding of sums.
 TEST(FitStatistics, OfAStraightLineAreThoseOfTheTextbooks) {
   std::mt19937_64 random(1);
-  for (const std::size_t rows : {3, 5, 20, 100}) {
+  for (const std::size_t rows : {3U, 5U, 20U, 100U}) {
     const auto t = times(rows), y = noisy(t, 1, 0.3, random);
     const Straight expected = straight(t, y);
     const Fit found = fit(request_of(line, {"a", "b"}, {data_of("y", t, y)}));
