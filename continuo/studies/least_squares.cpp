@@ -1,10 +1,11 @@
 // The only file that includes Ceres.
-#include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
-#include <memory>
-#include <optional>
+#include <numeric>
 #include <random>
+#include <utility>
 
 #include <ceres/ceres.h>
 
@@ -13,8 +14,6 @@
 namespace continuo::studies {
 
 namespace {
-
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// All residuals at once, since one run gives them all; the terms below read what it left.
 class Evaluations : public ceres::EvaluationCallback {
@@ -75,39 +74,60 @@ class Watch : public ceres::IterationCallback {
   std::size_t start_;
 };
 
-std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double scale) {
-  switch (loss) {
-    case Loss::squares:
-      break;
-    case Loss::huber:
-      return std::make_unique<ceres::HuberLoss>(1.345 * scale);
-    case Loss::soft_l1:
-      return std::make_unique<ceres::SoftLOneLoss>(1.345 * scale);
-    case Loss::cauchy:
-      return std::make_unique<ceres::CauchyLoss>(2.3849 * scale);
-    case Loss::tukey:
-      return std::make_unique<ceres::TukeyLoss>(4.6851 * scale);
+/// A loss as Ceres asks for it: rho, rho' and rho'' by s = u^2. With w = psi/u they are rho' = w, rho'' = (psi' -
+/// w)/2s.
+class RobustLoss : public ceres::LossFunction {
+ public:
+  explicit RobustLoss(Loss loss) : loss_(loss) {}
+  void Evaluate(double s, double rho[3]) const override {
+    const double u = std::sqrt(s);
+    rho[0] = loss_of(loss_, u);
+    rho[1] = weight_of(loss_, u);
+    rho[2] = s > 0 ? (slope_of(loss_, u) - rho[1]) / (2 * s) : 0;
   }
-  return nullptr;
-}
 
-/// The deviation of normal noise with this median, whatever a minority of outliers does.
-double robust_deviation(std::vector<double> residuals) {
-  for (double& r : residuals) r = std::abs(r);
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::ranges::nth_element(residuals, middle);
-  return 1.4826 * *middle;
-}
+ private:
+  Loss loss_;
+};
 
 struct Found {
   std::vector<double> p;
   double cost = std::numeric_limits<double>::infinity();
   std::string message;
+  bool is_usable = false, converged = false, stopped = false;
   std::size_t iterations = 0, evaluations = 0;
 };
 
-Found search(const LeastSquares& problem, const LeastSquaresOptions& options, std::vector<double> p, std::size_t start,
-             ceres::LossFunction* loss) {
+bool is_at(double value, double bound) {
+  return std::isfinite(bound) && std::abs(value - bound) <= 1e-9 * std::abs(bound);
+}
+
+/// Unknowns at a bound of theirs.
+std::vector<int> held_by_bounds(const LeastSquares& problem, const std::vector<double>& p) {
+  std::vector<int> held;
+  for (std::size_t i = 0; i < p.size() && !problem.low.empty(); ++i)
+    if (is_at(p[i], problem.low[i]) || is_at(p[i], problem.high[i])) held.push_back(static_cast<int>(i));
+  return held;
+}
+
+void solve(ceres::Problem& least, ceres::Solver::Options& solver, Found& found) {
+  // Along a narrow bent valley Levenberg and Marquardt's steps stay short; Powell's go on from there.
+  for (const auto strategy : {ceres::LEVENBERG_MARQUARDT, ceres::DOGLEG}) {
+    solver.trust_region_strategy_type = strategy;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &least, &summary);
+    found.cost = summary.final_cost;
+    found.message = summary.message;
+    found.is_usable = summary.IsSolutionUsable();
+    found.converged = summary.termination_type == ceres::CONVERGENCE;
+    found.stopped = summary.termination_type == ceres::USER_SUCCESS;
+    found.iterations += summary.iterations.size();
+    if (found.converged || found.stopped) break;
+  }
+}
+
+Found search(const LeastSquares& problem, const LeastSquaresOptions& options, std::vector<double> p,
+             std::size_t start) {
   Evaluations evaluations(problem, p);
   evaluations.PrepareForEvaluation(true, true);
   if (!evaluations.good) return {.p = std::move(p), .message = "there are no residuals at the start", .evaluations = 1};
@@ -115,6 +135,8 @@ Found search(const LeastSquares& problem, const LeastSquaresOptions& options, st
   ownership.evaluation_callback = &evaluations;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem least(ownership);
+  RobustLoss robust(options.loss);
+  ceres::LossFunction* loss = options.loss == Loss::squares ? nullptr : &robust;
   least.AddParameterBlock(p.data(), static_cast<int>(p.size()));
   for (std::size_t row = 0; row < problem.residuals; ++row)
     least.AddResidualBlock(new Term(evaluations, row, p.size()), loss, p.data());
@@ -126,133 +148,97 @@ Found search(const LeastSquares& problem, const LeastSquaresOptions& options, st
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = 200;
+  solver.max_num_iterations = static_cast<int>(options.most_iterations);
   solver.function_tolerance = 1e-14;
   solver.parameter_tolerance = 1e-10;
   solver.gradient_tolerance = 0;
+  // Where no run is possible steps are cut in half until one is.
+  solver.max_num_consecutive_invalid_steps = 100;
   Watch watch(options, start);
   solver.callbacks.push_back(&watch);
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &least, &summary);
-  Found found{.p = std::move(p), .cost = summary.final_cost, .message = {}};
-  found.iterations = summary.iterations.size();
-  found.evaluations = evaluations.count;
-  if (!summary.IsSolutionUsable()) {
-    found.cost = std::numeric_limits<double>::infinity();
-    found.message = summary.message;
+  solver.dogleg_type = ceres::SUBSPACE_DOGLEG;
+  Found found{};
+  solve(least, solver, found);
+  // Steps that bounds cut off need not lead downhill, and a search among them may stand still: those at a bound are
+  // held while the others go on, and then all are free again.
+  constexpr int most_rounds = 5;
+  for (int round = 0; round < most_rounds && found.is_usable && !found.stopped; ++round) {
+    const std::vector<int> held = held_by_bounds(problem, p);
+    if (held.empty() || held.size() == p.size()) break;
+    const double before = found.cost;
+    least.SetManifold(p.data(), new ceres::SubsetManifold(static_cast<int>(p.size()), held));
+    solve(least, solver, found);
+    least.SetManifold(p.data(), nullptr);
+    if (found.stopped || !(found.cost < before * (1 - 1e-12))) break;
+    solve(least, solver, found);
   }
+  found.p = std::move(p);
+  found.evaluations = evaluations.count;
+  if (!found.is_usable) found.cost = std::numeric_limits<double>::infinity();
   return found;
 }
 
-std::vector<double> another_start(const LeastSquares& problem, std::mt19937_64& random) {
-  std::vector<double> p = problem.start;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const double u = std::uniform_real_distribution<double>(0, 1)(random);
-    const double low = problem.low.empty() ? -INFINITY : problem.low[i];
-    const double high = problem.high.empty() ? INFINITY : problem.high[i];
-    if (std::isfinite(low) && std::isfinite(high)) {
-      p[i] = low + u * (high - low);
-    } else {
-      p[i] = std::clamp(p[i] == 0 ? 2 * u - 1 : p[i] * std::pow(10, 2 * u - 1), low, high);
-    }
+/// Where unknown `i` of another search begins, by a number from 0 to 1.
+double place_at(const LeastSquares& problem, std::size_t i, double u) {
+  const double low = problem.low.empty() ? -INFINITY : problem.low[i];
+  const double high = problem.high.empty() ? INFINITY : problem.high[i];
+  if (std::isfinite(low) && std::isfinite(high)) {
+    constexpr double wide = 100;
+    return low > 0 && high >= wide * low ? low * std::pow(high / low, u) : low + u * (high - low);
   }
-  return p;
+  const double start = problem.start[i];
+  return std::clamp(start == 0 ? 2 * u - 1 : start * std::pow(10, 2 * u - 1), low, high);
 }
 
-bool is_at(double value, double bound) {
-  return std::isfinite(bound) && std::abs(value - bound) <= 1e-9 * std::max(1.0, std::abs(bound));
-}
-
-/// What the residuals say of the unknowns' uncertainty: C = s^2 (J^T W J)^-1 of those that are free.
-void judge(const LeastSquares& problem, const LeastSquaresOptions& options, const ceres::LossFunction* loss,
-           LeastSquaresResult& result) {
-  const std::size_t m = result.p.size(), n = problem.residuals;
-  result.residuals.resize(n);
-  std::vector<double> rows(n * m);
-  result.found = problem.evaluate(result.p, result.residuals, rows);
-  result.at_bound.assign(m, 0);
-  std::vector<std::size_t> free;
-  for (std::size_t i = 0; i < m; ++i) {
-    const bool bound =
-        !problem.low.empty() && (is_at(result.p[i], problem.low[i]) || is_at(result.p[i], problem.high[i]));
-    result.at_bound[i] = bound ? 1 : 0;
-    if (!bound) free.push_back(i);
-  }
-  result.weights.assign(n, 1);
-  double sum = 0;
-  for (std::size_t r = 0; r < n; ++r) {
-    double rho[3] = {0, 1, 0};
-    if (loss != nullptr) loss->Evaluate(result.residuals[r] * result.residuals[r], rho);
-    result.weights[r] = rho[1];
-    sum += rho[1] * result.residuals[r] * result.residuals[r];
-  }
-  result.cost = sum / 2;
-  result.degrees = n > free.size() ? n - free.size() : 0;
-  result.residual_deviation = options.known_deviation ? 1
-                              : result.degrees > 0    ? std::sqrt(sum / static_cast<double>(result.degrees))
-                                                      : std::numeric_limits<double>::infinity();
-  Rows jacobian(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(free.size()));
-  for (std::size_t r = 0; r < n; ++r)
-    for (std::size_t c = 0; c < free.size(); ++c)
-      jacobian(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) =
-          std::sqrt(result.weights[r]) * rows[r * m + free[c]];
-  result.covariance.assign(m * m, 0);
-  if (free.empty()) return;
-  const Eigen::VectorXd scale = jacobian.colwise().norm();
-  for (Eigen::Index c = 0; c < scale.size(); ++c)
-    if (scale[c] > 0) jacobian.col(c) /= scale[c];
-  const Eigen::ColPivHouseholderQR<Rows> qr(jacobian);
-  if (qr.rank() < jacobian.cols()) {
-    for (const std::size_t i : free) result.covariance[i * m + i] = std::numeric_limits<double>::infinity();
-    return;
-  }
-  const Rows inverse = (jacobian.transpose() * jacobian).inverse();
-  const double variance = result.residual_deviation * result.residual_deviation;
-  for (std::size_t a = 0; a < free.size(); ++a)
-    for (std::size_t b = 0; b < free.size(); ++b) {
-      const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
-      result.covariance[free[a] * m + free[b]] = variance * inverse(i, j) / (scale[i] * scale[j]);
+/// A Latin hypercube: of `count` equal parts of each unknown's range every one is taken by one of the starts.
+std::vector<std::vector<double>> other_starts(const LeastSquares& problem, std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<std::vector<double>> starts(count, problem.start);
+  std::vector<std::size_t> part(count);
+  for (std::size_t i = 0; i < problem.start.size(); ++i) {
+    std::iota(part.begin(), part.end(), std::size_t{0});
+    // Drawn by hand: what std::shuffle does with the same numbers is each library's own affair.
+    for (std::size_t k = count; k > 1; --k) std::swap(part[k - 1], part[random() % k]);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double within = static_cast<double>(random() >> 11) * 0x1p-53;
+      starts[k][i] = place_at(problem, i, (static_cast<double>(part[k]) + within) / static_cast<double>(count));
     }
+  }
+  return starts;
 }
 
 }  // namespace
 
 LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquaresOptions& options) {
   LeastSquaresResult result;
-  std::mt19937_64 random(options.seed);
   const auto stopped = [&] { return options.interrupt != nullptr && options.interrupt->load(); };
+  std::vector<std::vector<double>> starts{problem.start};
+  if (options.starts > 1)
+    std::ranges::copy(other_starts(problem, options.starts - 1, options.seed), std::back_inserter(starts));
   std::vector<Found> all;
-  for (std::size_t start = 0; start < std::max<std::size_t>(1, options.starts) && !stopped(); ++start) {
-    all.push_back(
-        search(problem, options, start == 0 ? problem.start : another_start(problem, random), start, nullptr));
+  for (std::size_t start = 0; start < starts.size() && !stopped(); ++start) {
+    all.push_back(search(problem, options, starts[start], start));
     result.iterations += all.back().iterations;
     result.evaluations += all.back().evaluations;
   }
   result.starts_done = all.size();
   result.interrupted = stopped();
   if (all.empty()) return result;
-  Found best = *std::ranges::min_element(all, {}, &Found::cost);
-  if (!std::isfinite(best.cost)) {
+  const auto best = std::ranges::min_element(all, {}, &Found::cost);
+  if (!std::isfinite(best->cost)) {
     result.message = all.front().message;
     return result;
   }
-  for (const Found& found : all) result.starts_agreeing += found.cost <= best.cost * (1 + 1e-6) + 1e-300 ? 1 : 0;
-
-  // A robust loss needs to know what is far: estimated from the fit before it, and once more from its own.
-  std::unique_ptr<ceres::LossFunction> loss;
-  for (int round = 0; round < 3 && options.loss != Loss::squares && !stopped(); ++round) {
-    std::vector<double> residuals(problem.residuals);
-    if (!problem.evaluate(best.p, residuals, {})) break;
-    const double scale = options.known_deviation ? 1 : robust_deviation(residuals);
-    if (!(scale > 0)) break;
-    loss = loss_function(options.loss, scale);
-    const Found found = search(problem, options, best.p, 0, loss.get());
-    result.iterations += found.iterations;
-    result.evaluations += found.evaluations;
-    if (std::isfinite(found.cost)) best = found;
-  }
-  result.p = best.p;
-  judge(problem, options, loss.get(), result);
+  for (const Found& found : all) result.starts_agreeing += found.cost <= best->cost * (1 + 1e-6) + 1e-300 ? 1 : 0;
+  result.best_start = static_cast<std::size_t>(best - all.begin());
+  result.p = best->p;
+  result.cost = best->cost;
+  result.converged = best->converged;
+  result.residuals.resize(problem.residuals);
+  result.rows.resize(problem.residuals * result.p.size());
+  result.found = problem.evaluate(result.p, result.residuals, result.rows);
+  result.at_bound.assign(result.p.size(), 0);
+  for (const int i : held_by_bounds(problem, result.p)) result.at_bound[static_cast<std::size_t>(i)] = 1;
   result.interrupted = stopped();
   return result;
 }

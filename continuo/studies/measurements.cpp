@@ -61,10 +61,24 @@ class Reader {
     }
   }
 
+  /// `x [cm]` as x and cm. Without the blank it is a name with an index, as of families.
+  static std::pair<std::string_view, std::string_view> named(std::string_view heading) {
+    const std::size_t bracket = heading.rfind(" [");
+    if (bracket == std::string_view::npos || !heading.ends_with(']')) return {heading, {}};
+    std::string_view name = heading.substr(0, bracket);
+    while (name.ends_with(' ')) name.remove_suffix(1);
+    return {name, heading.substr(bracket + 2, heading.size() - bracket - 3)};
+  }
+
   void head(const std::vector<std::string_view>& cells) {
     if (std::ranges::any_of(cells, [](auto cell) { return model::cell_number(cell).has_value(); }))
       return fail("the first line must name the columns, like `t,x`");
-    headings_.assign(cells.begin(), cells.end());
+    std::vector<std::string> units;
+    for (const std::string_view cell : cells) {
+      const auto [name, unit] = named(cell);
+      headings_.emplace_back(name);
+      units.emplace_back(unit);
+    }
     for (std::size_t c = 0; c < headings_.size(); ++c) {
       if (std::count(headings_.begin(), headings_.end(), headings_[c]) > 1)
         return fail(fmt::format("two columns are called `{}`", headings_[c]));
@@ -73,7 +87,8 @@ class Reader {
     const auto t = std::ranges::find(headings_, "t");
     time_ = t == headings_.end() ? 0 : static_cast<std::size_t>(t - headings_.begin());
     for (std::size_t c = 0; c < headings_.size(); ++c)
-      if (c != time_) data_.columns.push_back(headings_[c]);
+      if (c != time_) data_.columns.push_back(headings_[c]), data_.units.push_back(units[c]);
+    data_.time_unit = units[time_];
     data_.values.resize(data_.columns.size());
   }
 

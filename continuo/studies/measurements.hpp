@@ -16,6 +16,8 @@ struct Measurements {
   std::vector<double> times;                // ascending
   std::vector<std::size_t> lines;           // of each row, in the file
   std::vector<std::vector<double>> values;  // by column, one per time; NaN where nothing was measured
+  std::vector<std::string> units{};         // by column; empty where the heading gives none
+  std::string time_unit{};
 };
 
 struct ReadMeasurements {
@@ -24,7 +26,7 @@ struct ReadMeasurements {
 };
 
 /// The first line names the columns; one of them is `t`, else the first is the time. Empty cells, `nan` and `NA` are
-/// missing values. Rows may come in any order.
+/// missing values. Rows may come in any order. A name may have its unit behind it, after a blank: `x [cm]`.
 ReadMeasurements read_measurements(const std::string& file);
 /// The same from text, `name` being what messages call it.
 ReadMeasurements parse_measurements(std::string_view text, const std::string& name);

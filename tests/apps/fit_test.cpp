@@ -1,8 +1,10 @@
 // sense and fit: what they print, what they write, and what they say of wrong data.
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "shell.hpp"
 
@@ -97,11 +99,77 @@ TEST(Fit, SaysFileAndLineOfWrongData) {
   EXPECT_THAT(message("t,x\n0,1\n", "--param b"), HasSubstr("there is no parameter `b`"));
   EXPECT_THAT(message("t,x\n0,1\n", "--param a --loss best"), HasSubstr("there is no loss `best`"));
   EXPECT_THAT(message("t,x\n0,1\n", "--param a --sigma x=-1"), HasSubstr("a deviation is a positive number"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --sigma x=0.1+0%"), HasSubstr("a deviation is a positive number"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --error x=normal"), HasSubstr("there is no error model `normal`"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --error z=poisson"), HasSubstr("there is no column `z`"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --error x=poisson --sigma x=1"), HasSubstr("it is their root"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --error x=proportional --sigma x=0.05"), HasSubstr("5%"));
+  EXPECT_THAT(message("t,x,s\n0,1,0\n1,2,1\n", "--param a --sigma x=s"),
+              HasSubstr("d.csv:2: the deviation in column `s`"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --log b"), HasSubstr("there is no unknown `b`"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --bounds a=-2..-1 --log a"), HasSubstr("no positive numbers"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --prior 'a=normal(1)'"),
+              HasSubstr("is not NAME=normal(MEAN, DEVIATION)"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --prior 'a=lognormal(-1, 1)'"), HasSubstr("lognormal(MEDIAN"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --prior 'b=normal(1, 1)'"), HasSubstr("there is no unknown `b`"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --likelihood full"), HasSubstr("there is no likelihood `full`"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a,a"), HasSubstr("`a` is named twice"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --starts 0"), HasSubstr("at least one"));
+  EXPECT_THAT(message("t,x\n0,1\n1,0\n", "--param a --error x=lognormal"), HasSubstr("d.csv:3: 0 in column `x`"));
   EXPECT_THAT(message("t,x\n0,1\n", "--param a --bounds a=2"), HasSubstr("`a=2` is not NAME=LOW..HIGH"));
   EXPECT_THAT(message("t,x\n0,1\n", "--param a --column z=x"), HasSubstr("there is no column `z`"));
   EXPECT_THAT(message("t,x\n0,\n", "--param a"), HasSubstr("0 measured values cannot determine 1 unknowns"));
   EXPECT_THAT(shell.run("fit decay.sim none.csv --param a").err, HasSubstr("none.csv:1: the file cannot be read"));
   EXPECT_THAT(shell.run("fit decay.sim good.csv --param a --plot /no/such/x.svg").err, HasSubstr("cannot write"));
+}
+
+// x = exp(-t/2 s) in metres, measured in centimetres and milliseconds; the deviation is in the column's unit.
+TEST(Fit, BringsHeadingsToTheUnitsOfTheModel) {
+  Shell shell;
+  shell.write("units.sim", "param a = 1 [1/s] in 0..5\nx' = -a*x\nx(0) = 1 [m]\nrun 0..2 [s]\n");
+  shell.write("d.csv", "t [ms],x [cm],s\n0,100,1\n1000,60.653,1\n2000,36.788,1\n");
+  const Result found = shell.run("fit units.sim d.csv --param a --sigma x=s --json");
+  EXPECT_EQ(found.exit, 0) << found.err;
+  const auto result = nlohmann::json::parse(found.out);
+  EXPECT_NEAR(result["unknowns"][0]["value"].get<double>(), 0.5, 1e-4);
+  // 1/s^2 = sum (t x)^2/0.01^2
+  EXPECT_NEAR(result["unknowns"][0]["deviation"].get<double>(), 0.01 / std::hypot(0.60653, 2 * 0.36788), 1e-5);
+  EXPECT_NEAR(result["columns"][0]["measured"][1].get<double>(), 0.60653, 1e-12);
+  EXPECT_TRUE(result["columns"][0]["deviation_given"].get<bool>());
+  shell.write("kg.csv", "t,x [kg]\n0,1\n1,2\n");
+  EXPECT_THAT(shell.run("fit units.sim kg.csv --param a").err,
+              HasSubstr("kg.csv:1: column `x` is in kg, but the model has it in m"));
+  shell.write("no.csv", "t,x [parsnip]\n0,1\n1,2\n");
+  EXPECT_THAT(shell.run("fit units.sim no.csv --param a").err, HasSubstr("no.csv:1: column `x`:"));
+}
+
+TEST(Fit, SaysAllOfItAsJson) {
+  Shell shell;
+  shell.write("decay.sim", decay);
+  shell.write("d.csv", "t,x\n0,1.01\n0.5,0.77\n1,0.61\n1.5,0.48\n2,0.36\n");
+  const Result found =
+      shell.run("fit decay.sim d.csv --param a,N --log a --prior 'a=lognormal(0.5, 1)' --profile --json --plot f.png");
+  EXPECT_EQ(found.exit, 0) << found.err;
+  EXPECT_TRUE(shell.has("f.png"));
+  const auto result = nlohmann::json::parse(found.out);
+  EXPECT_EQ(result["unknowns"][0]["status"], "determined");
+  EXPECT_LT(result["unknowns"][0]["profile"]["interval"][0], result["unknowns"][0]["value"]);
+  EXPECT_EQ(result["unknowns"][1]["status"], "undetermined");  // no column reads N
+  EXPECT_TRUE(result["unknowns"][1]["deviation"].is_null());
+  EXPECT_EQ(result["undetermined"][0]["N"], 1);
+  EXPECT_EQ(result["columns"][0]["residuals"].size(), 5);
+  EXPECT_TRUE(result["statistics"]["aic"].is_number());
+  EXPECT_TRUE(result["statistics"]["chi_squared"].is_null());
+  EXPECT_TRUE(result["converged"].get<bool>());
+}
+
+TEST(Fit, ALimitOfIterationsIsNoSuccess) {
+  Shell shell;
+  shell.write("wave.sim", "param w = 5\nx'' = -w^2*x\nx(0) = 1; x'(0) = 0\nrun 0..10\n");
+  shell.write("d.csv", "t,x\n1,0.07\n2,-0.99\n3,-0.21\n4,0.96\n5,0.35\n6,-0.91\n");
+  const Result stopped = shell.run("fit wave.sim d.csv --param w --iterations 1 --starts 1");
+  EXPECT_EQ(stopped.exit, 3);
+  EXPECT_THAT(stopped.out, HasSubstr("doubt: the search ended at its limit of 1 iterations, not at a minimum"));
 }
 
 TEST(Fit, FitsAWorldOfBodies) {

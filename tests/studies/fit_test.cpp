@@ -9,6 +9,7 @@
 
 #include "problems.hpp"
 #include <continuo/studies/fit.hpp>
+#include <continuo/studies/student_t.hpp>
 
 namespace continuo::studies::fit_test {
 namespace {
@@ -130,7 +131,7 @@ TEST(Fit, TakesSeveralSetsEachWithItsOwnParametersAndGaps) {
   EXPECT_NEAR(result.least.p[0], a, 1e-7);
   // Known deviations: 1/s^2 = sum of (dq/da)^2 / 0.1^2.
   const double one = std::exp(-a), two = 3 * std::exp(-a / 2);
-  EXPECT_NEAR(result.least.deviation(0), 0.1 / std::sqrt(one * one + 2 * two * two), 1e-6);
+  EXPECT_NEAR(result.estimates[0].deviation, 0.1 / std::sqrt(one * one + 2 * two * two), 1e-6);
 }
 
 TEST(Fit, SearchesFromSeveralStarts) {  // k = 0.2 leads to a swing that is far too slow, and to a minimum there
@@ -167,8 +168,8 @@ TEST(Fit, WeighsQuantitiesOfDifferentSizeByTheirOwnNoise) {
   // dx/da = -t x is about 0.4 in the mean square: 1e-4/(0.4 sqrt(200)) = 1.8e-5; a deviation of 200 values is known to
   // 5 %, taken as four of that.
   EXPECT_NEAR(result.least.p[0], 0.7, 1e-4);
-  EXPECT_NEAR(result.scales[0], 1e-4, 2e-5);
-  EXPECT_NEAR(result.scales[1], 1e4, 2e3);
+  EXPECT_NEAR(result.columns[0].met, 1e-4, 2e-5);
+  EXPECT_NEAR(result.columns[1].met, 1e4, 2e3);
 }
 
 TEST(Fit, BandHoldsTheMeasurementsItShould) {
@@ -177,9 +178,11 @@ TEST(Fit, BandHoldsTheMeasurementsItShould) {
   const Fit result = fit(request);
   const auto curves = curves_of(request, result, 100);
   ASSERT_EQ(curves.size(), 1u);
-  // Far from where x depends on k and c the band is the noise alone; nowhere it is narrower.
-  for (const double width : curves[0].half_width) EXPECT_GE(width, result.confidence_factor * result.scales[0]);
-  EXPECT_NEAR(curves[0].half_width[0], result.confidence_factor * result.scales[0], 1e-12);
+  // Far from where x depends on k and c the band is the noise alone; nowhere it is narrower. 98 degrees of freedom.
+  const double narrowest = student_t_quantile(0.95, 98) * result.columns[0].met;
+  for (std::size_t i = 0; i < curves[0].y.size(); ++i)
+    EXPECT_GE((curves[0].high[i] - curves[0].low[i]) / 2, narrowest * (1 - 1e-6));
+  EXPECT_NEAR(curves[0].high[0] - curves[0].y[0], narrowest, 1e-9);
 }
 
 TEST(Fit, SaysWhyThereIsNone) {
