@@ -108,16 +108,17 @@ FollowedSolution follow_path(const BoundaryPath& path, const BoundaryValueGuess&
   return followed;
 }
 
-bool may_be_followed(const BoundaryValueSolution& solution) {
+bool may_be_followed(const BoundaryValueProblem& problem, const BoundaryValueSolution& solution) {
   using enum BoundaryValueFailure;
-  return !solution.outcome &&
-         (solution.failure == not_found || solution.failure == not_finite || solution.failure == too_fine);
+  const bool may_be_elsewhere = solution.failure == not_found || solution.failure == not_finite ||
+                                solution.failure == too_fine || solution.failure == undetermined;
+  return !solution.outcome && may_be_elsewhere && !detail::is_linear(problem);
 }
 
 BoundaryValueSolution solve_with_continuation(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess,
                                               const BoundaryValueOptions& options) {
   BoundaryValueSolution plain = solve_boundary_values(problem, guess, options);
-  if (!may_be_followed(plain) || detail::is_linear(problem)) return plain;
+  if (!may_be_followed(problem, plain)) return plain;
   const auto slowed = [&problem](double s) -> std::optional<BoundaryValueProblem> {
     BoundaryValueProblem slow = problem;
     slow.system.derivative = [&problem, s](double t, Values x, Values p, std::span<double> dxdt) {

@@ -104,8 +104,9 @@ struct Beginning {
   std::vector<double> mesh;  // empty: none is better than another
 };
 
-constexpr std::size_t most_parameters = 6;  // that are tried to come to a solution along them
-constexpr std::size_t most_rows = 20'000;   // of a table of which the times make a mesh
+constexpr std::size_t most_parameters = 6;      // that are tried to come to a solution along them
+constexpr std::size_t most_steps_in_vain = 10;  // along one of them
+constexpr std::size_t most_rows = 20'000;       // of a table of which the times make a mesh
 
 std::optional<Beginning> beginning_of(const detail::PosedBoundary& posed, const BoundaryRequest& request, std::size_t k,
                                       std::vector<model::Diagnostic>& problems) {
@@ -131,11 +132,12 @@ std::optional<BoundaryValueSolution> along_some_parameter(const std::shared_ptr<
     if (!parameter.independent || parameter.structural || value == 0) continue;
     if (++tried > most_parameters) break;
     PosedAlong pose(program, experiment, parameter.name);
+    std::size_t steps = 0;
     const auto problem = [&](double at) -> std::optional<BoundaryValueProblem> {
       const auto there = pose(at, ignored);
       return there ? std::optional(there->problem) : std::nullopt;
     };
-    for (const double factor : {10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 1e4, 1e-4}) {
+    for (const double factor : {10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 1e4, 1e-4, 1e5, 1e-5, 1e6, 1e-6}) {
       if (experiment.interrupt && experiment.interrupt->load()) return std::nullopt;
       const auto first = pose(factor * value, ignored);
       if (!first) continue;
@@ -143,7 +145,8 @@ std::optional<BoundaryValueSolution> along_some_parameter(const std::shared_ptr<
       if (!beginning) continue;
       FollowedSolution followed = follow_path({problem, factor * value, value}, beginning->guess, posed.options);
       if (followed.solution.outcome) return std::move(followed.solution);
-      if (followed.steps > 0) break;  // there it is easy enough, but the way does not go through
+      steps += followed.steps;
+      if (steps > most_steps_in_vain) break;  // it is easy enough there, but the way does not go through
     }
   }
   return std::nullopt;
@@ -161,7 +164,7 @@ std::optional<BoundaryValueSolution> solution_of(const std::shared_ptr<const Mod
     if (!beginning) return std::nullopt;
     options.mesh = beginning->mesh;
     BoundaryValueSolution solution = solve_with_continuation(posed.problem, beginning->guess, options);
-    if (!may_be_followed(solution)) return solution;
+    if (!may_be_followed(posed.problem, solution)) return solution;
     auto followed = along_some_parameter(program, experiment, posed, request, k);
     return followed ? std::move(*followed) : std::move(solution);
   }

@@ -22,7 +22,6 @@ using detail::CollocationSystem;
 using detail::ErrorBounds;
 using detail::NewtonEnding;
 
-constexpr std::size_t stages = lobatto4.stages, per_interval = stages - 1;
 constexpr std::size_t most_meshes = 60;
 constexpr std::size_t enough_intervals = 4000;  // then a small error will do, whatever the residual
 constexpr std::size_t most_stuck = 3;           // meshes that did not halve the residual; the same
@@ -163,7 +162,8 @@ class Search {
       limited_by_rounding(of_rounding, rounded);
       return true;
     }
-    const bool fine = of_mesh + of_rounding <= options_.tolerance;
+    // Between the points that the error is estimated at it may be half as large again.
+    const bool fine = 2 * of_mesh + of_rounding <= options_.tolerance;
     if (fine && known) {
       doubt_zero();
       return true;
@@ -174,7 +174,7 @@ class Search {
       does_not_fall(of_mesh, worst);
       return true;
     }
-    error_factor_ = fine || !known ? 0.03 : std::clamp(options_.tolerance / of_mesh, 1e-3, 0.5);
+    error_factor_ = fine || !known ? 0.03 : std::clamp(options_.tolerance / (2 * of_mesh), 1e-3, 0.5);
     return false;
   }
 
@@ -280,29 +280,7 @@ class Search {
   std::size_t stuck_ = 0;
 };
 
-/// The interval of t and where t lies in it.
-std::pair<std::size_t, double> place_of(const std::vector<double>& mesh, double t) {
-  const auto above = std::upper_bound(mesh.begin() + 1, mesh.end() - 1, t);
-  const auto k = static_cast<std::size_t>(above - mesh.begin()) - 1;
-  return {k, (t - mesh[k]) / (mesh[k + 1] - mesh[k])};
-}
-
 }  // namespace
-
-std::string what_is_wrong(const BoundaryValueProblem& problem) {
-  if (problem.system.size == 0) return "a system of at least one component is needed";
-  if (!problem.system.derivative || !problem.conditions) return "a derivative and conditions are needed";
-  if (problem.times.size() < 2) return "conditions at two times at least are needed";
-  for (std::size_t i = 0; i + 1 < problem.times.size(); ++i)
-    if (!(problem.times[i] < problem.times[i + 1])) return "the times of the conditions must ascend";
-  if (!std::isfinite(problem.times.front()) || !std::isfinite(problem.times.back()))
-    return "the times of the conditions must be finite";
-  for (const MatrixPlace& place : problem.condition_places)
-    if (place.row >= problem.system.size + problem.system.parameters() ||
-        place.column >= problem.times.size() * problem.system.size + problem.system.parameters())
-      return "a place of the conditions lies outside their Jacobian";
-  return "";
-}
 
 BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess,
                                             const BoundaryValueOptions& options) {
@@ -314,35 +292,6 @@ BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem,
     return none;
   }
   return Search(problem, options)(guess);
-}
-
-void BoundaryValueSolution::at(double t, std::span<double> x) const {
-  const auto [k, theta] = place_of(mesh, t);
-  const double h = mesh[k + 1] - mesh[k];
-  const auto weights = lobatto4.rises(theta);
-  const std::size_t first = k * per_interval * size;
-  for (std::size_t i = 0; i < size; ++i) {
-    double sum = 0;
-    for (std::size_t j = 0; j < stages; ++j) sum += weights[j] * slopes[first + j * size + i];
-    x[i] = points[first + i] + h * sum;
-  }
-}
-
-void BoundaryValueSolution::slope_at(double t, std::span<double> dxdt) const {
-  const auto [k, theta] = place_of(mesh, t);
-  const auto weights = lobatto4.slopes(theta);
-  const std::size_t first = k * per_interval * size;
-  for (std::size_t i = 0; i < size; ++i) {
-    double sum = 0;
-    for (std::size_t j = 0; j < stages; ++j) sum += weights[j] * slopes[first + j * size + i];
-    dxdt[i] = sum;
-  }
-}
-
-std::vector<double> BoundaryValueSolution::operator()(double t) const {
-  std::vector<double> x(size);
-  at(t, x);
-  return x;
 }
 
 }  // namespace continuo::studies
