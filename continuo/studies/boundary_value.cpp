@@ -248,7 +248,9 @@ class Search {
           "f or a condition is not a number on the way; a guess nearer to the solution may help");
     } else if (ending == NewtonEnding::singular) {
       end(not_found, Ending::nonlinear_solve_failed, worst,
-          "the conditions do not determine a solution near the guess (their matrix is singular)");
+          "the conditions do not determine a solution near the guess (their matrix is singular); another guess may do, "
+          "of "
+          "zero often does not");
     } else {
       end(not_found, Ending::nonlinear_solve_failed, worst,
           any_ ? "the solution of a coarser mesh leads to none of a finer one; it may not be a solution"

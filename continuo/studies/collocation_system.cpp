@@ -75,7 +75,7 @@ double CollocationSystem::time(std::size_t point) const {
 
 /// The pattern, and for every number that `fill_matrix` adds, in its order, the entry it is added to.
 void CollocationSystem::make_pattern() {
-  const std::vector<MatrixPlace> block = block_places(problem_);
+  const std::vector<MatrixPlace>& block = block_ = block_places(problem_);
   std::vector<MatrixPlace> places;
   const auto n = static_cast<std::uint32_t>(n_), m = static_cast<std::uint32_t>(m_);
   const auto constants = static_cast<std::uint32_t>(point_count()) * n;
@@ -169,20 +169,11 @@ void CollocationSystem::evaluate_jacobians() {
     const double t = time(q);
     const auto x = point(q);
     const auto block = std::span(jacobians_).subspan(q * entries, entries);
-    if (problem_.system.jacobian) {
-      problem_.system.jacobian(t, x, constants, block);
-    } else {
-      const auto moved = std::span(moved_).first(n_), slope = std::span(moved_slope_).first(n_);
-      std::ranges::copy(x, moved.begin());
-      for (std::size_t j = 0; j < n_; ++j) {
-        const double increment = difference_increment(x[j], 1e-3 * std::sqrt(2.2e-16) * scales_[j]);
-        moved[j] = x[j] + increment;
-        problem_.system.derivative(t, moved, constants, slope);
-        moved[j] = x[j];
-        for (std::size_t i = 0; i < n_; ++i) block[i * n_ + j] = (slope[i] - f_[q * n_ + i]) / increment;
-      }
-      evaluations_ += n_;
-    }
+    if (problem_.system.jacobian) problem_.system.jacobian(t, x, constants, block);
+    // y^1.5 has a derivative at 0 that its formula does not give.
+    const bool is_given = problem_.system.jacobian != nullptr &&
+                          std::ranges::all_of(block, [](double entry) { return std::isfinite(entry); });
+    if (!is_given) difference_jacobian(q, block);
     for (std::size_t p = 0; p < m_; ++p) {
       std::vector<double> moved(constants.begin(), constants.end());
       const double increment = difference_increment(constants[p], 1e-8);
@@ -194,6 +185,20 @@ void CollocationSystem::evaluate_jacobians() {
       ++evaluations_;
     }
   }
+}
+
+void CollocationSystem::difference_jacobian(std::size_t q, std::span<double> block) {
+  const auto moved = std::span(moved_).first(n_), slope = std::span(moved_slope_).first(n_);
+  std::ranges::copy(point(q), moved.begin());
+  for (std::size_t j = 0; j < n_; ++j) {
+    const double here = moved[j], increment = difference_increment(here, 1e-3 * std::sqrt(2.2e-16) * scales_[j]);
+    moved[j] = here + increment;
+    problem_.system.derivative(time(q), moved, constants_of(z_), slope);
+    moved[j] = here;
+    for (std::size_t e = 0; e < block.size(); ++e)
+      if (block_[e].column == j) block[e] = (slope[block_[e].row] - f_[q * n_ + block_[e].row]) / increment;
+  }
+  evaluations_ += n_;
 }
 
 /// By central differences, which are exact but for rounding where a condition is linear.
@@ -278,7 +283,7 @@ std::vector<double> CollocationSystem::magnitudes(std::span<const double> z) {
     const double x = place.column < columns ? at_times[place.column] : constants[place.column - columns];
     result[place.row < n_ ? place.row : point_count() * n_ + place.row - n_] += std::abs(condition_values_[e] * x);
   }
-  const std::vector<MatrixPlace> block = block_places(problem_);
+  const std::vector<MatrixPlace>& block = block_;
   std::vector<double> slopes(f_.size());  // sizes of the terms of f at each point
   for (std::size_t q = 0; q < point_count(); ++q)
     for (std::size_t e = 0; e < block.size(); ++e)

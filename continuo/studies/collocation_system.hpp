@@ -76,6 +76,7 @@ class CollocationSystem {
   double weight(std::size_t interval, std::size_t i, std::size_t j) const;
   void evaluate_residuals(std::span<const double> z, std::span<double> residuals);
   void evaluate_jacobians();
+  void difference_jacobian(std::size_t q, std::span<double> block);
   void evaluate_condition_jacobian();
   void fill_matrix();
   void measure();
@@ -89,7 +90,7 @@ class CollocationSystem {
   OpenEnds open_;
   std::vector<std::size_t> condition_points_;
   std::vector<double> z_, f_, trial_, residuals_, correction_, simplified_;
-  SparsePattern block_;                     // of df/dx with its diagonal
+  std::vector<MatrixPlace> block_;          // the entries of df/dx, in their order
   std::vector<double> jacobians_;           // of all points, entries of problem.pattern or rows
   std::vector<double> constant_jacobians_;  // df/dp of all points, n * m row by row
   std::vector<double> condition_values_, gathered_;

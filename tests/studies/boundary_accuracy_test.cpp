@@ -229,5 +229,18 @@ TEST(BoundaryAccuracy, AnEndWithoutAValueIsLeftOut) {
   EXPECT_NEAR(solution(0)[0], 1, 2e-9);
 }
 
+/// y'' = 56 y^0.75, y(0) = 0, y(1) = 1: t^8. The formula of the derivative, 0.75 y^0.75 / y, has no value at y = 0.
+TEST(BoundaryAccuracy, ADerivativeWithoutAValueIsTakenByDifferences) {
+  auto power = parametric_system(2, [](double, Values x, Values, std::span<double> dxdt) {
+    dxdt[0] = x[1], dxdt[1] = 56 * std::pow(std::max(x[0], 0.0), 0.75);
+  });
+  power.jacobian = [](double, Values x, Values, std::span<double> rows) {
+    rows[0] = 0, rows[1] = 1, rows[2] = 42 * std::pow(std::max(x[0], 0.0), 0.75) / x[0], rows[3] = 0;
+  };
+  const auto solution = solve_boundary_values({power, {0, 1}, ends(0, 1)}, {}, {.tolerance = 1e-6});
+  ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
+  EXPECT_NEAR(solution(0.5)[0], std::pow(0.5, 8), 2e-6);
+}
+
 }  // namespace
 }  // namespace continuo::studies::boundary_accuracy_test
