@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include <apps/continuo/boundary_options.hpp>
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/models.hpp>
@@ -23,7 +24,7 @@ struct RunRequest {
   ExperimentOptions experiment;
   RunOutputs outputs;
   bool estimate_error = false;
-  std::size_t solution = 1;
+  BoundaryOptions boundary;
   RecordTo record;
 };
 
@@ -49,6 +50,8 @@ ExitCode run(const RunRequest& request) {
     if (request.outputs.json) print_no_run(prepared.loaded.diagnostics, source);
     return prepared.exit;
   }
+  const auto boundary = read_boundary(request.boundary, prepared);
+  if (!boundary) return usage;
   RunFile file(request.record);
   const model::Simulated simulated = [&] {
     Progress progress;
@@ -56,10 +59,10 @@ ExitCode run(const RunRequest& request) {
     prepared.experiment.estimate_error = request.estimate_error;
     prepared.experiment.doubts = true;
     if (file.is_wanted()) return simulate_recorded(request, prepared, file);
-    return studies::run_model(prepared.program, prepared.experiment, request.solution);
+    return studies::run_model(prepared.program, prepared.experiment, *boundary);
   }();
   const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
-                             request.experiment.as_written() && request.solution == 1);
+                             request.experiment.as_written() && request.boundary.as_written());
   return file.close() || exit != done ? exit : usage;
 }
 
@@ -76,6 +79,7 @@ void add_run(CLI::App& app, ExitCode& exit) {
       "  continuo run gas.sim --record gas.run                      to be replayed, or to go on from (continuo "
       "replay)\n"
       "  continuo run ball.sim -o - | head                          rows to another program\n"
+      "  continuo run layer.sim --along eps=1..1e-4                 conditions at both ends, from an easy case on\n"
       "  continuo run ball.sim --json                               outcome, state, events, cost\n";
   CLI::App* verb = add_verb(app, "run", "Runs a model and shows, plots or writes its motion", examples);
   auto request = std::make_shared<RunRequest>();
@@ -86,9 +90,7 @@ void add_run(CLI::App& app, ExitCode& exit) {
   add_record(*verb, request->record);
   verb->add_flag("--estimate-error", request->estimate_error,
                  "The true error, by a second run a hundred times as strict");
-  verb->add_option("--solution", request->solution, "Of a boundary-value problem with several: which one")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  add_boundary(*verb, request->boundary);
   verb->callback([&exit, request] { exit = run(*request); });
 }
 

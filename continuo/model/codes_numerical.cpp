@@ -85,9 +85,10 @@ Fix: give all values at the start, or take `continuo run`.)"},
     Code{
         "E322", "the boundary-value problem was not solved",
         R"(No motion was found that meets the conditions at all their times. There may be none, or several, or the search
-began too far away.
+began too far away; or the conditions hardly determine it, so that rounding alone moves it by more than the tolerance.
 
-Fix: guess x = ... gives the search a place to begin, as a function of t; `guess x' = ...` too. A greater tolerance asks
+Fix: guess x = ... gives the search a place to begin, as a function of t; `guess x' = ...` too. `continuo run --along
+eps=1..1e-3` begins where a parameter makes the problem easy, --guess FILE with an earlier run. A greater tolerance asks
 for less.)"},
     Code{
         "E323", "a world of bodies does not fit here",
@@ -159,6 +160,10 @@ have them: --atol "h'=1e-9" --tol "u[3]=1e-10". The name of a family without an 
         R"(--tol takes a relative tolerance, a number without a unit greater than zero; --atol an absolute one, in the unit of
 the state unless it names another of the same kind: --atol "h = 1 [um]". With NAME= before it the tolerance is that of
 one state, without it that of all.)"},
+    Code{
+        "E349", "the guess does not fit the model",
+        R"(--guess reads where to begin from a CSV file, as `continuo run -o` writes it: a column `t` and columns named like
+states, `y` or `y'`. It needs one of them at least, at times within the run.)"},
     Code{
         "E361", "there are no sensitivities of this",
         R"(Where a model has equations `0 = ...`, events that change its state or mode cannot be followed. A parameter that

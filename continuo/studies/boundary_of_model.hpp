@@ -2,16 +2,31 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <continuo/model/simulate.hpp>
+#include <continuo/studies/measurements.hpp>
 
 namespace continuo::studies {
 
-/// Runs any model: by integration from the start, or, where its conditions stand at several times, by collocation; then
-/// `solution` (from 1) says which of several is wanted.
+/// What is asked beside the experiment of a model whose conditions stand at several times.
+struct BoundaryRequest {
+  std::size_t solution = 1;  // which of several
+  /// Solved at `from` first and followed to `to`, which takes the parameter's place in the experiment.
+  struct Along {
+    std::string parameter;
+    double from, to;
+  };
+  std::optional<Along> along{};
+  /// Where to begin, in place of the model's guesses: columns named like states, as a run writes them.
+  std::optional<Measurements> guess{};
+};
+
+/// Runs any model: by integration from the start, or, where its conditions stand at several times, by collocation.
 model::Simulated run_model(const std::shared_ptr<const model::ModelProgram>& program,
-                           const model::Experiment& experiment = {}, std::size_t solution = 1);
+                           const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
 
 /// All solutions of a boundary-value problem that the model's guesses lead to, each once, in the order of the guesses.
 /// The k-th guess is the k-th `guess` statement of every state (the last where there are fewer). Without a solution no
@@ -22,6 +37,6 @@ struct BoundaryRuns {
   std::vector<model::Diagnostic> diagnostics;
 };
 BoundaryRuns solve_boundary(const std::shared_ptr<const model::ModelProgram>& program,
-                            const model::Experiment& experiment = {});
+                            const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
 
 }  // namespace continuo::studies

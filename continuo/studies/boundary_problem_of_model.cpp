@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <continuo/model/expression.hpp>
+#include <continuo/studies/boundary_continuation.hpp>
 #include <continuo/studies/boundary_problem_of_model.hpp>
 #include <continuo/studies/of_model.hpp>
 
@@ -114,6 +115,11 @@ class Guess {
         sources_[i].constant = plan.variables[states_[i].variable];
   }
 
+  /// Takes the place of what is guessed of a state.
+  void set(std::size_t state, std::vector<std::pair<double, double>> points) {
+    sources_[state] = {.text = {}, .known = std::move(points), .given = true};
+  }
+
   void operator()(double t, std::span<double> x) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = value(i, t);
   }
@@ -123,6 +129,7 @@ class Guess {
     std::optional<model::Evaluation> text;
     std::vector<std::pair<double, double>> known;
     double constant = 0;
+    bool given = false;  // by a table
   };
 
   double value(std::size_t i, double t) {
@@ -133,7 +140,8 @@ class Guess {
       (*source.text)(t, no_state, std::span(&result, 1));
       return result;
     }
-    const bool follows = states_[i].primes > 0 && (sources_[i - 1].text || sources_[i - 1].known.size() > 1);
+    const bool follows =
+        !source.given && states_[i].primes > 0 && (sources_[i - 1].text || sources_[i - 1].known.size() > 1);
     if (follows) return (value(i - 1, t + 1e-5 * span_) - value(i - 1, t - 1e-5 * span_)) / (2e-5 * span_);
     if (source.known.empty()) return source.constant;
     return interpolated(source.known, t);
@@ -141,8 +149,9 @@ class Guess {
 
   static double interpolated(const std::vector<std::pair<double, double>>& points, double t) {
     if (points.size() == 1) return points.front().second;
-    std::size_t k = 1;
-    while (k + 1 < points.size() && points[k].first < t) ++k;
+    const auto above = std::upper_bound(points.begin() + 1, points.end() - 1, t,
+                                        [](double time, const auto& point) { return time < point.first; });
+    const auto k = static_cast<std::size_t>(above - points.begin());
     const auto& [from, first] = points[k - 1];
     const auto& [to, last] = points[k];
     return first + (last - first) * (t - from) / (to - from);
@@ -216,9 +225,49 @@ std::optional<PosedBoundary> pose_boundary(const std::shared_ptr<const ModelProg
                        {.tolerance = tolerance, .interrupt = experiment.interrupt}};
 }
 
+BoundaryValueGuess guess_of(const PosedBoundary& posed, std::size_t k) {
+  const auto guess = std::make_shared<Guess>(*posed.program, posed.plan, *posed.conditions, k);
+  return [guess](double t, std::span<double> x) { (*guess)(t, x); };
+}
+
+std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const Measurements& table,
+                                             std::vector<Diagnostic>& problems) {
+  const Model& model = posed.program->model;
+  const auto guess = std::make_shared<Guess>(*posed.program, posed.plan, *posed.conditions, 0);
+  std::string names;
+  bool any = false;
+  for (std::size_t i = 0; i < model.states.size(); ++i) {
+    names += fmt::format("{}`{}`", names.empty() ? "" : ", ", model.states[i].column);
+    const auto column = std::ranges::find(table.columns, model.states[i].column);
+    if (column == table.columns.end()) continue;
+    const auto& values = table.values[static_cast<std::size_t>(column - table.columns.begin())];
+    std::vector<std::pair<double, double>> points;
+    for (std::size_t row = 0; row < values.size(); ++row)
+      if (std::isfinite(values[row]) && (points.empty() || table.times[row] > points.back().first))
+        points.emplace_back(table.times[row], values[row]);
+    if (points.empty()) continue;
+    guess->set(i, std::move(points));
+    any = true;
+  }
+  const bool overlaps =
+      !table.times.empty() && table.times.front() < posed.plan.to && table.times.back() > posed.plan.from;
+  if (!any) {
+    problems.push_back(model::error("E349", model.boundary.front().span,
+                                    fmt::format("{} has no column of a state to begin from", table.file), {},
+                                    fmt::format("columns are read by name: {}", names)));
+    return std::nullopt;
+  }
+  if (!overlaps) {
+    problems.push_back(model::error("E349", model.boundary.front().span,
+                                    fmt::format("the times of {} are outside of the run", table.file),
+                                    fmt::format("the run goes from {:g} to {:g}", posed.plan.from, posed.plan.to)));
+    return std::nullopt;
+  }
+  return [guess](double t, std::span<double> x) { (*guess)(t, x); };
+}
+
 BoundaryValueSolution solve_from_guess(const PosedBoundary& posed, std::size_t k) {
-  Guess guess(*posed.program, posed.plan, *posed.conditions, k);
-  return solve_boundary_values(posed.problem, [&](double t, std::span<double> x) { guess(t, x); }, posed.options);
+  return solve_with_continuation(posed.problem, guess_of(posed, k), posed.options);
 }
 
 std::size_t guess_count(const Model& model) {
@@ -228,13 +277,18 @@ std::size_t guess_count(const Model& model) {
   return count;
 }
 
-Diagnostic boundary_failure(const Model& model, const Outcome<double>& outcome) {
+Diagnostic boundary_failure(const Model& model, const BoundaryValueSolution& solution) {
+  const Outcome<double>& outcome = solution.outcome;
   if (outcome.ending == Ending::interrupted)
     return model::error("E307", model.run.span, "interrupted before there was a solution");
   std::string message = "no motion meets these conditions near the guess";
-  if (outcome.ending == Ending::too_many_steps) message = "the motion could not be resolved to this tolerance";
-  if (outcome.ending == Ending::not_finite) message = "the equations give no finite number on the way";
-  if (!outcome.component.empty() && outcome.ending == Ending::nonlinear_solve_failed)
+  if (solution.failure == BoundaryValueFailure::undetermined)
+    message = "these conditions do not determine the motion";
+  else if (outcome.ending == Ending::too_many_steps)
+    message = "the motion could not be resolved to this tolerance";
+  else if (outcome.ending == Ending::not_finite)
+    message = "the equations give no finite number on the way";
+  else if (!outcome.component.empty() && outcome.ending == Ending::nonlinear_solve_failed)
     message += fmt::format("; `{}` moves most", outcome.component);
   return model::error("E322", model.boundary.front().span, std::move(message), {}, outcome.hint);
 }

@@ -12,6 +12,7 @@
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/model_program.hpp>
 #include <continuo/studies/boundary_value.hpp>
+#include <continuo/studies/measurements.hpp>
 
 namespace continuo::studies::detail {
 
@@ -70,10 +71,16 @@ std::optional<PosedBoundary> pose_boundary(const std::shared_ptr<const model::Mo
 
 /// How many guesses the model has: at least one.
 std::size_t guess_count(const model::Model& model);
-/// The solution that the k-th guess leads to: what the model guesses, else straight lines between the values of the
-/// conditions.
+/// The k-th of them: what the model guesses, else straight lines between the values of the conditions. It refers to
+/// `posed`.
+BoundaryValueGuess guess_of(const PosedBoundary& posed, std::size_t k);
+/// From the columns of a table; states that it does not have as in the first guess, derivatives as slopes. E349 where
+/// it has none of them, or is outside of the run.
+std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const Measurements& table,
+                                             std::vector<model::Diagnostic>& problems);
+/// The solution that it leads to.
 BoundaryValueSolution solve_from_guess(const PosedBoundary& posed, std::size_t k);
 /// Why there is none: E307, E322.
-model::Diagnostic boundary_failure(const model::Model& model, const Outcome<double>& outcome);
+model::Diagnostic boundary_failure(const model::Model& model, const BoundaryValueSolution& solution);
 
 }  // namespace continuo::studies::detail

@@ -183,7 +183,7 @@ SensitivityRun boundary_sensitivity(const std::shared_ptr<const SensitiveProgram
   const BoundaryValueSolution found = plain.outcome ? solve_along(program, *posed, plain) : plain;
   run.outcome = found.outcome;
   if (!found.outcome) {
-    run.diagnostics.push_back(boundary_failure(model, found.outcome));
+    run.diagnostics.push_back(boundary_failure(model, found));
     return run;
   }
   run.times = request.times;

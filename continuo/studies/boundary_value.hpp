@@ -33,10 +33,14 @@ struct BoundaryValueProblem {
 std::string what_is_wrong(const BoundaryValueProblem& problem);
 
 struct BoundaryValueOptions {
-  /// Of |x' - f| / (1 + |f|), root mean square over each interval of the mesh.
+  /// Of |x' - f| / (1 + |f|), root mean square over each interval of the mesh; and of the estimated error of each
+  /// component, relative to its greatest value. Where the former takes more than some thousand intervals (it may be
+  /// all rounding), the latter will do.
   double tolerance = 1e-6;
+  bool check_error = true;  // false: the residual alone, for a step on the way to somewhere else
   std::size_t most_intervals = 50'000;
   std::size_t most_iterations = 40;  // of Newton on one mesh
+  std::size_t most_refinements = 5;  // of a mesh on which Newton's iteration found nothing
   std::vector<double> mesh{};        // to begin with; empty: even
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(std::size_t intervals, double residual)> progress{};  // after each mesh
@@ -45,15 +49,21 @@ struct BoundaryValueOptions {
 /// Where the search begins: x(t), zero where there is none; the constants begin as the system has them.
 using BoundaryValueGuess = std::function<void(double t, std::span<double> x)>;
 
+/// Why there is no solution; `undetermined`: to the digits of a double the conditions leave many, or none.
+enum class BoundaryValueFailure { none, not_found, undetermined, rounding, too_fine, not_finite, other };
+
 /// A piecewise polynomial of degree 4 with continuous derivative.
 struct BoundaryValueSolution {
-  Outcome<double> outcome;  // `nonlinear_solve_failed`: no solution near the guess was found
+  Outcome<double> outcome;  // `nonlinear_solve_failed`: no solution near the guess was found; its hint may hold a doubt
+  BoundaryValueFailure failure = BoundaryValueFailure::none;
   std::size_t size = 0;
   std::vector<double> mesh;    // its points
   std::vector<double> points;  // x at the collocation points, those of the mesh among them
   std::vector<double> slopes;  // f there
   std::vector<double> parameters;
   double residual = 0;                     // the greatest of an interval, see BoundaryValueOptions::tolerance
+  std::vector<double> error;               // estimated, the greatest of each component; empty: unknown
+  double condition = 0;                    // estimated: the error relative to that of each equation; 0: unknown
   std::size_t meshes = 0, iterations = 0;  // how many meshes, and iterations of Newton on all of them
   std::size_t evaluations = 0;             // of f
 

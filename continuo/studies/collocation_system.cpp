@@ -1,5 +1,6 @@
 // continuo/studies/collocation_system.cpp
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,18 @@ namespace continuo::studies::detail {
 namespace {
 
 constexpr std::size_t stages = lobatto4.stages;
+
+/// The parabola through the values at the last three points of an interval, at its first point; by symmetry also that
+/// through the first three in reverse, at its last.
+constexpr std::array<double, stages> end_by_others = [] {
+  std::array<double, stages> weights{};
+  for (std::size_t j = 1; j < stages; ++j) {
+    weights[j] = 1;
+    for (std::size_t k = 1; k < stages; ++k)
+      if (k != j) weights[j] *= (lobatto4.c[0] - lobatto4.c[k]) / (lobatto4.c[j] - lobatto4.c[k]);
+  }
+  return weights;
+}();
 
 /// The places of a block that may differ from zero: those of the pattern, all where there is none.
 std::vector<MatrixPlace> block_places(const BoundaryValueProblem& problem) {
@@ -28,8 +41,12 @@ std::vector<MatrixPlace> block_places(const BoundaryValueProblem& problem) {
 
 }  // namespace
 
-CollocationSystem::CollocationSystem(const BoundaryValueProblem& problem, std::span<const double> mesh)
-    : problem_(problem), n_(problem.system.size), m_(problem.system.parameters()), mesh_(mesh.begin(), mesh.end()) {
+CollocationSystem::CollocationSystem(const BoundaryValueProblem& problem, std::span<const double> mesh, OpenEnds open)
+    : problem_(problem),
+      n_(problem.system.size),
+      m_(problem.system.parameters()),
+      mesh_(mesh.begin(), mesh.end()),
+      open_(open) {
   const std::size_t unknowns = point_count() * n_ + m_;
   for (std::vector<double>* list : {&z_, &trial_, &residuals_, &correction_, &simplified_}) list->assign(unknowns, 0.0);
   f_.assign(point_count() * n_, 0.0);
@@ -58,7 +75,7 @@ double CollocationSystem::time(std::size_t point) const {
 
 /// The pattern, and for every number that `fill_matrix` adds, in its order, the entry it is added to.
 void CollocationSystem::make_pattern() {
-  const std::vector<MatrixPlace> block = block_places(problem_);
+  const std::vector<MatrixPlace>& block = block_ = block_places(problem_);
   std::vector<MatrixPlace> places;
   const auto n = static_cast<std::uint32_t>(n_), m = static_cast<std::uint32_t>(m_);
   const auto constants = static_cast<std::uint32_t>(point_count()) * n;
@@ -93,8 +110,28 @@ void CollocationSystem::make_pattern() {
 
 void CollocationSystem::evaluate_slopes(std::span<const double> z) {
   for (std::size_t q = 0; q < point_count(); ++q)
-    problem_.system.derivative(time(q), z.subspan(q * n_, n_), constants_of(z), std::span(f_).subspan(q * n_, n_));
+    if (!is_open(q))
+      problem_.system.derivative(time(q), z.subspan(q * n_, n_), constants_of(z), std::span(f_).subspan(q * n_, n_));
   evaluations_ += point_count();
+  const std::size_t last = point_count() - 1;
+  for (std::size_t c = 0; c < n_; ++c) {
+    double at_first = 0, at_last = 0;
+    for (std::size_t j = 1; j < stages; ++j) {
+      at_first += end_by_others[j] * f_[j * n_ + c];
+      at_last += end_by_others[j] * f_[(last - j) * n_ + c];
+    }
+    if (open_.first) f_[c] = at_first;
+    if (open_.last) f_[last * n_ + c] = at_last;
+  }
+}
+
+/// a_ij of an interval, where the slope at an open end is made of the others.
+double CollocationSystem::weight(std::size_t interval, std::size_t i, std::size_t j) const {
+  double weight = table.a[i][j];
+  if (open_.first && interval == 0) weight = j == 0 ? 0 : weight + table.a[i][0] * end_by_others[j];
+  if (open_.last && interval + 1 == intervals())
+    weight = j + 1 == stages ? 0 : weight + table.a[i][stages - 1] * end_by_others[stages - 1 - j];
+  return weight;
 }
 
 std::span<const double> CollocationSystem::gather(std::span<const double> z) {
@@ -128,23 +165,15 @@ void CollocationSystem::evaluate_jacobians() {
   const std::size_t entries = jacobians_.size() / point_count();
   const auto constants = constants_of(z_);
   for (std::size_t q = 0; q < point_count(); ++q) {
+    if (is_open(q)) continue;  // its entries stay zero
     const double t = time(q);
     const auto x = point(q);
     const auto block = std::span(jacobians_).subspan(q * entries, entries);
-    if (problem_.system.jacobian) {
-      problem_.system.jacobian(t, x, constants, block);
-    } else {
-      const auto moved = std::span(moved_).first(n_), slope = std::span(moved_slope_).first(n_);
-      std::ranges::copy(x, moved.begin());
-      for (std::size_t j = 0; j < n_; ++j) {
-        const double increment = difference_increment(x[j], 1e-3 * std::sqrt(2.2e-16) * scales_[j]);
-        moved[j] = x[j] + increment;
-        problem_.system.derivative(t, moved, constants, slope);
-        moved[j] = x[j];
-        for (std::size_t i = 0; i < n_; ++i) block[i * n_ + j] = (slope[i] - f_[q * n_ + i]) / increment;
-      }
-      evaluations_ += n_;
-    }
+    if (problem_.system.jacobian) problem_.system.jacobian(t, x, constants, block);
+    // y^1.5 has a derivative at 0 that its formula does not give.
+    const bool is_given = problem_.system.jacobian != nullptr &&
+                          std::ranges::all_of(block, [](double entry) { return std::isfinite(entry); });
+    if (!is_given) difference_jacobian(q, block);
     for (std::size_t p = 0; p < m_; ++p) {
       std::vector<double> moved(constants.begin(), constants.end());
       const double increment = difference_increment(constants[p], 1e-8);
@@ -156,6 +185,20 @@ void CollocationSystem::evaluate_jacobians() {
       ++evaluations_;
     }
   }
+}
+
+void CollocationSystem::difference_jacobian(std::size_t q, std::span<double> block) {
+  const auto moved = std::span(moved_).first(n_), slope = std::span(moved_slope_).first(n_);
+  std::ranges::copy(point(q), moved.begin());
+  for (std::size_t j = 0; j < n_; ++j) {
+    const double here = moved[j], increment = difference_increment(here, 1e-3 * std::sqrt(2.2e-16) * scales_[j]);
+    moved[j] = here + increment;
+    problem_.system.derivative(time(q), moved, constants_of(z_), slope);
+    moved[j] = here;
+    for (std::size_t e = 0; e < block.size(); ++e)
+      if (block_[e].column == j) block[e] = (slope[block_[e].row] - f_[q * n_ + block_[e].row]) / increment;
+  }
+  evaluations_ += n_;
 }
 
 /// By central differences, which are exact but for rounding where a condition is linear.
@@ -195,15 +238,15 @@ void CollocationSystem::fill_matrix() {
       for (std::size_t c = 0; c < n_; ++c) values[*slot++] += 1;
       for (std::size_t c = 0; c < n_; ++c) values[*slot++] -= 1;
       for (std::size_t j = 0; j < stages; ++j) {
-        const double weight = h * table.a[i][j];
+        const double of_block = h * weight(k, i, j);
         const double* block = jacobians_.data() + (first + j) * entries;
-        for (std::size_t e = 0; e < entries; ++e) values[*slot++] -= weight * block[e];
+        for (std::size_t e = 0; e < entries; ++e) values[*slot++] -= of_block * block[e];
       }
       for (std::size_t c = 0; c < n_; ++c) {
         for (std::size_t p = 0; p < m_; ++p) {
           double sum = 0;
           for (std::size_t j = 0; j < stages; ++j)
-            sum += table.a[i][j] * constant_jacobians_[((first + j) * n_ + c) * m_ + p];
+            sum += weight(k, i, j) * constant_jacobians_[((first + j) * n_ + c) * m_ + p];
           values[*slot++] -= h * sum;
         }
       }
@@ -231,11 +274,40 @@ double CollocationSystem::size_of(std::span<const double> correction) {
   return std::sqrt(sum / static_cast<double>(correction.size()));
 }
 
+std::vector<double> CollocationSystem::magnitudes(std::span<const double> z) {
+  std::vector<double> result(z.size());
+  const auto at_times = gather(z), constants = constants_of(z);
+  const std::size_t columns = gathered_.size();
+  for (std::size_t e = 0; e < condition_places_.size(); ++e) {
+    const MatrixPlace& place = condition_places_[e];
+    const double x = place.column < columns ? at_times[place.column] : constants[place.column - columns];
+    result[place.row < n_ ? place.row : point_count() * n_ + place.row - n_] += std::abs(condition_values_[e] * x);
+  }
+  const std::vector<MatrixPlace>& block = block_;
+  std::vector<double> slopes(f_.size());  // sizes of the terms of f at each point
+  for (std::size_t q = 0; q < point_count(); ++q)
+    for (std::size_t e = 0; e < block.size(); ++e)
+      slopes[q * n_ + block[e].row] += std::abs(jacobians_[q * block.size() + e] * z[q * n_ + block[e].column]);
+  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = std::max(slopes[i], std::abs(f_[i]));
+  for (std::size_t k = 0; k < intervals(); ++k) {
+    const std::size_t first = k * per_interval;
+    const double h = mesh_[k + 1] - mesh_[k];
+    for (std::size_t i = 1; i < stages; ++i)
+      for (std::size_t c = 0; c < n_; ++c) {
+        double sum = 0;
+        for (std::size_t j = 0; j < stages; ++j) sum += std::abs(weight(k, i, j)) * slopes[(first + j) * n_ + c];
+        const std::size_t row = (first + i) * n_ + c;
+        result[row] = std::abs(z[row]) + h * sum;
+      }
+  }
+  return result;
+}
+
 /// Newton's iteration, damped so that the correction that the same matrix gives at the new place is smaller than the
 /// one before: P. Deuflhard, "Newton Methods for Nonlinear Problems" (2004), 3.3, the natural monotonicity test.
 NewtonEnding CollocationSystem::iterate(double target, const BoundaryValueOptions& options) {
-  constexpr double least_damping = 1e-4;
-  double damping = 1;
+  constexpr double least_damping = 1e-4, held_by_rounding = 1e-7;
+  double damping = 1, last = 0;
   measure();
   evaluate_residuals(z_, residuals_);
   for (std::size_t k = 0; k < options.most_iterations; ++k) {
@@ -246,10 +318,11 @@ NewtonEnding CollocationSystem::iterate(double target, const BoundaryValueOption
     fill_matrix();
     for (const double value : lu_->values())
       if (!std::isfinite(value)) return NewtonEnding::not_finite;
-    if (!lu_->factor()) return NewtonEnding::singular;
+    factored_ = lu_->factor();
+    if (!factored_) return NewtonEnding::singular;
     std::ranges::copy(residuals_, correction_.begin());
     lu_->solve(correction_.data());
-    const double size = size_of(correction_);
+    const double size = last = size_of(correction_);
     if (!std::isfinite(size)) return k == 0 ? NewtonEnding::not_finite : NewtonEnding::singular;
     for (;;) {
       for (std::size_t i = 0; i < z_.size(); ++i) trial_[i] = z_[i] - damping * correction_[i];
@@ -270,7 +343,10 @@ NewtonEnding CollocationSystem::iterate(double target, const BoundaryValueOption
       damping /= 2;
       if (damping < least_damping) {
         evaluate_slopes(z_);
-        return NewtonEnding::no_descent;
+        // Close to a solution corrections fall with their square; here rounding holds them, which the error tells.
+        if (size > held_by_rounding || !options.check_error) return NewtonEnding::no_descent;
+        held_at_ = size;
+        return NewtonEnding::converged;
       }
     }
     z_.swap(trial_);
@@ -278,7 +354,9 @@ NewtonEnding CollocationSystem::iterate(double target, const BoundaryValueOption
     damping = std::min(1.0, 4 * damping);
     measure();
   }
-  return NewtonEnding::too_many;
+  if (last > held_by_rounding || !options.check_error) return NewtonEnding::too_many;
+  held_at_ = last;
+  return NewtonEnding::converged;
 }
 
 }  // namespace continuo::studies::detail

@@ -237,8 +237,10 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
   const auto turn = run_flow(system, system.constants, start, {0, period}, dense);
   if (!turn.outcome) return without_orbit(turn.outcome);
   // The steps of the run are a good mesh: what needs many times as many points is not found by more of them.
-  BoundaryValueOptions solving{
-      .tolerance = options.tolerance, .most_intervals = 4000 + 8 * turn.t.size(), .interrupt = options.interrupt};
+  BoundaryValueOptions solving{.tolerance = options.tolerance,
+                               .check_error = false,
+                               .most_intervals = 4000 + 8 * turn.t.size(),
+                               .interrupt = options.interrupt};
   for (const double t : turn.t) solving.mesh.push_back(t / period);
   const BoundaryValueProblem problem{over_one_period(system, period),
                                      {0, 1},

@@ -34,6 +34,35 @@ TEST(BoundaryValues, SeveralSolutionsCanBeChosen) {
   EXPECT_THAT(third.err, HasSubstr("2 were found"));
 }
 
+TEST(BoundaryValues, HardOnesAreFollowedFromEasyOnesOrEarlierRuns) {
+  const Shell shell;
+  shell.write("shock.sim", "param eps = 1e-3\ny'' = (y - y*y')/eps\ny(0) = 1; y(1) = -1/3\nrun 0..1\n");
+  const Result along = shell.run("run shock.sim --along eps=0.1..1e-4 -o shock.csv");
+  EXPECT_EQ(along.exit, 0) << along.err;
+  const Result again = shell.run("run shock.sim --set eps=1e-4 --guess shock.csv");
+  EXPECT_EQ(again.exit, 0) << again.err;
+  EXPECT_EQ(lines_of(again.out)[2], lines_of(along.out)[2]);  // y' to six digits
+}
+
+TEST(BoundaryValues, WrongBeginningsAreRefused) {
+  const Shell shell;
+  shell.write("easy.sim", "param c = 2 [m/s^2], N = 2\ny'' = c\ny(0) = 0 [m]; y(1) = 1 [m]\nrun 0..1 [s]\n");
+  const auto refusal = [&](const std::string& options) {
+    const Result result = shell.run("run easy.sim " + options);
+    EXPECT_EQ(result.exit, 1) << options << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(refusal("--along c"), HasSubstr("--along eps=1..1e-3"));
+  EXPECT_THAT(refusal("--along c=1"), HasSubstr("two values are wanted"));
+  EXPECT_THAT(refusal("--along d=1..2"), HasSubstr("no parameter `d`"));
+  EXPECT_THAT(refusal("--along c=1..2x"), HasSubstr("--along"));
+  EXPECT_THAT(refusal("--guess none.csv"), HasSubstr("cannot read none.csv"));
+  shell.write("text.csv", "t,y\n0,much\n1,2\n");
+  EXPECT_THAT(refusal("--guess text.csv"), HasSubstr("text.csv:2"));
+  shell.write("start.sim", "x' = -x\nx(0) = 1\nrun 0..1\n");
+  EXPECT_THAT(shell.run("run start.sim --guess text.csv").err, HasSubstr("conditions stand at several times"));
+}
+
 TEST(BoundaryValues, WhatCannotBeSolvedIsSaidWithItsLine) {
   const Shell shell;
   shell.write("none.sim", "u'' = -4*exp(u)\nu(0) = 0\nu(1) = 0\nrun 0..1\n");  // Bratu beyond its fold
