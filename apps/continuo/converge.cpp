@@ -81,7 +81,8 @@ ExitCode converge(const ConvergeOptions& options) {
     return numerical_failure;
   }
   print(options.json ? convergence_json(study)
-                     : convergence_text(study, options.in_float, options.in_long_double, options.all_points));
+                     : convergence_text(study, prepared.program->model, options.in_float, options.in_long_double,
+                                        options.all_points));
   const bool nothing = std::ranges::all_of(
       study.methods, [](const studies::MethodConvergence& method) { return !method.problem.empty(); });
   const ExitCode exit = study.interrupted ? interrupted : nothing ? usage : done;

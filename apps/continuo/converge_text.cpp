@@ -80,6 +80,24 @@ std::string what_keeps_its_order(const std::string& name) {
                      name, info->order_of_fixed_steps, info->order);
 }
 
+std::string often(std::size_t times) {
+  return times == 1 ? "once" : fmt::format("{} times, first", times);
+}
+
+std::string spoiled_text(const studies::SpoiledOrder& spoiled, const model::Model& model) {
+  std::string text = "less than its order is left of a method where steps lead across\n";
+  for (const studies::Kink& kink : spoiled.kinks) {
+    const model::State& state = model.states[kink.state];
+    text += fmt::format("  a {} of the equation of `{}`, by `{}`: {} at t = {}\n", kink.jumps ? "jump" : "bend",
+                        state.algebraic ? state.column : state.column + "'", kink.text, often(kink.times),
+                        results::short_number(kink.first));
+  }
+  if (spoiled.events > 0)
+    text += fmt::format("  an event, or begin anew at one: {} at t = {}\n", often(spoiled.events),
+                        results::short_number(spoiled.first_event));
+  return text;
+}
+
 }  // namespace
 
 void end_line(std::string& text) {
@@ -107,7 +125,8 @@ bool known_methods(const std::vector<std::string>& names, bool of_world) {
   return true;
 }
 
-std::string convergence_text(const Convergence& study, bool in_float, bool in_long_double, bool all_points) {
+std::string convergence_text(const Convergence& study, const model::Model& model, bool in_float, bool in_long_double,
+                             bool all_points) {
   std::string text = heading(study.by_tolerance);
   text += in_float ? fmt::format("  {:<20}  there", "in float") : "";
   text += in_long_double ? "  long" : "";
@@ -130,6 +149,7 @@ std::string convergence_text(const Convergence& study, bool in_float, bool in_lo
   if (unreached && !study.by_tolerance) text += "* smaller steps would still gain: --most-steps\n";
   for (const MethodConvergence& method : study.methods)
     if (method.problem.empty() && !study.by_tolerance) text += what_keeps_its_order(method.method);
+  if (study.spoiled) text += spoiled_text(*study.spoiled, model);
   if (all_points)
     for (const MethodConvergence& method : study.methods)
       if (method.problem.empty()) text += points_text(method, study.by_tolerance, in_float, in_long_double);

@@ -15,7 +15,8 @@ bool known_methods(const std::vector<std::string>& names, bool of_world = false)
 void end_line(std::string& text);
 
 /// A line per method; with `all_points` every step of each below it.
-std::string convergence_text(const studies::Convergence& study, bool in_float, bool in_long_double, bool all_points);
+std::string convergence_text(const studies::Convergence& study, const model::Model& model, bool in_float,
+                             bool in_long_double, bool all_points);
 results::Figure convergence_figure(const studies::Convergence& study, const std::string& title);
 
 }  // namespace continuo::app

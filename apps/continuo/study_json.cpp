@@ -111,7 +111,14 @@ std::string convergence_json(const studies::Convergence& study) {
     if (!method.problem.empty()) one["problem"] = method.problem;
     methods.push_back(std::move(one));
   }
-  return text_of({{"reference", study.reference}, {"interrupted", study.interrupted}, {"methods", methods}});
+  json result{{"reference", study.reference}, {"interrupted", study.interrupted}, {"methods", methods}};
+  if (study.spoiled) {
+    json kinks = json::array();
+    for (const studies::Kink& kink : study.spoiled->kinks)
+      kinks.push_back({{"text", kink.text}, {"jumps", kink.jumps}, {"times", kink.times}, {"first", kink.first}});
+    result["spoiled_by"] = {{"kinks", kinks}, {"events", study.spoiled->events}};
+  }
+  return text_of(result);
 }
 
 std::string portrait_json(const model::Model& model, const studies::PhasePortrait& portrait,

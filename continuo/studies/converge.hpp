@@ -23,6 +23,7 @@
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/model_program.hpp>
 #include <continuo/solve/outcome.hpp>
+#include <continuo/studies/kinks.hpp>
 #include <continuo/studies/named_solve.hpp>
 #include <continuo/studies/observed_order.hpp>
 
@@ -96,8 +97,16 @@ struct MethodConvergence {
   std::string problem{};  // why there is nothing, if there is nothing
 };
 
+/// What takes a method's order from it: steps across a place where the equations jump or bend, or that end at an event.
+struct SpoiledOrder {
+  std::vector<Kink> kinks{};
+  std::size_t events = 0;  // of a strict run
+  double first_event = 0;
+};
+
 struct Convergence {
   std::vector<MethodConvergence> methods{};
+  std::optional<SpoiledOrder> spoiled{};  // of a model, where some method keeps less than its order
   bool by_tolerance = false, interrupted = false;
   std::string reference{};  // what was compared with
   std::string problem{};    // why there is no reference

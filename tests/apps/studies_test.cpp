@@ -14,6 +14,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 TEST(BoundaryValues, RunSolvesThemByItself) {
   const Shell shell;
@@ -270,6 +271,36 @@ TEST(Sense, RefusesAJumpThatNobodyLocates) {
   const Result floor = shell.run("sense floor.sim --param q");
   EXPECT_EQ(floor.exit, 3);
   EXPECT_THAT(floor.err, HasSubstr("jumps across its threshold"));
+}
+
+TEST(Explore, SaysWhatIsThereAndWhatIsOpen) {
+  const Shell shell;
+  const Result lorenz = shell.run("explore " + gallery("lorenz"));
+  EXPECT_EQ(lorenz.exit, 0) << lorenz.err;
+  EXPECT_THAT(lorenz.out, AllOf(HasSubstr("rests    3 from"), HasSubstr("Hopf point at rho = 24.7368"),
+                                HasSubstr("the motion is chaotic"), HasSubstr("open     no closed orbit")));
+  const Result spring = shell.run("explore " + gallery("mass_spring_damper"));
+  EXPECT_THAT(spring.out, AllOf(HasSubstr("it goes on to rest 1"), HasSubstr("1 stable: x = 0.5")));
+  // Its orbit has the period 2 pi (1 + mu^2/16 + ...), 6.6632868593231 for mu = 1.
+  shell.write("vdp.sim", "param mu = 1 in 0.5..2\nx'' = mu*(1 - x^2)*x' - x\nx(0) = 1; x'(0) = 0\nrun 0..20\n");
+  const Result orbit = shell.run("explore vdp.sim --json --plot page.svg");
+  EXPECT_EQ(orbit.exit, 0) << orbit.err;
+  const auto json = nlohmann::json::parse(orbit.out);
+  EXPECT_NEAR(json["orbit"]["period"].get<double>(), 6.6632868593231, 1e-8);
+  EXPECT_TRUE(json["orbit"]["stable"].get<bool>());
+  EXPECT_EQ(json["rests"].size(), 1u);
+  EXPECT_THAT(shell.read("page.svg"), HasSubstr("<svg"));
+}
+
+TEST(Explore, LooksForNothingWhereItCannotSee) {
+  const Shell shell;
+  shell.write("forced.sim", "param c = 0.2\nx'' = -x - c*x' + cos(t)\nx(0) = 0; x'(0) = 0\nrun 0..20\n");
+  const Result forced = shell.run("explore forced.sim");
+  EXPECT_EQ(forced.exit, 0) << forced.err;
+  EXPECT_THAT(forced.out, AllOf(HasSubstr("places of rest were not looked for"), HasSubstr("neighbours come together"),
+                                HasSubstr("not moved: c"), Not(HasSubstr("orbit    period"))));
+  shell.write("none.sim", "let a = 1\nrun 0..1\n");
+  EXPECT_NE(shell.run("explore none.sim").exit, 0);
 }
 
 }  // namespace
