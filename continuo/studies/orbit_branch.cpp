@@ -19,21 +19,6 @@ constexpr double solved_for = 1e-9, rounding_leaves = 1e-6;  // a correction, in
 constexpr double error_for_tolerance = 100;  // inside of an interval; at its ends and of the period far less is left
 constexpr double no_size = 1e-12;            // of the largest component: what rounding leaves of a zero
 
-double length(const Vector& v) {
-  double sum = 0;
-  for (const double part : v) sum += part * part;
-  return std::sqrt(sum);
-}
-void normalize(Vector& v) {
-  const double size = length(v);
-  for (double& part : v) part /= size;
-}
-double product(const Vector& a, const Vector& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 /// Products over the multipliers, each factor of size 1 at most.
 void set_tests(OrbitPlace& place) {
   const auto& values = place.point.multipliers;
@@ -213,7 +198,6 @@ std::optional<Vector> OrbitBranchSteps::corrected(const Vector& guess, const Vec
   return std::nullopt;
 }
 
-/// The tangent nearest to `along`, multipliers and tests.
 std::optional<OrbitPlace> OrbitBranchSteps::described(Vector z, const Vector& along) {
   OrbitPlace place{.mesh = equations_->mesh(), .z = std::move(z), .tangent = {}, .shift = {}, .point = {}};
   place.shift = shift_at(place.z);
@@ -252,6 +236,35 @@ std::optional<OrbitPlace> OrbitBranchSteps::at_constant(Vector z, double value) 
 std::optional<OrbitPlace> OrbitBranchSteps::across(const Vector& z, const Vector& along) {
   auto found = corrected(z, z, shift_at(z), along);
   return found ? described(std::move(*found), along) : std::nullopt;
+}
+
+// Next to a crossing the matrix is nearly singular: what solves it for any right-hand side is nearly the direction that
+// it does not see (inverse iteration).
+std::optional<Vector> OrbitBranchSteps::other_direction(const Vector& z, const Vector& along) {
+  if (!equations_->evaluate(z, component_sizes_)) return std::nullopt;
+  const Vector shift = shift_at(z);
+  Vector direction(unknowns_);
+  for (std::size_t j = 0; j < unknowns_; ++j) direction[j] = std::cos(static_cast<double>(j * j + 1));
+  for (int k = 0; k < 2; ++k) {
+    normalize(direction);
+    // The equations count as many as the unknowns but have other sizes; any right-hand side will do.
+    auto solution = solved(shift, along, direction);
+    if (!solution) return std::nullopt;
+    direction = std::move(*solution);
+  }
+  normalize(direction);
+  return direction;
+}
+
+Vector OrbitBranchSteps::halves(const OrbitPlace& place) {
+  use_for(place);
+  Vector result(unknowns_ - 2), later(n_);
+  for (std::size_t k = 0; k < equations_->nodes(); ++k) {
+    const double s = equations_->place(k);
+    equations_->state(place.z, s < 0.5 ? s + 0.5 : s - 0.5, later);
+    for (std::size_t i = 0; i < n_; ++i) result[k * n_ + i] = (place.z[k * n_ + i] - later[i]) / scale_[k * n_ + i];
+  }
+  return result;
 }
 
 std::optional<OrbitPlace> OrbitBranchSteps::stepped(const OrbitPlace& from, double step) {

@@ -13,6 +13,7 @@
 
 #include <continuo/studies/orbit_collocation.hpp>
 #include <continuo/studies/orbit_continuation.hpp>
+#include <continuo/studies/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
 
@@ -55,6 +56,11 @@ class OrbitBranchSteps {
   std::optional<OrbitPlace> at_constant(std::vector<double> z, double value);
   /// The orbit near z whose distance from it has no part along `along` (in sizes).
   std::optional<OrbitPlace> across(const std::vector<double>& z, const std::vector<double>& along);
+  /// Where branches cross or the period doubles, the direction in which the equations hold beside that of the branch,
+  /// of length 1 in sizes. z lies next to that place, on the mesh that is used, `along` is the branch's tangent.
+  std::optional<std::vector<double>> other_direction(const std::vector<double>& z, const std::vector<double>& along);
+  /// x(s) - x(s + 1/2) at the nodes, in sizes: nothing is left of it where twice the same orbit is run through.
+  std::vector<double> halves(const OrbitPlace& place);
   /// A step along the branch. Nothing where none is found, or only one that is farther off than the step is long.
   std::optional<OrbitPlace> stepped(const OrbitPlace& from, double step);
   /// Whether the mesh of `place` serves it.
@@ -83,9 +89,10 @@ class OrbitBranchSteps {
   std::vector<double> shift_at(const std::vector<double>& z) const;
   std::optional<std::vector<double>> solved(const std::vector<double>& shift, const std::vector<double>& last,
                                             std::vector<double> b);
+  /// With the tangent nearest to `along`, multipliers and tests.
+  std::optional<OrbitPlace> described(std::vector<double> z, const std::vector<double>& along);
   std::optional<std::vector<double>> corrected(const std::vector<double>& guess, const std::vector<double>& reference,
                                                const std::vector<double>& shift, const std::vector<double>& last);
-  std::optional<OrbitPlace> described(std::vector<double> z, const std::vector<double>& along);
 
   const OrbitContinuationOptions& options_;
   ParametricSystem system_;  // of the one constant

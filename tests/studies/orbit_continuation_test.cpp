@@ -293,6 +293,70 @@ TEST(OrbitContinuation, ATorusIsBorn) {
   for (const OrbitPoint& point : branch.points) EXPECT_EQ(point.stable, point.constant < 1);
 }
 
+// Round the unit circle a strip is turned by half a turn: across it s' = (g - s^2) s and q' = -q, where (a, b) = s
+// e(angle / 2) + q e(angle / 2 + pi / 2). With g = p (1 - p) the circle doubles its period at p = 0 and p = 1, and
+// between them the orbit s^2 = g goes round twice in 4 pi, with the multipliers exp(-8 pi g), exp(-4 pi), exp(-8 pi).
+TEST(OrbitContinuation, OrbitsOfTwiceThePeriodAreFollowed) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    const double r = std::hypot(x[0], x[1]), c = x[0] / r, s = x[1] / r, g = p[0] * (1 - p[0]);
+    out[0] = (1 - r * r) * x[0] - x[1];
+    out[1] = (1 - r * r) * x[1] + x[0];
+    const double along_a = ((1 + c) * x[2] + s * x[3]) / 2, along_b = (s * x[2] + (1 - c) * x[3]) / 2;
+    const double square = x[2] * along_a + x[3] * along_b;
+    out[2] = -x[3] / 2 + (g - square) * along_a - (x[2] - along_a);
+    out[3] = x[2] / 2 + (g - square) * along_b - (x[3] - along_b);
+  };
+  const auto system = parametric_system(4, f, {-0.5});
+  const auto start = find_periodic_orbit(system, {0.9, 0, 0.1, 0}, {.settle = 60, .duration = 60});
+  ASSERT_TRUE(start.outcome) << describe(start.outcome);
+  const auto branch = continue_orbit(system, start, {.low = -0.5, .high = 1.5});
+  const auto marks = of_kind(branch, OrbitBifurcation::period_doubling);
+  ASSERT_EQ(marks.size(), 2u);
+  EXPECT_NEAR(marks[0].at.constant, 0, 1e-9);
+  EXPECT_NEAR(marks[1].at.constant, 1, 1e-9);
+  for (const OrbitMark& mark : marks) {
+    const auto doubled = continue_orbit(system, mark, {.low = -0.5, .high = 1.5});
+    ASSERT_EQ(doubled.message, "");
+    EXPECT_EQ(doubled.ends[0].ending, OrbitEnding::branching);
+    EXPECT_EQ(doubled.ends[1].ending, OrbitEnding::branching) << doubled.ends[1].reason;
+    EXPECT_NEAR(doubled.ends[1].constant, 1 - mark.at.constant, 1e-7);
+    EXPECT_TRUE(doubled.marks.empty());
+    for (std::size_t k = 0; k + 1 < doubled.points.size(); ++k) {
+      const OrbitPoint& point = doubled.points[k];
+      const double g = point.constant * (1 - point.constant);
+      EXPECT_NEAR(point.period, 4 * pi, 1e-7);
+      EXPECT_NEAR(point.x[2] * point.x[2] + point.x[3] * point.x[3], g, 1e-7);
+      EXPECT_NEAR(point.multipliers[0].real(), std::exp(-8 * pi * g), 1e-5);
+    }
+  }
+}
+
+// Beside the unit circle u' = (p - u^2) u: at p = 0 two more circles branch off, u = +- sqrt(p).
+TEST(OrbitContinuation, TheOtherBranchAtACrossingIsFollowed) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    const double grow = 1 - x[0] * x[0] - x[1] * x[1];
+    out[0] = grow * x[0] - x[1] + 0.1 * x[2] * x[0];
+    out[1] = grow * x[1] + x[0] + 0.1 * x[2] * x[1];
+    out[2] = (p[0] - x[2] * x[2]) * x[2];
+  };
+  const auto system = parametric_system(3, f, {-0.5});
+  const auto start = find_periodic_orbit(system, {0.9, 0, 0.1}, {.settle = 60, .duration = 60});
+  ASSERT_TRUE(start.outcome) << describe(start.outcome);
+  const auto branch = continue_orbit(system, start, {.low = -0.5, .high = 1});
+  ASSERT_EQ(branch.marks.size(), 1u);
+  EXPECT_EQ(branch.marks[0].kind, OrbitBifurcation::crossing);
+  EXPECT_NEAR(branch.marks[0].at.constant, 0, 1e-8);
+  const auto other = continue_orbit(system, branch.marks[0], {.low = -0.5, .high = 1});
+  ASSERT_EQ(other.message, "");
+  EXPECT_EQ(other.ends[1].ending, OrbitEnding::bound) << other.ends[1].reason;
+  EXPECT_EQ(other.points.back().constant, 1);
+  for (const OrbitPoint& point : other.points) {
+    EXPECT_NEAR(point.x[2] * point.x[2], point.constant, 1e-7);
+    EXPECT_NEAR(std::hypot(point.x[0], point.x[1]), std::sqrt(1 + 0.1 * point.x[2]), 1e-7);
+    EXPECT_NEAR(point.period, 2 * pi, 1e-7);
+  }
+}
+
 // x'' = -x - c x': only at c = 0 are there orbits, of any size.
 TEST(OrbitContinuation, AFamilyIsSaidToBeOne) {
   const auto f = [](double, Values x, Values p, std::span<double> out) {
