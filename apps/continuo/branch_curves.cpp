@@ -13,6 +13,12 @@ bool is_named(const results::Panel& panel, const std::string& label) {
   return std::ranges::any_of(panel.curves, [&](const results::Curve& curve) { return curve.label == label; });
 }
 
+const char* color_of(const std::string& kind) {
+  if (kind.starts_with("Hopf") || kind == "torus") return "#cc79a7";
+  if (kind == "period doubling") return "#e69f00";
+  return kind == "fold" ? "#444444" : "#009e73";
+}
+
 }  // namespace
 
 void add_branch(results::Panel& panel, std::span<const double> constants, std::span<const double> values,
@@ -41,7 +47,7 @@ void add_bifurcation(results::Panel& panel, const std::string& kind, double cons
   panel.curves.push_back({.label = is_named(panel, kind) ? "" : kind,
                           .x = {constant},
                           .y = {value},
-                          .color = kind.starts_with("Hopf") ? "#cc79a7" : "#444444",
+                          .color = color_of(kind),
                           .style = results::Curve::Style::full_points});
 }
 

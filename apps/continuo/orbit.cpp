@@ -11,10 +11,12 @@
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/orbit_branch.hpp>
 #include <apps/continuo/progress.hpp>
+#include <apps/continuo/steady_branches.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/results/csv.hpp>
 #include <continuo/results/figure.hpp>
@@ -32,7 +34,10 @@ struct OrbitOptions {
   std::string mode, section, along, of, out, plot;
   std::optional<double> settle;
   double duration = 0, tolerance = 1e-9;
-  bool lyapunov = false, from_hopf = false;
+  bool lyapunov = false, from_hopf = false, json = false;
+  bool patient = false;  // no time was named: longer ones may be tried
+  std::size_t others = 3;
+  BranchSteps steps;
 };
 
 std::string with_time_unit(double t, const model::Model& model) {
@@ -145,31 +150,35 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
     Progress progress;
     studies::PeriodicOrbitOptions search = search_of(options);
     search.progress = progress.parts();
-    return studies::find_periodic_orbit(studied.system, studied.start, search);
+    return find_orbit(studied, search, options.patient);
   }();
   if (!found.outcome) return ended(found.outcome);
+  const auto extents = studies::extents_of(studied.system, found);
+  if (options.json) {
+    auto states = nlohmann::json::array();
+    for (const model::State& state : model.states) states.push_back(state.column);
+    const nlohmann::json json{{"states", states},      {"period", found.period},
+                              {"x", found.orbit(0)},   {"min", extents.low},
+                              {"max", extents.high},   {"multipliers", json_of(found.multipliers)},
+                              {"stable", found.stable}};
+    print(json.dump(2) + "\n");
+  }
   std::string text = fmt::format("period {}, {}\nmultipliers", with_time_unit(found.period, model),
                                  found.stable ? "neighbours come nearer" : "some neighbours go away");
   for (std::size_t i = 0; i < found.multipliers.size(); ++i)
     text += (i == 0 ? " " : ", ") + complex_text(found.multipliers[i]);
   text += "\n";
-  for (std::size_t i = 0; i < model.states.size(); ++i) {
-    double low = found.orbit(0)[i], high = low;
-    for (const double s : found.orbit.mesh) {
-      low = std::min(low, found.orbit(s)[i]);
-      high = std::max(high, found.orbit(s)[i]);
-    }
-    text += fmt::format("  {} from {} to {}\n", model.states[i].column, results::short_number(low),
-                        results::short_number(high));
-  }
-  print(text);
+  for (std::size_t i = 0; i < model.states.size(); ++i)
+    text += fmt::format("  {} from {} to {}\n", model.states[i].column, results::short_number(extents.low[i]),
+                        results::short_number(extents.high[i]));
+  if (!options.json) print(text);
   if (options.plot.empty()) return done;
   if (!written(results::draw(figure_of(model, found), options.plot))) return usage;
   return done;
 }
 
 ExitCode orbit(OrbitOptions options) {
-  if (!drawable(options.plot) || !writable(options.out)) return usage;
+  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps)) return usage;
   std::optional<NamedRange> range;
   std::vector<std::string> constants;
   if (!options.along.empty()) {
@@ -181,6 +190,7 @@ ExitCode orbit(OrbitOptions options) {
   if (studied.prepared.exit != done) return studied.prepared.exit;
   const model::Model& model = studied.prepared.program->model;
   const double run = model.run.to && model.run.from ? model.run.to->value - model.run.from->value : 100;
+  options.patient = !options.settle && !(options.duration > 0);
   if (!options.settle) options.settle = run;
   if (!(options.duration > 0)) options.duration = options.lyapunov ? 20 * run : run;
   if (!(*options.settle >= 0) || !(options.tolerance > 0)) {
@@ -192,7 +202,11 @@ ExitCode orbit(OrbitOptions options) {
   if (range)
     return show_orbit_branches(studied, {.range = *range,
                                          .search = search_of(options),
+                                         .patient = options.patient,
                                          .from_hopf = options.from_hopf,
+                                         .json = options.json,
+                                         .others = options.others,
+                                         .steps = options.steps,
                                          .of = options.of,
                                          .out = options.out,
                                          .plot = options.plot});
@@ -227,6 +241,13 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
                     ->excludes(section)
                     ->excludes(lyapunov);
   verb->add_flag("--from-hopf", options->from_hopf, "Begin where places of rest begin to oscillate")->needs(along);
+  verb->add_option("--branches", options->others, "How many branches to follow that begin on others; else 3")
+      ->type_name("N")
+      ->needs(along);
+  add_branch_steps(*verb, options->steps, along);
+  verb->add_flag("--json", options->json, "The orbit, or --along, for other programs")
+      ->excludes(section)
+      ->excludes(lyapunov);
   verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);
   verb->add_option("-o,--out", options->out, "The section's file (else standard output), or the table of --along")
       ->type_name("FILE");

@@ -7,6 +7,7 @@
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/orbit_branch.hpp>
 #include <apps/continuo/progress.hpp>
+#include <apps/continuo/steady_branches.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
 
@@ -121,11 +122,12 @@ std::vector<studies::HopfPoint> hopf_points(const Studied& studied, const NamedR
   std::vector<studies::HopfPoint> found;
   studies::EquilibriumBox box{.low = {}, .high = {}, .interrupt = &interrupt_flag()};
   if (!set_box(studied, {}, box)) return found;
-  const auto equilibria = studies::find_equilibria(studied.system, box);
-  for (const studies::Equilibrium& equilibrium : equilibria.equilibria) {
-    const auto branch = studies::continue_equilibrium(
-        studied.system, equilibrium.x, {.low = range.low, .high = range.high, .interrupt = &interrupt_flag()});
-    for (const studies::BifurcationPoint& point : branch.bifurcations) {
+  const double now = studied.system.constants[0];
+  const auto equilibria = now >= range.low && now <= range.high
+                              ? studies::find_equilibria(studied.system, box).equilibria
+                              : std::vector<studies::Equilibrium>();
+  for (const studies::BranchOfDiagram& of : diagram_of(studied, equilibria, range, box).branches) {
+    for (const studies::BifurcationPoint& point : of.branch.bifurcations) {
       if (point.kind != studies::Bifurcation::hopf) continue;
       const auto known = [&](const studies::HopfPoint& other) {
         double apart = std::abs(other.constant - point.at.constant) / (range.high - range.low);
@@ -145,7 +147,56 @@ std::vector<studies::HopfPoint> hopf_points(const Studied& studied, const NamedR
   return found;
 }
 
+/// Whether an end of a branch is this orbit: of the same place and period there.
+bool ends_at(const OrbitBranch& branch, const studies::OrbitPoint& orbit, const NamedRange& range) {
+  constexpr double same = 1e-5;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const studies::OrbitPoint& last = side == 0 ? branch.points.front() : branch.points.back();
+    if (std::abs(last.constant - orbit.constant) > same * (range.high - range.low)) continue;
+    if (std::abs(last.period - orbit.period) > same * orbit.period) continue;
+    const auto alike = [](const std::vector<double>& a, const std::vector<double>& b) {
+      for (std::size_t i = 0; i < a.size(); ++i)
+        if (std::abs(a[i] - b[i]) > 1e-3 * std::max({std::abs(a[i]), std::abs(b[i]), 1e-3})) return false;
+      return true;
+    };
+    if (alike(last.low, orbit.low) && alike(last.high, orbit.high)) return true;
+  }
+  return false;
+}
+
 /// From the orbit that the motion comes to; from Hopf points where there is none, or the user wants them.
+void follow_main(const Studied& studied, const OrbitBranchOptions& options,
+                 studies::OrbitContinuationOptions& continuation, Progress& progress,
+                 std::vector<OrbitBranch>& branches) {
+  if (!options.from_hopf) {
+    studies::PeriodicOrbitOptions search = options.search;
+    search.progress = progress.parts(0, search_share);
+    const auto start = find_orbit(studied, search, options.patient);
+    if (start.outcome) {
+      branches.push_back(studies::continue_orbit(studied.system, start, continuation));
+      return;
+    }
+    if (interrupt_flag()) return;
+    say(fmt::format("no orbit was found from the start: {}; looking where places of rest begin to oscillate",
+                    start.outcome.hint.empty() ? describe(start.outcome) : start.outcome.hint));
+  }
+  const auto points = hopf_points(studied, options.range);
+  for (std::size_t k = 0; k < points.size() && !interrupt_flag(); ++k) {
+    studies::OrbitPoint rest;
+    rest.constant = points[k].constant;
+    rest.period = 2 * M_PI / points[k].angular_frequency;
+    rest.low = rest.high = points[k].x;
+    if (std::ranges::any_of(branches, [&](const OrbitBranch& branch) {
+          return !branch.points.empty() && ends_at(branch, rest, options.range);
+        }))
+      continue;  // it is the other end of one that is known
+    const double share = 1 / static_cast<double>(points.size());
+    continuation.progress = progress.parts(share * static_cast<double>(k), share);
+    branches.push_back(studies::continue_orbit(studied.system, points[k], continuation));
+  }
+}
+
+/// Also the branches that begin on those, of twice the period or at a crossing, and on these again.
 std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions& options) {
   const NamedRange& range = options.range;
   Progress progress;
@@ -154,29 +205,68 @@ std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions
                                                  .rtol = std::clamp(options.search.rtol, 1e-12, 1e-6),
                                                  .interrupt = &interrupt_flag(),
                                                  .progress = progress.parts(search_share, 1 - search_share)};
+  options.steps.set(continuation);
   std::vector<OrbitBranch> branches;
-  if (!options.from_hopf) {
-    studies::PeriodicOrbitOptions search = options.search;
-    search.progress = progress.parts(0, search_share);
-    const auto start = studies::find_periodic_orbit(studied.system, studied.start, search);
-    if (start.outcome) {
-      branches.push_back(studies::continue_orbit(studied.system, start, continuation));
-      return branches;
+  follow_main(studied, options, continuation, progress, branches);
+  const std::size_t most = branches.size() + options.others;
+  for (std::size_t k = 0; k < branches.size() && branches.size() < most; ++k) {
+    for (const studies::OrbitMark& mark : std::vector(branches[k].marks)) {
+      const bool doubling = mark.kind == studies::OrbitBifurcation::period_doubling;
+      if ((!doubling && mark.kind != studies::OrbitBifurcation::crossing) || branches.size() >= most) continue;
+      if (interrupt_flag()) return branches;
+      studies::OrbitPoint first(mark.at);
+      if (doubling) first.period *= 2;
+      if (std::ranges::any_of(branches, [&](const OrbitBranch& branch) {
+            return !branch.points.empty() && ends_at(branch, first, range);
+          }))
+        continue;
+      OrbitBranch branch = studies::continue_orbit(studied.system, mark, continuation);
+      if (branch.points.size() > 2) branches.push_back(std::move(branch));
     }
-    if (interrupt_flag()) return branches;
-    say(fmt::format("no orbit was found from the start: {}; looking where places of rest begin to oscillate",
-                    start.outcome.hint.empty() ? describe(start.outcome) : start.outcome.hint));
-  }
-  const auto points = hopf_points(studied, range);
-  for (std::size_t k = 0; k < points.size() && !interrupt_flag(); ++k) {
-    const double share = 1 / static_cast<double>(points.size());
-    continuation.progress = progress.parts(share * static_cast<double>(k), share);
-    branches.push_back(studies::continue_orbit(studied.system, points[k], continuation));
   }
   return branches;
 }
 
+nlohmann::json json_of(const studies::OrbitPoint& point, const NamedRange& range) {
+  return {{range.name, point.constant}, {"period", point.period}, {"x", point.x},
+          {"min", point.low},           {"max", point.high},      {"multipliers", app::json_of(point.multipliers)},
+          {"stable", point.stable}};
+}
+nlohmann::json json_of(const std::vector<OrbitBranch>& branches, const model::Model& model, const NamedRange& range) {
+  auto list = nlohmann::json::array();
+  for (const OrbitBranch& branch : branches) {
+    nlohmann::json entry{{"points", nlohmann::json::array()},
+                         {"bifurcations", nlohmann::json::array()},
+                         {"ends", nlohmann::json::array()}};
+    for (const studies::OrbitPoint& point : branch.points) entry["points"].push_back(json_of(point, range));
+    for (const studies::OrbitMark& mark : branch.marks) {
+      nlohmann::json at = json_of(mark.at, range);
+      at["kind"] = to_string(mark.kind);
+      if (mark.kind == studies::OrbitBifurcation::torus) at["rotation"] = mark.rotation;
+      entry["bifurcations"].push_back(std::move(at));
+    }
+    for (const studies::OrbitBranchEnd& end : branch.ends)
+      entry["ends"].push_back({{range.name, end.constant}, {"reason", end.reason}});
+    list.push_back(std::move(entry));
+  }
+  auto states = nlohmann::json::array();
+  for (const model::State& state : model.states) states.push_back(state.column);
+  return {{"parameter", range.name}, {"states", states}, {"branches", list}};
+}
+
 }  // namespace
+
+studies::PeriodicOrbit find_orbit(const Studied& studied, studies::PeriodicOrbitOptions search, bool patient) {
+  constexpr double longer = 10;
+  constexpr int most_tries = 3;
+  auto found = studies::find_periodic_orbit(studied.system, studied.start, search);
+  for (int k = 1; k < most_tries && patient && !found.outcome && found.wanders && !interrupt_flag(); ++k) {
+    search.settle *= longer;
+    search.duration *= longer;
+    found = studies::find_periodic_orbit(studied.system, studied.start, search);
+  }
+  return found;
+}
 
 ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& options) {
   const model::Model& model = studied.prepared.program->model;
@@ -199,7 +289,8 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
     say(fmt::format("no orbit was found to follow along {}={:.10g}..{:.10g}", range.name, range.low, range.high));
     return numerical_failure;
   }
-  for (std::size_t b = 0; b < branches.size(); ++b)
+  if (options.json) print(json_of(branches, model, range).dump(2) + "\n");
+  for (std::size_t b = 0; b < branches.size() && !options.json; ++b)
     print((branches.size() == 1 ? "" : fmt::format("{}{}: ", b == 0 ? "" : "\n", b + 1)) +
           table_of(branches[b], range));
   if (!options.out.empty()) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include <apps/continuo/branch_steps.hpp>
 #include <apps/continuo/studied_model.hpp>
 
 #include <continuo/studies/periodic_orbit.hpp>
@@ -11,9 +12,16 @@ namespace continuo::app {
 struct OrbitBranchOptions {
   NamedRange range;
   studies::PeriodicOrbitOptions search{};  // of the orbit to begin with
+  bool patient = false;                    // look for it ten times and a hundred times as long, too
   bool from_hopf = false;                  // begin where places of rest begin to oscillate
-  std::string of, out, plot;               // the state to draw; the files of the table and the picture
+  bool json = false;
+  std::size_t others = 0;  // so many branches more, that begin on those that were found
+  BranchSteps steps{};
+  std::string of, out, plot;  // the state to draw; the files of the table and the picture
 };
+
+/// The orbit that the motion comes to.
+studies::PeriodicOrbit find_orbit(const Studied& studied, studies::PeriodicOrbitOptions search, bool patient);
 
 /// `studied` has the parameter as its one constant.
 ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& options);

@@ -5,19 +5,19 @@
 #include <string>
 #include <vector>
 
-#include <apps/continuo/branch_curves.hpp>
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/progress.hpp>
+#include <apps/continuo/steady_branches.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include <continuo/results/figure.hpp>
+#include <continuo/results/output_file.hpp>
 #include <continuo/results/summary.hpp>
-#include <continuo/studies/continuation.hpp>
 #include <continuo/studies/equilibrium.hpp>
 #include <continuo/studies/unseen.hpp>
 
@@ -26,7 +26,9 @@ namespace {
 
 struct SteadyOptions {
   ExperimentOptions experiment;
-  std::string mode, along, plot, of;
+  std::string mode, along, plot, out, of;
+  BranchSteps steps;
+  bool json = false;
   std::vector<std::string> box;
   std::size_t starts = 200;
 };
@@ -71,68 +73,43 @@ std::string table_of(const studies::Equilibria& found, const Studied& studied) {
   return text + "\n";
 }
 
-/// The points of a branch and between them those where its stability changes.
-std::vector<const studies::BranchPoint*> all_points(const studies::Branch& branch) {
-  std::vector<const studies::BranchPoint*> points;
-  auto bifurcation = branch.bifurcations.begin();
-  for (std::size_t i = 0; i <= branch.points.size(); ++i) {
-    for (; bifurcation != branch.bifurcations.end() && bifurcation->next == i; ++bifurcation)
-      points.push_back(&bifurcation->at);
-    if (i < branch.points.size()) points.push_back(&branch.points[i]);
+nlohmann::json json_of(const studies::Equilibria& found, const Studied& studied) {
+  auto places = nlohmann::json::array();
+  for (const studies::Equilibrium& e : found.equilibria) {
+    const auto jump =
+        studies::jump_at(*studied.prepared.program, studied.mode, e.x, studied.prepared.experiment.parameters);
+    nlohmann::json place{{"x", e.x}, {"isolated", e.isolated}};
+    place["stability"] = jump || !e.undetermined.equations.empty() ? "undecided" : to_string(e.stability);
+    if (!jump) place["eigenvalues"] = app::json_of(e.eigenvalues);
+    places.push_back(std::move(place));
   }
-  return points;
+  auto states = nlohmann::json::array();
+  for (const model::State& state : studied.prepared.program->model.states) states.push_back(state.column);
+  return {{"states", states}, {"equilibria", places}, {"searches", found.searches}, {"arrived", found.arrived}};
 }
 
-void add_curves(const studies::Branch& branch, std::size_t component, results::Panel& panel) {
-  std::vector<double> constants, values;
-  std::vector<bool> stable;
-  const auto points = all_points(branch);
-  for (const studies::BranchPoint* point : points) {
-    constants.push_back(point->constant);
-    values.push_back(point->x[component]);
-    stable.push_back(point->stability == studies::Stability::asymptotically_stable);
-  }
-  for (std::size_t i = points.size(); i-- > 1;)  // where it changes it is neither: the piece behind begins there
-    if (points[i - 1]->stability == studies::Stability::undecided) stable[i - 1] = stable[i];
-  add_branch(panel, constants, values, stable);
-  for (const studies::BifurcationPoint& point : branch.bifurcations)
-    add_bifurcation(panel, std::string(to_string(point.kind)), point.at.constant, point.at.x[component]);
-}
-
+/// How they move. What was found at the parameter's present value has been shown.
 ExitCode follow(const Studied& studied, const studies::Equilibria& found, const NamedRange& range,
-                const SteadyOptions& options) {
+                const studies::EquilibriumBox& box, const SteadyOptions& options) {
   const model::Model& model = studied.prepared.program->model;
   std::optional<std::size_t> component = 0;
   if (!options.of.empty()) component = state_named(model, options.of);
   if (!component) return usage;
-  results::Panel panel{.x_label = range.name, .y_label = model.states[*component].column, .curves = {}};
-  const double share = 1 / static_cast<double>(found.equilibria.size());
-  for (std::size_t k = 0; k < found.equilibria.size(); ++k) {
-    const auto branch = [&] {
-      Progress progress;
-      return studies::continue_equilibrium(studied.system, found.equilibria[k].x,
-                                           {.low = range.low,
-                                            .high = range.high,
-                                            .interrupt = &interrupt_flag(),
-                                            .progress = progress.parts(share * static_cast<double>(k), share)});
-    }();
-    print(fmt::format("\nfrom {}: {} points{}\n", k + 1, branch.points.size(),
-                      branch.complete ? "" : fmt::format("; {}", branch.message)));
-    for (const studies::BifurcationPoint& point : branch.bifurcations) {
-      std::string line = fmt::format("   {} = {:.10g}: {}", range.name, point.at.constant, to_string(point.kind));
-      if (point.frequency > 0) line += fmt::format(", frequency {}", results::short_number(point.frequency));
-      print(line + "\n");
-    }
-    add_curves(branch, *component, panel);
+  const SteadyDiagram diagram = diagram_of(studied, found.equilibria, range, box, options.steps);
+  if (options.json) {
+    nlohmann::json json = json_of(found, studied);
+    json.update(json_of(diagram, model, range));
+    print(json.dump(2) + "\n");
+  } else {
+    print(text_of(diagram, range, found.equilibria.size()));
   }
-  if (interrupt_flag()) return interrupted;
-  if (options.plot.empty()) return done;
-  if (!written(results::draw({.title = model.name, .panels = {std::move(panel)}}, options.plot))) return usage;
-  return done;
+  if (!options.out.empty() && !written(results::write_file(options.out, csv_of(diagram, model, range)))) return usage;
+  if (!options.plot.empty() && !draw(diagram, model, range, *component, options.plot)) return usage;
+  return interrupt_flag() ? interrupted : done;
 }
 
 ExitCode steady(const SteadyOptions& options) {
-  if (!drawable(options.plot)) return usage;
+  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps)) return usage;
   if (!options.plot.empty() && options.along.empty()) {
     say("--plot draws how the places of rest move with a parameter: give --along NAME=LOW..HIGH");
     return usage;
@@ -164,9 +141,10 @@ ExitCode steady(const SteadyOptions& options) {
                     results::short_number(found.nearest.residual), to_string(found.nearest.ending)));
     return numerical_failure;
   }
-  print(table_of(found, studied));
-  if (interrupt_flag()) return interrupted;
-  return range ? follow(studied, found, *range, options) : done;
+  if (!options.json) print(table_of(found, studied));
+  if (range && !interrupt_flag()) return follow(studied, found, *range, box, options);
+  if (options.json) print(json_of(found, studied).dump(2) + "\n");
+  return interrupt_flag() ? interrupted : done;
 }
 
 }  // namespace
@@ -175,7 +153,7 @@ void add_steady(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo steady models/lorenz.sim                              every place of rest, and whether it is stable\n"
       "  continuo steady models/lorenz.sim --along rho=0..30            how they move, where their stability changes\n"
-      "  continuo steady models/lorenz.sim --along rho=0..30 --plot branches.svg\n"
+      "  continuo steady models/lorenz.sim --along rho=0..30 --plot branches.svg -o branches.csv\n"
       "  continuo steady models/pendulum.sim --box a=-7..7              where to look\n";
   CLI::App* verb = add_verb(app, "steady", "Finds where a model comes to rest, and whether it stays there", examples);
   auto options = std::make_shared<SteadyOptions>();
@@ -185,8 +163,13 @@ void add_steady(CLI::App& app, ExitCode& exit) {
       ->delimiter(',')
       ->type_name("NAME=LOW..HIGH");
   verb->add_option("--starts", options->starts, "How many places to begin from")->type_name("N");
-  verb->add_option("--along", options->along, "Follow each place while a parameter moves")->type_name("NAME=LOW..HIGH");
+  auto* along =
+      verb->add_option("--along", options->along, "Follow each place while a parameter moves, and what crosses")
+          ->type_name("NAME=LOW..HIGH");
+  add_branch_steps(*verb, options->steps, along);
   verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE");
+  verb->add_flag("--json", options->json, "All of it for other programs");
+  verb->add_option("-o,--out", options->out, "The table of --along, as CSV")->type_name("FILE")->needs(along);
   verb->add_option("--plot", options->plot, "A picture of --along, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = steady(*options); });
 }

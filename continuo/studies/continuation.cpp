@@ -7,9 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include <continuo/numerics/dense_lu.hpp>
-#include <continuo/numerics/eigenvalues.hpp>
+#include <continuo/studies/branch_point.hpp>
 #include <continuo/studies/continuation.hpp>
+#include <continuo/studies/equilibrium_branch.hpp>
+#include <continuo/studies/normal_form.hpp>
 
 namespace continuo::studies {
 
@@ -17,160 +18,117 @@ namespace {
 
 using Vector = std::vector<double>;
 
-/// A place on the branch: x and, behind it, the constant; in units in which all are about 1.
-struct Place {
-  Vector z;
-  Vector tangent;             // of length 1
-  double direction_sign = 0;  // of det (df/dz; tangent): changes where another branch crosses
-  BranchPoint point;
-  double hopf_test = 0;  // product of the sums of all pairs of eigenvalues: zero where a pair is on the axis
-};
+constexpr double no_slope = 1e-5;  // of a direction of length 1: so little is no change of the constant
+
+// In sizes at the start; of the constant in parts of its range.
+constexpr double far_away = 1e4, large = 4, standstill = 1e-3;
+
+using Place = detail::EquilibriumPlace;
 
 class Follower {
  public:
   Follower(const ParametricSystem& system, const Vector& x, const ContinuationOptions& options)
-      : system_(system), options_(options), n_(system.size), p_(system.constants), units_(n_ + 1) {
-    for (std::size_t i = 0; i < n_; ++i) units_[i] = std::max(std::abs(x[i]), 1.0);
-    units_[n_] = options.high - options.low;
-  }
+      : system_(system),
+        options_(options),
+        steps_(system, x, options),
+        n_(system.size),
+        range_(options.high - options.low) {}
 
-  Branch operator()(Vector x) {
+  Branch operator()(const Vector& x) {
     Branch branch;
-    Vector z = std::move(x);
-    z.push_back(p_[options_.constant]);
-    for (std::size_t i = 0; i <= n_; ++i) z[i] /= units_[i];
-    const auto start = corrected(z, z, Vector(n_ + 1, 0.0), true);
+    const Vector z = steps_.scaled(x, system_.constants[options_.constant]);
+    const auto start = steps_.corrected(z, z, Vector(n_ + 1, 0.0), true);
     if (!start) {
       branch.message = "there is no equilibrium near the start";
       return branch;
     }
-    Place first = described(*start, {});
-    Branch back = followed(first, -1), ahead = followed(first, 1);
+    const Place first = steps_.described(*start, {});
+    branch.points.push_back(first.point);
+    return joined(followed(first, -1), std::move(branch), followed(first, 1));
+  }
+
+  /// The other branch through a crossing. Next to it alone are the equations good enough to go on from.
+  Branch through(const BifurcationPoint& from) {
+    Branch branch;
+    Vector z = steps_.scaled(from.at.x, from.at.constant), along(from.other);
+    for (std::size_t i = 0; i <= n_; ++i) along[i] /= steps_.unit(i);
+    detail::normalize(along);
+    branch.points.push_back(from.at);
+    Branch back = beside(z, along, -1), ahead = beside(z, along, 1);
+    return joined(std::move(back), std::move(branch), std::move(ahead));
+  }
+
+  /// Whether the branch passes through this place: where it crosses the plane through the place that is upright on the
+  /// way between its two neighbours.
+  bool passes(const Branch& branch, const Vector& x, double constant) {
+    constexpr double same = 1e-6;
+    const Vector z = steps_.scaled(x, constant);
+    const auto apart = [&](const Vector& a) {
+      double sum = 0;
+      for (std::size_t i = 0; i <= n_; ++i) sum += (a[i] - z[i]) * (a[i] - z[i]);
+      return std::sqrt(sum);
+    };
+    for (std::size_t k = 1; k < branch.points.size(); ++k) {
+      const Vector a = steps_.scaled(branch.points[k - 1].x, branch.points[k - 1].constant),
+                   b = steps_.scaled(branch.points[k].x, branch.points[k].constant);
+      if (apart(a) < same || apart(b) < same) return true;
+      Vector way(n_ + 1), guess(n_ + 1);
+      double length = 0, part = 0;
+      for (std::size_t i = 0; i <= n_; ++i) way[i] = b[i] - a[i], length += way[i] * way[i];
+      for (std::size_t i = 0; i <= n_; ++i) part += way[i] * (z[i] - a[i]) / length;
+      if (!(part > -0.01 && part < 1.01)) continue;
+      for (std::size_t i = 0; i <= n_; ++i) guess[i] = a[i] + part * way[i];
+      if (apart(guess) > std::sqrt(length)) continue;
+      detail::normalize(way);
+      const auto there = steps_.corrected(guess, guess, way, false);
+      if (there && apart(*there) < same) return true;
+    }
+    return false;
+  }
+
+ private:
+  static Branch joined(Branch back, Branch middle, Branch ahead) {
     std::ranges::reverse(back.points);
     std::ranges::reverse(back.bifurcations);
     for (BifurcationPoint& point : back.bifurcations) point.next = back.points.size() - point.next;
-    for (BifurcationPoint& point : ahead.bifurcations) point.next += back.points.size() + 1;
-    branch = std::move(back);
-    branch.points.push_back(first.point);
-    branch.points.insert(branch.points.end(), ahead.points.begin(), ahead.points.end());
-    branch.bifurcations.insert(branch.bifurcations.end(), ahead.bifurcations.begin(), ahead.bifurcations.end());
+    const std::size_t before = back.points.size() + middle.points.size();
+    for (BifurcationPoint& point : ahead.bifurcations) point.next += before;
+    Branch branch = std::move(back);
+    for (Branch* part : {&middle, &ahead}) {
+      branch.points.insert(branch.points.end(), part->points.begin(), part->points.end());
+      branch.bifurcations.insert(branch.bifurcations.end(), part->bifurcations.begin(), part->bifurcations.end());
+    }
     branch.complete = branch.complete && ahead.complete;
     if (branch.message.empty()) branch.message = ahead.message;
     return branch;
   }
-
- private:
-  double constant_of(const Vector& z) const { return z[n_] * units_[n_]; }
-  Vector state_of(const Vector& z) const {
-    Vector x(n_);
-    for (std::size_t i = 0; i < n_; ++i) x[i] = z[i] * units_[i];
-    return x;
-  }
-  bool inside(const Vector& z) const { return constant_of(z) >= options_.low && constant_of(z) <= options_.high; }
-
-  /// What is small of each constant: of that which moves a part of its range, for its value may be zero on the way.
-  Vector sizes_of_constants() const {
-    Vector sizes(p_);
-    for (double& size : sizes) size = size == 0 ? 1 : std::abs(size);
-    sizes[options_.constant] = units_[n_] / 100;
-    return sizes;
-  }
-
-  /// df/dz, n rows of n + 1.
-  Vector jacobian(const Vector& z) {
-    p_[options_.constant] = constant_of(z);
-    const Vector x = state_of(z), by_x = jacobian_of(system_, options_.t, x, p_),
-                 by_p = constant_jacobian_of(system_, options_.t, x, p_, sizes_of_constants());
-    Vector rows(n_ * (n_ + 1));
-    for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t j = 0; j < n_; ++j) rows[i * (n_ + 1) + j] = by_x[i * n_ + j] * units_[j];
-      rows[i * (n_ + 1) + n_] = by_p[i * p_.size() + options_.constant] * units_[n_];
-    }
-    return rows;
-  }
-  /// (df/dz; last row) y = b. Empty where it is singular.
-  Vector solved(const Vector& rows, const Vector& last, Vector b) const {
-    DenseLU<double, run_time_size> lu(n_ + 1);
-    auto&& matrix = lu.matrix();
-    std::ranges::copy(rows, matrix.begin());
-    std::ranges::copy(last, matrix.begin() + static_cast<std::ptrdiff_t>(n_ * (n_ + 1)));
-    if (!lu.factor()) return {};
-    lu.solve(b.data());
-    return b;
-  }
-
-  /// Newton to f = 0 with (z - guess) . tangent = 0; at fixed constant where `at_constant`.
-  std::optional<Vector> corrected(const Vector& guess, Vector z, const Vector& tangent, bool at_constant) {
-    Vector last(tangent);
-    if (at_constant) {
-      last.assign(n_ + 1, 0.0);
-      last[n_] = 1;
-    }
-    double before = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 12; ++k) {
-      Vector b(n_ + 1);
-      p_[options_.constant] = constant_of(z);
-      system_.derivative(options_.t, state_of(z), p_, std::span(b).first(n_));
-      for (std::size_t i = 0; i <= n_; ++i) b[n_] += (z[i] - guess[i]) * last[i];
-      const Vector step = solved(jacobian(z), last, b);
-      if (step.empty()) return std::nullopt;
-      double size = 0;
-      for (std::size_t i = 0; i <= n_; ++i) {
-        z[i] -= step[i];
-        size = std::max(size, std::abs(step[i]) / std::max(1.0, std::abs(z[i])));
+  Branch beside(const Vector& z, const Vector& along, double direction) {
+    for (double step = options_.first_step; step > options_.least_step; step /= 2) {
+      Vector guess(z);
+      for (std::size_t i = 0; i <= n_; ++i) guess[i] += direction * step * along[i];
+      const auto found = steps_.corrected(guess, guess, along, false);
+      if (!found) continue;
+      double moved = 0;
+      for (std::size_t i = 0; i <= n_; ++i) moved += std::pow((*found)[i] - guess[i], 2);
+      if (std::sqrt(moved) > step / 2) continue;  // it leapt to elsewhere
+      Branch branch;
+      const Place place = steps_.described(*found, along);
+      if (!inside(place.z)) {
+        branch.complete = true;
+        return branch;
       }
-      if (!(size < 1e6)) return std::nullopt;
-      if (size < 1e-13 || (size < 1e-9 && size > before / 4)) return z;
-      before = size;
+      Branch rest = followed(place, direction);
+      branch.points.push_back(place.point);
+      Branch none;
+      none.complete = true;
+      return joined(std::move(none), std::move(branch), std::move(rest));
     }
-    return std::nullopt;
+    Branch branch;
+    branch.message = "the branch could not be followed from where it crosses the other";
+    return branch;
   }
-
-  /// The tangent nearest to `along`, eigenvalues and tests.
-  Place described(Vector z, const Vector& along) {
-    Place place{.z = std::move(z), .tangent = {}, .point = {}};
-    const Vector rows = jacobian(place.z);
-    Vector last(along), b(n_ + 1);
-    b[n_] = 1;
-    if (last.empty()) {
-      last.assign(n_ + 1, 0.0);
-      last[n_] = 1;
-    }
-    place.tangent = solved(rows, last, b);
-    if (place.tangent.empty()) {  // a fold just here: any other row will do
-      for (std::size_t i = 0; i < n_ && place.tangent.empty(); ++i) {
-        last.assign(n_ + 1, 0.0);
-        last[i] = 1;
-        place.tangent = solved(rows, last, b);
-      }
-    }
-    double length = 0;
-    for (const double part : place.tangent) length += part * part;
-    for (double& part : place.tangent) part /= std::sqrt(length);
-    Vector square(rows);
-    square.insert(square.end(), place.tangent.begin(), place.tangent.end());
-    double sign = 1;
-    for (const auto& value : eigenvalues(square, n_ + 1).values)
-      if (value.imag() == 0 && value.real() < 0) sign = -sign;
-    place.direction_sign = sign;
-    describe(place);
-    return place;
-  }
-  void describe(Place& place) {
-    place.point.constant = constant_of(place.z);
-    place.point.x = state_of(place.z);
-    p_[options_.constant] = place.point.constant;
-    const Equilibrium equilibrium = describe_equilibrium(system_, place.point.x, p_, options_.t);
-    place.point.eigenvalues = equilibrium.eigenvalues;
-    place.point.stability = equilibrium.stability;
-    place.hopf_test = 1;
-    const auto& values = place.point.eigenvalues;
-    double size = 0;
-    for (const auto& value : values) size = std::max(size, std::abs(value));
-    std::complex<double> product = 1;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      for (std::size_t j = i + 1; j < values.size(); ++j) product *= (values[i] + values[j]) / size;
-    place.hopf_test = product.real();
+  bool inside(const Vector& z) const {
+    return steps_.constant_of(z) >= options_.low && steps_.constant_of(z) <= options_.high;
   }
 
   Branch followed(const Place& from, double direction) {
@@ -179,22 +137,39 @@ class Follower {
     for (double& part : here.tangent) part *= direction;
     here.direction_sign *= direction;
     const Vector origin = here.z;
-    double step = options_.first_step;
+    double step = options_.first_step, reached = 1, reached_at = origin[n_];
     while (branch.points.size() < options_.most_points) {
       if (options_.interrupt && options_.interrupt->load()) {
         branch.message = "interrupted";
         return branch;
       }
-      auto next = stepped(here, step);
+      // States that grow far beyond their size at the start are measured by what they are now; where they double and
+      // the constant keeps still there is nothing more to see.
+      double reach = 1;
+      for (std::size_t i = 0; i < n_; ++i) reach = std::max(reach, std::abs(here.z[i]));
+      if (reach >= 2 * reached) {
+        const bool still = std::abs(here.z[n_] - reached_at) < standstill;
+        if (reach > far_away || (still && reached >= large)) {
+          branch.message = "it goes off to infinity";
+          return branch;
+        }
+        reached = reach;
+        reached_at = here.z[n_];
+      }
+      auto next = steps_.stepped(here, step * reach);
       if (!next || turns(here, *next)) {
         step /= 2;
-        if (step > 1e-7) continue;
+        if (step > options_.least_step) continue;
         branch.message = "the branch could not be followed further";
         return branch;
       }
-      mark(branch, here, *next, step);
-      here = std::move(*next);
-      if (inside(here.z)) branch.points.push_back(here.point);
+      mark(branch, here, *next, step * reach);
+      const Place before = std::exchange(here, std::move(*next));
+      if (inside(here.z)) {
+        branch.points.push_back(here.point);
+      } else if (auto last = at_bound(before.z, here.z)) {
+        branch.points.push_back(std::move(last->point));
+      }
       report(here.point.constant);
       if (!inside(here.z) || (branch.points.size() > 20 && near(here.z, origin, step))) {
         branch.complete = true;
@@ -205,20 +180,21 @@ class Follower {
     branch.message = "too many points";
     return branch;
   }
+  /// Between a place inside of the range and one outside.
+  std::optional<Place> at_bound(const Vector& a, const Vector& b) {
+    const double bound = std::clamp(steps_.constant_of(b), options_.low, options_.high) / range_;
+    if (a[n_] == b[n_] || a[n_] == bound) return std::nullopt;
+    const double part = (bound - a[n_]) / (b[n_] - a[n_]);
+    Vector guess(a);
+    for (std::size_t i = 0; i < n_; ++i) guess[i] += part * (b[i] - a[i]);
+    guess[n_] = bound;
+    auto z = steps_.corrected(guess, guess, {}, true);
+    return z ? std::optional(steps_.described(std::move(*z), {})) : std::nullopt;
+  }
   void report(double constant) {
     low_ = std::min(low_, constant);
     high_ = std::max(high_, constant);
-    if (options_.progress) options_.progress(std::min((high_ - low_) / units_[n_], 1.0));
-  }
-  std::optional<Place> stepped(const Place& from, double step) {
-    Vector guess(from.z);
-    for (std::size_t i = 0; i <= n_; ++i) guess[i] += step * from.tangent[i];
-    auto z = corrected(guess, guess, from.tangent, false);
-    if (!z) return std::nullopt;
-    double moved = 0;
-    for (std::size_t i = 0; i <= n_; ++i) moved += ((*z)[i] - guess[i]) * ((*z)[i] - guess[i]);
-    if (std::sqrt(moved) > step) return std::nullopt;  // it leapt to elsewhere
-    return described(std::move(*z), from.tangent);
+    if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
   }
   /// By more than 25 degrees: the step was too long to be sure of the branch.
   static bool turns(const Place& a, const Place& b) {
@@ -240,7 +216,7 @@ class Follower {
       const bool positive = test(a) > 0;
       for (int k = 0; k < 60; ++k) {
         const double middle = (low + high) / 2;
-        auto place = stepped(a, middle);
+        auto place = steps_.stepped(a, middle);
         if (!place) break;
         ((test(*place) > 0) == positive ? low : high) = middle;
         best = std::move(place);
@@ -248,13 +224,20 @@ class Follower {
       return best;
     };
     const auto add = [&](Bifurcation kind, std::optional<Place> place, double frequency) {
-      if (place && inside(place->z))
-        branch.bifurcations.push_back({kind, std::move(place->point), frequency, branch.points.size()});
+      if (!place || !inside(place->z)) return;
+      BifurcationPoint point{kind, std::move(place->point), frequency, branch.points.size()};
+      Vector p(system_.constants);
+      p[options_.constant] = point.at.constant;
+      if (kind == Bifurcation::fold) point.coefficient = fold_coefficient(system_, point.at.x, p, options_.t);
+      if (kind == Bifurcation::hopf)
+        point.coefficient =
+            first_lyapunov_coefficient(system_, point.at.x, p, 2 * std::numbers::pi * frequency, options_.t);
+      branch.bifurcations.push_back(std::move(point));
     };
     const bool crosses = a.direction_sign * b.direction_sign < 0;  // a pitchfork also turns round
     if (a.tangent[n_] * b.tangent[n_] < 0 && !crosses)
       add(Bifurcation::fold, located([&](const Place& p) { return p.tangent[n_]; }), 0);
-    if (crosses) add(Bifurcation::crossing, located([](const Place& p) { return p.direction_sign; }), 0);
+    if (crosses) add_crossing(branch, located([](const Place& p) { return p.direction_sign; }));
     if (a.hopf_test * b.hopf_test < 0) {
       auto place = located([](const Place& p) { return p.hopf_test; });
       if (!place) return;
@@ -270,22 +253,56 @@ class Follower {
     }
   }
 
+  void add_crossing(Branch& branch, const std::optional<Place>& near_it) {
+    if (!near_it) return;
+    const detail::CrossingEquations equations{.n = n_,
+                                              .f = [this](const Vector& z) { return steps_.f(z); },
+                                              .jacobian = [this](const Vector& z) { return steps_.jacobian(z); }};
+    const auto crossing = detail::find_crossing(equations, near_it->z, near_it->tangent);
+    BifurcationPoint point{Bifurcation::crossing, near_it->point, 0, branch.points.size()};
+    if (crossing) {
+      Place place{.z = crossing->z, .tangent = {}, .point = {}};
+      steps_.describe(place);
+      point.at = std::move(place.point);
+      const bool upright = std::min(std::abs(crossing->own[n_]), std::abs(crossing->other[n_])) < no_slope;
+      point.kind = upright ? Bifurcation::pitchfork : Bifurcation::transcritical;
+      point.other = crossing->other;
+      for (std::size_t i = 0; i <= n_; ++i) point.other[i] *= steps_.unit(i);
+    }
+    if (point.at.constant >= options_.low && point.at.constant <= options_.high)
+      branch.bifurcations.push_back(std::move(point));
+  }
+
   const ParametricSystem& system_;
   const ContinuationOptions& options_;
+  detail::EquilibriumSteps steps_;
   std::size_t n_;
-  Vector p_, units_;
+  double range_;
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // what has been covered
 };
 
 }  // namespace
 
 std::string_view to_string(Bifurcation kind) {
-  constexpr std::array<std::string_view, 3> names{"fold", "Hopf point", "crossing of branches"};
+  constexpr std::array<std::string_view, 5> names{"fold", "Hopf point", "transcritical point", "pitchfork",
+                                                  "crossing of branches"};
   return names[static_cast<std::size_t>(kind)];
 }
 
 Branch continue_equilibrium(const ParametricSystem& system, std::vector<double> x, const ContinuationOptions& options) {
   return Follower(system, x, options)(x);
+}
+Branch continue_equilibrium(const ParametricSystem& system, const BifurcationPoint& from,
+                            const ContinuationOptions& options) {
+  if (!from.other.empty()) return Follower(system, from.at.x, options).through(from);
+  Branch branch;
+  branch.message = "no other branch is known there";
+  return branch;
+}
+
+bool passes_through(const ParametricSystem& system, const Branch& branch, const BranchStart& place,
+                    const ContinuationOptions& options) {
+  return Follower(system, place.x, options).passes(branch, place.x, place.constant);
 }
 
 }  // namespace continuo::studies

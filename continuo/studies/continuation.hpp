@@ -7,6 +7,7 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -23,8 +24,9 @@ struct BranchPoint {
 };
 
 /// `fold`: the branch turns round in the constant. `hopf`: a pair of eigenvalues crosses the imaginary axis; an orbit
-/// with `frequency` is born. `crossing`: another branch passes through (transcritical, pitchfork).
-enum class Bifurcation { fold, hopf, crossing };
+/// with `frequency` is born. `transcritical`: another branch passes through. `pitchfork`: one of the two branches turns
+/// round there. `crossing`: another branch is there, but its direction was not found.
+enum class Bifurcation { fold, hopf, transcritical, pitchfork, crossing };
 std::string_view to_string(Bifurcation kind);
 
 struct BifurcationPoint {
@@ -32,6 +34,9 @@ struct BifurcationPoint {
   BranchPoint at;
   double frequency = 0;  // of a Hopf point: imaginary part / 2 pi
   std::size_t next = 0;  // of the branch's points, the first behind it
+  /// Of the normal form: of a fold a, of a Hopf point the first Lyapunov coefficient.
+  std::optional<double> coefficient{};
+  std::vector<double> other{};  // the direction of the other branch: x, then the constant
 };
 
 struct Branch {
@@ -42,9 +47,10 @@ struct Branch {
 };
 
 struct ContinuationOptions {
-  std::size_t constant = 0;                       // which of the system's
-  double low = 0, high = 1;                       // of the constant
-  double first_step = 0.01, largest_step = 0.05;  // in parts of high - low, and of the size of x
+  std::size_t constant = 0;  // which of the system's
+  double low = 0, high = 1;  // of the constant
+  // In parts of high - low, and of the size of x.
+  double first_step = 0.01, least_step = 1e-7, largest_step = 0.05;
   std::size_t most_points = 5000;
   double t = 0;
   const std::atomic<bool>* interrupt = nullptr;
@@ -53,5 +59,26 @@ struct ContinuationOptions {
 
 /// From an equilibrium (near x at the constant's present value) in both directions.
 Branch continue_equilibrium(const ParametricSystem& system, std::vector<double> x, const ContinuationOptions& options);
+/// The other branch through a transcritical point or a pitchfork.
+Branch continue_equilibrium(const ParametricSystem& system, const BifurcationPoint& from,
+                            const ContinuationOptions& options);
+
+/// An equilibrium near x where the constant has this value.
+struct BranchStart {
+  double constant;
+  std::vector<double> x;
+};
+/// Whether the branch passes there.
+bool passes_through(const ParametricSystem& system, const Branch& branch, const BranchStart& place,
+                    const ContinuationOptions& options);
+/// Branches through several starts, and those that cross them, each once.
+struct BranchOfDiagram {
+  Branch branch;
+  std::vector<std::size_t> starts;       // those that lie on it
+  std::optional<std::size_t> crossed{};  // it was found where it crosses this branch
+};
+/// At most `most_branches`.
+std::vector<BranchOfDiagram> continue_equilibria(const ParametricSystem& system, const std::vector<BranchStart>& starts,
+                                                 const ContinuationOptions& options, std::size_t most_branches = 30);
 
 }  // namespace continuo::studies

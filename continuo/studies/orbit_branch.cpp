@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include <continuo/numerics/dense_lu.hpp>
 #include <continuo/studies/orbit_branch.hpp>
+#include <continuo/studies/orbit_multipliers.hpp>
 
 namespace continuo::studies::detail {
 
@@ -14,23 +14,10 @@ namespace {
 
 using Vector = std::vector<double>;
 
-constexpr std::size_t most_branch_iterations = 10;
-constexpr double no_size = 1e-12;  // of the largest component: what rounding leaves of a zero
-
-double length(const Vector& v) {
-  double sum = 0;
-  for (const double part : v) sum += part * part;
-  return std::sqrt(sum);
-}
-void normalize(Vector& v) {
-  const double size = length(v);
-  for (double& part : v) part /= size;
-}
-double product(const Vector& a, const Vector& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
+constexpr std::size_t most_branch_iterations = 12, most_intervals = 1500;
+constexpr double solved_for = 1e-9, rounding_leaves = 1e-6;  // a correction, in sizes
+constexpr double error_for_tolerance = 100;  // inside of an interval; at its ends and of the period far less is left
+constexpr double no_size = 1e-12;            // of the largest component: what rounding leaves of a zero
 
 /// Products over the multipliers, each factor of size 1 at most.
 void set_tests(OrbitPlace& place) {
@@ -73,41 +60,105 @@ OrbitPoint as_orbit(const HopfPoint& hopf, bool stable) {
 
 OrbitBranchSteps::OrbitBranchSteps(const ParametricSystem& system, const OrbitContinuationOptions& options)
     : options_(options),
-      equations_(system, options.constant, (options.high - options.low) / 100, options.rtol, options.interrupt),
+      system_(with_one_constant(system, options.constant, (options.high - options.low) / 100)),
+      error_wanted_(error_for_tolerance * options.rtol),
       n_(system.size),
-      points_(equations_.points()),
-      unknowns_(equations_.unknowns()),
       sizes_(n_, 0.0),
-      scale_(unknowns_, 1.0) {}
+      component_sizes_(n_, 1.0) {}
+
+void OrbitBranchSteps::use(const std::shared_ptr<const OrbitMesh>& mesh) {
+  if (equations_ && equations_->mesh() == mesh) return;
+  equations_.emplace(system_, mesh);
+  unknowns_ = equations_->unknowns();
+  scale_.assign(unknowns_, 1.0);
+}
+
+void OrbitBranchSteps::use_for(const OrbitPlace& place) {
+  if (equations_ && equations_->mesh() == place.mesh) return;
+  use(place.mesh);
+  set_scales(place.z);
+}
 
 void OrbitBranchSteps::forget_sizes(const Vector& sizes) {
   sizes_ = sizes;
 }
 
+/// From the components' sizes, for the mesh that is used.
+void OrbitBranchSteps::set_scales(const Vector& z) {
+  for (std::size_t j = 0; j + 2 < unknowns_; ++j)
+    scale_[j] = component_sizes_[j % n_] / std::sqrt(equations_->weight(j / n_));
+  scale_[unknowns_ - 2] = equations_->period(z);
+  scale_[unknowns_ - 1] = options_.high - options_.low;
+}
+
 void OrbitBranchSteps::measure(const Vector& z) {
   double greatest = 0;
-  for (std::size_t j = 0; j < n_ * points_; ++j) {
+  for (std::size_t j = 0; j + 2 < unknowns_; ++j) {
     sizes_[j % n_] = std::max(sizes_[j % n_], std::abs(z[j]));
     greatest = std::max(greatest, sizes_[j % n_]);
   }
-  Vector sizes(sizes_);
-  for (double& size : sizes) size = size > no_size * greatest ? size : greatest > 0 ? greatest : 1;
-  for (std::size_t j = 0; j < n_ * points_; ++j) scale_[j] = sizes[j % n_] * std::sqrt(static_cast<double>(points_));
-  scale_[unknowns_ - 2] = equations_.period(z);
-  scale_[unknowns_ - 1] = options_.high - options_.low;
-  equations_.set_sizes(std::move(sizes));
+  component_sizes_ = sizes_;
+  for (double& size : component_sizes_) size = size > no_size * greatest ? size : greatest > 0 ? greatest : 1;
+  set_scales(z);
 }
 
 void OrbitBranchSteps::measure(OrbitPlace& place) {
+  use_for(place);
   for (std::size_t j = 0; j < unknowns_; ++j) place.tangent[j] *= scale_[j];
   measure(place.z);
+  const auto errors = equations_->errors(place.z, component_sizes_);
+  const auto mesh = equations_->better_mesh(errors, error_wanted_ / 10, most_intervals);
+  const double worst = *std::ranges::max_element(errors);
+  if (worst > error_wanted_ / 2 || 2 * mesh->size() < place.mesh->size()) exchange_mesh(place, mesh);
   for (std::size_t j = 0; j < unknowns_; ++j) place.tangent[j] /= scale_[j];
   normalize(place.tangent);
   place.shift = shift_at(place.z);
 }
 
+/// The tangent as it is, not in sizes.
+void OrbitBranchSteps::exchange_mesh(OrbitPlace& place, const std::shared_ptr<const OrbitMesh>& mesh) {
+  Vector z = on_mesh(place.z, *mesh), tangent = on_mesh(place.tangent, *mesh);
+  place.z = std::move(z);
+  place.tangent = std::move(tangent);
+  place.mesh = mesh;
+  use(mesh);
+  set_scales(place.z);
+}
+
+/// Unknowns on the mesh that is used, read off on another.
+Vector OrbitBranchSteps::on_mesh(const Vector& z, const OrbitMesh& mesh) const {
+  constexpr std::size_t degree = OrbitCollocation::degree;
+  Vector result((mesh.size() - 1) * degree * n_);
+  for (std::size_t k = 0; k + 1 < mesh.size(); ++k)
+    for (std::size_t j = 0; j < degree; ++j)
+      equations_->state(z, mesh[k] + OrbitCollocation::table().nodes[j] * (mesh[k + 1] - mesh[k]),
+                        std::span(result).subspan((k * degree + j) * n_, n_));
+  result.push_back(z[z.size() - 2]);
+  result.push_back(z.back());
+  return result;
+}
+
+bool OrbitBranchSteps::refine(OrbitPlace& here, const OrbitPlace& there) {
+  use_for(here);
+  const auto mesh =
+      equations_->better_mesh(equations_->errors(there.z, component_sizes_), error_wanted_ / 10, most_intervals);
+  if (here.mesh->size() > most_intervals && mesh->size() >= here.mesh->size()) return false;
+  for (std::size_t j = 0; j < unknowns_; ++j) here.tangent[j] *= scale_[j];
+  exchange_mesh(here, mesh);
+  for (std::size_t j = 0; j < unknowns_; ++j) here.tangent[j] /= scale_[j];
+  normalize(here.tangent);
+  auto again = across(here.z, here.tangent);
+  if (!again) return false;
+  if (alike(*again, here) < 0)
+    for (double& part : again->tangent) part = -part;
+  again->point.low = here.point.low;
+  again->point.high = here.point.high;
+  here = std::move(*again);
+  return true;
+}
+
 Vector OrbitBranchSteps::shift_at(const Vector& z) const {
-  Vector shift = equations_.field(z);
+  Vector shift = equations_->field(z);
   shift.resize(unknowns_);
   for (std::size_t j = 0; j < unknowns_; ++j) shift[j] /= scale_[j];
   normalize(shift);
@@ -115,19 +166,8 @@ Vector OrbitBranchSteps::shift_at(const Vector& z) const {
 }
 
 /// In sizes: (d equations / dz; shift; last) y = b at the last evaluation.
-std::optional<Vector> OrbitBranchSteps::solved(const Vector& shift, const Vector& last, Vector b) const {
-  DenseLU<double, run_time_size> lu(unknowns_);
-  auto&& matrix = lu.matrix();
-  const auto rows = equations_.rows();
-  for (std::size_t i = 0; i + 2 < unknowns_; ++i)
-    for (std::size_t j = 0; j < unknowns_; ++j)
-      matrix[i * unknowns_ + j] = rows[i * unknowns_ + j] * scale_[j] / scale_[i];
-  const auto end = matrix.begin() + static_cast<std::ptrdiff_t>((unknowns_ - 2) * unknowns_);
-  std::ranges::copy(shift, end);
-  std::ranges::copy(last, end + static_cast<std::ptrdiff_t>(unknowns_));
-  if (!lu.factor()) return std::nullopt;
-  lu.solve(b.data());
-  if (!std::isfinite(length(b))) return std::nullopt;
+std::optional<Vector> OrbitBranchSteps::solved(const Vector& shift, const Vector& last, Vector b) {
+  if (!equations_->solve(scale_, component_sizes_, shift, last, b)) return std::nullopt;
   return b;
 }
 
@@ -136,10 +176,11 @@ std::optional<Vector> OrbitBranchSteps::corrected(const Vector& guess, const Vec
   Vector z(guess);
   double before = 0;
   for (iterations_ = 1; iterations_ <= most_branch_iterations; ++iterations_) {
-    if (!equations_.evaluate(z)) return std::nullopt;
-    Vector b(equations_.residuals().begin(), equations_.residuals().end());
+    if (options_.interrupt && options_.interrupt->load()) return std::nullopt;
+    if (!equations_->evaluate(z, component_sizes_)) return std::nullopt;
+    Vector b(equations_->residuals().begin(), equations_->residuals().end());
     b.resize(unknowns_);
-    for (std::size_t j = 0; j + 2 < unknowns_; ++j) b[j] /= scale_[j];
+    for (std::size_t j = 0; j + 2 < unknowns_; ++j) b[j] /= component_sizes_[j % n_];
     for (std::size_t j = 0; j < unknowns_; ++j) {
       b[unknowns_ - 2] += shift[j] * (z[j] - reference[j]) / scale_[j];
       b[unknowns_ - 1] += last[j] * (z[j] - guess[j]) / scale_[j];
@@ -148,20 +189,19 @@ std::optional<Vector> OrbitBranchSteps::corrected(const Vector& guess, const Vec
     if (!step) return std::nullopt;
     for (std::size_t j = 0; j < unknowns_; ++j) z[j] -= (*step)[j] * scale_[j];
     const double size = length(*step);
-    // What the integration's own errors leave, or half way there by a correction that grows no smaller.
-    const double noise = options_.rtol;
-    if (size <= 10 * noise || (iterations_ > 1 && size > before / 2 && size < 1000 * noise)) return z;
-    const double period = equations_.period(z) / equations_.period(guess);
+    // The next correction would be of the size of this one's square, or rounding leaves nothing smaller.
+    if (size <= solved_for || (iterations_ > 1 && size > before / 4 && size < rounding_leaves)) return z;
+    const double period = equations_->period(z) / equations_->period(guess);
     if (!(period > 0.5 && period < 2) || size > 10 || (iterations_ > 2 && size > before)) return std::nullopt;
     before = size;
   }
   return std::nullopt;
 }
 
-/// The tangent nearest to `along`, multipliers and tests.
 std::optional<OrbitPlace> OrbitBranchSteps::described(Vector z, const Vector& along) {
-  OrbitPlace place{.z = std::move(z), .tangent = {}, .shift = {}, .point = {}};
+  OrbitPlace place{.mesh = equations_->mesh(), .z = std::move(z), .tangent = {}, .shift = {}, .point = {}};
   place.shift = shift_at(place.z);
+  if (!equations_->evaluate(place.z, component_sizes_)) return std::nullopt;
   Vector b(unknowns_);
   b[unknowns_ - 1] = 1;
   auto tangent = solved(place.shift, along, b);
@@ -174,10 +214,12 @@ std::optional<OrbitPlace> OrbitBranchSteps::described(Vector z, const Vector& al
   place.tangent = std::move(*tangent);
   normalize(place.tangent);
   OrbitPoint& point = place.point;
-  point.constant = equations_.constant(place.z);
-  point.period = equations_.period(place.z);
+  point.constant = equations_->constant(place.z);
+  point.period = equations_->period(place.z);
   point.x.assign(place.z.begin(), place.z.begin() + static_cast<std::ptrdiff_t>(n_));
-  point.multipliers = equations_.multipliers(equations_.field(place.z));
+  point.multipliers = multipliers_of(system_, *equations_, place.z, component_sizes_);
+  if (point.multipliers.empty()) return std::nullopt;
+  place.error = std::ranges::max(equations_->errors(place.z, component_sizes_));
   point.stable = std::ranges::all_of(point.multipliers, [](const auto& value) { return std::abs(value) < 1; });
   set_tests(place);
   return place;
@@ -196,7 +238,38 @@ std::optional<OrbitPlace> OrbitBranchSteps::across(const Vector& z, const Vector
   return found ? described(std::move(*found), along) : std::nullopt;
 }
 
+// Next to a crossing the matrix is nearly singular: what solves it for any right-hand side is nearly the direction that
+// it does not see (inverse iteration).
+std::optional<Vector> OrbitBranchSteps::other_direction(const Vector& z, const Vector& along) {
+  if (!equations_->evaluate(z, component_sizes_)) return std::nullopt;
+  const Vector shift = shift_at(z);
+  Vector direction(unknowns_);
+  for (std::size_t j = 0; j < unknowns_; ++j) direction[j] = std::cos(static_cast<double>(j * j + 1));
+  for (int k = 0; k < 2; ++k) {
+    normalize(direction);
+    // The equations count as many as the unknowns but have other sizes; any right-hand side will do.
+    auto solution = solved(shift, along, direction);
+    if (!solution) return std::nullopt;
+    direction = std::move(*solution);
+  }
+  normalize(direction);
+  return direction;
+}
+
+Vector OrbitBranchSteps::halves(const OrbitPlace& place) {
+  use_for(place);
+  Vector result(unknowns_ - 2), later(n_);
+  for (std::size_t k = 0; k < equations_->nodes(); ++k) {
+    const double s = equations_->place(k);
+    equations_->state(place.z, s < 0.5 ? s + 0.5 : s - 0.5, later);
+    for (std::size_t i = 0; i < n_; ++i) result[k * n_ + i] = (place.z[k * n_ + i] - later[i]) / scale_[k * n_ + i];
+  }
+  return result;
+}
+
 std::optional<OrbitPlace> OrbitBranchSteps::stepped(const OrbitPlace& from, double step) {
+  use(from.mesh);
+  set_scales(from.z);
   Vector guess(from.z);
   for (std::size_t j = 0; j < unknowns_; ++j) guess[j] += step * from.tangent[j] * scale_[j];
   auto z = corrected(guess, from.z, from.shift, from.tangent);
@@ -207,21 +280,23 @@ std::optional<OrbitPlace> OrbitBranchSteps::stepped(const OrbitPlace& from, doub
   return described(std::move(*z), from.tangent);
 }
 
-void OrbitBranchSteps::complete(OrbitPlace& place) const {
-  auto extremes = equations_.extremes(place.z);
+void OrbitBranchSteps::complete(OrbitPlace& place) {
+  use_for(place);
+  auto extremes = equations_->extremes(place.z);
   place.point.low = std::move(extremes.low);
   place.point.high = std::move(extremes.high);
 }
 
-Vector OrbitBranchSteps::mean(const Vector& z) const {
+Vector OrbitBranchSteps::mean(const OrbitPlace& place) {
+  use_for(place);
   Vector result(n_);
-  for (std::size_t j = 0; j < n_ * points_; ++j) result[j % n_] += z[j] / static_cast<double>(points_);
+  for (std::size_t j = 0; j + 2 < unknowns_; ++j) result[j % n_] += place.z[j] * equations_->weight(j / n_);
   return result;
 }
-Vector OrbitBranchSteps::deviations(const Vector& z) const {
-  const Vector middle = mean(z);
-  Vector result(n_ * points_);
-  for (std::size_t j = 0; j < result.size(); ++j) result[j] = (z[j] - middle[j % n_]) / scale_[j];
+Vector OrbitBranchSteps::deviations(const OrbitPlace& place) {
+  const Vector middle = mean(place);
+  Vector result(unknowns_ - 2);
+  for (std::size_t j = 0; j < result.size(); ++j) result[j] = (place.z[j] - middle[j % n_]) / scale_[j];
   return result;
 }
 

@@ -41,13 +41,15 @@ struct OrbitMark {
   OrbitBifurcation kind;
   OrbitPoint at;
   double rotation = 0;  // of torus: the angle of the pair, in turns per period
+  // What another branch begins from: the mesh, all that was solved for on it, the direction of this branch.
+  std::vector<double> mesh{}, unknowns{}, tangent{};
 };
 
 /// Why a branch ends. `bound`: of the constant. `hopf`: the orbit has shrunk to an equilibrium. `homoclinic`: the
 /// period grows while the constant comes to a standstill, the orbit nears an equilibrium on its way. `family`: the
 /// constant does not change any more, orbits lie next to each other at one value. `closed`: it came back to where it
-/// began.
-enum class OrbitEnding { bound, hopf, homoclinic, family, closed, interrupted, too_many_points, lost };
+/// began. `branching`: it begins or ends on another branch of orbits.
+enum class OrbitEnding { bound, hopf, homoclinic, family, closed, branching, interrupted, too_many_points, lost };
 
 struct OrbitBranchEnd {
   OrbitEnding ending = OrbitEnding::lost;
@@ -63,9 +65,10 @@ struct OrbitBranch {
 };
 
 struct OrbitContinuationOptions {
-  std::size_t constant = 0;                       // which of the system's
-  double low = 0, high = 1;                       // of the constant
-  double first_step = 0.01, largest_step = 0.05;  // in parts of high - low, of the period and of the size of x
+  std::size_t constant = 0;  // which of the system's
+  double low = 0, high = 1;  // of the constant
+  // In parts of high - low, of the period and of the size of x.
+  double first_step = 0.01, least_step = 1e-7, largest_step = 0.05;
   std::size_t most_points = 2000;
   double rtol = 1e-9;  // of the integrations
   const std::atomic<bool>* interrupt = nullptr;
@@ -80,6 +83,9 @@ OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitPoint& sta
                            const OrbitContinuationOptions& options);
 /// From where an equilibrium begins to oscillate: the orbits that are born there.
 OrbitBranch continue_orbit(const ParametricSystem& system, const HopfPoint& start,
+                           const OrbitContinuationOptions& options);
+/// From a period doubling: the orbits of twice the period. From a crossing: the other branch, in both directions.
+OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitMark& start,
                            const OrbitContinuationOptions& options);
 
 }  // namespace continuo::studies

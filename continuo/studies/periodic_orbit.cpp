@@ -163,11 +163,45 @@ PeriodicOrbit by_following(const ParametricSystem& system, const X& start, const
 
 }  // namespace
 
+// Where a component turns its slope is 0: a bisection between two places of the mesh with slopes of different sign.
+OrbitExtents extents_of(const ParametricSystem& system, const PeriodicOrbit& found) {
+  const std::size_t n = system.size;
+  X slope(n);
+  const auto slope_at = [&](double s) -> const X& {
+    system.derivative(0, found.orbit(s), system.constants, slope);
+    return slope;
+  };
+  OrbitExtents extents{found.orbit(0), found.orbit(0)};
+  const auto add = [&](std::size_t i, double value) {
+    extents.low[i] = std::min(extents.low[i], value);
+    extents.high[i] = std::max(extents.high[i], value);
+  };
+  const auto& mesh = found.orbit.mesh;
+  X before = slope_at(mesh.front());
+  for (std::size_t k = 1; k < mesh.size(); ++k) {
+    const X x = found.orbit(mesh[k]), after = slope_at(mesh[k]);
+    for (std::size_t i = 0; i < n; ++i) {
+      add(i, x[i]);
+      if ((before[i] < 0) == (after[i] < 0)) continue;
+      double low = mesh[k - 1], high = mesh[k];
+      for (int j = 0; j < 40 && low < (low + high) / 2 && (low + high) / 2 < high; ++j) {
+        const double middle = (low + high) / 2;
+        ((slope_at(middle)[i] < 0) == (before[i] < 0) ? low : high) = middle;
+      }
+      add(i, found.orbit(high)[i]);
+    }
+    before = after;
+  }
+  return extents;
+}
+
 bool depends_on_time(const ParametricSystem& system, const X& x) {
   X now(x.size()), later(x.size());
   system.derivative(0, x, system.constants, now);
   system.derivative(0.7310585786300049, x, system.constants, later);
-  return now != later;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (now[i] != later[i] && !(std::isnan(now[i]) && std::isnan(later[i]))) return true;
+  return false;
 }
 
 Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component,
@@ -225,10 +259,13 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
                                            .progress = after(options.settle + options.duration)});
   if (!crossings.outcome) return without_orbit(crossings.outcome);
   const double period = time_to_return(crossings.points, extent, return_part);
-  if (period == 0)
-    return without_orbit({}, fmt::format("the motion does not come back to where it was within a time of {}; it may "
-                                         "need longer to settle, or have no period",
-                                         options.duration));
+  if (period == 0) {
+    auto none = without_orbit({}, fmt::format("the motion does not come back to where it was within a time of {}; it "
+                                              "may need longer to settle, or have no period",
+                                              options.duration));
+    none.wanders = true;
+    return none;
+  }
 
   const X start = crossings.points.back().x;
   Options<X> dense = run;

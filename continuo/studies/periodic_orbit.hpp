@@ -32,10 +32,17 @@ struct PeriodicOrbit {
   BoundaryValueSolution orbit;                    // over t / period from 0 to 1
   std::vector<std::complex<double>> multipliers;  // by descending size; one of them is 1
   bool stable = false;                            // all but that one inside the unit circle
+  bool wanders = false;  // there is none because the motion did not come back: a longer run may find one
 };
 
 PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<double> x0,
                                   const PeriodicOrbitOptions& options = {});
+
+/// The least and the greatest value of each component on an orbit that was found.
+struct OrbitExtents {
+  std::vector<double> low, high;
+};
+OrbitExtents extents_of(const ParametricSystem& system, const PeriodicOrbit& found);
 
 /// Whether f(t, x) differs from one t to another.
 bool depends_on_time(const ParametricSystem& system, const std::vector<double>& x);

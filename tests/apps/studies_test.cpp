@@ -1,4 +1,5 @@
 // The verbs that study a model's equations, and boundary values by `run`: what they say of good and of bad questions.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -89,7 +90,7 @@ TEST(Steady, FindsAndFollows) {
   const Result result = shell.run("steady " + gallery("lorenz") + " --along rho=0..30");
   EXPECT_EQ(result.exit, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("at 3 places"), HasSubstr("rho = 24.7368"), HasSubstr("Hopf point"),
-                                HasSubstr("rho = 1: crossing")));
+                                HasSubstr("rho = 1: pitchfork")));
 }
 
 TEST(Steady, WhatCannotBeAsked) {
@@ -166,6 +167,36 @@ TEST(Steady, ModelsWithAlgebraicEquations) {
   EXPECT_EQ(along.exit, 0) << along.err;
 }
 
+// AUTO's demo pp2: no prey crosses prey alone at p = 3/5, prey alone crosses the two together where prey is 1/3.
+TEST(Steady, BranchesThatCrossAsTableAndJson) {
+  const Shell shell;
+  shell.write("pp2.sim",
+              "param p = 0\nu' = 3*u*(1 - u) - u*v - p*(1 - exp(-5*u))\nv' = -v + 3*u*v\n"
+              "u(0) = 0.1; v(0) = 0.1\nrun 0..20\n");
+  const Result result = shell.run("steady pp2.sim --along p=0..1 --json -o b.csv");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  const auto found = nlohmann::json::parse(result.out);
+  EXPECT_EQ(found["equilibria"].size(), 3u);
+  std::size_t transcritical = 0, hopf = 0;
+  for (const auto& branch : found["branches"])
+    for (const auto& point : branch["bifurcations"]) {
+      const double p = point["p"], at_third = 2.0 / 3 / (1 - std::exp(-5.0 / 3));
+      if (point["kind"] == "transcritical point") {
+        ++transcritical;
+        EXPECT_LT(std::min(std::abs(p - 0.6), std::abs(p - at_third)), 1e-10);
+      } else if (point["kind"] == "Hopf point") {
+        ++hopf;
+        EXPECT_LT(point["first Lyapunov coefficient"], 0);
+      }
+    }
+  EXPECT_EQ(hopf, 1u);
+  EXPECT_EQ(transcritical, 4u);  // each on both of the branches that cross there
+  EXPECT_THAT(shell.read("b.csv"), testing::StartsWith("branch,kind,p,stable,u,v,eigenvalue 1 re,eigenvalue 1 im"));
+  EXPECT_THAT(shell.run("steady pp2.sim --along p=0..1 --ds-min 0.1 --ds 0.01").err, HasSubstr("--ds-min is 0.1"));
+  EXPECT_THAT(shell.run("steady pp2.sim --along p=0..1 --ds-max 0").err, HasSubstr("greater than zero"));
+  EXPECT_EQ(shell.run("steady pp2.sim --ds 0.1").exit, 1);
+}
+
 TEST(Phase, DrawsThePlane) {
   const Shell shell;
   const Result result = shell.run("phase " + gallery("pendulum") + " --box \"theta=-7..7,theta'=-8..8\" --plot p.svg");
@@ -179,6 +210,10 @@ TEST(Orbit, PeriodSectionAndExponents) {
   const Shell shell;
   const std::string oscillator = "orbit " + gallery("van_der_pol_stiff") + " --set mu=10";
   EXPECT_THAT(shell.run(oscillator).out, HasSubstr("period 19.07836957"));
+  EXPECT_NEAR(nlohmann::json::parse(shell.run(oscillator + " --json").out)["period"], 19.07836957, 1e-8);
+  // A period forty times as long as the model's run is looked for by itself.
+  shell.write("relax.sim", "param mu = 1000\nx'' = mu*(1 - x^2)*x' - x\nx(0) = 2; x'(0) = 0\nrun 0..40\n");
+  EXPECT_THAT(shell.run("orbit relax.sim").out, HasSubstr("period 1614.40"));
   const Result section = shell.run("orbit " + gallery("lorenz") + " --section z=27 --duration 10");
   EXPECT_THAT(section.out, testing::StartsWith("t,x,y,z\n"));
   EXPECT_THAT(shell.run("orbit " + gallery("lorenz") + " --lyapunov --duration 20").out,
@@ -201,6 +236,10 @@ TEST(Orbit, ABranchWithItsTableAndPicture) {
       testing::StartsWith("branch,mu,period,stable,x min,x max,y min,y max,multiplier 1 re,multiplier 1 im\n1,"));
   EXPECT_THAT(shell.read("b.svg"), HasSubstr("least and greatest"));
   EXPECT_THAT(shell.run("orbit bautin.sim --along mu=-1..1 --from-hopf").out, HasSubstr("mu = -0.25: fold"));
+  const auto as_json = nlohmann::json::parse(shell.run("orbit bautin.sim --along mu=-1..1 --json").out);
+  ASSERT_EQ(as_json["branches"].size(), 1u);
+  EXPECT_NEAR(as_json["branches"][0]["bifurcations"][0]["mu"], -0.25, 1e-8);
+  EXPECT_EQ(as_json["branches"][0]["ends"][1]["mu"], 1);
   // From the start the motion comes to rest; the orbits begin elsewhere.
   const Result fallback = shell.run("orbit bautin.sim --along mu=-1..1 --set mu=-0.5");
   EXPECT_EQ(fallback.exit, 0);

@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -16,7 +20,7 @@ TEST(Continuation, LorenzFromTheSide) {  // Hopf at rho = 24.7368..., and where 
   std::vector<double> hopf, crossing;
   for (const auto& point : branch.bifurcations) {
     if (point.kind == Bifurcation::hopf) hopf.push_back(point.at.constant);
-    if (point.kind == Bifurcation::crossing) crossing.push_back(point.at.constant);
+    if (point.kind == Bifurcation::pitchfork) crossing.push_back(point.at.constant);
   }
   // The branch goes through the pitchfork to the other side and has a Hopf point there too.
   ASSERT_GE(hopf.size(), 1u);
@@ -27,15 +31,15 @@ TEST(Continuation, LorenzFromTheSide) {  // Hopf at rho = 24.7368..., and where 
     EXPECT_NEAR(point.frequency, std::sqrt(beta * (10 + rho)) / (2 * std::numbers::pi), 1e-6);
   }
   ASSERT_GE(crossing.size(), 1u);
-  EXPECT_NEAR(crossing.front(), 1, 1e-6);
+  EXPECT_NEAR(crossing.front(), 1, 1e-10);
 }
 
 TEST(Continuation, LorenzFromTheOrigin) {
   const auto branch = continue_equilibrium(lorenz(0.5), {0, 0, 0}, {.constant = 1, .low = 0, .high = 3});
   EXPECT_TRUE(branch.complete) << branch.message;
   ASSERT_EQ(branch.bifurcations.size(), 1u);
-  EXPECT_EQ(branch.bifurcations[0].kind, Bifurcation::crossing);
-  EXPECT_NEAR(branch.bifurcations[0].at.constant, 1, 1e-6);
+  EXPECT_EQ(branch.bifurcations[0].kind, Bifurcation::pitchfork);
+  EXPECT_NEAR(branch.bifurcations[0].at.constant, 1, 1e-10);
   for (const auto& point : branch.points)
     EXPECT_EQ(point.stability, point.constant < 1 ? Stability::asymptotically_stable : Stability::saddle);
 }
@@ -55,6 +59,172 @@ TEST(Continuation, AFoldIsRounded) {  // 0 = p - x^2: both branches, the fold at
   }
   EXPECT_LE(low, -1.9);  // x = -2 is where it leaves the range
   EXPECT_GE(high, 1.9);
+}
+
+// Normal forms in other coordinates, x = c + S(A y) with A a matrix and S adding squares: places, kinds and
+// coefficients of what happens are those of the normal form.
+template <class T>
+using Three = std::array<T, 3>;
+
+struct Disguise {
+  Three<double> origin{};
+  std::array<Three<double>, 3> a{};
+  double first_shear = 0, second_shear = 0;
+
+  explicit Disguise(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto number = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+    for (std::size_t i = 0; i < 3; ++i) {
+      origin[i] = 3 * number();
+      for (std::size_t j = 0; j < 3; ++j) a[i][j] = (i == j ? 1.5 : 0) + 0.6 * number();
+    }
+    first_shear = number();
+    second_shear = number();
+  }
+  template <class T>
+  Three<T> back(const Three<T>& x) const {
+    Three<T> z{x[0] - origin[0], x[1] - origin[1], x[2] - origin[2]};
+    z[2] -= second_shear * z[0] * z[1];
+    z[1] -= first_shear * z[0] * z[0];
+    z[2] += second_shear * z[0] * first_shear * z[0] * z[0];  // S first adds to z1, then z0 z1 before that to z2
+    const auto det = [](const Three<T>& u, const Three<T>& v, const Three<T>& w) {
+      return u[0] * (v[1] * w[2] - v[2] * w[1]) - v[0] * (u[1] * w[2] - u[2] * w[1]) +
+             w[0] * (u[1] * v[2] - u[2] * v[1]);
+    };
+    std::array<Three<T>, 3> columns;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) columns[j][i] = T(a[i][j]);
+    const T whole = det(columns[0], columns[1], columns[2]);
+    return {det(z, columns[1], columns[2]) / whole, det(columns[0], z, columns[2]) / whole,
+            det(columns[0], columns[1], z) / whole};
+  }
+  /// DS(A y) A g
+  template <class T>
+  Three<T> forth(const Three<T>& y, const Three<T>& g) const {
+    Three<T> z{}, out{};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) z[i] += a[i][j] * y[j], out[i] += a[i][j] * g[j];
+    return {out[0], out[1] + 2 * first_shear * z[0] * out[0], out[2] + second_shear * (z[0] * out[1] + z[1] * out[0])};
+  }
+  double length(std::size_t column) const { return std::hypot(a[0][column], a[1][column], a[2][column]); }
+};
+
+/// g as a template over numbers; df/dx by a step along the imaginary axis, exact to rounding.
+template <class G>
+ParametricSystem disguised(const Disguise& disguise, double constant, G g) {
+  const auto of = [=](const auto& x, double p) {
+    const auto y = disguise.back(x);
+    return disguise.forth(y, g(y, p));
+  };
+  auto system = parametric_system(3,
+                                  [=](double, Values x, Values p, std::span<double> out) {
+                                    std::ranges::copy(of(Three<double>{x[0], x[1], x[2]}, p[0]), out.begin());
+                                  },
+                                  {constant});
+  system.jacobian = [=](double, Values x, Values p, std::span<double> rows) {
+    using Complex = std::complex<double>;
+    for (std::size_t j = 0; j < 3; ++j) {
+      Three<Complex> moved{x[0], x[1], x[2]};
+      moved[j] += Complex(0, 1e-40);
+      const auto f = of(moved, p[0]);
+      for (std::size_t i = 0; i < 3; ++i) rows[i * 3 + j] = f[i].imag() / 1e-40;
+    }
+  };
+  return system;
+}
+
+std::vector<BifurcationPoint> of_kind(const Branch& branch, Bifurcation kind) {
+  std::vector<BifurcationPoint> found;
+  std::ranges::copy_if(branch.bifurcations, std::back_inserter(found),
+                       [&](const auto& point) { return point.kind == kind; });
+  return found;
+}
+
+TEST(NormalForms, FoldsHaveTheirCoefficient) {  // y1' = p - 0.3 + b y1^2: in units of the eigenvector b / |A e1|
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Disguise disguise(seed);
+    const double b = 0.5 + 0.2 * seed;
+    const auto system = disguised(disguise, 0.1, [b](const auto& y, double p) {
+      return std::remove_cvref_t<decltype(y)>{p - 0.3 + b * y[0] * y[0], y[0] * y[0] - y[1], -2.0 * y[2] + y[0] * y[1]};
+    });
+    const double y = std::sqrt(0.2 / b);
+    auto start = disguise.origin;
+    for (std::size_t i = 0; i < 3; ++i) start[i] -= disguise.a[i][0] * y;
+    const auto search = find_equilibrium(system, {start.begin(), start.end()}, system.constants);
+    ASSERT_EQ(search.ending, EquilibriumEnding::found) << seed;
+    const auto branch = continue_equilibrium(system, search.x, {.low = 0, .high = 1});
+    const auto folds = of_kind(branch, Bifurcation::fold);
+    ASSERT_EQ(folds.size(), 1u) << seed;
+    EXPECT_NEAR(folds[0].at.constant, 0.3, 1e-10);
+    // In x what f has of rounding, 1e-16, stands for its root.
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(folds[0].at.x[i], disguise.origin[i], 1e-6);
+    ASSERT_TRUE(folds[0].coefficient);
+    EXPECT_NEAR(std::abs(*folds[0].coefficient), b / disguise.length(0), 1e-5);
+  }
+}
+
+TEST(NormalForms, CrossingsAreNamedAndTheOtherBranchIsFound) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    for (const bool pitchfork : {false, true}) {
+      const Disguise disguise(seed);
+      const auto system = disguised(disguise, 0.1, [pitchfork](const auto& y, double p) {
+        return std::remove_cvref_t<decltype(y)>{(p - 0.4) * y[0] - (pitchfork ? y[0] * y[0] : y[0]) * y[0],
+                                                y[0] * y[0] - y[1], -2.0 * y[2] + y[0] * y[1]};
+      });
+      const std::vector<double> rest(disguise.origin.begin(), disguise.origin.end());
+      // Once from either side of where they cross: it is the same diagram.
+      const auto diagram = continue_equilibria(system, {{0.1, rest}, {0.9, rest}}, {.low = 0, .high = 1});
+      ASSERT_EQ(diagram.size(), 2u) << seed;
+      EXPECT_EQ(diagram[0].starts, (std::vector<std::size_t>{0, 1}));
+      EXPECT_EQ(diagram[1].crossed, 0u);
+      const auto kind = pitchfork ? Bifurcation::pitchfork : Bifurcation::transcritical;
+      const auto points = of_kind(diagram[0].branch, kind);
+      ASSERT_EQ(points.size(), 1u) << seed;
+      EXPECT_EQ(diagram[0].branch.bifurcations.size(), 1u);
+      EXPECT_NEAR(points[0].at.constant, 0.4, 1e-11);
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(points[0].at.x[i], disguise.origin[i], 1e-11);
+      for (const BranchPoint& point : diagram[1].branch.points) {
+        const auto y = disguise.back(Three<double>{point.x[0], point.x[1], point.x[2]});
+        EXPECT_NEAR(point.constant - 0.4, pitchfork ? y[0] * y[0] : y[0], 1e-9);
+      }
+      EXPECT_TRUE(diagram[1].branch.complete) << diagram[1].branch.message;
+    }
+  }
+}
+
+// z' = (p - 0.2 + i w) z + s z |z|^2 + k z y3, y3' = |z|^2 c - l y3: with y3 = c |z|^2 / l at the Hopf point s + k c /
+// l stands before z |z|^2. In units of the eigenvector, |A q|^2 = (|A e1|^2 + |A e2|^2) / 2, and x = w q + conj(w q),
+// l1 = 2 Re(s + k c / l) / (w |A q|^2).
+TEST(NormalForms, HopfPointsHaveTheirLyapunovCoefficient) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Disguise disguise(seed);
+    const double w = 0.8 + 0.3 * seed, s = 0.7, twist = 0.4, k = seed % 2 ? 1.0 : -1.0, c = 1.5, l = 1.2;
+    const auto system = disguised(disguise, 0, [=](const auto& y, double p) {
+      const auto square = y[0] * y[0] + y[1] * y[1];
+      const auto grow = p - 0.2 + s * square + k * y[2], turn = w + twist * square;
+      return std::remove_cvref_t<decltype(y)>{grow * y[0] - turn * y[1], grow * y[1] + turn * y[0],
+                                              c * square - l * y[2]};
+    });
+    const std::vector<double> rest(disguise.origin.begin(), disguise.origin.end());
+    const auto branch = continue_equilibrium(system, rest, {.low = -1, .high = 1});
+    const auto points = of_kind(branch, Bifurcation::hopf);
+    ASSERT_EQ(points.size(), 1u) << seed;
+    EXPECT_NEAR(points[0].at.constant, 0.2, 1e-10);
+    EXPECT_NEAR(points[0].frequency, w / (2 * std::numbers::pi), 1e-10);
+    const double unit = (std::pow(disguise.length(0), 2) + std::pow(disguise.length(1), 2)) / 2;
+    ASSERT_TRUE(points[0].coefficient);
+    const double expected = 2 * (s + k * c / l) / (w * unit);
+    // Differences of df/dx that leave 1e-11 / h^2 of rounding, h = 3e-3.
+    EXPECT_NEAR(*points[0].coefficient, expected, 1e-6 * (1 + std::abs(expected)));
+  }
+}
+
+TEST(Continuation, WhatGoesToInfinityIsSaidToDoSo) {  // x = 1 / p
+  const auto f = [](double, Values x, Values p, std::span<double> out) { out[0] = 1 - p[0] * x[0]; };
+  const auto branch = continue_equilibrium(parametric_system(1, f, {1.0}), {1}, {.low = 0, .high = 2});
+  EXPECT_FALSE(branch.complete);
+  EXPECT_NE(branch.message.find("infinity"), std::string_view::npos) << branch.message;
+  EXPECT_LE(branch.points.size(), 400u);
 }
 
 TEST(Continuation, WithoutAStartItSaysSo) {

@@ -1,6 +1,7 @@
 // Branches of closed orbits against normal forms, whose orbits, periods and multipliers are known, and against
 // published values.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -51,15 +52,15 @@ TEST(OrbitContinuation, HopfNormalForm) {
   for (std::size_t k = 1; k < branch.points.size(); ++k) {
     const OrbitPoint& point = branch.points[k];
     const double mu = point.constant, period = 2 * pi / (2 + mu);
-    // The integration's tolerance is 1e-9, of each of the eight parts of the period; near the Hopf point an error of r
-    // is that of mu - r^2 divided by 2 r.
+    // The error inside of the intervals is below 1e-7, at their ends far below; near the Hopf point an error of r is
+    // that of mu - r^2 divided by 2 r.
     EXPECT_NEAR(radius(point), std::sqrt(mu), 1e-8 + 1e-9 / std::sqrt(mu));
     EXPECT_NEAR(point.period, period, 1e-8 * period);
     ASSERT_EQ(point.multipliers.size(), 1u);
     EXPECT_NEAR(point.multipliers[0].real(), std::exp(-2 * mu * period), 1e-7);
     EXPECT_TRUE(point.stable);
-    EXPECT_NEAR(point.high[0], std::sqrt(mu), 1e-5);  // parabolas between samples: h^4, h = a 50th of the turn
-    EXPECT_NEAR(point.low[1], -std::sqrt(mu), 1e-5);
+    EXPECT_NEAR(point.high[0], std::sqrt(mu), 1e-7);
+    EXPECT_NEAR(point.low[1], -std::sqrt(mu), 1e-7);
   }
 }
 
@@ -150,6 +151,97 @@ TEST(OrbitContinuation, LorenzFromTheHopfPointToTheHomoclinicOrbit) {
   EXPECT_NEAR(back.ends[1].constant, 470.0 / 19, 1e-8);
 }
 
+// A canard: the orbit of x' = (y - x^3/3 + x) / eps, y' = a - x explodes within exp(-1/eps) of a = 1 - eps/8 - 3
+// eps^2/32
+// - 173 eps^3/1024 - O(eps^4) (A. K. Zvonkin, M. A. Shubin, "Non-standard analysis and singular perturbations of
+// ordinary differential equations", Russ. Math. Surv. 39 (1984)), from a small one to the relaxation oscillation, all
+// of it stable: in the plane a multiplier is exp of the integral of the divergence, never below 0.
+TEST(OrbitContinuation, CanardsAreFollowed) {
+  const double eps = 0.02;
+  const auto f = [=](double, Values x, Values p, std::span<double> out) {
+    out[0] = (x[1] - x[0] * x[0] * x[0] / 3 + x[0]) / eps;
+    out[1] = p[0] - x[0];
+  };
+  const auto system = parametric_system(2, f, {0.99});
+  const auto hopf = find_hopf_point(
+      system, {.value = 0.99, .low = 0.9, .high = 1.1, .x = {1, -2.0 / 3}, .angular_frequency = 1 / std::sqrt(eps)});
+  ASSERT_TRUE(hopf);
+  const auto branch = continue_orbit(system, *hopf, {.low = 0.9, .high = 1.1});
+  EXPECT_EQ(branch.ends[1].ending, OrbitEnding::bound) << branch.ends[1].reason;
+  EXPECT_TRUE(branch.marks.empty());
+  const double canard = 1 - eps / 8 - 3 * eps * eps / 32 - 173 * eps * eps * eps / 1024;
+  double least = 1;
+  for (std::size_t k = 1; k < branch.points.size(); ++k) {
+    const OrbitPoint& point = branch.points[k];
+    EXPECT_TRUE(point.stable);
+    EXPECT_GE(point.multipliers[0].real(), 0);
+    EXPECT_GE(point.high[0], branch.points[k - 1].high[0] - 1e-3);  // each goes round the one before, until they jump
+    EXPECT_LE(point.low[0], branch.points[k - 1].low[0] + 1e-3);
+    least = std::min(least, point.multipliers[0].real());
+  }
+  // The one that takes longest follows the repelling branch to its end.
+  const OrbitPoint& longest = *std::ranges::max_element(branch.points, {}, &OrbitPoint::period);
+  EXPECT_NEAR(longest.constant, canard, 10 * std::pow(eps, 4));
+  EXPECT_GT(longest.period, 1.3 * branch.points.back().period);
+  EXPECT_LT(least, 1e-60);
+}
+
+/// y' = g(y) in other coordinates: x = A y with two more terms of second order, whose inverse is as plain. g is a
+/// circle of radius sqrt(mu), and beside it what decays fast and what grows fast: multipliers exp(-2 mu T), exp(-20 T),
+/// exp(8 T), of sizes from 1e-55 to 1e22.
+ParametricSystem disguised_circle(double mu, double seed) {
+  const auto f = [=](double, Values x, Values p, std::span<double> out) {
+    std::array<double, 16> a{};
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j)
+        a[i * 4 + j] = (i == j ? 1 : 0) + 0.3 * std::sin(seed * static_cast<double>(1 + i * 4 + j));
+    const double shear = std::cos(seed), other = std::sin(3 * seed);
+    // Back: first the shears, then the matrix, by elimination without pivots, for it is near the identity.
+    std::array<double, 4> z{x[0], x[1], x[2] - shear * x[0] * x[0], x[3] - other * x[0] * x[1]}, y(z);
+    auto m = a;
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t i = k + 1; i < 4; ++i) {
+        const double factor = m[i * 4 + k] / m[k * 4 + k];
+        for (std::size_t j = k; j < 4; ++j) m[i * 4 + j] -= factor * m[k * 4 + j];
+        y[i] -= factor * y[k];
+      }
+    for (std::size_t i = 4; i-- > 0;) {
+      for (std::size_t j = i + 1; j < 4; ++j) y[i] -= m[i * 4 + j] * y[j];
+      y[i] /= m[i * 4 + i];
+    }
+    const double grow = p[0] - y[0] * y[0] - y[1] * y[1];
+    const std::array<double, 4> g{grow * y[0] - y[1], grow * y[1] + y[0], -20 * y[2], 8 * y[3]};
+    for (std::size_t i = 0; i < 4; ++i) {
+      out[i] = 0;
+      for (std::size_t j = 0; j < 4; ++j) out[i] += a[i * 4 + j] * g[j];
+    }
+    out[2] += 2 * shear * x[0] * out[0];
+    out[3] += other * (x[0] * out[1] + x[1] * out[0]);
+  };
+  return parametric_system(4, f, {mu});
+}
+TEST(OrbitContinuation, MultipliersOfAllSizesKeepTheirDigits) {
+  for (const double seed : {0.7, 1.9}) {
+    const auto system = disguised_circle(0.1, seed);
+    const auto hopf = find_hopf_point(system, {.value = 0.1, .low = -1, .high = 1, .x = {0, 0, 0, 0}});
+    ASSERT_TRUE(hopf);
+    const auto branch = continue_orbit(system, *hopf, {.low = -1, .high = 1, .most_points = 12});
+    EXPECT_EQ(branch.points.size(), 12u) << branch.ends[1].reason;
+    EXPECT_TRUE(branch.marks.empty());
+    const double turn = 2 * pi;
+    for (std::size_t k = 1; k < branch.points.size(); ++k) {
+      const OrbitPoint& point = branch.points[k];
+      EXPECT_NEAR(point.period, turn, 1e-8);
+      ASSERT_EQ(point.multipliers.size(), 3u);
+      // df/dx is by differences, along an orbit whose error is below 1e-7.
+      const std::array<double, 3> exponents{8 * turn, -2 * point.constant * turn, -20 * turn};
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(std::log(point.multipliers[i].real()), exponents[i], 1e-6 + 1e-7 * std::abs(exponents[i]));
+      }
+    }
+  }
+}
+
 // C. Roessler's system with a = b = 0.2: the first doubling of its cascade stands near c = 2.83. Two tolerances agree,
 // and beyond it the orbit of twice the period is what motions come to.
 TEST(OrbitContinuation, RoesslerDoublesItsPeriod) {
@@ -199,6 +291,70 @@ TEST(OrbitContinuation, ATorusIsBorn) {
   EXPECT_NEAR(branch.marks[0].at.constant, 1, 1e-8);
   EXPECT_NEAR(branch.marks[0].rotation, omega, 1e-7);
   for (const OrbitPoint& point : branch.points) EXPECT_EQ(point.stable, point.constant < 1);
+}
+
+// Round the unit circle a strip is turned by half a turn: across it s' = (g - s^2) s and q' = -q, where (a, b) = s
+// e(angle / 2) + q e(angle / 2 + pi / 2). With g = p (1 - p) the circle doubles its period at p = 0 and p = 1, and
+// between them the orbit s^2 = g goes round twice in 4 pi, with the multipliers exp(-8 pi g), exp(-4 pi), exp(-8 pi).
+TEST(OrbitContinuation, OrbitsOfTwiceThePeriodAreFollowed) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    const double r = std::hypot(x[0], x[1]), c = x[0] / r, s = x[1] / r, g = p[0] * (1 - p[0]);
+    out[0] = (1 - r * r) * x[0] - x[1];
+    out[1] = (1 - r * r) * x[1] + x[0];
+    const double along_a = ((1 + c) * x[2] + s * x[3]) / 2, along_b = (s * x[2] + (1 - c) * x[3]) / 2;
+    const double square = x[2] * along_a + x[3] * along_b;
+    out[2] = -x[3] / 2 + (g - square) * along_a - (x[2] - along_a);
+    out[3] = x[2] / 2 + (g - square) * along_b - (x[3] - along_b);
+  };
+  const auto system = parametric_system(4, f, {-0.5});
+  const auto start = find_periodic_orbit(system, {0.9, 0, 0.1, 0}, {.settle = 60, .duration = 60});
+  ASSERT_TRUE(start.outcome) << describe(start.outcome);
+  const auto branch = continue_orbit(system, start, {.low = -0.5, .high = 1.5});
+  const auto marks = of_kind(branch, OrbitBifurcation::period_doubling);
+  ASSERT_EQ(marks.size(), 2u);
+  EXPECT_NEAR(marks[0].at.constant, 0, 1e-9);
+  EXPECT_NEAR(marks[1].at.constant, 1, 1e-9);
+  for (const OrbitMark& mark : marks) {
+    const auto doubled = continue_orbit(system, mark, {.low = -0.5, .high = 1.5});
+    ASSERT_EQ(doubled.message, "");
+    EXPECT_EQ(doubled.ends[0].ending, OrbitEnding::branching);
+    EXPECT_EQ(doubled.ends[1].ending, OrbitEnding::branching) << doubled.ends[1].reason;
+    EXPECT_NEAR(doubled.ends[1].constant, 1 - mark.at.constant, 1e-7);
+    EXPECT_TRUE(doubled.marks.empty());
+    for (std::size_t k = 0; k + 1 < doubled.points.size(); ++k) {
+      const OrbitPoint& point = doubled.points[k];
+      const double g = point.constant * (1 - point.constant);
+      EXPECT_NEAR(point.period, 4 * pi, 1e-7);
+      EXPECT_NEAR(point.x[2] * point.x[2] + point.x[3] * point.x[3], g, 1e-7);
+      EXPECT_NEAR(point.multipliers[0].real(), std::exp(-8 * pi * g), 1e-5);
+    }
+  }
+}
+
+// Beside the unit circle u' = (p - u^2) u: at p = 0 two more circles branch off, u = +- sqrt(p).
+TEST(OrbitContinuation, TheOtherBranchAtACrossingIsFollowed) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    const double grow = 1 - x[0] * x[0] - x[1] * x[1];
+    out[0] = grow * x[0] - x[1] + 0.1 * x[2] * x[0];
+    out[1] = grow * x[1] + x[0] + 0.1 * x[2] * x[1];
+    out[2] = (p[0] - x[2] * x[2]) * x[2];
+  };
+  const auto system = parametric_system(3, f, {-0.5});
+  const auto start = find_periodic_orbit(system, {0.9, 0, 0.1}, {.settle = 60, .duration = 60});
+  ASSERT_TRUE(start.outcome) << describe(start.outcome);
+  const auto branch = continue_orbit(system, start, {.low = -0.5, .high = 1});
+  ASSERT_EQ(branch.marks.size(), 1u);
+  EXPECT_EQ(branch.marks[0].kind, OrbitBifurcation::crossing);
+  EXPECT_NEAR(branch.marks[0].at.constant, 0, 1e-8);
+  const auto other = continue_orbit(system, branch.marks[0], {.low = -0.5, .high = 1});
+  ASSERT_EQ(other.message, "");
+  EXPECT_EQ(other.ends[1].ending, OrbitEnding::bound) << other.ends[1].reason;
+  EXPECT_EQ(other.points.back().constant, 1);
+  for (const OrbitPoint& point : other.points) {
+    EXPECT_NEAR(point.x[2] * point.x[2], point.constant, 1e-7);
+    EXPECT_NEAR(std::hypot(point.x[0], point.x[1]), std::sqrt(1 + 0.1 * point.x[2]), 1e-7);
+    EXPECT_NEAR(point.period, 2 * pi, 1e-7);
+  }
 }
 
 // x'' = -x - c x': only at c = 0 are there orbits, of any size.

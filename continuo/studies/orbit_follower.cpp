@@ -1,0 +1,227 @@
+// continuo/studies/orbit_follower.cpp
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/orbit_follower.hpp>
+
+namespace continuo::studies::detail {
+
+using Vector = std::vector<double>;
+using Place = OrbitPlace;
+
+namespace {
+
+constexpr double shrunk_part =
+    1e-3;                           // of the largest amplitude of the branch: so small, and a Hopf point is looked for
+constexpr double about_one = 1e-2;  // of the multiplier where branches cross
+constexpr double still_on_circle = 1e-5;  // how near to 1 the size of a located pair is
+
+}  // namespace
+
+OrbitBranchEnd OrbitFollower::followed(OrbitBranch& branch, const Place& from, double direction) {
+  Place here = from;
+  steps_.measure(here);
+  for (double& part : here.tangent) part *= direction;
+  here.fold *= direction;
+  const Place origin = here;
+  const std::size_t begin = branch.points.size();
+  double step = options_.first_step;
+  std::size_t refinements = 0;
+  while (branch.points.size() < options_.most_points) {
+    auto next = is_interrupted() ? std::nullopt : steps_.stepped(here, step);
+    if (is_interrupted()) return ended(OrbitEnding::interrupted, here.point.constant, "it was interrupted");
+    const bool vanished = next && vanishes(here, *next);
+    if (vanished || (next && amplitude(*next) < shrunk_part * amplitude_))
+      if (const auto hopf = hopf_near(vanished ? here : *next)) {
+        branch.points.push_back(as_orbit(*hopf, here.point.stable));
+        return ended(OrbitEnding::hopf, hopf->constant, "the orbit shrinks to an equilibrium, a Hopf point");
+      }
+    if (!next || vanished || steps_.alike(here, *next) < 0.906) {  // by more than 25 degrees: too long a step
+      step /= 2;
+      if (step > options_.least_step) continue;
+      return lost(here);
+    }
+    if (next && doubled_ && !vanished && product(steps_.halves(here), steps_.halves(*next)) < 0)
+      if (auto end = turns_become_one(branch, here, *next, step)) return *end;
+    const std::size_t iterations = steps_.iterations();
+    if (!steps_.is_exact(*next) && refinements < most_refinements && steps_.refine(here, *next)) {
+      ++refinements;
+      continue;
+    }
+    refinements = 0;
+    mark(branch, here, *next, step);
+    if (!inside(*next)) return at_bound(branch, here, *next);
+    steps_.complete(*next);
+    branch.points.push_back(next->point);
+    amplitude_ = std::max(amplitude_, amplitude(*next));
+    here = std::move(*next);
+    report(here.point.constant);
+    const std::span<const OrbitPoint> way(branch.points.begin() + static_cast<std::ptrdiff_t>(begin),
+                                          branch.points.end());
+    if (auto end = ending_of(way, here)) return *end;
+    if (way.size() > 20 && comes_back(here, origin, step))
+      return ended(OrbitEnding::closed, here.point.constant, "it comes back to where it began");
+    steps_.measure(here);
+    if (iterations <= 4) step = std::min(1.3 * step, options_.largest_step);
+  }
+  return ended(OrbitEnding::too_many_points, here.point.constant,
+               fmt::format("it has {} points, as many as are allowed", branch.points.size()));
+}
+
+/// Through the equilibrium, to the same orbits half a turn later.
+bool OrbitFollower::vanishes(const Place& a, const Place& b) {
+  const Vector from = steps_.deviations(a), to = steps_.deviations(b);
+  double sum = 0;
+  for (std::size_t j = 0; j < from.size(); ++j) sum += from[j] * to[j];
+  return sum < 0;
+}
+
+// The difference a of the two turns goes through zero there and the equations are singular, but constant and period are
+// even in a: they are read off at three places before, as polynomials of a^2.
+std::optional<OrbitBranchEnd> OrbitFollower::turns_become_one(OrbitBranch& branch, const Place& here, const Place& next,
+                                                              double step) {
+  const Vector apart = steps_.halves(here);
+  const auto part_left = [&](const Place& place) {
+    return product(apart, steps_.halves(place)) / product(apart, apart);
+  };
+  const double zero = step / (1 - part_left(next));
+  const auto half_way = steps_.stepped(here, 0.45 * zero);
+  auto last = steps_.stepped(here, 0.75 * zero);
+  if (!half_way || !last) return std::nullopt;
+  const double a = 1, b = std::pow(part_left(*half_way), 2), c = std::pow(part_left(*last), 2);
+  const auto at_zero = [&](double OrbitPoint::* value) {
+    return here.point.*value * b * c / ((a - b) * (a - c)) + half_way->point.*value * a * c / ((b - a) * (b - c)) +
+           last->point.*value * a * b / ((c - a) * (c - b));
+  };
+  const Vector between = steps_.halves(*last);
+  for (std::size_t j = 0; j < between.size(); ++j) last->z[j] -= between[j] * steps_.size(j) / 2;
+  steps_.complete(*last);
+  last->point.x.assign(last->z.begin(), last->z.begin() + static_cast<std::ptrdiff_t>(system_.size));
+  last->point.constant = at_zero(&OrbitPoint::constant);
+  last->point.period = at_zero(&OrbitPoint::period);
+  branch.points.push_back(last->point);
+  return ended(OrbitEnding::branching, last->point.constant,
+               "its two turns become one, at a period doubling of the orbits of half the period");
+}
+
+OrbitBranchEnd OrbitFollower::at_bound(OrbitBranch& branch, const Place& a, const Place& b) {
+  const double bound = b.point.constant > options_.high ? options_.high : options_.low;
+  const double part = (bound - a.point.constant) / (b.point.constant - a.point.constant);
+  Vector z(a.z);
+  for (std::size_t j = 0; j < z.size(); ++j) z[j] += part * (b.z[j] - a.z[j]);
+  if (auto last = steps_.at_constant(std::move(z), bound)) {
+    steps_.complete(*last);
+    branch.points.push_back(std::move(last->point));
+  }
+  report(bound);
+  return ended(OrbitEnding::bound, bound, fmt::format("{} reaches the end of its range", name()));
+}
+
+bool OrbitFollower::comes_back(const Place& here, const Place& origin, double step) const {
+  if (here.fold * origin.fold < 0) return false;
+  Vector apart{(here.point.constant - origin.point.constant) / range_,
+               (here.point.period - origin.point.period) / origin.point.period};
+  for (std::size_t i = 0; i < system_.size; ++i) {
+    apart.push_back((here.point.low[i] - origin.point.low[i]) / steps_.size_of(i));
+    apart.push_back((here.point.high[i] - origin.point.high[i]) / steps_.size_of(i));
+  }
+  return length(apart) < step / 2;
+}
+
+void OrbitFollower::report(double constant) {
+  low_ = std::min(low_, constant);
+  high_ = std::max(high_, constant);
+  if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
+}
+
+/// What lies between two neighbours, narrowed down to where its test is zero.
+void OrbitFollower::mark(OrbitBranch& branch, const Place& a, const Place& b, double step) {
+  const auto changes = [](const Place& from, const Place& to, double Place::* test) {
+    return (from.*test < 0) != (to.*test < 0);
+  };
+  const auto zero_of = [&](double Place::* test) {
+    return located(a, b, step, [test](const Place& place) { return place.*test; });
+  };
+  // At a fold the branch turns and a multiplier passes 1; at a crossing the multiplier alone on a branch that goes
+  // straight on, the direction alone on one that begins there. Both are looked at next to the place, for more may
+  // happen within a step. The direction may also turn by what rounding leaves of a constant that keeps still, as in
+  // the explosion of a canard: then no multiplier is near 1.
+  const bool turns = changes(a, b, &Place::fold), passes = changes(a, b, &Place::unity);
+  if (turns || passes) {
+    if (auto place = zero_of(turns ? &Place::fold : &Place::unity)) {
+      auto kind = turns && passes ? OrbitBifurcation::fold : OrbitBifurcation::crossing;
+      if (turns != passes) {
+        const double at = located_at_;
+        for (const double part : {1e-3, 1e-5}) {
+          const double aside = part * std::min({step, at, step - at});
+          const auto before = steps_.stepped(a, at - aside), after = steps_.stepped(a, at + aside);
+          if (before && after && changes(*before, *after, &Place::fold) && changes(*before, *after, &Place::unity))
+            kind = OrbitBifurcation::fold;
+        }
+      }
+      add(branch, kind, a, std::move(place));
+    }
+  }
+  if (changes(a, b, &Place::doubling)) add(branch, OrbitBifurcation::period_doubling, a, zero_of(&Place::doubling));
+  if (changes(a, b, &Place::torus)) add(branch, OrbitBifurcation::torus, a, zero_of(&Place::torus));
+}
+
+/// `before`: a place of the branch from which it was found, on the same mesh.
+void OrbitFollower::add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, std::optional<Place> place) {
+  if (!place || !inside(*place)) return;
+  const auto& values = place->point.multipliers;
+  if (kind == OrbitBifurcation::crossing &&
+      std::ranges::none_of(values, [](const auto& value) { return std::abs(value - 1.0) < about_one; }))
+    return;
+  double rotation = 0;
+  if (kind == OrbitBifurcation::torus) {
+    // Two real multipliers whose product is 1 are no torus: nothing happens.
+    const auto pair = std::ranges::find_if(values, [](const std::complex<double>& value) {
+      return value.imag() > 0 && std::abs(std::abs(value) - 1) < still_on_circle;
+    });
+    if (pair == values.end()) return;
+    rotation = std::arg(*pair) / (2 * std::numbers::pi);
+  }
+  steps_.complete(*place);
+  Vector tangent(before.tangent);
+  for (std::size_t j = 0; j < tangent.size(); ++j) tangent[j] *= steps_.size(j);
+  branch.marks.push_back(
+      {kind, std::move(place->point), rotation, *place->mesh, std::move(place->z), std::move(tangent)});
+}
+
+/// Illinois false position, with a bisection where it is slow.
+std::optional<OrbitPlace> OrbitFollower::located(const Place& a, const Place& b, double step,
+                                                 const std::function<double(const Place&)>& test) {
+  constexpr int most = 60;
+  constexpr double exact = 1e-10;
+  double low = 0, high = step, at_low = test(a), at_high = test(b);
+  std::optional<Place> best;
+  int last_side = 0;
+  for (int k = 0; k < most && high - low > exact * step; ++k) {
+    const double secant = high - at_high * (high - low) / (at_high - at_low);
+    const double s = k % 4 == 3 || !(secant > low && secant < high) ? (low + high) / 2 : secant;
+    auto place = steps_.stepped(a, s);
+    if (!place) break;
+    const double value = test(*place);
+    best = std::move(place);
+    located_at_ = s;
+    if (std::abs(value) < exact) break;
+    const int side = (value < 0) == (at_low < 0) ? -1 : 1;
+    if (side < 0) {
+      low = s, at_low = value;
+      if (last_side < 0) at_high /= 2;
+    } else {
+      high = s, at_high = value;
+      if (last_side > 0) at_low /= 2;
+    }
+    last_side = side;
+  }
+  return best;
+}
+
+}  // namespace continuo::studies::detail
