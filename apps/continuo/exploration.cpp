@@ -111,13 +111,19 @@ void move_sliders(const Studied& studied, const ExplorationLimits& limits, Explo
     Slider slider{parameter.name, parameter.range->low, parameter.range->high, {}};
     const studies::ParametricSystem system = studies::of_model(
         studied.prepared.program, {.constants = {parameter.name}, .parameters = set, .mode = studied.mode});
-    for (const Rest& rest : found.rests) {
-      studies::Branch branch;
-      if (!rest.jump && !interrupt_flag())
-        branch = studies::continue_equilibrium(
-            system, rest.at.x, {.low = slider.low, .high = slider.high, .interrupt = &interrupt_flag()});
-      slider.branches.push_back(std::move(branch));
+    const double here = set.contains(parameter.name) ? set.at(parameter.name) : parameter.value;
+    std::vector<studies::BranchStart> starts;
+    std::vector<std::size_t> numbers;
+    for (std::size_t k = 0; k < found.rests.size(); ++k) {
+      if (found.rests[k].jump) continue;
+      starts.push_back({here, found.rests[k].at.x});
+      numbers.push_back(k);
     }
+    if (!starts.empty() && !interrupt_flag())
+      slider.branches = studies::continue_equilibria(
+          system, starts, {.low = slider.low, .high = slider.high, .interrupt = &interrupt_flag()});
+    for (studies::BranchOfDiagram& one : slider.branches)
+      for (std::size_t& start : one.starts) start = numbers[start];
     found.sliders.push_back(std::move(slider));
   }
 }

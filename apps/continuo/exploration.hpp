@@ -24,11 +24,11 @@ struct Rest {
   std::optional<std::string> jump;
 };
 
-/// A parameter with a range, and each place of rest followed along it.
+/// A parameter with a range, and the branches along it that lead through the places of rest, each once.
 struct Slider {
   std::string name;
   double low, high;
-  std::vector<studies::Branch> branches;  // by place of rest
+  std::vector<studies::BranchOfDiagram> branches;  // their starts: the places of rest, by number
 };
 
 /// The largest change of a state along the run by a change of the parameter, in parts of both.

@@ -57,7 +57,7 @@ results::Panel plane(const model::Model& model, const model::Motion& motion, con
 
 results::Panel along(const model::Model& model, const Slider& slider) {
   results::Panel panel{.x_label = slider.name, .y_label = state_label(model, 0), .curves = {}};
-  for (const studies::Branch& branch : slider.branches) {
+  for (const auto& [branch, starts, crossed] : slider.branches) {
     std::vector<double> constants, values;
     std::vector<bool> stable;
     for (const studies::BranchPoint& point : branch.points) {

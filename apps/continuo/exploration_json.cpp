@@ -27,14 +27,16 @@ json rests_json(const std::vector<Rest>& rests) {
 
 json slider_json(const Slider& slider) {
   json branches = json::array();
-  for (const studies::Branch& branch : slider.branches) {
+  for (const auto& [branch, starts, crossed] : slider.branches) {
     json points = json::array();
     for (const studies::BifurcationPoint& point : branch.bifurcations)
       points.push_back({{"kind", to_string(point.kind)},
                         {"at", point.at.constant},
                         {"x", point.at.x},
                         {"frequency", point.frequency}});
-    branches.push_back({{"complete", branch.complete}, {"points", branch.points.size()}, {"bifurcations", points}});
+    branches.push_back(
+        {{"rests", starts}, {"complete", branch.complete}, {"points", branch.points.size()}, {"bifurcations", points}});
+    if (crossed) branches.back()["crosses"] = *crossed;
   }
   return {{"name", slider.name}, {"low", slider.low}, {"high", slider.high}, {"branches", branches}};
 }

@@ -79,16 +79,18 @@ std::string slider_text(const Slider& slider) {
   std::string text =
       fmt::format("slider   {} from {} to {}\n", slider.name, short_number(slider.low), short_number(slider.high));
   bool any = false;
-  for (std::size_t k = 0; k < slider.branches.size(); ++k) {
-    const studies::Branch& branch = slider.branches[k];
-    for (const studies::BifurcationPoint& point : branch.bifurcations) {
-      text += fmt::format("         rest {}: {} at {} = {}{}\n", k + 1, to_string(point.kind), slider.name,
+  for (const studies::BranchOfDiagram& one : slider.branches) {
+    std::string of = "a branch that crosses";
+    for (std::size_t k = 0; k < one.starts.size(); ++k)
+      of = k == 0 ? fmt::format("rest {}", one.starts[k] + 1) : fmt::format("{}, {}", of, one.starts[k] + 1);
+    for (const studies::BifurcationPoint& point : one.branch.bifurcations) {
+      text += fmt::format("         {}: {} at {} = {}{}\n", of, to_string(point.kind), slider.name,
                           short_number(cleared(slider, point.at.constant)),
                           point.frequency > 0 ? fmt::format(", frequency {}", short_number(point.frequency)) : "");
       any = true;
     }
-    if (!branch.points.empty() && !branch.complete)
-      text += fmt::format("         rest {}: not followed to the end: {}\n", k + 1, branch.message), any = true;
+    if (!one.branch.complete)
+      text += fmt::format("         {}: not followed to the end: {}\n", of, one.branch.message), any = true;
   }
   return any ? text : text + "         no place of rest changes its stability\n";
 }
