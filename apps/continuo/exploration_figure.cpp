@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include <apps/continuo/branch_curves.hpp>
 #include <apps/continuo/exploration.hpp>
+#include <apps/continuo/steady_branches.hpp>
 
 #include <continuo/results/plots.hpp>
 
@@ -57,18 +57,7 @@ results::Panel plane(const model::Model& model, const model::Motion& motion, con
 
 results::Panel along(const model::Model& model, const Slider& slider) {
   results::Panel panel{.x_label = slider.name, .y_label = state_label(model, 0), .curves = {}};
-  for (const auto& [branch, starts, crossed] : slider.branches) {
-    std::vector<double> constants, values;
-    std::vector<bool> stable;
-    for (const studies::BranchPoint& point : branch.points) {
-      constants.push_back(point.constant);
-      values.push_back(point.x[0]);
-      stable.push_back(point.stability == studies::Stability::asymptotically_stable);
-    }
-    if (!constants.empty()) add_branch(panel, constants, values, stable);
-    for (const studies::BifurcationPoint& point : branch.bifurcations)
-      add_bifurcation(panel, std::string(to_string(point.kind)), point.at.constant, point.at.x[0]);
-  }
+  for (const studies::BranchOfDiagram& one : slider.branches) add_curves(one.branch, 0, panel);
   return panel;
 }
 

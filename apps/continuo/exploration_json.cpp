@@ -1,7 +1,7 @@
-#include <complex>
 #include <vector>
 
 #include <apps/continuo/exploration.hpp>
+#include <apps/continuo/steady_branches.hpp>
 #include <nlohmann/json.hpp>
 
 namespace continuo::app {
@@ -9,16 +9,10 @@ namespace {
 
 using nlohmann::json;
 
-json complex_list(const std::vector<std::complex<double>>& values) {
-  json list = json::array();
-  for (const auto& value : values) list.push_back({value.real(), value.imag()});
-  return list;
-}
-
 json rests_json(const std::vector<Rest>& rests) {
   json list = json::array();
   for (const Rest& rest : rests) {
-    list.push_back({{"x", rest.at.x}, {"eigenvalues", complex_list(rest.at.eigenvalues)}});
+    list.push_back({{"x", rest.at.x}, {"eigenvalues", json_of(rest.at.eigenvalues)}});
     list.back()["stability"] = rest.jump ? "undecided" : std::string(to_string(rest.at.stability));
     if (rest.jump) list.back()["jump"] = *rest.jump;
   }
@@ -61,7 +55,7 @@ std::string exploration_json(const Studied& studied, const Exploration& found) {
   if (found.orbit)
     result["orbit"] = {{"period", found.orbit->period},
                        {"stable", found.orbit->stable},
-                       {"multipliers", complex_list(found.orbit->multipliers)}};
+                       {"multipliers", json_of(found.orbit->multipliers)}};
   if (found.exponents)
     result["exponents"] = {{"values", found.exponents->exponents}, {"spread", found.exponents->spread}};
   return result.dump(2) + "\n";

@@ -53,7 +53,16 @@ std::vector<const studies::BranchPoint*> all_points(const Branch& branch) {
   return points;
 }
 
-void add_curves(const Branch& branch, std::size_t component, results::Panel& panel) {
+nlohmann::json json_of(const studies::BranchPoint& point, const NamedRange& range) {
+  return {{range.name, point.constant},
+          {"x", point.x},
+          {"stability", to_string(point.stability)},
+          {"eigenvalues", app::json_of(point.eigenvalues)}};
+}
+
+}  // namespace
+
+void add_curves(const studies::Branch& branch, std::size_t component, results::Panel& panel) {
   std::vector<double> constants, values;
   std::vector<bool> stable;
   const auto points = all_points(branch);
@@ -68,15 +77,6 @@ void add_curves(const Branch& branch, std::size_t component, results::Panel& pan
   for (const studies::BifurcationPoint& point : branch.bifurcations)
     add_bifurcation(panel, std::string(to_string(point.kind)), point.at.constant, point.at.x[component]);
 }
-
-nlohmann::json json_of(const studies::BranchPoint& point, const NamedRange& range) {
-  return {{range.name, point.constant},
-          {"x", point.x},
-          {"stability", to_string(point.stability)},
-          {"eigenvalues", app::json_of(point.eigenvalues)}};
-}
-
-}  // namespace
 
 nlohmann::json json_of(const std::vector<std::complex<double>>& values) {
   auto list = nlohmann::json::array();

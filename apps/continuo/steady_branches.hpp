@@ -8,6 +8,7 @@
 #include <apps/continuo/studied_model.hpp>
 #include <nlohmann/json.hpp>
 
+#include <continuo/results/figure.hpp>
 #include <continuo/studies/continuation.hpp>
 #include <continuo/studies/equilibrium.hpp>
 
@@ -26,7 +27,9 @@ SteadyDiagram diagram_of(const Studied& studied, const std::vector<studies::Equi
 std::string text_of(const SteadyDiagram& diagram, const NamedRange& range, std::size_t known);
 nlohmann::json json_of(const SteadyDiagram& diagram, const model::Model& model, const NamedRange& range);
 std::string csv_of(const SteadyDiagram& diagram, const model::Model& model, const NamedRange& range);
-/// One state over the parameter.
+/// One state over the parameter, with the points at which something changes.
+void add_curves(const studies::Branch& branch, std::size_t component, results::Panel& panel);
+/// That of all branches, as a file.
 bool draw(const SteadyDiagram& diagram, const model::Model& model, const NamedRange& range, std::size_t component,
           const std::string& file);
 

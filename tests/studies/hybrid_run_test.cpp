@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <continuo/model/load.hpp>
+#include "problems.hpp"
 #include <continuo/model/model_program.hpp>
 #include <continuo/model/simulate.hpp>
 #include <continuo/studies/lyapunov.hpp>
@@ -19,15 +19,8 @@
 namespace continuo::studies {
 namespace {
 
-std::shared_ptr<const model::ModelProgram> program_of(const std::string& text) {
-  const model::Loaded loaded = model::load(model::Source("hybrid.sim", text));
-  EXPECT_TRUE(loaded) << loaded.text();
-  return loaded ? model::compile(*loaded.model) : nullptr;
-}
-
 std::vector<double> exponents_of(const std::string& text, const LyapunovOptions& options) {
   const auto program = program_of(text);
-  if (!program) return {};
   const LyapunovExponents found = lyapunov_exponents(program, {}, options);
   EXPECT_TRUE(found.outcome) << describe(found.outcome);
   return found.exponents;
