@@ -253,6 +253,10 @@ void Flow::start_relay(const Block& block, std::span<const Real> x, const Quanti
     } else if (sign(evaluate(beyond_below, now)) < 0) {
       side = -1;
     }
+    // What an event hardly lets leave may be back before the next sample.
+    constexpr Real little = 0.02L;
+    const Real speed = side == 0 ? 0 : std::fabs(evaluate(side > 0 ? beyond_above : beyond_below, now).value());
+    if (speed > value_margin.zero && speed < little) doubt_ = "a relay that hardly leaves its surface";
   }
   Closed& f = closed(block.state);
   if (side == 0) {

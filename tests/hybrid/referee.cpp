@@ -310,7 +310,9 @@ class Referee {
       const Comparison& sides = model_.comparisons[c];
       const bool jumps = sides.form == Form::steps || sides.form == Form::square || sides.form == Form::modulo;
       if (!jumps || !watched_[c] || signs_[c] == signs_before[c]) continue;
-      if (!reads_assigned(sides.left)) return reject("a jump that turns where it stands");
+      // Nor has one that was set to where it stood.
+      if (!reads_assigned(sides.left) || std::fabs(jets_[c].value()) <= value_margin.zero)
+        return reject("a jump that turns where it stands");
     }
   }
 
