@@ -11,10 +11,10 @@
 
 namespace continuo::studies::detail {
 
+namespace {
+
 using Vector = std::vector<double>;
 using Place = OrbitPlace;
-
-namespace {
 
 // A homoclinic orbit is near where the period grows by this factor while the constant keeps still to so many parts of
 // its range: there constant - limit ~ exp(-rate * period).

@@ -11,10 +11,10 @@
 
 namespace continuo::studies::detail {
 
+namespace {
+
 using Vector = std::vector<double>;
 using Place = OrbitPlace;
-
-namespace {
 
 constexpr double shrunk_part =
     1e-3;                           // of the largest amplitude of the branch: so small, and a Hopf point is looked for

@@ -10,10 +10,10 @@
 
 namespace continuo::studies::detail {
 
+namespace {
+
 using Vector = std::vector<double>;
 using Place = OrbitPlace;
-
-namespace {
 
 constexpr double growth_of_size = 5;  // of the first orbit beside a Hopf point: twenty steps make it ten times as large
 constexpr std::size_t most_first_intervals = 400, even_intervals = 20;
