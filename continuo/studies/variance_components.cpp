@@ -53,6 +53,11 @@ Decomposed decomposed(const VarianceComponents& noise, std::span<const double> j
   return result;
 }
 
+/// A row as a column. A matrix without columns has no data to point to.
+Column row_of(const Dense& matrix, std::size_t row) {
+  return matrix.cols() == 0 ? Column(0) : Column(matrix.row(static_cast<Index>(row)).transpose());
+}
+
 /// What part of a row's variance is a component's.
 double share_of(const VarianceComponents& noise, std::size_t row, const VarianceRow::Share& share) {
   return noise.components[share.component].variance * share.factor / noise.variance(row);
@@ -201,18 +206,18 @@ Estimated estimated(const VarianceComponents& noise, const Decomposed& parts) {
   Dense information = Dense::Zero(size, size);
   for (std::size_t r = 0; r < noise.rows.size(); ++r) {
     if (!noise.rows[r].counts) continue;
-    const auto row = parts.q.row(static_cast<Index>(r));
+    const Column row = row_of(parts.q, r);
     const double h = parts.leverage[static_cast<Index>(r)];
     for (const auto& a : noise.rows[r].shares) {
       const std::size_t k = place[a.component];
       if (k == prior_group || a.factor == 0) continue;
       const double u = share_of(noise, r, a);
-      result.moments[k].noalias() += u * row.transpose() * row;
+      result.moments[k].noalias() += u * row * row.transpose();
       for (const auto& b : noise.rows[r].shares) {
         const std::size_t l = place[b.component];
         if (l == prior_group || b.factor == 0) continue;
         const double both = u * share_of(noise, r, b);
-        pairs[k * count + l].noalias() += both * row.transpose() * row;
+        pairs[k * count + l].noalias() += both * row * row.transpose();
         information(static_cast<Index>(k), static_cast<Index>(l)) += both * (1 - 2 * h);
       }
     }
@@ -234,6 +239,7 @@ Estimated estimated(const VarianceComponents& noise, const Decomposed& parts) {
 
 /// Each of the moves over the unknowns' sizes, its largest entry 1.
 std::vector<std::vector<double>> directions_of(const Dense& null, std::span<const double> sizes) {
+  if (null.cols() == 0) return {};
   Dense moves = null;
   for (Index i = 0; i < moves.rows(); ++i) {
     const double size = std::abs(sizes[static_cast<std::size_t>(i)]);
@@ -281,7 +287,8 @@ Uncertainty uncertainty(const VarianceComponents& noise, std::span<const double>
     Dense slope = Dense::Zero(rank, rank), square = slope;
     for (std::size_t r = 0; r < noise.rows.size(); ++r) {
       const std::size_t g = noise.rows[r].group;
-      const Dense outer = parts.q.row(static_cast<Index>(r)).transpose() * parts.q.row(static_cast<Index>(r));
+      const Column row = row_of(parts.q, r);
+      const Dense outer = row * row.transpose();
       slope += (g == prior_group ? 1 : robust.slope[g]) * outer;
       square += (g == prior_group ? 1 : robust.square[g]) * outer;
     }
@@ -298,7 +305,7 @@ Uncertainty uncertainty(const VarianceComponents& noise, std::span<const double>
   for (std::size_t i = 0; i < m; ++i) {
     const bool moves = std::ranges::any_of(
         result.directions, [&](const auto& direction) { return std::abs(direction[i]) > part_of_a_move; });
-    const Column b = parts.back.row(static_cast<Index>(i)).transpose();
+    const Column b = row_of(parts.back, i);
     // Satterthwaite: 2 var^2 over the variance of that estimate.
     Column pull = Column::Zero(variances.widths.rows());
     for (Index k = 0; k < pull.size(); ++k) pull[k] = b.dot(variances.moments[static_cast<std::size_t>(k)] * b);
