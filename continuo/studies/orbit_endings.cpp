@@ -82,11 +82,12 @@ std::optional<OrbitBranchEnd> OrbitFollower::ending_of(std::span<const OrbitPoin
 /// one all but a fixed time is spent there. Where the constant stands still and the period grows without that, as in
 /// the explosion of a canard, the branch goes on.
 bool OrbitFollower::waits_at_an_equilibrium(const Place& place) {
-  const std::size_t n = system_.size, nodes = place.z.size() / n;
+  const std::size_t n = system_.size;
   const Vector field = [&] {
     steps_.use(place.mesh);
     return steps_.equations().field(place.z);
   }();
+  const std::size_t nodes = field.size() / n;  // z has the period and the constant behind them
   const auto square = [&](std::span<const double> v) {
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) sum += std::pow(v[i] / steps_.size_of(i), 2);
