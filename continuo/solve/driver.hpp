@@ -250,16 +250,18 @@ class Driver {
     Real length = steps().end() - begin, from = t_, offset = t_ - begin;
     const Real instant = 4 * std::numeric_limits<Real>::epsilon() * abs(steps().end());
     const auto evaluate = [&](Real place, std::span<Real> values) { guards_at(place, length, values); };
+    bool from_here = true;  // the search begins at t_
     while (true) {
       if (logic_.any_guard() && Logic::has_enclosures) logic_.take_step(steps(), dense_output());
       const std::optional<Real> tick = logic_.next_quiet(t_, steps().end());
       const bool to_tick = tick && *tick != steps().end();
       const Real to = to_tick ? *tick - begin : length;
       const Crossing<Real>* crossing =
-          logic_.any_guard() ? logic_.first_crossing(offset, to, instant, evaluate) : nullptr;
+          logic_.any_guard() ? logic_.first_crossing(offset, to, instant, from_here, evaluate) : nullptr;
       if (!crossing && !to_tick) break;
       if (crossing && !is_event(*crossing, length)) {
         offset = crossing->offset;
+        from_here = false;
         continue;
       }
       if (crossing) {
@@ -286,6 +288,7 @@ class Driver {
       logic_.arrive(steps(), t_, x_, crossing);
       if (fire(observer) || t_ == steps().end()) return;
       from = t_;
+      from_here = true;
     }
     end_step(from, observer);
   }

@@ -135,8 +135,11 @@ class EventList {
 
   template <class System>
   void guards(const System&, Real t, const X& x, std::span<Real> values) const {
-    for (std::size_t i = 0; i < events_.size(); ++i)
-      if (events_[i].guard) values[i] = events_[i].guard(t, x);
+    Real* value = values.data();
+    for (const Event<X>& event : events_) {
+      if (event.guard) *value = event.guard(t, x);
+      ++value;
+    }
   }
 
   Real next_time(std::size_t i, Real t, bool inclusive) const {

@@ -93,14 +93,17 @@ class EventLogic {
   // ---- guards over a step
   // --------------------------------------------------------------------------------------------
 
-  /// The first crossing on offsets from..to of the present step; evaluate(offset, values) gives the guards.
+  /// The first crossing on offsets from..to of the present step; evaluate(offset, values) gives the guards. `from_here`
+  /// says that the search begins where the guards were settled, armed or fired last: there they are known.
   template <class Evaluate>
-  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, Evaluate&& evaluate) {
+  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, bool from_here, Evaluate&& evaluate) {
     const auto direction = [this](std::size_t i) { return events_.direction(i); };
+    const std::span<const Real> known = from_here ? std::span<const Real>(g_) : std::span<const Real>();
     if constexpr (has_enclosures) {
-      return watch_.first_crossing(from, to, instant, evaluate, direction, EnclosedStep<Events, Real>{events_, size_});
+      return watch_.first_crossing(from, to, instant, known, evaluate, direction,
+                                   EnclosedStep<Events, Real>{events_, size_});
     } else {
-      return watch_.first_crossing(from, to, instant, evaluate, direction, NotEnclosed{});
+      return watch_.first_crossing(from, to, instant, known, evaluate, direction, NotEnclosed{});
     }
   }
   /// The step that is to be searched, by its dense output.
@@ -149,10 +152,12 @@ class EventLogic {
     std::ranges::fill(jumps_, char{0});
     std::ranges::fill(slack_, Real(0));
     evaluate(steps, later_t, later_x, g_);
-    find_rounding(steps, later_t, later_x);
+    bool rounded = false;
     for (const std::size_t i : crossing.guards) {
-      const Real beyond = values[i] - watch_.states()[i].level();
-      jumps_[i] = abs(beyond) > abs(g_[i] - values[i]) + 4 * rounding_[i];
+      const Real beyond = values[i] - watch_.states()[i].level(), becomes = abs(g_[i] - values[i]);
+      if (!(abs(beyond) > becomes)) continue;
+      if (!std::exchange(rounded, true)) find_rounding(steps, later_t, later_x);
+      jumps_[i] = abs(beyond) > becomes + 4 * rounding_[i];
     }
   }
   /// Whether a guard that takes no part in a crossing may leave zero before it.

@@ -9,6 +9,7 @@
 // root of the dense output is missed. Others are sampled, and so is what enclosures leave undecided: nine points, more
 // where these do not resolve g; two roots nearer than a polynomial of degree eight over a part can show are missed.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -100,10 +101,11 @@ class GuardWatch {
   int returns_after(std::size_t i) const { return scanned_[i].returns; }
 
   /// The first crossing on from..to (negative when time runs backwards), or null. `direction(i)` says which crossings
-  /// of guard i count; the others only move its side. Crossings less than `instant` apart are one.
+  /// of guard i count; the others only move its side. Crossings less than `instant` apart are one. `known` are the
+  /// guards at `from`, empty where nobody has looked at them there.
   template <class Evaluate, class DirectionOf, class Enclosed>
-  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, Evaluate&& evaluate, DirectionOf&& direction,
-                                       Enclosed enclosed) {
+  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, std::span<const Real> known,
+                                       Evaluate&& evaluate, DirectionOf&& direction, Enclosed enclosed) {
     resampled_ = true;
     bool found = false;
     if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) enclosed.enclose_all(from, to);
@@ -116,7 +118,7 @@ class GuardWatch {
         if (is_far(scan, enclosed)) continue;
         isolate(scan, from, to, evaluate, enclosed);
       } else {
-        if (resampled_) sample(from, to, evaluate);
+        if (resampled_) sample(from, to, known, evaluate);
         if (cheap_no(scan)) continue;
         search(scan, from, to, evaluate, 0);
       }
@@ -150,8 +152,11 @@ class GuardWatch {
   };
 
   template <class Evaluate>
-  void sample(Real from, Real to, Evaluate& evaluate) {
-    for (std::size_t k = 0; k < bernstein::count; ++k) evaluate(time(from, to, bernstein::nodes[k]), samples_[k]);
+  void sample(Real from, Real to, std::span<const Real> known, Evaluate& evaluate) {
+    static_assert(bernstein::nodes.front() == 0);
+    if (!known.empty()) std::ranges::copy(known, samples_.front().begin());
+    for (std::size_t k = known.empty() ? 0 : 1; k < bernstein::count; ++k)
+      evaluate(time(from, to, bernstein::nodes[k]), samples_[k]);
     resampled_ = false;
   }
 
@@ -193,7 +198,8 @@ class GuardWatch {
           [&](double a, double b, int side, bool from_band) {
             if (!from_band) scan.state.at_zero = false;
             if (b == last) return cross(scan, offset(a), to, evaluate);  // by what the next stretch begins with
-            return side != scan.state.side && arrive_beyond(scan, side, offset(a), offset(b), evaluate);
+            return side != scan.state.side &&
+                   arrive_beyond(scan, side, offset(a), offset(b), guard_at(scan.guard, offset(b), evaluate), evaluate);
           },
           [&](double a, double b) { return search_anew(scan, offset(a), offset(b), evaluate, 0); },
           {.band = scan.state.at_zero ? scan.state.band : Real(0)});
@@ -225,8 +231,9 @@ class GuardWatch {
     const double error = bernstein::interpolation_error(value);
     double largest = 0, nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < bernstein::count; ++k) {
-      largest = std::fmax(largest, std::abs(value[k]));
-      nearest = std::fmin(nearest, b[k] * scan.state.side);
+      // Comparisons that pass over what is no number, as fmax and fmin do, which are calls.
+      if (const double size = std::abs(value[k]); size > largest) largest = size;
+      if (const double distance = b[k] * scan.state.side; distance < nearest) nearest = distance;
     }
     if (nearest > error) return false;
     if (!(error <= 1e-6 * largest) && depth < 4) return search_halves(scan, from, to, evaluate, depth);
@@ -247,7 +254,7 @@ class GuardWatch {
 
   template <class Evaluate>
   bool search_anew(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
-    sample(from, to, evaluate);
+    sample(from, to, {}, evaluate);
     resampled_ = true;
     return search(scan, from, to, evaluate, depth);
   }
@@ -284,21 +291,22 @@ class GuardWatch {
 
   template <class Evaluate>
   bool cross(Scan& scan, Real near, Real far, Evaluate& evaluate) {
-    const int side = sign_of(guard_at(scan.guard, far, evaluate) - scan.state.level());
-    return side != 0 && side != scan.state.side && arrive_beyond(scan, side, near, far, evaluate);
+    const Real at_far = guard_at(scan.guard, far, evaluate);
+    const int side = sign_of(at_far - scan.state.level());
+    return side != 0 && side != scan.state.side && arrive_beyond(scan, side, near, far, at_far, evaluate);
   }
 
   // Between near and far the guard changes to this side. Where it is known only by proof, its value at far may still be
   // zero by rounding: then that is the place.
   template <class Evaluate>
-  bool arrive_beyond(Scan& scan, int side, Real near, Real far, Evaluate& evaluate) {
+  bool arrive_beyond(Scan& scan, int side, Real near, Real far, Real g_far, Evaluate& evaluate) {
     using std::min;
     const Real level = scan.state.level();
     const GuardState<Real> before = scan.state;
     scan.arrive_at(side);
     if (!watches(scan.direction, side)) return false;
     const auto beyond = [&](Real s) { return Real(side) * (guard_at(scan.guard, s, evaluate) - level); };
-    const Real at_far = beyond(far);
+    const Real at_far = Real(side) * (g_far - level);
     scan.crossing = at_far > 0 ? enclose_root(beyond, near, far, min(Real(0), beyond(near)), at_far).far : far;
     // A guard that began at zero has left its band if it is beyond it half way.
     const Real half_way = scan.from + (scan.crossing - scan.from) / 2;
