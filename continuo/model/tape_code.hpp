@@ -225,7 +225,7 @@ Real operate_function(const Real& a, const Real& b) {
 
 /// The value of one instruction. Operands the code does not read may be anything.
 template <Code code, class Real>
-Real operate(const Real& a, const Real& b, const Real& c, const Real& d) {
+[[gnu::always_inline]] inline Real operate(const Real& a, const Real& b, const Real& c, const Real& d) {
   constexpr bool is_logic = code >= Code::less && code <= Code::logical_not;
   if constexpr (code == Code::add)
     return a + b;

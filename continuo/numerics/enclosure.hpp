@@ -68,7 +68,7 @@ template <class Real>
   return {lo > -infinity ? lo : -infinity, hi < infinity ? hi : infinity};
 }
 template <class Real>
-Enclosure<Real> bounded(Real lo, Real hi) {
+[[gnu::always_inline]] inline Enclosure<Real> bounded(Real lo, Real hi) {
   if (hi - lo < std::numeric_limits<Real>::infinity()) [[likely]]
     return {lo, hi};
   return unbounded(lo, hi);
@@ -76,14 +76,14 @@ Enclosure<Real> bounded(Real lo, Real hi) {
 
 /// Bounds of sums, rounded by half a unit at most.
 template <class Real>
-Enclosure<Real> widened(Real lo, Real hi) {
+[[gnu::always_inline]] inline Enclosure<Real> widened(Real lo, Real hi) {
   constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
   return bounded(lo - std::abs(lo) * epsilon, hi + std::abs(hi) * epsilon);
 }
 
 /// Bounds with an error of `units` in the last place, and with underflow.
 template <int units = 1, class Real>
-Enclosure<Real> widened_by(Real lo, Real hi) {
+[[gnu::always_inline]] inline Enclosure<Real> widened_by(Real lo, Real hi) {
   constexpr Real part = units * std::numeric_limits<Real>::epsilon();
   return bounded(lo - (std::abs(lo) * part + underflow<Real>), hi + (std::abs(hi) * part + underflow<Real>));
 }
@@ -91,7 +91,7 @@ Enclosure<Real> widened_by(Real lo, Real hi) {
 /// The least of four quotients or products to the greatest. One of them is NaN for 0*infinity: then, and for
 /// -infinity beside infinity, the sum is.
 template <class Real>
-Enclosure<Real> from_corners(Real a, Real b, Real c, Real d) {
+[[gnu::always_inline]] inline Enclosure<Real> from_corners(Real a, Real b, Real c, Real d) {
   const Real sum = (a + b) + (c + d);
   if (sum != sum) [[unlikely]]
     return Enclosure<Real>::entire();
@@ -160,7 +160,7 @@ template <class Real>
 }
 
 template <class Real>
-Enclosure<Real> operator-(const Enclosure<Real>& a, const Enclosure<Real>& b) {
+[[gnu::always_inline]] inline Enclosure<Real> operator-(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   return a + -b;
 }
 

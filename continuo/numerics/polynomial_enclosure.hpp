@@ -82,11 +82,16 @@ EnclosureWithSlope<Real> enclose_polynomial(std::span<const Real> c, Real from, 
 /// wide where the motion turns. `coefficient(j)` gives c_j for j in 0..count.
 template <class Real, class Coefficient>
 Enclosure<Real> enclose_whole_polynomial(std::size_t count, const Coefficient& coefficient) {
-  Real weight = 0, total = 0;  // max(c, 0) = (|c| + c)/2
-  for (std::size_t j = 1; j < count; ++j) {
-    const Real c = coefficient(j);
+  // max(c, 0) = (|c| + c)/2; two sums of each, as one addition does not wait for the other then.
+  Real weight = 0, total = 0, other_weight = 0, other_total = 0;
+  std::size_t j = 1;
+  for (; j + 1 < count; j += 2) {
+    const Real c = coefficient(j), d = coefficient(j + 1);
     weight += std::abs(c), total += c;
+    other_weight += std::abs(d), other_total += d;
   }
+  if (j < count) weight += std::abs(coefficient(j)), total += coefficient(j);
+  weight += other_weight, total += other_total;
   const Real first = coefficient(0);
   if (weight == 0) return Enclosure<Real>(first);
   const Real reach = weight / 2 + enclosing::polynomial_rounding<Real>(count) * weight;
