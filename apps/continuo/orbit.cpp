@@ -203,7 +203,8 @@ ExitCode orbit(OrbitOptions options) {
   const bool closed = !options.lyapunov && options.section.empty();
   if (closed && !range && (needs_all(studied, options) || is_forced(studied, options)))
     return show_hybrid_orbit(studied, shooting_of(options));
-  if (closed && !can_be_studied_alone(studied, options.mode, "an orbit is solved for")) return wrong_model;
+  if (closed && !can_be_studied_alone(studied, options.mode, range ? "orbits are followed" : "an orbit is solved for"))
+    return wrong_model;
   if (range)
     return show_orbit_branches(studied, {.range = *range,
                                          .search = search_of(options),

@@ -106,17 +106,20 @@ class StartSearch {
 
   /// Without a forcing: passes through a plane.
   void pass() {
+    const model::Instant first = run_.instant();
     watch_extent(0.3, 0);
     if (!go_to(settled_ + options_.duration)) return;
     const std::optional<std::size_t> component = section();
     if (!component) return fail("the motion comes to rest; start elsewhere, or see where with `steady`");
     const double level = (result_.low[*component] + result_.high[*component]) / 2;
+    // Who does not let it settle begins near an orbit, on which it may not stay.
+    if (options_.settle == 0) run_.go_on(first);
     const model::Instant begin = run_.instant();
     std::vector<SectionPoint> points;
     SectionPasses passes(*component, level, run_.t(), run_.x(), points);
     run_.on_stretch = [&](double from, double to, const HybridRun::At& at) { passes.piece(from, to, at); };
     run_.on_jump = [&](double t, const Point& before, const Point& after) { passes.jump(t, before, after); };
-    if (!go_to(settled_ + 2 * options_.duration)) return;
+    if (!go_to(begin.t + options_.duration)) return;
     std::vector<model::Instant> instants;
     for (const SectionPoint& point : points) instants.push_back({point.t, point.x, 0, {}});
     for (const auto& [from, to] : returns(instants, 0))

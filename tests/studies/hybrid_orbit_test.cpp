@@ -126,6 +126,20 @@ TEST(HybridOrbit, OfABallWithoutLossIsOneOfAFamily) {
   EXPECT_EQ(found.neighbours, Neighbours::undecided);
 }
 
+// E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", eq. II.0.1: the ship is back after
+// 17.0652165601579625..., and since the energy in the turning frame is conserved, there is a second multiplier of 1;
+// the other two are each other's inverse.
+TEST(HybridOrbit, OfArenstorfsShipHasItsPairs) {
+  const HybridOrbit found = find_hybrid_orbit(gallery("arenstorf"), {}, {.settle = 0, .duration = 20});
+  ASSERT_TRUE(found.outcome) << found.outcome.hint;
+  EXPECT_TRUE(found.family);
+  EXPECT_NEAR(found.period, 17.0652165601579625, 1e-3);  // that of a neighbour in the family
+  ASSERT_EQ(found.multipliers.size(), 4u);
+  EXPECT_EQ(found.multipliers[1], 1.0);
+  EXPECT_EQ(found.multipliers[2], 1.0);
+  EXPECT_NEAR(std::abs(found.multipliers[0] * found.multipliers[3]), 1, 1e-3);
+}
+
 // x'' + 2 c x' + x = cos(W t): multipliers exp((-c +- i sqrt(1 - c^2)) T), amplitude 1/|1 - W^2 + 2 i c W|.
 TEST(HybridOrbit, OfAForcedOscillatorHasThatOfTheForce) {
   const HybridOrbit found =
