@@ -283,6 +283,41 @@ TEST(Studies, OrbitGoesThroughEventsAndForces) {
   EXPECT_THAT(shell.run("orbit ball.sim --turns 2").err, HasSubstr("nothing in the model does"));
 }
 
+TEST(Studies, SenseOfWhatAMotionComesTo) {
+  const Shell shell;
+  // tau (ln(12/10) + ln(30/28)): its derivative by tau is itself over tau, in hours.
+  const auto period =
+      nlohmann::json::parse(shell.run("sense " + gallery("thermostat") + " --param tau --of period --json").out);
+  const double turn = std::log(12.0 / 10) + std::log(30.0 / 28);
+  EXPECT_NEAR(period["period"].get<double>(), 2 * turn, 1e-9);
+  EXPECT_NEAR(period["period_by"][0].get<double>(), turn, 1e-7);
+  EXPECT_THAT(shell.run("sense " + gallery("thermostat") + " --param tau --of events --until 1").out,
+              AllOf(HasSubstr("d t / d tau"), HasSubstr("T rises through high")));
+  // x = a/b, y = a^2/b^2.
+  shell.write("rest.sim", "param a = 3, b = 2\nx' = a - b*x\ny' = x^2 - y\nx(0) = 1\ny(0) = 1\nrun 0..1\n");
+  const auto rest = nlohmann::json::parse(shell.run("sense rest.sim --param a,b --of rest --json").out);
+  EXPECT_NEAR(rest["x_by"][0][0].get<double>(), 0.5, 1e-9);
+  EXPECT_NEAR(rest["x_by"][0][1].get<double>(), 1.5, 1e-9);
+  EXPECT_NEAR(rest["x_by"][1][1].get<double>(), -2.25, 1e-9);
+  EXPECT_THAT(shell.run("sense rest.sim --param a --of rest").out, HasSubstr("d y / d a"));
+  EXPECT_EQ(shell.run("sense rest.sim --param a --of rest --initial x").exit, 1);
+}
+
+TEST(Studies, PlacesOfRestNameTheEventsOnTheWay) {
+  const Shell shell;
+  // While it heats, the room tends to 323, which it leaves for 295 at the latest.
+  for (const std::string verb : {"steady ", "linearize "})
+    EXPECT_THAT(shell.run(verb + gallery("thermostat")).out,
+                AllOf(HasSubstr("in mode heating"), HasSubstr("beyond `T rises through high in heating`")))
+        << verb;
+  shell.write("floor.sim", "h' = v\nv' = -h - v\nh(0) = 1\nv(0) = 0\nwhen h falls through 0 { v := -v }\nrun 0..9\n");
+  EXPECT_THAT(shell.run("steady floor.sim").out, HasSubstr("on the surface of the event `h falls through 0`"));
+  const auto rest = nlohmann::json::parse(shell.run("linearize floor.sim --json").out);
+  EXPECT_EQ(rest["events"][0]["where"], "on");
+  shell.write("far.sim", "x' = -x\nx(0) = 1\nwhen x > 2 { x := 1 }\nrun 0..9\n");
+  EXPECT_THAT(shell.run("steady far.sim").out, Not(HasSubstr("event")));
+}
+
 TEST(Studies, HelpBeginsWithExamples) {
   const Shell shell;
   for (const std::string verb : {"steady", "linearize", "phase", "orbit"})
