@@ -312,7 +312,8 @@ HybridOrbit find_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& 
     return without_hybrid_orbit("the model has algebraic equations, through which an orbit is not solved for yet");
   const detail::OrbitStarts starts = detail::orbit_starts(program, experiment, options);
   if (starts.starts.empty()) {
-    HybridOrbit none = without_hybrid_orbit({}, starts.outcome);
+    const bool ran = starts.outcome.ending == Ending::nonlinear_solve_failed;
+    HybridOrbit none = without_hybrid_orbit(ran ? std::string() : describe(starts.outcome), starts.outcome);
     none.wanders = starts.wanders;
     return none;
   }

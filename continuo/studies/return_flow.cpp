@@ -1,5 +1,7 @@
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <continuo/studies/of_model.hpp>
 #include <continuo/studies/return_flow.hpp>
 
@@ -40,7 +42,10 @@ FlowImage ReturnFlow::operator()(const model::Instant& start, double duration) c
   } else if (!run.problem.empty()) {
     image.problem = run.problem;
   } else if (run.outcome.ending == Ending::stopped_by_event) {
-    image.problem = "`" + run.outcome.event + "` ends the run";
+    image.problem = fmt::format("`{}` ends the run", run.outcome.event);
+  } else if (run.outcome.ending == Ending::events_accumulate) {
+    image.problem =
+        fmt::format("the times of `{}` close in on a limit, beyond which there is no derivative", run.outcome.event);
   } else if (!run.good()) {
     image.interrupted = run.outcome.ending == Ending::interrupted;
     image.problem = describe(run.outcome);

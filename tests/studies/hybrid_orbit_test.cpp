@@ -217,6 +217,17 @@ TEST(HybridOrbit, OfARunThatAnEventEndsIsRefusedByItsName) {
   EXPECT_NE(found.outcome.hint.find("ends the run"), std::string::npos) << found.outcome.hint;
 }
 
+TEST(HybridOrbit, ThroughALimitOfEventsIsRefusedByTheirName) {
+  const std::string ball = "h'' = -9.81\nh(0) = 1\nh'(0) = 0\nwhen h falls through 0 { h' := -0.5*h' }";
+  const HybridOrbit thrown_again = orbit_of(ball + " then { h := 1; h' := 0 }\nrun 0..60\n");
+  EXPECT_FALSE(thrown_again.outcome);
+  EXPECT_NE(thrown_again.outcome.hint.find("`h falls through 0` close in on a limit"), std::string::npos)
+      << thrown_again.outcome.hint;
+  const HybridOrbit ends = orbit_of(ball + "\nrun 0..60\n");
+  EXPECT_FALSE(ends.outcome);
+  EXPECT_NE(ends.outcome.hint.find("accumulate"), std::string::npos) << ends.outcome.hint;
+}
+
 TEST(ForcingPeriod, IsFoundInTheText) {
   const auto period = [](const std::string& equation) {
     const auto program = program_of("param W = 2, D = 3\nx' = " + equation + "\nx(0) = 0\nrun 0..9\n");
