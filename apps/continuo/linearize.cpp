@@ -62,8 +62,9 @@ std::string modes_text(const std::vector<studies::MotionMode>& modes, const mode
   return text;
 }
 
-std::string as_json(const studies::LinearModel& linear, const std::vector<double>& point, const model::Model& model,
+std::string as_json(const studies::LinearModel& linear, const std::vector<double>& point, const Studied& studied,
                     const std::vector<studies::MotionMode>& modes) {
+  const model::Model& model = studied.prepared.program->model;
   const auto matrix = [](const std::vector<double>& rows, std::size_t columns) {
     auto result = nlohmann::json::array();
     for (std::size_t i = 0; columns > 0 && i < rows.size(); i += columns)
@@ -90,6 +91,7 @@ std::string as_json(const studies::LinearModel& linear, const std::vector<double
     json["modes"].push_back({{"eigenvalue", {mode.eigenvalue.real(), mode.eigenvalue.imag()}},
                              {"frequency", mode.frequency},
                              {"damping", mode.damping}});
+  add_events(json, studied, point);
   return json.dump(2) + "\n";
 }
 
@@ -144,14 +146,14 @@ ExitCode linearize(const LinearizeOptions& options) {
   }
   const auto modes = studies::modes_of(linear.a, linear.states.size());
   if (options.json) {
-    print(as_json(linear, x, model, modes));
+    print(as_json(linear, x, studied, modes));
     return done;
   }
   std::string text = options.at.empty() && !options.start ? "at rest:" : "at:";
   for (std::size_t i = 0; i < x.size(); ++i)
     text += fmt::format("{} {} = {}", i == 0 ? "" : ",", model.states[i].column,
                         results::short_number(std::abs(x[i]) < 1e-13 ? 0 : x[i]));
-  text += "\n" + matrix_text("A", linear.a, linear.states, linear.states) +
+  text += "\n" + events_text(studied, x) + matrix_text("A", linear.a, linear.states, linear.states) +
           matrix_text("B", linear.b, linear.states, linear.inputs) +
           matrix_text("C", linear.c, linear.outputs, linear.states) +
           matrix_text("D", linear.d, linear.outputs, linear.inputs) + modes_text(modes, model);

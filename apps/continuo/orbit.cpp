@@ -7,9 +7,11 @@
 #include <vector>
 
 #include <apps/continuo/command_line.hpp>
+#include <apps/continuo/hybrid_orbit.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/orbit_branch.hpp>
+#include <apps/continuo/orbit_text.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/steady_branches.hpp>
 #include <apps/continuo/studied_model.hpp>
@@ -34,32 +36,23 @@ struct OrbitOptions {
   std::string mode, section, along, of, out, plot;
   std::optional<double> settle;
   double duration = 0, tolerance = 1e-9;
+  std::optional<double> forcing;
+  std::size_t turns = 0;
   bool lyapunov = false, from_hopf = false, json = false;
   bool patient = false;  // no time was named: longer ones may be tried
   std::size_t others = 3;
   BranchSteps steps;
 };
 
-std::string with_time_unit(double t, const model::Model& model) {
-  const std::string number = fmt::format("{:.10g}", t);
-  return model.time_unit.empty() ? number : number + " " + model.time_unit;
-}
-
-std::string complex_text(const std::complex<double>& value) {
-  if (std::abs(value.imag()) < 1e-12 * std::abs(value)) return results::short_number(value.real());
-  return fmt::format("{} {} {} i", results::short_number(value.real()), value.imag() < 0 ? "-" : "+",
-                     results::short_number(std::abs(value.imag())));
-}
-
-ExitCode ended(const Outcome<double>& outcome) {
-  if (outcome.ending == Ending::interrupted) return interrupted;
-  say(outcome.hint.empty() ? describe(outcome) : outcome.hint);
-  return numerical_failure;
-}
-
 /// Whether the equations of one mode are not all that moves the model. Who names a mode means its equations alone.
 bool needs_all(const Studied& studied, const OrbitOptions& options) {
   return options.mode.empty() && studies::unseen_of(*studied.prepared.program, studied.mode).has_value();
+}
+
+/// Whether something hangs on the time, or is said to.
+bool is_forced(const Studied& studied, const OrbitOptions& options) {
+  if (options.forcing || options.turns > 0) return true;
+  return options.mode.empty() && studies::hangs_on_time(*studied.prepared.program, studied.mode).has_value();
 }
 
 ExitCode show_exponents(const Studied& studied, const OrbitOptions& options) {
@@ -72,12 +65,12 @@ ExitCode show_exponents(const Studied& studied, const OrbitOptions& options) {
   const auto found = needs_all(studied, options)
                          ? studies::lyapunov_exponents(studied.prepared.program, studied.prepared.experiment, averaging)
                          : studies::lyapunov_exponents(studied.system, studied.start, averaging);
-  if (found.exponents.empty()) return ended(found.outcome);
+  if (found.exponents.empty()) return failed_exit(found.outcome);
   std::string text = fmt::format("Lyapunov exponents over {}\n", with_time_unit(found.averaged, model));
   for (std::size_t i = 0; i < found.exponents.size(); ++i)
     text += fmt::format("  {:>10} +- {:.1g}\n", results::short_number(found.exponents[i]), found.spread[i]);
   print(text);
-  return found.outcome ? done : ended(found.outcome);
+  return found.outcome ? done : failed_exit(found.outcome);
 }
 
 /// `x=0.5`: the plane that the motion passes upwards.
@@ -115,7 +108,7 @@ ExitCode show_section(const Studied& studied, const OrbitOptions& options) {
   } else if (!written(results::write_file(options.out, csv)))
     return usage;
   say(fmt::format("{} passes through {}", section.points.size(), options.section));
-  return section.outcome ? done : ended(section.outcome);
+  return section.outcome ? done : failed_exit(section.outcome);
 }
 
 /// The first two states against each other, and the first over one period.
@@ -144,6 +137,17 @@ studies::PeriodicOrbitOptions search_of(const OrbitOptions& options) {
           .interrupt = &interrupt_flag()};
 }
 
+HybridOrbitRequest shooting_of(const OrbitOptions& options) {
+  return {.settle = *options.settle,
+          .duration = options.duration,
+          .tolerance = options.tolerance,
+          .patient = options.patient,
+          .forcing = options.forcing,
+          .turns = options.turns,
+          .json = options.json,
+          .plot = options.plot};
+}
+
 ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
   const model::Model& model = studied.prepared.program->model;
   const auto found = [&] {
@@ -152,7 +156,11 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
     search.progress = progress.parts();
     return find_orbit(studied, search, options.patient);
   }();
-  if (!found.outcome) return ended(found.outcome);
+  // One of many, where something is conserved, or one that a motion does not stay on.
+  const bool begins_on_it = options.settle == 0;
+  if (!found.outcome && (!found.wanders || begins_on_it) && !interrupt_flag())
+    return show_hybrid_orbit(studied, shooting_of(options));
+  if (!found.outcome) return failed_exit(found.outcome);
   const auto extents = studies::extents_of(studied.system, found);
   if (options.json) {
     auto states = nlohmann::json::array();
@@ -163,14 +171,9 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
                               {"stable", found.stable}};
     print(json.dump(2) + "\n");
   }
-  std::string text = fmt::format("period {}, {}\nmultipliers", with_time_unit(found.period, model),
-                                 found.stable ? "neighbours come nearer" : "some neighbours go away");
-  for (std::size_t i = 0; i < found.multipliers.size(); ++i)
-    text += (i == 0 ? " " : ", ") + complex_text(found.multipliers[i]);
-  text += "\n";
-  for (std::size_t i = 0; i < model.states.size(); ++i)
-    text += fmt::format("  {} from {} to {}\n", model.states[i].column, results::short_number(extents.low[i]),
-                        results::short_number(extents.high[i]));
+  const std::string text = fmt::format("period {}, {}\n", with_time_unit(found.period, model),
+                                       found.stable ? "neighbours come nearer" : "some neighbours go away") +
+                           multipliers_text(found.multipliers) + extents_text(model, extents.low, extents.high);
   if (!options.json) print(text);
   if (options.plot.empty()) return done;
   if (!written(results::draw(figure_of(model, found), options.plot))) return usage;
@@ -198,7 +201,10 @@ ExitCode orbit(OrbitOptions options) {
     return usage;
   }
   const bool closed = !options.lyapunov && options.section.empty();
-  if (closed && !can_be_studied_alone(studied, options.mode, "an orbit is solved for")) return wrong_model;
+  if (closed && !range && (needs_all(studied, options) || is_forced(studied, options)))
+    return show_hybrid_orbit(studied, shooting_of(options));
+  if (closed && !can_be_studied_alone(studied, options.mode, range ? "orbits are followed" : "an orbit is solved for"))
+    return wrong_model;
   if (range)
     return show_orbit_branches(studied, {.range = *range,
                                          .search = search_of(options),
@@ -222,6 +228,8 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
       "  continuo orbit models/van_der_pol_stiff.sim --set mu=1 --along mu=0.1..10 --plot mu.svg  how it changes\n"
       "  continuo orbit models/lorenz.sim --along rho=10..30 --from-hopf          orbits that a place of rest gives "
       "birth to\n"
+      "  continuo orbit models/thermostat.sim                                     through events, modes, forces over "
+      "time\n"
       "  continuo orbit models/lorenz.sim --lyapunov --duration 5000              how fast neighbours part\n"
       "  continuo orbit models/lorenz.sim --section z=27 --duration 500 -o s.csv  passes through a plane\n";
   CLI::App* verb = add_verb(app, "orbit", "Finds a closed orbit, a section, or Lyapunov exponents", examples);
@@ -233,6 +241,11 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
   verb->add_option("--duration", options->duration, "Time to look for it; else that of the model's run")
       ->type_name("T");
   verb->add_option("--tol", options->tolerance, "How exact")->type_name("TOL");
+  verb->add_option("--period", options->forcing, "Of what hangs on the time, where the text does not show it")
+      ->transform(quotients())
+      ->type_name("T");
+  verb->add_option("--turns", options->turns, "So many of these periods are one of the orbit; else as it comes back")
+      ->type_name("N");
   auto* section = verb->add_option("--section", options->section, "States as a plane is passed upwards, as CSV")
                       ->type_name("NAME=VALUE");
   auto* lyapunov = verb->add_flag("--lyapunov", options->lyapunov, "Lyapunov exponents")->excludes(section);

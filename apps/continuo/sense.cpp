@@ -10,6 +10,7 @@
 #include <apps/continuo/influences.hpp>
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/progress.hpp>
+#include <apps/continuo/sense_of.hpp>
 #include <apps/continuo/study_json.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -31,7 +32,7 @@ constexpr std::size_t most_curves = 8;
 struct SenseOptions {
   ExperimentOptions experiment;
   std::vector<std::string> parameters, initial;
-  std::string output, plot;
+  std::string of = "motion", output, plot;
   bool json = false;
 };
 
@@ -126,8 +127,18 @@ results::Figure figure_of(const model::Model& model, const SensitivityRun& run,
   return figure;
 }
 
+/// Of what a motion comes to, parameters alone can be asked, and there is nothing to draw.
+ExitCode sense_of_limit(const SenseOptions& options) {
+  if (!options.initial.empty() || !options.output.empty() || !options.plot.empty()) {
+    say(fmt::format("--of {} takes --param and --json alone", options.of));
+    return usage;
+  }
+  return (options.of == "period" ? sense_period : sense_rest)(options.experiment, options.parameters, options.json);
+}
+
 ExitCode sense(const SenseOptions& options) {
   if (!drawable(options.plot) || !writable(options.output)) return usage;
+  if (options.of == "period" || options.of == "rest") return sense_of_limit(options);
   Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   const model::Model& model = prepared.program->model;
@@ -152,6 +163,8 @@ ExitCode sense(const SenseOptions& options) {
   ExitCode exit = done;
   if (options.json) {
     print(sensitivity_json(model, run, *influences));
+  } else if (options.of == "events") {
+    print(events_table(model, run, *influences));
   } else if (run.rows() > 0) {
     print(table_of(model, run, *influences));
   }
@@ -171,7 +184,8 @@ void add_sense(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo sense models/mass_spring_damper.sim --param k,c             how x and x' depend on k and c\n"
       "  continuo sense models/bouncing_ball.sim --param e,g --until 8 --plot ball.svg\n"
-      "  continuo sense models/lorenz.sim --initial x --until 5 -o growth.csv\n";
+      "  continuo sense models/lorenz.sim --initial x --until 5 -o growth.csv\n"
+      "  continuo sense models/thermostat.sim --param tau,high --of period      and --of events, --of rest\n";
   CLI::App* verb = add_verb(app, "sense", "How a motion depends on parameters and initial values", examples);
   auto options = std::make_shared<SenseOptions>();
   add_experiment(*verb, options->experiment);
@@ -179,6 +193,9 @@ void add_sense(CLI::App& app, ExitCode& exit) {
   verb->add_option("--initial", options->initial, "States whose initial values count, with commas")
       ->delimiter(',')
       ->type_name("STATES");
+  verb->add_option("--of", options->of, "What: the motion, the times of its events, its period, where it rests")
+      ->check(CLI::IsMember({"motion", "events", "period", "rest"}))
+      ->type_name("WHAT");
   refuse_methods(*verb);
   add_tolerances(*verb, options->experiment);
   verb->add_option("-o", options->output, "A CSV file of states and sensitivities; - is standard output")

@@ -52,6 +52,7 @@ std::string table_of(const studies::Equilibria& found, const Studied& studied) {
       text += fmt::format("   {} = {}{}\n", model.states[i].column, results::short_number(value),
                           unit.empty() || unit == "1" ? "" : " " + unit);
     }
+    text += events_text(studied, e.x);
     if (!e.undetermined.equations.empty()) {
       text += fmt::format("   {}\n", describe_undetermined(studied, e.undetermined));
       continue;
@@ -81,6 +82,7 @@ nlohmann::json json_of(const studies::Equilibria& found, const Studied& studied)
     nlohmann::json place{{"x", e.x}, {"isolated", e.isolated}};
     place["stability"] = jump || !e.undetermined.equations.empty() ? "undecided" : to_string(e.stability);
     if (!jump) place["eigenvalues"] = app::json_of(e.eigenvalues);
+    add_events(place, studied, e.x);
     places.push_back(std::move(place));
   }
   auto states = nlohmann::json::array();

@@ -9,9 +9,11 @@
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/model/simulate.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/studies/events_at.hpp>
 #include <continuo/studies/of_model.hpp>
 #include <continuo/studies/unseen.hpp>
 
@@ -103,6 +105,32 @@ bool can_be_studied_alone(const Studied& studied, const std::string& mode, std::
       place_text(studied.prepared, unseen->span), what, unseen->what,
       has_modes ? ", and --mode NAME studies one mode's equations by themselves" : ""));
   return false;
+}
+
+std::string events_text(const Studied& studied, const std::vector<double>& x) {
+  const model::ModelProgram& program = *studied.prepared.program;
+  const model::Model& model = program.model;
+  std::string text;
+  if (model.modes.size() > 1) text += fmt::format("   in mode {}\n", model.modes[studied.mode].name);
+  for (const studies::EventAt& at :
+       studies::events_at(program, studied.mode, x, studied.prepared.experiment.parameters)) {
+    if (at.where == studies::EventAt::Where::on_surface) {
+      text += fmt::format("   on the surface of the event `{}`: neighbours on one side meet it\n", at.event);
+    } else {
+      text += fmt::format("   {} `{}`: a motion from elsewhere meets that event before it comes here\n",
+                          at.is_condition ? "inside of" : "beyond", at.event);
+    }
+  }
+  return text;
+}
+
+void add_events(nlohmann::json& object, const Studied& studied, const std::vector<double>& x) {
+  const model::ModelProgram& program = *studied.prepared.program;
+  if (program.model.modes.size() > 1) object["mode"] = program.model.modes[studied.mode].name;
+  const auto events = studies::events_at(program, studied.mode, x, studied.prepared.experiment.parameters);
+  for (const studies::EventAt& at : events)
+    object["events"].push_back(
+        {{"name", at.event}, {"where", at.where == studies::EventAt::Where::on_surface ? "on" : "beyond"}});
 }
 
 std::string describe_undetermined(const Studied& studied, const studies::Undetermined& open) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <apps/continuo/experiment_options.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <continuo/studies/equilibrium.hpp>
 #include <continuo/studies/parametric_system.hpp>
@@ -34,6 +35,12 @@ bool stands_still_in_time(const Studied& studied, std::string_view what);
 /// Whether beside that no event of the model changes the motion and no equation jumps. Who has named a mode means its
 /// equations alone.
 bool can_be_studied_alone(const Studied& studied, const std::string& mode, std::string_view what);
+
+/// What the events of the model have to do with a point of the studied mode, a line for each, and which mode that is
+/// where there are several. Empty where there is nothing to say.
+std::string events_text(const Studied& studied, const std::vector<double>& x);
+/// The same as members "mode" and "events" of an object.
+void add_events(nlohmann::json& object, const Studied& studied, const std::vector<double>& x);
 
 /// Which equations, by their text and line, and which unknowns.
 std::string describe_undetermined(const Studied& studied, const studies::Undetermined& open);

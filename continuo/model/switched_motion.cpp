@@ -152,14 +152,24 @@ Passage SwitchedMotion::choose(std::size_t mode, Sliding sides, double t, const 
 }
 
 Passage SwitchedMotion::pass(std::size_t mode, std::size_t k, double t, const X& x) {
+  const std::size_t n = switches(mode).size();
+  std::vector<double> before(n);
+  modes_[mode].surfaces(t, x, before);
   const auto slides_here = std::ranges::find(sliding_, k, &Sliding::k);
-  if (slides_here == sliding_.end()) return choose(mode, sides_of(mode, k, surface(mode, k, t, x)), t, x);
-  const std::vector<double> part = weights(mode, t, x);
-  const double mine = part[static_cast<std::size_t>(slides_here - sliding_.begin())];
-  const Sliding sides = *slides_here;
-  sliding_.erase(slides_here);
-  place(mode, k, mine > 0.5 ? sides.above : sides.below);
-  return Passage::leaves;
+  Passage passage = Passage::leaves;
+  if (slides_here == sliding_.end()) {
+    passage = choose(mode, sides_of(mode, k, before[k]), t, x);
+  } else {
+    const std::vector<double> part = weights(mode, t, x);
+    const double mine = part[static_cast<std::size_t>(slides_here - sliding_.begin())];
+    const Sliding sides = *slides_here;
+    sliding_.erase(slides_here);
+    place(mode, k, mine > 0.5 ? sides.above : sides.below);
+  }
+  // The switch may stand in the surfaces of others, which come after it: `mod(t, 2) < 1` holds again where mod jumps.
+  for (std::size_t j = k + 1; j < n && passage != Passage::none; ++j)
+    if (!slides_along(j) && surface(mode, j, t, x) != before[j]) settle_one(mode, j, t, x, nullptr, {});
+  return passage;
 }
 
 double SwitchedMotion::rounding(std::size_t mode, std::size_t k, double t, const X& x) {

@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/lyapunov.hpp>
 #include <continuo/studies/orthonormal_columns.hpp>
+#include <continuo/studies/state_roles.hpp>
 
 namespace continuo::studies {
 
@@ -24,36 +24,6 @@ constexpr double distance_part = 1e-6, error_of_runs = 1e-12;
 // What a column may grow or shrink by between two orthogonalisations, as a logarithm; and where it is nothing but
 // error.
 constexpr double most_parting = 4, least_length = 1e-7;
-
-bool reads(const model::Model& model, const model::Block& block, std::uint32_t variable) {
-  return std::ranges::any_of(block, [&](const model::Action& action) {
-    const auto* branch = std::get_if<model::If>(&action.what);
-    return branch && (model::depends_on(model.graph, branch->condition, variable) ||
-                      reads(model, branch->then, variable) || reads(model, branch->otherwise, variable));
-  });
-}
-
-/// A counter or a flag: only events change it, and conditions ask for its value.
-bool is_discrete(const model::ModelProgram& program, std::size_t state) {
-  const model::Model& model = program.model;
-  const std::uint32_t variable = model.states[state].variable;
-  if (program.counters[state] == 0) return false;
-  return std::ranges::any_of(model.events,
-                             [&](const model::When& when) {
-                               return model::depends_on(model.graph, when.guard, variable) ||
-                                      reads(model, when.actions, variable);
-                             }) ||
-         std::ranges::any_of(model.schedule, [&](const model::Scheduled& scheduled) {
-           return reads(model, scheduled.actions, variable);
-         });
-}
-
-std::vector<std::size_t> directions_of(const model::ModelProgram& program) {
-  std::vector<std::size_t> directions;
-  for (std::size_t i = 0; i < program.model.states.size(); ++i)
-    if (!program.model.states[i].algebraic && !is_discrete(program, i)) directions.push_back(i);
-  return directions;
-}
 
 /// The motion, its neighbours, and a scout that runs ahead of them: they are put back only where nothing happens
 /// nearby, since what has just been passed by one must not be still before another.

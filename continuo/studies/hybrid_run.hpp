@@ -47,6 +47,8 @@ class HybridRun final : private model::StepWatcher {
   /// How often the state or the mode has been changed, or the equations jumped, and when that was last.
   std::size_t happenings() const { return happenings_; }
   double last_happening() const { return last_; }
+  /// Whether the motion is held by a surface where the equations jump.
+  bool slides() const { return run_->system().slides(); }
 
   /// Called for every piece of motion between happenings: at(t, x) gives the state on from..to, in an x of its size.
   using At = std::function<void(double t, X& x)>;

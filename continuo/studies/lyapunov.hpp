@@ -36,10 +36,10 @@ LyapunovExponents lyapunov_exponents(const ParametricSystem& system, std::vector
 
 /// Of a model with all that happens in it: events with their jumps, modes, jumps of the equations, the time. Neighbours
 /// are run beside the motion, a millionth of its size away in each direction, and put back to that distance every so
-/// often; what their own events make of the distance is in it. A state that conditions read and that nothing but events
-/// changes (a counter, a flag) has no neighbours and no exponent. All of them run at a tolerance of 1e-12, whatever the
-/// options say; directions that shrink by more than e^-16 between two looks count as that. `experiment` says where the
-/// model begins, and with which parameters.
+/// often; what their own events make of the distance is in it. A state that conditions read and that only events
+/// change, by steps (a counter, a flag), has no neighbours and no exponent. All of them run at a tolerance of 1e-12,
+/// whatever the options say; directions that shrink by more than e^-16 between two looks count as that. `experiment`
+/// says where the model begins, and with which parameters.
 LyapunovExponents lyapunov_exponents(const std::shared_ptr<const model::ModelProgram>& program,
                                      const model::Experiment& experiment, const LyapunovOptions& options = {});
 

@@ -46,6 +46,8 @@ class SensitiveEvents {
   Enclosure<double> value_enclosure(std::size_t i, double at) { return plain_.value_enclosure(i, at); }
 
   EventResponse fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x);
+  /// The run goes on from t: what was scheduled for that very instant has happened.
+  void resume(double t, std::span<const std::size_t> stops) { plain_.resume(t, stops); }
 
   std::span<const SensitiveHappening> happened() const { return happened_; }
   bool is_declared(std::size_t i) const { return plain_.is_declared(i); }

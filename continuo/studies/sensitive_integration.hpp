@@ -33,6 +33,7 @@ struct SensitiveEnding {
   Statistics statistics;
   std::vector<SensitiveHappening> happened;
   std::string problem;
+  std::size_t mode;
 };
 
 template <class Method>
@@ -81,8 +82,11 @@ SensitiveEnding integrate_sensitive_by(SensitiveIntegration integration, Sensiti
     if (count % 256 == 0 && integrator.options().progress) integrator.options().progress(integrator.t());
   if (rows.events && rows.times.back() != integrator.t()) rows.keep(integrator.t(), integrator.x());
   const auto happened = integrator.events().happened();
-  return {
-      integrator.outcome(), integrator.statistics(), {happened.begin(), happened.end()}, integrator.events().problem()};
+  return {integrator.outcome(),
+          integrator.statistics(),
+          {happened.begin(), happened.end()},
+          integrator.events().problem(),
+          integrator.system().mode()};
 }
 
 }  // namespace continuo::studies::detail

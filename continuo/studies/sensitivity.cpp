@@ -172,15 +172,18 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   if (auto refused = no_sensitivity(model, influences())) run.diagnostics.push_back(std::move(*refused));
   if (!planned || !run.diagnostics.empty()) return run;
   std::vector<double>& variables = planned->variables;
+  const double from = request.begin ? request.begin->t : planned->from;
   for (const model::TableInput& input : program().step_inputs)
-    variables[input.variable] = input.table.value(planned->from);
+    variables[input.variable] = input.table.value(from);
   for (const auto& [state, value] : request.initial) variables[model.states[state].variable] = value;
+  if (request.begin) std::ranges::copy(request.begin->x, variables.begin() + model.layout.states);
 
   detail::SensitiveSystem system(program_, variables);
   std::vector<double> x0(run.states * (1 + run.influences)), rates(x0.size());
   std::copy_n(variables.begin() + model.layout.states, run.states, x0.begin());
-  system.hold_switches(planned->from, x0);
-  system.rates(planned->from, x0, rates);
+  if (request.begin) system.plain().go(request.begin->mode);
+  system.hold_switches(from, x0);
+  system.rates(from, x0, rates);
   std::ranges::copy(program_->start(variables, rates), x0.begin() + static_cast<std::ptrdiff_t>(run.states));
 
   std::vector<double> sizes;
@@ -200,10 +203,11 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
     rows.time = [&](std::size_t row) { return output[row]; };
   }
   run.variables = variables;
-  detail::SensitiveEvents events(*program_, variables, planned->from, std::abs(planned->to - planned->from));
+  detail::SensitiveEvents events(*program_, variables, planned->from, std::abs(planned->to - from));
+  if (request.begin) events.resume(from, request.begin->stops);
   const detail::SensitiveEnding ending = detail::integrate({std::move(system),
                                                             std::move(x0),
-                                                            {planned->from, planned->to},
+                                                            {from, planned->to},
                                                             options_of(*planned, experiment, run.states, sizes),
                                                             std::move(events)},
                                                            rows);
@@ -212,6 +216,7 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   run.outcome = ending.outcome;
   run.statistics = ending.statistics;
   run.problem = ending.problem;
+  run.mode = ending.mode;
   for (const detail::SensitiveHappening& happened : ending.happened) {
     const model::EventOrder& place = model.event_order[happened.event];
     run.events.push_back({place.scheduled ? model.schedule[place.index].name : model.events[place.index].name,

@@ -18,6 +18,7 @@
 #include <continuo/model/diagnostic.hpp>
 #include <continuo/model/experiment.hpp>
 #include <continuo/model/model_program.hpp>
+#include <continuo/model/stepping.hpp>
 #include <continuo/solve/outcome.hpp>
 #include <continuo/studies/influence.hpp>
 
@@ -39,6 +40,7 @@ struct SensitivityRun {
   std::vector<double> values;     // row after row: x, then dx/dp of each influence
   std::vector<double> variables;  // the register file at the start
   std::vector<SensitivityEvent> events;
+  std::size_t mode = 0;  // at the end
   Outcome<double> outcome;
   Statistics statistics;
   std::string problem;  // why the motion has no derivative; else empty
@@ -64,6 +66,9 @@ struct SensitivityRequest {
   std::vector<double> times{};
   /// Initial values in place of the model's, by state; of influences that are initial values.
   std::vector<std::pair<std::size_t, double>> initial{};
+  /// The run goes on from here, as after an event, of a run that began as the experiment says; for influences that are
+  /// the initial values of all states, which these then stand for, and parameters.
+  std::optional<model::Instant> begin{};
   /// Of a world: how far to both sides each influence is moved; 0, or none: as little as rounding allows.
   std::vector<double> increments{};
 };

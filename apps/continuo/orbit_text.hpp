@@ -1,0 +1,23 @@
+// What is said of orbits, however they were found.
+#pragma once
+#include <complex>
+#include <string>
+#include <vector>
+
+#include <apps/continuo/exit_codes.hpp>
+
+#include <continuo/model/model.hpp>
+#include <continuo/solve/outcome.hpp>
+
+namespace continuo::app {
+
+/// "19.07836957 s"
+std::string with_time_unit(double t, const model::Model& model);
+/// "multipliers 1, -0.5 + 0.3 i, ..."
+std::string multipliers_text(const std::vector<std::complex<double>>& multipliers);
+/// "  x from -1 to 1", a line for each state.
+std::string extents_text(const model::Model& model, const std::vector<double>& low, const std::vector<double>& high);
+/// Says why a study has come to nothing.
+ExitCode failed_exit(const Outcome<double>& outcome);
+
+}  // namespace continuo::app
