@@ -146,12 +146,8 @@ ExitCode steady(const SteadyOptions& options) {
     constants.push_back(range->name);
   }
   if (!options.and_along.empty()) {
-    second = parse_range(options.and_along);
+    second = parse_second(options.and_along, *range);
     if (!second) return usage;
-    if (second->name == range->name) {
-      say(fmt::format("--along and --and are both of `{}`; a plane has two parameters", range->name));
-      return usage;
-    }
     constants.push_back(second->name);
   }
   const Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);

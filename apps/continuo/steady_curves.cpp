@@ -21,7 +21,7 @@ using studies::CurvePoint;
 using studies::DegeneratePoint;
 using Curves = std::vector<studies::CurveOfDiagram>;
 
-constexpr std::size_t most_curves = 20;
+constexpr std::size_t most_plane_curves = 20;
 
 /// What the place is exact to leaves of a zero.
 double rounded(double value, const NamedRange& range) {
@@ -96,14 +96,23 @@ void add_curve(const BifurcationCurve& curve, results::Panel& panel) {
 
 }  // namespace
 
-bool is_plane(const Studied& studied, const NamedPlane& plane) {
+std::optional<NamedRange> parse_second(const std::string& text, const NamedRange& first) {
+  auto second = parse_range(text);
+  if (second && second->name == first.name) {
+    say(fmt::format("--along and --and are both of `{}`; a plane has two parameters", first.name));
+    return std::nullopt;
+  }
+  return second;
+}
+
+bool is_plane(const Studied& studied, const NamedPlane& plane, std::string_view what) {
   const auto& [low, high] = std::pair(plane.second.low, plane.second.high);
   const double now = studied.system.constants[1];
   if (now >= low && now <= high) return true;
   say(
-      fmt::format("{0} is {1:.10g}, outside of {2:.10g}..{3:.10g}, and the places of rest are followed with that value "
-                  "first: --set {0}=VALUE gives it another",
-                  plane.second.name, now, low, high));
+      fmt::format("{0} is {1:.10g}, outside of {2:.10g}..{3:.10g}, and {4} are followed with that value first: "
+                  "--set {0}=VALUE gives it another",
+                  plane.second.name, now, low, high, what));
   return false;
 }
 
@@ -121,7 +130,7 @@ Curves curves_of(const Studied& studied, const SteadyDiagram& diagram, const Nam
                                 .interrupt = &interrupt_flag(),
                                 .progress = progress.parts()};
   steps.set(options);
-  return studies::bifurcation_curves(studied.system, starts, options, most_curves);
+  return studies::bifurcation_curves(studied.system, starts, options, most_plane_curves);
 }
 
 std::string text_of(const Curves& curves, const NamedPlane& plane) {
@@ -144,7 +153,8 @@ std::string text_of(const Curves& curves, const NamedPlane& plane) {
     for (const DegeneratePoint& mark : curve.marks) text += mark_text(mark, plane);
     if (!closed) text += fmt::format("   to {}: {}\n", place_text(curve.points.back(), plane), curve.ends[1].reason);
   }
-  if (curves.size() >= most_curves) text += fmt::format("only the first {} curves were followed\n", most_curves);
+  if (curves.size() >= most_plane_curves)
+    text += fmt::format("only the first {} curves were followed\n", most_plane_curves);
   return text;
 }
 

@@ -1,7 +1,9 @@
 // continuo steady FILE --along NAME=LOW..HIGH --and NAME=LOW..HIGH: the folds and Hopf points of all branches, followed
 // while both parameters move.
 #pragma once
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <apps/continuo/steady_branches.hpp>
@@ -16,8 +18,10 @@ namespace continuo::app {
 struct NamedPlane {
   NamedRange first, second;
 };
-/// Whether the second parameter begins within its range, and is another one; says so if not.
-bool is_plane(const Studied& studied, const NamedPlane& plane);
+/// Whether the second parameter begins within its range; says so if not. `what` is followed with that value first.
+bool is_plane(const Studied& studied, const NamedPlane& plane, std::string_view what = "places of rest");
+/// The range of --and, behind that of --along: of another parameter. Says what is wrong.
+std::optional<NamedRange> parse_second(const std::string& text, const NamedRange& first);
 
 std::vector<studies::CurveOfDiagram> curves_of(const Studied& studied, const SteadyDiagram& diagram,
                                                const NamedPlane& plane, const BranchSteps& steps);

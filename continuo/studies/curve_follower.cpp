@@ -14,7 +14,6 @@ namespace continuo::studies::detail {
 namespace {
 
 using Vector = std::vector<double>;
-using Place = CurvePlace;
 
 constexpr double far_off = 1e4;          // in sizes at the start
 constexpr double straight = 0.906;       // the cosine of 25 degrees: a step that turns by more was too long
@@ -71,7 +70,8 @@ BifurcationCurve CurveFollower::from(const DegeneratePoint& start, Bifurcation k
   return both_ways(std::move(curve), *first, &origin);
 }
 
-BifurcationCurve CurveFollower::both_ways(BifurcationCurve curve, const Place& first, const DegeneratePoint* origin) {
+BifurcationCurve CurveFollower::both_ways(BifurcationCurve curve, const CurvePlace& first,
+                                          const DegeneratePoint* origin) {
   BifurcationCurve back{.kind = curve.kind}, ahead{.kind = curve.kind};
   curve.ends[0] = followed(back, first, -1, origin);
   std::ranges::reverse(back.points);
@@ -104,16 +104,16 @@ bool CurveFollower::inside(const CurvePoint& point) const {
   return true;
 }
 
-CurveEnd CurveFollower::followed(BifurcationCurve& curve, const Place& from, double direction,
+CurveEnd CurveFollower::followed(BifurcationCurve& curve, const CurvePlace& from, double direction,
                                  const DegeneratePoint* begin) {
-  Place here(from);
+  CurvePlace here(from);
   for (double& part : here.tangent) part *= direction;
   // The test of a cusp goes with the direction.
   here.tests[static_cast<std::size_t>(Degeneracy::cusp)] *= direction;
   // What it begins at is known.
   if (begin) here.tests[static_cast<std::size_t>(begin->kind)] = std::nan("");
   const bool at_double_zero = curve.kind == Bifurcation::hopf && begin && begin->kind == Degeneracy::bogdanov_takens;
-  const Place origin(here);
+  const CurvePlace origin(here);
   double step = options_.first_step;
   while (curve.points.size() < options_.most_points) {
     if (options_.interrupt && options_.interrupt->load()) return {CurveEnding::interrupted, "it was interrupted"};
@@ -141,7 +141,7 @@ CurveEnd CurveFollower::followed(BifurcationCurve& curve, const Place& from, dou
     if (!inside(next->point)) return at_bound(curve, here, *next);
     if (curve.points.size() > least_turn && comes_back(here, *next, origin))
       return {CurveEnding::closed, "it comes back to where it began"};
-    const Place before = std::exchange(here, std::move(*next));
+    const CurvePlace before = std::exchange(here, std::move(*next));
     curve.points.push_back(here.point);
     report(here.point.constants[1]);
     step = std::min(1.3 * step, options_.largest_step);
@@ -150,7 +150,7 @@ CurveEnd CurveFollower::followed(BifurcationCurve& curve, const Place& from, dou
 }
 
 /// Between a place inside of the ranges and one outside.
-CurveEnd CurveFollower::at_bound(BifurcationCurve& curve, const Place& a, const Place& b) {
+CurveEnd CurveFollower::at_bound(BifurcationCurve& curve, const CurvePlace& a, const CurvePlace& b) {
   std::size_t first = 0;
   double part = 2, bound = 0;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -170,7 +170,7 @@ CurveEnd CurveFollower::at_bound(BifurcationCurve& curve, const Place& a, const 
           fmt::format("{} reaches the end of its range", system_.constant_name(options_.constants[first]))};
 }
 
-bool CurveFollower::comes_back(const Place& a, const Place& b, const Place& origin) const {
+bool CurveFollower::comes_back(const CurvePlace& a, const CurvePlace& b, const CurvePlace& origin) const {
   const double whole = distance(a.z, b.z);
   double part = 0;
   for (std::size_t i = 0; i < a.z.size(); ++i) part += (b.z[i] - a.z[i]) * (origin.z[i] - a.z[i]) / (whole * whole);

@@ -13,7 +13,6 @@ namespace {
 
 using Vector = std::vector<double>;
 using Complex = std::complex<double>;
-using Place = CurvePlace;
 
 constexpr double on_the_axis = 1e-5;      // of a real part, in parts of the frequency
 constexpr double no_eigenvalue = 1e-4;    // in parts of |A|: twice zero is known to the root of rounding alone
@@ -32,7 +31,7 @@ double norm_of(const Vector& a, std::size_t n) {
 
 }  // namespace
 
-void CurveFollower::mark(BifurcationCurve& curve, const Place& a, const Place& b, double step) {
+void CurveFollower::mark(BifurcationCurve& curve, const CurvePlace& a, const CurvePlace& b, double step) {
   using enum Degeneracy;
   const std::size_t begin = curve.marks.size();
   std::vector<double> distances;
@@ -50,7 +49,7 @@ void CurveFollower::mark(BifurcationCurve& curve, const Place& a, const Place& b
       }
 }
 
-bool CurveFollower::is_seen(Degeneracy kind, const Place& a, const Place& b) {
+bool CurveFollower::is_seen(Degeneracy kind, const CurvePlace& a, const CurvePlace& b) {
   double size = std::max(std::abs(a.test(kind)), std::abs(b.test(kind)));
   if (kind == Degeneracy::generalized_hopf) {
     // l1 is about |A| / (omega x^2).
@@ -67,7 +66,8 @@ bool CurveFollower::is_seen(Degeneracy kind, const Place& a, const Place& b) {
   return size > rounding_leaves;
 }
 
-void CurveFollower::add(BifurcationCurve& curve, Degeneracy kind, const Place& a, const Place& b, double step) {
+void CurveFollower::add(BifurcationCurve& curve, Degeneracy kind, const CurvePlace& a, const CurvePlace& b,
+                        double step) {
   const auto place = located(kind, a, b, step);
   if (!place || !inside(place->point)) return;
   DegeneratePoint point{.kind = kind, .at = place->point, .next = curve.points.size(), .numbers = {}};
@@ -84,11 +84,12 @@ void CurveFollower::add(BifurcationCurve& curve, Degeneracy kind, const Place& a
 }
 
 /// Bisection, with a step of the secant between.
-std::optional<CurvePlace> CurveFollower::located(Degeneracy kind, const Place& a, const Place& b, double step) {
+std::optional<CurvePlace> CurveFollower::located(Degeneracy kind, const CurvePlace& a, const CurvePlace& b,
+                                                 double step) {
   constexpr int most = 70;
   constexpr double exact = 1e-13;
   double low = 0, high = step, at_low = a.test(kind), at_high = b.test(kind);
-  std::optional<Place> best;
+  std::optional<CurvePlace> best;
   for (int k = 0; k < most && high - low > exact * step; ++k) {
     const double secant = low - at_low * (high - low) / (at_high - at_low);
     const double s = k % 2 == 1 || !(secant > low && secant < high) ? (low + high) / 2 : secant;
@@ -108,7 +109,7 @@ std::optional<CurvePlace> CurveFollower::located(Degeneracy kind, const Place& a
   return best;
 }
 
-bool CurveFollower::is_what(Degeneracy kind, const Place& place, const Place& a, const Place& b,
+bool CurveFollower::is_what(Degeneracy kind, const CurvePlace& place, const CurvePlace& a, const CurvePlace& b,
                             double& other_frequency) {
   const std::size_t n = steps_.matrix_size();
   const double norm = norm_of(steps_.matrix(place.z), n);
