@@ -41,6 +41,8 @@ study() {  # study NAME VERB [OPTION ...]
 study lorenz_branches steady models/lorenz.sim --along rho=0..30
 block tutorial_rest.md bautin.sim
 study bautin_orbits orbit "$scratch/bautin.sim" --along mu=-1..1
+block tutorial_two_parameters.md bazykin.sim
+study bazykin_curves steady "$scratch/bazykin.sim" --along alpha=0..1 --and delta=0..1
 study pendulum_plane phase models/pendulum.sim --box "theta=-7..7,theta'=-8..8"
 study differences converge --derivative "sin(x)" --at 1
 study orders converge models/mass_spring_damper.sim --methods euler,heun,bogacki_shampine3,rk4,tsitouras5

@@ -14,6 +14,7 @@
 #include <apps/continuo/orbit_text.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/steady_branches.hpp>
+#include <apps/continuo/steady_curves.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -33,7 +34,7 @@ namespace {
 
 struct OrbitOptions {
   ExperimentOptions experiment;
-  std::string mode, section, along, of, out, plot;
+  std::string mode, section, along, and_along, of, out, plot;
   std::optional<double> settle;
   double duration = 0, tolerance = 1e-9;
   std::optional<double> forcing;
@@ -182,12 +183,17 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
 
 ExitCode orbit(OrbitOptions options) {
   if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps)) return usage;
-  std::optional<NamedRange> range;
+  std::optional<NamedRange> range, second;
   std::vector<std::string> constants;
   if (!options.along.empty()) {
     range = parse_range(options.along);
     if (!range) return usage;
     constants.push_back(range->name);
+  }
+  if (!options.and_along.empty()) {
+    second = parse_second(options.and_along, *range);
+    if (!second) return usage;
+    constants.push_back(second->name);
   }
   const Studied studied = study(options.experiment, options.mode, constants);
   if (studied.prepared.exit != done) return studied.prepared.exit;
@@ -207,6 +213,7 @@ ExitCode orbit(OrbitOptions options) {
     return wrong_model;
   if (range)
     return show_orbit_branches(studied, {.range = *range,
+                                         .second = second,
                                          .search = search_of(options),
                                          .patient = options.patient,
                                          .from_hopf = options.from_hopf,
@@ -253,6 +260,9 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
                     ->type_name("NAME=LOW..HIGH")
                     ->excludes(section)
                     ->excludes(lyapunov);
+  verb->add_option("--and", options->and_along, "Follow what is found on the way while this moves too")
+      ->type_name("NAME=LOW..HIGH")
+      ->needs(along);
   verb->add_flag("--from-hopf", options->from_hopf, "Begin where places of rest begin to oscillate")->needs(along);
   verb->add_option("--branches", options->others, "How many branches to follow that begin on others; else 3")
       ->type_name("N")
@@ -262,9 +272,11 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
       ->excludes(section)
       ->excludes(lyapunov);
   verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);
-  verb->add_option("-o,--out", options->out, "The section's file (else standard output), or the table of --along")
+  verb->add_option("-o,--out", options->out,
+                   "The section's file (else standard output), or the table of --along or --and")
       ->type_name("FILE");
-  verb->add_option("--plot", options->plot, "The orbit, or --along, as a picture, .svg or .png")->type_name("FILE");
+  verb->add_option("--plot", options->plot, "The orbit, or --along, or --and, as a picture, .svg or .png")
+      ->type_name("FILE");
   verb->callback([&exit, options] { exit = orbit(*options); });
 }
 

@@ -6,6 +6,7 @@
 #include <apps/continuo/branch_curves.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/orbit_branch.hpp>
+#include <apps/continuo/orbit_curves.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/steady_branches.hpp>
 #include <apps/continuo/terminal.hpp>
@@ -254,6 +255,30 @@ nlohmann::json json_of(const std::vector<OrbitBranch>& branches, const model::Mo
   return {{"parameter", range.name}, {"states", states}, {"branches", list}};
 }
 
+/// The branches, which are shown before, in both parameters.
+ExitCode show_curves(const Studied& studied, const std::vector<OrbitBranch>& branches,
+                     const OrbitBranchOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  const NamedPlane plane{options.range, *options.second};
+  const auto curves = curves_of(studied, branches, plane, options.steps);
+  if (options.json) {
+    nlohmann::json json = json_of(branches, model, options.range);
+    json.update(app::json_of(curves, plane));
+    print(json.dump(2) + "\n");
+  } else {
+    print(text_of(curves, plane));
+  }
+  if (!options.out.empty()) {
+    const std::string csv = app::csv_of(curves, model, plane);
+    if (options.out == "-") {
+      print(csv);
+    } else if (!written(results::write_file(options.out, csv)))
+      return usage;
+  }
+  if (!options.plot.empty() && !draw(curves, model, plane, options.plot)) return usage;
+  return interrupt_flag() ? interrupted : done;
+}
+
 }  // namespace
 
 studies::PeriodicOrbit find_orbit(const Studied& studied, studies::PeriodicOrbitOptions search, bool patient) {
@@ -277,6 +302,7 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
                     range.name, now, range.low, range.high, range.name));
     return usage;
   }
+  if (options.second && !is_plane(studied, {range, *options.second}, "orbits")) return usage;
   std::optional<std::size_t> component = 0;
   if (!options.of.empty()) component = state_named(model, options.of);
   if (!component) return usage;
@@ -289,10 +315,11 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
     say(fmt::format("no orbit was found to follow along {}={:.10g}..{:.10g}", range.name, range.low, range.high));
     return numerical_failure;
   }
-  if (options.json) print(json_of(branches, model, range).dump(2) + "\n");
+  if (options.json && !options.second) print(json_of(branches, model, range).dump(2) + "\n");
   for (std::size_t b = 0; b < branches.size() && !options.json; ++b)
     print((branches.size() == 1 ? "" : fmt::format("{}{}: ", b == 0 ? "" : "\n", b + 1)) +
           table_of(branches[b], range));
+  if (options.second) return show_curves(studied, branches, options);
   if (!options.out.empty()) {
     const std::string csv = csv_of(branches, studied, range.name);
     if (options.out == "-") {

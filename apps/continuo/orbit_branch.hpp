@@ -1,5 +1,6 @@
 // continuo orbit FILE --along NAME=LOW..HIGH: how a closed orbit changes with a parameter.
 #pragma once
+#include <optional>
 #include <string>
 
 #include <apps/continuo/branch_steps.hpp>
@@ -11,6 +12,7 @@ namespace continuo::app {
 
 struct OrbitBranchOptions {
   NamedRange range;
+  std::optional<NamedRange> second{};      // then both parameters move
   studies::PeriodicOrbitOptions search{};  // of the orbit to begin with
   bool patient = false;                    // look for it ten times and a hundred times as long, too
   bool from_hopf = false;                  // begin where places of rest begin to oscillate
@@ -23,7 +25,7 @@ struct OrbitBranchOptions {
 /// The orbit that the motion comes to.
 studies::PeriodicOrbit find_orbit(const Studied& studied, studies::PeriodicOrbitOptions search, bool patient);
 
-/// `studied` has the parameter as its one constant.
+/// `studied` has the parameter as its constant, and the second one behind it.
 ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& options);
 
 }  // namespace continuo::app

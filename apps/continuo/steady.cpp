@@ -10,6 +10,7 @@
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/steady_branches.hpp>
+#include <apps/continuo/steady_curves.hpp>
 #include <apps/continuo/studied_model.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -26,7 +27,7 @@ namespace {
 
 struct SteadyOptions {
   ExperimentOptions experiment;
-  std::string mode, along, plot, out, of;
+  std::string mode, along, and_along, plot, out, of;
   BranchSteps steps;
   bool json = false;
   std::vector<std::string> box;
@@ -90,14 +91,37 @@ nlohmann::json json_of(const studies::Equilibria& found, const Studied& studied)
   return {{"states", states}, {"equilibria", places}, {"searches", found.searches}, {"arrived", found.arrived}};
 }
 
+/// The folds and Hopf points of the branches, which have been shown, in both parameters.
+ExitCode follow_curves(const Studied& studied, const studies::Equilibria& found, const SteadyDiagram& diagram,
+                       const NamedPlane& plane, const SteadyOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  const auto curves = curves_of(studied, diagram, plane, options.steps);
+  if (options.json) {
+    nlohmann::json json = json_of(found, studied);
+    json.update(json_of(diagram, model, plane.first));
+    json.update(json_of(curves, plane));
+    print(json.dump(2) + "\n");
+  } else {
+    print(text_of(curves, plane));
+  }
+  if (!options.out.empty() && !written(results::write_file(options.out, csv_of(curves, model, plane)))) return usage;
+  if (!options.plot.empty() && !draw(curves, model, plane, options.plot)) return usage;
+  return interrupt_flag() ? interrupted : done;
+}
+
 /// How they move. What was found at the parameter's present value has been shown.
 ExitCode follow(const Studied& studied, const studies::Equilibria& found, const NamedRange& range,
-                const studies::EquilibriumBox& box, const SteadyOptions& options) {
+                const std::optional<NamedRange>& second, const studies::EquilibriumBox& box,
+                const SteadyOptions& options) {
   const model::Model& model = studied.prepared.program->model;
   std::optional<std::size_t> component = 0;
   if (!options.of.empty()) component = state_named(model, options.of);
   if (!component) return usage;
   const SteadyDiagram diagram = diagram_of(studied, found.equilibria, range, box, options.steps);
+  if (second) {
+    if (!options.json) print(text_of(diagram, range, found.equilibria.size()));
+    return follow_curves(studied, found, diagram, {range, *second}, options);
+  }
   if (options.json) {
     nlohmann::json json = json_of(found, studied);
     json.update(json_of(diagram, model, range));
@@ -116,16 +140,22 @@ ExitCode steady(const SteadyOptions& options) {
     say("--plot draws how the places of rest move with a parameter: give --along NAME=LOW..HIGH");
     return usage;
   }
-  std::optional<NamedRange> range;
+  std::optional<NamedRange> range, second;
   std::vector<std::string> constants;
   if (!options.along.empty()) {
     range = parse_range(options.along);
     if (!range) return usage;
     constants.push_back(range->name);
   }
+  if (!options.and_along.empty()) {
+    second = parse_second(options.and_along, *range);
+    if (!second) return usage;
+    constants.push_back(second->name);
+  }
   const Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
+  if (second && !is_plane(studied, {*range, *second})) return usage;
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
   if (!set_box(studied, options.box, box)) return usage;
   const studies::Equilibria found = [&] {
@@ -144,7 +174,7 @@ ExitCode steady(const SteadyOptions& options) {
     return numerical_failure;
   }
   if (!options.json) print(table_of(found, studied));
-  if (range && !interrupt_flag()) return follow(studied, found, *range, box, options);
+  if (range && !interrupt_flag()) return follow(studied, found, *range, second, box, options);
   if (options.json) print(json_of(found, studied).dump(2) + "\n");
   return interrupt_flag() ? interrupted : done;
 }
@@ -156,6 +186,7 @@ void add_steady(CLI::App& app, ExitCode& exit) {
       "  continuo steady models/lorenz.sim                              every place of rest, and whether it is stable\n"
       "  continuo steady models/lorenz.sim --along rho=0..30            how they move, where their stability changes\n"
       "  continuo steady models/lorenz.sim --along rho=0..30 --plot branches.svg -o branches.csv\n"
+      "  continuo steady models/lorenz.sim --along rho=0..30 --and sigma=5..20   where that happens, in both\n"
       "  continuo steady models/pendulum.sim --box a=-7..7              where to look\n";
   CLI::App* verb = add_verb(app, "steady", "Finds where a model comes to rest, and whether it stays there", examples);
   auto options = std::make_shared<SteadyOptions>();
@@ -168,11 +199,16 @@ void add_steady(CLI::App& app, ExitCode& exit) {
   auto* along =
       verb->add_option("--along", options->along, "Follow each place while a parameter moves, and what crosses")
           ->type_name("NAME=LOW..HIGH");
+  verb->add_option("--and", options->and_along, "Follow the folds and Hopf points while this moves too")
+      ->type_name("NAME=LOW..HIGH")
+      ->needs(along);
   add_branch_steps(*verb, options->steps, along);
   verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE");
   verb->add_flag("--json", options->json, "All of it for other programs");
-  verb->add_option("-o,--out", options->out, "The table of --along, as CSV")->type_name("FILE")->needs(along);
-  verb->add_option("--plot", options->plot, "A picture of --along, .svg or .png")->type_name("FILE");
+  verb->add_option("-o,--out", options->out, "The table of --along, or of --and, as CSV")
+      ->type_name("FILE")
+      ->needs(along);
+  verb->add_option("--plot", options->plot, "A picture of --along, or of --and, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = steady(*options); });
 }
 

@@ -12,6 +12,7 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,7 +35,8 @@ struct OrbitPoint {
 /// `fold`: the branch turns round in the constant, a multiplier passes +1. `period_doubling`: one passes -1, an orbit
 /// of twice the period is born. `torus`: a complex pair passes the unit circle (Neimark, Sacker). `crossing`: one
 /// passes +1 and the branch goes on, another branch of orbits passes through.
-enum class OrbitBifurcation { fold, period_doubling, torus, crossing };
+/// `homoclinic`: what a branch ends at, as a start for a curve in two constants.
+enum class OrbitBifurcation { fold, period_doubling, torus, crossing, homoclinic };
 std::string_view to_string(OrbitBifurcation kind);
 
 struct OrbitMark {
@@ -55,6 +57,8 @@ struct OrbitBranchEnd {
   OrbitEnding ending = OrbitEnding::lost;
   double constant = 0;      // where
   std::string reason = {};  // one sentence
+  /// Of homoclinic: the last orbit.
+  std::optional<OrbitMark> last = {};
 };
 
 struct OrbitBranch {

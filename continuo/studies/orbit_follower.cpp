@@ -44,7 +44,7 @@ OrbitBranchEnd OrbitFollower::followed(OrbitBranch& branch, const Place& from, d
     if (!next || vanished || steps_.alike(here, *next) < 0.906) {  // by more than 25 degrees: too long a step
       step /= 2;
       if (step > options_.least_step) continue;
-      return lost(here);
+      return with_last(lost(here), here);
     }
     if (next && doubled_ && !vanished && product(steps_.halves(here), steps_.halves(*next)) < 0)
       if (auto end = turns_become_one(branch, here, *next, step)) return *end;
@@ -63,7 +63,7 @@ OrbitBranchEnd OrbitFollower::followed(OrbitBranch& branch, const Place& from, d
     report(here.point.constant);
     const std::span<const OrbitPoint> way(branch.points.begin() + static_cast<std::ptrdiff_t>(begin),
                                           branch.points.end());
-    if (auto end = ending_of(way, here)) return *end;
+    if (auto end = ending_of(way, here)) return with_last(std::move(*end), here);
     if (way.size() > 20 && comes_back(here, origin, step))
       return ended(OrbitEnding::closed, here.point.constant, "it comes back to where it began");
     steps_.measure(here);
@@ -71,6 +71,17 @@ OrbitBranchEnd OrbitFollower::followed(OrbitBranch& branch, const Place& from, d
   }
   return ended(OrbitEnding::too_many_points, here.point.constant,
                fmt::format("it has {} points, as many as are allowed", branch.points.size()));
+}
+
+/// From a homoclinic end a curve in two constants may begin.
+OrbitBranchEnd OrbitFollower::with_last(OrbitBranchEnd end, const Place& place) {
+  if (end.ending == OrbitEnding::homoclinic)
+    end.last = OrbitMark{.kind = OrbitBifurcation::homoclinic,
+                         .at = place.point,
+                         .mesh = *place.mesh,
+                         .unknowns = place.z,
+                         .tangent = {}};
+  return end;
 }
 
 /// Through the equilibrium, to the same orbits half a turn later.

@@ -41,6 +41,7 @@ class OrbitFollower {
     return {ending, constant, std::move(reason)};
   }
   std::string name() const { return system_.constant_name(options_.constant); }
+  OrbitBranchEnd with_last(OrbitBranchEnd end, const Place& place);
   OrbitBranchEnd followed(OrbitBranch& branch, const Place& from, double direction);
   /// Through the equilibrium, to the same orbits half a turn later.
   bool vanishes(const Place& a, const Place& b);

@@ -1,0 +1,96 @@
+// Where closed orbits fold, double their period or begin to wind round a torus, followed while two constants move, with
+// the places where they are more than that: cusps, fold-flips, strong resonances. By minimally augmented systems on the
+// collocation of the orbit and pseudo-arclength. E. J. Doedel, W. Govaerts, Yu. A. Kuznetsov, "Computation of periodic
+// solution bifurcations in ODEs using bordered systems", SIAM J. Numer. Anal. 41 (2003) 401-435; Yu. A. Kuznetsov,
+// "Elements of Applied Bifurcation Theory", chapter 9.
+#pragma once
+#include <array>
+#include <atomic>
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <continuo/studies/bifurcation_curve.hpp>
+#include <continuo/studies/orbit_continuation.hpp>
+
+namespace continuo::studies {
+
+struct OrbitCurvePoint {
+  std::array<double, 2> constants{};  // their values
+  double period = 0;
+  std::vector<double> x{};                          // a state on the orbit
+  std::vector<double> low{}, high{};                // between which each component goes
+  std::vector<std::complex<double>> multipliers{};  // by descending size, without the 1 of a shift along the orbit
+  double rotation = 0;                              // of torus: the angle of the pair, in turns per period
+};
+
+/// `cusp`: two folds of orbits meet. `resonance_1` to `resonance_4`: strong resonances 1:1 to 1:4, where a pair on the
+/// unit circle is twice 1, twice -1, at a third or at a quarter of a turn. `fold_flip`: one multiplier is 1, another
+/// -1. `fold_torus`, `flip_torus`: a multiplier 1, or -1, and a pair on the circle. `double_torus`: two such pairs.
+enum class OrbitDegeneracy {
+  cusp,
+  resonance_1,
+  resonance_2,
+  resonance_3,
+  resonance_4,
+  fold_flip,
+  fold_torus,
+  flip_torus,
+  double_torus
+};
+inline constexpr std::size_t orbit_degeneracies = 9;
+std::string_view to_string(OrbitDegeneracy kind);
+
+struct DegenerateOrbit {
+  OrbitDegeneracy kind;
+  OrbitCurvePoint at;
+  std::size_t next = 0;  // of the curve's points, the first behind it
+};
+
+/// Why a curve ends. `equilibrium`: the orbit shrinks to one. `long_period`: the period has grown to many times that at
+/// the start. `resonance`: 1:1 or 1:2, behind which there is no pair on the circle.
+enum class OrbitCurveEnding { bound, closed, equilibrium, long_period, resonance, interrupted, too_many_points, lost };
+
+struct OrbitCurveEnd {
+  OrbitCurveEnding ending = OrbitCurveEnding::lost;
+  std::string reason{};  // one sentence
+};
+
+struct OrbitCurve {
+  OrbitBifurcation kind = OrbitBifurcation::fold;  // but crossing
+  std::vector<OrbitCurvePoint> points{};
+  std::vector<DegenerateOrbit> marks{};  // in the order of the curve
+  std::array<OrbitCurveEnd, 2> ends{};   // before the first point, after the last
+  std::string message{};                 // why there is no curve; empty where there is one
+};
+
+struct OrbitCurveOptions {
+  std::array<std::size_t, 2> constants{0, 1};  // which of the system's
+  std::array<double, 2> low{0, 0}, high{1, 1};
+  // In parts of the ranges, of the period and of the size of x.
+  double first_step = 0.01, least_step = 1e-6, largest_step = 0.05;
+  std::size_t most_points = 1000;
+  double longest_period = 30;  // in periods at the start
+  double rtol = 1e-9;
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double part)> progress{};  // of the range of the second constant that has been covered
+};
+
+/// From what is marked on a branch of orbits of the first constant, the second one having the system's value. From its
+/// homoclinic end: a curve of orbits of that long period, exp(-rate period) away from homoclinic ones.
+OrbitCurve follow_orbit_bifurcation(const ParametricSystem& system, const OrbitMark& start,
+                                    const OrbitCurveOptions& options);
+
+/// Curves through several marks, each once.
+struct OrbitCurveOfDiagram {
+  OrbitCurve curve;
+  std::vector<std::size_t> starts;  // those that lie on it
+};
+std::vector<OrbitCurveOfDiagram> orbit_curves(const ParametricSystem& system, const std::vector<OrbitMark>& starts,
+                                              const OrbitCurveOptions& options, std::size_t most_curves = 12);
+
+}  // namespace continuo::studies
