@@ -76,6 +76,9 @@ std::string text_of(const ModelFamilies& found, const Shown& shown, std::size_t 
     if (family.crossings_left > 0)
       text += fmt::format("   {} of its crossings not followed, for there are many families: ask for a smaller range\n",
                           family.crossings_left);
+    for (const double near : family.doubtful)
+      text +=
+          fmt::format("   {} = {:.3g} or so: something happens, but its place was not found\n", shown.parameter, near);
     for (const FamilyMark& mark : family.marks)
       text += fmt::format("   {} = {:.10g}: {}, {} reaches {}\n", shown.parameter, shown.constant(mark.at.constant),
                           to_string(mark.kind), state,
@@ -97,11 +100,9 @@ nlohmann::json json_of(const FamilyPoint& point, const Shown& shown) {
 nlohmann::json json_of(const ModelFamilies& found, const Shown& shown) {
   auto families = nlohmann::json::array();
   for (const Family& family : found.families) {
-    nlohmann::json entry{{"points", nlohmann::json::array()},
-                         {"marks", nlohmann::json::array()},
-                         {"complete", family.complete},
-                         {"message", family.message},
-                         {"crossings_left", family.crossings_left}};
+    nlohmann::json entry{{"points", nlohmann::json::array()}, {"marks", nlohmann::json::array()},
+                         {"complete", family.complete},       {"message", family.message},
+                         {"doubtful", family.doubtful},       {"crossings_left", family.crossings_left}};
     if (family.crossed) entry["across"] = *family.crossed + 1;
     for (const FamilyPoint& point : family.points) entry["points"].push_back(json_of(point, shown));
     for (const FamilyMark& mark : family.marks) {

@@ -8,6 +8,7 @@
 
 #include <continuo/studies/boundary_continuation.hpp>
 #include <continuo/studies/boundary_family.hpp>
+#include <continuo/studies/boundary_family_marks.hpp>
 #include <continuo/studies/boundary_family_steps.hpp>
 
 namespace continuo::studies {
@@ -83,6 +84,7 @@ class FamilyFollower {
   static Family joined(Family back, Family middle, Family ahead) {
     std::ranges::reverse(back.points);
     std::ranges::reverse(back.marks);
+    std::ranges::reverse(back.doubtful);
     for (FamilyMark& mark : back.marks) mark.next = back.points.size() - mark.next;
     const std::size_t before = back.points.size() + middle.points.size();
     for (FamilyMark& mark : ahead.marks) mark.next += before;
@@ -90,6 +92,7 @@ class FamilyFollower {
     for (Family* part : {&middle, &ahead}) {
       std::ranges::move(part->points, std::back_inserter(family.points));
       std::ranges::move(part->marks, std::back_inserter(family.marks));
+      std::ranges::copy(part->doubtful, std::back_inserter(family.doubtful));
     }
     family.complete = family.complete && ahead.complete;
     if (family.message.empty()) family.message = ahead.message;
@@ -129,7 +132,6 @@ class FamilyFollower {
         family.message = "interrupted";
         return family;
       }
-      steps_.set_tolerance(options_.tolerance);
       auto next = steps_.stepped(here.solution, here.tangent, step);
       if (!next || FamilySteps::cosine(steps_, here.tangent, next->tangent) < least_cosine) {
         step /= 2;
@@ -138,9 +140,7 @@ class FamilyFollower {
         return family;
       }
       // A leap next to a crossing hides it: in shorter steps they part.
-      const std::size_t changes = changed(here, *next);
-      if (std::min(changes, FamilyPlace::tests - changes) > FamilyPlace::tests / 4 &&
-          step > doubtful_part * options_.first_step) {
+      if (detail::is_ambiguous(here, *next) && step > doubtful_part * options_.first_step) {
         step /= 2;
         continue;
       }
@@ -190,98 +190,20 @@ class FamilyFollower {
     if (options_.progress) options_.progress(std::min((high_ - low_) / steps_.range(), 1.0));
   }
 
-  /// How many measures of crossings have other signs.
-  static std::size_t changed(const FamilyPlace& a, const FamilyPlace& b) {
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < FamilyPlace::tests; ++k) count += a.crossing[k] * b.crossing[k] < 0 ? 1 : 0;
-    return count;
-  }
-
-  /// What lies between two neighbours. Where the family crosses another one and turns round, it is a crossing.
   void mark(Family& family, const FamilyPlace& a, const FamilyPlace& b, double step) {
-    std::size_t which = 0;
-    for (std::size_t k = 0; k < FamilyPlace::tests; ++k)
-      if (a.crossing[k] * b.crossing[k] < 0) which = k;
     steps_.set_tolerance(std::min(options_.tolerance, close_tolerance));
-    const auto add = [&](FamilyEvent kind, const FamilyPlace& place) {
-      if (!is_inside(place.constant())) return;
-      family.marks.push_back({kind, point_of(place), family.points.size()});
-      if (kind == FamilyEvent::branch_point) crossings_.push_back(place);
-    };
-    if (2 * changed(a, b) > FamilyPlace::tests) {
-      const auto test = [which](const FamilyPlace& place) { return place.crossing[which]; };
-      if (const auto place = crossing_between(a, b, step, test)) return add(FamilyEvent::branch_point, *place);
-    }
-    if (a.slope * b.slope < 0)
-      if (const auto place = located(a, b, step, [](const FamilyPlace& at) { return at.slope; }))
-        add(FamilyEvent::fold, *place);
-  }
-
-  /// A mesh that serves the solution need not serve the direction in which the other family leaves it: the motion of a
-  /// rod that is straight needs no mesh at all. It is halved until that makes no difference. A test that leaps through
-  /// infinity has not become small.
-  template <class Test>
-  std::optional<FamilyPlace> crossing_between(const FamilyPlace& a, const FamilyPlace& b, double step,
-                                              const Test& test) {
-    constexpr double alike = 1e-9, small = 1e-2;
-    constexpr int most_halvings = 6;
-    auto best = located(a, b, step, test);
-    if (!best || std::abs(test(*best)) > small * std::min(std::abs(test(a)), std::abs(test(b)))) return std::nullopt;
-    FamilyPlace from = a;
-    for (int halving = 0; halving < most_halvings; ++halving) {
-      auto finer = steps_.on_halved_mesh(from);
-      if (!finer) break;
-      from = std::move(*finer);
-      const auto end = steps_.stepped(from.solution, from.tangent, step);
-      if (!end || test(from) * test(*end) > 0) break;
-      auto there = located(from, *end, step, test);
-      if (!there) break;
-      const double change = std::abs(there->constant() - best->constant());
-      best = std::move(there);
-      if (change < alike * std::max(std::abs(best->constant()), 1e-3 * steps_.range())) break;
-    }
-    return best;
-  }
-
-  /// Where the test, which has different signs at both, is zero: by the Illinois variant of the false position. Next
-  /// to a crossing the equations lose their hold; what has been reached by then will do.
-  template <class Test>
-  std::optional<FamilyPlace> located(const FamilyPlace& a, const FamilyPlace& b, double step, const Test& test) {
-    double low = 0, high = step, at_low = test(a), at_high = test(b);
-    std::optional<FamilyPlace> best;
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 40 && high - low > 1e-9 * step; ++k) {
-      double s = low + (high - low) * at_low / (at_low - at_high);
-      if (!(s > low && s < high)) s = (low + high) / 2;
-      auto place = steps_.stepped(a.solution, a.tangent, s);
-      if (!place) break;
-      const double value = test(*place);
-      const bool same_side = value * at_low > 0;
-      if (std::abs(value) < least) {
-        least = std::abs(value);
-        best = std::move(place);
-      }
-      if (least == 0) break;
-      if (same_side) {
-        low = s, at_low = value;
-        if (side_ > 0) at_high /= 2;
-        side_ = 1;
-      } else {
-        high = s, at_high = value;
-        if (side_ < 0) at_low /= 2;
-        side_ = -1;
-      }
-      if (least < 1e-10 * std::min(std::abs(test(a)), std::abs(test(b)))) break;
-    }
-    side_ = 0;
-    return best;
+    auto event = detail::what_lies_between(steps_, a, b, step);
+    steps_.set_tolerance(options_.tolerance);
+    if (event.doubtful) family.doubtful.push_back((a.constant() + b.constant()) / 2);
+    if (!event.place || !is_inside(event.place->constant())) return;
+    family.marks.push_back({event.kind, point_of(*event.place), family.points.size()});
+    if (event.kind == FamilyEvent::branch_point) crossings_.push_back(std::move(*event.place));
   }
 
   const BoundaryValueProblem& problem_;
   const FamilyOptions& options_;
   FamilySteps steps_;
   std::vector<FamilyPlace> crossings_;
-  int side_ = 0;
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
 };
 

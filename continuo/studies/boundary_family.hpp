@@ -38,6 +38,7 @@ struct FamilyMark {
 struct Family {
   std::vector<FamilyPoint> points;
   std::vector<FamilyMark> marks;         // in the order of the family
+  std::vector<double> doubtful{};        // of the constant, where something happens of which the place was not found
   bool complete = false;                 // it left the range of the constant at both ends, or closed
   std::string message;                   // why it ended elsewhere; empty where complete
   std::optional<std::size_t> crossed{};  // it was found where it crosses this family
