@@ -48,7 +48,6 @@ class FamilyFollower {
     FamilyPlace back = *first;
     back.tangent = reversed(std::move(back.tangent));
     back.slope = -back.slope;
-    for (double& test : back.crossing) test = -test;
     Family behind = followed(std::move(back));
     return joined(std::move(behind), std::move(family), followed(*first));
   }
@@ -194,7 +193,8 @@ class FamilyFollower {
     steps_.set_tolerance(std::min(options_.tolerance, close_tolerance));
     auto event = detail::what_lies_between(steps_, a, b, step);
     steps_.set_tolerance(options_.tolerance);
-    if (event.doubtful) family.doubtful.push_back((a.constant() + b.constant()) / 2);
+    const double middle = (a.constant() + b.constant()) / 2;
+    if (event.doubtful && is_inside(middle)) family.doubtful.push_back(middle);
     if (!event.place || !is_inside(event.place->constant())) return;
     family.marks.push_back({event.kind, point_of(*event.place), family.points.size()});
     if (event.kind == FamilyEvent::branch_point) crossings_.push_back(std::move(*event.place));

@@ -55,6 +55,7 @@ TEST(BoundaryFamily, FollowsBratuRoundItsFold) {
   ASSERT_EQ(folds.size(), 1u);
   EXPECT_NEAR(folds[0], 8 * std::pow(quarter / std::cosh(quarter), 2), 1e-9);
   EXPECT_TRUE(marks_of(families[0], FamilyEvent::branch_point).empty());
+  EXPECT_TRUE(families[0].doubtful.empty());
   for (const FamilyPoint& point : families[0].points) {
     const double top = point.solution(0.5)[0], q = std::acosh(std::exp(top / 2));
     EXPECT_NEAR(point.constant, 8 * std::pow(q / std::cosh(q), 2), 1e-6) << "where x reaches " << top;
@@ -69,6 +70,7 @@ TEST(BoundaryFamily, BendsTheElastica) {
   ASSERT_EQ(families.size(), 4u);
   const auto loads = marks_of(families[0], FamilyEvent::branch_point);
   ASSERT_EQ(loads.size(), 3u);
+  EXPECT_TRUE(families[0].doubtful.empty());
   for (std::size_t n = 1; n <= 3; ++n) {
     const double load = std::pow(double(n) * pi, 2);
     EXPECT_NEAR(loads[n - 1], load, 1e-7 * load);
