@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include <apps/continuo/boundary_families.hpp>
 #include <apps/continuo/boundary_options.hpp>
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/experiment_options.hpp>
@@ -52,6 +53,10 @@ ExitCode run(const RunRequest& request) {
   }
   const auto boundary = read_boundary(request.boundary, prepared);
   if (!boundary) return usage;
+  if (!request.boundary.family.empty()) {
+    const auto range = read_family(request.boundary, prepared);
+    return range ? show_families(prepared, *boundary, *range, request.boundary.of, request.outputs) : usage;
+  }
   RunFile file(request.record);
   const model::Simulated simulated = [&] {
     Progress progress;
@@ -80,6 +85,7 @@ void add_run(CLI::App& app, ExitCode& exit) {
       "replay)\n"
       "  continuo run ball.sim -o - | head                          rows to another program\n"
       "  continuo run layer.sim --along eps=1..1e-4                 conditions at both ends, from an easy case on\n"
+      "  continuo run bratu.sim --family p=0.1..4 --plot bratu.svg  every solution, round folds and across branches\n"
       "  continuo run ball.sim --json                               outcome, state, events, cost\n";
   CLI::App* verb = add_verb(app, "run", "Runs a model and shows, plots or writes its motion", examples);
   auto request = std::make_shared<RunRequest>();

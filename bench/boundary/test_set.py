@@ -2,7 +2,7 @@
 """The 35 problems of Cash and Mazzia's test set for boundary-value solvers, run by `continuo run` as anybody would write
 them: without a guess, at eps = 1e-1 ... 1e-6 and tolerances 1e-3, 1e-6, 1e-9.
 
-    test_set.py CONTINUO [--problems 1,24] [--eps 1e-1,1e-2] [--tol 1e-6] [--rows]
+    test_set.py CONTINUO [--problems 1,24] [--eps 1e-1,1e-2] [--tol 1e-6] [--rows] [--peer PROGRAM]
 
 The problems: F. Mazzia, J. R. Cash, "A fortran test set for boundary value problem solvers", AIP Conf. Proc. 1648 (2015).
 The referee is the closed form where there is one, else a run a hundred times as strict on a mesh of its own that comes to
@@ -10,6 +10,12 @@ eps another way (--along). An error is the greatest of a state over all rows, re
 value of that state. Needs python3-scipy. Solved: within the tolerance. Wrong: further off than that, and success said
 without a doubt. Refused: not solved, with the reason. eps enters the problems 23, 32 as 1/eps, 16 as 1/eps nearest to
 an odd number (for an even one it has no solution, or many) and 34 as 35*eps.
+
+--peer runs the same cases by other solvers beside: PROGRAM is called as `PROGRAM SOLVER NUMBER EPS TOL GUESS`, where SOLVER
+is one of --solvers, GUESS `none` (all zero) or `line` (straight between the conditions, with its slope), and prints
+`solved` or `failed`, the solver's own flag, seconds and points of the mesh, then a row `t,state,...` for each point. A peer
+has solved where one of the guesses leads to rows within the tolerance, of the greatest value as ours or, as the peers
+themselves count, of 1 + |state|.
 """
 import argparse
 import concurrent.futures
@@ -187,7 +193,7 @@ def model(number, eps):
 
 
 def run(command, number, eps, tol, folder, *more, name="run", asked=()):
-    """What `continuo run` says, its reason or doubt, and the states at its rows, or at the instants asked for."""
+    """What `continuo run` says, its reason or doubt, the states at its rows, or at the instants asked for, and seconds."""
     eps, text = model(number, eps)
     path = folder / f"T{number}_{eps:.3g}_{tol:g}_{name}.sim"
     states = STATES[number]
@@ -198,46 +204,111 @@ def run(command, number, eps, tol, folder, *more, name="run", asked=()):
         done = subprocess.run([command, "run", str(path), "--tol", repr(tol), "-o", str(rows), "--json", *more],
                               capture_output=True, text=True, timeout=60)
     except subprocess.TimeoutExpired:
-        return "timeout", "longer than a minute", None, None
+        return "timeout", "longer than a minute", None, None, math.nan
     said = json.loads(done.stdout) if done.stdout.strip() else {}
     if done.returncode != 0 or said.get("outcome") != "reached end":
         lines = [line.strip() for line in done.stderr.splitlines() if line.startswith("error") or "= help" in line]
-        return "refused", " ".join(lines) or done.stderr.strip()[:200], None, None
+        return "refused", " ".join(lines) or done.stderr.strip()[:200], None, None, math.nan
+    seconds = said["statistics"]["seconds"]
     if asked:
         values = np.array([check["value"] for check in said["checks"]]).reshape(len(asked), len(states)).T
-        return "ok", said.get("hint", ""), np.array(asked), values
+        return "ok", said.get("hint", ""), np.array(asked), values, seconds
     with open(rows) as file:
         lines = [line for line in file if not line.startswith("#")]
     header = next(csv.reader(lines[:1]))
     data = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
     keep = [header.index(name) for name in states]
-    return "ok", said.get("hint", ""), data[:, 0], data[:, keep].T
+    return "ok", said.get("hint", ""), data[:, 0], data[:, keep].T, seconds
 
 
-def truth(command, number, eps, tol, t, x, folder):
+def truth(command, number, eps, tol, t, x, folder, name="ours"):
     """What the run says the states are at some instants, and what they are."""
     closed = P[number][3]
     if closed:
         with np.errstate(over="ignore", under="ignore"):
             return x, closed(t, model(number, eps)[0])
     few = np.unique(np.linspace(0, len(t) - 1, 150).astype(int))
-    state, _, _, strict = run(command, number, eps, max(1e-2 * tol, 1e-11), folder, "--along",
-                              f"eps={0.3 if eps < 0.3 else 1}..{eps!r}", name="strict", asked=[float(v) for v in t[few]])
+    state, _, _, strict, _ = run(command, number, eps, max(1e-2 * tol, 1e-11), folder, "--along",
+                              f"eps={0.3 if eps < 0.3 else 1}..{eps!r}", name=f"strict_{name}", asked=[float(v) for v in t[few]])
     return (x[:, few], strict) if state == "ok" else (x, None)
 
 
 def judge(command, number, eps, tol, folder):
-    state, reason, t, x = run(command, number, eps, tol, folder)
+    state, reason, t, x, seconds = run(command, number, eps, tol, folder)
     if state != "ok":
-        return state, reason, math.nan
+        return state, reason, math.nan, seconds
     x, true = truth(command, number, eps, tol, t, x, folder)
     if true is None:
-        return "unjudged", "no referee", math.nan
+        return "unjudged", "no referee", math.nan, seconds
     size = np.maximum(np.abs(true).max(axis=1, keepdims=True), 1e-300)
     error = float(np.max(np.abs(x - true) / size))
     if error <= tol:
-        return "solved", reason, error
-    return ("doubted" if reason else "WRONG"), reason, error
+        return "solved", reason, error, seconds
+    return ("doubted" if reason else "WRONG"), reason, error, seconds
+
+
+def is_exact(true, x, tol):
+    """By our measure, or by |error| <= tol*(1 + |x|), which is that of the peers."""
+    size = np.maximum(np.abs(true).max(axis=1, keepdims=True), 1e-300)
+    error = np.abs(x - true)
+    return bool(np.all(np.isfinite(x)) and (np.max(error / size) <= tol or np.max(error / (1 + np.abs(true))) <= tol))
+
+
+def peer_case(program, solver, command, number, eps, tol, folder):
+    """`solved`, `wrong` (success said), `failed` or `unjudged`, and the seconds where it has solved."""
+    state = "failed"
+    for guess in ("none", "line"):
+        try:
+            done = subprocess.run([program, solver, str(number), repr(model(number, eps)[0]), repr(tol), guess],
+                                  capture_output=True, text=True, timeout=5)
+        except subprocess.TimeoutExpired:
+            continue
+        lines = done.stdout.splitlines()
+        if not lines or not lines[0].startswith("solved"):
+            continue
+        data = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
+        if len(data) > 20000:
+            data = data[np.unique(np.linspace(0, len(data) - 1, 20000).astype(int))]
+        x, true = truth(command, number, eps, tol, data[:, 0], data[:, 1:].T, folder, solver)
+        if true is None:
+            state = "unjudged"
+        elif is_exact(true, x, tol):
+            return "solved", float(lines[0].split()[2])
+        else:
+            state = "wrong"
+    return state, math.nan
+
+
+def beside(options, results, folder):
+    """The tables of the peers, how much of what they solve ours does, and the times where both have solved."""
+    cases = list(results)
+    print()
+    of_peers = {}
+    for solver in options.solvers:
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            judged = pool.map(lambda case: peer_case(options.peer, solver, options.continuo, *case, folder), cases)
+            of_peers[solver] = dict(zip(cases, judged))
+    for solver, of_peer in of_peers.items():
+        counts = {state: sum(result[0] == state for result in of_peer.values())
+                  for state in ("solved", "failed", "wrong", "unjudged")}
+        both = [(results[case][2], of_peer[case][1]) for case in cases
+                if of_peer[case][0] == "solved" and results[case][0] == "solved"]
+        ratios = np.array([ours / max(theirs, 1e-6) for ours, theirs in both])
+        print(f"{solver}: " + ", ".join(f"{count} {state}" for state, count in counts.items()) +
+              f"; of its solved ours solves {len(both)}; time, ours through theirs: "
+              f"median {np.median(ratios):.2g}, nine in ten below {np.quantile(ratios, 0.9):.2g}, "
+              f"sums {sum(ours for ours, _ in both):.3g} s and {sum(theirs for _, theirs in both):.3g} s")
+    either = [case for case in cases if any(of[case][0] == "solved" for of in of_peers.values())]
+    lacking = [case for case in either if results[case][0] not in ("solved",)]
+    print(f"solved by any peer: {len(either)}, of these by ours {len(either) - len(lacking)} "
+          f"({100 * (1 - len(lacking) / len(either)):.1f} %)")
+    for number, eps, tol in lacking:
+        print(f"  T{number} eps={eps:g} tol={tol:g}: ours {results[number, eps, tol][0]}, "
+              + ", ".join(f"{solver} {of[number, eps, tol][0]}" for solver, of in of_peers.items()))
+    slow = sorted(((results[c][2] / max(of[c][1], 1e-6), solver, c) for solver, of in of_peers.items() for c in cases
+                   if of[c][0] == "solved" and results[c][0] == "solved" and results[c][2] > 0.05), reverse=True)
+    for ratio, solver, (number, eps, tol) in slow[:10]:
+        print(f"  slow: T{number} eps={eps:g} tol={tol:g}: {results[number, eps, tol][2]:.3g} s, {ratio:.3g} times {solver}")
 
 
 def main():
@@ -249,13 +320,15 @@ def main():
     options.add_argument("--tol", type=numbers(float), default=[1e-3, 1e-6, 1e-9])
     options.add_argument("--jobs", type=int, default=2)
     options.add_argument("--rows", action="store_true", help="every run on a line of its own")
+    options.add_argument("--peer", help="a program that runs other solvers on the same problems")
+    options.add_argument("--solvers", type=lambda text: text.split(","), default=["twpbvpc", "colnew"])
     options = options.parse_args()
     cases = [(n, e, tol) for n in options.problems for e in options.eps for tol in options.tol]
     results = {}
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         judged = pool.map(lambda case: judge(options.continuo, *case, pathlib.Path(folder)), cases)
-        for case, (state, reason, error) in zip(cases, judged):
-            results[case] = state, error
+        for case, (state, reason, error, seconds) in zip(cases, judged):
+            results[case] = state, error, seconds
             if options.rows or state not in ("solved",):
                 print(f"T{case[0]:<2} eps={case[1]:g} tol={case[2]:g}: {state} {error:.2g} {reason[:230]}", file=sys.stderr,
                       flush=True)
@@ -267,6 +340,9 @@ def main():
         print(f"| T{n} | " + " | ".join(cells) + " |")
     counts = {state: sum(result[0] == state for result in results.values()) for state in letter}
     print("\n" + ", ".join(f"{count} {state}" for state, count in counts.items() if count))
+    if options.peer:
+        with tempfile.TemporaryDirectory() as folder:
+            beside(options, results, pathlib.Path(folder))
 
 
 if __name__ == "__main__":

@@ -144,7 +144,9 @@ std::optional<BoundaryValueSolution> along_some_parameter(const std::shared_ptr<
       const auto beginning = beginning_of(*first, request, k, ignored);
       if (!beginning) continue;
       FollowedSolution followed = follow_path({problem, factor * value, value}, beginning->guess, posed.options);
-      if (followed.solution.outcome) return std::move(followed.solution);
+      // Where it is known there what holds it, other ways lead to the same place.
+      if (followed.solution.outcome || followed.solution.failure == BoundaryValueFailure::rounding)
+        return std::move(followed.solution);
       steps += followed.steps;
       if (steps > most_steps_in_vain) break;  // it is easy enough there, but the way does not go through
     }
@@ -187,7 +189,9 @@ std::optional<BoundaryValueSolution> solution_of(const std::shared_ptr<const Mod
     hint = followed.steps == 0
                ? fmt::format("there is none for {} = {:g}, where the way begins; begin where it is easier", parameter,
                              from)
-               : fmt::format("from {} = {:g} it could be followed to {:g}", parameter, from, followed.reached);
+               : fmt::format(
+                     "from {} = {:g} it could be followed to {:g}; --family {}=A..B shows whether it turns round there",
+                     parameter, from, followed.reached, parameter);
   }
   return std::move(followed.solution);
 }

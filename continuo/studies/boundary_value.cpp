@@ -238,6 +238,17 @@ class Search {
             solution_.mesh.size() - 1, name_of(problem_.system, component), part, solution_.condition));
   }
 
+  /// An interval so short that its points are hardly different numbers.
+  static bool beyond_digits(const CollocationSystem& system) {
+    constexpr double few_digits = 1e3;
+    constexpr std::size_t per = CollocationSystem::per_interval;
+    for (std::size_t q = per; q < system.point_count(); q += per) {
+      const double t = system.time(q), h = t - system.time(q - per);
+      if (h < few_digits * std::numeric_limits<double>::epsilon() * std::abs(t)) return true;
+    }
+    return false;
+  }
+
   BoundaryValueSolution failed(NewtonEnding ending, CollocationSystem& system) {
     using enum BoundaryValueFailure;
     const std::size_t worst = system.worst();
@@ -253,8 +264,11 @@ class Search {
           "zero often does not");
     } else {
       end(not_found, Ending::nonlinear_solve_failed, worst,
-          any_ ? "the solution of a coarser mesh leads to none of a finer one; it may not be a solution"
-               : "no solution was found near the guess; give another guess, or there is none");
+          beyond_digits(system)
+              ? "it turns within a few digits of t, nearer than which a double cannot tell times apart; a time that "
+                "runs from there, or another scale of it, may do"
+          : any_ ? "the solution of a coarser mesh leads to none of a finer one; it may not be a solution"
+                 : "no solution was found near the guess; give another guess, or there is none");
     }
     return std::move(solution_);
   }

@@ -114,6 +114,16 @@ std::vector<FitColumnResult> column_results(const FitRequest& request, const Fit
   return results;
 }
 
+namespace {
+
+bool is_known(const VarianceComponents& noise, std::size_t row) {
+  for (const VarianceRow::Share& share : noise.rows[row].shares)
+    if (share.factor != 0 && !noise.components[share.component].known) return false;
+  return noise.variance(row) > 0;
+}
+
+}  // namespace
+
 FitStatistics statistics_of(const FitRequest& request, const FitProblem& problem, const Fit& fit) {
   FitStatistics result{.values = problem.measured().size(), .free_unknowns = count_free(fit)};
   std::set<std::string> quantities;
@@ -140,7 +150,8 @@ FitStatistics statistics_of(const FitRequest& request, const FitProblem& problem
   estimate_variances(noise, off, rows, Loss::squares, Likelihood::plain);
   double sum = 0, counted = 0;
   for (std::size_t i = 0; i < problem.measured().size(); ++i) {
-    if (!noise.rows[i].counts) continue;
+    // What has no noise says nothing of how large it is; where that is known, it is a measurement like others.
+    if (!noise.rows[i].counts && !is_known(noise, i)) continue;
     counted += 1;
     const double variance = noise.variance(i);
     sum += std::log(2 * std::numbers::pi * variance) + off[i] * off[i] / variance;

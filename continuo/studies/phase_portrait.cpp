@@ -130,7 +130,7 @@ class Portrait {
   PlaneCurve motion(const PlanePoint& start, double direction) const {
     Options<X> options{.rtol = plane_.rtol, .atol = 1e-3 * plane_.rtol};
     options.interrupt = plane_.interrupt;
-    options.save = Save<X>::every(plane_.duration / static_cast<double>(points_per_motion));
+    options.save = Save<X>::dense();
     options.max_steps = 200'000;
     auto outside = rises<X>("outside", [this](double, const X& x) {
       double most = -1;
@@ -142,10 +142,44 @@ class Portrait {
     options.events = {std::move(outside)};
     const auto run = run_flow(system_, system_.constants, {start[0], start[1]},
                               {plane_.t, plane_.t + direction * plane_.duration}, options);
-    PlaneCurve curve;
-    for (const X& x : run.x)
-      if (std::isfinite(x[0]) && std::isfinite(x[1])) curve.push_back({x[0], x[1]});
+    if (run.t.empty()) return {};
+    const double from = run.t.front(), spacing = direction * plane_.duration / double(points_per_motion);
+    const auto count = static_cast<std::size_t>(std::ceil((run.t.back() - from) / spacing));
+    const auto point = [&](double t) {
+      const X x = run(t);
+      return PlanePoint{x[0], x[1]};
+    };
+    PlaneCurve curve{point(from)};
+    for (std::size_t k = 1; k <= count; ++k) {
+      const double t = k == count ? run.t.back() : from + static_cast<double>(k) * spacing;
+      const double before = k == 1 ? from : from + static_cast<double>(k - 1) * spacing;
+      add_between(curve, point, before, t, point(t), 0);
+    }
+    std::erase_if(curve, [](const PlanePoint& at) { return !std::isfinite(at[0]) || !std::isfinite(at[1]); });
     return curve;
+  }
+
+  /// From the last point of the curve to the one at t, with as many between as its bends take: times that are even
+  /// leave corners where the motion is fast.
+  template <class Point>
+  void add_between(PlaneCurve& curve, const Point& point, double before, double t, const PlanePoint& there,
+                   int depth) const {
+    constexpr double flat = 5e-4;  // of the plane: the curve beside its chord
+    constexpr int deepest = 12;
+    const double middle = (before + t) / 2;
+    const PlanePoint here = curve.back(), between = point(middle);
+    double off = 0, length = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      off = std::max(off, std::abs(between[i] - (here[i] + there[i]) / 2) / size_[i]);
+      length = std::max(length, std::abs(there[i] - here[i]) / size_[i]);
+    }
+    constexpr double longest = 0.05;  // a chord may pass by chance through the middle of a bend
+    if (depth < deepest && (off > flat || length > longest)) {
+      add_between(curve, point, before, middle, between, depth + 1);
+      add_between(curve, point, middle, t, there, depth + 1);
+      return;
+    }
+    curve.push_back(there);
   }
 
   const ParametricSystem& system_;

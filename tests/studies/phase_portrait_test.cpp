@@ -55,5 +55,18 @@ TEST(PhasePortrait, MotionsEndWhereTheyLeave) {  // x' = x, y' = 0
   for (const auto& point : portrait.motions[0]) EXPECT_LE(std::abs(point[0]), 1.03);
 }
 
+// Two hundred turns in the time of the picture: at even times there would be four points to a turn.
+TEST(PhasePortrait, FastMotionsAreRound) {
+  const double w = 400 * std::numbers::pi;
+  const auto turning =
+      parametric_system(2, [w](double, Values x, Values, std::span<double> f) { f[0] = w * x[1], f[1] = -w * x[0]; });
+  const auto portrait =
+      phase_portrait(turning, {.low = {-2, -2}, .high = {2, 2}, .starts = {{1, 0}}, .duration = 1, .rtol = 1e-9});
+  ASSERT_EQ(portrait.motions.size(), 1u);
+  const PlaneCurve& circle = portrait.motions[0];
+  for (std::size_t k = 1; k < circle.size(); ++k)  // the middle of a chord, as far inside as 1/2000 of the plane
+    EXPECT_NEAR(std::hypot(circle[k][0] + circle[k - 1][0], circle[k][1] + circle[k - 1][1]) / 2, 1, 4.0 / 2000 + 1e-4);
+}
+
 }  // namespace
 }  // namespace continuo::studies::phase_portrait_test

@@ -1,0 +1,34 @@
+// Families of solutions of a model whose conditions stand at several times, over one of its parameters.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <continuo/model/diagnostic.hpp>
+#include <continuo/model/experiment.hpp>
+#include <continuo/model/model_program.hpp>
+#include <continuo/studies/boundary_family.hpp>
+#include <continuo/studies/measurements.hpp>
+
+namespace continuo::studies {
+
+struct FamilyRequest {
+  std::string parameter;
+  double low, high;
+  std::optional<Measurements> guess{};  // in place of the model's guesses
+  std::function<void(double part)> progress{};
+};
+
+/// Through the solutions that the model's guesses lead to where the parameter has its value, or the end of the range
+/// that is nearest to it. No families, and diagnostics that say why (E307, E321, E322, E33x, E34x).
+struct ModelFamilies {
+  std::vector<Family> families;
+  double start = 0;  // of the parameter
+  std::vector<model::Diagnostic> diagnostics;
+};
+ModelFamilies families_of_model(const std::shared_ptr<const model::ModelProgram>& program,
+                                const model::Experiment& experiment, const FamilyRequest& request);
+
+}  // namespace continuo::studies
