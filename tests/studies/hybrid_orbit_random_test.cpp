@@ -22,8 +22,8 @@ namespace continuo::studies {
 namespace {
 
 using Real = long double;
-using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
-using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;  // without the heap
+using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1, 0, 4, 1>;
 
 /// More of them than in the suite, for a longer look: CONTINUO_RANDOM_ORBITS=2000.
 int members(int usual) {
@@ -167,7 +167,10 @@ struct LinearFlow {
     int halvings = 0;
     while (m.norm() > 0.5L) m /= 2, ++halvings;
     RealMatrix sum = RealMatrix::Identity(n + 1, n + 1), term = sum;
-    for (int k = 1; k < 30; ++k) term = term * m / static_cast<Real>(k), sum += term;
+    for (int k = 1; k < 30 && term.norm() > 1e-22L; ++k) {
+      term = (term * m).eval() / static_cast<Real>(k);
+      sum += term;
+    }
     for (int k = 0; k < halvings; ++k) sum = (sum * sum).eval();
     return sum;
   }
@@ -239,12 +242,15 @@ struct Turn {
   RealMatrix product;
 };
 
+constexpr Real short_time = 0.01L;
+
 /// From just behind the jump into `mode` to just behind the next; nothing where there is none within a time of 50.
-std::optional<Turn> half_turn(const RandomFlow& system, int mode, const RealVector& begin) {
+/// `step` is the exponential of a short time. The product is asked for only where the turn is to be differentiated.
+std::optional<Turn> half_turn(const RandomFlow& system, int mode, const RealMatrix& step, const RealVector& begin,
+                              bool differentiated) {
   const LinearFlow& flow = system.flow[mode];
   const Eigen::Index n = begin.size();
-  const Real h = 0.01L;
-  const RealMatrix step = flow.exponential(h);
+  const Real h = short_time;
   const auto state = [&](const RealVector& x, Real time) {
     const RealMatrix e = flow.exponential(time);
     return RealVector(e.topLeftCorner(n, n) * x + e.topRightCorner(n, 1));
@@ -257,9 +263,11 @@ std::optional<Turn> half_turn(const RandomFlow& system, int mode, const RealVect
     if (height(x) < 0 && height(next) >= 0) {
       // Newton's method from where the chord crosses: h is short, so that a few steps are exact.
       Real at = h * height(x) / (height(x) - height(next));
-      for (int newton = 0; newton < 6; ++newton) {
+      Real move = h;
+      for (int newton = 0; newton < 6 && std::abs(move) > 1e-18L; ++newton) {
         const RealVector there = state(x, at);
-        at -= height(there) / (sign * system.c.dot(flow.rates(there)));
+        move = height(there) / (sign * system.c.dot(flow.rates(there)));
+        at -= move;
       }
       const RealVector hit = state(x, at);
       const RealVector before = flow.rates(hit);
@@ -267,6 +275,7 @@ std::optional<Turn> half_turn(const RandomFlow& system, int mode, const RealVect
       const RealVector after = system.flow[1 - mode].rates(turn.x);
       const Real speed = system.c.dot(before);
       if (std::abs(speed) < 1e-4L) return std::nullopt;  // as good as touched only
+      if (!differentiated) return turn;
       const RealMatrix saltation =
           system.jump[mode] + (after - system.jump[mode] * before) * system.c.transpose() / speed;
       turn.product = saltation * flow.exponential(turn.time).topLeftCorner(n, n);
@@ -287,23 +296,26 @@ struct FlowCycle {
 std::optional<FlowCycle> cycle_of(const RandomFlow& system, std::size_t most, bool& bounded) {
   const Eigen::Index n = system.c.size();
   RealVector x = RealVector::Zero(n);
-  const auto whole_turn = [&]() -> std::optional<Turn> {
-    const auto first = half_turn(system, 0, x);
+  const RealMatrix step[2] = {system.flow[0].exponential(short_time), system.flow[1].exponential(short_time)};
+  const auto whole_turn = [&](bool differentiated) -> std::optional<Turn> {
+    const auto first = half_turn(system, 0, step[0], x, differentiated);
     if (!first) return std::nullopt;
-    const auto second = half_turn(system, 1, first->x);
+    const auto second = half_turn(system, 1, step[1], first->x, differentiated);
     bounded = bounded && first->x.norm() < 30 && (!second || second->x.norm() < 30);
     if (!second || !bounded) return std::nullopt;
-    return Turn{first->time + second->time, second->x, second->product * first->product};
+    Turn turn{first->time + second->time, second->x, {}};
+    if (differentiated) turn.product = second->product * first->product;
+    return turn;
   };
   for (int k = 0; k < 100; ++k) {
-    const auto turn = whole_turn();
+    const auto turn = whole_turn(false);
     if (!turn) return std::nullopt;
     x = turn->x;
   }
   const RealVector begin = x;
   FlowCycle cycle{0, RealMatrix::Identity(n, n)};
   for (std::size_t k = 0; k < most; ++k) {
-    const auto turn = whole_turn();
+    const auto turn = whole_turn(true);
     if (!turn) return std::nullopt;
     cycle.period += turn->time;
     cycle.product = turn->product * cycle.product;
