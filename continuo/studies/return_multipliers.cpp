@@ -1,6 +1,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
+#include <complex>
+#include <functional>
 #include <span>
+#include <tuple>
+#include <vector>
 
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/studies/return_multipliers.hpp>
@@ -33,7 +37,10 @@ std::vector<std::complex<double>> beside_conserved(const Eigen::MatrixXd& m) {
 }
 
 void by_size(std::vector<std::complex<double>>& values) {
-  std::ranges::stable_sort(values, [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
+  const auto key = [](const std::complex<double>& value) {
+    return std::tuple(std::abs(value), value.imag(), value.real());
+  };
+  std::ranges::sort(values, std::ranges::greater(), key);
 }
 
 }  // namespace

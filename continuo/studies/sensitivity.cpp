@@ -173,8 +173,7 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   if (!planned || !run.diagnostics.empty()) return run;
   std::vector<double>& variables = planned->variables;
   const double from = request.begin ? request.begin->t : planned->from;
-  for (const model::TableInput& input : program().step_inputs)
-    variables[input.variable] = input.table.value(from);
+  for (const model::TableInput& input : program().step_inputs) variables[input.variable] = input.table.value(from);
   for (const auto& [state, value] : request.initial) variables[model.states[state].variable] = value;
   if (request.begin) std::ranges::copy(request.begin->x, variables.begin() + model.layout.states);
 
