@@ -17,11 +17,9 @@ struct Bracket {
 /// Narrows [near, far], where `beyond(t)` is f(t) with its sign turned so that it is <= 0 at near and > 0 at far, until
 /// no number lies strictly between. Zero counts as the near side, so that f has truly changed its sign at `far`.
 ///
-/// False position, where the value kept at an end that stays is scaled by what the parabola through the last three
-/// values says, with a bisection whenever three steps have not halved the enclosure, so the count of evaluations is
-/// bounded by about three times the bits of Real; a smooth f takes six to ten.
-/// N. Anderson, A. Bjorck, "A new high order method of regula falsi type for computing a root of an equation", BIT 13
-/// (1973); the safeguard is T. J. Dekker's (1969).
+/// Illinois false position with a bisection whenever three steps have not halved the enclosure, so the count of
+/// evaluations is bounded by about three times the bits of Real; a smooth f takes eight to twelve.
+/// M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11 (1971); the safeguard is T. J. Dekker's (1969).
 template <class Real, class F>
 Bracket<Real> enclose_root(F&& beyond, Real near, Real far, Real value_near, Real value_far) {
   using std::abs, std::max, std::min, std::nextafter;
@@ -41,19 +39,13 @@ Bracket<Real> enclose_root(F&& beyond, Real near, Real far, Real value_near, Rea
       slow = 0;
     }
     const Real value = beyond(t);
-    // Where that says nothing, half of it is kept (M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11,
-    // 1971).
-    const auto kept = [&](Real replaced) {
-      const Real part = 1 - value / replaced;
-      return part > 0 && part <= 1 ? part : Real(0.5);
-    };
     if (value > 0) {
-      if (last_side > 0) value_near *= kept(value_far);
       far = t, value_far = value;
+      if (last_side > 0) value_near /= 2;
       last_side = 1;
     } else {
-      if (last_side < 0) value_far *= kept(value_near);
       near = t, value_near = value;
+      if (last_side < 0) value_far /= 2;
       last_side = -1;
     }
     slow = abs(far - near) > abs(width) / 2 ? slow + 1 : 0;
