@@ -7,6 +7,7 @@
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/orbit_branch.hpp>
 #include <apps/continuo/orbit_curves.hpp>
+#include <apps/continuo/orbit_text.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/steady_branches.hpp>
 #include <apps/continuo/terminal.hpp>
@@ -60,14 +61,7 @@ std::string csv_of(const std::vector<OrbitBranch>& branches, const Studied& stud
   const model::Model& model = studied.prepared.program->model;
   std::string csv = "branch,";
   results::append_field(csv, name);
-  csv += ",period,stable";
-  for (const model::State& state : model.states)
-    for (const char* end : {" min", " max"}) {
-      csv += ',';
-      results::append_field(csv, state.column + end);
-    }
-  for (std::size_t k = 1; k < model.states.size(); ++k) csv += fmt::format(",multiplier {0} re,multiplier {0} im", k);
-  csv += "\n";
+  csv += ",period,stable" + orbit_columns(model);
   const auto field = [&](double value) {
     csv += ',';
     results::append_number(csv, value);

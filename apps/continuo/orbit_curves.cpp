@@ -4,6 +4,7 @@
 #include <apps/continuo/branch_curves.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/orbit_curves.hpp>
+#include <apps/continuo/orbit_text.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
@@ -141,14 +142,7 @@ std::string csv_of(const OrbitCurves& curves, const model::Model& model, const N
   results::append_field(csv, plane.first.name);
   csv += ',';
   results::append_field(csv, plane.second.name);
-  csv += ",period,rotation";
-  for (const model::State& state : model.states)
-    for (const char* end : {" min", " max"}) {
-      csv += ',';
-      results::append_field(csv, state.column + end);
-    }
-  for (std::size_t k = 1; k < model.states.size(); ++k) csv += fmt::format(",multiplier {0} re,multiplier {0} im", k);
-  csv += "\n";
+  csv += ",period,rotation" + orbit_columns(model);
   const auto field = [&](double value) {
     csv += ',';
     results::append_number(csv, value);

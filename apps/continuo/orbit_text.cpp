@@ -4,6 +4,7 @@
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
 
+#include <continuo/results/csv.hpp>
 #include <continuo/results/summary.hpp>
 
 namespace continuo::app {
@@ -38,6 +39,17 @@ std::string extents_text(const model::Model& model, const std::vector<double>& l
     text += fmt::format("  {} from {} to {}\n", model.states[i].column, number(low[i]), number(high[i]));
   }
   return text;
+}
+
+std::string orbit_columns(const model::Model& model) {
+  std::string csv;
+  for (const model::State& state : model.states)
+    for (const char* end : {" min", " max"}) {
+      csv += ',';
+      results::append_field(csv, state.column + end);
+    }
+  for (std::size_t k = 1; k < model.states.size(); ++k) csv += fmt::format(",multiplier {0} re,multiplier {0} im", k);
+  return csv + "\n";
 }
 
 ExitCode failed_exit(const Outcome<double>& outcome) {

@@ -17,6 +17,9 @@ std::string with_time_unit(double t, const model::Model& model);
 std::string multipliers_text(const std::vector<std::complex<double>>& multipliers);
 /// "  x from -1 to 1", a line for each state.
 std::string extents_text(const model::Model& model, const std::vector<double>& low, const std::vector<double>& high);
+/// ",x min,x max,...,multiplier 1 re,multiplier 1 im,..." and the end of the line: the last columns of a table of
+/// orbits.
+std::string orbit_columns(const model::Model& model);
 /// Says why a study has come to nothing.
 ExitCode failed_exit(const Outcome<double>& outcome);
 
