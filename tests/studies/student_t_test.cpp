@@ -20,5 +20,11 @@ TEST(StudentT, IsCauchysDistributionForOneDegree) {  // 1/2 + atan(t)/pi
     EXPECT_NEAR(student_t_probability(t, 1), 0.5 + std::atan(t) / std::acos(-1), 1e-14) << t;
 }
 
+TEST(StudentT, HasNoValueWithoutDegreesOfFreedom) {
+  EXPECT_TRUE(std::isnan(student_t_quantile(0.95, 0)));
+  EXPECT_TRUE(std::isnan(student_t_quantile(0.95, -1)));
+  EXPECT_TRUE(std::isnan(student_t_quantile(0.95, std::nan(""))));
+}
+
 }  // namespace
 }  // namespace continuo::studies::student_t_test
