@@ -15,6 +15,7 @@
 
 #include <continuo/results/csv.hpp>
 #include <continuo/results/figure.hpp>
+#include <continuo/results/netcdf.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/boundary_family_of_model.hpp>
@@ -170,6 +171,10 @@ ExitCode show_families(const Prepared& prepared, const studies::BoundaryRequest&
   if (!component) return usage;
   if (!(range.from < range.to)) {
     say(fmt::format("--family {}: the range must go from a smaller value to a greater one", range.parameter));
+    return usage;
+  }
+  if (results::is_netcdf(outputs.motion)) {
+    say(fmt::format("cannot write {}: the table of --family is CSV", outputs.motion));
     return usage;
   }
   model::Experiment experiment = prepared.experiment;

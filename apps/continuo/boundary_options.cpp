@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <apps/continuo/boundary_options.hpp>
+#include <apps/continuo/command_line.hpp>
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
@@ -45,7 +46,7 @@ std::optional<studies::BoundaryRequest::Along> read_along(const std::string& opt
 void add_boundary(CLI::App& verb, BoundaryOptions& options) {
   verb.add_option("--solution", options.solution, "Of a boundary-value problem with several: which one")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(count_from(1));
   verb.add_option("--along", options.along,
                   "Of a hard one: solved where a parameter makes it easy, and followed from there: --along eps=1..1e-4")
       ->type_name("NAME=A..B");
@@ -63,13 +64,14 @@ void add_boundary(CLI::App& verb, BoundaryOptions& options) {
 std::optional<studies::BoundaryRequest> read_boundary(const BoundaryOptions& options, const Prepared& prepared) {
   studies::BoundaryRequest request{.solution = options.solution};
   const model::Model& model = prepared.program->model;
-  if (options.along.empty() && options.guess.empty() && options.family.empty()) return request;
+  if (options.as_written() && options.guess.empty() && options.family.empty()) return request;
   if (!model.needs_boundary_solver()) {
     say(fmt::format(
         "{} is for models whose conditions stand at several times; this one's motion follows from its start",
-        !options.along.empty()   ? "--along"
-        : options.family.empty() ? "--guess"
-                                 : "--family"));
+        !options.along.empty()    ? "--along"
+        : !options.family.empty() ? "--family"
+        : !options.guess.empty()  ? "--guess"
+                                  : "--solution"));
     return std::nullopt;
   }
   if (!options.along.empty()) {

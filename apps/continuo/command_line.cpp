@@ -1,3 +1,5 @@
+#include <charconv>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <utility>
@@ -39,6 +41,16 @@ std::vector<std::string> verb_names(const CLI::App& app) {
   return names;
 }
 
+template <class Allowed>
+CLI::Validator numbers_that(Allowed allowed, const std::string& otherwise) {
+  return {[allowed, otherwise](std::string& text) {
+            const auto value = model::cell_number(text);
+            return value && std::isfinite(*value) && allowed(*value) ? std::string()
+                                                                     : fmt::format("{} is {}", text, otherwise);
+          },
+          ""};
+}
+
 std::string with_hint(std::string message, const std::string& hint) {
   return hint.empty() ? message : message + "; " + hint;
 }
@@ -67,6 +79,27 @@ CLI::Validator quotients() {
             return std::string();
           },
           ""};
+}
+
+CLI::Validator count_from(std::size_t least, std::size_t most) {
+  return {[least, most](std::string& text) {
+            std::size_t value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool good =
+                error == std::errc() && end == text.data() + text.size() && least <= value && value <= most;
+            return good ? std::string() : fmt::format("{} is no whole number from {} to {}", text, least, most);
+          },
+          ""};
+}
+
+CLI::Validator finite_number() {
+  return numbers_that([](double) { return true; }, "no number");
+}
+CLI::Validator number_from(double least) {
+  return numbers_that([least](double value) { return value >= least; }, fmt::format("no number from {} on", least));
+}
+CLI::Validator number_above(double least) {
+  return numbers_that([least](double value) { return value > least; }, fmt::format("no number above {}", least));
 }
 
 std::string unexpected(const CLI::App& app, int argc, char** argv) {

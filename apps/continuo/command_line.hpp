@@ -1,6 +1,7 @@
 // apps/continuo/command_line.hpp
 // What CLI11 leaves to us: help that begins with examples, and "did you mean".
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,14 @@ void examples_first(CLI::App& app, std::string_view examples);
 
 /// For options that take a number: 1/60 is one, as in a model.
 CLI::Validator quotients();
+
+/// For options that count: a whole number from `least` to `most`. CLI11 itself takes -3 for a very large one.
+CLI::Validator count_from(std::size_t least, std::size_t most = 1'000'000);
+
+/// For options that take a number: neither infinite nor none, and not below `least`, or above it.
+CLI::Validator finite_number();
+CLI::Validator number_from(double least);
+CLI::Validator number_above(double least);
 
 /// What to say of words that no verb or option takes.
 std::string unexpected(const CLI::App& app, int argc, char** argv);

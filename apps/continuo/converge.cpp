@@ -52,6 +52,10 @@ bool fits_a_world(const ConvergeOptions& options) {
 ExitCode converge(const ConvergeOptions& options) {
   if (!drawable(options.plot)) return usage;
   if (!options.derivative.empty()) {
+    if (!options.experiment.file.empty() || !options.methods.empty()) {
+      say("--derivative is of a function of x: leave out the model and --methods");
+      return usage;
+    }
     const auto study = study_differences(options.derivative, options.at);
     if (!study) return usage;
     print(differences_text(*study, options.in_float));
@@ -104,11 +108,11 @@ void add_converge(CLI::App& app, ExitCode& exit) {
   verb->get_option("file")->required(false);
   verb->add_option("--methods", options->methods, "The methods, with commas")->delimiter(',')->type_name("NAMES");
   verb->add_option("--most-steps", options->most_steps, "Of the run with the shortest step (65536)")
-      ->check(CLI::Range(std::size_t{64}, std::size_t{100'000'000}))
+      ->check(count_from(64, 100'000'000))
       ->type_name("N");
   auto* tolerances = verb->add_option("--tol", options->tolerances, "Error against tolerance instead, with commas")
                          ->delimiter(',')
-                         ->check(CLI::PositiveNumber)
+                         ->check(number_above(0))
                          ->type_name("RTOL,...");
   verb->add_flag("--float", options->in_float, "Also with numbers of 24 bits, side by side")->excludes(tolerances);
   verb->add_flag("--long", options->in_long_double, "Also with numbers of 64 bits")->excludes(tolerances);

@@ -59,7 +59,9 @@ std::string differences_text(const std::vector<studies::DifferenceErrors>& study
   const auto measured = [](const studies::ErrorCurve& curve) {
     return fmt::format("{:.1e} at {:.1e}", curve.least_error, curve.best_step);
   };
+  // Nothing balances where f = 0 is rounded by nothing.
   const auto predicted = [](const studies::Balance& balance) {
+    if (!(balance.step > 0)) return std::string("-");
     return fmt::format("{:.1e} at {:.1e}", balance.error, balance.step);
   };
   std::string text = fmt::format("{:<14} {:>5} {:>8}  {:<20}  {:<18}", "difference", "order", "observed",

@@ -106,7 +106,9 @@ void add_limits(CLI::App& verb, ExperimentOptions& options) {
       ->type_name("H")
       ->transform(quotients())
       ->excludes(verb.get_option("--step"));
-  verb.add_option("--max-steps", options.max_steps, "How many steps there may be")->type_name("N");
+  verb.add_option("--max-steps", options.max_steps, "How many steps there may be")
+      ->check(count_from(1, 1'000'000'000'000))
+      ->type_name("N");
 }
 
 void refuse_option(CLI::App& verb, const std::string& name, const std::string& why) {

@@ -45,12 +45,14 @@ void add_explore(CLI::App& app, ExitCode& exit) {
   auto options = std::make_shared<ExploreOptions>();
   add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
-  verb->add_option("--starts", options->limits.starts, "Of the search for places of rest (200)")->type_name("N");
+  verb->add_option("--starts", options->limits.starts, "Of the search for places of rest (200)")
+      ->check(count_from(0))
+      ->type_name("N");
   verb->add_option("--settle", options->limits.settle, "Time for the motion to come to its orbit (100)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from(0))
       ->type_name("T");
   verb->add_option("--duration", options->limits.duration, "Within which an orbit must come back (1000)")
-      ->check(CLI::PositiveNumber)
+      ->check(number_above(0))
       ->type_name("T");
   verb->add_flag("--json", options->json, "All of it as one JSON object");
   verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");

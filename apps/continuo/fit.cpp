@@ -121,8 +121,11 @@ void add_fit(CLI::App& app, ExitCode& exit) {
   verb->add_option("--likelihood", options->likelihood, "Of unknown deviations: restricted, or plain, which is biased")
       ->type_name("NAME");
   verb->add_option("--starts", options->starts, "Search from this many places; else from ten others in doubt")
+      ->check(count_from(1))
       ->type_name("N");
-  verb->add_option("--iterations", options->iterations, "The limit of each search (500)")->type_name("N");
+  verb->add_option("--iterations", options->iterations, "The limit of each search (500)")
+      ->check(count_from(1))
+      ->type_name("N");
   verb->add_flag("--profile", options->profile, "Intervals from the profile of the likelihood, too");
   verb->add_flag("--json", options->json, "The result with its residuals as one JSON object");
   add_tolerances(*verb, options->experiment);

@@ -67,10 +67,6 @@ class FitRequestReader {
       return {};
     }
     request_.likelihood = static_cast<studies::Likelihood>(*likelihood);
-    if (options_.starts == 0U || options_.iterations == 0) {
-      say(options_.iterations == 0 ? "--iterations: at least one" : "--starts: at least one, the start itself");
-      return {};
-    }
     request_.options.loss = static_cast<studies::Loss>(*loss);
     request_.one_deviation = options_.one_deviation;
     request_.options.most_iterations = options_.iterations;
@@ -138,6 +134,10 @@ class FitRequestReader {
     for (const std::string& text : options_.deviations) {
       const auto setting = split_setting(text, "COLUMN=DEVIATION");
       if (!setting || !has_column(setting->first)) return false;
+      if (setting->first == setting->second) {
+        say(fmt::format("--sigma {}: a column does not hold its own deviations", text));
+        return false;
+      }
       if (is_column(setting->second)) of_deviations_.push_back(setting->second);
     }
     return true;
@@ -167,6 +167,9 @@ class FitRequestReader {
         for (const auto& [column, error] : errors_)
           if (column == name) data.columns.back().error = error;
       }
+      if (!data.columns.empty()) continue;
+      say(fmt::format("{}:1: no column is left that measures anything", data.measurements.file));
+      return false;
     }
     return true;
   }
@@ -217,6 +220,10 @@ class FitRequestReader {
     } else if (column.error == ErrorModel::lognormal) {
       column.deviation = value;
     } else if (in_percent) {
+      const bool constant_asked = std::ranges::any_of(errors_, [&](const auto& asked) {
+        return asked.first == measurements.columns[column.column] && asked.second == ErrorModel::constant;
+      });
+      if (constant_asked) return refused("it is the error model `proportional`, and `constant` was asked for");
       if (column.error == ErrorModel::constant) column.error = ErrorModel::proportional;
       column.relative = value;
     } else if (column.error == ErrorModel::proportional) {

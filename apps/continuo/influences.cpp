@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <apps/continuo/influences.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
@@ -24,6 +26,8 @@ void say_step_has_no_part(const Prepared& prepared) {
 }
 
 std::string no_such(const std::string& kind, const std::string& name, const std::vector<std::string>& names) {
+  if (std::ranges::all_of(names, &std::string::empty))
+    return fmt::format("there is no {} `{}`, and no other", kind, name);
   const std::string near = model::did_you_mean(name, names);
   return fmt::format("there is no {} `{}`; {}", kind, name,
                      near.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : near);

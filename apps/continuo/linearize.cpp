@@ -175,7 +175,9 @@ void add_linearize(CLI::App& app, ExitCode& exit) {
   verb->add_option("--at", options->at, "The point, of single states; the others as at the start")
       ->delimiter(',')
       ->type_name("NAME=VALUE");
-  verb->add_option("--time", options->time, "At this time, where the equations depend on it")->type_name("T");
+  verb->add_option("--time", options->time, "At this time, where the equations depend on it")
+      ->check(finite_number())
+      ->type_name("T");
   verb->add_flag("--start", options->start, "At the start, instead of where the model rests");
   verb->add_flag("--json", options->json, "Matrices and modes as one JSON object");
   verb->callback([&exit, options] { exit = linearize(*options); });

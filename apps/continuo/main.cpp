@@ -76,7 +76,9 @@ int command(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return continuo::app::command(argc, argv);
+    const int exit = continuo::app::command(argc, argv);
+    if (exit != continuo::app::done) return exit;
+    return continuo::app::all_printed() ? continuo::app::done : continuo::app::usage;
   } catch (const std::exception& error) {
     continuo::app::say(fmt::format("internal error: {}", error.what()));
     return continuo::app::numerical_failure;

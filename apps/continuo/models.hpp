@@ -26,4 +26,11 @@ bool readable(const std::string& path);
 bool writable(const std::string& path);
 bool drawable(const std::string& path);
 
+/// Whether no file is written over one that is read, or over another one; says so where one is. Empty names and - are
+/// no files.
+bool are_apart(const std::vector<std::string>& read, const std::vector<std::string>& written);
+
+/// What a model reads besides itself: its tables, and the values of its inputs.
+std::vector<std::string> files_of(const model::Model& model, const std::string& path);
+
 }  // namespace continuo::app

@@ -181,8 +181,22 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
   return done;
 }
 
+/// Nothing is drawn or written of some of what may be asked for: said, not passed over.
+bool has_its_outputs(const OrbitOptions& options) {
+  const bool section = !options.section.empty();
+  if (!options.plot.empty() && (section || options.lyapunov)) {
+    say("--plot draws the orbit, or --along; of --section and --lyapunov there is no picture");
+    return false;
+  }
+  if (options.out.empty() || section || !options.along.empty()) return true;
+  say("-o writes the table of --section or of --along; give one of them");
+  return false;
+}
+
 ExitCode orbit(OrbitOptions options) {
-  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps)) return usage;
+  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps) ||
+      !are_apart({options.experiment.file}, {options.out}) || !has_its_outputs(options))
+    return usage;
   std::optional<NamedRange> range, second;
   std::vector<std::string> constants;
   if (!options.along.empty()) {
@@ -202,10 +216,6 @@ ExitCode orbit(OrbitOptions options) {
   options.patient = !options.settle && !(options.duration > 0);
   if (!options.settle) options.settle = run;
   if (!(options.duration > 0)) options.duration = options.lyapunov ? 20 * run : run;
-  if (!(*options.settle >= 0) || !(options.tolerance > 0)) {
-    say("--settle must not be negative, --tol must be greater than zero");
-    return usage;
-  }
   const bool closed = !options.lyapunov && options.section.empty();
   if (closed && !range && (needs_all(studied, options) || is_forced(studied, options)))
     return show_hybrid_orbit(studied, shooting_of(options));
@@ -244,14 +254,17 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
   add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
   verb->add_option("--settle", options->settle, "Time to come to the orbit first; else that of the model's run")
+      ->check(number_from(0))
       ->type_name("T");
   verb->add_option("--duration", options->duration, "Time to look for it; else that of the model's run")
+      ->check(number_above(0))
       ->type_name("T");
-  verb->add_option("--tol", options->tolerance, "How exact")->type_name("TOL");
+  verb->add_option("--tol", options->tolerance, "How exact")->check(number_above(0))->type_name("TOL");
   verb->add_option("--period", options->forcing, "Of what hangs on the time, where the text does not show it")
       ->transform(quotients())
       ->type_name("T");
   verb->add_option("--turns", options->turns, "So many of these periods are one of the orbit; else as it comes back")
+      ->check(count_from(1))
       ->type_name("N");
   auto* section = verb->add_option("--section", options->section, "States as a plane is passed upwards, as CSV")
                       ->type_name("NAME=VALUE");
@@ -265,6 +278,7 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
       ->needs(along);
   verb->add_flag("--from-hopf", options->from_hopf, "Begin where places of rest begin to oscillate")->needs(along);
   verb->add_option("--branches", options->others, "How many branches to follow that begin on others; else 3")
+      ->check(count_from(0, 1000))
       ->type_name("N")
       ->needs(along);
   add_branch_steps(*verb, options->steps, along);

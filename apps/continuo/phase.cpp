@@ -218,8 +218,12 @@ void add_phase(CLI::App& app, ExitCode& exit) {
   verb->add_option("--start", options->starts, "Where a motion begins; may be given again")
       ->type_name("NAME=VALUE;...")
       ->allow_extra_args(false);
-  verb->add_option("--spread", options->spread, "Without --start: how many motions")->type_name("N");
-  verb->add_option("--time", options->time, "At this time, where the equations depend on it")->type_name("T");
+  verb->add_option("--spread", options->spread, "Without --start: how many motions")
+      ->check(count_from(0, 10'000))
+      ->type_name("N");
+  verb->add_option("--time", options->time, "At this time, where the equations depend on it")
+      ->check(finite_number())
+      ->type_name("T");
   verb->add_flag("--json", options->json, "Rests, nullclines and motions as one JSON object");
   verb->add_option("--plot", options->plot, "The picture, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = phase(*options); });

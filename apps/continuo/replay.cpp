@@ -8,6 +8,7 @@
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/experiment_options.hpp>
 #include <apps/continuo/interrupt.hpp>
+#include <apps/continuo/models.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/run_file.hpp>
 #include <apps/continuo/run_results.hpp>
@@ -38,7 +39,7 @@ struct Opened {
 
 Opened open(const ReplayRequest& request) {
   Opened opened;
-  if (!can_be_written(request.outputs)) return opened;
+  if (!can_be_written(request.outputs) || !are_apart({request.file}, files_of(request.outputs))) return opened;
   auto recording = read_run(request.file);
   if (!recording) return opened;
   opened.recording = std::move(*recording);
@@ -78,16 +79,12 @@ ExitCode replay(const ReplayRequest& request) {
 }
 
 ExitCode resume(const ReplayRequest& request) {
-  if (!can_be_written(request.record)) return usage;
+  if (!can_be_written(request.record) || !are_apart({request.file}, {request.record.path})) return usage;
   const Opened opened = open(request);
   if (opened.exit != done) return opened.exit;
   const auto& recording = opened.recording;
   if (recording.standings.empty()) {
     say(fmt::format("{} has no place to go on from: it was recorded with --snapshots 0", request.file));
-    return usage;
-  }
-  if (request.record.path == request.file) {
-    say("--record takes another file than the one that is read");
     return usage;
   }
   const std::size_t standing = request.at ? recording.standing_at(*request.at) : recording.standings.size() - 1;

@@ -46,7 +46,7 @@ results::ReportSection section_of(std::string title, std::vector<std::string> wo
 }
 
 ExitCode report(const ReportOptions& options) {
-  if (!readable(options.file) || !writable(options.out)) return usage;
+  if (!readable(options.file) || !writable(options.out) || !are_apart({options.file}, {options.out})) return usage;
   const model::Loaded loaded = load_model(options.file);
   if (!loaded) return wrong_model;
   const model::Model& model = *loaded.model;

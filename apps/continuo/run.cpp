@@ -40,7 +40,11 @@ model::Simulated simulate_recorded(const RunRequest& request, const Prepared& pr
 }
 
 ExitCode run(const RunRequest& request) {
-  if (!can_be_written(request.outputs) || !can_be_written(request.record)) return usage;
+  std::vector<std::string> written = files_of(request.outputs);
+  written.push_back(request.record.path);
+  if (!can_be_written(request.outputs) || !can_be_written(request.record) ||
+      !are_apart({request.experiment.file, request.boundary.guess}, written))
+    return usage;
   Prepared prepared = prepare(request.experiment, Worlds::welcome);
   const model::Source& source = prepared.loaded.source;
   if (prepared.exit == done && !request.record.path.empty() && !prepared.program->model.has_world()) {
@@ -51,6 +55,7 @@ ExitCode run(const RunRequest& request) {
     if (request.outputs.json) print_no_run(prepared.loaded.diagnostics, source);
     return prepared.exit;
   }
+  if (!are_apart(files_of(prepared.program->model, request.experiment.file), written)) return usage;
   const auto boundary = read_boundary(request.boundary, prepared);
   if (!boundary) return usage;
   if (!request.boundary.family.empty()) {

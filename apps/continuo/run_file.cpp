@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include <apps/continuo/command_line.hpp>
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/run_file.hpp>
 #include <apps/continuo/terminal.hpp>
@@ -14,7 +15,7 @@ void add_record(CLI::App& verb, RecordTo& record) {
       verb.add_option("--record", record.path, "Of a world: a file to replay, or to go on from")->type_name("FILE");
   verb.add_option("--snapshots", record.standings, "In the recording: so many places to go on from (20)")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{100'000}))
+      ->check(count_from(0, 100'000))
       ->needs(path);
 }
 

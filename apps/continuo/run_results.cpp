@@ -94,6 +94,10 @@ bool can_be_written(const RunOutputs& outputs) {
   return writable(outputs.motion) && writable(outputs.events) && writable(outputs.manifest) && drawable(outputs.plot);
 }
 
+std::vector<std::string> files_of(const RunOutputs& outputs) {
+  return {outputs.motion, outputs.events, outputs.manifest, outputs.plot};
+}
+
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
               const RunOutputs& outputs, bool as_written) {
   show(simulated.diagnostics, source);

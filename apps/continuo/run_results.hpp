@@ -19,6 +19,7 @@ struct RunOutputs {
 void add_outputs(CLI::App& verb, RunOutputs& outputs);
 /// Said before a long run, not after it.
 bool can_be_written(const RunOutputs& outputs);
+std::vector<std::string> files_of(const RunOutputs& outputs);
 
 /// Writes and prints what is wanted. Checks are meant for a run as its model is written.
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,

@@ -137,7 +137,8 @@ ExitCode sense_of_limit(const SenseOptions& options) {
 }
 
 ExitCode sense(const SenseOptions& options) {
-  if (!drawable(options.plot) || !writable(options.output)) return usage;
+  if (!drawable(options.plot) || !writable(options.output) || !are_apart({options.experiment.file}, {options.output}))
+    return usage;
   if (options.of == "period" || options.of == "rest") return sense_of_limit(options);
   Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;

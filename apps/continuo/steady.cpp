@@ -135,7 +135,9 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
 }
 
 ExitCode steady(const SteadyOptions& options) {
-  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps)) return usage;
+  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps) ||
+      !are_apart({options.experiment.file}, {options.out}))
+    return usage;
   if (!options.plot.empty() && options.along.empty()) {
     say("--plot draws how the places of rest move with a parameter: give --along NAME=LOW..HIGH");
     return usage;
@@ -195,7 +197,7 @@ void add_steady(CLI::App& app, ExitCode& exit) {
   verb->add_option("--box", options->box, "Where to look, of single states")
       ->delimiter(',')
       ->type_name("NAME=LOW..HIGH");
-  verb->add_option("--starts", options->starts, "How many places to begin from")->type_name("N");
+  verb->add_option("--starts", options->starts, "How many places to begin from")->check(count_from(0))->type_name("N");
   auto* along =
       verb->add_option("--along", options->along, "Follow each place while a parameter moves, and what crosses")
           ->type_name("NAME=LOW..HIGH");

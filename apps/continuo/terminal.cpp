@@ -21,6 +21,12 @@ void print(std::string_view text) {
   std::fflush(stdout);  // in order with the messages
 }
 
+bool all_printed() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  say("standard output could not be written to its end");
+  return false;
+}
+
 bool colors_wanted() {
   const char* no_color = std::getenv("NO_COLOR");
   return watched() && (no_color == nullptr || *no_color == '\0');

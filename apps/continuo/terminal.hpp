@@ -16,6 +16,9 @@ bool written(const std::optional<std::string>& failure);
 /// Text that is data: standard output.
 void print(std::string_view text);
 
+/// Whether all that was printed has arrived, not on a full disk; says so where not.
+bool all_printed();
+
 /// Whether messages may have colours: standard error is a terminal and NO_COLOR is not set (no-color.org).
 bool colors_wanted();
 

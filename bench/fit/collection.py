@@ -148,7 +148,7 @@ def main():
                 continue
             objective = -result["statistics"]["log_likelihood"]
             reached.append(objective)
-            print(f"{name} seed {seed}: -log L = {objective:.4f}", flush=True)
+            print(f"{name} seed {seed}: -log L = {objective:.4f}", *(f"[{doubt['kind']}]" for doubt in result["doubts"]), flush=True)
         if reached:
             print(f"{name}: best -log L = {min(reached):.4f} of {len(reached)}, {problem.best} is the collection's")
 

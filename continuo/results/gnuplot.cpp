@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -290,6 +291,21 @@ std::optional<std::string> run_gnuplot(const std::string& script_path) {
 
 namespace {
 
+/// Whether a picture has its end, which gnuplot leaves out without a word where a disk is full. What is no file on a
+/// disk cannot be asked.
+bool is_whole_picture(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return true;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  constexpr std::streamoff end_bytes = 16;
+  const std::streamoff size = file.tellg();
+  if (size < end_bytes) return false;
+  std::string end(end_bytes, ' ');
+  file.seekg(size - end_bytes);
+  file.read(end.data(), end_bytes);
+  return end.find(ending_of(path) == ".png" ? "IEND" : "</svg>") != std::string::npos;
+}
+
 /// As much of a curve as the picture needs.
 Curve drawn(const Panel& panel, const Curve& curve) {
   if (curve.style == Curve::Style::area && !curve.widens_axes) {  // gnuplot leaves some of it beyond the frame
@@ -362,7 +378,9 @@ std::optional<std::string> draw(const Figure& figure, const std::string& path) {
   ::close(descriptor);
   const TemporaryFile file{name};
   if (auto failure = write_file(name, gnuplot_script(figure, path))) return failure;
-  return run_gnuplot(name);
+  if (auto failure = run_gnuplot(name)) return failure;
+  if (is_whole_picture(path)) return std::nullopt;
+  return fmt::format("cannot write {}: the picture is cut off, as where a disk is full", path);
 }
 
 }  // namespace continuo::results

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -118,6 +119,8 @@ ReadMeasurements parse_measurements(std::string_view text, const std::string& na
 }
 
 ReadMeasurements read_measurements(const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) return {{}, fmt::format("cannot read {}: it is a folder", file)};
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return {{}, fmt::format("{}:1: the file cannot be read", file)};
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -114,7 +114,7 @@ TEST(Fit, SaysFileAndLineOfWrongData) {
   EXPECT_THAT(message("t,x\n0,1\n", "--param a --prior 'b=normal(1, 1)'"), HasSubstr("there is no unknown `b`"));
   EXPECT_THAT(message("t,x\n0,1\n", "--param a --likelihood full"), HasSubstr("there is no likelihood `full`"));
   EXPECT_THAT(message("t,x\n0,1\n", "--param a,a"), HasSubstr("`a` is named twice"));
-  EXPECT_THAT(message("t,x\n0,1\n", "--param a --starts 0"), HasSubstr("at least one"));
+  EXPECT_THAT(message("t,x\n0,1\n", "--param a --starts 0"), HasSubstr("no whole number from 1"));
   EXPECT_THAT(message("t,x\n0,1\n1,0\n", "--param a --error x=lognormal"), HasSubstr("d.csv:3: 0 in column `x`"));
   EXPECT_THAT(message("t,x\n0,1\n", "--param a --bounds a=2"), HasSubstr("`a=2` is not NAME=LOW..HIGH"));
   EXPECT_THAT(message("t,x\n0,1\n", "--param a --column z=x"), HasSubstr("there is no column `z`"));
