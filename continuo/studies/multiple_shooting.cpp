@@ -14,9 +14,9 @@ namespace {
 
 using Vector = std::vector<double>;
 
-class Shooting {
+class MultipleShooting {
  public:
-  Shooting(const BoundaryValueProblem& problem, const ShootingOptions& options)
+  MultipleShooting(const BoundaryValueProblem& problem, const ShootingOptions& options)
       : problem_(problem),
         options_(options),
         varied_(with_variations(problem.system, true)),
@@ -204,7 +204,7 @@ ShootingSolution solve_by_shooting(const BoundaryValueProblem& problem, const Bo
     none.outcome.hint = wrong.empty() ? "at least one segment is needed" : wrong;
     return none;
   }
-  return Shooting(problem, options)(guess);
+  return MultipleShooting(problem, options)(guess);
 }
 
 }  // namespace continuo::studies
