@@ -2,10 +2,12 @@
 #include <cmath>
 
 #include <apps/continuo/exploration.hpp>
+#include <apps/continuo/hybrid_orbit.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/progress.hpp>
 #include <fmt/format.h>
 
+#include <continuo/studies/forcing_period.hpp>
 #include <continuo/studies/of_model.hpp>
 #include <continuo/studies/unseen.hpp>
 
@@ -61,29 +63,77 @@ void find_rests(const Studied& studied, const ExplorationLimits& limits, Explora
 void run_on(const Studied& studied, const ExplorationLimits& limits, Exploration& found) {
   if (found.comes_to || !found.simulated.run) return;
   model::Experiment experiment = studied.prepared.experiment;
-  experiment.to = found.simulated.run->plan.to + limits.settle;
+  experiment.to = found.simulated.run->plan.to + limits.settle.value_or(run_length(studied.prepared.program->model));
   experiment.keep_rows = false;
   experiment.interrupt = &interrupt_flag();
   found.comes_to = rest_at_end(found, model::simulate(studied.prepared.program, experiment));
   found.comes_later = found.comes_to.has_value();
 }
 
-/// An orbit where the motion comes back; else how fast its neighbours part.
-void find_orbit(const Studied& studied, const ExplorationLimits& limits, bool all_seen, Exploration& found) {
-  if (found.comes_to || studied.system.size < 1) return;
-  if (all_seen && studied.system.size > 1) {
-    auto orbit = studies::find_periodic_orbit(
-        studied.system, studied.start,
-        {.settle = limits.settle, .duration = limits.duration, .interrupt = &interrupt_flag()});
-    if (orbit.outcome) {
-      found.orbit = std::move(orbit);
-      return;
-    }
+/// How long to look for orbits.
+struct Times {
+  double settle, duration;
+  bool patient;  // none was named
+};
+Times times_of(const Studied& studied, const ExplorationLimits& limits) {
+  const double run = run_length(studied.prepared.program->model);
+  return {limits.settle.value_or(run), limits.duration.value_or(run), !limits.settle && !limits.duration};
+}
+
+/// By the equations alone, which are all that moves the model.
+void find_smooth_orbit(const Studied& studied, const Times& times, Exploration& found) {
+  if (studied.system.size < 2) return;
+  studies::PeriodicOrbitOptions search{
+      .settle = times.settle, .duration = times.duration, .interrupt = &interrupt_flag()};
+  auto orbit = studies::find_periodic_orbit(studied.system, studied.start, search);
+  if (!orbit.outcome && orbit.wanders && times.patient && !interrupt_flag()) {
+    search.settle *= 10;
+    search.duration *= 10;
+    orbit = studies::find_periodic_orbit(studied.system, studied.start, search);
+  }
+  if (orbit.outcome) {
+    found.orbit = std::move(orbit);
+  } else {
     found.open.push_back("no closed orbit: " +
                          (orbit.outcome.hint.empty() ? describe(orbit.outcome) : orbit.outcome.hint));
   }
-  const studies::LyapunovOptions averaging{
-      .duration = limits.duration, .settle = limits.settle, .interrupt = &interrupt_flag()};
+}
+
+void find_whole_orbit(const Studied& studied, const Times& times, Exploration& found) {
+  const studies::Forcing forcing =
+      studies::forcing_of(*studied.prepared.program, studied.prepared.experiment.parameters);
+  if (!forcing.problem.empty()) {
+    found.open.push_back(fmt::format("no closed orbit was looked for: {}: {}; `continuo orbit --period T` gives it",
+                                     place_text(studied.prepared, forcing.span), forcing.problem));
+    return;
+  }
+  const HybridOrbitRequest request{
+      .settle = times.settle, .duration = times.duration, .tolerance = 1e-9, .patient = times.patient};
+  auto orbit = find_hybrid_orbit(
+      studied, request,
+      {.settle = times.settle, .duration = times.duration, .forcing = forcing.period, .interrupt = &interrupt_flag()});
+  if (orbit.outcome) {
+    found.hybrid_orbit = std::move(orbit);
+  } else {
+    found.open.push_back("no closed orbit: " +
+                         (orbit.outcome.hint.empty() ? describe(orbit.outcome) : orbit.outcome.hint));
+  }
+}
+
+/// An orbit where the motion comes back; else how fast its neighbours part.
+void find_orbit(const Studied& studied, const ExplorationLimits& limits, bool all_seen, Exploration& found) {
+  if (found.comes_to || studied.system.size < 1) return;
+  const Times times = times_of(studied, limits);
+  if (all_seen) {
+    find_smooth_orbit(studied, times, found);
+  } else {
+    find_whole_orbit(studied, times, found);
+  }
+  if (found.orbit || found.hybrid_orbit || interrupt_flag()) return;
+  constexpr double averaged_runs = 20;
+  const studies::LyapunovOptions averaging{.duration = limits.duration.value_or(averaged_runs * times.duration),
+                                           .settle = times.settle,
+                                           .interrupt = &interrupt_flag()};
   auto exponents = all_seen
                        ? studies::lyapunov_exponents(studied.system, studied.start, averaging)
                        : studies::lyapunov_exponents(studied.prepared.program, studied.prepared.experiment, averaging);

@@ -12,6 +12,7 @@
 #include <continuo/results/figure.hpp>
 #include <continuo/studies/continuation.hpp>
 #include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/hybrid_orbit.hpp>
 #include <continuo/studies/lyapunov.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 #include <continuo/studies/sensitivity.hpp>
@@ -45,6 +46,7 @@ struct Exploration {
   std::optional<std::size_t> comes_to;  // the place of rest at which the run ends
   bool comes_later = false;             // it does so only when it goes on
   std::optional<studies::PeriodicOrbit> orbit;
+  std::optional<studies::HybridOrbit> hybrid_orbit;  // instead, where events or the time have a part in the motion
   std::optional<studies::LyapunovExponents> exponents;
   std::vector<Slider> sliders;
   std::vector<std::string> not_moved;  // parameters without a range
@@ -55,7 +57,8 @@ struct Exploration {
 
 struct ExplorationLimits {
   std::size_t starts = 200, sliders = 8;
-  double settle = 100, duration = 1000;  // of orbits
+  // Of orbits; else as long as the model's run, and ten times as long where the motion does not come back by then.
+  std::optional<double> settle{}, duration{};
 };
 
 Exploration explore(const Studied& studied, const ExplorationLimits& limits);

@@ -42,6 +42,14 @@ results::Panel plane(const model::Model& model, const model::Motion& motion, con
     }
     panel.curves.push_back(std::move(orbit));
   }
+  if (found.hybrid_orbit) {
+    results::Curve orbit{.label = "orbit", .x = {}, .y = {}};
+    for (const std::vector<double>& x : found.hybrid_orbit->x) {
+      orbit.x.push_back(x[0]);
+      orbit.y.push_back(x[1]);
+    }
+    panel.curves.push_back(std::move(orbit));
+  }
   for (const auto& [name, stable, style] :
        {std::tuple{"at rest, stable", true, full_points}, {"at rest, not stable", false, empty_points}}) {
     results::Curve points{.label = name, .x = {}, .y = {}, .color = "#000000", .style = style};

@@ -56,6 +56,10 @@ std::string exploration_json(const Studied& studied, const Exploration& found) {
     result["orbit"] = {{"period", found.orbit->period},
                        {"stable", found.orbit->stable},
                        {"multipliers", json_of(found.orbit->multipliers)}};
+  if (found.hybrid_orbit)
+    result["orbit"] = {{"period", found.hybrid_orbit->period},
+                       {"stable", found.hybrid_orbit->neighbours == studies::HybridOrbit::Neighbours::come_nearer},
+                       {"multipliers", json_of(found.hybrid_orbit->multipliers)}};
   if (found.exponents)
     result["exponents"] = {{"values", found.exponents->exponents}, {"spread", found.exponents->spread}};
   return result.dump(2) + "\n";

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <apps/continuo/exploration.hpp>
+#include <apps/continuo/orbit_text.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -55,9 +56,18 @@ std::string rests_text(const model::Model& model, const Exploration& found) {
 std::string orbit_text(const model::Model& model, const Exploration& found) {
   std::string text;
   if (found.orbit) {
-    const std::string unit = model.time_unit.empty() ? "" : " " + model.time_unit;
-    text = fmt::format("orbit    period {:.10g}{}, {}\n", found.orbit->period, unit,
+    text = fmt::format("orbit    period {}, {}\n", with_time_unit(found.orbit->period, model),
                        found.orbit->stable ? "stable" : "not stable");
+  }
+  if (found.hybrid_orbit) {
+    using Neighbours = studies::HybridOrbit::Neighbours;
+    const studies::HybridOrbit& orbit = *found.hybrid_orbit;
+    const std::string turns = orbit.turns > 1 ? fmt::format(", {} of the forcing's", orbit.turns) : "";
+    text = fmt::format("orbit    period {}{}, {}\n", with_time_unit(orbit.period, model), turns,
+                       orbit.neighbours == Neighbours::come_nearer ? "stable"
+                       : orbit.neighbours == Neighbours::go_away   ? "not stable"
+                                                                   : "undecided at first order");
+    if (orbit.found_nearby) text += "         the motion itself does not come to it: it passes near by\n";
   }
   if (!found.exponents) return text;
   text += "motion   Lyapunov exponents";

@@ -48,10 +48,10 @@ void add_explore(CLI::App& app, ExitCode& exit) {
   verb->add_option("--starts", options->limits.starts, "Of the search for places of rest (200)")
       ->check(count_from(0))
       ->type_name("N");
-  verb->add_option("--settle", options->limits.settle, "Time for the motion to come to its orbit (100)")
+  verb->add_option("--settle", options->limits.settle, "Time for the motion to come to its orbit; else that of the run")
       ->check(number_from(0))
       ->type_name("T");
-  verb->add_option("--duration", options->limits.duration, "Within which an orbit must come back (1000)")
+  verb->add_option("--duration", options->limits.duration, "Within which an orbit must come back; else that of the run")
       ->check(number_above(0))
       ->type_name("T");
   verb->add_flag("--json", options->json, "All of it as one JSON object");

@@ -21,6 +21,7 @@ namespace continuo::app {
 namespace {
 
 constexpr double longer = 10;
+constexpr double longest_forcing = 10;  // in times of the run that looks for the orbit
 
 /// The period of what hangs on the time: that of the text, or the one that was given where it fits. False where there
 /// is none that can be relied on, which is said.
@@ -38,6 +39,11 @@ bool set_forcing(const Studied& studied, const HybridOrbitRequest& request, stud
     if (std::abs(ratio - std::round(ratio)) > 1e-9 * ratio || std::round(ratio) < 1) {
       say(fmt::format("--period {:.10g} is no multiple of {:.10g}, after which the text says that the model repeats",
                       *request.forcing, *forcing.period));
+      return false;
+    }
+    if (*request.forcing > longest_forcing * (request.settle + request.duration)) {
+      say(fmt::format("--period {:.10g} is far longer than what is run to find the orbit (--settle, --duration)",
+                      *request.forcing));
       return false;
     }
     std::vector<double> low, high;
@@ -132,28 +138,39 @@ std::string json_text(const model::Model& model, const studies::HybridOrbit& fou
 
 }  // namespace
 
-ExitCode show_hybrid_orbit(const Studied& studied, const HybridOrbitRequest& request) {
-  const model::Model& model = studied.prepared.program->model;
+std::optional<studies::HybridOrbitOptions> search_of(const Studied& studied, const HybridOrbitRequest& request) {
   studies::HybridOrbitOptions search{.settle = request.settle,
                                      .duration = request.duration,
                                      .tolerance = request.tolerance,
                                      .turns = request.turns,
                                      .interrupt = &interrupt_flag()};
-  if (!set_forcing(studied, request, search)) return wrong_model;
+  if (!set_forcing(studied, request, search)) return std::nullopt;
+  return search;
+}
+
+studies::HybridOrbit find_hybrid_orbit(const Studied& studied, const HybridOrbitRequest& request,
+                                       studies::HybridOrbitOptions search) {
+  const auto look = [&] {
+    return studies::find_hybrid_orbit(studied.prepared.program, studied.prepared.experiment, search);
+  };
+  studies::HybridOrbit first = look();
+  if (first.outcome || !first.wanders || !request.patient) return first;
+  search.settle *= longer;
+  search.duration *= longer;
+  return look();
+}
+
+ExitCode show_hybrid_orbit(const Studied& studied, const HybridOrbitRequest& request) {
+  const model::Model& model = studied.prepared.program->model;
+  std::optional<studies::HybridOrbitOptions> search = search_of(studied, request);
+  if (!search) return wrong_model;
   const studies::HybridOrbit found = [&] {
     Progress progress;
-    search.progress = progress.parts();
-    const auto look = [&] {
-      return studies::find_hybrid_orbit(studied.prepared.program, studied.prepared.experiment, search);
-    };
-    studies::HybridOrbit first = look();
-    if (first.outcome || !first.wanders || !request.patient) return first;
-    search.settle *= longer;
-    search.duration *= longer;
-    return look();
+    search->progress = progress.parts();
+    return find_hybrid_orbit(studied, request, *search);
   }();
   if (!found.outcome) return failed_exit(found.outcome);
-  print(request.json ? json_text(model, found, search.forcing) : text_of(model, found, search.forcing));
+  print(request.json ? json_text(model, found, search->forcing) : text_of(model, found, search->forcing));
   if (!request.plot.empty() && !written(results::draw(figure_of(model, found), request.plot))) return usage;
   return done;
 }

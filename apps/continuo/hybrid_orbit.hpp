@@ -7,6 +7,8 @@
 #include <apps/continuo/exit_codes.hpp>
 #include <apps/continuo/studied_model.hpp>
 
+#include <continuo/studies/hybrid_orbit.hpp>
+
 namespace continuo::app {
 
 struct HybridOrbitRequest {
@@ -17,6 +19,13 @@ struct HybridOrbitRequest {
   bool json = false;
   std::string plot{};
 };
+
+/// What the request asks for, with the period of what hangs on the time; nothing where there is none that can be relied
+/// on, which is said.
+std::optional<studies::HybridOrbitOptions> search_of(const Studied& studied, const HybridOrbitRequest& request);
+/// The orbit that the motion comes to; where it may take longer, it is looked for longer.
+studies::HybridOrbit find_hybrid_orbit(const Studied& studied, const HybridOrbitRequest& request,
+                                       studies::HybridOrbitOptions search);
 
 ExitCode show_hybrid_orbit(const Studied& studied, const HybridOrbitRequest& request);
 

@@ -211,20 +211,26 @@ ExitCode orbit(OrbitOptions options) {
   }
   const Studied studied = study(options.experiment, options.mode, constants);
   if (studied.prepared.exit != done) return studied.prepared.exit;
-  const model::Model& model = studied.prepared.program->model;
-  const double run = model.run.to && model.run.from ? model.run.to->value - model.run.from->value : 100;
+  const double run = run_length(studied.prepared.program->model);
   options.patient = !options.settle && !(options.duration > 0);
   if (!options.settle) options.settle = run;
   if (!(options.duration > 0)) options.duration = options.lyapunov ? 20 * run : run;
   const bool closed = !options.lyapunov && options.section.empty();
-  if (closed && !range && (needs_all(studied, options) || is_forced(studied, options)))
-    return show_hybrid_orbit(studied, shooting_of(options));
-  if (closed && !can_be_studied_alone(studied, options.mode, range ? "orbits are followed" : "an orbit is solved for"))
+  const bool hybrid = closed && (needs_all(studied, options) || is_forced(studied, options));
+  if (hybrid && !range) return show_hybrid_orbit(studied, shooting_of(options));
+  if (hybrid && (options.from_hopf || second)) {
+    say(fmt::format("{} follows orbits of the equations alone, and here events or the time have a part in the motion",
+                    second ? "--and" : "--from-hopf"));
+    return wrong_model;
+  }
+  if (closed && !hybrid &&
+      !can_be_studied_alone(studied, options.mode, range ? "orbits are followed" : "an orbit is solved for"))
     return wrong_model;
   if (range)
     return show_orbit_branches(studied, {.range = *range,
                                          .second = second,
                                          .search = search_of(options),
+                                         .hybrid = hybrid ? std::optional(shooting_of(options)) : std::nullopt,
                                          .patient = options.patient,
                                          .from_hopf = options.from_hopf,
                                          .json = options.json,

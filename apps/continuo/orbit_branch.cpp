@@ -18,6 +18,7 @@
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/studies/continuation.hpp>
+#include <continuo/studies/hybrid_continuation.hpp>
 #include <continuo/studies/orbit_continuation.hpp>
 
 namespace continuo::app {
@@ -61,7 +62,11 @@ std::string csv_of(const std::vector<OrbitBranch>& branches, const Studied& stud
   const model::Model& model = studied.prepared.program->model;
   std::string csv = "branch,";
   results::append_field(csv, name);
-  csv += ",period,stable" + orbit_columns(model);
+  std::size_t multipliers = 0;
+  for (const OrbitBranch& branch : branches)
+    for (const studies::OrbitPoint& point : branch.points)
+      multipliers = std::max(multipliers, point.multipliers.size());
+  csv += ",period,stable" + orbit_columns(model, multipliers);
   const auto field = [&](double value) {
     csv += ',';
     results::append_number(csv, value);
@@ -159,6 +164,36 @@ bool ends_at(const OrbitBranch& branch, const studies::OrbitPoint& orbit, const 
   return false;
 }
 
+/// Orbits through events, or of what hangs on the time: how to go on from an orbit and from a mark.
+struct HybridBranches {
+  const Studied& studied;
+  const OrbitBranchOptions& options;
+  studies::HybridOrbitOptions search;
+
+  studies::HybridContinuationOptions with(const studies::OrbitContinuationOptions& continuation) const {
+    studies::HybridContinuationOptions all{continuation, search.forcing};
+    all.constant = model::find_parameter(studied.prepared.program->model, options.range.name);
+    return all;
+  }
+  OrbitBranch main(const studies::OrbitContinuationOptions& continuation, Progress& progress) const {
+    studies::HybridOrbitOptions looking = search;
+    looking.progress = progress.parts(0, search_share);
+    const studies::HybridOrbit start = find_hybrid_orbit(studied, *options.hybrid, looking);
+    OrbitBranch none;
+    if (!start.outcome) {
+      none.message = start.outcome.hint.empty() ? describe(start.outcome) : start.outcome.hint;
+      return none;
+    }
+    return studies::continue_hybrid_orbit(studied.prepared.program, studied.prepared.experiment, start,
+                                          with(continuation));
+  }
+  OrbitBranch beginning_at(const studies::OrbitMark& mark,
+                           const studies::OrbitContinuationOptions& continuation) const {
+    return studies::continue_hybrid_orbit(studied.prepared.program, studied.prepared.experiment, mark,
+                                          with(continuation));
+  }
+};
+
 /// From the orbit that the motion comes to; from Hopf points where there is none, or the user wants them.
 void follow_main(const Studied& studied, const OrbitBranchOptions& options,
                  studies::OrbitContinuationOptions& continuation, Progress& progress,
@@ -192,7 +227,8 @@ void follow_main(const Studied& studied, const OrbitBranchOptions& options,
 }
 
 /// Also the branches that begin on those, of twice the period or at a crossing, and on these again.
-std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions& options) {
+std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions& options,
+                                const std::optional<HybridBranches>& hybrid) {
   const NamedRange& range = options.range;
   Progress progress;
   studies::OrbitContinuationOptions continuation{.low = range.low,
@@ -202,7 +238,11 @@ std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions
                                                  .progress = progress.parts(search_share, 1 - search_share)};
   options.steps.set(continuation);
   std::vector<OrbitBranch> branches;
-  follow_main(studied, options, continuation, progress, branches);
+  if (hybrid) {
+    branches.push_back(hybrid->main(continuation, progress));
+  } else {
+    follow_main(studied, options, continuation, progress, branches);
+  }
   const std::size_t most = branches.size() + options.others;
   for (std::size_t k = 0; k < branches.size() && branches.size() < most; ++k) {
     for (const studies::OrbitMark& mark : std::vector(branches[k].marks)) {
@@ -215,7 +255,9 @@ std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions
             return !branch.points.empty() && ends_at(branch, first, range);
           }))
         continue;
-      OrbitBranch branch = studies::continue_orbit(studied.system, mark, continuation);
+      OrbitBranch branch = hybrid ? hybrid->beginning_at(mark, continuation)
+                                  : studies::continue_orbit(studied.system, mark, continuation);
+      if (!branch.message.empty()) say(branch.message);
       if (branch.points.size() > 2) branches.push_back(std::move(branch));
     }
   }
@@ -300,7 +342,13 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
   std::optional<std::size_t> component = 0;
   if (!options.of.empty()) component = state_named(model, options.of);
   if (!component) return usage;
-  std::vector<OrbitBranch> branches = follow(studied, options);
+  std::optional<HybridBranches> hybrid;
+  if (options.hybrid) {
+    const auto search = search_of(studied, *options.hybrid);
+    if (!search) return wrong_model;
+    hybrid.emplace(HybridBranches{studied, options, *search});
+  }
+  std::vector<OrbitBranch> branches = follow(studied, options, hybrid);
   for (const OrbitBranch& branch : branches)
     if (!branch.message.empty()) say(branch.message);
   std::erase_if(branches, [](const OrbitBranch& branch) { return branch.points.empty(); });

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <apps/continuo/branch_steps.hpp>
+#include <apps/continuo/hybrid_orbit.hpp>
 #include <apps/continuo/studied_model.hpp>
 
 #include <continuo/studies/periodic_orbit.hpp>
@@ -12,10 +13,11 @@ namespace continuo::app {
 
 struct OrbitBranchOptions {
   NamedRange range;
-  std::optional<NamedRange> second{};      // then both parameters move
-  studies::PeriodicOrbitOptions search{};  // of the orbit to begin with
-  bool patient = false;                    // look for it ten times and a hundred times as long, too
-  bool from_hopf = false;                  // begin where places of rest begin to oscillate
+  std::optional<NamedRange> second{};          // then both parameters move
+  studies::PeriodicOrbitOptions search{};      // of the orbit to begin with
+  std::optional<HybridOrbitRequest> hybrid{};  // instead, where events or the time have a part in the motion
+  bool patient = false;                        // look for it ten times and a hundred times as long, too
+  bool from_hopf = false;                      // begin where places of rest begin to oscillate
   bool json = false;
   std::size_t others = 0;  // so many branches more, that begin on those that were found
   BranchSteps steps{};

@@ -142,7 +142,7 @@ std::string csv_of(const OrbitCurves& curves, const model::Model& model, const N
   results::append_field(csv, plane.first.name);
   csv += ',';
   results::append_field(csv, plane.second.name);
-  csv += ",period,rotation" + orbit_columns(model);
+  csv += ",period,rotation" + orbit_columns(model, model.states.size() - 1);
   const auto field = [&](double value) {
     csv += ',';
     results::append_number(csv, value);

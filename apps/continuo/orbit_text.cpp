@@ -41,14 +41,14 @@ std::string extents_text(const model::Model& model, const std::vector<double>& l
   return text;
 }
 
-std::string orbit_columns(const model::Model& model) {
+std::string orbit_columns(const model::Model& model, std::size_t multipliers) {
   std::string csv;
   for (const model::State& state : model.states)
     for (const char* end : {" min", " max"}) {
       csv += ',';
       results::append_field(csv, state.column + end);
     }
-  for (std::size_t k = 1; k < model.states.size(); ++k) csv += fmt::format(",multiplier {0} re,multiplier {0} im", k);
+  for (std::size_t k = 1; k <= multipliers; ++k) csv += fmt::format(",multiplier {0} re,multiplier {0} im", k);
   return csv + "\n";
 }
 

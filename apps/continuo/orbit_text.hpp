@@ -19,7 +19,7 @@ std::string multipliers_text(const std::vector<std::complex<double>>& multiplier
 std::string extents_text(const model::Model& model, const std::vector<double>& low, const std::vector<double>& high);
 /// ",x min,x max,...,multiplier 1 re,multiplier 1 im,..." and the end of the line: the last columns of a table of
 /// orbits.
-std::string orbit_columns(const model::Model& model);
+std::string orbit_columns(const model::Model& model, std::size_t multipliers);
 /// Says why a study has come to nothing.
 ExitCode failed_exit(const Outcome<double>& outcome);
 

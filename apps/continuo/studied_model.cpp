@@ -75,6 +75,10 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
   return studied;
 }
 
+double run_length(const model::Model& model) {
+  return model.run.to && model.run.from ? model.run.to->value - model.run.from->value : 100;
+}
+
 bool stands_still_in_time(const Studied& studied, std::string_view what) {
   const model::ModelProgram& program = *studied.prepared.program;
   const auto follow = "`continuo orbit --section` and `--lyapunov` follow the motion as it is";

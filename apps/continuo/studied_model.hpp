@@ -45,6 +45,9 @@ void add_events(nlohmann::json& object, const Studied& studied, const std::vecto
 /// Which equations, by their text and line, and which unknowns.
 std::string describe_undetermined(const Studied& studied, const studies::Undetermined& open);
 
+/// How long the model's own run is, which says on which scale of time it moves; 100 where it says nothing.
+double run_length(const model::Model& model);
+
 /// `x=1`, `x'=-2` in the states' units: sets them in `state`. Says what is wrong with them.
 bool set_states(const model::Model& model, const std::vector<std::string>& texts, std::vector<double>& state);
 

@@ -156,13 +156,16 @@ LyapunovExponents lyapunov_exponents(const std::shared_ptr<const model::ModelPro
   bool goes_on = neighbourhood.begin(from + 1e-3 * options.interval);
   while (goes_on && neighbourhood.t() < end) {
     const double begin = neighbourhood.t();
-    std::optional<std::vector<double>> logarithms = neighbourhood.advance(std::min(begin + interval, end));
+    const bool settled = begin >= from + options.settle - 1e-3 * options.interval;
+    // What is averaged begins when it is said to: over whole periods of an orbit only rounding is left of the way.
+    const double next = std::min(begin + interval, settled ? end : from + options.settle);
+    std::optional<std::vector<double>> logarithms = neighbourhood.advance(next);
     goes_on = logarithms.has_value();
     if (!goes_on) break;
     const auto [least, most] = std::ranges::minmax(*logarithms);
     if (most - least > most_parting) interval = std::max(interval / 2, 1e-3 * options.interval);
     if (most - least < most_parting / 2) interval = std::min(1.5 * interval, options.interval);
-    if (begin >= from + options.settle) stretches.push_back({neighbourhood.t() - begin, std::move(*logarithms)});
+    if (settled) stretches.push_back({neighbourhood.t() - begin, std::move(*logarithms)});
     if (options.progress) options.progress(neighbourhood.t() - from);
   }
   result.outcome = neighbourhood.outcome();

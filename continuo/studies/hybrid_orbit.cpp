@@ -10,6 +10,7 @@
 #include <continuo/studies/hybrid_orbit_start.hpp>
 #include <continuo/studies/hybrid_run.hpp>
 #include <continuo/studies/neighbour_runs.hpp>
+#include <continuo/studies/orbit_trace.hpp>
 #include <continuo/studies/return_multipliers.hpp>
 #include <continuo/studies/shooting.hpp>
 #include <continuo/studies/state_roles.hpp>
@@ -191,7 +192,11 @@ class OrbitSearch {
     }
     judge(orbit);
     differentiate(shot, orbit);
-    trace(point, orbit);
+    auto trace = detail::traced(program_, exact_, point.start, point.period);
+    orbit.t = std::move(trace.t);
+    orbit.x = std::move(trace.x);
+    orbit.low = std::move(trace.low);
+    orbit.high = std::move(trace.high);
   }
 
   void judge(HybridOrbit& orbit) const {
@@ -218,7 +223,6 @@ class OrbitSearch {
     }
   }
 
-  void trace(const ShootingPoint& point, HybridOrbit& orbit) const;
   std::string why_not_confirmed(const Shot& shot, double period) const;
 
   std::shared_ptr<const model::ModelProgram> program_;
@@ -233,47 +237,6 @@ class OrbitSearch {
   bool forced_ = false, refused_ = false;
   std::string problem_;
 };
-
-void OrbitSearch::trace(const ShootingPoint& point, HybridOrbit& orbit) const {
-  Outcome<double> outcome;
-  std::optional<model::Plan> plan = plan_of(*program_, exact_, outcome);
-  if (!plan) return;
-  plan->to = point.start.t + point.period;
-  HybridRun run(program_, *plan, exact_);
-  run.go_on(point.start);
-  orbit.low = orbit.high = point.start.x;
-  const auto widen = [&](std::size_t i, double value) {
-    orbit.low[i] = std::min(orbit.low[i], value);
-    orbit.high[i] = std::max(orbit.high[i], value);
-  };
-  const auto keep = [&](double t, const std::vector<double>& x) {
-    orbit.t.push_back(t);
-    orbit.x.push_back(x);
-    for (std::size_t i = 0; i < x.size(); ++i) widen(i, x[i]);
-  };
-  keep(point.start.t, point.start.x);
-  run.on_stretch = [&](double from, double to, const HybridRun::At& at_time) {
-    constexpr int parts = 8;
-    std::vector<double> x = orbit.x.back(), before, middle;
-    for (int k = 1; k <= parts; ++k) {
-      before = std::exchange(middle, orbit.x.back());
-      const double t = k == parts ? to : from + (to - from) * k / parts;
-      at_time(t, x);
-      keep(t, x);
-      if (k == 1) continue;
-      // The extremum of the parabola through three points lies between the outer ones, or is none.
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        const double slope = (x[i] - before[i]) / 2, bend = x[i] - 2 * middle[i] + before[i];
-        if (std::abs(slope) < std::abs(bend)) widen(i, middle[i] - slope * slope / (2 * bend));
-      }
-    }
-  };
-  run.on_jump = [&](double t, const std::vector<double>& before, const std::vector<double>& after) {
-    keep(t, before);
-    keep(t, after);
-  };
-  static_cast<void>(run.advance_to(point.start.t + point.period));
-}
 
 /// Which event is to blame: two at the same time that neighbours pass one after the other, or one whose time hangs on
 /// the start too much.

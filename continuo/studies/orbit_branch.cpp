@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include <continuo/studies/multiplier_tests.hpp>
 #include <continuo/studies/orbit_branch.hpp>
 #include <continuo/studies/orbit_multipliers.hpp>
 
@@ -19,20 +20,12 @@ constexpr double solved_for = 1e-9, rounding_leaves = 1e-6;  // a correction, in
 constexpr double error_for_tolerance = 100;  // inside of an interval; at its ends and of the period far less is left
 constexpr double no_size = 1e-12;            // of the largest component: what rounding leaves of a zero
 
-/// Products over the multipliers, each factor of size 1 at most.
 void set_tests(OrbitPlace& place) {
-  const auto& values = place.point.multipliers;
-  std::complex<double> unity = 1, doubling = 1, torus = 1;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    unity *= (1.0 - values[i]) / (1 + std::abs(values[i]));
-    doubling *= (1.0 + values[i]) / (1 + std::abs(values[i]));
-    for (std::size_t j = i + 1; j < values.size(); ++j)
-      torus *= (1.0 - values[i] * values[j]) / (1 + std::abs(values[i] * values[j]));
-  }
+  const MultiplierTests tests = tests_of(place.point.multipliers);
   place.fold = place.tangent.back();
-  place.unity = unity.real();
-  place.doubling = doubling.real();
-  place.torus = values.size() > 1 ? torus.real() : 1;
+  place.unity = tests.unity;
+  place.doubling = tests.doubling;
+  place.torus = tests.torus;
 }
 
 }  // namespace

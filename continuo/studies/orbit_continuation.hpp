@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include <continuo/model/stepping.hpp>
 #include <continuo/studies/hopf_point.hpp>
 #include <continuo/studies/parametric_system.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
@@ -45,13 +46,28 @@ struct OrbitMark {
   double rotation = 0;  // of torus: the angle of the pair, in turns per period
   // What another branch begins from: the mesh, all that was solved for on it, the direction of this branch.
   std::vector<double> mesh{}, unknowns{}, tangent{};
+  /// Of an orbit through events (hybrid_continuation.hpp): where it begins; the tangent is that of x, the period and
+  /// the constant.
+  std::optional<model::Instant> begin{};
 };
 
 /// Why a branch ends. `bound`: of the constant. `hopf`: the orbit has shrunk to an equilibrium. `homoclinic`: the
 /// period grows while the constant comes to a standstill, the orbit nears an equilibrium on its way. `family`: the
 /// constant does not change any more, orbits lie next to each other at one value. `closed`: it came back to where it
-/// began. `branching`: it begins or ends on another branch of orbits.
-enum class OrbitEnding { bound, hopf, homoclinic, family, closed, branching, interrupted, too_many_points, lost };
+/// began. `branching`: it begins or ends on another branch of orbits. `grazing`: an event is only touched, beyond which
+/// other events make other orbits.
+enum class OrbitEnding {
+  bound,
+  hopf,
+  homoclinic,
+  family,
+  closed,
+  branching,
+  grazing,
+  interrupted,
+  too_many_points,
+  lost
+};
 
 struct OrbitBranchEnd {
   OrbitEnding ending = OrbitEnding::lost;

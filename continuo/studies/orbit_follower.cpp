@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/false_position.hpp>
 #include <continuo/studies/orbit_follower.hpp>
 
 namespace continuo::studies::detail {
@@ -205,34 +206,9 @@ void OrbitFollower::add(OrbitBranch& branch, OrbitBifurcation kind, const Place&
       {kind, std::move(place->point), rotation, *place->mesh, std::move(place->z), std::move(tangent)});
 }
 
-/// Illinois false position, with a bisection where it is slow.
 std::optional<OrbitPlace> OrbitFollower::located(const Place& a, const Place& b, double step,
                                                  const std::function<double(const Place&)>& test) {
-  constexpr int most = 60;
-  constexpr double exact = 1e-10;
-  double low = 0, high = step, at_low = test(a), at_high = test(b);
-  std::optional<Place> best;
-  int last_side = 0;
-  for (int k = 0; k < most && high - low > exact * step; ++k) {
-    const double secant = high - at_high * (high - low) / (at_high - at_low);
-    const double s = k % 4 == 3 || !(secant > low && secant < high) ? (low + high) / 2 : secant;
-    auto place = steps_.stepped(a, s);
-    if (!place) break;
-    const double value = test(*place);
-    best = std::move(place);
-    located_at_ = s;
-    if (std::abs(value) < exact) break;
-    const int side = (value < 0) == (at_low < 0) ? -1 : 1;
-    if (side < 0) {
-      low = s, at_low = value;
-      if (last_side < 0) at_high /= 2;
-    } else {
-      high = s, at_high = value;
-      if (last_side > 0) at_low /= 2;
-    }
-    last_side = side;
-  }
-  return best;
+  return located_zero([&](double s) { return steps_.stepped(a, s); }, test, step, test(a), test(b), located_at_);
 }
 
 }  // namespace continuo::studies::detail

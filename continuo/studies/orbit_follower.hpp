@@ -55,7 +55,6 @@ class OrbitFollower {
   void mark(OrbitBranch& branch, const Place& a, const Place& b, double step);
   /// `before`: a place of the branch from which it was found, on the same mesh.
   void add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, std::optional<Place> place);
-  /// Illinois false position, with a bisection where it is slow.
   std::optional<Place> located(const Place& a, const Place& b, double step,
                                const std::function<double(const Place&)>& test);
   /// The Hopf point to which so small an orbit belongs: as far away as the orbit is wide, and no more.

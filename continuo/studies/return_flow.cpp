@@ -26,8 +26,14 @@ ReturnFlow::ReturnFlow(std::shared_ptr<const model::ModelProgram> program, const
       n_(program_->model.states.size()),
       count_(parameters.size()),
       study_(program_, all_states_and(program_->model, parameters), exact_.parameters, true) {
+  for (const std::size_t p : parameters) names_.push_back(program_->model.parameters[p].name);
   for (std::size_t mode = 0; mode < program_->model.modes.size(); ++mode)
-    modes_.push_back(of_model(program_, {.parameters = exact_.parameters, .mode = mode}));
+    modes_.push_back(of_model(program_, {.constants = names_, .parameters = exact_.parameters, .mode = mode}));
+}
+
+void ReturnFlow::set(std::size_t k, double value) {
+  exact_.parameters.insert_or_assign(names_[k], value);
+  for (ParametricSystem& system : modes_) system.constants[k] = value;
 }
 
 FlowImage ReturnFlow::operator()(const model::Instant& start, double duration) const {

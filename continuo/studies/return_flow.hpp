@@ -30,6 +30,9 @@ class ReturnFlow {
   ReturnFlow(std::shared_ptr<const model::ModelProgram> program, const std::vector<std::size_t>& parameters,
              model::Experiment exact);
 
+  /// Of the parameters, the k-th.
+  void set(std::size_t k, double value);
+
   FlowImage operator()(const model::Instant& start, double duration) const;
   /// x' at an instant at which nothing happens.
   std::vector<double> rates(const model::Instant& start) const;
@@ -39,6 +42,7 @@ class ReturnFlow {
  private:
   std::shared_ptr<const model::ModelProgram> program_;
   model::Experiment exact_;
+  std::vector<std::string> names_;  // of the parameters
   std::size_t n_, count_;
   SensitivityStudy study_;
   std::vector<ParametricSystem> modes_;

@@ -368,6 +368,35 @@ TEST(Sense, RefusesAJumpThatNobodyLocates) {
   EXPECT_THAT(floor.err, HasSubstr("jumps across its threshold"));
 }
 
+// The map's fixed point doubles at 3, its cycle of two at 1 + sqrt(6) (Feigenbaum 1978).
+TEST(Orbit, ThroughEventsIsFollowedAlongAParameter) {
+  const Shell shell;
+  shell.write("map.sim", "param r = 2.8\ny' = 0\ny(0) = 0.3\nevery 1 { y := r*y*(1 - y) }\nrun 0..100\n");
+  const Result text = shell.run("orbit map.sim --along r=2..3.5 -o map.csv --plot map.svg");
+  EXPECT_EQ(text.exit, 0) << text.err;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("r = 3: period doubling, period 1, multipliers -1"),
+                              HasSubstr("r = 3.449489743: period doubling, period 2, multipliers -1")));
+  EXPECT_THAT(shell.read("map.csv"), HasSubstr("branch,r,period,stable,y min,y max,multiplier 1 re,multiplier 1 im"));
+  EXPECT_THAT(shell.read("map.svg"), HasSubstr("<svg"));
+  const auto found = nlohmann::json::parse(shell.run("orbit map.sim --along r=2..3.5 --branches 1 --json").out);
+  ASSERT_EQ(found["branches"].size(), 2u);
+  EXPECT_EQ(found["branches"][0]["bifurcations"][0]["kind"], "period doubling");
+  EXPECT_NEAR(found["branches"][0]["bifurcations"][0]["r"].get<double>(), 3, 1e-9);
+  const auto refused = [&](const std::string& options, const std::string& reason) {
+    const Result result = shell.run("orbit map.sim " + options);
+    EXPECT_NE(result.exit, 0) << options;
+    EXPECT_THAT(result.err, HasSubstr(reason)) << options;
+  };
+  refused("--along r=2..3.5 --from-hopf", "--from-hopf follows orbits of the equations alone");
+  refused("--along r=2..3.5 --period 1.5", "no multiple of 1");
+  refused("--along r=2..3.5 --period 1e300", "far longer than what is run");
+  refused("--along q=2..3.5", "there is no parameter `q`");
+  refused("--along r=3..2", "is not NAME=LOW..HIGH");
+  refused("--along r=3..3.5", "r is 2.8, outside of 3..3.5");
+  refused("--turns -1", "--turns");
+  refused("--along r=2..3 --branches -1", "--branches");
+}
+
 TEST(Explore, SaysWhatIsThereAndWhatIsOpen) {
   const Shell shell;
   const Result lorenz = shell.run("explore " + gallery("lorenz"));
@@ -387,13 +416,17 @@ TEST(Explore, SaysWhatIsThereAndWhatIsOpen) {
   EXPECT_THAT(shell.read("page.svg"), HasSubstr("<svg"));
 }
 
+// An orbit is looked for with all that happens: of the force, and through the event; for as long as the model's run is.
 TEST(Explore, LooksForNothingWhereItCannotSee) {
   const Shell shell;
   shell.write("forced.sim", "param c = 0.2\nx'' = -x - c*x' + cos(t)\nx(0) = 0; x'(0) = 0\nrun 0..20\n");
   const Result forced = shell.run("explore forced.sim");
   EXPECT_EQ(forced.exit, 0) << forced.err;
-  EXPECT_THAT(forced.out, AllOf(HasSubstr("places of rest were not looked for"), HasSubstr("neighbours come together"),
-                                Not(HasSubstr("orbit    period"))));
+  EXPECT_THAT(forced.out,
+              AllOf(HasSubstr("places of rest were not looked for"), HasSubstr("orbit    period 6.283185307, stable"),
+                    Not(HasSubstr("open     no closed"))));
+  shell.write("clock.sim", "x' = 1\nx(0) = 0\nwhen x > 1e-3 { x := 0 }\nrun 0..0.01\n");
+  EXPECT_THAT(shell.run("explore clock.sim").out, HasSubstr("orbit    period 0.001,"));
   shell.write("none.sim", "let a = 1\nrun 0..1\n");
   EXPECT_NE(shell.run("explore none.sim").exit, 0);
 }
