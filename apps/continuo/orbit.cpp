@@ -166,15 +166,16 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
   if (options.json) {
     auto states = nlohmann::json::array();
     for (const model::State& state : model.states) states.push_back(state.column);
-    const nlohmann::json json{{"states", states},      {"period", found.period},
-                              {"x", found.orbit(0)},   {"min", extents.low},
-                              {"max", extents.high},   {"multipliers", json_of(found.multipliers)},
-                              {"stable", found.stable}};
+    const nlohmann::json json{{"states", states},       {"period", found.period},
+                              {"x", found.orbit(0)},    {"min", extents.low},
+                              {"max", extents.high},    {"multipliers", json_of(found.multipliers)},
+                              {"stable", found.stable}, {"advance", found.advance}};
     print(json.dump(2) + "\n");
   }
-  const std::string text = fmt::format("period {}, {}\n", with_time_unit(found.period, model),
-                                       found.stable ? "neighbours come nearer" : "some neighbours go away") +
-                           multipliers_text(found.multipliers) + extents_text(model, extents.low, extents.high);
+  const std::string text =
+      fmt::format("period {}{}, {}\n", with_time_unit(found.period, model), advance_text(model, found.advance),
+                  found.stable ? "neighbours come nearer" : "some neighbours go away") +
+      multipliers_text(found.multipliers) + extents_text(model, extents.low, extents.high);
   if (!options.json) print(text);
   if (options.plot.empty()) return done;
   if (!written(results::draw(figure_of(model, found), options.plot))) return usage;

@@ -37,7 +37,7 @@ std::string multipliers_text(const studies::OrbitPoint& point) {
   return text;
 }
 
-std::string table_of(const OrbitBranch& branch, const NamedRange& range) {
+std::string table_of(const OrbitBranch& branch, const model::Model& model, const NamedRange& range) {
   const std::string& name = range.name;
   std::string text;
   // What the place is exact to leaves of a zero.
@@ -45,8 +45,8 @@ std::string table_of(const OrbitBranch& branch, const NamedRange& range) {
   const auto end = [&](const char* word, const studies::OrbitBranchEnd& where) {
     return fmt::format("   {} at {} = {:.10g}: {}\n", word, name, shown(where.constant), where.reason);
   };
-  text += fmt::format("{} orbits, period {:.10g} to {:.10g}\n", branch.points.size(), branch.points.front().period,
-                      branch.points.back().period);
+  text += fmt::format("{} orbits, period {:.10g} to {:.10g}{}\n", branch.points.size(), branch.points.front().period,
+                      branch.points.back().period, advance_text(model, branch.points.back().advance));
   text += end("begins", branch.ends[0]);
   for (const studies::OrbitMark& mark : branch.marks) {
     text += fmt::format("   {} = {:.10g}: {}, period {:.10g}", name, shown(mark.at.constant), to_string(mark.kind),
@@ -250,7 +250,10 @@ std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions
       if ((!doubling && mark.kind != studies::OrbitBifurcation::crossing) || branches.size() >= most) continue;
       if (interrupt_flag()) return branches;
       studies::OrbitPoint first(mark.at);
-      if (doubling) first.period *= 2;
+      if (doubling) {
+        first.period *= 2;
+        for (double& part : first.advance) part *= 2;
+      }
       if (std::ranges::any_of(branches, [&](const OrbitBranch& branch) {
             return !branch.points.empty() && ends_at(branch, first, range);
           }))
@@ -265,9 +268,9 @@ std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions
 }
 
 nlohmann::json json_of(const studies::OrbitPoint& point, const NamedRange& range) {
-  return {{range.name, point.constant}, {"period", point.period}, {"x", point.x},
-          {"min", point.low},           {"max", point.high},      {"multipliers", app::json_of(point.multipliers)},
-          {"stable", point.stable}};
+  return {{range.name, point.constant}, {"period", point.period},  {"x", point.x},
+          {"min", point.low},           {"max", point.high},       {"multipliers", app::json_of(point.multipliers)},
+          {"stable", point.stable},     {"advance", point.advance}};
 }
 nlohmann::json json_of(const std::vector<OrbitBranch>& branches, const model::Model& model, const NamedRange& range) {
   auto list = nlohmann::json::array();
@@ -360,7 +363,7 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
   if (options.json && !options.second) print(json_of(branches, model, range).dump(2) + "\n");
   for (std::size_t b = 0; b < branches.size() && !options.json; ++b)
     print((branches.size() == 1 ? "" : fmt::format("{}{}: ", b == 0 ? "" : "\n", b + 1)) +
-          table_of(branches[b], range));
+          table_of(branches[b], model, range));
   if (options.second) return show_curves(studied, branches, options);
   if (!options.out.empty()) {
     const std::string csv = csv_of(branches, studied, range.name);

@@ -1,8 +1,10 @@
 #include <cmath>
+#include <numbers>
 
 #include <apps/continuo/orbit_text.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <continuo/results/csv.hpp>
 #include <continuo/results/summary.hpp>
@@ -30,6 +32,16 @@ std::string multipliers_text(const std::vector<std::complex<double>>& multiplier
   return text + "\n";
 }
 
+std::string advance_text(const model::Model& model, const std::vector<double>& advance) {
+  std::vector<std::string> angles;
+  for (std::size_t i = 0; i < advance.size(); ++i) {
+    if (advance[i] == 0) continue;
+    const auto turns = std::lround(advance[i] / (2 * std::numbers::pi));
+    angles.push_back(
+        fmt::format("{} goes on by {} turn{}", model.states[i].column, turns, std::abs(turns) == 1 ? "" : "s"));
+  }
+  return angles.empty() ? "" : fmt::format(" in which {}", fmt::join(angles, " and "));
+}
 std::string extents_text(const model::Model& model, const std::vector<double>& low, const std::vector<double>& high) {
   std::string text;
   for (std::size_t i = 0; i < model.states.size(); ++i) {

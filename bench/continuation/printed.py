@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Printed digits of AUTO-07p and MatCont against ours: printed.py COMMAND
+"""Printed digits of AUTO-07p and MatCont, and canards' series, against ours: printed.py COMMAND [--auto PATH]
 
-The models are AUTO's demos ab, cusp, plp, pp2, tor and lor, and MatCont's catalytic oscillator. AUTO's digits are those
-of its own log of all demos (test/hyper.all of AUTO-07p), MatCont's those of its manual. A place is the parameters (and the
-period) of what is printed; ours is the nearest of the same kind. Exit 1 where one is further off than three units of the last
-digit printed.
+The models are AUTO's demos ab, cusp, plp, pp2, tor, lor, pen, cir, kpr and fsh, MatCont's catalytic oscillator, and the
+canards of van der Pol and of FitzHugh and Nagumo. AUTO's digits are those of its own log of all demos (test/hyper.all of
+AUTO-07p), MatCont's those of its manual. A place is the parameters (and the period) of what is printed; ours is the nearest
+of the same kind. Exit 1 where one is further off than three units of the last digit printed.
+
+With --auto, the folder of an AUTO-07p that has been built, its demos are run as they are, and timed beside ours.
 """
-import json, math, subprocess, sys, tempfile, os
+import argparse, csv, io, json, math, os, shutil, subprocess, sys, tempfile, time
 
 AB = """model ab
 param d = 0.05
@@ -69,6 +71,100 @@ s' = 0.0675*(z - k*s)
 x(0) = 0.01; y(0) = 0.7; s(0) = 0.1
 run 0..100
 """
+PEN = """model pen
+param I = 0.4
+param eps = 0.1
+phi'' = -eps*phi' - sin(phi) + I + 0.175*(psi - phi)
+psi'' = -eps*psi' - sin(psi) + I + 0.175*(phi - psi)
+phi(0) = 0; phi'(0) = 4
+psi(0) = 0; psi'(0) = 4
+run 0..100
+"""
+CIR = """model cir
+param rn = -0.72
+param be = 0.453564
+let across = be*(y - x) + 0.933578*(y - x)^3
+x' = (-rn*x + across - 0.328578*x^3)/0.6
+y' = -across - z
+z' = y
+x(0) = 0.1; y(0) = 0; z(0) = 0
+run 0..200
+"""
+KPR = """model kpr
+param lambda = -1.8
+param kappa = -0.15
+x' = 10*(kappa*y - x^3 + 3*x - lambda)
+y' = x - 2*y + z
+z' = y - z
+x(0) = 1; y(0) = 0; z(0) = 0
+run 0..200
+"""
+# A travelling wave of Fisher's equation: it comes to u = 1 along the direction that is stable there.
+FSH = """model fsh
+param c = 11
+param period = 100
+let mu = (c - sqrt(c^2 + 4))/2
+u' = period*v
+v' = period*(c*v - u*(1 - u))
+u(1) = 1 - 0.001/sqrt(1 + mu^2)
+v(1) = -0.001*mu/sqrt(1 + mu^2)
+run 0..1 output 0.0005 tol 1e-10
+"""
+VDP = """model van_der_pol
+param a = 0.99
+x' = (y - x^3/3 + x)/0.01
+y' = a - x
+x(0) = 1; y(0) = 0
+run 0..50
+"""
+FHN = """model fitzhugh_nagumo
+param I = 0.3
+v' = (v - v^3/3 - w + I)/0.01
+w' = v + 0.7 - 0.8*w
+v(0) = -1; w(0) = -0.4
+run 0..50
+"""
+
+
+def canard_of_van_der_pol(eps):
+    """Where its canards explode near a = 1 (A. K. Zvonkin, M. A. Shubin, Russ. Math. Surveys 39 (1984))."""
+    return 1 - eps/8 - 3*eps**2/32 - 173*eps**3/1024
+
+
+def canard_of_fitzhugh_nagumo(fold, eps, a=0.7, b=0.8, order=5, length=24):
+    """Where its canards explode at the fold v = -1 or 1, as a series in eps: the slow manifold w(v) + I = sum eps^k w_k goes
+    through the fold without a pole for one I only. With q_k = I_k - w_k and w_0 = v - v^3/3 + I_0
+
+        q_1 (1 - v^2) = v + a - b w_0,    q_k (1 - v^2) = sum q_j' q_(k-j) - b (I_(k-1) - q_(k-1)),
+
+    the right-hand sides being zero at the fold; all of them are Taylor series in v - fold.
+    """
+    def over_slope(p):  # 1 - v^2 = -2 fold u - u^2
+        assert abs(p[0]) < 1e-12
+        quotient = []
+        for k in range(1, len(p)):
+            quotient.append((p[k] + (quotient[-1] if quotient else 0)) / (-2*fold))
+        return quotient + [0.0]
+
+    def times(p, q):
+        return [sum(p[j]*q[k - j] for j in range(k + 1)) for k in range(length)]
+
+    def slope(p):
+        return [(k + 1)*p[k + 1] for k in range(length - 1)] + [0.0]
+
+    first = (fold + a)/b - 2*fold/3
+    w = [2*fold/3 + first, 0.0, -fold, -1/3] + [0.0]*(length - 4)
+    q = [None, over_slope([fold + a - b*w[0], 1 - b*w[1]] + [-b*x for x in w[2:]])]
+    current = first
+    for k in range(2, order + 1):
+        rest = [sum(column) for column in zip(*(times(slope(q[j]), q[k - j]) for j in range(1, k)))]
+        term = q[k - 1][0] + rest[0]/b
+        current += eps**(k - 1)*term
+        rest = [x + b*y for x, y in zip(rest, q[k - 1])]
+        rest[0] -= b*term
+        q.append(over_slope(rest))
+    return current
+
 
 # (problem, model, arguments, [(kind, values by name with the digits as printed)])
 PROBLEMS = [
@@ -103,6 +199,39 @@ PROBLEMS = [
      [("period doubling", {"rho": "2.29407E+02", "period": "4.80867E-01"}),
       ("period doubling", {"rho": "2.18210E+02", "period": "9.87949E-01"}),
       ("period doubling", {"rho": "2.15966E+02", "period": "1.98675E+00"})]),
+    ("pen, rotations", PEN, "orbit --along I=0.1..0.4 --branches 3",
+     [("period doubling", {"I": "1.79163E-01", "period": "3.70528E+00"}), ("ending", {"I": "1.27009E-01"}),
+      ("crossing of branches", {"I": "3.31445E-01", "period": "9.72615E+00"}),
+      ("crossing of branches", {"I": "1.75511E-01", "period": "1.34389E+01"}),
+      ("ending", {"I": "1.59953E-01"}), ("ending", {"I": "2.28614E-01"})]),
+    ("pen, period doublings", PEN, "orbit --along I=0.1..1.3 --and eps=0.05..2 --branches 0",
+     [("of period 29.9990", {"I": "9.57295E-01", "eps": "9.80643E-01"})]),
+    ("cir, homoclinic orbits", CIR, "orbit --from-hopf --along rn=-0.8..-0.5 --branches 0",
+     [("ending", {"rn": "-7.25693E-01"})]),
+    ("cir, where the saddle is neutral", CIR.replace("rn = -0.72", "rn = -0.7204"),
+     "orbit --from-hopf --along rn=-0.8..-0.5 --branches 0 --set be=0.591232", [("ending", {"rn": "-7.20400E-01"})]),
+    ("cir, homoclinic orbits at be = 0.742873", CIR, "orbit --from-hopf --along rn=-0.8..-0.5 --branches 0 --set be=0.742873",
+     [("ending", {"rn": "-7.59058E-01"})]),
+    ("kpr, homoclinic orbit", KPR, "orbit --from-hopf --along lambda=-3..1 --branches 0",
+     [("ending", {"lambda": "-1.85119E+00"})]),
+    *[(f"kpr, inclination flip at kappa = {kappa}", KPR,
+       f"orbit --from-hopf --along lambda=-3..1 --branches 0 --set kappa={kappa}", [("ending", {"lambda": value})])
+      for kappa, value in (("-2.00266E-01", "-1.80166E+00"), ("-4.39547E-01", "-1.56876E+00"))],
+    # Its extremes are those of AUTO's 101 mesh points, and not compared where these miss the top of the wave, or where u has
+    # become so small that it hangs on the last digit of the period.
+    *[(f"fsh, period {period}", FSH, f"run --set period={period}", [("wave", values)]) for period, values in [
+        ("1.00000E+01", {"min u": "9.97550E-01", "max v": "2.20414E-04"}),
+        ("5.00000E+01", {"min u": "9.16898E-01", "max v": "6.87976E-03"}),
+        ("1.00000E+02", {"min u": "1.05009E-01", "max v": "2.27269E-02"}),
+        ("2.00000E+02", {"min u": "1.22717E-05"})]],
+    *[(f"fsh, c = {c}", FSH, f"run --set c={c} --set period={period}", [("wave", values)]) for c, period, values in [
+        ("10", "1.79635E+02", {"max v": "2.49994E-02"}),
+        ("3", "4.94503E+01", {"max v": "8.30860E-02"})]],
+    *[(f"van der Pol's canard, fold {fold:+d}", VDP.replace("x(0) = 1", f"x(0) = {fold}").replace("a = 0.99", f"a = {0.99*fold}"),
+       f"orbit --from-hopf --along a={'0.99..1.01' if fold > 0 else '-1.01..-0.99'}",
+       [("canard", {"a": f"{fold*canard_of_van_der_pol(0.01):.7f}"})]) for fold in (1, -1)],
+    *[(f"FitzHugh-Nagumo's canard, fold {fold:+d}", FHN, f"orbit --from-hopf --along I={around - 0.02}..{around + 0.02}",
+       [("canard", {"I": f"{canard_of_fitzhugh_nagumo(fold, 0.01):.7f}"})]) for fold, around in ((-1, 0.29), (1, 1.46))],
     ("catalytic oscillator", CATALYST, "steady --along q2=0.5..2 --and k=0.1..2",
      [("Hopf point", {"q2": "1.051558"}), ("fold", {"q2": "1.042049"}),
       ("fold", {"q2": "1.052200"}), ("Hopf point", {"q2": "1.040991"})]),
@@ -110,14 +239,58 @@ PROBLEMS = [
 
 
 def found_of(result):
-    """All that has a kind, and the ends of curves."""
+    """All that has a kind, and the ends of curves and branches; of a branch the orbit of the longest period."""
     for group in ("branches", "curves"):
         for entry in result.get(group, []):
             for point in entry.get("bifurcations", []) + entry.get("degenerate", []):
                 yield point
-            if group == "curves":
-                for end in entry.get("ends", []):
-                    yield dict(end, kind="end")
+            for end in entry.get("ends", []):
+                yield dict(end, kind="end" if group == "curves" else "ending")
+            if group == "branches" and "period" in entry["points"][0]:
+                yield dict(max(entry["points"], key=lambda point: point["period"]), kind="canard")
+
+
+def of_period(result, period):
+    """On curves in two parameters, between the points: by polynomials of the period's logarithm through the nearest six."""
+    for curve in result.get("curves", []):
+        points = sorted(curve["points"], key=lambda point: abs(math.log(point["period"]/period)))[:6]
+        if not min(point["period"] for point in points) <= period <= max(point["period"] for point in points):
+            continue
+        found = {"kind": f"of period {period:.4f}"}
+        for name in (result["parameters"] if "parameters" in result else []):
+            found[name] = 0
+            for point in points:
+                others = [math.log(other["period"]) for other in points if other is not point]
+                here = math.log(point["period"])
+                found[name] += point[name]*math.prod((math.log(period) - there)/(here - there) for there in others)
+        yield found
+
+
+def extremes_of(table):
+    """Of each column of a run's table."""
+    rows = list(csv.reader(line for line in io.StringIO(table) if not line.startswith("#")))
+    columns = list(zip(*([float(cell) for cell in row] for row in rows[1:])))
+    found = {"kind": "wave"}
+    for name, values in zip(rows[0], columns):
+        found["min " + name], found["max " + name] = min(values), max(values)
+    return found
+
+
+def time_of_demo(auto, name):
+    """Of AUTO's own script of a demo, in a copy of its folder; nothing where it fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        demo = os.path.join(folder, name)
+        shutil.copytree(os.path.join(auto, "demos", name), demo)
+        paths = {"AUTO_DIR": auto, "PATH": os.pathsep.join([os.path.join(auto, part) for part in ("bin", "cmds")] +
+                                                           [os.environ["PATH"]])}
+        # Once to compile, then as a user would see it.
+        for _ in range(2):
+            begin = time.perf_counter()
+            run = subprocess.run([os.path.join(auto, "bin", "auto"), name + ".auto"], cwd=demo, env={**os.environ, **paths},
+                                 capture_output=True, text=True, timeout=600)
+            if run.returncode:
+                return None
+        return time.perf_counter() - begin
 
 
 def unit_of(text):
@@ -127,17 +300,31 @@ def unit_of(text):
 
 
 def main():
-    command = sys.argv[1]
-    wrong = 0
+    parser = argparse.ArgumentParser(description="printed digits against ours")
+    parser.add_argument("command")
+    parser.add_argument("--auto", help="the folder of an AUTO-07p that has been built")
+    options = parser.parse_args()
+    wrong, seconds = 0, {}
     print("| Problem | What | Ours | Printed |\n|---|---|---|---|")
     for name, model, arguments, wanted in PROBLEMS:
         with tempfile.TemporaryDirectory() as folder:
-            file = os.path.join(folder, "model.sim")
+            file, table = os.path.join(folder, "model.sim"), os.path.join(folder, "table.csv")
             with open(file, "w") as out:
                 out.write(model)
             verb, *rest = arguments.split()
-            run = subprocess.run([command, verb, file, *rest, "--json"], capture_output=True, text=True, timeout=600)
-        points = list(found_of(json.loads(run.stdout))) if run.stdout else []
+            begin = time.perf_counter()
+            run = subprocess.run([options.command, verb, file, *rest, "--json"] + (["-o", table] if verb == "run" else []),
+                                 capture_output=True, text=True, timeout=600)
+            demo = name.partition(",")[0]
+            seconds[demo] = seconds.get(demo, 0) + time.perf_counter() - begin
+            result = json.loads(run.stdout) if run.stdout else {}
+            points = list(found_of(result))
+            for kind, _ in wanted:
+                if kind.startswith("of period "):
+                    points += of_period(result, float(kind.removeprefix("of period ")))
+            if verb == "run" and os.path.exists(table):
+                with open(table) as text:
+                    points.append(extremes_of(text.read()))
         for kind, values in wanted:
             alike = [point for point in points if point["kind"] == kind]
 
@@ -147,10 +334,17 @@ def main():
             best = min(alike, key=apart, default=None)
             good = best is not None and apart(best) <= 3
             wrong += not good
-            ours = ", ".join(f"{key} = {best[key]:.8g}" for key in values) if best else "not found"
+            ours = ", ".join(f"{key} = {best.get(key, math.nan):.8g}" for key in values) if best else "not found"
             printed = ", ".join(f"{key} = {text}" for key, text in values.items())
             print(f"| {name} | {kind} | {ours if good else '**' + ours + '**'} | {printed} |", flush=True)
+    print("\n| Demo | Ours | AUTO |\n|---|---|---|")
+    for demo, ours in seconds.items():
+        theirs = None
+        if options.auto and os.path.isdir(os.path.join(options.auto, "demos", demo)):
+            theirs = time_of_demo(os.path.abspath(options.auto), demo)
+        print(f"| {demo} | {ours:.2f} s | {f'{theirs:.2f} s' if theirs else ''} |", flush=True)
     return 1 if wrong else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

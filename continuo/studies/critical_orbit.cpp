@@ -59,9 +59,11 @@ bool CriticalOrbit::evaluate_points(std::span<const double> z) {
       point.f.resize(n_);
       for (std::size_t j = 0; j <= interval_degree; ++j) {
         const auto values = z.subspan((k * interval_degree + j) * n_ % states_, n_);
+        const bool turned = (k * interval_degree + j) * n_ == states_ && !system_.advance.empty();
         for (std::size_t i = 0; i < n_; ++i) {
-          point.x[i] += table.value[g][j] * values[i];
-          point.residual[i] += table.slope[g][j] * values[i];
+          const double there = values[i] + (turned ? system_.advance[i] : 0);
+          point.x[i] += table.value[g][j] * there;
+          point.residual[i] += table.slope[g][j] * there;
         }
       }
       system_.derivative(0, point.x, p_, point.f);

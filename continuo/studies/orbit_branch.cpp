@@ -207,6 +207,7 @@ std::optional<OrbitPlace> OrbitBranchSteps::described(Vector z, const Vector& al
   place.tangent = std::move(*tangent);
   normalize(place.tangent);
   OrbitPoint& point = place.point;
+  point.advance = system_.advance;
   point.constant = equations_->constant(place.z);
   point.period = equations_->period(place.z);
   point.x.assign(place.z.begin(), place.z.begin() + static_cast<std::ptrdiff_t>(n_));
@@ -255,7 +256,10 @@ Vector OrbitBranchSteps::halves(const OrbitPlace& place) {
   for (std::size_t k = 0; k < equations_->nodes(); ++k) {
     const double s = equations_->place(k);
     equations_->state(place.z, s < 0.5 ? s + 0.5 : s - 0.5, later);
-    for (std::size_t i = 0; i < n_; ++i) result[k * n_ + i] = (place.z[k * n_ + i] - later[i]) / scale_[k * n_ + i];
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double turned = system_.advance.empty() ? 0 : (s < 0.5 ? 0.5 : -0.5) * system_.advance[i];
+      result[k * n_ + i] = (place.z[k * n_ + i] + turned - later[i]) / scale_[k * n_ + i];
+    }
   }
   return result;
 }

@@ -30,6 +30,7 @@ ParametricSystem with_one_constant(const ParametricSystem& system, std::size_t c
   one.names = system.names;
   one.constant_names = {system.constant_name(constant)};
   one.pattern = system.pattern;
+  one.advance = system.advance;
   const auto all = [p = std::make_shared<Vector>(system.constants), constant](Values q) -> Values {
     (*p)[constant] = q[0];
     return *p;
@@ -87,8 +88,7 @@ void OrbitCollocation::state(std::span<const double> z, double s, std::span<doub
   const auto basis = table().basis((s - (*mesh_)[k]) / ((*mesh_)[k + 1] - (*mesh_)[k]));
   std::ranges::fill(x, 0.0);
   for (std::size_t j = 0; j <= degree; ++j) {
-    const auto at = node(z, k * degree + j);
-    for (std::size_t i = 0; i < n_; ++i) x[i] += basis[j] * at[i];
+    for (std::size_t i = 0; i < n_; ++i) x[i] += basis[j] * value(z, k * degree + j, i);
   }
 }
 
@@ -104,10 +104,10 @@ bool OrbitCollocation::evaluate(std::span<const double> z, std::span<const doubl
       std::ranges::fill(x, 0.0);
       std::ranges::fill(slope, 0.0);
       for (std::size_t j = 0; j <= degree; ++j) {
-        const auto values = node(z, k * degree + j);
         for (std::size_t i = 0; i < n_; ++i) {
-          x[i] += table().value[g][j] * values[i];
-          slope[i] += table().slope[g][j] * values[i];
+          const double there = value(z, k * degree + j, i);
+          x[i] += table().value[g][j] * there;
+          slope[i] += table().slope[g][j] * there;
         }
       }
       const auto f = std::span(f_).subspan(at * n_, n_);
@@ -168,10 +168,9 @@ std::vector<double> OrbitCollocation::errors(std::span<const double> z, std::spa
   const auto width = [&](std::size_t k) { return (*mesh_)[k + 1] - (*mesh_)[k]; };
   // Times the m-th power of the interval's width, which may be tiny.
   for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t j = 0; j <= degree; ++j) {
-      const auto values = node(z, k * degree + j);
-      for (std::size_t i = 0; i < n_; ++i) highest[k * n_ + i] += table().highest[j] * values[i] / sizes[i];
-    }
+    for (std::size_t j = 0; j <= degree; ++j)
+      for (std::size_t i = 0; i < n_; ++i)
+        highest[k * n_ + i] += table().highest[j] * value(z, k * degree + j, i) / sizes[i];
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t next = (k + 1) % count;
     const double ratio = width(k) / width(next), middle = (width(k) + width(next)) / 2;
@@ -236,14 +235,14 @@ OrbitCollocation::Extremes OrbitCollocation::extremes(std::span<const double> z)
   }();
   for (std::size_t k = 0; k < intervals(); ++k) {
     for (std::size_t i = 0; i < n_; ++i) {
-      const auto value = [&](const std::array<double, degree + 1>& basis) {
+      const auto value_by = [&](const std::array<double, degree + 1>& basis) {
         double sum = 0;
-        for (std::size_t j = 0; j <= degree; ++j) sum += basis[j] * node(z, k * degree + j)[i];
+        for (std::size_t j = 0; j <= degree; ++j) sum += basis[j] * value(z, k * degree + j, i);
         return sum;
       };
       std::array<double, samples_of_interval + 1> samples{};
       for (std::size_t s = 0; s <= samples_of_interval; ++s) {
-        samples[s] = value(bases[s]);
+        samples[s] = value_by(bases[s]);
         found.low[i] = std::min(found.low[i], samples[s]);
         found.high[i] = std::max(found.high[i], samples[s]);
       }
@@ -252,7 +251,7 @@ OrbitCollocation::Extremes OrbitCollocation::extremes(std::span<const double> z)
         if (left * right < 0 || left + right == 0) continue;
         // The top of the parabola; where a function is flat an error of the place says nothing of the value.
         double theta = static_cast<double>(s) + (left - right) / (2 * (left + right));
-        const double top = value(table().basis(theta / samples_of_interval));
+        const double top = value_by(table().basis(theta / samples_of_interval));
         found.low[i] = std::min(found.low[i], top);
         found.high[i] = std::max(found.high[i], top);
       }

@@ -1,12 +1,12 @@
 // A closed orbit as the solution of equations, by orthogonal collocation. Internal to orbit_continuation.
 //
 // Unknowns z: x at the nodes of all intervals of a mesh over s = t / T, n numbers each, the last node being the first
-// again; then the period T and one constant p. Equations: dx/ds = T f(x, p) at the Gauss points. Nothing is integrated,
-// so that orbits can be solved for along which an error would grow beyond all bounds either way (canards), and the mesh
-// is where the orbit needs it: a jump may be a million times as short as the period.
-// E. J. Doedel, H. B. Keller, J. P. Kernevez, "Numerical analysis and control of bifurcation problems (II)", Int. J.
-// Bifurcation Chaos 1 (1991); U. M. Ascher, R. M. M. Mattheij, R. D. Russell, "Numerical Solution of Boundary Value
-// Problems for Ordinary Differential Equations" (1995), chapter 9.
+// again, or the first and ParametricSystem::advance; then the period T and one constant p. Equations: dx/ds = T f(x, p)
+// at the Gauss points. Nothing is integrated, so that orbits can be solved for along which an error would grow beyond
+// all bounds either way (canards), and the mesh is where the orbit needs it: a jump may be a million times as short as
+// the period. E. J. Doedel, H. B. Keller, J. P. Kernevez, "Numerical analysis and control of bifurcation problems
+// (II)", Int. J. Bifurcation Chaos 1 (1991); U. M. Ascher, R. M. M. Mattheij, R. D. Russell, "Numerical Solution of
+// Boundary Value Problems for Ordinary Differential Equations" (1995), chapter 9.
 #pragma once
 #include <complex>
 #include <cstddef>
@@ -76,6 +76,10 @@ class OrbitCollocation {
  private:
   std::span<const double> node(std::span<const double> z, std::size_t k) const {
     return z.subspan(k % nodes() * n_, n_);
+  }
+  /// Component i at node k; behind the last one it is that of the first a period later.
+  double value(std::span<const double> z, std::size_t k, std::size_t i) const {
+    return k < nodes() || system_.advance.empty() ? z[k % nodes() * n_ + i] : z[i] + system_.advance[i];
   }
 
   const ParametricSystem& system_;

@@ -43,7 +43,9 @@ OrbitBranch continue_orbit(const ParametricSystem& system, const PeriodicOrbit& 
   branch.message = what_is_wrong(system, options, begin);
   if (branch.message.empty() && !start.outcome) branch.message = start.outcome.hint;
   if (!branch.message.empty()) return branch;
-  return detail::OrbitFollower(system, options)
+  ParametricSystem turning(system);
+  turning.advance = start.advance;
+  return detail::OrbitFollower(turning, options)
       .from_orbit([&](double part) { return start.orbit(part); }, start.period, start.orbit.mesh);
 }
 
@@ -57,6 +59,7 @@ OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitPoint& sta
   p[options.constant] = start.constant;
   ParametricSystem there(system);
   there.constants = p;
+  there.advance = start.advance;
   const auto turn = run_flow(there, p, start.x, {0, start.period},
                              {.rtol = options.rtol,
                               .atol = 1e-3 * options.rtol,
@@ -86,7 +89,12 @@ OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitMark& star
   if (branch.message.empty() && !branches)
     branch.message = fmt::format("no branch begins at a {}", to_string(start.kind));
   if (branch.message.empty() && start.mesh.size() < 2) branch.message = "the orbit there is not known";
-  return branch.message.empty() ? detail::OrbitFollower(system, options).from_mark(start) : branch;
+  if (!branch.message.empty()) return branch;
+  ParametricSystem turning(system);
+  turning.advance = start.at.advance;
+  if (start.kind == OrbitBifurcation::period_doubling)
+    for (double& part : turning.advance) part *= 2;
+  return detail::OrbitFollower(turning, options).from_mark(start);
 }
 
 }  // namespace continuo::studies

@@ -31,6 +31,7 @@ struct OrbitPoint {
   std::vector<double> low, high;                  // between which each component goes
   std::vector<std::complex<double>> multipliers;  // by descending size, without the 1 of a shift along the orbit
   bool stable = false;                            // all of them inside the unit circle
+  std::vector<double> advance{};                  // as PeriodicOrbit::advance
 };
 
 /// `fold`: the branch turns round in the constant, a multiplier passes +1. `period_doubling`: one passes -1, an orbit

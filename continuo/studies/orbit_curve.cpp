@@ -67,7 +67,9 @@ OrbitCurve follow_orbit_bifurcation(const ParametricSystem& system, const OrbitM
     curve.message = "the orbit there is not known";
     return curve;
   }
-  return detail::OrbitCurveFollower(system, start.kind, options).from(start);
+  ParametricSystem turning(system);
+  turning.advance = start.at.advance;
+  return detail::OrbitCurveFollower(turning, start.kind, options).from(start);
 }
 
 std::vector<OrbitCurveOfDiagram> orbit_curves(const ParametricSystem& system, const std::vector<OrbitMark>& starts,

@@ -20,6 +20,7 @@ constexpr double turns_little = 0.906;  // the cosine of 25 degrees
 constexpr double shrunk_away = 5e-3;    // of the largest amplitude
 constexpr double all_but_gone = 2e-2;   // likewise, where the equations can no longer be solved
 constexpr double still_waits = 0.25;    // the part of its period that an orbit near to a homoclinic one waits
+constexpr double enough_rate = 7;       // times the period: exp(-7) is the part by which the constants are off
 constexpr double about_there = 1e-3;    // of a multiplier from where it should be
 constexpr double clearly_seen = 1e-7;   // of a test that is of the size of 1
 constexpr std::size_t round_trip = 12;  // points of a closed curve
@@ -111,6 +112,10 @@ OrbitCurveEnd OrbitCurveFollower::followed(OrbitCurve& curve, const OrbitCurvePl
     if (curve.kind == OrbitBifurcation::homoclinic && steps_.waiting_part(*next) < still_waits)
       return {OrbitCurveEnding::lost,
               "an orbit of this period is no longer near to a homoclinic one: it does not wait at an equilibrium"};
+    if (curve.kind == OrbitBifurcation::homoclinic && steps_.rate_over_period(*next) < enough_rate)
+      return {OrbitCurveEnding::lost,
+              "an orbit of this period no longer stands for a homoclinic one: motions leave the place of rest, or come "
+              "to it, too slowly"};
     if (next->point.period > options_.longest_period * first_period_)
       return {OrbitCurveEnding::long_period,
               fmt::format("the period has grown to {:.6g}, more than {:.3g} times that at the start",

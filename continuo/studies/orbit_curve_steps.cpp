@@ -1,7 +1,6 @@
 // continuo/studies/orbit_curve_steps.cpp
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -308,33 +307,6 @@ Vector OrbitCurveSteps::deviations(const OrbitCurvePlace& place) {
   for (std::size_t j = 0; j < states; ++j) mean[j % n] += place.z[j] * orbit.weight(j / n);
   for (std::size_t j = 0; j < states; ++j) result[j] = (place.z[j] - mean[j % n]) * std::sqrt(orbit.weight(j / n));
   return result;
-}
-
-double OrbitCurveSteps::waiting_part(const OrbitCurvePlace& place) {
-  use(place.mesh);
-  measure(place.z);
-  const ParametricSystem one = there(place.z);
-  const OrbitCollocation orbit(one, mesh_);
-  const std::size_t n = system_.size, nodes = orbit.nodes();
-  const Vector field = orbit.field(Vector(place.z.begin(), place.z.end() - 2));
-  const auto square = [&](const auto& component) {
-    double sum = 0;
-    for (std::size_t i = 0; i < n; ++i) sum += std::pow(component(i) / sizes_[i], 2);
-    return sum;
-  };
-  std::size_t slowest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < nodes; ++k)
-    if (const double speed = square([&](std::size_t i) { return field[k * n + i]; }); speed < least)
-      least = speed, slowest = k;
-  Vector apart(nodes);
-  for (std::size_t k = 0; k < nodes; ++k)
-    apart[k] = square([&](std::size_t i) { return place.z[k * n + i] - place.z[slowest * n + i]; });
-  const double near = std::ranges::max(apart) / 2500;
-  double part = 0;
-  for (std::size_t k = 0; k < nodes; ++k)
-    if (apart[k] < near) part += orbit.weight(k);
-  return part;
 }
 
 }  // namespace continuo::studies::detail

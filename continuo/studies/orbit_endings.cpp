@@ -104,9 +104,16 @@ bool OrbitFollower::waits_at_an_equilibrium(const Place& place) {
   if (rest.ending != EquilibriumEnding::found) return false;
   Vector apart(n);
   double extent = 0, waited = 0;
-  const auto distance = [&](std::size_t k) {
-    for (std::size_t i = 0; i < n; ++i) apart[i] = place.z[k * n + i] - rest.x[i];
+  const Vector& advance = system_.advance;
+  const auto distance_after = [&](std::size_t k, double turns) {
+    for (std::size_t i = 0; i < n; ++i)
+      apart[i] = place.z[k * n + i] - rest.x[i] + (advance.empty() ? 0 : turns * advance[i]);
     return std::sqrt(square(apart));
+  };
+  // What turns over waits where it was a turn before.
+  const auto distance = [&](std::size_t k) {
+    if (advance.empty()) return distance_after(k, 0);
+    return std::min({distance_after(k, -1), distance_after(k, 0), distance_after(k, 1)});
   };
   for (std::size_t k = 0; k < nodes; ++k) extent = std::max(extent, distance(k));
   for (std::size_t k = 0; k < nodes; ++k)

@@ -20,6 +20,7 @@ using Place = OrbitPlace;
 constexpr double shrunk_part =
     1e-3;                           // of the largest amplitude of the branch: so small, and a Hopf point is looked for
 constexpr double about_one = 1e-2;  // of the multiplier where branches cross
+constexpr double about_minus_one = 0.5;   // of the multiplier where a period doubles
 constexpr double still_on_circle = 1e-5;  // how near to 1 the size of a located pair is
 
 }  // namespace
@@ -189,6 +190,10 @@ void OrbitFollower::add(OrbitBranch& branch, OrbitBifurcation kind, const Place&
   const auto& values = place->point.multipliers;
   if (kind == OrbitBifurcation::crossing &&
       std::ranges::none_of(values, [](const auto& value) { return std::abs(value - 1.0) < about_one; }))
+    return;
+  // Multipliers of 1e80 pass -1 within the last digit of the constant: what is found there is no place.
+  if (kind == OrbitBifurcation::period_doubling &&
+      std::ranges::none_of(values, [](const auto& value) { return std::abs(value + 1.0) < about_minus_one; }))
     return;
   double rotation = 0;
   if (kind == OrbitBifurcation::torus) {

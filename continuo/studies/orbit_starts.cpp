@@ -143,6 +143,8 @@ OrbitBranch OrbitFollower::from_mark(const OrbitMark& start) {
     for (double& s : *mesh) s /= 2;
     for (std::size_t k = 1; k < start.mesh.size(); ++k) mesh->push_back(0.5 + start.mesh[k] / 2);
     z.insert(z.begin(), start.unknowns.begin(), start.unknowns.end() - 2);
+    if (const Vector& advance = start.at.advance; !advance.empty())
+      for (std::size_t j = start.unknowns.size() - 2; j + 2 < z.size(); ++j) z[j] += advance[j % advance.size()];
     z[z.size() - 2] *= 2;
   }
   steps_.use(mesh);
@@ -188,6 +190,7 @@ OrbitBranch OrbitFollower::from_mark(const OrbitMark& start) {
   if (doubled_) {
     branch.points = {start.at};
     branch.points.front().period *= 2;
+    for (double& part : branch.points.front().advance) part *= 2;
     for (auto& value : branch.points.front().multipliers) value *= value;
     branch.ends[0] = {OrbitEnding::branching, start.at.constant, whence};
   } else if (const auto back = beside(-1)) {

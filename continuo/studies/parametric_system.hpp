@@ -36,6 +36,9 @@ struct ParametricSystem {
   std::function<void(double t, Values x, Values p, std::span<double> rows)> constant_jacobian{};
   std::vector<std::string> names{};           // of the components
   std::vector<std::string> constant_names{};  // of the constants
+  /// How far each component goes on within a period, as angles do by 2 pi where something turns over: f is the same
+  /// there. Empty where an orbit comes back to where it was. Only what solves for orbits reads it.
+  std::vector<double> advance{};
 
   std::size_t differential() const { return size - algebraic; }
   std::size_t parameters() const { return constants.size(); }

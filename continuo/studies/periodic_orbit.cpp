@@ -11,6 +11,7 @@
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/studies/flow.hpp>
 #include <continuo/studies/lobatto.hpp>
+#include <continuo/studies/orbit_return.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 
 namespace continuo::studies {
@@ -18,9 +19,13 @@ namespace continuo::studies {
 namespace {
 
 using X = std::vector<double>;
+using detail::Extent;
+using detail::extent_of;
+using detail::goes_on;
+using detail::last_return;
+using detail::Return;
 
-constexpr double return_part = 1e-3;   // of the size of the motion: so near, and it has come back
-constexpr std::size_t most_turns = 8;  // through the section within one period
+constexpr double return_part = 1e-3;  // of the size of the motion: so near, and it has come back
 
 PeriodicOrbit without_orbit(Outcome<double> outcome, std::string hint = {}) {
   PeriodicOrbit none;
@@ -30,36 +35,6 @@ PeriodicOrbit without_orbit(Outcome<double> outcome, std::string hint = {}) {
     none.outcome.hint = std::move(hint);
   }
   return none;
-}
-
-/// Where each component ranges on the way.
-struct Extent {
-  X low, high;
-  double size(std::size_t i) const { return high[i] - low[i]; }
-};
-Extent extent_of(const std::vector<X>& states) {
-  Extent extent{states.front(), states.front()};
-  for (const X& x : states) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      extent.low[i] = std::min(extent.low[i], x[i]);
-      extent.high[i] = std::max(extent.high[i], x[i]);
-    }
-  }
-  return extent;
-}
-
-/// The time between the last point of the section and one before that is alike to this part of the motion's size; 0
-/// where there is none.
-double time_to_return(std::span<const SectionPoint> points, const Extent& extent, double part) {
-  for (std::size_t turns = 1; turns <= most_turns && turns < points.size(); ++turns) {
-    const SectionPoint& last = points.back();
-    const SectionPoint& before = points[points.size() - 1 - turns];
-    bool alike = true;
-    for (std::size_t i = 0; i < last.x.size(); ++i)
-      alike = alike && std::abs(last.x[i] - before.x[i]) <= part * extent.size(i);
-    if (alike) return last.t - before.t;
-  }
-  return 0;
 }
 
 /// x over s = t / T: dx/ds = T f(x), with T unknown.
@@ -137,17 +112,23 @@ BoundaryValueSolution over_one_period(const ParametricSystem& system, const Solu
 /// The orbit by following the motion, where it attracts: jumps that are thousands of times shorter than the period
 /// leave Newton's iteration on all of it at once too little to converge in, but do not disturb who runs along. Empty
 /// period where two returns in a row do not agree, or nothing says that they would from elsewhere.
-PeriodicOrbit by_following(const ParametricSystem& system, const X& start, const Extent& extent, std::size_t section,
-                           double level, double period, Options<X> run) {
-  constexpr double rtol = 1e-12, alike = 1e-9, attraction = 0.01;
+PeriodicOrbit by_following(const ParametricSystem& system, const X& start, const Extent& extent,
+                           const std::vector<X>& states, std::size_t section, const SectionOptions& passing,
+                           double period, Options<X> run) {
+  constexpr double rtol = 1e-12, atol = 1e-3 * rtol, alike = 1e-9, attraction = 0.01;
   PeriodicOrbit found;
-  const auto crossings = poincare_section(
-      system, start, section, {.level = level, .duration = 4.5 * period, .rtol = rtol, .interrupt = run.interrupt});
+  SectionOptions closely(passing);
+  closely.duration = 4.5 * period;
+  closely.rtol = rtol;
+  closely.progress = {};
+  const auto crossings = poincare_section(system, start, section, closely);
   const std::span<const SectionPoint> points = crossings.points;
   if (!crossings.outcome || points.size() < 3) return found;
-  const double last = time_to_return(points, extent, alike);
-  const double before = time_to_return(points.first(points.size() - 1), extent, alike);
+  const Return last_one = last_return(system, points, extent, states, alike, 10 * atol);
+  const double last = last_one.time;
+  const double before = last_return(system, points.first(points.size() - 1), extent, states, alike, 10 * atol).time;
   if (last == 0 || !(std::abs(last - before) <= alike * last)) return found;
+  found.advance = last_one.advance;
   found.multipliers = multipliers_of(system, points.back().x, last, section, run);
   found.stable = attracts(found.multipliers, attraction);
   if (!found.stable) return found;
@@ -211,8 +192,12 @@ Section poincare_section(const ParametricSystem& system, std::vector<double> x0,
   run.interrupt = options.interrupt;
   run.progress = options.progress;
   run.save = Save<X>::only_end();
-  run.events = {
-      rises<X>("section", [component, level = options.level](double, const X& x) { return x[component] - level; })};
+  if (options.every_turn)
+    run.events = {rises<X>(
+        "section", [component, level = options.level](double, const X& x) { return std::sin(x[component] - level); })};
+  else
+    run.events = {
+        rises<X>("section", [component, level = options.level](double, const X& x) { return x[component] - level; })};
   const auto motion = run_flow(system, system.constants, std::move(x0), {0, options.settle + options.duration}, run);
   section.outcome = motion.outcome;
   for (const auto& event : motion.events)
@@ -246,19 +231,23 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
   const auto share = [&](std::size_t i) {
     return extent.size(i) / std::max({std::abs(extent.low[i]), std::abs(extent.high[i]), std::abs(x0[i]), 1e-300});
   };
+  // An angle that turns over passes a plane only once: others come first.
+  const auto rank = [&](std::size_t i) { return goes_on(motion.x, extent, i) ? 1e-6 : share(i); };
   for (std::size_t i = 1; i < system.size; ++i)
-    if (share(i) > share(section)) section = i;
+    if (rank(i) > rank(section)) section = i;
   if (share(section) < 1e-6)
     return without_orbit({}, "the motion comes to rest; start elsewhere, or see where with `steady`");
-  const double level = (extent.low[section] + extent.high[section]) / 2;
-  const auto crossings = poincare_section(system, motion.final_state(), section,
-                                          {.level = level,
-                                           .duration = options.duration,
-                                           .rtol = options.rtol,
-                                           .interrupt = options.interrupt,
-                                           .progress = after(options.settle + options.duration)});
+  const SectionOptions passing{.level = (extent.low[section] + extent.high[section]) / 2,
+                               .duration = options.duration,
+                               .rtol = options.rtol,
+                               .every_turn = goes_on(motion.x, extent, section),
+                               .interrupt = options.interrupt,
+                               .progress = after(options.settle + options.duration)};
+  const auto crossings = poincare_section(system, motion.final_state(), section, passing);
   if (!crossings.outcome) return without_orbit(crossings.outcome);
-  const double period = time_to_return(crossings.points, extent, return_part);
+  const Return coming_back = last_return(system, crossings.points, extent, motion.x, return_part, 10 * run.atol);
+  const double period = coming_back.time;
+  const X& advance = coming_back.advance;
   if (period == 0) {
     auto none = without_orbit({}, fmt::format("the motion does not come back to where it was within a time of {}; it "
                                               "may need longer to settle, or have no period",
@@ -267,7 +256,13 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
     return none;
   }
 
-  const X start = crossings.points.back().x;
+  X start = crossings.points.back().x;
+  if (!advance.empty()) {  // f is the same some turns before, where angles are small
+    const auto angle = static_cast<std::size_t>(std::ranges::find_if(advance, [](double part) { return part != 0; }) -
+                                                advance.begin());
+    const double turns = std::floor(start[angle] / advance[angle]);
+    for (std::size_t i = 0; i < start.size(); ++i) start[i] -= turns * advance[i];
+  }
   Options<X> dense = run;
   dense.progress = {};
   dense.save = Save<X>::dense();
@@ -279,19 +274,20 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
                                .most_intervals = 4000 + 8 * turn.t.size(),
                                .interrupt = options.interrupt};
   for (const double t : turn.t) solving.mesh.push_back(t / period);
-  const BoundaryValueProblem problem{over_one_period(system, period),
-                                     {0, 1},
-                                     [n = system.size, section, level](Values x, Values, std::span<double> g) {
-                                       for (std::size_t i = 0; i < n; ++i) g[i] = x[i] - x[n + i];
-                                       g[n] = x[section] - level;
-                                     }};
+  const BoundaryValueProblem problem{
+      over_one_period(system, period),
+      {0, 1},
+      [n = system.size, section, level = start[section], advance](Values x, Values, std::span<double> g) {
+        for (std::size_t i = 0; i < n; ++i) g[i] = x[i] - x[n + i] + (advance.empty() ? 0 : advance[i]);
+        g[n] = x[section] - level;
+      }};
   PeriodicOrbit result;
   result.orbit = solve_boundary_values(
       problem, [&](double s, std::span<double> x) { std::ranges::copy(turn(s * period), x.begin()); }, solving);
   result.outcome = result.orbit.outcome;
   to_end.progress = {};
   if (!result.outcome) {
-    if (PeriodicOrbit followed = by_following(system, start, extent, section, level, period, to_end);
+    if (PeriodicOrbit followed = by_following(system, start, extent, motion.x, section, passing, period, to_end);
         followed.period > 0)
       return followed;
     result.outcome.hint =
@@ -301,6 +297,7 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
     return result;
   }
   result.period = result.orbit.parameters[0];
+  result.advance = advance;
   result.multipliers = multipliers_of(system, result.orbit(0), result.period, section, to_end);
   result.stable = attracts(result.multipliers, 0);
   return result;

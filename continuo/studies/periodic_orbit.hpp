@@ -32,6 +32,9 @@ struct PeriodicOrbit {
   BoundaryValueSolution orbit;                    // over t / period from 0 to 1
   std::vector<std::complex<double>> multipliers;  // by descending size; one of them is 1
   bool stable = false;                            // all but that one inside the unit circle
+  /// How far each component has gone on after a period, by whole turns of 2 pi after which f is the same again; empty
+  /// where the orbit comes back to where it was.
+  std::vector<double> advance{};
   bool wanders = false;  // there is none because the motion did not come back: a longer run may find one
 };
 
@@ -60,6 +63,7 @@ struct SectionOptions {
   double level = 0;
   double settle = 0, duration = 100;
   double rtol = 1e-9;
+  bool every_turn = false;  // of an angle: wherever it passes the level and any number of turns, upwards
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
 };
