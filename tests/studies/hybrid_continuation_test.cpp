@@ -194,9 +194,8 @@ TEST(HybridContinuation, OfARimlessWheel) {
 // Duffing's oscillator in one of its two wells: bent to lower forces, with two folds, until its period doubles, again
 // and again. The distances of doublings come to fall by 4.669 (M. J. Feigenbaum, J. Stat. Phys. 19 (1978) 25-52).
 TEST(HybridContinuation, DuffingsPeriodDoublesAsFeigenbaumSays) {
-  Followed followed =
-      along("param F = 0.2\nx'' = -0.2*x' + x - x^3 + F*cos(t)\nx(0) = 1\nx'(0) = 0\nrun 0..300\n", 0.1, 0.4,
-            {.settle = 300, .duration = 300});
+  Followed followed = along("param F = 0.2\nx'' = -0.2*x' + x - x^3 + F*cos(t)\nx(0) = 1\nx'(0) = 0\nrun 0..300\n", 0.1,
+                            0.4, {.settle = 300, .duration = 300});
   EXPECT_EQ(followed.of_kind(OrbitBifurcation::fold).size(), 2u);
   followed.options.low = 0.15;  // the cascade lies close together
   followed.options.high = 0.1584;
