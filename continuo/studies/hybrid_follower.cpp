@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <continuo/studies/false_position.hpp>
 #include <continuo/studies/hybrid_follower.hpp>
+#include <continuo/studies/orbit_marks.hpp>
 
 namespace continuo::studies::detail {
 
@@ -18,8 +17,7 @@ using Vec = Eigen::VectorXd;
 constexpr double least_cosine = 0.906;                // a step that turns by more than 25 degrees was too long
 constexpr double no_slope = 1e-6;                     // of a tangent: so little is no change of the parameter
 constexpr double beside_crossing = 0.1;               // of the first step
-constexpr double near_one = 1e-2;                     // of the multiplier where branches cross
-constexpr double pair_on_circle = 1e-5;               // how near to 1 the size of a located pair is
+constexpr double about_minus_one = 1e-2;              // of the multiplier where a period doubles
 constexpr double same_multipliers = 1e-2;             // of neighbours between which an event comes in that does nothing
 constexpr double hardly_crossed = 100;                // a time of an event that moves by so many periods a size
 constexpr double most_noise = 1e-5;                   // in multipliers: beyond, tests change their signs by chance
@@ -194,70 +192,30 @@ void HybridFollower::report(double constant) {
   if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
 }
 
-// What is what, see OrbitFollower::mark.
 void HybridFollower::mark(OrbitBranch& branch, const Place& a, const Place& b, double step) {
-  const auto fold = [](const Place& place) { return place.fold; };
-  const auto unity = [](const Place& place) { return place.tests.unity; };
-  const auto changes = [](const Place& from, const Place& to, const auto& test) {
-    return (test(from) < 0) != (test(to) < 0);
-  };
-  const auto zero_of = [&](const auto& test) {
-    return located_zero([&](double s) { return steps_.stepped(a, s); }, test, step, test(a), test(b), located_at_);
-  };
-  const bool turns = changes(a, b, fold), passes = changes(a, b, unity);
-  if (turns || passes) {
-    if (auto place = turns ? zero_of(fold) : zero_of(unity)) {
-      auto kind = turns && passes ? OrbitBifurcation::fold : OrbitBifurcation::crossing;
-      if (turns != passes) {
-        const double at = located_at_;
-        for (const double part : {1e-3, 1e-5}) {
-          const double aside = part * std::min({step, at, step - at});
-          const auto before = steps_.stepped(a, at - aside), after = steps_.stepped(a, at + aside);
-          if (before && after && changes(*before, *after, fold) && changes(*before, *after, unity))
-            kind = OrbitBifurcation::fold;
-        }
-      }
-      add(branch, kind, a, std::move(place));
-    }
-  }
-  const auto doubling = [](const Place& place) { return place.tests.doubling; };
-  const auto torus = [](const Place& place) { return place.tests.torus; };
-  if (changes(a, b, doubling)) add(branch, OrbitBifurcation::period_doubling, a, zero_of(doubling));
-  if (changes(a, b, torus)) add(branch, OrbitBifurcation::torus, a, zero_of(torus));
+  mark_between(
+      a, b, step, [&](double s) { return steps_.stepped(a, s); },
+      [&](OrbitBifurcation kind, Place place, double at) { add(branch, kind, a, std::move(place), at); });
 }
 
-void HybridFollower::add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, std::optional<Place> place) {
-  if (!place || !inside(*place)) return;
-  const auto& values = place->point.multipliers;
-  if (kind == OrbitBifurcation::crossing &&
-      std::ranges::none_of(values, [](const auto& value) { return std::abs(value - 1.0) < near_one; }))
-    return;
-  if (kind == OrbitBifurcation::period_doubling &&
-      std::ranges::none_of(values, [](const auto& value) { return std::abs(value + 1.0) < near_one; }))
-    return;
-  double rotation = 0;
-  if (kind == OrbitBifurcation::torus) {
-    // Two real multipliers whose product is 1 are no torus: nothing happens.
-    const auto pair = std::ranges::find_if(values, [](const std::complex<double>& value) {
-      return value.imag() > 0 && std::abs(std::abs(value) - 1) < pair_on_circle;
-    });
-    if (pair == values.end()) return;
-    rotation = std::arg(*pair) / (2 * std::numbers::pi);
-  }
-  steps_.complete(*place);
+void HybridFollower::add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, Place place, double at) {
+  if (!inside(place)) return;
+  const auto rotation = borne_out(kind, place.point.multipliers, about_minus_one);
+  if (!rotation) return;
+  steps_.complete(place);
   // Where branches cross the equations leave two directions open, and the tangent may be any of them: that of this
   // branch leads from the place before to the one behind.
-  Vec tangent = place->tangent;
+  Vec tangent = place.tangent;
   if (kind == OrbitBifurcation::crossing) {
     const double aside = beside_crossing * options_.first_step;
-    const auto ahead = steps_.stepped(before, located_at_ + aside), back = steps_.stepped(before, located_at_ - aside);
+    const auto ahead = steps_.stepped(before, at + aside), back = steps_.stepped(before, at - aside);
     tangent = ahead && back ? Vec(ahead->z - back->z) : before.tangent;
   }
   branch.marks.push_back({.kind = kind,
-                          .at = std::move(place->point),
-                          .rotation = rotation,
+                          .at = std::move(place.point),
+                          .rotation = *rotation,
                           .tangent = steps_.unscaled_direction(tangent),
-                          .begin = std::move(place->start)});
+                          .begin = std::move(place.start)});
 }
 
 OrbitBranch HybridFollower::both_ways(Place first) {

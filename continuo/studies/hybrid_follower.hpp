@@ -33,9 +33,10 @@ class HybridFollower {
   /// What the last points say: the period grows without bound, or neighbours part too fast to go on.
   std::optional<OrbitBranchEnd> ending_of(std::span<const OrbitPoint> way, const Place& here);
   bool comes_back(const Place& here, const Place& origin, double step) const;
-  /// What lies between two neighbours, narrowed down to where its test is zero.
+  /// What lies between two neighbours.
   void mark(OrbitBranch& branch, const Place& a, const Place& b, double step);
-  void add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, std::optional<Place> place);
+  /// `at`: so far from `before` the place was found.
+  void add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, Place place, double at);
   bool is_interrupted() const { return options_.interrupt && options_.interrupt->load(); }
   bool inside(const Place& place) const {
     return place.point.constant >= options_.low && place.point.constant <= options_.high;
@@ -45,7 +46,7 @@ class HybridFollower {
   const HybridContinuationOptions& options_;
   std::string name_;
   HybridBranchSteps& steps_;
-  double range_, located_at_ = 0;
+  double range_;
   bool doubled_ = false;                                                 // from a period doubling: twice round
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // the part of the range that was covered
 };

@@ -21,11 +21,8 @@ constexpr double error_for_tolerance = 100;  // inside of an interval; at its en
 constexpr double no_size = 1e-12;            // of the largest component: what rounding leaves of a zero
 
 void set_tests(OrbitPlace& place) {
-  const MultiplierTests tests = tests_of(place.point.multipliers);
   place.fold = place.tangent.back();
-  place.unity = tests.unity;
-  place.doubling = tests.doubling;
-  place.torus = tests.torus;
+  place.tests = tests_of(place.point.multipliers);
 }
 
 }  // namespace

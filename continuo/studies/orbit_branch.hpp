@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include <continuo/studies/multiplier_tests.hpp>
 #include <continuo/studies/orbit_collocation.hpp>
 #include <continuo/studies/orbit_continuation.hpp>
 #include <continuo/studies/vector_algebra.hpp>
@@ -27,10 +28,8 @@ struct OrbitPlace {
   double error = 0;  // estimated, of x inside of the intervals, in sizes
 
   // Zero where something happens, of size 1 at most.
-  double fold = 0;      // the constant's part of the tangent
-  double unity = 0;     // a multiplier is 1
-  double doubling = 0;  // a multiplier is -1
-  double torus = 0;     // the product of two multipliers is 1
+  double fold = 0;  // the constant's part of the tangent
+  MultiplierTests tests{};
 };
 
 /// The equilibrium in which a branch begins or ends, as an orbit without extent.

@@ -1,14 +1,13 @@
 // continuo/studies/orbit_follower.cpp
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <continuo/studies/equilibrium.hpp>
-#include <continuo/studies/false_position.hpp>
 #include <continuo/studies/orbit_follower.hpp>
+#include <continuo/studies/orbit_marks.hpp>
 
 namespace continuo::studies::detail {
 
@@ -18,10 +17,8 @@ using Vector = std::vector<double>;
 using Place = OrbitPlace;
 
 constexpr double shrunk_part =
-    1e-3;                           // of the largest amplitude of the branch: so small, and a Hopf point is looked for
-constexpr double about_one = 1e-2;  // of the multiplier where branches cross
-constexpr double about_minus_one = 0.5;   // of the multiplier where a period doubles
-constexpr double still_on_circle = 1e-5;  // how near to 1 the size of a located pair is
+    1e-3;  // of the largest amplitude of the branch: so small, and a Hopf point is looked for
+constexpr double about_minus_one = 0.5;  // of the multiplier where a period doubles
 
 }  // namespace
 
@@ -152,68 +149,22 @@ void OrbitFollower::report(double constant) {
   if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
 }
 
-/// What lies between two neighbours, narrowed down to where its test is zero.
 void OrbitFollower::mark(OrbitBranch& branch, const Place& a, const Place& b, double step) {
-  const auto changes = [](const Place& from, const Place& to, double Place::* test) {
-    return (from.*test < 0) != (to.*test < 0);
-  };
-  const auto zero_of = [&](double Place::* test) {
-    return located(a, b, step, [test](const Place& place) { return place.*test; });
-  };
-  // At a fold the branch turns and a multiplier passes 1; at a crossing the multiplier alone on a branch that goes
-  // straight on, the direction alone on one that begins there. Both are looked at next to the place, for more may
-  // happen within a step. The direction may also turn by what rounding leaves of a constant that keeps still, as in
-  // the explosion of a canard: then no multiplier is near 1.
-  const bool turns = changes(a, b, &Place::fold), passes = changes(a, b, &Place::unity);
-  if (turns || passes) {
-    if (auto place = zero_of(turns ? &Place::fold : &Place::unity)) {
-      auto kind = turns && passes ? OrbitBifurcation::fold : OrbitBifurcation::crossing;
-      if (turns != passes) {
-        const double at = located_at_;
-        for (const double part : {1e-3, 1e-5}) {
-          const double aside = part * std::min({step, at, step - at});
-          const auto before = steps_.stepped(a, at - aside), after = steps_.stepped(a, at + aside);
-          if (before && after && changes(*before, *after, &Place::fold) && changes(*before, *after, &Place::unity))
-            kind = OrbitBifurcation::fold;
-        }
-      }
-      add(branch, kind, a, std::move(place));
-    }
-  }
-  if (changes(a, b, &Place::doubling)) add(branch, OrbitBifurcation::period_doubling, a, zero_of(&Place::doubling));
-  if (changes(a, b, &Place::torus)) add(branch, OrbitBifurcation::torus, a, zero_of(&Place::torus));
+  mark_between(
+      a, b, step, [&](double s) { return steps_.stepped(a, s); },
+      [&](OrbitBifurcation kind, Place place, double) { add(branch, kind, a, std::move(place)); });
 }
 
 /// `before`: a place of the branch from which it was found, on the same mesh.
-void OrbitFollower::add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, std::optional<Place> place) {
-  if (!place || !inside(*place)) return;
-  const auto& values = place->point.multipliers;
-  if (kind == OrbitBifurcation::crossing &&
-      std::ranges::none_of(values, [](const auto& value) { return std::abs(value - 1.0) < about_one; }))
-    return;
-  // Multipliers of 1e80 pass -1 within the last digit of the constant: what is found there is no place.
-  if (kind == OrbitBifurcation::period_doubling &&
-      std::ranges::none_of(values, [](const auto& value) { return std::abs(value + 1.0) < about_minus_one; }))
-    return;
-  double rotation = 0;
-  if (kind == OrbitBifurcation::torus) {
-    // Two real multipliers whose product is 1 are no torus: nothing happens.
-    const auto pair = std::ranges::find_if(values, [](const std::complex<double>& value) {
-      return value.imag() > 0 && std::abs(std::abs(value) - 1) < still_on_circle;
-    });
-    if (pair == values.end()) return;
-    rotation = std::arg(*pair) / (2 * std::numbers::pi);
-  }
-  steps_.complete(*place);
+void OrbitFollower::add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, Place place) {
+  if (!inside(place)) return;
+  const auto rotation = borne_out(kind, place.point.multipliers, about_minus_one);
+  if (!rotation) return;
+  steps_.complete(place);
   Vector tangent(before.tangent);
   for (std::size_t j = 0; j < tangent.size(); ++j) tangent[j] *= steps_.size(j);
   branch.marks.push_back(
-      {kind, std::move(place->point), rotation, *place->mesh, std::move(place->z), std::move(tangent)});
-}
-
-std::optional<OrbitPlace> OrbitFollower::located(const Place& a, const Place& b, double step,
-                                                 const std::function<double(const Place&)>& test) {
-  return located_zero([&](double s) { return steps_.stepped(a, s); }, test, step, test(a), test(b), located_at_);
+      {kind, std::move(place.point), *rotation, *place.mesh, std::move(place.z), std::move(tangent)});
 }
 
 }  // namespace continuo::studies::detail

@@ -54,9 +54,7 @@ class OrbitFollower {
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(OrbitBranch& branch, const Place& a, const Place& b, double step);
   /// `before`: a place of the branch from which it was found, on the same mesh.
-  void add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, std::optional<Place> place);
-  std::optional<Place> located(const Place& a, const Place& b, double step,
-                               const std::function<double(const Place&)>& test);
+  void add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, Place place);
   /// The Hopf point to which so small an orbit belongs: as far away as the orbit is wide, and no more.
   std::optional<HopfPoint> hopf_near(const Place& place);
   OrbitBranchEnd lost(const Place& here);
@@ -71,7 +69,6 @@ class OrbitFollower {
   const OrbitContinuationOptions& options_;
   OrbitBranchSteps steps_;
   bool doubled_ = false;                                                 // from a period doubling: twice round
-  double located_at_ = 0;                                                // how far from the place before
   double range_, amplitude_ = 0;                                         // the largest so far
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // the part of the range that was covered
 };
