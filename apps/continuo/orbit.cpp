@@ -212,6 +212,7 @@ ExitCode orbit(OrbitOptions options) {
   }
   const Studied studied = study(options.experiment, options.mode, constants);
   if (studied.prepared.exit != done) return studied.prepared.exit;
+  if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
   const double run = run_length(studied.prepared.program->model);
   options.patient = !options.settle && !(options.duration > 0);
   if (!options.settle) options.settle = run;

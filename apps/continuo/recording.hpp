@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <apps/continuo/exit_codes.hpp>
 
@@ -16,6 +17,7 @@ struct RecordingRequest {
   std::string model;            // its file
   std::optional<double> until;  // else as long as the text says
   double rate = 30;             // pictures a second
+  std::vector<std::string> files() const { return {page, pictures}; }
   bool wanted() const { return !page.empty() || !pictures.empty(); }
 };
 

@@ -50,6 +50,7 @@ ExitCode report(const ReportOptions& options) {
   const model::Loaded loaded = load_model(options.file);
   if (!loaded) return wrong_model;
   const model::Model& model = *loaded.model;
+  if (!are_apart(files_of(model, options.file), {options.out})) return usage;
   const ScratchFolder scratch;
   std::vector<results::ReportSection> sections;
   sections.push_back({.title = "Model", .text = model.text.content});

@@ -143,6 +143,7 @@ ExitCode sense(const SenseOptions& options) {
   Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   const model::Model& model = prepared.program->model;
+  if (!are_apart(files_of(model, options.experiment.file), {options.output})) return usage;
   say_step_has_no_part(prepared);
   const auto influences = influences_named(model, options.parameters, options.initial);
   if (!influences) return usage;

@@ -156,6 +156,7 @@ ExitCode steady(const SteadyOptions& options) {
   }
   const Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
+  if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
   if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
   if (second && !is_plane(studied, {*range, *second})) return usage;
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};

@@ -124,6 +124,7 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
   const model::Loaded loaded = session.open_file();
   if (!loaded.diagnostics.empty()) fmt::print(stderr, "{}", loaded.text({.color = colors_wanted()}));
   if (!loaded.model) return wrong_model;
+  if (!are_apart(files_of(*loaded.model, request.experiment.file), request.recording.files())) return usage;
   if (!session.is_open()) {
     fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
     if (loaded.model->needs_boundary_solver())
@@ -139,7 +140,9 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
 }
 
 ExitCode view(ViewRequest& request) {
-  if (!readable(request.experiment.file)) return usage;
+  if (!readable(request.experiment.file) ||
+      !are_apart({request.experiment.file, request.page_file}, request.recording.files()))
+    return usage;
   const auto page = page_of(request);
   if (!page) return usage;
   request.server.page = *page;

@@ -17,16 +17,21 @@ TEST(OutputFiles, AreNeverWrittenOverWhatIsRead) {
   const Shell shell;
   shell.write("decay.sim", plain_decay);
   shell.write("force.csv", "t,u\n0,1\n1,2\n");
-  shell.write("driven.sim", "table force from \"force.csv\"\nx' = interp(force, t)\nx(0) = 0\nrun 0..1\n");
+  shell.write("driven.sim",
+              "param k = 1\ntable force from \"force.csv\"\nx' = interp(force, t) - k*x\nx(0) = 0\nrun 0..1\n");
   for (const std::string words :
        {"run decay.sim -o ./decay.sim", "run decay.sim --events decay.sim", "run decay.sim --manifest decay.sim",
         "sense decay.sim --param k -o decay.sim", "steady decay.sim --along k=1..2 -o decay.sim",
-        "orbit decay.sim --section x=1 -o decay.sim", "report decay.sim -o decay.sim", "run driven.sim -o force.csv"}) {
+        "orbit decay.sim --section x=1 -o decay.sim", "report decay.sim -o decay.sim", "run driven.sim -o force.csv",
+        "sense driven.sim --param k -o force.csv", "steady driven.sim --along k=1..2 -o force.csv",
+        "orbit driven.sim --section x=1 -o force.csv", "report driven.sim -o force.csv",
+        "view decay.sim --export decay.sim", "view driven.sim --export force.csv"}) {
     const Result result = shell.run(words);
     EXPECT_EQ(result.exit, 1) << words;
     EXPECT_THAT(result.err, HasSubstr("it is read, and would be lost")) << words;
   }
   EXPECT_EQ(shell.read("decay.sim"), plain_decay);
+  EXPECT_EQ(shell.read("force.csv"), "t,u\n0,1\n1,2\n");
   EXPECT_THAT(shell.run("run decay.sim -o x.csv --events ./x.csv").err, HasSubstr("cannot write ./x.csv twice"));
   EXPECT_EQ(shell.run("run decay.sim -o /dev/null --events /dev/null").exit, 0);
 }
