@@ -80,25 +80,6 @@ Times times_of(const Studied& studied, const ExplorationLimits& limits) {
   return {limits.settle.value_or(run), limits.duration.value_or(run), !limits.settle && !limits.duration};
 }
 
-/// By the equations alone, which are all that moves the model.
-void find_smooth_orbit(const Studied& studied, const Times& times, Exploration& found) {
-  if (studied.system.size < 2) return;
-  studies::PeriodicOrbitOptions search{
-      .settle = times.settle, .duration = times.duration, .interrupt = &interrupt_flag()};
-  auto orbit = studies::find_periodic_orbit(studied.system, studied.start, search);
-  if (!orbit.outcome && orbit.wanders && times.patient && !interrupt_flag()) {
-    search.settle *= 10;
-    search.duration *= 10;
-    orbit = studies::find_periodic_orbit(studied.system, studied.start, search);
-  }
-  if (orbit.outcome) {
-    found.orbit = std::move(orbit);
-  } else {
-    found.open.push_back("no closed orbit: " +
-                         (orbit.outcome.hint.empty() ? describe(orbit.outcome) : orbit.outcome.hint));
-  }
-}
-
 void find_whole_orbit(const Studied& studied, const Times& times, Exploration& found) {
   const studies::Forcing forcing =
       studies::forcing_of(*studied.prepared.program, studied.prepared.experiment.parameters);
@@ -120,6 +101,27 @@ void find_whole_orbit(const Studied& studied, const Times& times, Exploration& f
   }
 }
 
+/// By the equations alone, which are all that moves the model.
+void find_smooth_orbit(const Studied& studied, const Times& times, Exploration& found) {
+  if (studied.system.size < 2) return;
+  studies::PeriodicOrbitOptions search{
+      .settle = times.settle, .duration = times.duration, .interrupt = &interrupt_flag()};
+  auto orbit = studies::find_periodic_orbit(studied.system, studied.start, search);
+  if (!orbit.outcome && orbit.wanders && times.patient && !interrupt_flag()) {
+    search.settle *= 10;
+    search.duration *= 10;
+    orbit = studies::find_periodic_orbit(studied.system, studied.start, search);
+  }
+  if (orbit.outcome) {
+    found.orbit = std::move(orbit);
+  } else if (!orbit.wanders && !interrupt_flag()) {  // it comes back: perhaps one of many, where something is conserved
+    find_whole_orbit(studied, times, found);
+  } else {
+    found.open.push_back("no closed orbit: " +
+                         (orbit.outcome.hint.empty() ? describe(orbit.outcome) : orbit.outcome.hint));
+  }
+}
+
 /// An orbit where the motion comes back; else how fast its neighbours part.
 void find_orbit(const Studied& studied, const ExplorationLimits& limits, bool all_seen, Exploration& found) {
   if (found.comes_to || studied.system.size < 1) return;
@@ -134,9 +136,12 @@ void find_orbit(const Studied& studied, const ExplorationLimits& limits, bool al
   const studies::LyapunovOptions averaging{.duration = limits.duration.value_or(averaged_runs * times.duration),
                                            .settle = times.settle,
                                            .interrupt = &interrupt_flag()};
-  auto exponents = all_seen
-                       ? studies::lyapunov_exponents(studied.system, studied.start, averaging)
-                       : studies::lyapunov_exponents(studied.prepared.program, studied.prepared.experiment, averaging);
+  auto exponents =
+      all_seen ? studies::lyapunov_exponents(
+                     studies::of_model(studied.prepared.program,
+                                       {.parameters = studied.prepared.experiment.parameters, .mode = studied.mode}),
+                     studied.start, averaging)
+               : studies::lyapunov_exponents(studied.prepared.program, studied.prepared.experiment, averaging);
   if (!exponents.exponents.empty()) {
     found.exponents = std::move(exponents);
   } else {
@@ -159,8 +164,9 @@ void move_sliders(const Studied& studied, const ExplorationLimits& limits, Explo
       return;
     }
     Slider slider{parameter.name, parameter.range->low, parameter.range->high, {}};
-    const studies::ParametricSystem system = studies::of_model(
-        studied.prepared.program, {.constants = {parameter.name}, .parameters = set, .mode = studied.mode});
+    const studies::ParametricSystem system = holding_laws(
+        studied, studies::of_model(studied.prepared.program,
+                                   {.constants = {parameter.name}, .parameters = set, .mode = studied.mode}));
     const double here = set.contains(parameter.name) ? set.at(parameter.name) : parameter.value;
     std::vector<studies::BranchStart> starts;
     std::vector<std::size_t> numbers;

@@ -48,6 +48,7 @@ std::string exploration_json(const Studied& studied, const Exploration& found) {
               {"searches", found.searches}, {"sliders", sliders},
               {"matters", influences},      {"not_moved", found.not_moved},
               {"open", found.open},         {"complete", found.complete}};
+  add_conserved(result, studied);
   if (found.simulated.run)
     result["run"] = {{"ending", to_string(found.simulated.run->outcome.ending)},
                      {"t", found.simulated.run->final_time()}};

@@ -21,12 +21,13 @@ struct ExploreOptions {
 
 ExitCode explore_model(const ExploreOptions& options) {
   if (!drawable(options.plot)) return usage;
-  const Studied studied = study(options.experiment, options.mode, {}, Equations::algebraic_too);
+  Studied studied = study(options.experiment, options.mode, {}, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   if (studied.prepared.program->model.states.empty()) {
     say("nothing moves in this model: there is no state");
     return wrong_model;
   }
+  hold_conserved(studied);
   const Exploration found = explore(studied, options.limits);
   print(options.json ? exploration_json(studied, found) : exploration_text(studied, found));
   const ExitCode exit = found.complete ? done : interrupted;

@@ -96,12 +96,13 @@ ExitCode sense_period(const ExperimentOptions& options, const std::vector<std::s
 
 // f(x, p) = 0 differentiated: dx/dp = -(df/dx)^-1 df/dp.
 ExitCode sense_rest(const ExperimentOptions& options, const std::vector<std::string>& parameters, bool json) {
-  const Studied studied = study(options, "", parameters);
+  Studied studied = study(options, "", parameters);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   const model::Model& model = studied.prepared.program->model;
   const auto influences = influences_named(model, parameters, {});
   if (!influences) return usage;
   if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
+  hold_conserved(studied);
   const studies::ParametricSystem& system = studied.system;
   const auto search = studies::find_equilibrium(system, studied.start, system.constants);
   if (search.ending != studies::EquilibriumEnding::found) {

@@ -88,7 +88,10 @@ nlohmann::json json_of(const studies::Equilibria& found, const Studied& studied)
   }
   auto states = nlohmann::json::array();
   for (const model::State& state : studied.prepared.program->model.states) states.push_back(state.column);
-  return {{"states", states}, {"equilibria", places}, {"searches", found.searches}, {"arrived", found.arrived}};
+  nlohmann::json json{
+      {"states", states}, {"equilibria", places}, {"searches", found.searches}, {"arrived", found.arrived}};
+  add_conserved(json, studied);
+  return json;
 }
 
 /// The folds and Hopf points of the branches, which have been shown, in both parameters.
@@ -154,10 +157,11 @@ ExitCode steady(const SteadyOptions& options) {
     if (!second) return usage;
     constants.push_back(second->name);
   }
-  const Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
+  Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
   if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
+  hold_conserved(studied);
   if (second && !is_plane(studied, {*range, *second})) return usage;
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
   if (!set_box(studied, options.box, box)) return usage;
@@ -176,7 +180,7 @@ ExitCode steady(const SteadyOptions& options) {
                     results::short_number(found.nearest.residual), to_string(found.nearest.ending)));
     return numerical_failure;
   }
-  if (!options.json) print(table_of(found, studied));
+  if (!options.json) print(table_of(found, studied) + conserved_text(studied));
   if (range && !interrupt_flag()) return follow(studied, found, *range, second, box, options);
   if (options.json) print(json_of(found, studied).dump(2) + "\n");
   return interrupt_flag() ? interrupted : done;

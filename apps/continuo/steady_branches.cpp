@@ -32,9 +32,11 @@ std::string text_of(const studies::BifurcationPoint& point, const NamedRange& ra
   if (point.kind == studies::Bifurcation::hopf) {
     line += fmt::format(", frequency {}", results::short_number(point.frequency));
     if (point.coefficient)
-      line +=
-          fmt::format(", {} (first Lyapunov coefficient {})", *point.coefficient < 0 ? "supercritical" : "subcritical",
-                      results::short_number(*point.coefficient));
+      line += fmt::format(", {} (first Lyapunov coefficient {})",
+                          *point.coefficient < 0   ? "supercritical"
+                          : *point.coefficient > 0 ? "subcritical"
+                                                   : "degenerate",
+                          results::short_number(*point.coefficient));
   }
   if (point.kind == studies::Bifurcation::fold && point.coefficient)
     line += fmt::format(", coefficient {}", results::short_number(*point.coefficient));

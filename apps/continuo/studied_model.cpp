@@ -75,6 +75,35 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
   return studied;
 }
 
+void hold_conserved(Studied& studied) {
+  studied.laws = studies::conservation_laws_of(studied.system, studied.start);
+  studied.system = holding_laws(studied, studied.system);
+}
+
+studies::ParametricSystem holding_laws(const Studied& studied, const studies::ParametricSystem& system) {
+  if (studied.laws.empty()) return system;
+  return studies::holding(system, studied.laws,
+                          [program = studied.prepared.program, names = system.constant_names,
+                           overrides = studied.prepared.experiment.parameters](studies::Values p) {
+                            model::Overrides moved = overrides;
+                            for (std::size_t i = 0; i < names.size(); ++i) moved[names[i]] = p[i];
+                            return studies::start_of(program->model, moved);
+                          });
+}
+
+std::string conserved_text(const Studied& studied) {
+  std::string text;
+  for (const studies::ConservationLaw& law : studied.laws)
+    text += fmt::format("{} {} = {}\n", text.empty() ? "conserved:" : "          ",
+                        studies::law_text(studied.system, law), results::short_number(law.value));
+  return text;
+}
+
+void add_conserved(nlohmann::json& object, const Studied& studied) {
+  for (const studies::ConservationLaw& law : studied.laws)
+    object["conserved"].push_back({{"sum", studies::law_text(studied.system, law)}, {"value", law.value}});
+}
+
 double run_length(const model::Model& model) {
   return model.run.to && model.run.from ? model.run.to->value - model.run.from->value : 100;
 }

@@ -9,6 +9,7 @@
 #include <apps/continuo/experiment_options.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/equilibrium.hpp>
 #include <continuo/studies/parametric_system.hpp>
 
@@ -24,10 +25,21 @@ struct Studied {
   std::size_t mode = 0;
   studies::ParametricSystem system{};
   std::vector<double> start{};  // the initial state
+  std::vector<studies::ConservationLaw> laws{};  // that the system holds (hold_conserved)
 };
 /// `constants`: parameters that the study moves. exit in `prepared` where the verb ends here.
 Studied study(const ExperimentOptions& options, const std::string& mode, const std::vector<std::string>& constants = {},
               Equations equations = Equations::differential);
+
+/// Holds what the equations conserve at its value at the start: of places of rest and orbits, which else fill whole
+/// families, those that a motion from there may come to.
+void hold_conserved(Studied& studied);
+/// The same for the model with other constants that move.
+studies::ParametricSystem holding_laws(const Studied& studied, const studies::ParametricSystem& system);
+/// A line for each law that is held: "conserved: a + c = 1".
+std::string conserved_text(const Studied& studied);
+/// The same as a member "conserved".
+void add_conserved(nlohmann::json& object, const Studied& studied);
 
 /// Whether neither the equations of the studied mode hang on the time nor anything happens at set times; says what
 /// does, and where, if not. `what` is the study's: "an orbit is solved for".

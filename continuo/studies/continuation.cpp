@@ -18,7 +18,8 @@ namespace {
 
 using Vector = std::vector<double>;
 
-constexpr double no_slope = 1e-5;  // of a direction of length 1: so little is no change of the constant
+constexpr double near_the_axis = 1e-5;  // of a pair, in parts of its frequency
+constexpr double no_slope = 1e-5;       // of a direction of length 1: so little is no change of the constant
 
 // In sizes at the start; of the constant in parts of its range.
 constexpr double far_away = 1e4, large = 4, standstill = 1e-3;
@@ -210,6 +211,7 @@ class Follower {
 
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(Branch& branch, const Place& a, const Place& b, double step) {
+    double at = 0;  // how far from a what was located last is
     const auto located = [&](auto&& test) {
       double low = 0, high = step;
       std::optional<Place> best;
@@ -220,6 +222,7 @@ class Follower {
         if (!place) break;
         ((test(*place) > 0) == positive ? low : high) = middle;
         best = std::move(place);
+        at = middle;
       }
       return best;
     };
@@ -230,27 +233,77 @@ class Follower {
       p[options_.constant] = point.at.constant;
       if (kind == Bifurcation::fold) point.coefficient = fold_coefficient(system_, point.at.x, p, options_.t);
       if (kind == Bifurcation::hopf)
-        point.coefficient =
-            first_lyapunov_coefficient(system_, point.at.x, p, 2 * std::numbers::pi * frequency, options_.t);
+        if (const auto found =
+                first_lyapunov_coefficient(system_, point.at.x, p, 2 * std::numbers::pi * frequency, options_.t))
+          point.coefficient = std::abs(found->value) <= found->rounding ? 0 : found->value;
       branch.bifurcations.push_back(std::move(point));
     };
     const bool crosses = a.direction_sign * b.direction_sign < 0;  // a pitchfork also turns round
     if (a.tangent[n_] * b.tangent[n_] < 0 && !crosses)
       add(Bifurcation::fold, located([&](const Place& p) { return p.tangent[n_]; }), 0);
     if (crosses) add_crossing(branch, located([](const Place& p) { return p.direction_sign; }));
-    if (a.hopf_test * b.hopf_test < 0) {
-      auto place = located([](const Place& p) { return p.hopf_test; });
-      if (!place) return;
-      // The pair whose sum vanishes: complex, or two real ones of opposite sign (then nothing happens).
-      double frequency = 0, least = std::numeric_limits<double>::infinity();
-      for (const auto& value : place->point.eigenvalues) {
-        if (value.imag() <= 0 || std::abs(value.real()) >= least) continue;
-        least = std::abs(value.real());
-        frequency = value.imag();
-      }
-      if (frequency > 0 && least < 1e-5 * frequency)
-        add(Bifurcation::hopf, std::move(place), frequency / (2 * std::numbers::pi));
+    if (a.hopf_test * b.hopf_test < 0)
+      if (const auto near = located([](const Place& p) { return p.hopf_test; }))
+        if (auto place = hopf_point_near(a, *near, at, step))
+          add(Bifurcation::hopf, std::move(place->first), place->second / (2 * std::numbers::pi));
+  }
+
+  /// Of the pairs of a place the one whose sum is nearest to zero of all that are not there to rounding along the whole
+  /// branch is told by its passing: at both ends of a way round the place its real part is more than rounding leaves,
+  /// and of opposite sign. The place and the angular frequency; nothing where two real eigenvalues of opposite sign are
+  /// what vanishes, or where a pair comes to the axis and stays.
+  std::optional<std::pair<Place, double>> hopf_point_near(const Place& a, const Place& place, double at, double step) {
+    for (const std::complex<double>& pair : place.point.eigenvalues) {
+      const double near =
+          std::max(near_the_axis * pair.imag(), 10 * detail::rounding_of_sum * size_of(place.point.eigenvalues));
+      if (!(pair.imag() > 0) || std::abs(pair.real()) > near) continue;
+      for (double wide = 1e-9 * step; wide < step; wide *= 10)
+        if (auto found = passing(a, pair.imag(), at - wide, at + wide)) return found;
     }
+    return std::nullopt;
+  }
+  /// Bisected between the two, if the pair nearest to i times the frequency passes the axis there.
+  std::optional<std::pair<Place, double>> passing(const Place& a, double frequency, double low, double high) {
+    const auto pair_at = [&](const Place& p) {
+      std::complex<double> nearest = std::numeric_limits<double>::infinity();
+      for (const std::complex<double>& value : p.point.eigenvalues)
+        if (value.imag() > 0 && std::abs(value - std::complex<double>(0, frequency)) <
+                                    std::abs(nearest - std::complex<double>(0, frequency)))
+          nearest = value;
+      return nearest;
+    };
+    const auto before = steps_.stepped(a, low), after = steps_.stepped(a, high);
+    if (!before || !after) return std::nullopt;
+    const double first = pair_at(*before).real(), last = pair_at(*after).real();
+    const double rounding = detail::rounding_of_sum * size_of(after->point.eigenvalues);
+    if (!(first * last < 0) || std::min(std::abs(first), std::abs(last)) <= rounding) return std::nullopt;
+    std::optional<std::pair<Place, double>> best;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = (low + high) / 2;
+      auto place = steps_.stepped(a, middle);
+      if (!place) break;
+      const std::complex<double> pair = pair_at(*place);
+      (pair.real() * first > 0 ? low : high) = middle;
+      best = {std::move(*place), pair.imag()};
+    }
+    return best;
+  }
+  static double size_of(const std::vector<std::complex<double>>& values) {
+    double size = 0;
+    for (const auto& value : values) size = std::max(size, std::abs(value));
+    return size;
+  }
+
+  /// Whether a branch that leaves a place upright turns to either side. It does not where all of it is at rest for one
+  /// value of the constant.
+  bool bends(const Vector& z, const Vector& along) {
+    for (const double step : {0.1, -0.1, 0.01, -0.01}) {
+      Vector guess(z);
+      for (std::size_t i = 0; i <= n_; ++i) guess[i] += step * along[i];
+      const auto there = steps_.corrected(guess, guess, along, false);
+      if (there) return std::abs((*there)[n_] - z[n_]) > 1e-10;
+    }
+    return true;
   }
 
   void add_crossing(Branch& branch, const std::optional<Place>& near_it) {
@@ -264,8 +317,11 @@ class Follower {
       Place place{.z = crossing->z, .tangent = {}, .point = {}};
       steps_.describe(place);
       point.at = std::move(place.point);
-      const bool upright = std::min(std::abs(crossing->own[n_]), std::abs(crossing->other[n_])) < no_slope;
-      point.kind = upright ? Bifurcation::pitchfork : Bifurcation::transcritical;
+      const bool own_upright = std::abs(crossing->own[n_]) < no_slope,
+                 upright = own_upright || std::abs(crossing->other[n_]) < no_slope;
+      if (!upright) point.kind = Bifurcation::transcritical;
+      if (upright && bends(crossing->z, own_upright ? crossing->own : crossing->other))
+        point.kind = Bifurcation::pitchfork;
       point.other = crossing->other;
       for (std::size_t i = 0; i <= n_; ++i) point.other[i] *= steps_.unit(i);
     }

@@ -34,7 +34,8 @@ struct BifurcationPoint {
   BranchPoint at;
   double frequency = 0;  // of a Hopf point: imaginary part / 2 pi
   std::size_t next = 0;  // of the branch's points, the first behind it
-  /// Of the normal form: of a fold a, of a Hopf point the first Lyapunov coefficient.
+  /// Of the normal form: of a fold a, of a Hopf point the first Lyapunov coefficient, 0 where
+  /// it is no more than rounding leaves.
   std::optional<double> coefficient{};
   std::vector<double> other{};  // the direction of the other branch: x, then the constant
 };

@@ -221,6 +221,7 @@ std::optional<CurvePlace> CurveSteps::described(Found found, const Vector& along
   const auto spectrum = eigenvalues(matrix(place.z), matrix_size());
   if (!spectrum.found) return std::nullopt;
   point.eigenvalues = spectrum.values;
+  leave_out_conserved(system_, -system_.conserved_rate, point.eigenvalues);
   if (place.space.dimension == 1) {
     point.coefficient = fold_coefficient(system_, point.x, p_, options_.t);
   } else if (place.space.margin > 0) {
@@ -228,7 +229,8 @@ std::optional<CurvePlace> CurveSteps::described(Found found, const Vector& along
     point.frequency = angular_frequency / (2 * std::numbers::pi);
     // Next to a double zero, where both eigenvectors are nearly one, differences leave nothing of it.
     if (angular_frequency > no_frequency * place.space.size)
-      point.coefficient = first_lyapunov_coefficient(system_, point.x, p_, angular_frequency, options_.t);
+      if (const auto coefficient = first_lyapunov_coefficient(system_, point.x, p_, angular_frequency, options_.t))
+        point.coefficient = coefficient->value;
   }
   set_tests(place, *rows);
   return place;

@@ -213,6 +213,7 @@ Equilibrium describe_equilibrium(const ParametricSystem& system, std::vector<dou
     return equilibrium;
   }
   equilibrium.eigenvalues = eigenvalues(linear.a, linear.states).values;
+  leave_out_conserved(system, -system.conserved_rate, equilibrium.eigenvalues);
   equilibrium.stability = stability_of(equilibrium.eigenvalues);
   double least = std::numeric_limits<double>::infinity(), greatest = 0;
   for (const auto& value : equilibrium.eigenvalues) {

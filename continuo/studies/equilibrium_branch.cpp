@@ -146,7 +146,8 @@ void EquilibriumSteps::describe(EquilibriumPlace& place) {
   for (const auto& value : values) size = std::max(size, std::abs(value));
   std::complex<double> product = 1;
   for (std::size_t i = 0; i < values.size(); ++i)
-    for (std::size_t j = i + 1; j < values.size(); ++j) product *= (values[i] + values[j]) / size;
+    for (std::size_t j = i + 1; j < values.size(); ++j)
+      if (std::abs(values[i] + values[j]) > rounding_of_sum * size) product *= (values[i] + values[j]) / size;
   place.hopf_test = product.real();
 }
 
@@ -157,7 +158,7 @@ std::optional<EquilibriumPlace> EquilibriumSteps::stepped(const EquilibriumPlace
   if (!z) return std::nullopt;
   double moved = 0;
   for (std::size_t i = 0; i <= n_; ++i) moved += ((*z)[i] - guess[i]) * ((*z)[i] - guess[i]);
-  if (std::sqrt(moved) > step) return std::nullopt;  // it leapt to elsewhere
+  if (std::sqrt(moved) > std::abs(step)) return std::nullopt;  // it leapt to elsewhere
   return described(std::move(*z), from.tangent);
 }
 

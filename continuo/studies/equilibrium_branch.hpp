@@ -9,13 +9,18 @@
 
 namespace continuo::studies::detail {
 
+/// Of the largest eigenvalue: so small a sum of two may be what rounding leaves of zero.
+inline constexpr double rounding_of_sum = 1e-10;
+
 /// A place on the branch: x and, behind it, the constant; in units in which all are about 1.
 struct EquilibriumPlace {
   std::vector<double> z;
   std::vector<double> tangent;  // of length 1
   double direction_sign = 0;    // of det (df/dz; tangent): changes where another branch crosses
   BranchPoint point;
-  double hopf_test = 0;  // product of the sums of all pairs of eigenvalues: zero where a pair is on the axis
+  /// The product of the sums of all pairs of eigenvalues, which changes its sign where one pair passes the axis;
+  /// without the sums that rounding alone may keep from zero, for what is conserved keeps a pair there all along.
+  double hopf_test = 0;
 };
 
 class EquilibriumSteps {
@@ -38,7 +43,8 @@ class EquilibriumSteps {
   EquilibriumPlace described(std::vector<double> z, const std::vector<double>& along);
   /// The point and the tests alone.
   void describe(EquilibriumPlace& place);
-  /// Nothing where none is found, or only one that is farther off than the step is long.
+  /// Forwards or, with a step below 0, back. Nothing where none is found, or only one that is farther off than the step
+  /// is long.
   std::optional<EquilibriumPlace> stepped(const EquilibriumPlace& from, double step);
 
  private:

@@ -18,6 +18,7 @@ using ComplexVector = std::vector<Complex>;
 
 // Where the error of a fourth-order difference, h^4, and that of rounding, eps / h or eps / h^2, are alike.
 constexpr double first_increment = 1e-3, second_increment = 3e-3;
+constexpr double rounding_of_differences = 1e-9;  // relative
 
 /// How far one step along v goes, each component measured by its size, or by 1 where that is more.
 double reach(const Vector& v, const Vector& x) {
@@ -39,6 +40,12 @@ Vector imaginary_of(const ComplexVector& v) {
 Complex inner(const ComplexVector& a, const ComplexVector& b) {
   Complex sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::conj(a[i]) * b[i];
+  return sum;
+}
+
+double size_of_inner(const ComplexVector& a, const ComplexVector& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i]) * std::abs(b[i]);
   return sum;
 }
 
@@ -139,8 +146,9 @@ Vector DirectionalDerivatives::third(const Vector& u, const Vector& v) const {
   return result;
 }
 
-std::optional<double> first_lyapunov_coefficient(const ParametricSystem& system, const Vector& x,
-                                                 std::span<const double> p, double angular_frequency, double t) {
+std::optional<LyapunovCoefficient> first_lyapunov_coefficient(const ParametricSystem& system, const Vector& x,
+                                                              std::span<const double> p, double angular_frequency,
+                                                              double t) {
   if (system.algebraic > 0) return std::nullopt;
   const std::size_t n = system.size;
   const Vector a = jacobian_of(system, t, x, p);
@@ -152,10 +160,18 @@ std::optional<double> first_lyapunov_coefficient(const ParametricSystem& system,
   const ComplexVector mean = solved(a, 0, -1, second(f, pair->q, conjugate));
   const ComplexVector twice = solved(a, {0, 2 * angular_frequency}, 1, second(f, pair->q, pair->q));
   if (mean.empty() || twice.empty()) return std::nullopt;
-  const Complex sum = inner(pair->p, third(f, pair->q)) - 2.0 * inner(pair->p, second(f, pair->q, mean)) +
-                      inner(pair->p, second(f, conjugate, twice));
-  const double coefficient = sum.real() / (2 * angular_frequency);
-  return std::isfinite(coefficient) ? std::optional(coefficient) : std::nullopt;
+  const ComplexVector cubic = third(f, pair->q), with_mean = second(f, pair->q, mean),
+                      with_twice = second(f, conjugate, twice);
+  const Complex sum = inner(pair->p, cubic) - 2.0 * inner(pair->p, with_mean) + inner(pair->p, with_twice);
+  const double size =
+      size_of_inner(pair->p, cubic) + 2 * size_of_inner(pair->p, with_mean) + size_of_inner(pair->p, with_twice);
+  const double slope = std::abs(*std::ranges::max_element(a, {}, [](double entry) { return std::abs(entry); }));
+  const LyapunovCoefficient coefficient{
+      .value = sum.real() / (2 * angular_frequency),
+      .rounding = (rounding_of_differences * size +
+                   std::numeric_limits<double>::epsilon() * slope / (second_increment * second_increment)) /
+                  (2 * angular_frequency)};
+  return std::isfinite(coefficient.value) ? std::optional(coefficient) : std::nullopt;
 }
 
 std::optional<double> fold_coefficient(const ParametricSystem& system, const Vector& x, std::span<const double> p,

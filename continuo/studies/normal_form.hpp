@@ -33,8 +33,13 @@ class DirectionalDerivatives {
 /// A^-1 B(q, q*)) + p . B(q*, (2 i omega - A)^-1 B(q, q))) / (2 omega), with A q = i omega q, |q| = 1, p . q = 1. Below
 /// 0 the orbit that is born attracts (supercritical), above 0 it repels (subcritical); its sign alone does not depend
 /// on the units. Nothing where algebraic equations are part of the system, or A is singular.
-std::optional<double> first_lyapunov_coefficient(const ParametricSystem& system, const std::vector<double>& x,
-                                                 std::span<const double> p, double angular_frequency, double t = 0);
+struct LyapunovCoefficient {
+  double value = 0;
+  double rounding = 0;  // what rounding and differences may leave of a zero, as where something is conserved
+};
+std::optional<LyapunovCoefficient> first_lyapunov_coefficient(const ParametricSystem& system,
+                                                              const std::vector<double>& x, std::span<const double> p,
+                                                              double angular_frequency, double t = 0);
 
 /// a = p . B(q, q) / 2 with A q = 0, |q| = 1, p . q = 1, p A = 0: on the line of q the motion is y' = b (constant) +
 /// a y^2, up to the sign of y. Where it is 0 two folds meet, a cusp. Nothing as above.

@@ -230,8 +230,9 @@ std::vector<std::complex<double>> of_product(const std::vector<Vector>& blocks, 
 
 std::vector<std::complex<double>> multipliers_of(const ParametricSystem& system, const OrbitCollocation& orbit,
                                                  std::span<const double> z, std::span<const double> sizes) {
-  if (system.size == 2) return by_trace(system, orbit, z, sizes);
+  if (system.size == 2 && system.conserved == 0) return by_trace(system, orbit, z, sizes);
   auto values = of_product(blocks_beside_f(system, orbit, z, sizes), system.size - 1);
+  leave_out_conserved(system, std::exp(-system.conserved_rate * orbit.period(z)), values);
   sort_by_size(values);
   return values;
 }

@@ -77,4 +77,11 @@ std::vector<double> constant_jacobian_of(const ParametricSystem& system, double 
   return rows;
 }
 
+void leave_out_conserved(const ParametricSystem& system, std::complex<double> own,
+                         std::vector<std::complex<double>>& eigenvalues) {
+  for (std::size_t k = 0; k < system.conserved && !eigenvalues.empty(); ++k)
+    eigenvalues.erase(std::ranges::min_element(
+        eigenvalues, {}, [&](const std::complex<double>& value) { return std::abs(value - own); }));
+}
+
 }  // namespace continuo::studies

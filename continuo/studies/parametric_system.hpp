@@ -3,6 +3,7 @@
 //
 //   const auto decay = parametric_system(1, [](double, auto x, auto p, auto dxdt) { dxdt[0] = -p[0] * x[0]; }, {2.0});
 #pragma once
+#include <complex>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -39,6 +40,10 @@ struct ParametricSystem {
   /// How far each component goes on within a period, as angles do by 2 pi where something turns over: f is the same
   /// there. Empty where an orbit comes back to where it was. Only what solves for orbits reads it.
   std::vector<double> advance{};
+  /// So many conservation laws are held (conservation_laws.hpp), what is off dies away at this rate: as many
+  /// eigenvalues are minus that, which say nothing of the system.
+  std::size_t conserved = 0;
+  double conserved_rate = 0;
 
   std::size_t differential() const { return size - algebraic; }
   std::size_t parameters() const { return constants.size(); }
@@ -92,6 +97,10 @@ std::vector<double> jacobian_of(const ParametricSystem& system, double t, Values
 /// df/dp, n * m row by row. Without a `scale` a constant is as large as it is now, which says nothing near zero.
 std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p,
                                          Values scale = {});
+
+/// Takes out the eigenvalues that come from laws that are held: those nearest to `own`, which are so many.
+void leave_out_conserved(const ParametricSystem& system, std::complex<double> own,
+                         std::vector<std::complex<double>>& eigenvalues);
 
 /// The increment of a central difference, of a number or of `scale`, whichever is larger: the third root of epsilon,
 /// where its error and that of rounding are alike.

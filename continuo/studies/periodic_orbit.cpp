@@ -75,6 +75,7 @@ std::vector<std::complex<double>> multipliers_of(const ParametricSystem& system,
     for (std::size_t c = 0; c < n; ++c)
       if (i != section && c != section) rows.push_back(entry(i, c) - f[i] / f[section] * entry(section, c));
   auto values = eigenvalues(rows, n - 1).values;
+  leave_out_conserved(system, std::exp(-system.conserved_rate * period), values);
   values.emplace_back(1);
   std::ranges::sort(values, [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
   return values;

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "coordinate_change.hpp"
 #include "problems.hpp"
 #include <continuo/studies/continuation.hpp>
 
@@ -217,6 +218,94 @@ TEST(NormalForms, HopfPointsHaveTheirLyapunovCoefficient) {
     // Differences of df/dx that leave 1e-11 / h^2 of rounding, h = 3e-3.
     EXPECT_NEAR(*points[0].coefficient, expected, 1e-6 * (1 + std::abs(expected)));
   }
+}
+
+// A Hopf point at p0 beside a pair that stays on the axis whatever p is, as something conserved keeps one there: the
+// one is found, alone, also where the branch begins just there; without it nothing is.
+TEST(Continuation, HopfPointsBesideAPairThatStaysOnTheAxis) {
+  for (unsigned seed = 1; seed <= 120; ++seed) {
+    const CoordinateChange<5> change(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> number(0.3, 3);
+    const bool passes = seed % 3 != 0;
+    const double p0 = seed % 5 == 0 ? 0 : number(random) - 1.5, w = number(random), v = w + number(random),
+                 decay = number(random);
+    // The constant moves one pair through the axis, or leaves it on one side.
+    const auto of = [=](const auto& x, double p) {
+      const auto y = change.back(x);
+      const auto grow = passes ? p - p0 : -0.5 - p * p;
+      return change.forth(
+          y, std::remove_cvref_t<decltype(y)>{grow * y[0] - w * y[1] - y[0] * y[0] * y[0], w * y[0] + grow * y[1],
+                                              -v * y[3], v * y[2], -decay * y[4]});
+    };
+    auto system = parametric_system(5,
+                                    [of](double, Values x, Values p, std::span<double> out) {
+                                      std::array<double, 5> at{};
+                                      std::copy_n(x.begin(), 5, at.begin());
+                                      std::ranges::copy(of(at, p[0]), out.begin());
+                                    },
+                                    {0.0});
+    system.jacobian = [of](double, Values x, Values p, std::span<double> rows) {
+      for (std::size_t j = 0; j < 5; ++j) {
+        std::array<std::complex<double>, 5> moved{};
+        std::copy_n(x.begin(), 5, moved.begin());
+        moved[j] += std::complex<double>(0, 1e-40);
+        const auto f = of(moved, p[0]);
+        for (std::size_t i = 0; i < 5; ++i) rows[i * 5 + j] = f[i].imag() / 1e-40;
+      }
+    };
+    const auto rest = change.place(std::array<double, 5>{});
+    const auto branch = continue_equilibrium(system, {rest.begin(), rest.end()}, {.low = -2, .high = 2});
+    EXPECT_TRUE(branch.complete) << seed << ": " << branch.message;
+    ASSERT_EQ(branch.bifurcations.size(), passes ? 1u : 0u) << seed;
+    if (!passes) continue;
+    EXPECT_EQ(branch.bifurcations[0].kind, Bifurcation::hopf) << seed;
+    EXPECT_NEAR(branch.bifurcations[0].at.constant, p0, 1e-9) << seed;
+    EXPECT_NEAR(branch.bifurcations[0].frequency, w / (2 * std::numbers::pi), 1e-9) << seed;
+  }
+}
+
+TEST(Continuation, HaresAndLynxesGoRoundWhateverTheyEat) {  // a centre all along: trace 0 but for rounding
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    out[0] = 1.5 * x[0] - p[0] * x[0] * x[1];
+    out[1] = -3 * x[1] + p[0] * x[0] * x[1];
+  };
+  const auto branch = continue_equilibrium(parametric_system(2, f, {1.0}), {3, 1.5}, {.low = 0.01, .high = 3});
+  EXPECT_TRUE(branch.bifurcations.empty());
+}
+
+TEST(Continuation, APairThatComesToTheAxisAndStaysIsNoHopfPoint) {  // x'' = -x - max(0, p) x'
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    out[0] = x[1];
+    out[1] = -x[0] - std::max(0.0, p[0]) * x[1];
+  };
+  const auto branch = continue_equilibrium(parametric_system(2, f, {0.5}), {0, 0}, {.low = -1, .high = 1});
+  EXPECT_TRUE(branch.complete) << branch.message;
+  EXPECT_TRUE(branch.bifurcations.empty());
+}
+
+TEST(Continuation, ALineOfRestsIsNoPitchfork) {  // x' = p x, at p = 0 any x; and x' = p x - x^3 beside it is one
+  for (const double cubic : {0.0, 1.0}) {
+    const auto f = [cubic](double, Values x, Values p, std::span<double> out) {
+      out[0] = p[0] * x[0] - cubic * x[0] * x[0] * x[0];
+    };
+    const auto branch = continue_equilibrium(parametric_system(1, f, {-0.53}), {0}, {.low = -1, .high = 1});
+    ASSERT_EQ(branch.bifurcations.size(), 1u);
+    EXPECT_EQ(branch.bifurcations[0].kind, cubic == 0 ? Bifurcation::crossing : Bifurcation::pitchfork);
+    EXPECT_NEAR(branch.bifurcations[0].at.constant, 0, 1e-10);
+  }
+}
+
+// z' = (p + i w) z but for terms that keep |z|: nothing of third order grows or decays.
+TEST(NormalForms, ACoefficientThatIsZeroIsSaidToBe) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    const double turn = 1.3 + x[0] * x[0] + x[1] * x[1];
+    out[0] = p[0] * x[0] - turn * x[1];
+    out[1] = p[0] * x[1] + turn * x[0];
+  };
+  const auto branch = continue_equilibrium(parametric_system(2, f, {-0.5}), {0, 0}, {.low = -1, .high = 1});
+  ASSERT_EQ(branch.bifurcations.size(), 1u);
+  EXPECT_EQ(branch.bifurcations[0].coefficient, 0);
 }
 
 TEST(Continuation, WhatGoesToInfinityIsSaidToDoSo) {  // x = 1 / p
