@@ -5,6 +5,7 @@
 
 #include <apps/continuo/hybrid_orbit.hpp>
 #include <apps/continuo/interrupt.hpp>
+#include <apps/continuo/orbit_figure.hpp>
 #include <apps/continuo/orbit_text.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/steady_branches.hpp>
@@ -67,19 +68,9 @@ bool set_forcing(const Studied& studied, const HybridOrbitRequest& request, stud
 }
 
 results::Figure figure_of(const model::Model& model, const studies::HybridOrbit& found) {
-  results::Curve plane{.label = "orbit", .x = {}, .y = {}}, time{.label = model.states[0].column, .x = {}, .y = {}};
-  const std::size_t second = std::min<std::size_t>(1, model.states.size() - 1);
-  for (std::size_t k = 0; k < found.t.size(); ++k) {
-    plane.x.push_back(found.x[k][0]);
-    plane.y.push_back(found.x[k][second]);
-    time.x.push_back(found.t[k] - found.start.t);
-    time.y.push_back(found.x[k][0]);
-  }
-  return {
-      .title = model.name,
-      .panels = {
-          {.x_label = model.states[0].column, .y_label = model.states[second].column, .curves = {plane}, .tall = true},
-          {.x_label = "t", .y_label = model.states[0].column, .curves = {time}}}};
+  std::vector<double> times;
+  for (const double t : found.t) times.push_back(t - found.start.t);
+  return orbit_figure(model, times, found.x);
 }
 
 const char* neighbours_text(const studies::HybridOrbit& found) {

@@ -9,8 +9,10 @@
 #include <apps/continuo/command_line.hpp>
 #include <apps/continuo/hybrid_orbit.hpp>
 #include <apps/continuo/interrupt.hpp>
+#include <apps/continuo/long_motion.hpp>
 #include <apps/continuo/models.hpp>
 #include <apps/continuo/orbit_branch.hpp>
+#include <apps/continuo/orbit_figure.hpp>
 #include <apps/continuo/orbit_text.hpp>
 #include <apps/continuo/progress.hpp>
 #include <apps/continuo/steady_branches.hpp>
@@ -21,11 +23,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <continuo/results/csv.hpp>
 #include <continuo/results/figure.hpp>
-#include <continuo/results/output_file.hpp>
 #include <continuo/results/summary.hpp>
-#include <continuo/studies/lyapunov.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 #include <continuo/studies/unseen.hpp>
 
@@ -56,78 +55,14 @@ bool is_forced(const Studied& studied, const OrbitOptions& options) {
   return options.mode.empty() && studies::hangs_on_time(*studied.prepared.program, studied.mode).has_value();
 }
 
-ExitCode show_exponents(const Studied& studied, const OrbitOptions& options) {
-  const model::Model& model = studied.prepared.program->model;
-  Progress progress;
-  const studies::LyapunovOptions averaging{.duration = options.duration,
-                                           .settle = *options.settle,
-                                           .interrupt = &interrupt_flag(),
-                                           .progress = progress.over(0, *options.settle + options.duration)};
-  const auto found = needs_all(studied, options)
-                         ? studies::lyapunov_exponents(studied.prepared.program, studied.prepared.experiment, averaging)
-                         : studies::lyapunov_exponents(studied.system, studied.start, averaging);
-  if (found.exponents.empty()) return failed_exit(found.outcome);
-  std::string text = fmt::format("Lyapunov exponents over {}\n", with_time_unit(found.averaged, model));
-  for (std::size_t i = 0; i < found.exponents.size(); ++i)
-    text += fmt::format("  {:>10} +- {:.1g}\n", results::short_number(found.exponents[i]), found.spread[i]);
-  print(text);
-  return found.outcome ? done : failed_exit(found.outcome);
-}
-
-/// `x=0.5`: the plane that the motion passes upwards.
-ExitCode show_section(const Studied& studied, const OrbitOptions& options) {
-  const model::Model& model = studied.prepared.program->model;
-  const auto equals = options.section.find('=');
-  std::vector<double> levels(studied.start.size());
-  if (!set_states(model, {options.section}, levels)) return usage;
-  const std::size_t component = *state_named(model, options.section.substr(0, equals));
-  const auto section = [&] {
-    Progress progress;
-    const studies::SectionOptions passing{.level = levels[component],
-                                          .settle = *options.settle,
-                                          .duration = options.duration,
-                                          .rtol = options.tolerance,
-                                          .interrupt = &interrupt_flag(),
-                                          .progress = progress.over(0, *options.settle + options.duration)};
-    if (needs_all(studied, options))
-      return studies::poincare_section(studied.prepared.program, studied.prepared.experiment, component, passing);
-    return studies::poincare_section(studied.system, studied.start, component, passing);
-  }();
-  std::string csv = "t";
-  for (const model::State& state : model.states) csv += "," + state.column;
-  csv += "\n";
-  for (const studies::SectionPoint& point : section.points) {
-    results::append_number(csv, point.t);
-    for (const double x : point.x) {
-      csv += ',';
-      results::append_number(csv, x);
-    }
-    csv += '\n';
-  }
-  if (options.out.empty() || options.out == "-") {
-    print(csv);
-  } else if (!written(results::write_file(options.out, csv)))
-    return usage;
-  say(fmt::format("{} passes through {}", section.points.size(), options.section));
-  return section.outcome ? done : failed_exit(section.outcome);
-}
-
-/// The first two states against each other, and the first over one period.
 results::Figure figure_of(const model::Model& model, const studies::PeriodicOrbit& found) {
-  results::Curve plane{.label = "orbit", .x = {}, .y = {}}, time{.label = model.states[0].column, .x = {}, .y = {}};
-  const std::size_t second = std::min<std::size_t>(1, model.states.size() - 1);
+  std::vector<double> times;
+  std::vector<std::vector<double>> states;
   for (const double s : found.orbit.mesh) {
-    const auto x = found.orbit(s);
-    plane.x.push_back(x[0]);
-    plane.y.push_back(x[second]);
-    time.x.push_back(s * found.period);
-    time.y.push_back(x[0]);
+    times.push_back(s * found.period);
+    states.push_back(found.orbit(s));
   }
-  return {
-      .title = model.name,
-      .panels = {
-          {.x_label = model.states[0].column, .y_label = model.states[second].column, .curves = {plane}, .tall = true},
-          {.x_label = "t", .y_label = model.states[0].column, .curves = {time}}}};
+  return orbit_figure(model, times, states);
 }
 
 studies::PeriodicOrbitOptions search_of(const OrbitOptions& options) {
@@ -166,16 +101,17 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
   if (options.json) {
     auto states = nlohmann::json::array();
     for (const model::State& state : model.states) states.push_back(state.column);
-    const nlohmann::json json{{"states", states},       {"period", found.period},
-                              {"x", found.orbit(0)},    {"min", extents.low},
-                              {"max", extents.high},    {"multipliers", json_of(found.multipliers)},
-                              {"stable", found.stable}, {"advance", found.advance}};
+    nlohmann::json json{{"states", states},       {"period", found.period},
+                        {"x", found.orbit(0)},    {"min", extents.low},
+                        {"max", extents.high},    {"multipliers", json_of(found.multipliers)},
+                        {"stable", found.stable}, {"advance", found.advance}};
+    add_conserved(json, studied);
     print(json.dump(2) + "\n");
   }
   const std::string text =
       fmt::format("period {}{}, {}\n", with_time_unit(found.period, model), advance_text(model, found.advance),
                   found.stable ? "neighbours come nearer" : "some neighbours go away") +
-      multipliers_text(found.multipliers) + extents_text(model, extents.low, extents.high);
+      multipliers_text(found.multipliers) + extents_text(model, extents.low, extents.high) + conserved_text(studied);
   if (!options.json) print(text);
   if (options.plot.empty()) return done;
   if (!written(results::draw(figure_of(model, found), options.plot))) return usage;
@@ -185,8 +121,8 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
 /// Nothing is drawn or written of some of what may be asked for: said, not passed over.
 bool has_its_outputs(const OrbitOptions& options) {
   const bool section = !options.section.empty();
-  if (!options.plot.empty() && (section || options.lyapunov)) {
-    say("--plot draws the orbit, or --along; of --section and --lyapunov there is no picture");
+  if (!options.plot.empty() && options.lyapunov) {
+    say("--plot draws the orbit, --along or --section; of --lyapunov there is no picture");
     return false;
   }
   if (options.out.empty() || section || !options.along.empty()) return true;
@@ -210,7 +146,7 @@ ExitCode orbit(OrbitOptions options) {
     if (!second) return usage;
     constants.push_back(second->name);
   }
-  const Studied studied = study(options.experiment, options.mode, constants);
+  Studied studied = study(options.experiment, options.mode, constants);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
   const double run = run_length(studied.prepared.program->model);
@@ -219,6 +155,7 @@ ExitCode orbit(OrbitOptions options) {
   if (!(options.duration > 0)) options.duration = options.lyapunov ? 20 * run : run;
   const bool closed = !options.lyapunov && options.section.empty();
   const bool hybrid = closed && (needs_all(studied, options) || is_forced(studied, options));
+  if (closed && !hybrid) hold_conserved(studied);
   if (hybrid && !range) return show_hybrid_orbit(studied, shooting_of(options));
   if (hybrid && (options.from_hopf || second)) {
     say(fmt::format("{} follows orbits of the equations alone, and here events or the time have a part in the motion",
@@ -241,8 +178,15 @@ ExitCode orbit(OrbitOptions options) {
                                          .of = options.of,
                                          .out = options.out,
                                          .plot = options.plot});
-  if (options.lyapunov) return show_exponents(studied, options);
-  return options.section.empty() ? show_orbit(studied, options) : show_section(studied, options);
+  if (closed) return show_orbit(studied, options);
+  const LongMotion motion{.settle = *options.settle,
+                          .duration = options.duration,
+                          .tolerance = options.tolerance,
+                          .whole = needs_all(studied, options),
+                          .json = options.json,
+                          .out = options.out,
+                          .plot = options.plot};
+  return options.lyapunov ? show_exponents(studied, motion) : show_section(studied, options.section, motion);
 }
 
 }  // namespace
@@ -290,14 +234,12 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
       ->type_name("N")
       ->needs(along);
   add_branch_steps(*verb, options->steps, along);
-  verb->add_flag("--json", options->json, "The orbit, or --along, for other programs")
-      ->excludes(section)
-      ->excludes(lyapunov);
+  verb->add_flag("--json", options->json, "All of it as one JSON object");
   verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);
   verb->add_option("-o,--out", options->out,
                    "The section's file (else standard output), or the table of --along or --and")
       ->type_name("FILE");
-  verb->add_option("--plot", options->plot, "The orbit, or --along, or --and, as a picture, .svg or .png")
+  verb->add_option("--plot", options->plot, "The orbit, --along, --and or --section as a picture, .svg or .png")
       ->type_name("FILE");
   verb->callback([&exit, options] { exit = orbit(*options); });
 }

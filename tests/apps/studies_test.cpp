@@ -222,6 +222,37 @@ TEST(Orbit, PeriodSectionAndExponents) {
   EXPECT_EQ(shell.run("orbit " + gallery("lorenz") + " --section q=27").exit, 1);
 }
 
+TEST(Orbit, SectionsAndExponentsAsJsonAndAPicture) {
+  const Shell shell;
+  const std::string lorenz = "orbit " + gallery("lorenz");
+  const Result drawn = shell.run(lorenz + " --section z=27 --duration 10 --json --plot p.svg");
+  const auto section = nlohmann::json::parse(drawn.out);
+  ASSERT_GE(section["points"].size(), 3u);
+  for (const auto& point : section["points"]) EXPECT_NEAR(point["x"][2], 27, 1e-6);
+  EXPECT_THAT(shell.read("p.svg"), HasSubstr("passes"));
+  const auto found = nlohmann::json::parse(shell.run(lorenz + " --lyapunov --duration 50 --json").out);
+  ASSERT_EQ(found["exponents"].size(), 3u);
+  // Their sum is the divergence, -(sigma + 1 + beta).
+  const double sum =
+      found["exponents"][0].get<double>() + found["exponents"][1].get<double>() + found["exponents"][2].get<double>();
+  EXPECT_NEAR(sum, -(10 + 1 + 8.0 / 3), 1e-3);
+}
+
+TEST(Steady, HoldsWhatIsConserved) {  // a + b = total, at rest a = total / 3
+  const Shell shell;
+  shell.write("pair.sim", "param total = 3\na' = b - 2*a\nb' = 2*a - b\na(0) = total; b(0) = 0\nrun 0..10\n");
+  const Result text = shell.run("steady pair.sim");
+  EXPECT_THAT(text.out, HasSubstr("stable\n   a = 1\n   b = 2\n"));
+  EXPECT_THAT(text.out, HasSubstr("conserved: a + b = 3"));
+  const auto found = nlohmann::json::parse(shell.run("steady pair.sim --along total=1..9 --json").out);
+  EXPECT_EQ(found["conserved"][0]["sum"], "a + b");
+  ASSERT_EQ(found["branches"].size(), 1u);
+  for (const auto& point : found["branches"][0]["points"])
+    EXPECT_NEAR(point["x"][0].get<double>(), point["total"].get<double>() / 3, 1e-9);
+  EXPECT_THAT(shell.run("sense pair.sim --of rest --param total").out, HasSubstr("0.333333"));
+  EXPECT_THAT(shell.run("explore pair.sim").out, HasSubstr("a + b stays 3"));
+}
+
 TEST(Orbit, ABranchWithItsTableAndPicture) {
   const Shell shell;
   shell.write("bautin.sim",
