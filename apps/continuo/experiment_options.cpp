@@ -24,8 +24,9 @@ std::optional<model::Overrides> read_settings(const model::Model& model, const s
     std::vector<model::Diagnostic> problems;
     const auto setting = model::parse_setting(model, text, problems);
     show(problems, model::Source("--set", text));
-    if (setting) values[setting->name] = setting->value;
-    fine = fine && setting.has_value();
+    const bool new_one = setting && values.emplace(setting->name, setting->value).second;
+    if (setting && !new_one) say(fmt::format("--set {}: `{}` is given twice", text, setting->name));
+    fine = fine && new_one;
   }
   return fine ? std::optional(std::move(values)) : std::nullopt;
 }
@@ -35,12 +36,19 @@ bool read_tolerances(const model::Model& model, const ExperimentOptions& options
   bool fine = true;
   const auto read = [&](model::ToleranceKind kind, const char* option, const std::vector<std::string>& texts,
                         const auto& of_all, model::Overrides& of_each) {
+    std::vector<std::string> names;
     for (const std::string& text : texts) {
       std::vector<model::Diagnostic> problems;
       const auto tolerance = model::parse_tolerance(model, kind, text, problems);
       show(problems, model::Source(option, text));
       fine = fine && tolerance.has_value();
       if (!tolerance) continue;
+      if (std::ranges::find(names, tolerance->name) != names.end()) {
+        say(fmt::format("{} {}: {} is given twice", option, text,
+                        tolerance->name.empty() ? "the tolerance" : "`" + tolerance->name + "`"));
+        fine = false;
+      }
+      names.push_back(tolerance->name);
       if (tolerance->name.empty()) {
         of_all(tolerance->value);
       } else {

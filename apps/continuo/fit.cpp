@@ -25,12 +25,18 @@ namespace {
 
 using results::short_number;
 
-/// Runs less exact than the search would be noise to it: asked for, they are refused.
+/// Runs less exact than the search would be noise to it, and none is more exact than its rounding: asked for, they are
+/// refused.
 bool strict_enough(const model::Experiment& experiment) {
   std::vector<double> asked;
   if (experiment.rtol) asked.push_back(*experiment.rtol);
   for (const auto& [state, rtol] : experiment.rtol_of) asked.push_back(rtol);
   for (const double rtol : asked) {
+    if (rtol < studies::least_rtol_of_fit) {
+      say(fmt::format("--tol {}: rounding leaves no run of a fit less than {}", short_number(rtol),
+                      short_number(studies::least_rtol_of_fit)));
+      return false;
+    }
     if (rtol <= studies::greatest_rtol_of_fit) continue;
     say(fmt::format("--tol {}: the runs of a fit need {} or less, beyond it they are noise to the search",
                     short_number(rtol), short_number(studies::greatest_rtol_of_fit)));

@@ -43,6 +43,12 @@ std::optional<std::size_t> place_in(const Names& names, std::string_view word) {
   return static_cast<std::size_t>(found - std::begin(names));
 }
 
+/// Which of the two is meant nobody knows.
+bool given_twice(std::string_view option, const std::pair<std::string, std::string>& setting) {
+  say(fmt::format("{} {}={}: `{}` is given twice", option, setting.first, setting.second, setting.first));
+  return false;
+}
+
 class FitRequestReader {
  public:
   FitRequestReader(const FitOptions& options, const Prepared& prepared)
@@ -102,7 +108,10 @@ class FitRequestReader {
       const auto setting = model::parse_setting(model_, text.substr(colon + 1), problems);
       show(problems, model::Source("--in", text.substr(colon + 1)));
       if (!setting) return false;
-      set->parameters[setting->name] = setting->value;
+      if (!set->parameters.emplace(setting->name, setting->value).second) {
+        say(fmt::format("--in {}: `{}` is given twice for {}", text, setting->name, set->measurements.file));
+        return false;
+      }
     }
     return true;
   }
@@ -128,8 +137,11 @@ class FitRequestReader {
                     {std::begin(studies::error_model_names), std::end(studies::error_model_names)}));
         return false;
       }
+      if (std::ranges::any_of(errors_, [&](const auto& one) { return one.first == setting->first; }))
+        return given_twice("--error", *setting);
       errors_.emplace_back(setting->first, static_cast<ErrorModel>(*error));
     }
+    std::vector<std::string> with_deviation;
     // A column that has the deviations of another one measures nothing itself.
     for (const std::string& text : options_.deviations) {
       const auto setting = split_setting(text, "COLUMN=DEVIATION");
@@ -138,6 +150,8 @@ class FitRequestReader {
         say(fmt::format("--sigma {}: a column does not hold its own deviations", text));
         return false;
       }
+      if (place_in(with_deviation, setting->first)) return given_twice("--sigma", *setting);
+      with_deviation.push_back(setting->first);
       if (is_column(setting->second)) of_deviations_.push_back(setting->second);
     }
     return true;
@@ -148,6 +162,8 @@ class FitRequestReader {
     for (const std::string& text : options_.columns) {
       const auto setting = split_setting(text, "COLUMN=QUANTITY");
       if (!setting || !has_column(setting->first)) return false;
+      if (std::ranges::any_of(renamed, [&](const auto& one) { return one.first == setting->first; }))
+        return given_twice("--column", *setting);
       renamed.push_back(*setting);
     }
     const auto known = studies::quantities_of(model_);
@@ -283,8 +299,11 @@ class FitRequestReader {
       return false;
     }
     studies::FitUnknown* found = unknown(setting->first);
-    if (found != nullptr) found->low = low, found->high = high;
-    return found != nullptr;
+    if (found == nullptr) return false;
+    if (place_in(bounded_, setting->first)) return given_twice("--bounds", *setting);
+    bounded_.push_back(setting->first);
+    found->low = low, found->high = high;
+    return true;
   }
 
   bool set_logarithmic(const std::string& name) {
@@ -319,6 +338,7 @@ class FitRequestReader {
     }
     studies::FitUnknown* found = unknown(setting->first);
     if (found == nullptr) return false;
+    if (found->prior) return given_twice("--prior", *setting);
     using Kind = studies::FitPrior::Kind;
     found->prior = {.kind = lognormal ? Kind::lognormal : Kind::normal, .center = *center, .deviation = *deviation};
     return true;
@@ -328,7 +348,7 @@ class FitRequestReader {
   const model::Model& model_;
   studies::FitRequest request_;
   std::vector<std::pair<std::string, ErrorModel>> errors_;
-  std::vector<std::string> of_deviations_, names_;
+  std::vector<std::string> of_deviations_, names_, bounded_;
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // How often intervals of 95 % hold the truth: by loss, error model and length of the columns, in repeated fits of
 // x = a e^(-k t) with known a and k. Of 1,000 repeats a share of 95 % has a deviation of 0.7 %.
 //
-//   fit_coverage [REPEATS]
+//   fit_coverage [REPEATS] [models|losses|columns|ratios]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -37,15 +37,27 @@ std::shared_ptr<const model::ModelProgram> decay() {
   return model::compile(std::move(*check(model::parse(source).model, source).model));
 }
 
-FitData column(std::size_t rows, const std::string& quantity, double factor, const Case& which,
-               std::mt19937_64& random) {
+// Where large values are many and late, not few and early.
+std::shared_ptr<const model::ModelProgram> growth() {
+  const model::Source source("growth.sim", "param a = 6, k = 0.8\nx' = a - k*x\nx(0) = 0\nrun 0..4\n");
+  return model::compile(std::move(*check(model::parse(source).model, source).model));
+}
+double grown(double t) {
+  return true_a / true_k * (1 - std::exp(-true_k * t));
+}
+double decayed(double t) {
+  return true_a * std::exp(-true_k * t);
+}
+
+FitData column(std::size_t rows, const std::string& quantity, double factor, const Case& which, std::mt19937_64& random,
+               double (*truth)(double) = decayed) {
   FitData data;
   data.measurements = {.file = quantity, .columns = {quantity}, .times = {}, .lines = {}, .values = {{}}};
   for (std::size_t i = 0; i < rows; ++i) {
     const double t = 4 * (static_cast<double>(i) + 0.5) / static_cast<double>(rows);
     data.measurements.times.push_back(t);
     data.measurements.lines.push_back(i + 2);
-    data.measurements.values[0].push_back(which.noise(factor * true_a * std::exp(-true_k * t), random));
+    data.measurements.values[0].push_back(which.noise(factor * truth(t), random));
   }
   data.columns = {{.column = 0, .quantity = quantity, .error = which.error}};
   return data;
@@ -83,7 +95,7 @@ void print(const std::string& what, const char* loss, std::size_t rows, const Co
 int main(int count, char** words) {
   const int repeats = count > 1 ? std::atoi(words[1]) : 1000;
   const std::string only = count > 2 ? words[2] : "";
-  const auto program = decay();
+  const auto program = decay(), growing = growth();
   std::mt19937_64 random(1);
   const std::vector<Case> cases{
       {"constant", ErrorModel::constant, [](double y, auto& r) { return y + 0.3 * normal(r); }},
@@ -125,6 +137,24 @@ int main(int count, char** words) {
     for (const Loss loss : losses)
       for (const std::size_t rows : {20U, 50U, 100U}) run(contaminated, rows, loss, "x", 1);
   }
+  // The ratio of the two deviations is that at the value 3, in the midst of either model's.
+  if (only.empty() || only == "ratios")
+    for (const bool grows : {false, true})
+      for (const double ratio : {0.1, 1.0, 10.0})
+        for (const std::size_t rows : {5U, 7U, 10U, 20U}) {
+          const Case both{"", ErrorModel::both, [&](double y, auto& r) {
+                            return y + 0.2 / std::hypot(1, ratio) * (normal(r) + ratio * y / 3 * normal(r));
+                          }};
+          const auto c = covered(repeats, [&] {
+            FitRequest asked = request();
+            asked.program = grows ? growing : program;
+            asked.data = {column(rows, "x", 1, both, random, grows ? grown : decayed)};
+            return asked;
+          });
+          char what[64];
+          std::snprintf(what, sizeof what, "%s, relative %g times constant", grows ? "growth" : "decay", ratio);
+          print(what, "squares", rows, c, repeats);
+        }
   if (only.empty() || only == "columns")
     for (const auto& [first, second] : {std::pair{5, 5}, {5, 100}, {100, 5}, {10, 20}, {8, 8}}) {
       const auto c = covered(repeats, [&] {

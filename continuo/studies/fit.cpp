@@ -10,7 +10,6 @@
 #include <continuo/studies/fit_problem.hpp>
 #include <continuo/studies/fit_search.hpp>
 #include <continuo/studies/fit_statistics.hpp>
-#include <continuo/studies/student_t.hpp>
 
 namespace continuo::studies {
 
@@ -125,12 +124,8 @@ std::vector<FitEstimate> estimates_of(const FitRequest& request, const FitProble
                          .degrees = fit.sure.degrees[u],
                          .at_bound = fit.least.at_bound[u] != 0,
                          .undetermined = fit.sure.undetermined[u] != 0};
-    // With fewer, Student's t has no width that says anything.
-    constexpr double fewest_degrees = 0.5;
-    const double width = estimate.at_bound ? 0
-                         : estimate.degrees < fewest_degrees
-                             ? std::numeric_limits<double>::infinity()
-                             : student_t_quantile(0.95, std::min(estimate.degrees, 1e9)) * deviation;
+    const double factor = fit.sure.factors[u];
+    const double width = estimate.at_bound ? 0 : std::isfinite(factor) ? factor * deviation : factor;
     estimate.deviation = request.unknowns[u].logarithmic ? estimate.value * deviation : deviation;
     estimate.low = problem.from_search(u, p - width);
     estimate.high = problem.from_search(u, p + width);
@@ -146,7 +141,7 @@ void judge(const FitRequest& request, const FitProblem& problem, bool settled, F
   const std::vector<double> off = problem.raw(fit.least.residuals, 1),
                             slopes = problem.raw(fit.least.rows, fit.least.p.size());
   fit.sure = detail::uncertainty_of(problem.noise(), off, slopes, fit.least, request.options.loss, sizes,
-                                    accuracy_of(request));
+                                    accuracy_of(request), request.likelihood);
   fit.noise = problem.noise();
   fit.estimates = estimates_of(request, problem, fit);
   fit.columns = detail::column_results(request, problem, fit);
@@ -302,7 +297,7 @@ std::vector<FitCurve> curves_of(const FitRequest& request, const Fit& fit, std::
       const bool lognormal = request.data[d].columns[c].error == ErrorModel::lognormal;
       const double of_column =
           fit.columns[group].given ? 1e9 : std::max(std::min(degrees, fit.columns[group].degrees), 1.0);
-      const double factor = student_t_quantile(0.95, std::min(of_column, 1e9));
+      const double factor = interval_factor(of_column);
       for (std::size_t row = 0; row < values.times.size(); ++row) {
         const double* number = &values.numbers[(row * request.data[d].columns.size() + c) * (1 + m)];
         const double slope = lognormal ? 1 / number[0] : 1, deviation = problem.deviation_at(group, number[0]);

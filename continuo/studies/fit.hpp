@@ -79,7 +79,7 @@ struct FitEstimate {
   double value = 0;
   double deviation = 0;      // infinite where the data do not determine it, 0 at a bound
   double low = 0, high = 0;  // the 95 % interval
-  double degrees = 0;        // of freedom of the deviation; infinite where all noise is known
+  double degrees = 0;  // of freedom of the deviation at the estimated variances; infinite where all noise is known
   bool at_bound = false, undetermined = false;
 };
 
@@ -145,6 +145,8 @@ struct Fit {
 /// The method of the runs is chosen by size and tolerance, which is at most this: the steps of the search are small,
 /// and the runs must not be noise to it.
 inline constexpr double greatest_rtol_of_fit = 1e-8;
+/// Some hundred roundings of a double: with less, steps become ever shorter and nothing more exact.
+inline constexpr double least_rtol_of_fit = 1e-14;
 
 Fit fit(const FitRequest& request);
 

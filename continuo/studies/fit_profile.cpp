@@ -4,7 +4,6 @@
 #include <map>
 
 #include <continuo/studies/fit_problem.hpp>
-#include <continuo/studies/student_t.hpp>
 
 namespace continuo::studies {
 
@@ -134,16 +133,13 @@ std::vector<Profile> profiles_of(const FitRequest& request, const Fit& fit) {
   problem.take_noise(fit.noise);
   const auto stopped = [&] { return request.options.interrupt != nullptr && request.options.interrupt->load(); };
   const std::size_t m = fit.least.p.size();
-  double all_degrees = infinite;
-  for (const FitEstimate& estimate : fit.estimates) all_degrees = std::min(all_degrees, estimate.degrees);
+  const double widest = m == 0 ? 0 : *std::ranges::max_element(fit.sure.factors);
   for (std::size_t u = 0; u < m && !stopped(); ++u) {
     Held held(request, fit, problem, u);
     const double best = fit.least.p[u];
-    const double degrees = fit.estimates[u].at_bound ? all_degrees : fit.estimates[u].degrees;
+    const double t = fit.estimates[u].at_bound ? widest : fit.sure.factors[u];
     Profile profile{.unknown = u, .low = -infinite, .high = infinite, .values = {}, .rises = {}};
-    constexpr double fewest_degrees = 0.5;
-    if (degrees >= fewest_degrees) {
-      const double t = student_t_quantile(0.95, std::min(degrees, 1e9));
+    if (std::isfinite(t)) {
       profile.threshold = t * t;
       const double deviation = std::sqrt(fit.sure.determined_covariance[u * (m + 1)]);
       const bool usable = deviation > 0 && std::isfinite(deviation) && !fit.estimates[u].undetermined;

@@ -9,6 +9,7 @@
 
 #include <continuo/studies/chi_squared.hpp>
 #include <continuo/studies/fit_statistics.hpp>
+#include <continuo/studies/variance_ratios.hpp>
 
 namespace continuo::studies::detail {
 
@@ -48,7 +49,7 @@ std::size_t count_free(const Fit& fit) {
 
 Uncertainty uncertainty_of(const VarianceComponents& noise, std::span<const double> residuals,
                            std::span<const double> rows, const LeastSquaresResult& least, Loss loss,
-                           std::span<const double> sizes, double accuracy) {
+                           std::span<const double> sizes, double accuracy, Likelihood likelihood) {
   const std::size_t m = least.p.size(), n = noise.rows.size();
   std::vector<std::size_t> free;
   std::vector<double> sizes_of_free, columns;
@@ -56,15 +57,19 @@ Uncertainty uncertainty_of(const VarianceComponents& noise, std::span<const doub
     if (least.at_bound[u] == 0) free.push_back(u), sizes_of_free.push_back(sizes[u]);
   for (std::size_t r = 0; r < n; ++r)
     for (const std::size_t u : free) columns.push_back(rows[r * m + u]);
-  const Uncertainty of_free = uncertainty(noise, residuals, columns, loss, sizes_of_free, accuracy);
+  Uncertainty of_free = uncertainty(noise, residuals, columns, loss, sizes_of_free, accuracy);
+  if (loss == Loss::squares && likelihood == Likelihood::restricted)
+    widen_by_ratios(of_free, noise, residuals, columns, sizes_of_free, accuracy);
   Uncertainty result = of_free;
   result.covariance.assign(m * m, 0);
   result.determined_covariance.assign(m * m, 0);
   result.degrees.assign(m, std::numeric_limits<double>::infinity());
+  result.factors.assign(m, interval_factor(std::numeric_limits<double>::infinity()));
   result.undetermined.assign(m, 0);
   for (std::vector<double>& direction : result.directions) direction.assign(m, 0);
   for (std::size_t a = 0; a < free.size(); ++a) {
     result.degrees[free[a]] = of_free.degrees[a];
+    result.factors[free[a]] = of_free.factors[a];
     result.undetermined[free[a]] = of_free.undetermined[a];
     for (std::size_t d = 0; d < result.directions.size(); ++d) result.directions[d][free[a]] = of_free.directions[d][a];
     for (std::size_t b = 0; b < free.size(); ++b) {
@@ -205,10 +210,12 @@ std::vector<FitDoubt> doubts_of(const FitRequest& request, const Fit& fit) {
            fmt::format("{} is off by {:.3g} times the deviations that were given: this is a false minimum, "
                        "the model is wrong, or the deviations are larger",
                        name, column.ratio)});
-    // Degrees of freedom. With 3 and 5 of them some 90 to 93 of 100 intervals hold the truth, with 8 some 94.
+    // Degrees of freedom. With 3 and 5 of them some 90 to 93 of 100 intervals hold the truth, with 8 some 94: only
+    // restricted likelihood of squares is integrated over what is not known of their ratio.
     constexpr double enough_for_two = 8;
     const FitColumn& asked = request.data[column.data].columns[column.column];
-    if (asked.error == ErrorModel::both && !column.given && column.degrees < enough_for_two)
+    const bool integrated = request.options.loss == Loss::squares && request.likelihood == Likelihood::restricted;
+    if (asked.error == ErrorModel::both && !column.given && !integrated && column.degrees < enough_for_two)
       doubts.push_back(
           {Kind::weights, fmt::format("{} has too few values to tell a constant error from one in proportion: "
                                       "intervals are too narrow, some 90 of 100 hold the truth instead of 95",

@@ -11,7 +11,8 @@ namespace continuo::studies::detail {
 /// How sure the unknowns of a search are that are not at a bound; those that are have no deviation.
 Uncertainty uncertainty_of(const VarianceComponents& noise, std::span<const double> residuals,
                            std::span<const double> rows, const LeastSquaresResult& least, Loss loss,
-                           std::span<const double> sizes, double accuracy);
+                           std::span<const double> sizes, double accuracy,
+                           Likelihood likelihood = Likelihood::restricted);
 
 std::vector<FitColumnResult> column_results(const FitRequest& request, const FitProblem& problem, const Fit& fit);
 

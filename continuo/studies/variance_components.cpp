@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include <continuo/studies/decomposed_rows.hpp>
+#include <continuo/studies/student_t.hpp>
 #include <continuo/studies/variance_components.hpp>
 
 namespace continuo::studies {
@@ -11,47 +13,9 @@ namespace {
 
 using Dense = Eigen::MatrixXd;
 using Column = Eigen::VectorXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Index = Eigen::Index;
-
-/// J = Q S V^T D of the rows over their deviations, D the lengths of the columns: what can be told and what cannot.
-struct Decomposed {
-  Dense q;          // orthonormal, rows by rank
-  Dense back;       // D^-1 V S^-1: from coordinates along q to unknowns
-  Dense null;       // D^-1 V of the rest: moves without any effect
-  Column leverage;  // of each row
-};
-
-/// An unknown whose move by its own size (where `sizes` are given) is seen no better than the accuracy is not seen.
-Decomposed decomposed(const VarianceComponents& noise, std::span<const double> jacobian, double accuracy,
-                      std::span<const double> sizes = {}) {
-  const auto n = static_cast<Index>(noise.rows.size());
-  const Index m = n == 0 ? 0 : static_cast<Index>(jacobian.size()) / n;
-  if (m == 0) return {.q = Dense(n, 0), .back = Dense(0, 0), .null = Dense(0, 0), .leverage = Column::Zero(n)};
-  Dense rows = Eigen::Map<const RowMajor>(jacobian.data(), n, m);
-  for (Index r = 0; r < n; ++r) rows.row(r) /= std::sqrt(noise.variance(static_cast<std::size_t>(r)));
-  Column lengths = rows.colwise().norm();
-  for (Index c = 0; c < m; ++c) {
-    const double size = sizes.empty() ? 0 : std::abs(sizes[static_cast<std::size_t>(c)]);
-    if (size > 0 && lengths[c] * size < accuracy) rows.col(c).setZero(), lengths[c] = 0;
-    if (lengths[c] > 0) rows.col(c) /= lengths[c];
-    if (!(lengths[c] > 0)) lengths[c] = 1;
-  }
-  const Eigen::JacobiSVD<Dense, Eigen::HouseholderQRPreconditioner> svd(rows,
-                                                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Column& s = svd.singularValues();
-  Index rank = 0;
-  while (rank < s.size() && s[rank] > accuracy * s[0]) ++rank;
-  Decomposed result;
-  result.q = svd.matrixU().leftCols(rank);
-  result.back = lengths.cwiseInverse().asDiagonal() *
-                Dense(svd.matrixV().leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal());
-  // Fewer rows than unknowns leave the thin V without part of the rest: its complement has it.
-  const Dense full = Dense(svd.matrixV().leftCols(rank)).fullPivHouseholderQr().matrixQ();
-  result.null = lengths.cwiseInverse().asDiagonal() * Dense(full.rightCols(m - rank));
-  result.leverage = result.q.rowwise().squaredNorm();
-  return result;
-}
+using detail::Decomposed;
+using detail::decomposed;
 
 /// A row as a column. A matrix without columns has no data to point to.
 Column row_of(const Dense& matrix, std::size_t row) {
@@ -142,6 +106,13 @@ void estimate_variances(VarianceComponents& noise, std::span<const double> resid
     if (change < 1e-6) break;
     find_leverage();
   }
+}
+
+double interval_factor(double degrees) {
+  // With fewer, Student's t has no width that says anything.
+  constexpr double fewest = 0.5, many = 1e9;
+  return degrees < fewest ? std::numeric_limits<double>::infinity()
+                          : student_t_quantile(interval_confidence, std::min(degrees, many));
 }
 
 namespace {
@@ -311,11 +282,14 @@ Uncertainty uncertainty(const VarianceComponents& noise, std::span<const double>
     for (Index k = 0; k < pull.size(); ++k) pull[k] = b.dot(variances.moments[static_cast<std::size_t>(k)] * b);
     const double blur = pull.dot(variances.widths * pull), plain = b.squaredNorm();
     result.degrees.push_back(blur > 0 ? 2 * plain * plain / blur : std::numeric_limits<double>::infinity());
+    result.factors.push_back(interval_factor(result.degrees.back()));
     result.undetermined.push_back(moves);
     for (std::size_t j = 0; j < m; ++j)
       result.covariance[i * m + j] = covariance(static_cast<Index>(i), static_cast<Index>(j));
   }
   result.determined_covariance = result.covariance;
+  for (Index k = 0; k < variances.widths.rows(); ++k)
+    for (Index l = 0; l < variances.widths.cols(); ++l) result.logarithms_covariance.push_back(variances.widths(k, l));
   for (std::size_t i = 0; i < m; ++i) {
     if (!result.undetermined[i]) continue;
     for (std::size_t j = 0; j < m; ++j) result.covariance[i * m + j] = result.covariance[j * m + i] = 0;

@@ -58,10 +58,18 @@ inline constexpr std::string_view likelihood_names[] = {"restricted", "plain"};
 void estimate_variances(VarianceComponents& noise, std::span<const double> residuals, std::span<const double> jacobian,
                         Loss loss, Likelihood likelihood = Likelihood::restricted);
 
+inline constexpr double interval_confidence = 0.95;
+
+/// Half an interval of that confidence over a deviation with so many degrees of freedom; infinite without any.
+double interval_factor(double degrees);
+
 struct Uncertainty {
   std::vector<double> covariance;  // row by row; of what the data do not determine: infinite on the diagonal, else 0
   std::vector<double> determined_covariance;  // along the moves that are determined: for what depends on these alone
   std::vector<double> degrees;  // of freedom of each unknown's deviation; infinite where all noise is known
+  /// Half an interval of 95 % over the deviation: Student's t of so many degrees, unless variance_ratios.hpp says more.
+  std::vector<double> factors;
+  std::vector<double> logarithms_covariance;  // of the logarithms of the variances that are not known, row by row
   std::vector<char> undetermined;
   /// Moves of the unknowns that change no residual, each with its largest entry 1, in units of |p| (or of 1 where p =
   /// 0).

@@ -80,7 +80,8 @@ TEST(Usage, AWrongMethodOrParameterIsToldTheNearest) {
 TEST(Usage, NumbersThatAreNoneAreRefused) {
   const Shell shell;
   shell.write("spring.sim", spring);
-  for (const char* wrong : {"--tol fast", "--step", "--until x", "--set k", "--set k=", "--tol 1e-6 --step 0.1"}) {
+  for (const char* wrong : {"--tol fast", "--step", "--until x", "--set k", "--set k=", "--tol 1e-6 --step 0.1",
+                            "--set k=1 --set k=2", "--tol 1e-6 --tol 1e-8"}) {
     const Result result = shell.run(std::string("run spring.sim ") + wrong);
     EXPECT_EQ(result.exit, 1) << wrong;
     EXPECT_THAT(result.err, Not(IsEmpty())) << wrong;

@@ -1,0 +1,99 @@
+// Intervals where the ratio of two variances is not known: against integrals in plain sums.
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <continuo/studies/student_t.hpp>
+#include <continuo/studies/variance_ratios.hpp>
+
+namespace continuo::studies::variance_ratios_test {
+namespace {
+
+const std::vector<double> measured{2.3, 1.1, 2.9, 2.0, 4.4};
+
+/// A constant that was measured with noise of two kinds, and the residuals of its mean by the weights of some
+/// variances.
+struct Constant {
+  VarianceComponents noise;
+  std::vector<double> off, rows;
+
+  explicit Constant(const std::vector<double>& factors)
+      : noise{.rows = {}, .components = {{.variance = 0.4}, {.variance = 0.1}}}, off{}, rows(measured.size(), 1) {
+    for (const double factor : factors) noise.rows.push_back({.shares = {{{0, 1}, {1, factor}}}});
+    double sum = 0, weights = 0;
+    const auto weigh = [&] {
+      sum = weights = 0;
+      for (std::size_t i = 0; i < measured.size(); ++i)
+        sum += measured[i] / noise.variance(i), weights += 1 / noise.variance(i);
+      off.clear();
+      for (const double value : measured) off.push_back(sum / weights - value);
+    };
+    weigh();
+    for (int round = 0; round < 50; ++round) {
+      estimate_variances(noise, off, rows, Loss::squares);
+      weigh();
+    }
+  }
+  double mean() const { return measured[0] + off[0]; }
+};
+
+double half_width(const Constant& constant) {
+  const std::vector<double> sizes{1};
+  Uncertainty sure = uncertainty(constant.noise, constant.off, constant.rows, Loss::squares, sizes);
+  detail::widen_by_ratios(sure, constant.noise, constant.off, constant.rows, sizes, 1e-12);
+  return sure.factors[0] * std::sqrt(sure.covariance[0]);
+}
+
+/// The probability of the constant's being within `half` of `middle`: Student's t for each part w of the second kind,
+/// weighted by restricted likelihood and the root of the information about w, tr(P D P D)/2 - (tr P D)^2/(2 (n - 1)).
+double probability(const std::vector<double>& factors, double middle, double half) {
+  constexpr int many = 2000;
+  const auto n = static_cast<Eigen::Index>(measured.size());
+  const double degrees = static_cast<double>(n) - 1;
+  double all = 0, within = 0;
+  for (int k = 0; k < many; ++k) {
+    const double angle = std::numbers::pi / 2 * (k + 0.5) / many, w = std::pow(std::sin(angle), 2);
+    Eigen::VectorXd v(n), d(n), y(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double factor = factors[static_cast<std::size_t>(i)];
+      v[i] = 1 - w + w * factor, d[i] = factor - 1, y[i] = measured[static_cast<std::size_t>(i)];
+    }
+    const Eigen::VectorXd u = v.cwiseInverse();
+    const Eigen::MatrixXd inverse = u.asDiagonal();
+    const Eigen::MatrixXd p = inverse - u * u.transpose() / u.sum();
+    const Eigen::MatrixXd pd = p * d.asDiagonal();
+    const double information = (pd * pd).trace() - std::pow(pd.trace(), 2) / degrees;
+    const double mean = u.dot(y) / u.sum(), squares = (y.array() - mean).square().matrix().dot(u);
+    const double likelihood = std::pow(v.prod() * u.sum(), -0.5) * std::pow(squares, -degrees / 2);
+    const double weight = likelihood * std::sqrt(information) * std::sin(2 * angle);
+    const double s = std::sqrt(squares / degrees / u.sum());
+    all += weight;
+    within += weight * (student_t_probability((middle + half - mean) / s, degrees) -
+                        student_t_probability((middle - half - mean) / s, degrees));
+  }
+  return within / all;
+}
+
+// Rows that are all alike tell nothing of the ratio, and need not: the mean of five values by the textbook.
+TEST(VarianceRatios, AreNothingWhereAllRowsAreAlike) {
+  const Constant constant({1, 1, 1, 1, 1});
+  double squares = 0;
+  for (const double off : constant.off) squares += off * off;
+  const double expected = student_t_quantile(0.95, 4) * std::sqrt(squares / 4 / 5);
+  EXPECT_NEAR(half_width(constant), expected, 1e-4 * expected);
+}
+
+TEST(VarianceRatios, AreIntegratedOver) {
+  for (const std::vector<double>& factors :
+       {std::vector{0.2, 0.5, 1.0, 2.0, 5.0}, {9.0, 0.1, 3.0, 1.0, 0.4}, {1.0, 1.0, 1.0, 1.0, 30.0}}) {
+    const Constant constant(factors);
+    // A tenth of a percent is what 48 places of a smooth density leave.
+    EXPECT_NEAR(probability(factors, constant.mean(), half_width(constant)), 0.95, 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace continuo::studies::variance_ratios_test
