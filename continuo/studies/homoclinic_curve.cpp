@@ -16,7 +16,7 @@ namespace continuo::studies::detail {
 namespace {
 
 constexpr double bends_little = 0.906;    // the cosine of 25 degrees
-constexpr double truncated_well = 1e-5;   // of the ranges: by how much constants may be off
+constexpr double truncated_well = 1e-6;   // of the ranges: by how much constants may be off
 constexpr double resolved_well = 1e-4;    // likewise of the orbit
 constexpr double shrunk_to_rest = 5e-4;   // of the greatest size on the curve
 constexpr double exactly_there = 1e-6;    // of a test that is of the size of 1
@@ -88,10 +88,12 @@ OrbitCurveEnd HomoclinicFollower::followed(OrbitCurve& curve, const HomoclinicPl
   while (curve.points.size() < options_.most_points) {
     auto next = steps_.stepped(here, step);
     if (options_.interrupt && options_.interrupt->load()) return {OrbitCurveEnding::interrupted, "it was interrupted"};
-    if (!next || product(here.tangent, next->tangent) < bends_little) {
+    const bool is_coarse = next && next->error > resolved_well;
+    if (!next || is_coarse || product(here.tangent, next->tangent) < bends_little) {
       step /= 2;
       if (step > options_.least_step) continue;
-      return {OrbitCurveEnding::lost, "the curve could not be followed further"};
+      return {OrbitCurveEnding::lost,
+              is_coarse ? "no mesh serves the orbits further on" : "the curve could not be followed further"};
     }
     for (Found& found : found_between(here, *next, step)) {
       if (!is_inside(found.place.point, options_)) break;
@@ -115,7 +117,6 @@ OrbitCurveEnd HomoclinicFollower::followed(OrbitCurve& curve, const HomoclinicPl
               fmt::format("what is cut off of the orbit would move the constants by {:.2g} of their ranges further on: "
                           "motions leave the saddle, or come to it, too slowly",
                           next->point.truncation)};
-    if (next->error > resolved_well) return {OrbitCurveEnding::lost, "no mesh serves the orbits further on"};
     curve.points.push_back(next->point);
     covered_.report(next->point.constants[1]);
     if (curve.points.size() > points_round && comes_back(here.point, next->point, origin, options_))
