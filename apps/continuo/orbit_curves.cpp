@@ -35,11 +35,17 @@ std::string orbit_place(const OrbitCurvePoint& point, const NamedPlane& plane) {
 nlohmann::json json_of(const OrbitCurvePoint& point, const OrbitCurve& curve, const NamedPlane& plane) {
   nlohmann::json entry{{plane.first.name, point.constants[0]},
                        {plane.second.name, point.constants[1]},
-                       {"period", point.period},
                        {"x", point.x},
                        {"min", point.low},
-                       {"max", point.high},
-                       {"multipliers", app::json_of(point.multipliers)}};
+                       {"max", point.high}};
+  if (curve.kind == studies::OrbitBifurcation::homoclinic) {
+    entry["interval"] = point.period;
+    entry["eigenvalues"] = app::json_of(point.eigenvalues);
+    entry["truncation"] = point.truncation;
+    return entry;
+  }
+  entry["period"] = point.period;
+  entry["multipliers"] = app::json_of(point.multipliers);
   if (curve.kind == studies::OrbitBifurcation::torus) entry["rotation"] = point.rotation;
   return entry;
 }
@@ -66,12 +72,13 @@ const char* color_of(studies::OrbitBifurcation kind) {
 
 OrbitCurves curves_of(const Studied& studied, const std::vector<studies::OrbitBranch>& branches,
                       const NamedPlane& plane, const BranchSteps& steps) {
+  // Homoclinic ends first: there may be any number of folds and period doublings on the way to one.
   std::vector<studies::OrbitMark> starts;
-  for (const studies::OrbitBranch& branch : branches)
-    starts.insert(starts.end(), branch.marks.begin(), branch.marks.end());
   for (const studies::OrbitBranch& branch : branches)
     for (const studies::OrbitBranchEnd& end : branch.ends)
       if (end.last) starts.push_back(*end.last);
+  for (const studies::OrbitBranch& branch : branches)
+    starts.insert(starts.end(), branch.marks.begin(), branch.marks.end());
   Progress progress;
   studies::OrbitCurveOptions options{.low = {plane.first.low, plane.second.low},
                                      .high = {plane.first.high, plane.second.high},
@@ -98,14 +105,13 @@ std::string text_of(const OrbitCurves& curves, const NamedPlane& plane) {
       text += curve.message + "\n";
       continue;
     }
-    text += fmt::format("{} orbits", curve.points.size());
-    text += homoclinic ? fmt::format(", by orbits of period {:.6g}\n", curve.points.front().period) : "\n";
+    text += fmt::format("{} orbits\n", curve.points.size());
     const bool closed = curve.ends[0].ending == studies::OrbitCurveEnding::closed;
     text += closed ? fmt::format("   closed, through {}\n", orbit_place(curve.points.front(), plane))
                    : fmt::format("   from {}: {}\n", orbit_place(curve.points.front(), plane), curve.ends[0].reason);
     for (const DegenerateOrbit& mark : curve.marks)
-      text +=
-          fmt::format("   {}: {}, period {:.8g}\n", orbit_place(mark.at, plane), to_string(mark.kind), mark.at.period);
+      text += fmt::format("   {}: {}{}\n", orbit_place(mark.at, plane), to_string(mark.kind),
+                          homoclinic ? "" : fmt::format(", period {:.8g}", mark.at.period));
     if (!closed) text += fmt::format("   to {}: {}\n", orbit_place(curve.points.back(), plane), curve.ends[1].reason);
   }
   return text;
@@ -152,8 +158,10 @@ std::string csv_of(const OrbitCurves& curves, const model::Model& model, const N
     for (const auto& [point, mark] : orbits_of(curve)) {
       csv += fmt::format("{},{}", k + 1, mark ? to_string(mark->kind) : to_string(curve.kind));
       for (const double value : point->constants) field(value);
-      field(point->period);
-      field(point->rotation);
+      if (curve.kind == studies::OrbitBifurcation::homoclinic)
+        csv += ",,";
+      else
+        field(point->period), field(point->rotation);
       for (std::size_t i = 0; i < point->low.size(); ++i) field(point->low[i]), field(point->high[i]);
       for (const auto& value : point->multipliers) field(value.real()), field(value.imag());
       for (std::size_t j = point->multipliers.size() + 1; j < model.states.size(); ++j) csv += ",,";

@@ -206,17 +206,20 @@ PROBLEMS = [
       ("ending", {"I": "1.59953E-01"}), ("ending", {"I": "2.28614E-01"})]),
     ("pen, period doublings", PEN, "orbit --along I=0.1..1.3 --and eps=0.05..2 --branches 0",
      [("of period 29.9990", {"I": "9.57295E-01", "eps": "9.80643E-01"})]),
-    ("cir, homoclinic orbits", CIR, "orbit --from-hopf --along rn=-0.8..-0.5 --branches 0",
-     [("ending", {"rn": "-7.25693E-01"})]),
-    ("cir, where the saddle is neutral", CIR.replace("rn = -0.72", "rn = -0.7204"),
-     "orbit --from-hopf --along rn=-0.8..-0.5 --branches 0 --set be=0.591232", [("ending", {"rn": "-7.20400E-01"})]),
-    ("cir, homoclinic orbits at be = 0.742873", CIR, "orbit --from-hopf --along rn=-0.8..-0.5 --branches 0 --set be=0.742873",
-     [("ending", {"rn": "-7.59058E-01"})]),
-    ("kpr, homoclinic orbit", KPR, "orbit --from-hopf --along lambda=-3..1 --branches 0",
-     [("ending", {"lambda": "-1.85119E+00"})]),
-    *[(f"kpr, inclination flip at kappa = {kappa}", KPR,
-       f"orbit --from-hopf --along lambda=-3..1 --branches 0 --set kappa={kappa}", [("ending", {"lambda": value})])
-      for kappa, value in (("-2.00266E-01", "-1.80166E+00"), ("-4.39547E-01", "-1.56876E+00"))],
+    ("cir, homoclinic orbits", CIR, "orbit --from-hopf --along rn=-1.3..-0.5 --and be=-0.2..0.9 --branches 0 --set be=0.65",
+     [("neutrally divergent saddle-focus", {"rn": "-7.2569E-01", "be": "4.5356E-01"}),
+      ("at be = 4.53564E-01", {"rn": "-7.25693E-01"}),
+      ("at be = 5.91232E-01", {"rn": "-7.20400E-01"}),
+      ("at be = 7.42873E-01", {"rn": "-7.59058E-01"}),
+      ("at be = 9.95025E-03", {"rn": "-1.01484E+00"}),
+      ("double leading stable eigenvalue", {"rn": "-7.59058E-01", "be": "7.42873E-01"}),
+      ("Hopf point", {"rn": "-1.02648E+00"})]),
+    ("kpr, homoclinic orbits", KPR, "orbit --from-hopf --along lambda=-3..1 --and kappa=-3..0.5 --branches 0",
+     [("inclination flip of the stable manifold", {"lambda": "-1.80166E+00", "kappa": "-2.00266E-01"}),
+      ("inclination flip of the stable manifold", {"lambda": "-1.56876E+00", "kappa": "-4.39547E-01"}),
+      ("at kappa = -1.50000E-01", {"lambda": "-1.85119E+00"}),
+      ("at kappa = -6.20316E-02", {"lambda": "-1.93828E+00"}),
+      ("saddle-node", {"lambda": "1.76506E-01", "kappa": "-2.40533E+00"})]),
     # Its extremes are those of AUTO's 101 mesh points, and not compared where these miss the top of the wave, or where u has
     # become so small that it hangs on the last digit of the period.
     *[(f"fsh, period {period}", FSH, f"run --set period={period}", [("wave", values)]) for period, values in [
@@ -250,20 +253,31 @@ def found_of(result):
                 yield dict(max(entry["points"], key=lambda point: point["period"]), kind="canard")
 
 
-def of_period(result, period):
-    """On curves in two parameters, between the points: by polynomials of the period's logarithm through the nearest six."""
-    for curve in result.get("curves", []):
-        points = sorted(curve["points"], key=lambda point: abs(math.log(point["period"]/period)))[:6]
-        if not min(point["period"] for point in points) <= period <= max(point["period"] for point in points):
+def through_nearest(points, goal, coordinate, kind, names):
+    """Between the points of a curve: by polynomials of the coordinate through six neighbours, on each piece where it is passed."""
+    values = [coordinate(point) for point in points]
+    for k in range(len(points) - 1):
+        if not min(values[k:k + 2]) <= goal <= max(values[k:k + 2]):
             continue
-        found = {"kind": f"of period {period:.4f}"}
-        for name in (result["parameters"] if "parameters" in result else []):
-            found[name] = 0
-            for point in points:
-                others = [math.log(other["period"]) for other in points if other is not point]
-                here = math.log(point["period"])
-                found[name] += point[name]*math.prod((math.log(period) - there)/(here - there) for there in others)
-        yield found
+        first = max(0, min(k - 2, len(points) - 6))
+        near, at = points[first:first + 6], values[first:first + 6]
+        if len(set(at)) < len(at):
+            continue
+        yield {"kind": kind, **{name: sum(
+            point[name]*math.prod((goal - there)/(here - there) for there in at if there != here)
+            for point, here in zip(near, at)) for name in names}}
+
+
+def between(result, kind):
+    """What a curve in two parameters has between its points, where the kind asks for it by the period or a parameter."""
+    for curve in result.get("curves", []):
+        points, names = curve["points"], result.get("parameters", [])
+        if kind.startswith("of period ") and points and "period" in points[0]:
+            yield from through_nearest(points, math.log(float(kind.split()[2])), lambda point: math.log(point["period"]),
+                                       kind, names)
+        elif kind.startswith("at ") and curve["kind"] == "homoclinic orbit":
+            _, name, _, value = kind.split()
+            yield from through_nearest(points, float(value), lambda point: point[name], kind, names)
 
 
 def extremes_of(table):
@@ -320,8 +334,7 @@ def main():
             result = json.loads(run.stdout) if run.stdout else {}
             points = list(found_of(result))
             for kind, _ in wanted:
-                if kind.startswith("of period "):
-                    points += of_period(result, float(kind.removeprefix("of period ")))
+                points += between(result, kind)
             if verb == "run" and os.path.exists(table):
                 with open(table) as text:
                     points.append(extremes_of(text.read()))

@@ -229,12 +229,6 @@ bool CriticalOrbit::evaluate(std::span<const double> z, std::span<const double> 
   shift_.assign(shift.begin(), shift.end());
   if (!(period_ > 0) || !std::isfinite(period_)) return false;
   if (!evaluate_points(z)) return false;
-  if (kind_ == OrbitBifurcation::homoclinic) {  // the period stays as it is
-    test_ = 0;
-    gradient_.assign(unknowns(), 0.0);
-    gradient_[states_] = 1;
-    return true;
-  }
   if (!solve_bordered(borders)) return false;
   differentiate();
   return std::ranges::all_of(gradient_, [](const Complex& value) { return std::isfinite(std::abs(value)); });

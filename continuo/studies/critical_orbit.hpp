@@ -8,8 +8,6 @@
 //   ( c* 0 ) (g) = (1),       of a fold (a = 0, and 1 is always a multiplier) with a change of the period and v . f =
 //   0.
 //
-// Of a homoclinic orbit, for which one of long period stands, the period is held instead (AUTO's way).
-//
 // g is zero where M is singular, and its derivative is -w* dM v with the solution w of the adjoint system.
 #pragma once
 #include <array>

@@ -162,7 +162,8 @@ std::vector<double> OrbitCollocation::field(std::span<const double> z) const {
 }
 
 // The m-th derivatives of neighbouring polynomials give the (m+1)-th between them (de Boor 1973).
-std::vector<double> OrbitCollocation::errors(std::span<const double> z, std::span<const double> sizes) const {
+std::vector<double> OrbitCollocation::errors(std::span<const double> z, std::span<const double> sizes,
+                                             bool is_open) const {
   const std::size_t count = intervals();
   Vector highest(count * n_), result(count, 0.0);
   const auto width = [&](std::size_t k) { return (*mesh_)[k + 1] - (*mesh_)[k]; };
@@ -171,7 +172,7 @@ std::vector<double> OrbitCollocation::errors(std::span<const double> z, std::spa
     for (std::size_t j = 0; j <= degree; ++j)
       for (std::size_t i = 0; i < n_; ++i)
         highest[k * n_ + i] += table().highest[j] * value(z, k * degree + j, i) / sizes[i];
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k + (is_open ? 1 : 0) < count; ++k) {
     const std::size_t next = (k + 1) % count;
     const double ratio = width(k) / width(next), middle = (width(k) + width(next)) / 2;
     for (std::size_t i = 0; i < n_; ++i) {

@@ -61,8 +61,9 @@ class OrbitCollocation {
   /// f at the nodes: where a shift along the orbit moves them.
   std::vector<double> field(std::span<const double> z) const;
 
-  /// Of each interval the estimated error inside, in sizes.
-  std::vector<double> errors(std::span<const double> z, std::span<const double> sizes) const;
+  /// Of each interval the estimated error inside, in sizes. `is_open`: the first interval is not the last one's
+  /// neighbour.
+  std::vector<double> errors(std::span<const double> z, std::span<const double> sizes, bool is_open = false) const;
   /// A mesh on which these errors are the same everywhere and, if that takes no more than `most` intervals, below
   /// `wanted`.
   std::shared_ptr<const OrbitMesh> better_mesh(std::span<const double> errors, double wanted, std::size_t most) const;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/studies/homoclinic_curve.hpp>
 #include <continuo/studies/orbit_curve.hpp>
 #include <continuo/studies/orbit_curve_follower.hpp>
 
@@ -50,9 +51,29 @@ bool passes_orbit(const OrbitCurve& curve, const OrbitMark& mark, double second,
 }  // namespace
 
 std::string_view to_string(OrbitDegeneracy kind) {
-  constexpr std::array<std::string_view, orbit_degeneracies> names{
-      "cusp of orbits",  "1:1 resonance",    "1:2 resonance",    "1:3 resonance",     "1:4 resonance",
-      "fold-flip point", "fold-torus point", "flip-torus point", "double torus point"};
+  constexpr std::array<std::string_view, orbit_degeneracies> names{"cusp of orbits",
+                                                                   "1:1 resonance",
+                                                                   "1:2 resonance",
+                                                                   "1:3 resonance",
+                                                                   "1:4 resonance",
+                                                                   "fold-flip point",
+                                                                   "fold-torus point",
+                                                                   "flip-torus point",
+                                                                   "double torus point",
+                                                                   "neutral saddle",
+                                                                   "neutral saddle-focus",
+                                                                   "neutral focus-focus",
+                                                                   "neutrally divergent saddle-focus",
+                                                                   "double leading stable eigenvalue",
+                                                                   "double leading unstable eigenvalue",
+                                                                   "three leading stable eigenvalues",
+                                                                   "three leading unstable eigenvalues",
+                                                                   "saddle-node",
+                                                                   "Hopf point",
+                                                                   "orbit flip of the stable side",
+                                                                   "orbit flip of the unstable side",
+                                                                   "inclination flip of the stable manifold",
+                                                                   "inclination flip of the unstable manifold"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -69,6 +90,7 @@ OrbitCurve follow_orbit_bifurcation(const ParametricSystem& system, const OrbitM
   }
   ParametricSystem turning(system);
   turning.advance = start.at.advance;
+  if (start.kind == OrbitBifurcation::homoclinic) return detail::homoclinic_curve(turning, start, options);
   return detail::OrbitCurveFollower(turning, start.kind, options).from(start);
 }
 

@@ -26,11 +26,19 @@ struct OrbitCurvePoint {
   std::vector<double> low{}, high{};                // between which each component goes
   std::vector<std::complex<double>> multipliers{};  // by descending size, without the 1 of a shift along the orbit
   double rotation = 0;                              // of torus: the angle of the pair, in turns per period
+  // Of a homoclinic orbit, whose `period` is the length of the interval that is solved for and `x` its saddle.
+  std::vector<std::complex<double>> eigenvalues{};  // of the saddle, by descending real part
+  double truncation = 0;                            // estimated: by how much the constants are off, in ranges
 };
 
 /// `cusp`: two folds of orbits meet. `resonance_1` to `resonance_4`: strong resonances 1:1 to 1:4, where a pair on the
 /// unit circle is twice 1, twice -1, at a third or at a quarter of a turn. `fold_flip`: one multiplier is 1, another
 /// -1. `fold_torus`, `flip_torus`: a multiplier 1, or -1, and a pair on the circle. `double_torus`: two such pairs.
+/// Of homoclinic orbits, by the leading eigenvalues of the saddle (those nearest to the imaginary axis on either side):
+/// `neutral_*`: their real parts add up to zero; one or both may be pairs. `divergent_saddle_focus`: a pair's real part
+/// twice and the other's do. `double_leading`: two real ones meet, behind which they are a pair. `triple_leading`: a
+/// real one and a pair have the same real part. `saddle_node`, `hopf`: one is zero, or a pair imaginary. `orbit_flip`:
+/// the orbit does not come, or leave, along the leading eigenvector. `inclination_flip`: nor does the adjoint solution.
 enum class OrbitDegeneracy {
   cusp,
   resonance_1,
@@ -40,9 +48,23 @@ enum class OrbitDegeneracy {
   fold_flip,
   fold_torus,
   flip_torus,
-  double_torus
+  double_torus,
+  neutral_saddle,
+  neutral_saddle_focus,
+  neutral_focus_focus,
+  divergent_saddle_focus,
+  double_leading_stable,
+  double_leading_unstable,
+  triple_leading_stable,
+  triple_leading_unstable,
+  saddle_node,
+  hopf,
+  orbit_flip_stable,
+  orbit_flip_unstable,
+  inclination_flip_stable,
+  inclination_flip_unstable
 };
-inline constexpr std::size_t orbit_degeneracies = 9;
+inline constexpr std::size_t orbit_degeneracies = 23;
 std::string_view to_string(OrbitDegeneracy kind);
 
 struct DegenerateOrbit {
@@ -52,8 +74,19 @@ struct DegenerateOrbit {
 };
 
 /// Why a curve ends. `equilibrium`: the orbit shrinks to one. `long_period`: the period has grown to many times that at
-/// the start. `resonance`: 1:1 or 1:2, behind which there is no pair on the circle.
-enum class OrbitCurveEnding { bound, closed, equilibrium, long_period, resonance, interrupted, too_many_points, lost };
+/// the start. `resonance`: 1:1 or 1:2, behind which there is no pair on the circle. `no_saddle`: a homoclinic orbit's
+/// place of rest is none any more.
+enum class OrbitCurveEnding {
+  bound,
+  closed,
+  equilibrium,
+  long_period,
+  resonance,
+  no_saddle,
+  interrupted,
+  too_many_points,
+  lost
+};
 
 struct OrbitCurveEnd {
   OrbitCurveEnding ending = OrbitCurveEnding::lost;
@@ -81,7 +114,7 @@ struct OrbitCurveOptions {
 };
 
 /// From what is marked on a branch of orbits of the first constant, the second one having the system's value. From its
-/// homoclinic end: a curve of orbits of that long period, exp(-rate period) away from homoclinic ones.
+/// homoclinic end: of homoclinic orbits, by projection (homoclinic_curve.hpp).
 OrbitCurve follow_orbit_bifurcation(const ParametricSystem& system, const OrbitMark& start,
                                     const OrbitCurveOptions& options);
 

@@ -19,29 +19,14 @@ using Complex = std::complex<double>;
 constexpr double turns_little = 0.906;  // the cosine of 25 degrees
 constexpr double shrunk_away = 5e-3;    // of the largest amplitude
 constexpr double all_but_gone = 2e-2;   // likewise, where the equations can no longer be solved
-constexpr double still_waits = 0.25;    // the part of its period that an orbit near to a homoclinic one waits
-constexpr double enough_rate = 7;       // times the period: exp(-7) is the part by which the constants are off
 constexpr double about_there = 1e-3;    // of a multiplier from where it should be
 constexpr double clearly_seen = 1e-7;   // of a test that is of the size of 1
 constexpr std::size_t round_trip = 12;  // points of a closed curve
 
-/// What points of a curve have in common whatever their mesh, in sizes.
-Vector seen_from_outside(const OrbitCurvePoint& point, const OrbitCurveOptions& options, const OrbitCurvePoint& unit) {
-  Vector v;
-  for (std::size_t k = 0; k < 2; ++k) v.push_back(point.constants[k] / (options.high[k] - options.low[k]));
-  v.push_back(point.period / unit.period);
-  for (std::size_t i = 0; i < point.low.size(); ++i) {
-    const double size = std::max({std::abs(unit.low[i]), std::abs(unit.high[i]), 1e-12});
-    v.push_back(point.low[i] / size);
-    v.push_back(point.high[i] / size);
-  }
-  return v;
-}
-
 }  // namespace
 
 OrbitCurve OrbitCurveFollower::from(const OrbitMark& start) {
-  OrbitCurve curve{.kind = start.kind}, back{.kind = start.kind}, ahead{.kind = start.kind};
+  OrbitCurve curve{.kind = start.kind};
   const auto first = steps_.first(start);
   if (!first) {
     curve.message = fmt::format("there is no {} near the start that could be followed", to_string(start.kind));
@@ -49,31 +34,8 @@ OrbitCurve OrbitCurveFollower::from(const OrbitMark& start) {
   }
   first_period_ = first->point.period;
   (void)amplitude(*first);
-  curve.ends[0] = followed(back, *first, -1);
-  std::ranges::reverse(back.points);
-  std::ranges::reverse(back.marks);
-  for (DegenerateOrbit& point : back.marks) point.next = back.points.size() - point.next;
-  curve.points = std::move(back.points);
-  curve.marks = std::move(back.marks);
-  curve.points.push_back(first->point);
-  if (curve.ends[0].ending == OrbitCurveEnding::closed || curve.ends[0].ending == OrbitCurveEnding::interrupted) {
-    curve.ends[1] = curve.ends[0];
-    if (curve.ends[0].ending == OrbitCurveEnding::interrupted) return curve;
-    curve.points.insert(curve.points.begin(), first->point);
-    for (DegenerateOrbit& point : curve.marks) ++point.next;
-    return curve;
-  }
-  curve.ends[1] = followed(ahead, *first, 1);
-  for (DegenerateOrbit& point : ahead.marks) point.next += curve.points.size();
-  curve.points.insert(curve.points.end(), ahead.points.begin(), ahead.points.end());
-  curve.marks.insert(curve.marks.end(), ahead.marks.begin(), ahead.marks.end());
-  return curve;
-}
-
-bool OrbitCurveFollower::inside(const OrbitCurvePoint& point) const {
-  for (std::size_t k = 0; k < 2; ++k)
-    if (!(point.constants[k] >= options_.low[k] && point.constants[k] <= options_.high[k])) return false;
-  return true;
+  return followed_both_ways(start.kind, first->point,
+                            [&](OrbitCurve& side, double direction) { return followed(side, *first, direction); });
 }
 
 OrbitCurveEnd OrbitCurveFollower::followed(OrbitCurve& curve, const OrbitCurvePlace& from, double direction) {
@@ -95,7 +57,7 @@ OrbitCurveEnd OrbitCurveFollower::followed(OrbitCurve& curve, const OrbitCurvePl
               fmt::format("the curve could not be followed further; the period is {:.6g} there", here.point.period)};
     }
     if (curve.kind == OrbitBifurcation::torus)
-      if (auto resonance = resonance_ahead(here, *next, step); resonance && inside(resonance->at)) {
+      if (auto resonance = resonance_ahead(here, *next, step); resonance && is_inside(resonance->at, options_)) {
         mark(curve, here, *next, step);
         resonance->next = curve.points.size();
         curve.points.push_back(resonance->at);
@@ -105,22 +67,15 @@ OrbitCurveEnd OrbitCurveFollower::followed(OrbitCurve& curve, const OrbitCurvePl
         return end;
       }
     mark(curve, here, *next, step);
-    if (!inside(next->point)) return at_bound(curve, here, *next);
+    if (!is_inside(next->point, options_)) return at_bound(curve, here, *next);
     steps_.complete(*next);
     curve.points.push_back(next->point);
-    report(next->point.constants[1]);
-    if (curve.kind == OrbitBifurcation::homoclinic && steps_.waiting_part(*next) < still_waits)
-      return {OrbitCurveEnding::lost,
-              "an orbit of this period is no longer near to a homoclinic one: it does not wait at an equilibrium"};
-    if (curve.kind == OrbitBifurcation::homoclinic && steps_.rate_over_period(*next) < enough_rate)
-      return {OrbitCurveEnding::lost,
-              "an orbit of this period no longer stands for a homoclinic one: motions leave the place of rest, or come "
-              "to it, too slowly"};
+    covered_.report(next->point.constants[1]);
     if (next->point.period > options_.longest_period * first_period_)
       return {OrbitCurveEnding::long_period,
               fmt::format("the period has grown to {:.6g}, more than {:.3g} times that at the start",
                           next->point.period, options_.longest_period)};
-    if (curve.points.size() > round_trip && comes_back(here, *next, origin))
+    if (curve.points.size() > round_trip && comes_back(here.point, next->point, origin.point, options_))
       return {OrbitCurveEnding::closed, "it comes back to where it began"};
     here = std::move(*next);
     if (!steps_.renew(here))
@@ -199,41 +154,9 @@ std::optional<DegenerateOrbit> OrbitCurveFollower::resonance_ahead(const OrbitCu
 
 /// Between a place inside of the ranges and one outside.
 OrbitCurveEnd OrbitCurveFollower::at_bound(OrbitCurve& curve, const OrbitCurvePlace& a, const OrbitCurvePlace& b) {
-  std::size_t first = 0;
-  double part = 2, bound = 0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const double to = b.point.constants[k], limit = std::clamp(to, options_.low[k], options_.high[k]);
-    if (to == limit) continue;
-    const double at = (limit - a.point.constants[k]) / (to - a.point.constants[k]);
-    if (at < part) part = at, first = k, bound = limit;
-  }
-  if (const auto place = steps_.at_bound(a, b, first, bound)) curve.points.push_back(place->point);
-  return {OrbitCurveEnding::bound,
-          fmt::format("{} reaches the end of its range", system_.constant_name(options_.constants[first]))};
-}
-
-bool OrbitCurveFollower::comes_back(const OrbitCurvePlace& a, const OrbitCurvePlace& b,
-                                    const OrbitCurvePlace& origin) const {
-  if (a.point.low.empty() || origin.point.low.empty()) return false;
-  const Vector u = seen_from_outside(a.point, options_, origin.point),
-               v = seen_from_outside(b.point, options_, origin.point),
-               o = seen_from_outside(origin.point, options_, origin.point);
-  double whole = 0, along = 0, apart = 0;
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    whole += (v[i] - u[i]) * (v[i] - u[i]);
-    along += (v[i] - u[i]) * (o[i] - u[i]);
-  }
-  const double part = along / whole;
-  if (!(part > 0 && part <= 1)) return false;
-  for (std::size_t i = 0; i < o.size(); ++i) apart += std::pow(u[i] + part * (v[i] - u[i]) - o[i], 2);
-  return std::sqrt(apart) < 0.1 * std::sqrt(whole);
-}
-
-void OrbitCurveFollower::report(double value) {
-  low_ = std::min(low_, value);
-  high_ = std::max(high_, value);
-  const double whole = options_.high[1] - options_.low[1];
-  if (options_.progress) options_.progress(std::min((high_ - low_) / whole, 1.0));
+  const LeftRange left = left_range(a.point, b.point, options_);
+  if (const auto place = steps_.at_bound(a, b, left.constant, left.bound)) curve.points.push_back(place->point);
+  return end_of_range(system_, options_, left);
 }
 
 void OrbitCurveFollower::mark(OrbitCurve& curve, const OrbitCurvePlace& a, const OrbitCurvePlace& b, double step) {
@@ -243,7 +166,7 @@ void OrbitCurveFollower::mark(OrbitCurve& curve, const OrbitCurvePlace& a, const
     if (!(a.test(kind) * b.test(kind) < 0)) continue;
     if (std::max(std::abs(a.test(kind)), std::abs(b.test(kind))) < clearly_seen) continue;
     auto place = located(kind, a, b, step);
-    if (!place || !inside(place->point) || !is_what(kind, curve.kind, *place)) continue;
+    if (!place || !is_inside(place->point, options_) || !is_what(kind, curve.kind, *place)) continue;
     const double at = located_at_, aside = 1e-2 * std::min({step, at, step - at});
     if (aside > 1e-6 * step) {  // of a zero that rounding has made it need not be on either side
       const auto before = steps_.stepped(a, at - aside), after = steps_.stepped(a, at + aside);
@@ -317,6 +240,8 @@ bool OrbitCurveFollower::is_what(OrbitDegeneracy kind, OrbitBifurcation curve, c
       return how_many_at(-1, about_there) >= 1 && pairs() >= 1;
     case double_torus:
       return curve == OrbitBifurcation::torus && pairs() >= 2;
+    default:  // of homoclinic orbits
+      return false;
   }
   return false;
 }

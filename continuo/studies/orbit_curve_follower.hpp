@@ -1,8 +1,8 @@
 // Along a curve of folds, period doublings or tori of orbits, from its start to where it ends. Internal to orbit_curve.
 #pragma once
-#include <limits>
 #include <optional>
 
+#include <continuo/studies/orbit_curve_course.hpp>
 #include <continuo/studies/orbit_curve_steps.hpp>
 
 namespace continuo::studies::detail {
@@ -13,7 +13,7 @@ class OrbitCurveFollower {
 
  public:
   OrbitCurveFollower(const ParametricSystem& system, OrbitBifurcation kind, const OrbitCurveOptions& options)
-      : system_(system), options_(options), steps_(system, kind, options) {}
+      : system_(system), options_(options), steps_(system, kind, options), covered_(options) {}
 
   OrbitCurve from(const OrbitMark& start);
 
@@ -27,9 +27,6 @@ class OrbitCurveFollower {
   /// Of tori: the 1:1 or 1:2 resonance that comes within the next steps.
   std::optional<DegenerateOrbit> resonance_ahead(const Place& a, const Place& b, double step);
   OrbitCurveEnd at_bound(OrbitCurve& curve, const Place& a, const Place& b);
-  bool inside(const OrbitCurvePoint& point) const;
-  bool comes_back(const Place& a, const Place& b, const Place& origin) const;
-  void report(double value);
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(OrbitCurve& curve, const Place& a, const Place& b, double step);
   std::optional<Place> located(OrbitDegeneracy kind, const Place& a, const Place& b, double step);
@@ -41,8 +38,8 @@ class OrbitCurveFollower {
   OrbitCurveSteps steps_;
   double located_at_ = 0;  // how far from the place before
   double first_period_ = 0;
-  Vector greatest_{};                                                    // deviation of each component so far
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // the part of the range that was covered
+  Vector greatest_{};  // deviation of each component so far
+  CoveredRange covered_;
 };
 
 }  // namespace continuo::studies::detail

@@ -156,7 +156,7 @@ std::optional<OrbitCurvePlace> OrbitCurveSteps::described(Vector z, const Vector
   point.period = place.z[states];
   point.x.assign(place.z.begin(), place.z.begin() + static_cast<std::ptrdiff_t>(system_.size));
   point.multipliers = multipliers_of(one, orbit, alone, sizes_);
-  if (point.multipliers.empty() && kind_ != OrbitBifurcation::homoclinic) return std::nullopt;
+  if (point.multipliers.empty()) return std::nullopt;
   if (kind_ == OrbitBifurcation::torus) point.rotation = place.z.back() / (2 * std::numbers::pi);
   place.error = std::ranges::max(orbit.errors(alone, sizes_));
   set_tests(place);

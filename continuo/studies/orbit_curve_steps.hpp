@@ -41,11 +41,6 @@ class OrbitCurveSteps {
   void complete(OrbitCurvePlace& place);
   /// How far the nodes are from their mean, each by the root of its weight.
   std::vector<double> deviations(const OrbitCurvePlace& place);
-  /// For which part of the period the orbit is within a fiftieth of its size of where it is slowest.
-  double waiting_part(const OrbitCurvePlace& place);
-  /// The slowest rate at which motions leave the place of rest near which the orbit is slowest, or come to it, times
-  /// the period; zero where none is there. An orbit of this period is exp of minus that away from a homoclinic one.
-  double rate_over_period(const OrbitCurvePlace& place);
   bool is_exact(const OrbitCurvePlace& place) const { return place.error <= error_wanted_; }
   std::size_t size() const { return system_.size; }
 
@@ -60,7 +55,6 @@ class OrbitCurveSteps {
                                            const std::array<double, 2>& normal);
   void set_tests(OrbitCurvePlace& place) const;
   std::vector<double> on_mesh(const std::vector<double>& z, const OrbitMesh& mesh);
-  std::size_t slowest_node(const OrbitCollocation& orbit, const OrbitCurvePlace& place) const;
   /// The system with the second constant at its value there, and z as orbit_collocation has it.
   ParametricSystem there(const std::vector<double>& z) const;
 

@@ -38,7 +38,7 @@ TEST(OrbitPlane, FoldsOfOrbitsAsTableAndJson) {
 }
 
 // y'' = m0 + m1 y + y^2 + y y': of the homoclinic orbits m0 = -6/25 m1^2 in leading order, whose relative error is of
-// the order of the root of -m1 (Kuznetsov, 8.4), and they are followed by orbits of one long period.
+// the order of the root of -m1 (Kuznetsov, 8.4).
 TEST(OrbitPlane, HomoclinicOrbitsBeginAtADoubleZero) {
   const Shell shell;
   shell.write("double_zero.sim",

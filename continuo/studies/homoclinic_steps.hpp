@@ -1,0 +1,92 @@
+// One place after the other on a curve of homoclinic orbits. Internal to homoclinic_curve.
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <continuo/studies/homoclinic_orbit.hpp>
+#include <continuo/studies/orbit_curve.hpp>
+
+namespace continuo::studies::detail {
+
+/// HomCont's test functions psi. `neutral`: 1 and 4; `divergent_stable`, `divergent_unstable`: 5 and 6; `double_*`: 2
+/// and 3; `triple_*`: 7 and 8; `rest_stable`, `rest_unstable`: 9 and 10; `orbit_flip_*`: 11 and 12;
+/// `inclination_flip_*`: 13 and 14.
+enum class HomoclinicTest {
+  neutral,
+  divergent_stable,
+  divergent_unstable,
+  double_stable,
+  double_unstable,
+  triple_stable,
+  triple_unstable,
+  rest_stable,
+  rest_unstable,
+  orbit_flip_stable,
+  orbit_flip_unstable,
+  inclination_flip_stable,
+  inclination_flip_unstable
+};
+inline constexpr std::size_t homoclinic_tests = 13;
+
+struct HomoclinicPlace {
+  std::shared_ptr<const OrbitMesh> mesh{};
+  double length = 0;
+  std::vector<double> z{};        // the unknowns of HomoclinicOrbit
+  std::vector<double> tangent{};  // of length 1, in sizes
+  OrbitCurvePoint point{};
+  SaddleSpaces spaces{};
+  double error = 0;        // of the collocation inside of an interval, in sizes
+  double apart_first = 0;  // how far both ends are from the saddle, in sizes
+  double apart_last = 0;
+  /// Each changes its sign where it is zero. Not a number where it says nothing.
+  std::array<double, homoclinic_tests> tests{};
+  double test(HomoclinicTest kind) const { return tests[static_cast<std::size_t>(kind)]; }
+  /// Eigenvectors of leading eigenvalues, each turned as at the place before: by a test of flips.
+  std::array<Eigen::VectorXd, 4> leading{};
+};
+
+class HomoclinicSteps {
+  using Vector = std::vector<double>;
+
+ public:
+  HomoclinicSteps(const ParametricSystem& system, const OrbitCurveOptions& options);
+
+  /// From a closed orbit of long period that passes next to a saddle. Nothing where none is found; `message` says why.
+  std::optional<HomoclinicPlace> first(const OrbitMark& mark, std::string& message);
+  /// Nothing where none is found, or only one that is farther off than the step is long.
+  std::optional<HomoclinicPlace> stepped(const HomoclinicPlace& from, double step);
+  /// Between two neighbours on the same mesh, with one constant (0 or 1) at this value.
+  std::optional<HomoclinicPlace> at_bound(const HomoclinicPlace& a, const HomoclinicPlace& b, std::size_t constant,
+                                          double value);
+  /// Takes a length and a mesh that serve the place, and solves for it there, where that has become worth it.
+  bool renew(HomoclinicPlace& place);
+
+ private:
+  void use(const std::shared_ptr<const OrbitMesh>& mesh, double length);
+  void measure(const Vector& z);
+  std::optional<HomoclinicPlace> corrected(const Vector& guess, const Vector& reference, const Vector& last,
+                                           const HomoclinicPlace* before);
+  std::optional<HomoclinicPlace> described(Vector z, const Vector& along, const HomoclinicPlace* before);
+  void set_eigenvalue_tests(HomoclinicPlace& place) const;
+  void set_flip_tests(HomoclinicPlace& place, const Vector& adjoint, const HomoclinicPlace* before) const;
+  Vector shift_at(const Vector& z) const;
+  double weight(std::size_t node) const;
+  std::optional<Vector> tangent_of(const Vector& along);
+  bool refined(HomoclinicPlace& place);
+  bool lengthened(HomoclinicPlace& place);
+  /// z and the tangent, read off where the interval goes from `begin` to `end`, 0 to 1 being the present one.
+  bool move_to(HomoclinicPlace& place, const std::shared_ptr<const OrbitMesh>& mesh, double begin, double end);
+
+  const ParametricSystem& system_;
+  const OrbitCurveOptions& options_;
+  std::size_t n_, stable_ = 0;
+  double error_wanted_, longest_ = 0;
+  std::shared_ptr<const OrbitMesh> mesh_;
+  double length_ = 0;
+  std::optional<HomoclinicOrbit> equations_;
+  Vector sizes_, scale_;
+};
+
+}  // namespace continuo::studies::detail
