@@ -74,7 +74,8 @@ std::string orbit_text(const model::Model& model, const Exploration& found) {
     text = fmt::format("orbit    period {}{}, {}\n", with_time_unit(orbit.period, model), turns,
                        orbit.neighbours == Neighbours::come_nearer ? "stable"
                        : orbit.neighbours == Neighbours::go_away   ? "not stable"
-                                                                   : "undecided at first order");
+                       : orbit.family ? "one of a family: something is conserved, and each value of it has an orbit"
+                                      : "undecided at first order");
     if (orbit.found_nearby) text += "         the motion itself does not come to it: it passes near by\n";
   }
   if (!found.exponents) return text;

@@ -31,6 +31,8 @@ ParametricSystem with_one_constant(const ParametricSystem& system, std::size_t c
   one.constant_names = {system.constant_name(constant)};
   one.pattern = system.pattern;
   one.advance = system.advance;
+  one.conserved = system.conserved;
+  one.conserved_rate = system.conserved_rate;
   const auto all = [p = std::make_shared<Vector>(system.constants), constant](Values q) -> Values {
     (*p)[constant] = q[0];
     return *p;

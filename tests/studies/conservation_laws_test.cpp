@@ -12,6 +12,7 @@
 #include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/continuation.hpp>
 #include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/orbit_continuation.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 
 namespace continuo::studies::conservation_laws_test {
@@ -163,6 +164,32 @@ TEST(ConservationLaws, HeldLeaveOneOrbitOfMany) {
   ASSERT_EQ(orbit.multipliers.size(), 2u);
   EXPECT_NEAR(std::abs(orbit.multipliers[1] - std::exp(-2 * orbit.period)), 0, 1e-7);
   EXPECT_TRUE(orbit.stable);
+}
+
+// The same with the radius moved, r^2 = p: on each orbit of the branch the multiplier is exp(-2 p T), T = 2 pi / (1 +
+// u).
+TEST(ConservationLaws, HeldLeaveOneBranchOfOrbits) {
+  const auto free = parametric_system(3,
+                                      [](double, Values x, Values p, std::span<double> out) {
+                                        const double shrink = p[0] - x[0] * x[0] - x[1] * x[1], turn = 1 + x[0] + x[2];
+                                        out[0] = shrink * x[0] - turn * x[1];
+                                        out[1] = shrink * x[1] + turn * x[0];
+                                        out[2] = -out[0];
+                                      },
+                                      {1.0});
+  const Vector start{0.5, 0.2, 1.3};
+  const auto laws = conservation_laws_of(free, start);
+  ASSERT_EQ(laws.size(), 1u);
+  const auto held = holding(free, laws, [start](Values) { return start; });
+  const auto orbit = find_periodic_orbit(held, start, {.settle = 20, .duration = 20});
+  ASSERT_TRUE(orbit.outcome) << describe(orbit.outcome);
+  const auto branch = continue_orbit(held, orbit, {.low = 0.5, .high = 2});
+  ASSERT_GE(branch.points.size(), 5u);
+  for (const OrbitPoint& point : branch.points) {
+    EXPECT_NEAR(point.period, 2 * std::numbers::pi / 2.8, 1e-7);
+    ASSERT_EQ(point.multipliers.size(), 1u);
+    EXPECT_NEAR(point.multipliers[0].real(), std::exp(-2 * point.constant * point.period), 1e-6);
+  }
 }
 
 // The total is the constant that moves: a + b = p, a' = b - 2 a, at rest at a = p / 3.
