@@ -24,7 +24,7 @@ struct Studied {
   Prepared prepared;
   std::size_t mode = 0;
   studies::ParametricSystem system{};
-  std::vector<double> start{};  // the initial state
+  std::vector<double> start{};                   // the initial state
   std::vector<studies::ConservationLaw> laws{};  // that the system holds (hold_conserved)
 };
 /// `constants`: parameters that the study moves. exit in `prepared` where the verb ends here.

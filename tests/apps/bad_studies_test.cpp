@@ -145,7 +145,8 @@ TEST(BadStudies, AJacobianThatIsNoneOrSingular) {
   const Result kink = folder.run("linearize kink.sim --start");
   EXPECT_EQ(kink.exit, 3);
   EXPECT_THAT(kink.err, HasSubstr("kink.sim:4: the equation of `x` has no derivative by `x`"));
-  folder.write("line.sim", "x' = -x + y\ny' = (x - y)*(1 + x^2)\nx(0) = 1\ny(0) = 0\nrun 0..1\n");  // all of x = y rests
+  folder.write("line.sim",
+               "x' = -x + y\ny' = (x - y)*(1 + x^2)\nx(0) = 1\ny(0) = 0\nrun 0..1\n");  // all of x = y rests
   const Result line = folder.run("steady line.sim");
   EXPECT_THAT(line.out, HasSubstr("not isolated")) << line.err;
 }
