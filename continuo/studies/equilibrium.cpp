@@ -99,6 +99,22 @@ Linearization reduced(const ParametricSystem& system, std::vector<double> by_x, 
   return linear;
 }
 
+/// The largest eigenvalue a little beside a place of rest. Where all of them vanish at the place, as of x' = -x^2, what
+/// is found of them is the rounding of the place, and says nothing beside what they are next to it.
+double size_nearby(const ParametricSystem& system, std::vector<double> x, Values p, double t) {
+  constexpr double beside = 1e-6;
+  for (double& value : x) value += beside * std::max(std::abs(value), 1.0);
+  auto rows = jacobian_of(system, t, x, p);
+  if (!std::isfinite(largest(rows))) return 0;
+  const auto linear = reduced(system, std::move(rows), {});
+  if (!linear.undetermined.equations.empty()) return 0;
+  auto found = eigenvalues(linear.a, linear.states).values;
+  leave_out_conserved(system, -system.conserved_rate, found);
+  double size = 0;
+  for (const auto& value : found) size = std::max(size, std::abs(value));
+  return size;
+}
+
 }  // namespace
 
 std::string_view to_string(Stability stability) {
@@ -111,8 +127,7 @@ std::string_view to_string(EquilibriumEnding ending) {
   return names[static_cast<std::size_t>(ending)];
 }
 
-Stability stability_of(const std::vector<std::complex<double>>& eigenvalues, double slack) {
-  double size = 0;
+Stability stability_of(const std::vector<std::complex<double>>& eigenvalues, double slack, double size) {
   for (const auto& value : eigenvalues) size = std::max(size, std::abs(value));
   bool left = false, right = false, axis = false;
   for (const auto& value : eigenvalues) {
@@ -214,8 +229,9 @@ Equilibrium describe_equilibrium(const ParametricSystem& system, std::vector<dou
   }
   equilibrium.eigenvalues = eigenvalues(linear.a, linear.states).values;
   leave_out_conserved(system, -system.conserved_rate, equilibrium.eigenvalues);
-  equilibrium.stability = stability_of(equilibrium.eigenvalues);
-  double least = std::numeric_limits<double>::infinity(), greatest = 0;
+  const double nearby = size_nearby(system, equilibrium.x, p, t);
+  equilibrium.stability = stability_of(equilibrium.eigenvalues, 1e-9, nearby);
+  double least = std::numeric_limits<double>::infinity(), greatest = nearby;
   for (const auto& value : equilibrium.eigenvalues) {
     least = std::min(least, std::abs(value));
     greatest = std::max(greatest, std::abs(value));

@@ -20,8 +20,9 @@ namespace continuo::studies {
 /// say).
 enum class Stability { asymptotically_stable, unstable, saddle, undecided };
 std::string_view to_string(Stability stability);
-/// `undecided` where a real part is within `slack` times the largest eigenvalue of zero.
-Stability stability_of(const std::vector<std::complex<double>>& eigenvalues, double slack = 1e-9);
+/// `undecided` where a real part is within `slack` times the largest eigenvalue of zero, or times `size` where that is
+/// more.
+Stability stability_of(const std::vector<std::complex<double>>& eigenvalues, double slack = 1e-9, double size = 0);
 
 struct Equilibrium {
   std::vector<double> x;  // unknowns of algebraic equations among them

@@ -147,5 +147,31 @@ TEST(Modes, MassSpringDamper) {  // lambda = -c/2m +- i sqrt(k/m - (c/2m)^2)
   EXPECT_NEAR(modes[0].time_constant, 2 * m / c, 1e-6);
 }
 
+// x' = s x^n at 0, in random sizes: the linear part is zero, whatever rounding leaves of it; x' = s x is decided
+// however small s is.
+TEST(Equilibrium, WhatRoundingLeavesOfTheLinearPartDecidesNothing) {
+  for (const double s : {-1e3, -1.0, -1e-3, 1e-3, 1.0, 1e3}) {
+    for (const int n : {2, 3, 4}) {
+      const auto f = [s, n](double, Values x, Values, std::span<double> out) { out[0] = s * std::pow(x[0], n); };
+      auto system = parametric_system(1, f);
+      system.jacobian = [s, n](double, Values x, Values, std::span<double> rows) {
+        rows[0] = s * n * std::pow(x[0], n - 1);
+      };
+      for (const double x : {0.0, 1e-20, -1e-20, 1e-16, -1e-16}) {
+        const auto found = describe_equilibrium(system, {x}, {});
+        EXPECT_EQ(found.stability, Stability::undecided) << s << " x^" << n << " at " << x;
+        EXPECT_FALSE(found.isolated);
+      }
+    }
+    for (const double small : {1e-12, 1e-30}) {
+      const auto line = [s, small](double, Values x, Values, std::span<double> out) { out[0] = s * small * x[0]; };
+      auto system = parametric_system(1, line);
+      system.jacobian = [s, small](double, Values, Values, std::span<double> rows) { rows[0] = s * small; };
+      EXPECT_EQ(describe_equilibrium(system, {0.0}, {}).stability,
+                s < 0 ? Stability::asymptotically_stable : Stability::unstable);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace continuo::studies::equilibrium_test
