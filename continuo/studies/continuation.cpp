@@ -248,10 +248,10 @@ class Follower {
           add(Bifurcation::hopf, std::move(place->first), place->second / (2 * std::numbers::pi));
   }
 
-  /// Of the pairs of a place the one whose sum is nearest to zero of all that are not there to rounding along the whole
-  /// branch is told by its passing: at both ends of a way round the place its real part is more than rounding leaves,
-  /// and of opposite sign. The place and the angular frequency; nothing where two real eigenvalues of opposite sign are
-  /// what vanishes, or where a pair comes to the axis and stays.
+  /// The pair that passes the axis near a place where the test changes its sign, located, and its angular frequency.
+  /// Other pairs may lie on the axis all along, to rounding: of the one that passes the real part is more than
+  /// rounding, and of opposite sign, at both ends of some way round the place. Nothing where two real eigenvalues of
+  /// opposite sign are what vanishes, or where a pair comes to the axis and stays.
   std::optional<std::pair<Place, double>> hopf_point_near(const Place& a, const Place& place, double at, double step) {
     for (const std::complex<double>& pair : place.point.eigenvalues) {
       const double near =

@@ -145,48 +145,46 @@ TEST(ConservationLaws, HeldGiveTheRestThatTheMotionComesTo) {
   }
 }
 
-// u = x + z stays; x, y go round the circle of radius 1 about (0, 0) with the period 2 pi / (1 + u): one orbit, with
-// one multiplier beside its own.
-TEST(ConservationLaws, HeldLeaveOneOrbitOfMany) {
-  const auto free = parametric_system(3, [](double, Values x, Values, std::span<double> out) {
-    const double shrink = 1 - x[0] * x[0] - x[1] * x[1], turn = 1 + x[0] + x[2];
-    out[0] = shrink * x[0] - turn * x[1];
-    out[1] = shrink * x[1] + turn * x[0];
-    out[2] = -out[0];
-  });
-  const Vector start{0.5, 0.2, 1.3};
-  const auto laws = conservation_laws_of(free, start);
-  ASSERT_EQ(laws.size(), 1u);
-  const auto held = holding(free, laws, [start](Values) { return start; });
-  const auto orbit = find_periodic_orbit(held, start, {.settle = 20, .duration = 20});
+/// x + z = u stays; x, y come to the circle of radius r, r^2 = p, and go round it with the period 2 pi / (1 + u).
+struct Circles {
+  ParametricSystem held;
+  PeriodicOrbit orbit;
+
+  Circles() {
+    const auto free = parametric_system(3,
+                                        [](double, Values x, Values p, std::span<double> out) {
+                                          const double shrink = p[0] - x[0] * x[0] - x[1] * x[1];
+                                          const double turn = 1 + x[0] + x[2];
+                                          out[0] = shrink * x[0] - turn * x[1];
+                                          out[1] = shrink * x[1] + turn * x[0];
+                                          out[2] = -out[0];
+                                        },
+                                        {1.0});
+    const Vector start{0.5, 0.2, 1.3};
+    held = holding(free, conservation_laws_of(free, start), [start](Values) { return start; });
+    orbit = find_periodic_orbit(held, start, {.settle = 20, .duration = 20});
+  }
+  static constexpr double period = 2 * std::numbers::pi / 2.8;
+};
+
+TEST(ConservationLaws, HeldLeaveOneOrbitOfMany) {  // with one multiplier beside its own
+  const Circles circles;
+  const PeriodicOrbit& orbit = circles.orbit;
+  ASSERT_EQ(circles.held.conserved, 1u);
   ASSERT_TRUE(orbit.outcome) << describe(orbit.outcome);
-  EXPECT_NEAR(orbit.period, 2 * std::numbers::pi / 2.8, 1e-8);
+  EXPECT_NEAR(orbit.period, Circles::period, 1e-8);
   ASSERT_EQ(orbit.multipliers.size(), 2u);
   EXPECT_NEAR(std::abs(orbit.multipliers[1] - std::exp(-2 * orbit.period)), 0, 1e-7);
   EXPECT_TRUE(orbit.stable);
 }
 
-// The same with the radius moved, r^2 = p: on each orbit of the branch the multiplier is exp(-2 p T), T = 2 pi / (1 +
-// u).
-TEST(ConservationLaws, HeldLeaveOneBranchOfOrbits) {
-  const auto free = parametric_system(3,
-                                      [](double, Values x, Values p, std::span<double> out) {
-                                        const double shrink = p[0] - x[0] * x[0] - x[1] * x[1], turn = 1 + x[0] + x[2];
-                                        out[0] = shrink * x[0] - turn * x[1];
-                                        out[1] = shrink * x[1] + turn * x[0];
-                                        out[2] = -out[0];
-                                      },
-                                      {1.0});
-  const Vector start{0.5, 0.2, 1.3};
-  const auto laws = conservation_laws_of(free, start);
-  ASSERT_EQ(laws.size(), 1u);
-  const auto held = holding(free, laws, [start](Values) { return start; });
-  const auto orbit = find_periodic_orbit(held, start, {.settle = 20, .duration = 20});
-  ASSERT_TRUE(orbit.outcome) << describe(orbit.outcome);
-  const auto branch = continue_orbit(held, orbit, {.low = 0.5, .high = 2});
+TEST(ConservationLaws, HeldLeaveOneBranchOfOrbits) {  // on each the multiplier is exp(-2 p T)
+  const Circles circles;
+  ASSERT_TRUE(circles.orbit.outcome) << describe(circles.orbit.outcome);
+  const auto branch = continue_orbit(circles.held, circles.orbit, {.low = 0.5, .high = 2});
   ASSERT_GE(branch.points.size(), 5u);
   for (const OrbitPoint& point : branch.points) {
-    EXPECT_NEAR(point.period, 2 * std::numbers::pi / 2.8, 1e-7);
+    EXPECT_NEAR(point.period, Circles::period, 1e-7);
     ASSERT_EQ(point.multipliers.size(), 1u);
     EXPECT_NEAR(point.multipliers[0].real(), std::exp(-2 * point.constant * point.period), 1e-6);
   }
@@ -212,7 +210,7 @@ TEST(ConservationLaws, MoveWithTheStart) {
   }
 }
 
-TEST(ConservationLaws, WhatHoldsNearbyAloneIsNone) {  // beyond 10^6 x goes on, and for p != 1 the sum does
+TEST(ConservationLaws, WhatHoldsNearbyAloneIsNone) {  // beyond 10^3 x goes on, and for p != 1 the sum does
   const auto f = [](double, Values x, Values p, std::span<double> out) {
     out[0] = x[0] > 1e3 ? 1 : 0;
     out[1] = x[0] - x[1];
