@@ -96,6 +96,8 @@ std::string conserved_text(const Studied& studied) {
   for (const studies::ConservationLaw& law : studied.laws)
     text += fmt::format("{} {} = {}\n", text.empty() ? "conserved:" : "          ",
                         studies::law_text(studied.system, law), results::short_number(law.value));
+  if (!text.empty() && !studied.prepared.program->model.events.empty())
+    text += "           by the equations; events that change it are not looked at\n";
   return text;
 }
 
