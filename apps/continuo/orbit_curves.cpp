@@ -38,7 +38,7 @@ nlohmann::json json_of(const OrbitCurvePoint& point, const OrbitCurve& curve, co
                        {"x", point.x},
                        {"min", point.low},
                        {"max", point.high}};
-  if (curve.kind == studies::OrbitBifurcation::homoclinic) {
+  if (is_homoclinic(curve.kind)) {
     entry["interval"] = point.period;
     entry["eigenvalues"] = app::json_of(point.eigenvalues);
     entry["truncation"] = point.truncation;
@@ -65,6 +65,7 @@ const char* color_of(studies::OrbitBifurcation kind) {
   using enum studies::OrbitBifurcation;
   if (kind == torus) return "#cc79a7";
   if (kind == period_doubling) return "#e69f00";
+  if (kind == central_homoclinic) return "#009e73";
   return kind == fold ? "#444444" : "#56b4e9";
 }
 
@@ -97,7 +98,7 @@ std::string text_of(const OrbitCurves& curves, const NamedPlane& plane) {
   std::string text;
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const OrbitCurve& curve = curves[k].curve;
-    const bool homoclinic = curve.kind == studies::OrbitBifurcation::homoclinic;
+    const bool homoclinic = is_homoclinic(curve.kind);
     text += fmt::format(
         "\ncurve {} of {}: ", k + 1,
         curve.kind == studies::OrbitBifurcation::torus ? "tori" : fmt::format("{}s", to_string(curve.kind)));
@@ -158,7 +159,7 @@ std::string csv_of(const OrbitCurves& curves, const model::Model& model, const N
     for (const auto& [point, mark] : orbits_of(curve)) {
       csv += fmt::format("{},{}", k + 1, mark ? to_string(mark->kind) : to_string(curve.kind));
       for (const double value : point->constants) field(value);
-      if (curve.kind == studies::OrbitBifurcation::homoclinic)
+      if (is_homoclinic(curve.kind))
         csv += ",,";
       else
         field(point->period), field(point->rotation);

@@ -1,10 +1,17 @@
-// A curve of homoclinic orbits in two constants, from its start to where it ends, with the places where they are more
-// than that. Internal to orbit_curve.
+// Curves of homoclinic orbits in two constants, from a start to where they end, with the places where they are more
+// than that. Where the saddle becomes a saddle-node, the central homoclinic orbits of saddle-nodes begin, and end where
+// they are not central any more, where other orbits of saddles begin: all of them are followed. Internal to
+// orbit_curve.
 #pragma once
+#include <cstddef>
+#include <vector>
+
 #include <continuo/studies/orbit_curve.hpp>
 
 namespace continuo::studies::detail {
 
-OrbitCurve homoclinic_curve(const ParametricSystem& system, const OrbitMark& start, const OrbitCurveOptions& options);
+/// The first one is that from the start; at most so many, and one at least.
+std::vector<OrbitCurve> homoclinic_curves(const ParametricSystem& system, const OrbitMark& start,
+                                          const OrbitCurveOptions& options, std::size_t most);
 
 }  // namespace continuo::studies::detail

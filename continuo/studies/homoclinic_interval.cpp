@@ -1,6 +1,7 @@
 // Where a homoclinic orbit is cut off, and its mesh: from a closed orbit to begin with, then as it needs them.
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -25,24 +26,64 @@ constexpr std::size_t most_added_intervals = 30;
 constexpr double ends_within = 1e-4, ends_wished = 1e-5, ends_needless = 1e-7;
 constexpr double error_at_most = 1000;  // of the error wanted: with which a mesh serves that could not be made better
 constexpr double most_longer = 10;      // times as long, in one go
-constexpr double worth_it = 1.02;       // likewise
-constexpr double at_saddle = 0.1;       // of the orbit's size: how near to the saddle the closed orbit passes
-constexpr double hyperbolic = 1e-6;     // of the largest eigenvalue: the least real part to begin with
+constexpr double most_longer_along_centre = 5;  // to begin with; less where that is not found
+constexpr double worth_it = 1.02;               // likewise
+constexpr int most_improvements = 8;
+constexpr int most_lengthenings = 20;  // along a centre, where what an end misses dies away as slowly as 1 / t
+// In sizes: where a closed orbit near a saddle-node is like a homoclinic one. It is the more so the farther out.
+constexpr std::array outside_of_ghost{0.01, 0.02, 0.05, 0.1};
+constexpr double at_saddle = 0.1;    // of the orbit's size: how near to the saddle the closed orbit passes
+constexpr double hyperbolic = 1e-6;  // of the largest eigenvalue: the least real part to begin with
 
-/// y that moves by the linear part at the saddle within one of its spaces, in which all rates have one sign, for a time
-/// of that sign, so that nothing grows.
-class LinearTail {
+/// Beyond an end: y moves by the linear part at the saddle within one of its spaces, in which all rates have one sign,
+/// for a time of that sign, so that nothing grows. Along a centre it dies away as y' = c y^2 has it.
+class Tail {
  public:
-  LinearTail(const Eigen::MatrixXd& a, const Eigenspace& space)
-      : basis_(real_basis(space.right)), within_(basis_.transpose() * a * basis_) {}
-  Eigen::VectorXd operator()(const Eigen::VectorXd& y, double t) const {
-    const Eigen::MatrixXd motion = (within_ * t).exp();
-    return basis_ * (motion * (basis_.transpose() * y));
+  /// `y`: of the end, in sizes.
+  Tail(const Eigen::MatrixXd& a, const Eigenspace& space, const std::optional<Centre>& centre, double curvature,
+       const Eigen::VectorXd& y)
+      : y_(y), centre_(centre), curvature_(curvature) {
+    if (space.dimension() == 0) return;
+    basis_ = real_basis(space.right);
+    within_ = basis_.transpose() * a * basis_;
+  }
+  Eigen::VectorXd state(double t) const { return moved(y_, t, 1 / slower(t)); }
+  /// Of a small change of y at the end.
+  Eigen::VectorXd change(const Eigen::VectorXd& dy, double t) const {
+    return moved(dy, t, 1 / (slower(t) * slower(t)));
   }
 
  private:
-  Eigen::MatrixXd basis_, within_;
+  double slower(double t) const { return centre_ ? std::max(1.0, 1 - curvature_ * centre_->left.dot(y_) * t) : 1; }
+  Eigen::VectorXd moved(const Eigen::VectorXd& y, double t, double along_centre) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(y.size());
+    Eigen::VectorXd rest = y;
+    if (centre_) {
+      const Eigen::VectorXd part = centre_->left.dot(y) * centre_->right;
+      result += along_centre * part;
+      rest -= part;
+    }
+    if (within_.size() == 0) return result;
+    const Eigen::MatrixXd motion = (within_ * t).exp();
+    return result + basis_ * (motion * (basis_.transpose() * rest));
+  }
+
+  Eigen::VectorXd y_;
+  std::optional<Centre> centre_;
+  double curvature_;
+  Eigen::MatrixXd basis_{}, within_{};
 };
+
+/// Intervals before 0 or behind 1 that grow from `width` there, each twice as long as its neighbour. The last point,
+/// `to`, is left out.
+void add_graded(OrbitMesh& mesh, double from, double to, double width) {
+  const double whole = to - from;
+  std::vector<double> reached{0};
+  for (double next = width; reached.back() + 1.5 * next < whole; next *= 2) reached.push_back(reached.back() + next);
+  reached.push_back(whole);
+  const std::size_t last = reached.size() - 1;
+  for (std::size_t k = 0; k < last; ++k) mesh.push_back(from < 0 ? to - reached[last - k] : from + reached[k]);
+}
 
 }  // namespace
 
@@ -72,28 +113,33 @@ std::optional<HomoclinicPlace> HomoclinicSteps::first(const OrbitMark& mark, std
     for (std::size_t i = 0; i < n_; ++i) speed += std::pow(f[i] / size[i], 2);
     if (speed < least) least = speed, slowest = k;
   }
-  const auto begin = nodes.begin() + static_cast<std::ptrdiff_t>(slowest * n_);
-  const auto found = find_equilibrium(system_, Vector(begin, begin + static_cast<std::ptrdiff_t>(n_)), p);
+  const Vector slow(nodes.begin() + static_cast<std::ptrdiff_t>(slowest * n_),
+                    nodes.begin() + static_cast<std::ptrdiff_t>((slowest + 1) * n_));
+  const auto found = find_equilibrium(system_, slow, p);
   double apart = 0;
-  for (std::size_t i = 0; i < n_; ++i)
-    apart = std::max(apart, std::abs(found.x[i] - begin[static_cast<std::ptrdiff_t>(i)]) / size[i]);
-  if (found.ending != EquilibriumEnding::found || apart > at_saddle) {
-    message = "the orbit of long period does not pass next to a place of rest";
+  for (std::size_t i = 0; i < n_; ++i) apart = std::max(apart, std::abs(found.x[i] - slow[i]) / size[i]);
+  const bool is_near = found.ending == EquilibriumEnding::found && apart <= at_saddle;
+  bool is_hyperbolic = is_near;
+  if (is_near) {
+    kind_ = {};
+    const auto values = describe_equilibrium(system_, found.x, p).eigenvalues;
+    double largest = 0;
+    for (const auto& value : values) largest = std::max(largest, std::abs(value));
+    for (const auto& value : values) {
+      is_hyperbolic = is_hyperbolic && std::abs(value.real()) >= hyperbolic * largest;
+      if (value.real() < 0) ++kind_.stable;
+    }
+  }
+  std::optional<SaddleNode> fold;
+  if (!is_hyperbolic)
+    fold = saddle_node_near(system_, options_.constants[0], slow, p, size, options_.high[0] - options_.low[0]);
+  if (!is_hyperbolic && !fold) {
+    message = is_near ? "the place of rest next to which the orbit passes is no saddle: it has an eigenvalue on the "
+                        "imaginary axis"
+                      : "the orbit of long period does not pass next to a place of rest";
     return std::nullopt;
   }
-  const auto values = describe_equilibrium(system_, found.x, p).eigenvalues;
-  double largest = 0;
-  for (const auto& value : values) largest = std::max(largest, std::abs(value));
-  stable_ = 0;
-  for (const auto& value : values) {
-    if (std::abs(value.real()) < hyperbolic * largest) {
-      message =
-          "the place of rest next to which the orbit passes is no saddle: it has an eigenvalue on the imaginary axis";
-      return std::nullopt;
-    }
-    if (value.real() < 0) ++stable_;
-  }
-  if (stable_ == 0 || stable_ == n_) {
+  if (!fold && (kind_.stable == 0 || kind_.stable == n_)) {
     message = "the place of rest next to which the orbit passes is no saddle";
     return std::nullopt;
   }
@@ -106,60 +152,96 @@ std::optional<HomoclinicPlace> HomoclinicSteps::first(const OrbitMark& mark, std
     if (s > from && s < from + 1) turned.push_back(s - from);
   for (const double s : *mesh)
     if (s > 0 && s <= from) turned.push_back(s + 1 - from);
+  double narrowest = 1;
+  for (std::size_t k = 0; k + 1 < mesh->size(); ++k) narrowest = std::min(narrowest, (*mesh)[k + 1] - (*mesh)[k]);
   OrbitMesh own{0};
   for (const double s : turned)
-    if (s > own.back() + 1e-9 && s < 1 - 1e-9) own.push_back(s);
+    if (s > own.back() + narrowest / 2 && s < 1 - narrowest / 2) own.push_back(s);
   own.push_back(1);
-  const auto mesh_of_own = std::make_shared<const OrbitMesh>(std::move(own));
-  use(mesh_of_own, period);
-  Vector z(equations_->unknowns());
-  for (std::size_t k = 0; k < equations_->nodes(); ++k) {
-    const std::size_t interval = std::min(k / interval_nodes, mesh_->size() - 2), j = k - interval * interval_nodes;
-    const double s =
-        from + (*mesh_)[interval] + OrbitCollocation::table().nodes[j] * ((*mesh_)[interval + 1] - (*mesh_)[interval]);
-    const auto x = std::span(z).subspan(k * n_, n_);
+  Vector states(((own.size() - 1) * interval_nodes + 1) * n_);
+  for (std::size_t k = 0; k < states.size() / n_; ++k) {
+    const std::size_t interval = std::min(k / interval_nodes, own.size() - 2), j = k - interval * interval_nodes;
+    const double s = from + own[interval] + OrbitCollocation::table().nodes[j] * (own[interval + 1] - own[interval]);
+    const auto x = std::span(states).subspan(k * n_, n_);
     closed.state(s > 1 ? s - 1 : s, x);
     if (s > 1 && !system_.advance.empty())
       for (std::size_t i = 0; i < n_; ++i) x[i] += system_.advance[i];
   }
-  std::ranges::copy(found.x, z.begin() + static_cast<std::ptrdiff_t>(equations_->rest()));
-  for (std::size_t c = 0; c < 2; ++c) z[equations_->rest() + n_ + c] = p[options_.constants[c]];
-  measure(z);
-  for (const std::size_t unknown : {z.size() - 1, z.size() - 2}) {
-    Vector row(z.size());
-    row[unknown] = 1;
-    auto place = corrected(z, z, row, nullptr);
-    if (!place) continue;
-    longest_ = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 5; ++k)
-      if (!renew(*place) ||
-          (place->error <= error_wanted_ && std::max(place->apart_first, place->apart_last) <= ends_within))
-        break;
-    longest_ = options_.longest_period * place->length;
-    return place;
-  }
   message = "no homoclinic orbit is found near the orbit of long period";
+  longest_ = std::numeric_limits<double>::infinity();
+  if (fold) return first_central(own, period, states, *fold);
+  states.insert(states.end(), found.x.begin(), found.x.end());
+  for (std::size_t c = 0; c < 2; ++c) states.push_back(p[options_.constants[c]]);
+  auto place = settled(std::make_shared<const OrbitMesh>(std::move(own)), period, states);
+  if (!place) return std::nullopt;
+  improve(*place);
+  longest_ = options_.longest_period * place->length;
+  return place;
+}
+
+// Along the centre a closed orbit near by needs about as long as one of the saddle-node, where it is far enough from
+// it: what lies nearer is cut off.
+std::optional<HomoclinicPlace> HomoclinicSteps::first_central(const OrbitMesh& mesh, double period, const Vector& nodes,
+                                                              const SaddleNode& rest) {
+  kind_ = {.stable = rest.stable, .is_saddle_node = true};
+  const std::size_t intervals = mesh.size() - 1, stride = interval_nodes * n_;
+  Vector size(n_);
+  for (std::size_t j = 0; j < nodes.size(); ++j)
+    size[j % n_] = std::max(size[j % n_], std::abs(nodes[j] - rest.x[j % n_]));
+  const auto apart_at = [&](std::size_t node, bool turns) {
+    double apart = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double turn = turns && !system_.advance.empty() ? system_.advance[i] : 0;
+      apart = std::max(apart, std::abs(nodes[node * n_ + i] - rest.x[i] - turn) / size[i]);
+    }
+    return apart;
+  };
+  for (const double outside : outside_of_ghost) {
+    std::size_t first = 0, last = intervals;
+    while (first < intervals && apart_at(first * interval_nodes, false) < outside) ++first;
+    while (last > 0 && apart_at(last * interval_nodes, true) < outside) --last;
+    if (first + 1 >= last) return std::nullopt;
+    const auto own = std::make_shared<OrbitMesh>();
+    for (std::size_t k = first; k <= last; ++k) own->push_back((mesh[k] - mesh[first]) / (mesh[last] - mesh[first]));
+    own->back() = 1;
+    Vector z(nodes.begin() + static_cast<std::ptrdiff_t>(first * stride),
+             nodes.begin() + static_cast<std::ptrdiff_t>(last * stride + n_));
+    z.insert(z.end(), rest.x.begin(), rest.x.end());
+    for (std::size_t c = 0; c < 2; ++c) z.push_back(rest.constants[options_.constants[c]]);
+    auto place = settled(own, period * (mesh[last] - mesh[first]), z);
+    if (!place) continue;
+    improve(*place);
+    if (std::max(place->apart_first, place->apart_last) <= ends_within) return place;
+  }
   return std::nullopt;
+}
+
+void HomoclinicSteps::improve(HomoclinicPlace& place) {
+  for (int k = 0; k < most_improvements; ++k)
+    if (!renew(place) || (place.error <= error_wanted_ && std::max(place.apart_first, place.apart_last) <= ends_within))
+      break;
 }
 
 bool HomoclinicSteps::move_to(HomoclinicPlace& place, const std::shared_ptr<const OrbitMesh>& mesh, double begin,
                               double end) {
   const std::size_t rest = equations_->rest();
   const Eigen::MatrixXd a = equations_->matrix_at(Values(place.z).subspan(rest, n_), Values(place.z).last(2));
-  const LinearTail before(a, place.spaces.unstable), after(a, place.spaces.stable);
+  const Tail before(a, place.spaces.unstable, place.spaces.centre, place.curvature,
+                    equations_->from_rest(place.z, false)),
+      after(a, place.spaces.stable, place.spaces.centre, place.curvature, equations_->from_rest(place.z, true));
   const double length_of_old = place.length;
   const std::size_t count = (mesh->size() - 1) * interval_nodes + 1;
-  const auto moved = [&](const Vector& z, bool turns) {
+  // Of the states, or of a small change of them.
+  const auto moved = [&](const Vector& z, bool is_change) {
     const ClosedView old(n_, Values(z).first(rest), place.mesh);
+    const auto turns = [&](std::size_t i) { return is_change || system_.advance.empty() ? 0 : system_.advance[i]; };
     const auto end_from_rest = [&](bool at_end) {
       Eigen::VectorXd y(static_cast<Index>(n_));
       for (std::size_t i = 0; i < n_; ++i)
-        y(static_cast<Index>(i)) = (z[(at_end ? rest - n_ : 0) + i] - z[rest + i] -
-                                    (at_end && turns && !system_.advance.empty() ? system_.advance[i] : 0)) /
-                                   sizes_[i];
+        y(static_cast<Index>(i)) =
+            (z[(at_end ? rest - n_ : 0) + i] - z[rest + i] - (at_end ? turns(i) : 0)) / sizes_[i];
       return y;
     };
-    const Eigen::VectorXd at_begin = end_from_rest(false), at_end = end_from_rest(true);
     Vector result;
     Vector x(n_);
     for (std::size_t k = 0; k < count; ++k) {
@@ -169,10 +251,11 @@ bool HomoclinicSteps::move_to(HomoclinicPlace& place, const std::shared_ptr<cons
       if (s >= 0 && s <= 1) {
         old.state(s, x);
       } else {
-        const Eigen::VectorXd y = s < 0 ? before(at_begin, s * length_of_old) : after(at_end, (s - 1) * length_of_old);
+        const Tail& tail = s < 0 ? before : after;
+        const double t = (s < 0 ? s : s - 1) * length_of_old;
+        const Eigen::VectorXd y = is_change ? tail.change(end_from_rest(s > 1), t) : tail.state(t);
         for (std::size_t i = 0; i < n_; ++i)
-          x[i] = z[rest + i] + sizes_[i] * y(static_cast<Index>(i)) +
-                 (s > 1 && turns && !system_.advance.empty() ? system_.advance[i] : 0);
+          x[i] = z[rest + i] + sizes_[i] * y(static_cast<Index>(i)) + (s > 1 ? turns(i) : 0);
       }
       result.insert(result.end(), x.begin(), x.end());
     }
@@ -181,8 +264,8 @@ bool HomoclinicSteps::move_to(HomoclinicPlace& place, const std::shared_ptr<cons
   };
   Vector tangent(place.tangent);
   for (std::size_t j = 0; j < tangent.size(); ++j) tangent[j] *= scale_[j];
-  const Vector z = moved(place.z, true);
-  tangent = moved(tangent, false);
+  const Vector z = moved(place.z, false);
+  tangent = moved(tangent, true);
   use(mesh, length_of_old * (end - begin));
   measure(z);
   for (std::size_t j = 0; j < tangent.size(); ++j) tangent[j] /= scale_[j];
@@ -193,21 +276,32 @@ bool HomoclinicSteps::move_to(HomoclinicPlace& place, const std::shared_ptr<cons
   return true;
 }
 
+double HomoclinicSteps::missing(const HomoclinicPlace& place, bool at_end) const {
+  const double apart = at_end ? place.apart_last : place.apart_first;
+  if (apart <= ends_within) return 0;
+  if (place.spaces.centre) {
+    const double along =
+        (at_end ? -1 : 1) * place.curvature * place.spaces.centre->left.dot(equations_->from_rest(place.z, at_end));
+    const double wished = ends_wished * std::abs(place.curvature);
+    if (along > wished)  // y' = c y^2 takes 1 / (c y)
+      return std::min((1 / wished - 1 / along) / place.length, longer_along_centre_);
+  }
+  const Eigenspace& space = at_end ? place.spaces.stable : place.spaces.unstable;
+  if (space.dimension() == 0) return 0;
+  const double rate = std::abs(space.eigenvalues.front().real());
+  return std::min(std::log(apart / ends_wished) / (rate * place.length), most_longer);
+}
+
 /// Longer where an end is too far from the saddle, shorter where it is needlessly near.
 bool HomoclinicSteps::lengthened(HomoclinicPlace& place) {
   use(place.mesh, place.length);
   measure(place.z);
   const std::size_t rest = equations_->rest();
-  const auto missing = [&](double apart, const Eigenspace& space) {
-    const double rate = std::abs(space.eigenvalues.front().real());
-    const double wish = apart > ends_within ? std::log(apart / ends_wished) / (rate * place.length) : 0;
-    return std::min(wish, most_longer);
-  };
-  double before = missing(place.apart_first, place.spaces.unstable),
-         after = missing(place.apart_last, place.spaces.stable);
+  double before = missing(place, false), after = missing(place, true);
   // No longer than is allowed, nor than so many intervals as fine as these can serve.
   const double by_intervals = static_cast<double>(most_to_lengthen) / static_cast<double>(place.mesh->size() - 1);
-  const double room = std::max(0.0, std::min(longest_ / place.length, by_intervals) - 1);
+  const double room = place.rest.is_saddle_node ? 2 * most_longer_along_centre
+                                                : std::max(0.0, std::min(longest_ / place.length, by_intervals) - 1);
   if (before + after > room) {
     const double part = room / (before + after);
     before *= part;
@@ -230,9 +324,11 @@ bool HomoclinicSteps::lengthened(HomoclinicPlace& place) {
     for (std::size_t k = intervals - 1; k > 0 && apart_at(k * interval_nodes, true) < ends_wished; --k) end = old[k];
   if (!(begin < end)) return false;
   const double change = end - begin;
-  if (change < worth_it && change > 1 / worth_it) return true;
+  const bool is_far = before + after > 0;  // a fast end comes near within little more time
+  if (!is_far && change > 1 / worth_it) return true;
   const auto mesh = std::make_shared<OrbitMesh>();
   const auto add = [&](double from, double to, double width) {
+    if (place.rest.is_saddle_node) return add_graded(*mesh, from, to, width);
     const auto count = std::clamp<std::size_t>(static_cast<std::size_t>((to - from) / width), 1, most_added_intervals);
     for (std::size_t k = 0; k < count; ++k)
       mesh->push_back(from + (to - from) * static_cast<double>(k) / static_cast<double>(count));
@@ -263,7 +359,20 @@ bool HomoclinicSteps::refined(HomoclinicPlace& place) {
 
 bool HomoclinicSteps::renew(HomoclinicPlace& place) {
   HomoclinicPlace other(place);
-  if (lengthened(other)) place = other;
+  const int most = place.rest.is_saddle_node ? most_lengthenings : 1;
+  longer_along_centre_ = most_longer_along_centre;
+  for (int k = 0; k < most; ++k) {
+    if (!lengthened(other)) {
+      longer_along_centre_ /= 3;
+    } else if (other.length == place.length) {
+      break;
+    } else {
+      place = other;
+      (void)refined(other);
+      continue;
+    }
+    other = place;
+  }
   other = place;
   if (refined(other)) place = std::move(other);
   return place.error <= error_at_most * error_wanted_;

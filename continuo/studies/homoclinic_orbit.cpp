@@ -1,6 +1,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <continuo/studies/homoclinic_orbit.hpp>
@@ -24,11 +25,11 @@ Index index(std::size_t k) {
 }  // namespace
 
 HomoclinicOrbit::HomoclinicOrbit(const ParametricSystem& system, std::array<std::size_t, 2> constants,
-                                 std::size_t stable, std::shared_ptr<const OrbitMesh> mesh, double length,
+                                 HomoclinicRest kind, std::shared_ptr<const OrbitMesh> mesh, double length,
                                  const std::array<double, 2>& sizes_of_constants)
     : system_(system),
       constants_(constants),
-      stable_(stable),
+      kind_(kind),
       n_(system.size),
       mesh_(std::move(mesh)),
       length_(length),
@@ -51,11 +52,20 @@ Eigen::MatrixXd HomoclinicOrbit::matrix_at(std::span<const double> x0, std::span
   return matrix;
 }
 
-bool HomoclinicOrbit::refer_to(std::span<const double> z, const Vector& sizes, const Vector& scale) {
+std::optional<SaddleSpaces> HomoclinicOrbit::spaces_at(const Eigen::MatrixXd& a) const {
+  return kind_.is_saddle_node ? saddle_node_spaces(a, kind_.stable) : saddle_spaces(a, kind_.stable);
+}
+
+void HomoclinicOrbit::measure_in(const Vector& sizes, const Vector& scale) {
   sizes_ = sizes;
   scale_ = scale;
-  const auto spaces = saddle_spaces(matrix_at(z.subspan(rest(), n_), z.last(2)), stable_);
+}
+
+bool HomoclinicOrbit::refer_to(std::span<const double> z) {
+  const Eigen::MatrixXd a = matrix_at(z.subspan(rest(), n_), z.last(2));
+  const auto spaces = spaces_at(a);
   if (!spaces) return false;
+  rate_of_reference_ = a.norm();
   like_stable_ = real_basis(spaces->stable.left);
   like_unstable_ = real_basis(spaces->unstable.left);
   return true;
@@ -73,13 +83,15 @@ std::optional<Eigen::VectorXd> HomoclinicOrbit::ends_at(std::span<const double> 
   Vector moved(z.begin(), z.end());
   std::ranges::copy(other, moved.begin() + static_cast<std::ptrdiff_t>(rest()));
   const std::span<const double> there(other);
-  const auto spaces = saddle_spaces(matrix_at(there.first(n_), there.last(2)), stable_);
+  const auto spaces = spaces_at(matrix_at(there.first(n_), there.last(2)));
   if (!spaces) return std::nullopt;
   const auto of_stable = basis_like(spaces->stable.left, like_stable_),
              of_unstable = basis_like(spaces->unstable.left, like_unstable_);
   if (!of_stable || !of_unstable) return std::nullopt;
   Eigen::VectorXd ends(index(n_));
-  ends << of_stable->transpose() * from_rest(moved, false), of_unstable->transpose() * from_rest(moved, true);
+  ends.head(index(kind_.stable)) = of_stable->transpose() * from_rest(moved, false);
+  ends.segment(index(kind_.stable), index(unstable())) = of_unstable->transpose() * from_rest(moved, true);
+  if (kind_.is_saddle_node) ends(index(n_ - 1)) = spaces->centre->eigenvalue / rate_of_reference_;
   return ends;
 }
 
@@ -119,7 +131,7 @@ bool HomoclinicOrbit::evaluate_points(std::span<const double> z) {
 // central differences know it well enough.
 bool HomoclinicOrbit::evaluate_ends(std::span<const double> z) {
   const Vector here(z.begin() + static_cast<std::ptrdiff_t>(rest()), z.end());
-  const auto spaces = saddle_spaces(matrix_at(z.subspan(rest(), n_), z.last(2)), stable_);
+  const auto spaces = spaces_at(matrix_at(z.subspan(rest(), n_), z.last(2)));
   if (!spaces) return false;
   const auto of_stable = basis_like(spaces->stable.left, like_stable_),
              of_unstable = basis_like(spaces->unstable.left, like_unstable_);
@@ -131,6 +143,7 @@ bool HomoclinicOrbit::evaluate_ends(std::span<const double> z) {
                         last = left_unstable_.transpose() * from_rest(z, true);
   residuals_.insert(residuals_.end(), first.begin(), first.end());
   residuals_.insert(residuals_.end(), last.begin(), last.end());
+  if (kind_.is_saddle_node) residuals_.push_back(spaces_.centre->eigenvalue / rate_of_reference_);
   ends_by_.resize(index(n_), index(n_ + 2));
   for (std::size_t j = 0; j < n_ + 2; ++j) {
     const double size = j < n_ ? sizes_[j] : sizes_of_constants_[constants_[j - n_]];
@@ -190,11 +203,12 @@ bool HomoclinicOrbit::decompose(std::span<const double> shift, std::span<const d
           put(row, at_rest + n_ + c, -width(k) * length_ * point.by_constant[i * 2 + c] / sizes_[i]);
       }
     }
-  const std::size_t ends = intervals * points_of_interval * n_, unstable = n_ - stable_;
+  const std::size_t ends = intervals * points_of_interval * n_;
   for (std::size_t i = 0; i < n_; ++i) {
     for (std::size_t c = 0; c < n_; ++c) {
-      if (i < stable_) put(ends + i, c, left_stable_(index(c), index(i)) / sizes_[c]);
-      if (i < unstable) put(ends + stable_ + i, at_rest - n_ + c, left_unstable_(index(c), index(i)) / sizes_[c]);
+      if (i < kind_.stable) put(ends + i, c, left_stable_(index(c), index(i)) / sizes_[c]);
+      if (i < unstable())
+        put(ends + kind_.stable + i, at_rest - n_ + c, left_unstable_(index(c), index(i)) / sizes_[c]);
       put(ends + n_ + i, at_rest + c, rest_matrix_[i * n_ + c] / (sizes_[i] * rate_));
     }
     for (std::size_t c = 0; c < n_ + 2; ++c) put(ends + i, at_rest + c, ends_by_(index(i), index(c)));
@@ -223,26 +237,51 @@ Vector HomoclinicOrbit::solve_transposed(const Vector& b) const {
 }
 
 Eigen::VectorXd HomoclinicOrbit::adjoint_at(const Vector& solution, bool at_end) const {
-  const std::size_t ends = (rest() - n_), unstable = n_ - stable_;
-  const double* multipliers = solution.data() + ends + (at_end ? stable_ : 0);
-  return at_end ? Eigen::VectorXd(left_unstable_ * Eigen::Map<const Eigen::VectorXd>(multipliers, index(unstable)))
-                : Eigen::VectorXd(left_stable_ * Eigen::Map<const Eigen::VectorXd>(multipliers, index(stable_)));
+  const Eigen::MatrixXd& left = at_end ? left_unstable_ : left_stable_;
+  const double* multipliers = solution.data() + (rest() - n_) + (at_end ? kind_.stable : 0);
+  return left * Eigen::Map<const Eigen::VectorXd>(multipliers, left.cols());
 }
 
 // On the manifold itself the other part w of y obeys w' = B w + r(y), r being what f has beyond its linear part, so
-// that w = -int exp(-B s) r ds: about r over the rates, of B and twice that at which y itself dies away.
-double HomoclinicOrbit::missed_at(std::span<const double> z, const Vector& solution, bool at_end) const {
-  const Eigen::VectorXd y = from_rest(z, at_end);
-  Vector f(n_),
-      rest_there(z.begin() + static_cast<std::ptrdiff_t>(rest()), z.begin() + static_cast<std::ptrdiff_t>(rest() + n_));
-  const auto x = z.subspan(at_end ? rest() - n_ : 0, n_);
-  system_.derivative(0, x, constants_at(z.last(2)), f);
-  Eigen::VectorXd beyond = -matrix_at(rest_there, z.last(2)) * y;
-  for (std::size_t i = 0; i < n_; ++i) beyond(index(i)) += f[i] / sizes_[i];
+// that w = -int exp(-B s) r ds: about r over the rates, of B and twice that at which y itself dies away, which is 0
+// along a centre.
+Eigen::VectorXd HomoclinicOrbit::missed_at(std::span<const double> z, bool at_end) const {
+  const Eigen::MatrixXd& left = at_end ? left_unstable_ : left_stable_;
   const Eigenspace &own = at_end ? spaces_.stable : spaces_.unstable,
                    &other = at_end ? spaces_.unstable : spaces_.stable;
-  const double rate = std::abs(other.eigenvalues.front().real()) + 2 * std::abs(own.eigenvalues.front().real());
-  return std::abs(adjoint_at(solution, at_end).dot(beyond)) / rate;
+  if (other.eigenvalues.empty()) return {};
+  const Eigen::VectorXd y = from_rest(z, at_end);
+  Vector f(n_);
+  system_.derivative(0, z.subspan(at_end ? rest() - n_ : 0, n_), constants_at(z.last(2)), f);
+  Eigen::VectorXd beyond = -matrix_at(z.subspan(rest(), n_), z.last(2)) * y;
+  for (std::size_t i = 0; i < n_; ++i) beyond(index(i)) += f[i] / sizes_[i];
+  const double own_rate = kind_.is_saddle_node ? 0 : std::abs(own.eigenvalues.front().real());
+  return left.transpose() * beyond / (std::abs(other.eigenvalues.front().real()) + 2 * own_rate);
+}
+
+Vector HomoclinicOrbit::missed(std::span<const double> z) const {
+  Vector result(unknowns());
+  const std::size_t ends = rest() - n_;
+  const Eigen::VectorXd first = missed_at(z, false), last = missed_at(z, true);
+  std::ranges::copy(first, result.begin() + static_cast<std::ptrdiff_t>(ends));
+  std::ranges::copy(last, result.begin() + static_cast<std::ptrdiff_t>(ends + kind_.stable));
+  return result;
+}
+
+// By a second difference of f along the centre: (f(x0 + e v) + f(x0 - e v) - 2 f(x0)) / 2 e^2, seen by the left
+// eigenvector. Its error is of order e^2 and of rounding / e^2, alike at the fourth root of epsilon.
+double HomoclinicOrbit::centre_curvature(std::span<const double> z) const {
+  const double step = std::pow(std::numeric_limits<double>::epsilon(), 0.25);
+  const Centre& centre = *spaces_.centre;
+  const Vector p = constants_at(z.last(2));
+  Eigen::VectorXd second = Eigen::VectorXd::Zero(index(n_));
+  Vector x(n_), f(n_);
+  for (const double side : {-1.0, 0.0, 1.0}) {
+    for (std::size_t i = 0; i < n_; ++i) x[i] = z[rest() + i] + side * step * centre.right(index(i)) * sizes_[i];
+    system_.derivative(0, x, p, f);
+    for (std::size_t i = 0; i < n_; ++i) second(index(i)) += (side == 0 ? -2 : 1) * f[i] / sizes_[i];
+  }
+  return centre.left.dot(second) / (2 * step * step);
 }
 
 }  // namespace continuo::studies::detail

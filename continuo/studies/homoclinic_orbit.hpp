@@ -9,6 +9,10 @@
 // W.-J. Beyn, "The numerical computation of connecting orbits in dynamical systems", IMA J. Numer. Anal. 10 (1990)
 // 379-405; A. R. Champneys, Yu. A. Kuznetsov, B. Sandstede, "A numerical toolbox for homoclinic bifurcation analysis",
 // Int. J. Bifurcation Chaos 6 (1996) 867-887.
+//
+// Of a central homoclinic orbit x0 is a saddle-node, an eigenvalue of which, the centre's, is zero: one equation more.
+// The orbit leaves x0 and comes back to it along the centre, as 1/t does, so that at the beginning it has no part in
+// the strong stable eigenspace only, at the end none in the strong unstable one: one equation less.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseLU>
@@ -25,12 +29,17 @@
 
 namespace continuo::studies::detail {
 
+/// What x0 is. A saddle-node has so many stable eigenvalues beside its centre.
+struct HomoclinicRest {
+  std::size_t stable = 0;
+  bool is_saddle_node = false;
+};
+
 class HomoclinicOrbit {
   using Vector = std::vector<double>;
 
  public:
-  /// x0 has so many `stable` eigenvalues.
-  HomoclinicOrbit(const ParametricSystem& system, std::array<std::size_t, 2> constants, std::size_t stable,
+  HomoclinicOrbit(const ParametricSystem& system, std::array<std::size_t, 2> constants, HomoclinicRest kind,
                   std::shared_ptr<const OrbitMesh> mesh, double length,
                   const std::array<double, 2>& sizes_of_constants);
 
@@ -39,9 +48,10 @@ class HomoclinicOrbit {
   std::size_t unknowns() const { return rest() + n_ + 2; }
   double length() const { return length_; }
 
-  /// Components count in `sizes`, an unknown in `scale`; the bases of both eigenspaces are to be like those at z. False
-  /// where x0 has no such spaces there.
-  bool refer_to(std::span<const double> z, const Vector& sizes, const Vector& scale);
+  /// Components count in `sizes`, an unknown in `scale`.
+  void measure_in(const Vector& sizes, const Vector& scale);
+  /// The bases of both eigenspaces are to be like those at z. False where x0 has no such spaces there.
+  bool refer_to(std::span<const double> z);
   /// All equations at z, and their derivatives. False where f is not finite, or the spaces have turned too far.
   bool evaluate(std::span<const double> z);
   /// The residuals, those of the shift and of the step being 0.
@@ -55,10 +65,12 @@ class HomoclinicOrbit {
   /// At the last evaluation, in sizes.
   const SaddleSpaces& spaces() const { return spaces_; }
   Eigen::VectorXd from_rest(std::span<const double> z, bool at_end) const;
+  /// Along the centre of a saddle-node at z, y' = c y^2 + ...: c.
+  double centre_curvature(std::span<const double> z) const;
   /// Of a solution of the transposed equations: the adjoint solution at the beginning, or at the end.
   Eigen::VectorXd adjoint_at(const Vector& solution, bool at_end) const;
-  /// By how much the end's equations miss: what f has there beyond its linear part, over the rate at which that grows.
-  double missed_at(std::span<const double> z, const Vector& solution, bool at_end) const;
+  /// By how much each equation of both ends misses its manifold, as a right-hand side.
+  Vector missed(std::span<const double> z) const;
   /// df/dx at x0.
   Eigen::MatrixXd matrix_at(std::span<const double> x0, std::span<const double> constants) const;
 
@@ -70,6 +82,9 @@ class HomoclinicOrbit {
   bool evaluate_points(std::span<const double> z);
   bool evaluate_rest(std::span<const double> z);
   bool evaluate_ends(std::span<const double> z);
+  std::optional<SaddleSpaces> spaces_at(const Eigen::MatrixXd& a) const;
+  std::size_t unstable() const { return n_ - kind_.stable - (kind_.is_saddle_node ? 1 : 0); }
+  Eigen::VectorXd missed_at(std::span<const double> z, bool at_end) const;
   /// Both ends' equations, with spaces of another x0 or other constants.
   std::optional<Eigen::VectorXd> ends_at(std::span<const double> z, const Vector& rest_and_constants) const;
   double width(std::size_t interval) const { return (*mesh_)[interval + 1] - (*mesh_)[interval]; }
@@ -77,12 +92,14 @@ class HomoclinicOrbit {
 
   const ParametricSystem& system_;
   std::array<std::size_t, 2> constants_;
-  std::size_t stable_, n_;
+  HomoclinicRest kind_;
+  std::size_t n_;
   std::shared_ptr<const OrbitMesh> mesh_;
   double length_;
   Vector sizes_of_constants_;  // of all
   Vector sizes_, scale_;
   Eigen::MatrixXd like_stable_, like_unstable_;  // to which the bases are alike
+  double rate_of_reference_ = 1;                 // by which the centre's eigenvalue is measured
   // Of the last evaluation.
   std::vector<GaussPoint> points_;
   Vector residuals_;

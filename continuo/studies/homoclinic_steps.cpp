@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <utility>
 
 #include <continuo/studies/closed_view.hpp>
@@ -25,7 +26,7 @@ void HomoclinicSteps::use(const std::shared_ptr<const OrbitMesh>& mesh, double l
   mesh_ = mesh;
   length_ = length;
   equations_.emplace(
-      system_, options_.constants, stable_, mesh, length,
+      system_, options_.constants, kind_, mesh, length,
       std::array{(options_.high[0] - options_.low[0]) / 100, (options_.high[1] - options_.low[1]) / 100});
 }
 
@@ -53,6 +54,7 @@ void HomoclinicSteps::measure(const Vector& z) {
   for (std::size_t j = 0; j < rest; ++j) scale_[j] = sizes_[j % n_] / std::sqrt(weight(j / n_));
   for (std::size_t i = 0; i < n_; ++i) scale_[rest + i] = sizes_[i];
   for (std::size_t c = 0; c < 2; ++c) scale_[rest + n_ + c] = options_.high[c] - options_.low[c];
+  equations_->measure_in(sizes_, scale_);
 }
 
 HomoclinicSteps::Vector HomoclinicSteps::shift_at(const Vector& z) const {
@@ -67,7 +69,7 @@ HomoclinicSteps::Vector HomoclinicSteps::shift_at(const Vector& z) const {
 
 std::optional<HomoclinicPlace> HomoclinicSteps::corrected(const Vector& guess, const Vector& reference,
                                                           const Vector& last, const HomoclinicPlace* before) {
-  if (!equations_->refer_to(reference, sizes_, scale_)) return std::nullopt;
+  if (!equations_->refer_to(reference)) return std::nullopt;
   Vector z(guess);
   const Vector shift = shift_at(reference);
   double size_before = 0;
@@ -99,25 +101,33 @@ std::optional<HomoclinicSteps::Vector> HomoclinicSteps::tangent_of(const Vector&
   return b;
 }
 
+// Upright to the curve in the plane of the constants, the solution of the transposed equations has no part in those of
+// the shift and of the step: w^T J t = 0 for t the tangent, and for t the motion along the orbit. What is left is the
+// adjoint solution, normalised by Melnikov's integral of this direction.
+HomoclinicSteps::Vector HomoclinicSteps::adjoint_of(const HomoclinicPlace& place) const {
+  const std::size_t constants = place.z.size() - 2;
+  Vector upright(place.z.size());
+  upright[constants] = -place.tangent[constants + 1];
+  upright[constants + 1] = place.tangent[constants];
+  normalize(upright);
+  return equations_->solve_transposed(upright);
+}
+
 std::optional<HomoclinicPlace> HomoclinicSteps::described(Vector z, const Vector& along,
                                                           const HomoclinicPlace* before) {
-  HomoclinicPlace place{.mesh = mesh_, .length = length_, .z = std::move(z)};
+  HomoclinicPlace place{.mesh = mesh_, .length = length_, .z = std::move(z), .rest = kind_};
   if (!equations_->evaluate(place.z) || !equations_->decompose(shift_at(place.z), along)) return std::nullopt;
   auto tangent = tangent_of(along);
   if (!tangent) return std::nullopt;
   normalize(*tangent);
   place.tangent = std::move(*tangent);
   const std::size_t rest = equations_->rest();
-  // Upright to the curve in the plane of the constants, the solution of the transposed equations has no part in those
-  // of the shift and of the step: w^T J t = 0 for t the tangent, and for t the motion along the orbit. What is left is
-  // the adjoint solution, normalised by Melnikov's integral of this direction.
-  Vector upright(place.z.size());
-  upright[rest + n_] = -place.tangent[rest + n_ + 1];
-  upright[rest + n_ + 1] = place.tangent[rest + n_];
-  normalize(upright);
-  const Vector adjoint = equations_->solve_transposed(upright);
-  if (!std::isfinite(length(adjoint))) return std::nullopt;
   place.spaces = equations_->spaces();
+  if (before && before->spaces.centre && place.spaces.centre &&
+      before->spaces.centre->right.dot(place.spaces.centre->right) < 0) {
+    place.spaces.centre->right *= -1;
+    place.spaces.centre->left *= -1;
+  }
   OrbitCurvePoint& point = place.point;
   point.constants = {place.z[rest + n_], place.z[rest + n_ + 1]};
   point.period = length_;
@@ -125,9 +135,9 @@ std::optional<HomoclinicPlace> HomoclinicSteps::described(Vector z, const Vector
                  place.z.begin() + static_cast<std::ptrdiff_t>(rest + n_));
   point.eigenvalues = place.spaces.unstable.eigenvalues;
   std::ranges::reverse(point.eigenvalues);
+  if (place.spaces.centre) point.eigenvalues.emplace_back(place.spaces.centre->eigenvalue);
   const auto& stable = place.spaces.stable.eigenvalues;
   point.eigenvalues.insert(point.eigenvalues.end(), stable.begin(), stable.end());
-  point.truncation = equations_->missed_at(place.z, adjoint, false) + equations_->missed_at(place.z, adjoint, true);
   place.apart_first = equations_->from_rest(place.z, false).cwiseAbs().maxCoeff();
   place.apart_last = equations_->from_rest(place.z, true).cwiseAbs().maxCoeff();
   const ClosedView closed(n_, Values(place.z).first(rest), mesh_);
@@ -135,6 +145,15 @@ std::optional<HomoclinicPlace> HomoclinicSteps::described(Vector z, const Vector
   point.low = std::move(extremes.low);
   point.high = std::move(extremes.high);
   place.error = std::ranges::max(closed.errors(sizes_));
+  place.tests.fill(std::nan(""));
+  if (kind_.is_saddle_node) {
+    set_centre_tests(place);
+    return place;
+  }
+  const Vector adjoint = adjoint_of(place);
+  const Vector missed = equations_->missed(place.z);
+  for (std::size_t k = 0; k < missed.size(); ++k) point.truncation += std::abs(adjoint[k] * missed[k]);
+  if (!std::isfinite(point.truncation)) return std::nullopt;
   set_eigenvalue_tests(place);
   set_flip_tests(place, adjoint, before);
   return place;
@@ -149,8 +168,32 @@ std::optional<HomoclinicPlace> HomoclinicSteps::stepped(const HomoclinicPlace& f
   if (!place) return std::nullopt;
   Vector moved(guess.size());
   for (std::size_t j = 0; j < moved.size(); ++j) moved[j] = (place->z[j] - guess[j]) / scale_[j];
-  if (length(moved) > step) return std::nullopt;  // it leapt to elsewhere
+  if (length(moved) > std::abs(step)) return std::nullopt;  // it leapt to elsewhere
   return place;
+}
+
+std::optional<HomoclinicPlace> HomoclinicSteps::switched(const HomoclinicPlace& from, HomoclinicRest kind) {
+  kind_ = kind;
+  equations_.reset();
+  mesh_.reset();
+  longest_ = kind.is_saddle_node ? std::numeric_limits<double>::infinity() : options_.longest_period * from.length;
+  return settled(from.mesh, from.length, from.z);
+}
+
+std::optional<HomoclinicPlace> HomoclinicSteps::settled(const std::shared_ptr<const OrbitMesh>& mesh, double length,
+                                                        const Vector& z) {
+  use(mesh, length);
+  measure(z);
+  // On the curve of saddles a constant moves first, on that of saddle-nodes an end along the centre.
+  std::vector<Vector> rows(2, Vector(z.size()));
+  rows[0].back() = rows[1][z.size() - 2] = 1;
+  if (kind_.is_saddle_node) {
+    if (!equations_->refer_to(z) || !equations_->evaluate(z)) return std::nullopt;
+    rows.insert(rows.begin(), {centre_part(false), centre_part(true)});
+  }
+  for (const Vector& row : rows)
+    if (auto place = corrected(z, z, row, nullptr)) return place;
+  return std::nullopt;
 }
 
 std::optional<HomoclinicPlace> HomoclinicSteps::at_bound(const HomoclinicPlace& a, const HomoclinicPlace& b,

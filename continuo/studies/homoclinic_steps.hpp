@@ -7,12 +7,14 @@
 
 #include <continuo/studies/homoclinic_orbit.hpp>
 #include <continuo/studies/orbit_curve.hpp>
+#include <continuo/studies/saddle_node.hpp>
 
 namespace continuo::studies::detail {
 
 /// HomCont's test functions psi. `neutral`: 1 and 4; `divergent_stable`, `divergent_unstable`: 5 and 6; `double_*`: 2
 /// and 3; `triple_*`: 7 and 8; `rest_stable`, `rest_unstable`: 9 and 10; `orbit_flip_*`: 11 and 12;
-/// `inclination_flip_*`: 13 and 14.
+/// `inclination_flip_*`: 13 and 14. Of central orbits `leaves_centre` and `comes_by_centre`: 15 and 16, the centre's
+/// part of the first and the last state, both positive; `curvature`: that of the centre.
 enum class HomoclinicTest {
   neutral,
   divergent_stable,
@@ -26,9 +28,12 @@ enum class HomoclinicTest {
   orbit_flip_stable,
   orbit_flip_unstable,
   inclination_flip_stable,
-  inclination_flip_unstable
+  inclination_flip_unstable,
+  leaves_centre,
+  comes_by_centre,
+  curvature
 };
-inline constexpr std::size_t homoclinic_tests = 13;
+inline constexpr std::size_t homoclinic_tests = 16;
 
 struct HomoclinicPlace {
   std::shared_ptr<const OrbitMesh> mesh{};
@@ -36,6 +41,7 @@ struct HomoclinicPlace {
   std::vector<double> z{};        // the unknowns of HomoclinicOrbit
   std::vector<double> tangent{};  // of length 1, in sizes
   OrbitCurvePoint point{};
+  HomoclinicRest rest{};
   SaddleSpaces spaces{};
   double error = 0;        // of the collocation inside of an interval, in sizes
   double apart_first = 0;  // how far both ends are from the saddle, in sizes
@@ -45,6 +51,10 @@ struct HomoclinicPlace {
   double test(HomoclinicTest kind) const { return tests[static_cast<std::size_t>(kind)]; }
   /// Eigenvectors of leading eigenvalues, each turned as at the place before: by a test of flips.
   std::array<Eigen::VectorXd, 4> leading{};
+  // Of a central orbit.
+  double curvature = 0;  // along the centre y' = curvature y^2 + ..., in sizes
+  /// By how much the constants are off, in ranges, where `leaves_centre` and `comes_by_centre` are zero.
+  std::array<double, 2> truncation_of_ends{};
 };
 
 class HomoclinicSteps {
@@ -53,8 +63,12 @@ class HomoclinicSteps {
  public:
   HomoclinicSteps(const ParametricSystem& system, const OrbitCurveOptions& options);
 
-  /// From a closed orbit of long period that passes next to a saddle. Nothing where none is found; `message` says why.
+  /// From a closed orbit of long period that passes next to a saddle, or to where a saddle-node is about to be. Nothing
+  /// where none is found; `message` says why.
   std::optional<HomoclinicPlace> first(const OrbitMark& mark, std::string& message);
+  /// At an orbit of a saddle-node that is not central: as an orbit of the other kind, a saddle's or a central one, with
+  /// a tangent of any direction.
+  std::optional<HomoclinicPlace> switched(const HomoclinicPlace& from, HomoclinicRest kind);
   /// Nothing where none is found, or only one that is farther off than the step is long.
   std::optional<HomoclinicPlace> stepped(const HomoclinicPlace& from, double step);
   /// Between two neighbours on the same mesh, with one constant (0 or 1) at this value.
@@ -62,15 +76,31 @@ class HomoclinicSteps {
                                           double value);
   /// Takes a length and a mesh that serve the place, and solves for it there, where that has become worth it.
   bool renew(HomoclinicPlace& place);
+  /// What is followed at present.
+  HomoclinicRest kind() const { return kind_; }
 
  private:
   void use(const std::shared_ptr<const OrbitMesh>& mesh, double length);
+  /// A first place of the present kind, near z.
+  std::optional<HomoclinicPlace> settled(const std::shared_ptr<const OrbitMesh>& mesh, double length, const Vector& z);
+  /// From a closed orbit that begins next to a saddle-node: `nodes` are its states on the mesh.
+  std::optional<HomoclinicPlace> first_central(const OrbitMesh& mesh, double period, const Vector& nodes,
+                                               const SaddleNode& rest);
+  /// Renewed until it is as good as is wanted, or can be.
+  void improve(HomoclinicPlace& place);
+  /// The time that is missing at an end, in lengths of the interval.
+  double missing(const HomoclinicPlace& place, bool at_end) const;
   void measure(const Vector& z);
   std::optional<HomoclinicPlace> corrected(const Vector& guess, const Vector& reference, const Vector& last,
                                            const HomoclinicPlace* before);
   std::optional<HomoclinicPlace> described(Vector z, const Vector& along, const HomoclinicPlace* before);
+  Vector adjoint_of(const HomoclinicPlace& place) const;
   void set_eigenvalue_tests(HomoclinicPlace& place) const;
   void set_flip_tests(HomoclinicPlace& place, const Vector& adjoint, const HomoclinicPlace* before) const;
+  /// Of a central orbit, at the last decomposition.
+  void set_centre_tests(HomoclinicPlace& place) const;
+  /// How the first or the last state's part along the centre changes with the unknowns, in scale.
+  Vector centre_part(bool at_end) const;
   Vector shift_at(const Vector& z) const;
   double weight(std::size_t node) const;
   std::optional<Vector> tangent_of(const Vector& along);
@@ -81,8 +111,9 @@ class HomoclinicSteps {
 
   const ParametricSystem& system_;
   const OrbitCurveOptions& options_;
-  std::size_t n_, stable_ = 0;
-  double error_wanted_, longest_ = 0;
+  std::size_t n_;
+  HomoclinicRest kind_{};
+  double error_wanted_, longest_ = 0, longer_along_centre_ = 0;
   std::shared_ptr<const OrbitMesh> mesh_;
   double length_ = 0;
   std::optional<HomoclinicOrbit> equations_;

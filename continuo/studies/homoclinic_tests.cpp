@@ -13,6 +13,7 @@ using Complex = std::complex<double>;
 
 constexpr double turns_clearly = 0.5;  // the cosine between leading eigenvectors of neighbours
 constexpr double clear_of_rounding = 1e-10;
+constexpr double near_along_centre = 1e-5;  // a part of the size of the orbit
 
 bool is_pair(const Complex& a, const Complex& b) {
   return a.imag() != 0 && b.imag() != 0 && a.imag() * b.imag() < 0;
@@ -42,7 +43,6 @@ double divergent_test(const std::vector<Complex>& values, const Complex& other) 
 
 void HomoclinicSteps::set_eigenvalue_tests(HomoclinicPlace& place) const {
   using enum HomoclinicTest;
-  place.tests.fill(std::nan(""));
   const auto set = [&](HomoclinicTest kind, double value) { place.tests[static_cast<std::size_t>(kind)] = value; };
   const auto &s = place.spaces.stable.eigenvalues, &u = place.spaces.unstable.eigenvalues;
   double greatest = 0;
@@ -87,6 +87,46 @@ void HomoclinicSteps::set_flip_tests(HomoclinicPlace& place, const Vector& adjoi
       clear_of_rounding * greatest);
   set(inclination_flip_unstable, 3, spaces.unstable, false, equations_->adjoint_at(adjoint, true),
       clear_of_rounding * greatest);
+}
+
+HomoclinicSteps::Vector HomoclinicSteps::centre_part(bool at_end) const {
+  const std::size_t rest = equations_->rest(), node = at_end ? rest - n_ : 0;
+  const Eigen::VectorXd& left = equations_->spaces().centre->left;
+  Vector row(equations_->unknowns());
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double part = left(static_cast<Eigen::Index>(i)) / sizes_[i];
+    row[node + i] = part * scale_[node + i];
+    row[rest + i] = -part * scale_[rest + i];
+  }
+  normalize(row);
+  return row;
+}
+
+// Along the centre y' = c y^2: an orbit leaves to the side on which y has the sign of c, and comes from the other one.
+// Where a part is zero the orbit leaves, or comes, in a strong direction instead. As a test it is given the size of 1.
+// What the ends miss moves the orbit, and by its centre's parts the place on the curve where these are zero.
+void HomoclinicSteps::set_centre_tests(HomoclinicPlace& place) const {
+  using enum HomoclinicTest;
+  const auto set = [&](HomoclinicTest kind, double value) { place.tests[static_cast<std::size_t>(kind)] = value; };
+  const Centre& centre = *place.spaces.centre;
+  const double turned = equations_->spaces().centre->right.dot(centre.right) < 0 ? -1 : 1;
+  place.curvature = turned * equations_->centre_curvature(place.z);
+  const double rate =
+      equations_->matrix_at(Values(place.z).subspan(equations_->rest(), n_), Values(place.z).last(2)).norm();
+  set(curvature, place.curvature / rate);
+  if (!place.spaces.stable.eigenvalues.empty()) set(rest_stable, place.spaces.stable.eigenvalues[0].real() / rate);
+  if (!place.spaces.unstable.eigenvalues.empty())
+    set(rest_unstable, place.spaces.unstable.eigenvalues[0].real() / rate);
+  const Vector moved = equations_->solve(equations_->missed(place.z));
+  place.point.truncation = length(moved);
+  const double speed = std::hypot(place.tangent[moved.size() - 2], place.tangent.back());
+  for (const bool at_end : {false, true}) {
+    const double part =
+        centre.left.dot(equations_->from_rest(place.z, at_end)) * (at_end == (place.curvature > 0) ? -1 : 1);
+    set(at_end ? comes_by_centre : leaves_centre, part / (std::abs(part) + near_along_centre));
+    const Vector row = centre_part(at_end);
+    place.truncation_of_ends[at_end ? 1 : 0] = speed * std::abs(product(row, moved) / product(row, place.tangent));
+  }
 }
 
 }  // namespace continuo::studies::detail

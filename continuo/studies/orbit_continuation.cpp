@@ -31,8 +31,8 @@ std::string what_is_wrong(const ParametricSystem& system, const OrbitContinuatio
 }  // namespace
 
 std::string_view to_string(OrbitBifurcation kind) {
-  constexpr std::array<std::string_view, 5> names{"fold", "period doubling", "torus", "crossing of branches",
-                                                  "homoclinic orbit"};
+  constexpr std::array<std::string_view, 6> names{
+      "fold", "period doubling", "torus", "crossing of branches", "homoclinic orbit", "central homoclinic orbit"};
   return names[static_cast<std::size_t>(kind)];
 }
 

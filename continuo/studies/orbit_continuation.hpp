@@ -37,8 +37,10 @@ struct OrbitPoint {
 /// `fold`: the branch turns round in the constant, a multiplier passes +1. `period_doubling`: one passes -1, an orbit
 /// of twice the period is born. `torus`: a complex pair passes the unit circle (Neimark, Sacker). `crossing`: one
 /// passes +1 and the branch goes on, another branch of orbits passes through.
-/// `homoclinic`: what a branch ends at, as a start for a curve in two constants.
-enum class OrbitBifurcation { fold, period_doubling, torus, crossing, homoclinic };
+/// `homoclinic`: what a branch ends at, as a start for a curve in two constants; there, of a saddle.
+/// `central_homoclinic`: there, of a saddle-node, which the orbit leaves and comes back to along the direction of the
+/// eigenvalue zero.
+enum class OrbitBifurcation { fold, period_doubling, torus, crossing, homoclinic, central_homoclinic };
 std::string_view to_string(OrbitBifurcation kind);
 
 struct OrbitMark {

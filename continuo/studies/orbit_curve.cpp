@@ -73,25 +73,31 @@ std::string_view to_string(OrbitDegeneracy kind) {
                                                                    "orbit flip of the stable side",
                                                                    "orbit flip of the unstable side",
                                                                    "inclination flip of the stable manifold",
-                                                                   "inclination flip of the unstable manifold"};
+                                                                   "inclination flip of the unstable manifold",
+                                                                   "non-central homoclinic orbit"};
   return names[static_cast<std::size_t>(kind)];
 }
 
 OrbitCurve follow_orbit_bifurcation(const ParametricSystem& system, const OrbitMark& start,
                                     const OrbitCurveOptions& options) {
+  return std::move(follow_orbit_bifurcations(system, start, options, 1).front());
+}
+
+std::vector<OrbitCurve> follow_orbit_bifurcations(const ParametricSystem& system, const OrbitMark& start,
+                                                  const OrbitCurveOptions& options, std::size_t most) {
   OrbitCurve curve{.kind = start.kind};
   if (start.kind == OrbitBifurcation::crossing) {
     curve.message = "where branches of orbits cross is not followed in two parameters";
-    return curve;
+    return {curve};
   }
   if (start.mesh.size() < 2) {
     curve.message = "the orbit there is not known";
-    return curve;
+    return {curve};
   }
   ParametricSystem turning(system);
   turning.advance = start.at.advance;
-  if (start.kind == OrbitBifurcation::homoclinic) return detail::homoclinic_curve(turning, start, options);
-  return detail::OrbitCurveFollower(turning, start.kind, options).from(start);
+  if (start.kind == OrbitBifurcation::homoclinic) return detail::homoclinic_curves(turning, start, options, most);
+  return {detail::OrbitCurveFollower(turning, start.kind, options).from(start)};
 }
 
 std::vector<OrbitCurveOfDiagram> orbit_curves(const ParametricSystem& system, const std::vector<OrbitMark>& starts,
@@ -102,13 +108,18 @@ std::vector<OrbitCurveOfDiagram> orbit_curves(const ParametricSystem& system, co
     if (starts[k].kind == OrbitBifurcation::crossing) continue;
     if (options.interrupt && options.interrupt->load()) break;
     const auto known = std::ranges::find_if(diagram, [&](const OrbitCurveOfDiagram& of) {
-      return of.curve.kind == starts[k].kind && passes_orbit(of.curve, starts[k], second, options);
+      const bool is_alike = is_homoclinic(of.curve.kind) ? starts[k].kind == OrbitBifurcation::homoclinic
+                                                         : of.curve.kind == starts[k].kind;
+      return is_alike && passes_orbit(of.curve, starts[k], second, options);
     });
     if (known != diagram.end()) {
       known->starts.push_back(k);
       continue;
     }
-    diagram.push_back({follow_orbit_bifurcation(system, starts[k], options), {k}});
+    const std::size_t first = diagram.size();
+    for (OrbitCurve& curve : follow_orbit_bifurcations(system, starts[k], options, most_curves - first))
+      diagram.push_back({std::move(curve), {}});
+    diagram[first].starts.push_back(k);
   }
   return diagram;
 }

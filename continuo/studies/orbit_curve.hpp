@@ -28,7 +28,9 @@ struct OrbitCurvePoint {
   double rotation = 0;                              // of torus: the angle of the pair, in turns per period
   // Of a homoclinic orbit, whose `period` is the length of the interval that is solved for and `x` its saddle.
   std::vector<std::complex<double>> eigenvalues{};  // of the saddle, by descending real part
-  double truncation = 0;                            // estimated: by how much the constants are off, in ranges
+  /// Estimated: by how much the constants are off, in ranges. Of a central orbit of a saddle-node, whose constants are
+  /// those of the saddle-node: by how much the orbit is, in parts of its size.
+  double truncation = 0;
 };
 
 /// `cusp`: two folds of orbits meet. `resonance_1` to `resonance_4`: strong resonances 1:1 to 1:4, where a pair on the
@@ -39,6 +41,7 @@ struct OrbitCurvePoint {
 /// twice and the other's do. `double_leading`: two real ones meet, behind which they are a pair. `triple_leading`: a
 /// real one and a pair have the same real part. `saddle_node`, `hopf`: one is zero, or a pair imaginary. `orbit_flip`:
 /// the orbit does not come, or leave, along the leading eigenvector. `inclination_flip`: nor does the adjoint solution.
+/// `non_central`: of a saddle-node, the orbit does not come, or leave, along the centre.
 enum class OrbitDegeneracy {
   cusp,
   resonance_1,
@@ -62,9 +65,10 @@ enum class OrbitDegeneracy {
   orbit_flip_stable,
   orbit_flip_unstable,
   inclination_flip_stable,
-  inclination_flip_unstable
+  inclination_flip_unstable,
+  non_central
 };
-inline constexpr std::size_t orbit_degeneracies = 23;
+inline constexpr std::size_t orbit_degeneracies = 24;
 std::string_view to_string(OrbitDegeneracy kind);
 
 struct DegenerateOrbit {
@@ -93,6 +97,10 @@ struct OrbitCurveEnd {
   std::string reason{};  // one sentence
 };
 
+inline bool is_homoclinic(OrbitBifurcation kind) {
+  return kind == OrbitBifurcation::homoclinic || kind == OrbitBifurcation::central_homoclinic;
+}
+
 struct OrbitCurve {
   OrbitBifurcation kind = OrbitBifurcation::fold;  // but crossing
   std::vector<OrbitCurvePoint> points{};
@@ -117,11 +125,14 @@ struct OrbitCurveOptions {
 /// homoclinic end: of homoclinic orbits, by projection (homoclinic_curve.hpp).
 OrbitCurve follow_orbit_bifurcation(const ParametricSystem& system, const OrbitMark& start,
                                     const OrbitCurveOptions& options);
+/// The same, and behind it the curves that begin where homoclinic ones end, at most so many in all.
+std::vector<OrbitCurve> follow_orbit_bifurcations(const ParametricSystem& system, const OrbitMark& start,
+                                                  const OrbitCurveOptions& options, std::size_t most);
 
-/// Curves through several marks, each once.
+/// Curves through several marks, each once, and those that begin where homoclinic ones end.
 struct OrbitCurveOfDiagram {
   OrbitCurve curve;
-  std::vector<std::size_t> starts;  // those that lie on it
+  std::vector<std::size_t> starts;  // those that lie on it; none where it begins at the end of another
 };
 std::vector<OrbitCurveOfDiagram> orbit_curves(const ParametricSystem& system, const std::vector<OrbitMark>& starts,
                                               const OrbitCurveOptions& options, std::size_t most_curves = 12);

@@ -1,5 +1,5 @@
-// The stable and the unstable eigenspaces of a saddle, as spaces: whole groups of eigenvalues, so that they are smooth
-// where eigenvalues within a group meet. Internal to what follows homoclinic orbits.
+// The stable and the unstable eigenspaces of a saddle, or of a saddle-node, as spaces: whole groups of eigenvalues, so
+// that they are smooth where eigenvalues within a group meet. Internal to what follows homoclinic orbits.
 #pragma once
 #include <Eigen/Core>
 #include <complex>
@@ -21,13 +21,24 @@ struct Eigenspace {
   bool leading_is_real() const { return eigenvalues.front().imag() == 0; }
 };
 
+/// Of a saddle-node: the simple real eigenvalue next to zero, and its eigenvectors, |right| = 1, left . right = 1.
+struct Centre {
+  double eigenvalue = 0;
+  Eigen::VectorXd right{}, left{};
+};
+
+/// Of a saddle-node, `stable` and `unstable` are without its centre, and one of them, or both, may be empty.
 struct SaddleSpaces {
   Eigenspace stable{}, unstable{};
+  std::optional<Centre> centre{};
 };
 
 /// `stable` eigenvalues on the left, the others on the right, wherever zero is. Nothing where both sides of a pair
 /// would be parted, or one is empty.
 std::optional<SaddleSpaces> saddle_spaces(const Eigen::MatrixXd& a, std::size_t stable);
+/// `stable` eigenvalues on the left, then the centre, the others on the right. Nothing where the centre is not apart
+/// from both.
+std::optional<SaddleSpaces> saddle_node_spaces(const Eigen::MatrixXd& a, std::size_t stable);
 
 /// A real orthonormal basis of the same space.
 Eigen::MatrixXd real_basis(const Eigen::MatrixXcd& columns);
