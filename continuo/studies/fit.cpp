@@ -86,6 +86,38 @@ std::string outside(const FitRequest& request, double start) {
   return {};
 }
 
+/// Sizes of values and of their deviations: the squares of their quotients are numbers then.
+constexpr double least_size = 1e-75, greatest_size = 1e75;
+
+/// What is so large or small that sums of squares would be no numbers; empty: nothing.
+std::string beyond_numbers(const FitRequest& request) {
+  const auto beyond = [](double size) { return size > greatest_size || size < least_size; };
+  for (const FitData& data : request.data) {
+    const Measurements& measured = data.measurements;
+    for (const FitColumn& column : data.columns) {
+      double largest = 0;
+      std::size_t row = 0;
+      const auto take = [&](std::size_t of_column, std::size_t i) {
+        const double size = std::abs(measured.values[of_column][i]);
+        if (size > largest) largest = size, row = i;
+      };
+      for (const std::size_t of_column : {column.column, column.deviations_in.value_or(column.column)}) {
+        largest = 0;
+        for (std::size_t i = 0; i < measured.times.size(); ++i) take(of_column, i);
+        if (largest > 0 && beyond(largest))
+          return fmt::format("{}:{}: {} in column `{}` is too {} to be squared: give it in another unit", measured.file,
+                             measured.lines[row], measured.values[of_column][row], measured.columns[of_column],
+                             largest < 1 ? "small" : "large");
+      }
+      for (const auto& deviation : {column.deviation, column.relative})
+        if (deviation && beyond(*deviation))
+          return fmt::format("{}: {}: a deviation of {} is too {} to be squared (--sigma)", measured.file,
+                             column.quantity, *deviation, *deviation < 1 ? "small" : "large");
+    }
+  }
+  return {};
+}
+
 /// Which measured value its own noise makes impossible; empty: none.
 std::string impossible_value(const FitRequest& request) {
   for (const FitData& data : request.data) {
@@ -228,6 +260,7 @@ Fit fit(const FitRequest& request) {
       model::start_values(model, request.experiment.parameters, request.experiment.from);
   result.problem = outside(request, variables[0]);
   if (result.problem.empty()) result.problem = impossible_value(request);
+  if (result.problem.empty()) result.problem = beyond_numbers(request);
   if (!result.problem.empty()) return result;
   FitProblem problem(request);
   std::vector<double> start;

@@ -270,6 +270,15 @@ TEST(FitStatistics, RefusesValuesThatTheirErrorsMakeImpossible) {
   request.data[0].columns[0].error = ErrorModel::poisson;
   EXPECT_THAT(fit(request).problem, HasSubstr("y.csv:3: -1 in column `y` is no count"));
   request.data[0].columns[0].error = ErrorModel::constant;
+  // Their squares are infinite or zero: a fit of them would say that the data do not determine a.
+  for (const double size : {1e200, 1e-200}) {
+    request.data[0].measurements.values[0] = {size, 2 * size};
+    EXPECT_THAT(fit(request).problem, HasSubstr("to be squared: give it in another unit"));
+  }
+  request.data[0].measurements.values[0] = {1, 2};
+  request.data[0].columns[0].deviation = 1e-200;
+  EXPECT_EQ(fit(request).problem, "y.csv: y: a deviation of 1e-200 is too small to be squared (--sigma)");
+  request.data[0].columns[0].deviation.reset();
   request.unknowns[0].start = -1, request.unknowns[0].logarithmic = true;
   EXPECT_THAT(fit(request).problem, HasSubstr("only what is positive has a logarithm"));
 }
