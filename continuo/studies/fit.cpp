@@ -308,45 +308,4 @@ Fit fit(const FitRequest& request) {
   return result;
 }
 
-std::vector<FitCurve> curves_of(const FitRequest& request, const Fit& fit, std::size_t points) {
-  std::vector<FitCurve> curves;
-  const std::size_t m = fit.least.p.size();
-  const double from =
-      model::start_values(request.program->model, request.experiment.parameters, request.experiment.from)[0];
-  FitProblem problem(request);
-  problem.take_noise(fit.noise);
-  double degrees = std::numeric_limits<double>::infinity();
-  for (const double of_unknown : fit.sure.degrees) degrees = std::min(degrees, of_unknown);
-  std::size_t group = 0;
-  for (std::size_t d = 0; d < request.data.size(); ++d) {
-    const double to = problem.parts()[d].times().back();
-    std::vector<double> times;
-    for (std::size_t i = 0; i < points; ++i)
-      times.push_back(i + 1 == points ? to
-                                      : from + (to - from) * static_cast<double>(i) / static_cast<double>(points - 1));
-    const auto values = problem.values(d, fit.least.p, times);
-    for (std::size_t c = 0; c < request.data[d].columns.size(); ++c, ++group) {
-      FitCurve curve{.data = d, .column = c, .t = values.times, .y = {}, .low = {}, .high = {}};
-      const bool lognormal = request.data[d].columns[c].error == ErrorModel::lognormal;
-      const double of_column =
-          fit.columns[group].given ? 1e9 : std::max(std::min(degrees, fit.columns[group].degrees), 1.0);
-      const double factor = interval_factor(of_column);
-      for (std::size_t row = 0; row < values.times.size(); ++row) {
-        const double* number = &values.numbers[(row * request.data[d].columns.size() + c) * (1 + m)];
-        const double slope = lognormal ? 1 / number[0] : 1, deviation = problem.deviation_at(group, number[0]);
-        double variance = deviation * deviation;
-        for (std::size_t i = 0; i < m; ++i)
-          for (std::size_t j = 0; j < m; ++j)
-            variance += slope * number[1 + i] * fit.sure.determined_covariance[i * m + j] * slope * number[1 + j];
-        const double width = factor * std::sqrt(variance);
-        curve.y.push_back(number[0]);
-        curve.low.push_back(lognormal ? number[0] * std::exp(-width) : number[0] - width);
-        curve.high.push_back(lognormal ? number[0] * std::exp(width) : number[0] + width);
-      }
-      curves.push_back(std::move(curve));
-    }
-  }
-  return curves;
-}
-
 }  // namespace continuo::studies
