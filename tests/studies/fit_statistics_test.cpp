@@ -352,5 +352,40 @@ TEST(FitStatistics, RobustIntervalsHoldTheTruthAsOftenAsTheySay) {
   }
 }
 
+// Of 100 intervals and bands of 95 % 95 are expected with a deviation of 2.2; four of that.
+TEST(FitStatistics, SeveralColumnsOfTwoDeviationsEachHoldTheTruthAsOftenAsTheySay) {
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> normal(0, 1);
+  const auto t = times(8);
+  FitRequest request = request_of(line, {"a", "b"}, {data_of("y", t, {}), data_of("z", t, {})});
+  for (FitData& data : request.data) data.columns[0].error = ErrorModel::both;
+  request.starts_in_doubt = 0;
+  const auto measure = [&](double at, double factor) {
+    const double y = factor * (2 + 0.5 * at);
+    return y + 0.15 * factor * normal(random) + 0.04 * y * normal(random);
+  };
+  int a = 0, b = 0, of_y = 0, of_z = 0;
+  for (int repeat = 0; repeat < 100; ++repeat) {
+    for (const std::size_t d : {0U, 1U}) {
+      request.data[d].measurements.values[0].clear();
+      for (const double at : t) request.data[d].measurements.values[0].push_back(measure(at, d == 0 ? 1 : 10));
+    }
+    const Fit found = fit(request);
+    ASSERT_TRUE(found.found()) << found.problem;
+    ASSERT_FALSE(found.sure.ratios_failed);
+    a += found.estimates[0].low <= 2 && 2 <= found.estimates[0].high ? 1 : 0;
+    b += found.estimates[1].low <= 0.5 && 0.5 <= found.estimates[1].high ? 1 : 0;
+    const std::vector<FitCurve> curves = curves_of(request, found, 2);
+    const auto holds = [&](const FitCurve& curve, double factor) {
+      const double value = measure(curve.t[1], factor);
+      return curve.low[1] <= value && value <= curve.high[1] ? 1 : 0;
+    };
+    of_y += holds(curves[0], 1), of_z += holds(curves[1], 10);
+  }
+  for (const int inside : {a, b, of_y, of_z}) EXPECT_GE(inside, 86);
+  RecordProperty("inside",
+                 std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(of_y) + " " + std::to_string(of_z));
+}
+
 }  // namespace
 }  // namespace continuo::studies::fit_statistics_test
