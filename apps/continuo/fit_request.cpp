@@ -256,10 +256,6 @@ class FitRequestReader {
     for (const studies::Influence& influence : *influences) {
       studies::FitUnknown unknown{.influence = influence};
       const std::string name = name_of(model_, influence);
-      if (place_in(names_, name)) {
-        say(fmt::format("`{}` is named twice", name));
-        return false;
-      }
       names_.push_back(name);
       if (influence.kind == studies::Influence::Kind::parameter) {
         const model::Parameter& parameter = model_.parameters[influence.index];

@@ -245,10 +245,16 @@ bool set_box(const Studied& studied, const std::vector<std::string>& ranges, stu
     box.low[i] -= wide / 2;
     box.high[i] += wide / 2;
   }
+  std::vector<std::size_t> named;
   for (const std::string& text : ranges) {
     const auto range = parse_range(text);
     const auto i = range ? state_named(model, range->name) : std::nullopt;
     if (!i) return false;
+    if (std::ranges::find(named, *i) != named.end()) {
+      say(fmt::format("--box {}: `{}` is given twice", text, range->name));
+      return false;
+    }
+    named.push_back(*i);
     box.low[*i] = range->low;
     box.high[*i] = range->high;
   }
