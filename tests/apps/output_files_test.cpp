@@ -97,5 +97,23 @@ TEST(Options, OfAFitThatContradictEachOtherAreRefused) {
   EXPECT_THAT(shell.run("fit decay.sim . --param k").err, HasSubstr("it is a folder"));
 }
 
+// gnuplot says nothing of a full disk and ends well: /dev/full stands where it writes a picture.
+TEST(OutputFiles, PicturesThatDoNotFitOnTheDiskAreNoPictures) {
+  const Shell shell;
+  shell.write("ball.sim", "h'' = -9.81\nh(0) = 1; h'(0) = 0\nrun 0..0.4 output 0.1\n");
+  const std::string record = "view ball.sim --record p --until 0.2 --fps 10";
+  ASSERT_EQ(shell.run(record).exit, 0);
+  const std::string first = shell.read("p/00001.png"), second = shell.read("p/00002.png");
+  ASSERT_GT(second.size(), 1000u);
+  shell.call("ln -s /dev/full p/00002.png.part");
+  const Result full = shell.run(record);
+  EXPECT_EQ(full.exit, 1);
+  EXPECT_THAT(full.err,
+              HasSubstr("cannot write p/00002.png whole: the disk may be full; those up to 00001.png are there"));
+  EXPECT_EQ(shell.read("p/00001.png"), first);
+  EXPECT_EQ(shell.read("p/00002.png"), second);  // what was there is not lost
+  EXPECT_EQ(shell.call("ls p/*.part").out, "");
+}
+
 }  // namespace
 }  // namespace continuo::app
