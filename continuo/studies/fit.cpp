@@ -87,33 +87,51 @@ std::string outside(const FitRequest& request, double start) {
 }
 
 /// Sizes of values and of their deviations: the squares of their quotients are numbers then.
-constexpr double least_size = 1e-75, greatest_size = 1e75;
+constexpr double least_size = 1e-60, greatest_size = 1e60;
 
-/// What is so large or small that sums of squares would be no numbers; empty: nothing.
+bool is_beyond_numbers(double size) {
+  return size > greatest_size || size < least_size;
+}
+
+/// A column of the data that is so large or small that sums of its squares would be no numbers; empty: it is not.
+/// Of deviations each must be within, of values the largest.
+std::string beyond_numbers(const Measurements& measured, std::size_t column, bool each) {
+  const auto& values = measured.values[column];
+  std::size_t largest = values.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    if (largest == values.size() || std::abs(values[i]) > std::abs(values[largest]) ||
+        (each && is_beyond_numbers(values[i])))
+      largest = i;
+    if (each && is_beyond_numbers(values[i])) break;
+  }
+  if (largest == values.size() || values[largest] == 0 || !is_beyond_numbers(std::abs(values[largest]))) return {};
+  return fmt::format("{}:{}: {} in column `{}` is too {} to be squared: give it in another unit", measured.file,
+                     measured.lines[largest], values[largest], measured.columns[column],
+                     std::abs(values[largest]) < 1 ? "small" : "large");
+}
+
 std::string beyond_numbers(const FitRequest& request) {
-  const auto beyond = [](double size) { return size > greatest_size || size < least_size; };
-  for (const FitData& data : request.data) {
-    const Measurements& measured = data.measurements;
+  const auto deviation_beyond = [](const std::string& of_what, double deviation, std::string_view option) {
+    return fmt::format("{}: a deviation of {} is too {} to be squared ({})", of_what, deviation,
+                       deviation < 1 ? "small" : "large", option);
+  };
+  for (const FitData& data : request.data)
     for (const FitColumn& column : data.columns) {
-      double largest = 0;
-      std::size_t row = 0;
-      const auto take = [&](std::size_t of_column, std::size_t i) {
-        const double size = std::abs(measured.values[of_column][i]);
-        if (size > largest) largest = size, row = i;
-      };
-      for (const std::size_t of_column : {column.column, column.deviations_in.value_or(column.column)}) {
-        largest = 0;
-        for (std::size_t i = 0; i < measured.times.size(); ++i) take(of_column, i);
-        if (largest > 0 && beyond(largest))
-          return fmt::format("{}:{}: {} in column `{}` is too {} to be squared: give it in another unit", measured.file,
-                             measured.lines[row], measured.values[of_column][row], measured.columns[of_column],
-                             largest < 1 ? "small" : "large");
-      }
+      std::string problem = beyond_numbers(data.measurements, column.column, false);
+      if (problem.empty() && column.deviations_in)
+        problem = beyond_numbers(data.measurements, *column.deviations_in, true);
+      if (!problem.empty()) return problem;
       for (const auto& deviation : {column.deviation, column.relative})
-        if (deviation && beyond(*deviation))
-          return fmt::format("{}: {}: a deviation of {} is too {} to be squared (--sigma)", measured.file,
-                             column.quantity, *deviation, *deviation < 1 ? "small" : "large");
+        if (deviation && is_beyond_numbers(*deviation))
+          return deviation_beyond(data.measurements.file + ": " + column.quantity, *deviation, "--sigma");
     }
+  for (const FitUnknown& unknown : request.unknowns) {
+    if (!unknown.prior) continue;
+    const std::string name = name_of(request.program->model, unknown.influence);
+    if (!(std::abs(unknown.prior->center) <= greatest_size))
+      return fmt::format("{}: a prior about {} is too far away to be squared (--prior)", name, unknown.prior->center);
+    if (is_beyond_numbers(unknown.prior->deviation)) return deviation_beyond(name, unknown.prior->deviation, "--prior");
   }
   return {};
 }

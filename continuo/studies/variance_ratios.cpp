@@ -65,7 +65,7 @@ std::vector<TwoKinds> columns_of_two_kinds(const VarianceComponents& noise, cons
     const VarianceComponent &first = noise.components[column.first], &second = noise.components[column.second];
     if (first.known && second.known) continue;
     column.unit = std::exp(sum / static_cast<double>(logarithms.size()));
-    constexpr double farthest = 300;  // a number, where one of them is none
+    constexpr double farthest = 650;  // a number, where one of them is none
     const double ratio = std::log(second.variance) - std::log(first.variance) - std::log(column.unit);
     column.estimated = std::isnan(ratio) ? 0 : std::clamp(ratio, -farthest, farthest);
     column.centers = centers_of(std::move(logarithms), column, noise);

@@ -95,6 +95,10 @@ TEST(Options, OfAFitThatContradictEachOtherAreRefused) {
   EXPECT_THAT(refusal("--column x=-"), HasSubstr("data.csv:1: no column is left"));
   EXPECT_THAT(refusal("--error x=constant --sigma x=5%"), HasSubstr("`constant` was asked for"));
   EXPECT_THAT(shell.run("fit decay.sim . --param k").err, HasSubstr("it is a folder"));
+  EXPECT_THAT(refusal("--prior 'k=normal(nan, 1)'"), HasSubstr("is not NAME=normal(MEAN, DEVIATION)"));
+  const Result twice = shell.run("fit decay.sim data.csv ./data.csv --param k");
+  EXPECT_EQ(twice.exit, 1);
+  EXPECT_THAT(twice.err, HasSubstr("./data.csv is given twice"));
 }
 
 // gnuplot says nothing of a full disk and ends well: /dev/full stands where it writes a picture.

@@ -279,6 +279,16 @@ TEST(FitStatistics, RefusesValuesThatTheirErrorsMakeImpossible) {
   request.data[0].columns[0].deviation = 1e-200;
   EXPECT_EQ(fit(request).problem, "y.csv: y: a deviation of 1e-200 is too small to be squared (--sigma)");
   request.data[0].columns[0].deviation.reset();
+  request.data[0].measurements.columns.push_back("s");
+  request.data[0].measurements.values.push_back({1, 1e-80});
+  request.data[0].columns[0].deviations_in = 1;
+  EXPECT_EQ(fit(request).problem, "y.csv:3: 1e-80 in column `s` is too small to be squared: give it in another unit");
+  request.data[0].columns[0].deviations_in.reset();
+  request.unknowns[0].prior = {.center = 1e300, .deviation = 1};
+  EXPECT_EQ(fit(request).problem, "a: a prior about 1e+300 is too far away to be squared (--prior)");
+  request.unknowns[0].prior = {.center = 1, .deviation = 1e-300};
+  EXPECT_EQ(fit(request).problem, "a: a deviation of 1e-300 is too small to be squared (--prior)");
+  request.unknowns[0].prior.reset();
   request.unknowns[0].start = -1, request.unknowns[0].logarithmic = true;
   EXPECT_THAT(fit(request).problem, HasSubstr("only what is positive has a logarithm"));
 }

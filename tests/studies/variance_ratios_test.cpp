@@ -103,7 +103,7 @@ TEST(VarianceRatios, AreIntegratedOver) {
 
 // Where one of the two is known and next to nothing, the other one is all there is: Student's t again.
 TEST(VarianceRatios, AreWhereTheLikelihoodIsThoughOneVarianceIsKnownToBeTiny) {
-  for (const double known : {1e-24, 1e-12, 1e-6}) {
+  for (const double known : {1e-120, 1e-24, 1e-12, 1e-6}) {
     Constant constant({1, 1, 1, 1, 1});
     constant.noise.components = {{.variance = known, .known = true}, {.variance = 0.1}};
     for (int round = 0; round < 50; ++round)
