@@ -1,4 +1,4 @@
-#include <cmath>
+#include <algorithm>
 
 #include <apps/continuo/branch_steps.hpp>
 #include <apps/continuo/terminal.hpp>
@@ -18,21 +18,28 @@ void add_branch_steps(CLI::App& verb, BranchSteps& steps, CLI::Option* along) {
 
 bool are_in_order(const BranchSteps& steps) {
   const auto is_wrong = [](const char* name, const std::optional<double>& step) {
-    if (!step || (std::isfinite(*step) && *step > 0)) return false;
+    if (!step || (*step > 0 && *step <= 1)) return false;
+    if (*step > 1) {
+      say(fmt::format("{} is {}: a step is a part of the range, at most 1", name, *step));
+      return true;
+    }
     say(fmt::format("{} must be greater than zero, and is {}", name, *step));
     return true;
   };
   if (is_wrong("--ds", steps.first) || is_wrong("--ds-min", steps.least) || is_wrong("--ds-max", steps.largest))
     return false;
-  const auto out_of_order = [](const char* small, const std::optional<double>& a, const char* large,
-                               const std::optional<double>& b) {
-    if (!a || !b || *a <= *b) return false;
-    say(fmt::format("{} is {}, and {} is less, {}", small, *a, large, *b));
+  // What is not given is what the options' help says, or gives way to what is.
+  constexpr double usual_least = 1e-7, usual_largest = 0.05;
+  const double least = steps.least.value_or(usual_least);
+  const double largest = steps.largest.value_or(std::max(usual_largest, steps.first.value_or(0)));
+  const auto out_of_order = [](const char* small, double a, const char* large, double b) {
+    if (a <= b) return false;
+    say(fmt::format("{} is {}, and {} is less, {}", small, a, large, b));
     return true;
   };
-  return !out_of_order("--ds-min", steps.least, "--ds", steps.first) &&
-         !out_of_order("--ds", steps.first, "--ds-max", steps.largest) &&
-         !out_of_order("--ds-min", steps.least, "--ds-max", steps.largest);
+  return !(steps.first && out_of_order("--ds-min", least, "--ds", *steps.first)) &&
+         !(steps.first && steps.largest && out_of_order("--ds", *steps.first, "--ds-max", largest)) &&
+         !out_of_order("--ds-min", least, "--ds-max", largest);
 }
 
 }  // namespace continuo::app

@@ -102,6 +102,19 @@ CLI::Validator number_above(double least) {
   return numbers_that([least](double value) { return value > least; }, fmt::format("no number above {}", least));
 }
 
+CLI::Validator number_between(double least, double below) {
+  return numbers_that([=](double value) { return value >= least && value < below; },
+                      fmt::format("no number from {} to less than {}", least, below));
+}
+
+void refuse_empty(CLI::App& verb) {
+  const CLI::Validator not_empty(
+      [](std::string& text) { return text.empty() ? "a value is missing: leave the option out, or give it one" : ""; },
+      "");
+  for (CLI::Option* option : verb.get_options())
+    if (option->get_items_expected_max() > 0) option->check(not_empty);
+}
+
 std::string unexpected(const CLI::App& app, int argc, char** argv) {
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {

@@ -26,6 +26,10 @@ CLI::Validator count_from(std::size_t least, std::size_t most = 1'000'000);
 CLI::Validator finite_number();
 CLI::Validator number_from(double least);
 CLI::Validator number_above(double least);
+/// From `least` to less than `below`.
+CLI::Validator number_between(double least, double below);
+/// A text that is empty, as an unset variable of a shell leaves it, is no value of any option.
+void refuse_empty(CLI::App& verb);
 
 /// What to say of words that no verb or option takes.
 std::string unexpected(const CLI::App& app, int argc, char** argv);

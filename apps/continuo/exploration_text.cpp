@@ -53,14 +53,6 @@ std::string rests_text(const model::Model& model, const Exploration& found) {
   return text;
 }
 
-std::string laws_text(const Studied& studied) {
-  std::string text;
-  for (const studies::ConservationLaw& law : studied.laws)
-    text += fmt::format("{}{} stays {}\n", text.empty() ? "kept     " : "         ",
-                        studies::law_text(studied.system, law), short_number(law.value));
-  return text;
-}
-
 std::string orbit_text(const model::Model& model, const Exploration& found) {
   std::string text;
   if (found.orbit) {
@@ -137,7 +129,8 @@ std::string influences_text(const Exploration& found) {
 
 std::string exploration_text(const Studied& studied, const Exploration& found) {
   const model::Model& model = studied.prepared.program->model;
-  std::string text = run_text(model, found) + laws_text(studied) + rests_text(model, found) + orbit_text(model, found);
+  std::string text = run_text(model, found) + conserved_text(studied, "kept     ") + rests_text(model, found) +
+                     orbit_text(model, found);
   for (const Slider& slider : found.sliders) text += slider_text(slider);
   text += influences_text(found);
   if (!found.not_moved.empty())

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -89,6 +90,12 @@ class FitRequestReader {
         say(read.problem);
         return false;
       }
+      std::error_code error;
+      for (const studies::FitData& other : request_.data)
+        if (other.measurements.file == file || std::filesystem::equivalent(other.measurements.file, file, error)) {
+          say(fmt::format("{} is given twice: as two files, its values would seem surer than they are", file));
+          return false;
+        }
       request_.data.push_back({.measurements = std::move(read.measurements), .columns = {}});
     }
     return true;
@@ -256,10 +263,6 @@ class FitRequestReader {
     for (const studies::Influence& influence : *influences) {
       studies::FitUnknown unknown{.influence = influence};
       const std::string name = name_of(model_, influence);
-      if (place_in(names_, name)) {
-        say(fmt::format("`{}` is named twice", name));
-        return false;
-      }
       names_.push_back(name);
       if (influence.kind == studies::Influence::Kind::parameter) {
         const model::Parameter& parameter = model_.parameters[influence.index];
@@ -332,7 +335,7 @@ class FitRequestReader {
       center = model::cell_number(middle);
       deviation = positive(std::string_view(words).substr(comma + 1, words.size() - comma - 2));
     }
-    if (!center || !deviation || (lognormal && !(*center > 0))) {
+    if (!center || !std::isfinite(*center) || !deviation || (lognormal && !(*center > 0))) {
       say(fmt::format("`{}` is not NAME=normal(MEAN, DEVIATION) or NAME=lognormal(MEDIAN, DEVIATION)", text));
       return false;
     }

@@ -32,10 +32,6 @@ bool set_forcing(const Studied& studied, const HybridOrbitRequest& request, stud
   const studies::Forcing forcing = studies::forcing_of(program, parameters);
   search.forcing = forcing.period;
   if (request.forcing) {
-    if (!(*request.forcing > 0)) {
-      say("--period must be greater than zero");
-      return false;
-    }
     const double ratio = forcing.period ? *request.forcing / *forcing.period : 1;
     if (std::abs(ratio - std::round(ratio)) > 1e-9 * ratio || std::round(ratio) < 1) {
       say(fmt::format("--period {:.10g} is no multiple of {:.10g}, after which the text says that the model repeats",

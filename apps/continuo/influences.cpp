@@ -42,8 +42,11 @@ std::optional<std::vector<studies::Influence>> influences_named(const model::Mod
     const bool is_parameter = kind == Kind::parameter;
     const std::size_t i = is_parameter ? model::find_parameter(model, name) : model::find_state(model, name);
     if (i != model::npos) {
-      influences.push_back({kind, i});
-      return true;
+      const bool is_new = std::ranges::none_of(
+          influences, [&](const studies::Influence& one) { return one.kind == kind && one.index == i; });
+      if (is_new) influences.push_back({kind, i});
+      if (!is_new) say(fmt::format("`{}` is named twice", name_of(model, studies::Influence{kind, i})));
+      return is_new;
     }
     std::vector<std::string> names;
     for (const model::Parameter& known : model.parameters)

@@ -49,6 +49,7 @@ int command(int argc, char** argv) {
   add_explain(app, exit);
   add_new(app, exit);
 
+  for (CLI::App* verb : app.get_subcommands({})) refuse_empty(*verb);
   if (argc == 1) {
     print(app.help());
     return usage;

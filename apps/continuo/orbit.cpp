@@ -211,9 +211,10 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
   verb->add_option("--duration", options->duration, "Time to look for it; else that of the model's run")
       ->check(number_above(0))
       ->type_name("T");
-  verb->add_option("--tol", options->tolerance, "How exact")->check(number_above(0))->type_name("TOL");
+  verb->add_option("--tol", options->tolerance, "How exact")->check(number_between(1e-14, 1))->type_name("TOL");
   verb->add_option("--period", options->forcing, "Of what hangs on the time, where the text does not show it")
       ->transform(quotients())
+      ->check(number_above(0))
       ->type_name("T");
   verb->add_option("--turns", options->turns, "So many of these periods are one of the orbit; else as it comes back")
       ->check(count_from(1))

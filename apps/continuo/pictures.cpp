@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string_view>
+#include <system_error>
 
 #include <apps/continuo/body_pictures.hpp>
 #include <apps/continuo/own_process.hpp>
@@ -74,6 +77,41 @@ std::string run_gnuplot(const ScratchFolder& scratch, const std::string& folder,
   return exit == 0 ? "" : fmt::format("gnuplot could not draw into {}", folder);
 }
 
+std::filesystem::path picture_of(const std::string& folder, std::size_t number) {
+  return std::filesystem::path(folder) / fmt::format("{:05d}.png", number + 1);
+}
+std::filesystem::path part_of(const std::filesystem::path& picture) {
+  return picture.string() + ".part";
+}
+
+/// Whether its last chunk is there.
+bool is_whole(const std::filesystem::path& picture) {
+  static constexpr std::string_view end("\0\0\0\0IEND\xAE\x42\x60\x82", 12);
+  std::ifstream file(picture, std::ios::binary);
+  std::string last(end.size(), ' ');
+  file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+  return file.read(last.data(), static_cast<std::streamsize>(last.size())) && last == end;
+}
+
+/// Gives the pictures from `first` to before `end` their names, or says which could not be written: gnuplot does not
+/// see that a disk is full. What stood there before is replaced by whole pictures alone.
+std::string keep_whole(const std::string& folder, std::size_t first, std::size_t end) {
+  std::string problem;
+  for (std::size_t k = first; k < end; ++k) {
+    const std::filesystem::path picture = picture_of(folder, k), part = part_of(picture);
+    std::error_code error;
+    const bool whole = problem.empty() && is_whole(part);
+    if (whole) std::filesystem::rename(part, picture, error);
+    if (whole && !error) continue;
+    if (problem.empty())
+      problem = fmt::format("cannot write {}{}; {}", picture.string(),
+                            error ? ": " + error.message() : " whole: the disk may be full",
+                            k == 0 ? "no picture was written" : fmt::format("those up to {:05d}.png are there", k));
+    std::filesystem::remove(part, error);
+  }
+  return problem;
+}
+
 /// So many pictures at a time as fit into memory well.
 template <class Pictures>
 std::string draw_all(const std::string& folder, const std::string& set_up, const Pictures& pictures,
@@ -84,11 +122,16 @@ std::string draw_all(const std::string& folder, const std::string& set_up, const
   const std::string head = fmt::format("cd '{}'\nset terminal pngcairo size {},{} font ',11' noenhanced\n{}",
                                        std::filesystem::absolute(folder).string(), width, height, set_up);
   std::string script;
+  std::size_t first = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    script += fmt::format("set output '{:05d}.png'\n{}", k + 1, pictures.commands(k));
+    script += fmt::format("set output '{}'\n{}", part_of(picture_of("", k)).string(), pictures.commands(k));
     if (script.size() < much && k + 1 < count) continue;
-    if (std::string problem = run_gnuplot(scratch, folder, head + script); !problem.empty()) return problem;
+    // The last picture is written when the next one begins, or gnuplot ends.
+    const std::string of_gnuplot = run_gnuplot(scratch, folder, head + script);
+    const std::string of_files = keep_whole(folder, first, k + 1);
+    if (!of_gnuplot.empty() || !of_files.empty()) return of_gnuplot.empty() ? of_files : of_gnuplot;
     script.clear();
+    first = k + 1;
   }
   return {};
 }

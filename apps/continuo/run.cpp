@@ -14,6 +14,7 @@
 #include <apps/continuo/run_results.hpp>
 #include <apps/continuo/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
 
 #include <continuo/studies/boundary_of_model.hpp>
 #include <continuo/worlds/simulate_world.hpp>
@@ -39,6 +40,18 @@ model::Simulated simulate_recorded(const RunRequest& request, const Prepared& pr
   return worlds::simulate_world(prepared.program, prepared.experiment, file.begin(head));
 }
 
+/// Families are no run: nothing of it can be written, which is said and not passed over.
+bool shows_families(const RunRequest& request) {
+  const char* unused = !request.outputs.events.empty()     ? "--events"
+                       : !request.outputs.manifest.empty() ? "--manifest"
+                       : request.estimate_error            ? "--estimate-error"
+                       : request.experiment.output         ? "--output"
+                                                           : nullptr;
+  if (unused == nullptr) return true;
+  say(fmt::format("--family shows solutions over a parameter, of which there is no {}: leave it out", unused));
+  return false;
+}
+
 ExitCode run(const RunRequest& request) {
   std::vector<std::string> written = files_of(request.outputs);
   written.push_back(request.record.path);
@@ -59,6 +72,7 @@ ExitCode run(const RunRequest& request) {
   const auto boundary = read_boundary(request.boundary, prepared);
   if (!boundary) return usage;
   if (!request.boundary.family.empty()) {
+    if (!shows_families(request)) return usage;
     const auto range = read_family(request.boundary, prepared);
     return range ? show_families(prepared, *boundary, *range, request.boundary.of, request.outputs) : usage;
   }

@@ -129,7 +129,8 @@ results::Figure figure_of(const model::Model& model, const SensitivityRun& run,
 
 /// Of what a motion comes to, parameters alone can be asked, and there is nothing to draw.
 ExitCode sense_of_limit(const SenseOptions& options) {
-  if (!options.initial.empty() || !options.output.empty() || !options.plot.empty()) {
+  if (!options.initial.empty() || !options.output.empty() || !options.plot.empty() || options.experiment.until ||
+      options.experiment.output) {
     say(fmt::format("--of {} takes --param and --json alone", options.of));
     return usage;
   }

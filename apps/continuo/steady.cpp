@@ -114,12 +114,9 @@ ExitCode follow_curves(const Studied& studied, const studies::Equilibria& found,
 
 /// How they move. What was found at the parameter's present value has been shown.
 ExitCode follow(const Studied& studied, const studies::Equilibria& found, const NamedRange& range,
-                const std::optional<NamedRange>& second, const studies::EquilibriumBox& box,
+                const std::optional<NamedRange>& second, const studies::EquilibriumBox& box, std::size_t component,
                 const SteadyOptions& options) {
   const model::Model& model = studied.prepared.program->model;
-  std::optional<std::size_t> component = 0;
-  if (!options.of.empty()) component = state_named(model, options.of);
-  if (!component) return usage;
   const SteadyDiagram diagram = diagram_of(studied, found.equilibria, range, box, options.steps);
   if (second) {
     if (!options.json) print(text_of(diagram, range, found.equilibria.size()));
@@ -133,7 +130,7 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
     print(text_of(diagram, range, found.equilibria.size()));
   }
   if (!options.out.empty() && !written(results::write_file(options.out, csv_of(diagram, model, range)))) return usage;
-  if (!options.plot.empty() && !draw(diagram, model, range, *component, options.plot)) return usage;
+  if (!options.plot.empty() && !draw(diagram, model, range, component, options.plot)) return usage;
   return interrupt_flag() ? interrupted : done;
 }
 
@@ -164,7 +161,9 @@ ExitCode steady(const SteadyOptions& options) {
   hold_conserved(studied);
   if (second && !is_plane(studied, {*range, *second})) return usage;
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
-  if (!set_box(studied, options.box, box)) return usage;
+  std::optional<std::size_t> component = 0;
+  if (!options.of.empty()) component = state_named(studied.prepared.program->model, options.of);
+  if (!component || !set_box(studied, options.box, box)) return usage;
   const studies::Equilibria found = [&] {
     Progress progress;
     box.progress = progress.parts();
@@ -181,7 +180,7 @@ ExitCode steady(const SteadyOptions& options) {
     return numerical_failure;
   }
   if (!options.json) print(table_of(found, studied) + conserved_text(studied));
-  if (range && !interrupt_flag()) return follow(studied, found, *range, second, box, options);
+  if (range && !interrupt_flag()) return follow(studied, found, *range, second, box, *component, options);
   if (options.json) print(json_of(found, studied).dump(2) + "\n");
   return interrupt_flag() ? interrupted : done;
 }
@@ -210,7 +209,7 @@ void add_steady(CLI::App& app, ExitCode& exit) {
       ->type_name("NAME=LOW..HIGH")
       ->needs(along);
   add_branch_steps(*verb, options->steps, along);
-  verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE");
+  verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);
   verb->add_flag("--json", options->json, "All of it for other programs");
   verb->add_option("-o,--out", options->out, "The table of --along, or of --and, as CSV")
       ->type_name("FILE")

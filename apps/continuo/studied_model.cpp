@@ -91,17 +91,19 @@ studies::ParametricSystem holding_laws(const Studied& studied, const studies::Pa
                           });
 }
 
-std::string conserved_text(const Studied& studied) {
+std::string conserved_text(const Studied& studied, std::string_view head) {
+  const std::string below(head.size(), ' ');
   std::string text;
   for (const studies::ConservationLaw& law : studied.laws)
-    text += fmt::format("{} {} = {}\n", text.empty() ? "conserved:" : "          ",
-                        studies::law_text(studied.system, law), results::short_number(law.value));
+    text += fmt::format("{}{} = {}\n", text.empty() ? head : below, studies::law_text(studied.system, law),
+                        results::short_number(law.value));
   if (!text.empty() && !studied.prepared.program->model.events.empty())
-    text += "           by the equations; events that change it are not looked at\n";
+    text += below + "by the equations; events that change it are not looked at\n";
   return text;
 }
 
 void add_conserved(nlohmann::json& object, const Studied& studied) {
+  if (!studied.laws.empty()) object["events_may_change_conserved"] = !studied.prepared.program->model.events.empty();
   for (const studies::ConservationLaw& law : studied.laws)
     object["conserved"].push_back({{"sum", studies::law_text(studied.system, law)}, {"value", law.value}});
 }
@@ -243,10 +245,16 @@ bool set_box(const Studied& studied, const std::vector<std::string>& ranges, stu
     box.low[i] -= wide / 2;
     box.high[i] += wide / 2;
   }
+  std::vector<std::size_t> named;
   for (const std::string& text : ranges) {
     const auto range = parse_range(text);
     const auto i = range ? state_named(model, range->name) : std::nullopt;
     if (!i) return false;
+    if (std::ranges::find(named, *i) != named.end()) {
+      say(fmt::format("--box {}: `{}` is given twice", text, range->name));
+      return false;
+    }
+    named.push_back(*i);
     box.low[*i] = range->low;
     box.high[*i] = range->high;
   }

@@ -37,8 +37,9 @@ void hold_conserved(Studied& studied);
 /// The same for the model with other constants that move.
 studies::ParametricSystem holding_laws(const Studied& studied, const studies::ParametricSystem& system);
 /// A line for each law that is held: "conserved: a + c = 1".
-std::string conserved_text(const Studied& studied);
-/// The same as a member "conserved".
+std::string conserved_text(const Studied& studied, std::string_view head = "conserved: ");
+/// The same as a member "conserved"; "events_may_change_conserved" is true where there are events, as nobody looks at
+/// what they do to it.
 void add_conserved(nlohmann::json& object, const Studied& studied);
 
 /// Whether neither the equations of the studied mode hang on the time nor anything happens at set times; says what

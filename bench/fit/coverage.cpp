@@ -1,7 +1,7 @@
 // How often intervals of 95 % hold the truth: by loss, error model and length of the columns, in repeated fits of
 // x = a e^(-k t) with known a and k. Of 1,000 repeats a share of 95 % has a deviation of 0.7 %.
 //
-//   fit_coverage [REPEATS] [models|losses|columns|ratios]
+//   fit_coverage [REPEATS] [models|losses|columns|ratios|several]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -39,7 +39,8 @@ std::shared_ptr<const model::ModelProgram> decay() {
 
 // Where large values are many and late, not few and early.
 std::shared_ptr<const model::ModelProgram> growth() {
-  const model::Source source("growth.sim", "param a = 6, k = 0.8\nx' = a - k*x\nx(0) = 0\nrun 0..4\n");
+  const model::Source source("growth.sim",
+                             "param a = 6, k = 0.8\nx' = a - k*x\nx(0) = 0\noutput y = 100*x\nrun 0..4\n");
   return model::compile(std::move(*check(model::parse(source).model, source).model));
 }
 double grown(double t) {
@@ -155,6 +156,24 @@ int main(int count, char** words) {
           std::snprintf(what, sizeof what, "%s, relative %g times constant", grows ? "growth" : "decay", ratio);
           print(what, "squares", rows, c, repeats);
         }
+  // Two columns of two deviations each, as large as each other at the value 3.
+  if (only.empty() || only == "several")
+    for (const bool grows : {false, true})
+      for (const std::size_t rows : {5U, 8U, 12U}) {
+        const auto of_size = [&](double size) {
+          return Case{"", ErrorModel::both,
+                      [size](double y, auto& r) { return y + 0.15 * size * normal(r) + 0.05 * y * normal(r); }};
+        };
+        const auto c = covered(repeats, [&] {
+          FitRequest made = request();
+          made.program = grows ? growing : program;
+          made.data = {column(rows, "x", 1, of_size(1), random, grows ? grown : decayed),
+                       column(rows, "y", 100, of_size(100), random, grows ? grown : decayed)};
+          return made;
+        });
+        print(std::string(grows ? "growth" : "decay") + ", x and y of two deviations each", "squares", 2 * rows, c,
+              repeats);
+      }
   if (only.empty() || only == "columns")
     for (const auto& [first, second] : {std::pair{5, 5}, {5, 100}, {100, 5}, {10, 20}, {8, 8}}) {
       const auto c = covered(repeats, [&] {

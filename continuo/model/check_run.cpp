@@ -258,7 +258,12 @@ void Checker::run_tolerances(const ast::Run& run) {
     fail("E261", text.span, "a tolerance must be greater than zero", fmt::format("this is {:g}", *value));
     return std::nullopt;
   };
-  if (run.relative_tolerance) model_.run.rtol = positive(*run.relative_tolerance, Measured::known(Unit()));
+  if (run.relative_tolerance) {
+    model_.run.rtol = positive(*run.relative_tolerance, Measured::known(Unit()));
+    if (model_.run.rtol && !(*model_.run.rtol < 1))
+      fail("E261", run.relative_tolerance->span, "a relative tolerance is a part of the state's size, less than 1",
+           fmt::format("this is {:g}", *model_.run.rtol));
+  }
   const auto& each = run.absolute_tolerance;
   if (each.size() > 1 && each.size() != model_.states.size()) {
     fail("E263", cover(each.front().span, each.back().span), "one absolute tolerance is wanted, or one per state",

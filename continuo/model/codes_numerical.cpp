@@ -157,7 +157,7 @@ been read cannot change it any more. The command line reads the model anew; in C
 have them: --atol "h'=1e-9" --tol "u[3]=1e-10". The name of a family without an index means all of it: --tol u=1e-10.)"},
     Code{
         "E345", "the tolerance cannot be used",
-        R"(--tol takes a relative tolerance, a number without a unit greater than zero; --atol an absolute one, in the unit of
+        R"(--tol takes a relative tolerance, a number without a unit between 0 and 1; --atol an absolute one, in the unit of
 the state unless it names another of the same kind: --atol "h = 1 [um]". With NAME= before it the tolerance is that of
 one state, without it that of all.)"},
     Code{

@@ -126,8 +126,10 @@ std::optional<ToleranceSetting> parse_tolerance(const Model& model, ToleranceKin
   std::string problem;
   const auto given = read_value(given_text, problem);
   const auto value = given ? in_unit(unit, *given, problem) : std::nullopt;
-  if (value && *value > 0) return ToleranceSetting{std::string(name), *value};
+  const bool too_large = kind == ToleranceKind::relative && value && !(*value < 1);
+  if (value && *value > 0 && !too_large) return ToleranceSetting{std::string(name), *value};
   if (value) problem = "a tolerance is greater than zero";
+  if (too_large) problem = "a relative tolerance is a part of the state's size, less than 1";
   const Span span = given_text.empty() ? place(text, text) : place(text, given_text);
   problems.push_back(error("E345", span, fmt::format("`{}` is no tolerance", given_text), {}, problem));
   return std::nullopt;

@@ -86,6 +86,56 @@ std::string outside(const FitRequest& request, double start) {
   return {};
 }
 
+/// Sizes of values and of their deviations: the squares of their quotients are numbers then.
+constexpr double least_size = 1e-60, greatest_size = 1e60;
+
+bool is_beyond_numbers(double size) {
+  return size > greatest_size || size < least_size;
+}
+
+/// A column of the data that is so large or small that sums of its squares would be no numbers; empty: it is not.
+/// Of deviations each must be within, of values the largest.
+std::string beyond_numbers(const Measurements& measured, std::size_t column, bool each) {
+  const auto& values = measured.values[column];
+  std::size_t largest = values.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    if (largest == values.size() || std::abs(values[i]) > std::abs(values[largest]) ||
+        (each && is_beyond_numbers(values[i])))
+      largest = i;
+    if (each && is_beyond_numbers(values[i])) break;
+  }
+  if (largest == values.size() || values[largest] == 0 || !is_beyond_numbers(std::abs(values[largest]))) return {};
+  return fmt::format("{}:{}: {} in column `{}` is too {} to be squared: give it in another unit", measured.file,
+                     measured.lines[largest], values[largest], measured.columns[column],
+                     std::abs(values[largest]) < 1 ? "small" : "large");
+}
+
+std::string beyond_numbers(const FitRequest& request) {
+  const auto deviation_beyond = [](const std::string& of_what, double deviation, std::string_view option) {
+    return fmt::format("{}: a deviation of {} is too {} to be squared ({})", of_what, deviation,
+                       deviation < 1 ? "small" : "large", option);
+  };
+  for (const FitData& data : request.data)
+    for (const FitColumn& column : data.columns) {
+      std::string problem = beyond_numbers(data.measurements, column.column, false);
+      if (problem.empty() && column.deviations_in)
+        problem = beyond_numbers(data.measurements, *column.deviations_in, true);
+      if (!problem.empty()) return problem;
+      for (const auto& deviation : {column.deviation, column.relative})
+        if (deviation && is_beyond_numbers(*deviation))
+          return deviation_beyond(data.measurements.file + ": " + column.quantity, *deviation, "--sigma");
+    }
+  for (const FitUnknown& unknown : request.unknowns) {
+    if (!unknown.prior) continue;
+    const std::string name = name_of(request.program->model, unknown.influence);
+    if (!(std::abs(unknown.prior->center) <= greatest_size))
+      return fmt::format("{}: a prior about {} is too far away to be squared (--prior)", name, unknown.prior->center);
+    if (is_beyond_numbers(unknown.prior->deviation)) return deviation_beyond(name, unknown.prior->deviation, "--prior");
+  }
+  return {};
+}
+
 /// Which measured value its own noise makes impossible; empty: none.
 std::string impossible_value(const FitRequest& request) {
   for (const FitData& data : request.data) {
@@ -228,6 +278,7 @@ Fit fit(const FitRequest& request) {
       model::start_values(model, request.experiment.parameters, request.experiment.from);
   result.problem = outside(request, variables[0]);
   if (result.problem.empty()) result.problem = impossible_value(request);
+  if (result.problem.empty()) result.problem = beyond_numbers(request);
   if (!result.problem.empty()) return result;
   FitProblem problem(request);
   std::vector<double> start;
@@ -273,47 +324,6 @@ Fit fit(const FitRequest& request) {
     result.least.found = false;
   }
   return result;
-}
-
-std::vector<FitCurve> curves_of(const FitRequest& request, const Fit& fit, std::size_t points) {
-  std::vector<FitCurve> curves;
-  const std::size_t m = fit.least.p.size();
-  const double from =
-      model::start_values(request.program->model, request.experiment.parameters, request.experiment.from)[0];
-  FitProblem problem(request);
-  problem.take_noise(fit.noise);
-  double degrees = std::numeric_limits<double>::infinity();
-  for (const double of_unknown : fit.sure.degrees) degrees = std::min(degrees, of_unknown);
-  std::size_t group = 0;
-  for (std::size_t d = 0; d < request.data.size(); ++d) {
-    const double to = problem.parts()[d].times().back();
-    std::vector<double> times;
-    for (std::size_t i = 0; i < points; ++i)
-      times.push_back(i + 1 == points ? to
-                                      : from + (to - from) * static_cast<double>(i) / static_cast<double>(points - 1));
-    const auto values = problem.values(d, fit.least.p, times);
-    for (std::size_t c = 0; c < request.data[d].columns.size(); ++c, ++group) {
-      FitCurve curve{.data = d, .column = c, .t = values.times, .y = {}, .low = {}, .high = {}};
-      const bool lognormal = request.data[d].columns[c].error == ErrorModel::lognormal;
-      const double of_column =
-          fit.columns[group].given ? 1e9 : std::max(std::min(degrees, fit.columns[group].degrees), 1.0);
-      const double factor = interval_factor(of_column);
-      for (std::size_t row = 0; row < values.times.size(); ++row) {
-        const double* number = &values.numbers[(row * request.data[d].columns.size() + c) * (1 + m)];
-        const double slope = lognormal ? 1 / number[0] : 1, deviation = problem.deviation_at(group, number[0]);
-        double variance = deviation * deviation;
-        for (std::size_t i = 0; i < m; ++i)
-          for (std::size_t j = 0; j < m; ++j)
-            variance += slope * number[1 + i] * fit.sure.determined_covariance[i * m + j] * slope * number[1 + j];
-        const double width = factor * std::sqrt(variance);
-        curve.y.push_back(number[0]);
-        curve.low.push_back(lognormal ? number[0] * std::exp(-width) : number[0] - width);
-        curve.high.push_back(lognormal ? number[0] * std::exp(width) : number[0] + width);
-      }
-      curves.push_back(std::move(curve));
-    }
-  }
-  return curves;
 }
 
 }  // namespace continuo::studies

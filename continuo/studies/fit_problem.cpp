@@ -248,7 +248,13 @@ double FitProblem::fitted(std::size_t measured, double raw_residual) const {
                                                                   : m.value + raw_residual;
 }
 
-double FitProblem::deviation_at(std::size_t group, double value) const {
+std::vector<double> FitProblem::noise_variances() const {
+  std::vector<double> variances;
+  for (const VarianceComponent& component : noise_.components) variances.push_back(component.variance);
+  return variances;
+}
+
+double FitProblem::deviation_at(std::size_t group, double value, std::span<const double> variances) const {
   const Column& column = columns_[group];
   if (column.column->deviations_in) {  // as large as those that were given, in the mean
     double sum = 0, count = 0;
@@ -256,7 +262,7 @@ double FitProblem::deviation_at(std::size_t group, double value) const {
       if (m.group == group) sum += m.deviation * m.deviation, count += 1;
     return std::sqrt(sum / count);
   }
-  const double first = noise_.components[column.components[0]].variance * column.pooled;
+  const double first = variances[column.components[0]] * column.pooled;
   switch (column.column->error) {
     case ErrorModel::constant:
     case ErrorModel::lognormal:
@@ -266,7 +272,7 @@ double FitProblem::deviation_at(std::size_t group, double value) const {
     case ErrorModel::poisson:
       return std::sqrt(first * std::abs(value));
     case ErrorModel::both:
-      return std::sqrt(first + noise_.components[column.components[1]].variance * value * value);
+      return std::sqrt(first + variances[column.components[1]] * value * value);
   }
   return std::sqrt(first);
 }

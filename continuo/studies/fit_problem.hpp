@@ -74,8 +74,9 @@ class FitProblem {
   std::vector<double> raw(std::span<const double> over_deviations, std::size_t width) const;
   /// What `raw` residuals say the model's value is; of lognormal noise its logarithm is compared.
   double fitted(std::size_t measured, double raw_residual) const;
-  /// The deviation of one measurement of a group where the model says `value`.
-  double deviation_at(std::size_t group, double value) const;
+  /// The deviation of one measurement of a group where the model says `value` and components have these variances.
+  double deviation_at(std::size_t group, double value, std::span<const double> variances) const;
+  std::vector<double> noise_variances() const;
   const FitColumn& column_of(std::size_t group) const { return *columns_[group].column; }
   /// The deviation of a group: its constant part, or the one in proportion to the value.
   double constant_deviation(std::size_t group) const {

@@ -45,6 +45,21 @@ std::size_t count_free(const Fit& fit) {
   return static_cast<std::size_t>(std::ranges::count(fit.least.at_bound, 0)) - fit.sure.directions.size();
 }
 
+/// With zeros for the unknowns that are not free.
+GivenRatios among_all(const GivenRatios& of_free, const std::vector<std::size_t>& free, std::size_t all) {
+  GivenRatios result = of_free;
+  result.shift.assign(all, 0);
+  result.degrees.assign(all, std::numeric_limits<double>::infinity());
+  result.covariance.assign(all * all, 0);
+  for (std::size_t a = 0; a < free.size(); ++a) {
+    result.shift[free[a]] = of_free.shift[a];
+    result.degrees[free[a]] = of_free.degrees[a];
+    for (std::size_t b = 0; b < free.size(); ++b)
+      result.covariance[free[a] * all + free[b]] = of_free.covariance[a * free.size() + b];
+  }
+  return result;
+}
+
 }  // namespace
 
 Uncertainty uncertainty_of(const VarianceComponents& noise, std::span<const double> residuals,
@@ -67,6 +82,7 @@ Uncertainty uncertainty_of(const VarianceComponents& noise, std::span<const doub
   result.factors.assign(m, interval_factor(std::numeric_limits<double>::infinity()));
   result.undetermined.assign(m, 0);
   for (std::vector<double>& direction : result.directions) direction.assign(m, 0);
+  for (GivenRatios& given : result.ratios) given = among_all(given, free, m);
   for (std::size_t a = 0; a < free.size(); ++a) {
     result.degrees[free[a]] = of_free.degrees[a];
     result.factors[free[a]] = of_free.factors[a];
@@ -219,6 +235,12 @@ std::vector<FitDoubt> doubts_of(const FitRequest& request, const Fit& fit) {
       doubts.push_back(
           {Kind::weights, fmt::format("{} has too few values to tell a constant error from one in proportion: "
                                       "intervals are too narrow, some 90 of 100 hold the truth instead of 95",
+                                      name)});
+    if (asked.error == ErrorModel::both && !column.given && fit.sure.ratios_failed)
+      doubts.push_back(
+          {Kind::weights, fmt::format("{}: intervals take the ratio of its constant error to the one in proportion for "
+                                      "known, as no ratio was found likely, and are too narrow; give one of the two "
+                                      "(--sigma) or ask for one kind (--error)",
                                       name)});
     if (column.signs_p < by_chance)
       doubts.push_back({Kind::signs, fmt::format("{} is above and below the model for longer than noise would be "

@@ -63,6 +63,13 @@ inline constexpr double interval_confidence = 0.95;
 /// Half an interval of that confidence over a deviation with so many degrees of freedom; infinite without any.
 double interval_factor(double degrees);
 
+/// What is known where the ratios of columns with two variances are given, and how likely these ratios are.
+struct GivenRatios {
+  double weight = 0;                               // of all that were looked at
+  std::vector<double> shift, covariance, degrees;  // of the unknowns, from the estimate
+  std::vector<double> group_degrees, variances_of_components;
+};
+
 struct Uncertainty {
   std::vector<double> covariance;  // row by row; of what the data do not determine: infinite on the diagonal, else 0
   std::vector<double> determined_covariance;  // along the moves that are determined: for what depends on these alone
@@ -76,6 +83,8 @@ struct Uncertainty {
   std::vector<std::vector<double>> directions;
   std::vector<double> group_degrees;  // n - leverage of each column
   std::vector<double> group_ratio;    // of each column: the deviation that is seen over the one that the noise has
+  std::vector<GivenRatios> ratios;    // that factors were integrated over; empty: no such column, or it is long
+  bool ratios_failed = false;         // they had to be, and could not: factors take the estimated ratios for known
   /// What a robust loss makes of variances that were those of squares; 2 (cost - least cost) over `rise` is chi
   /// squared.
   double dispersion = 1, rise = 1;

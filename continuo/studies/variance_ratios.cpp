@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include <boost/math/tools/toms748_solve.hpp>
 
 #include <continuo/studies/decomposed_rows.hpp>
 #include <continuo/studies/student_t.hpp>
@@ -16,41 +19,71 @@ using Dense = Eigen::MatrixXd;
 using Column = Eigen::VectorXd;
 using Eigen::Index;
 
-/// A column with two components; `unit` makes the second of the size of the first: the geometric mean of their factors'
-/// ratio.
+/// A column with two components. Ratios are logarithms of the second's size over the first's: 0 where they are as large
+/// for a row in the midst of the column, whose factors have the ratio `unit`.
 struct TwoKinds {
   std::size_t first, second;
-  double unit, estimated;  // the part of the second, between 0 and 1
+  double unit, estimated;
+  std::vector<double> centers;  // of the ratios that data can tell apart
 };
+
+/// Ratios at which one row's two parts are as large. Beyond the last to either side one kind of noise has no say and
+/// the likelihood changes no more, unless the variance of the smaller is known: then the other may be larger by any
+/// number, and about its estimate is where to look.
+std::vector<double> centers_of(std::vector<double> logarithms, const TwoKinds& column,
+                               const VarianceComponents& noise) {
+  constexpr double apart = 4, most = 12;
+  const auto [least, greatest] = std::ranges::minmax(logarithms);
+  const double middle = std::log(column.unit), span = greatest - least;
+  const double count = std::min(1 + std::floor(span / apart), most);
+  std::vector<double> centers;
+  for (double c = 0; c < count; ++c) centers.push_back(count == 1 ? 0 : least - middle + (c + 0.5) / count * span);
+  const bool first_known = noise.components[column.first].known, second_known = noise.components[column.second].known;
+  if ((first_known && column.estimated > centers.back() + apart) ||
+      (second_known && column.estimated < centers.front() - apart))
+    centers.push_back(column.estimated);
+  return centers;
+}
 
 std::vector<TwoKinds> columns_of_two_kinds(const VarianceComponents& noise, const Uncertainty& sure) {
   // Degrees from which on the expansion is good: of 50 and 100 rows 95 of 100 of its intervals hold the truth.
   constexpr double enough = 45;
   std::vector<TwoKinds> columns;
   for (std::size_t g = 0; g < noise.groups; ++g) {
-    double sum = 0, count = 0;
-    std::size_t first = 0, second = 0;
+    std::vector<double> logarithms;
+    TwoKinds column{};
+    double sum = 0;
     for (const VarianceRow& row : noise.rows) {
       const auto& [one, other] = row.shares;
       if (row.group != g || !row.counts || one.component == other.component || !(one.factor * other.factor > 0))
         continue;
-      sum += std::log(one.factor / other.factor), count += 1;
-      first = one.component, second = other.component;
+      logarithms.push_back(std::log(one.factor / other.factor));
+      sum += logarithms.back();
+      column.first = one.component, column.second = other.component;
     }
-    if (count == 0 || sure.group_degrees[g] >= enough) continue;
-    if (noise.components[first].known && noise.components[second].known) continue;
-    const double unit = std::exp(sum / count), one = noise.components[first].variance;
-    const double other = noise.components[second].variance / unit;
-    columns.push_back({first, second, unit, one + other > 0 ? other / (one + other) : 0.5});
+    if (logarithms.empty() || sure.group_degrees[g] >= enough) continue;
+    const VarianceComponent &first = noise.components[column.first], &second = noise.components[column.second];
+    if (first.known && second.known) continue;
+    column.unit = std::exp(sum / static_cast<double>(logarithms.size()));
+    constexpr double farthest = 650;  // a number, where one of them is none
+    const double ratio = std::log(second.variance) - std::log(first.variance) - std::log(column.unit);
+    column.estimated = std::isnan(ratio) ? 0 : std::clamp(ratio, -farthest, farthest);
+    column.centers = centers_of(std::move(logarithms), column, noise);
+    columns.push_back(std::move(column));
   }
   return columns;
+}
+
+/// The parts of the first and of the second of a ratio's logarithm.
+std::pair<double, double> parts_of(double ratio) {
+  return {1 / (1 + std::exp(ratio)), 1 / (1 + std::exp(-ratio))};
 }
 
 /// What is known of the unknowns where the ratios are given.
 struct AtRatios {
   double logarithm = -std::numeric_limits<double>::infinity();  // of the restricted likelihood
   std::vector<double> logarithms_of_prior;                      // of each ratio's logarithm
-  Column shift, deviation, degrees;                             // of the unknowns from the estimate
+  GivenRatios known;
 };
 
 class Ratios {
@@ -69,10 +102,9 @@ class Ratios {
     determined_ = full.rightCols(m - null.cols());
   }
 
-  AtRatios at(const std::vector<double>& parts) const {
+  AtRatios at(const std::vector<double>& ratios) const {
     VarianceComponents given = noise_;
-    for (std::size_t c = 0; c < columns_.size(); ++c) join(columns_[c], parts[c], given);
-    AtRatios result;
+    for (std::size_t c = 0; c < columns_.size(); ++c) join(columns_[c], ratios[c], given);
     const auto m = static_cast<Index>(sizes_.size());
     std::vector<double> off(residuals_.begin(), residuals_.end());
     Column step = Column::Zero(m);
@@ -89,42 +121,56 @@ class Ratios {
       if (same) break;
       estimate_variances(given, off, jacobian_, Loss::squares);
     }
-    const Uncertainty sure = uncertainty(given, off, jacobian_, Loss::squares, sizes_, accuracy_);
-    result.shift = step;
-    result.deviation = result.degrees = Column::Zero(m);
-    for (Index u = 0; u < m; ++u) {
-      const auto i = static_cast<std::size_t>(u);
-      result.deviation[u] = std::sqrt(sure.determined_covariance[i * (sizes_.size() + 1)]);
-      result.degrees[u] = sure.degrees[i];
-    }
-    result.logarithm = likelihood_of(given, off);
-    result.logarithms_of_prior = priors_of(parts, given);
+    Uncertainty sure = uncertainty(given, off, jacobian_, Loss::squares, sizes_, accuracy_);
+    const VarianceComponents both = split(ratios, given);
+    AtRatios result{.logarithm = likelihood_of(given, off),
+                    .logarithms_of_prior = priors_of(both),
+                    .known = {.shift = {step.begin(), step.end()},
+                              .covariance = std::move(sure.determined_covariance),
+                              .degrees = std::move(sure.degrees),
+                              .group_degrees = std::move(sure.group_degrees),
+                              .variances_of_components = {}}};
+    for (const VarianceComponent& component : both.components)
+      result.known.variances_of_components.push_back(component.variance);
     return result;
   }
 
   const std::vector<TwoKinds>& columns() const { return columns_; }
 
  private:
-  /// The column's noise as one component, of which the part `part` is of the second kind.
-  static void join(const TwoKinds& column, double part, VarianceComponents& noise) {
+  /// The column's noise as one component that has both parts.
+  static void join(const TwoKinds& column, double ratio, VarianceComponents& noise) {
+    const auto [part, other_part] = parts_of(ratio);
     VarianceComponent& first = noise.components[column.first];
     VarianceComponent& second = noise.components[column.second];
-    const double one = first.variance / (1 - part), other = second.variance / (column.unit * part);
     for (VarianceRow& row : noise.rows) {
       auto& [constant, relative] = row.shares;
       if (row.group == prior_group || constant.component != column.first || relative.component != column.second)
         continue;
-      constant.factor = (1 - part) * constant.factor + part * column.unit * relative.factor;
+      constant.factor = part * constant.factor + other_part * column.unit * relative.factor;
       relative.factor = 0;
     }
     const bool known = first.known || second.known;
-    first = {.variance = first.known    ? one
-                         : second.known ? other
+    first = {.variance = first.known    ? first.variance / part
+                         : second.known ? second.variance / (column.unit * other_part)
                                         : first.variance + second.variance / column.unit,
              .known = known,
              .least = std::max(first.least, second.least / column.unit)};
     first.variance = std::max(first.variance, first.least);
     second.known = true;
+  }
+
+  /// The variances that were joined, each by itself again.
+  VarianceComponents split(const std::vector<double>& ratios, const VarianceComponents& given) const {
+    VarianceComponents both = noise_;
+    for (std::size_t k = 0; k < both.components.size(); ++k) both.components[k].variance = given.components[k].variance;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const auto [part, other_part] = parts_of(ratios[c]);
+      const double all = given.components[columns_[c].first].variance;
+      both.components[columns_[c].first].variance = all * part;
+      both.components[columns_[c].second].variance = all * other_part * columns_[c].unit;
+    }
+    return both;
   }
 
   /// Where the least squares with these variances are, from where the fit is.
@@ -152,14 +198,7 @@ class Ratios {
 
   /// The root of the information about each ratio's logarithm: one over its deviation, with all other variances
   /// unknown.
-  std::vector<double> priors_of(const std::vector<double>& parts, const VarianceComponents& given) const {
-    VarianceComponents both = noise_;
-    for (std::size_t k = 0; k < both.components.size(); ++k) both.components[k].variance = given.components[k].variance;
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      const double all = given.components[columns_[c].first].variance;
-      both.components[columns_[c].first].variance = all * (1 - parts[c]);
-      both.components[columns_[c].second].variance = all * parts[c] * columns_[c].unit;
-    }
+  std::vector<double> priors_of(const VarianceComponents& both) const {
     const std::vector<double> covariance =
         uncertainty(both, residuals_, jacobian_, Loss::squares, sizes_, accuracy_).logarithms_covariance;
     std::vector<std::size_t> place(both.components.size(), prior_group);
@@ -187,39 +226,59 @@ class Ratios {
 
 struct Mixed {
   std::vector<AtRatios> at;
-  std::vector<double> weights;
+  std::vector<double> weights;  // not numbers where nothing is likely
 };
 
 /// Of logarithms, so that the sum is 1.
 std::vector<double> normalized(std::vector<double> logarithms) {
-  const double most = *std::ranges::max_element(logarithms);
-  double sum = 0;
+  double most = -std::numeric_limits<double>::infinity(), sum = 0;
+  for (const double x : logarithms)
+    if (std::isfinite(x)) most = std::max(most, x);
   for (double& x : logarithms) sum += x = std::isfinite(x) ? std::exp(x - most) : 0;
   for (double& x : logarithms) x /= sum;
   return logarithms;
 }
 
-/// sin^2 of even angles: close to either end a kind of noise has no say, and the part of it is seen by its root.
-std::vector<double> places(std::size_t count) {
-  std::vector<double> result;
-  for (std::size_t k = 0; k < count; ++k)
-    result.push_back(
-        std::pow(std::sin(std::numbers::pi / 2 * (static_cast<double>(k) + 0.5) / static_cast<double>(count)), 2));
+struct Place {
+  double ratio, density;
+};
+
+/// Places at even steps of the mean of (2/pi) arctan e^((ratio - center)/2). Of one center these are even angles, by
+/// whose sin^2 the second kind takes part: close to either end a kind of noise has no say, and its part is seen by its
+/// root.
+std::vector<Place> places(const TwoKinds& column, std::size_t count_of_one) {
+  const auto& centers = column.centers;
+  const auto share = [&](double ratio) {
+    double sum = 0;
+    for (const double center : centers) sum += 2 / std::numbers::pi * std::atan(std::exp((ratio - center) / 2));
+    return sum / static_cast<double>(centers.size());
+  };
+  const std::size_t count = centers.size() == 1 ? count_of_one : count_of_one * centers.size() / 2;
+  std::vector<Place> result;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double wanted = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+    constexpr double beyond = 40;
+    double low = std::ranges::min(centers) - beyond, high = std::ranges::max(centers) + beyond;
+    constexpr int halvings = 60;
+    for (int i = 0; i < halvings; ++i) (share((low + high) / 2) < wanted ? low : high) = (low + high) / 2;
+    double density = 0;
+    for (const double center : centers) density += 1 / std::cosh((low - center) / 2);
+    result.push_back({low, density});
+  }
   return result;
 }
 
 /// One ratio is integrated over its places.
-Mixed mixed_over(const Ratios& ratios, std::size_t column, const std::vector<double>& parts,
+Mixed mixed_over(const Ratios& ratios, std::size_t column, const std::vector<Place>& places,
                  const std::vector<double>& at) {
   Mixed result;
   std::vector<double> logarithms;
-  for (const double part : parts) {
+  for (const Place& place : places) {
     std::vector<double> here = at;
-    here[column] = part;
+    here[column] = place.ratio;
     result.at.push_back(ratios.at(here));
-    // d log(part/(1 - part)) = 2 d angle/root(part (1 - part))
     logarithms.push_back(result.at.back().logarithm + result.at.back().logarithms_of_prior[column] -
-                         std::log(part * (1 - part)) / 2);
+                         std::log(place.density));
   }
   result.weights = normalized(std::move(logarithms));
   return result;
@@ -230,14 +289,16 @@ Mixed mixed_over(const Ratios& ratios, std::size_t column, const std::vector<dou
 /// together.
 Mixed mixed_over_all(const Ratios& ratios) {
   const std::size_t columns = ratios.columns().size();
-  const std::vector<double> parts = places(columns == 1 ? 48 : 16);
+  std::vector<std::vector<Place>> places_of;
   std::vector<double> estimated;
-  for (const TwoKinds& column : ratios.columns())
-    estimated.push_back(
-        *std::ranges::min_element(parts, {}, [&](double part) { return std::abs(part - column.estimated); }));
-  if (columns == 1) return mixed_over(ratios, 0, parts, estimated);
+  for (const TwoKinds& column : ratios.columns()) {
+    places_of.push_back(places(column, columns == 1 ? 48 : 16));
+    const auto far = [&](const Place& place) { return std::abs(place.ratio - column.estimated); };
+    estimated.push_back(std::ranges::min_element(places_of.back(), {}, far)->ratio);
+  }
+  if (columns == 1) return mixed_over(ratios, 0, places_of[0], estimated);
   std::vector<std::vector<double>> alone;
-  for (std::size_t c = 0; c < columns; ++c) alone.push_back(mixed_over(ratios, c, parts, estimated).weights);
+  for (std::size_t c = 0; c < columns; ++c) alone.push_back(mixed_over(ratios, c, places_of[c], estimated).weights);
   double root = 1;
   for (int k = 0; k < 50; ++k) root = std::pow(1 + root, 1 / static_cast<double>(columns + 1));
   constexpr std::size_t draws = 128;
@@ -250,9 +311,9 @@ Mixed mixed_over_all(const Ratios& ratios) {
       step /= root;
       const double share = std::fmod(0.5 + static_cast<double>(i + 1) * step, 1);
       std::size_t k = 0;
-      for (double sum = alone[c][0]; sum < share && k + 1 < parts.size(); sum += alone[c][k]) ++k;
-      here[c] = parts[k];
-      logarithm -= std::log(alone[c][k]) + std::log(parts[k] * (1 - parts[k])) / 2;
+      for (double sum = alone[c][0]; sum < share && k + 1 < alone[c].size(); sum += alone[c][k]) ++k;
+      here[c] = places_of[c][k].ratio;
+      logarithm -= std::log(alone[c][k]) + std::log(places_of[c][k].density);
     }
     result.at.push_back(ratios.at(here));
     for (const double prior : result.at.back().logarithms_of_prior) logarithm += prior;
@@ -262,41 +323,61 @@ Mixed mixed_over_all(const Ratios& ratios) {
   return result;
 }
 
-/// How likely the unknown is within `half` of the estimate.
-double probability_within(const Mixed& mixed, Index unknown, double half) {
+/// How likely it is within `half` of zero.
+double probability_within(std::span<const ShiftedT> mixture, double half) {
   constexpr double many = 1e9;
   double sum = 0;
-  for (std::size_t k = 0; k < mixed.at.size(); ++k) {
-    const AtRatios& at = mixed.at[k];
-    if (!(mixed.weights[k] > 0)) continue;
-    const double degrees = std::min(at.degrees[unknown], many), s = at.deviation[unknown], off = at.shift[unknown];
-    sum += mixed.weights[k] *
-           (student_t_probability((half - off) / s, degrees) - student_t_probability((-half - off) / s, degrees));
+  for (const ShiftedT& t : mixture) {
+    const double degrees = std::min(t.degrees, many);
+    sum += t.weight * (student_t_probability((half - t.shift) / t.deviation, degrees) -
+                       student_t_probability((-half - t.shift) / t.deviation, degrees));
   }
   return sum;
 }
 
+/// Those that have a say.
+std::vector<GivenRatios> likely(Mixed mixed) {
+  constexpr double nothing = 1e-9;
+  std::vector<GivenRatios> result;
+  for (std::size_t k = 0; k < mixed.at.size(); ++k) {
+    if (!(mixed.weights[k] > nothing)) continue;
+    result.push_back(std::move(mixed.at[k].known));
+    result.back().weight = mixed.weights[k];
+  }
+  return result;
+}
+
 }  // namespace
+
+double half_width_of(std::span<const ShiftedT> mixture, double guess) {
+  namespace policies = boost::math::policies;
+  using Quiet = policies::policy<policies::evaluation_error<policies::ignore_error>>;
+  const auto lacking = [&](double half) { return probability_within(mixture, half) - interval_confidence; };
+  constexpr double farthest = 1e18, widening = 1.5, exact = 1e-5;
+  if (!(lacking(farthest * guess) >= 0)) return std::nan("");
+  std::uintmax_t most_evaluations = 200;
+  return boost::math::tools::bracket_and_solve_root(
+             lacking, guess, widening, true, [](double low, double high) { return high - low <= exact * high; },
+             most_evaluations, Quiet())
+      .second;
+}
 
 void widen_by_ratios(Uncertainty& sure, const VarianceComponents& noise, std::span<const double> residuals,
                      std::span<const double> jacobian, std::span<const double> sizes, double accuracy) {
   std::vector<TwoKinds> columns = columns_of_two_kinds(noise, sure);
   if (columns.empty()) return;
-  const Mixed mixed = mixed_over_all(Ratios(noise, residuals, jacobian, sizes, accuracy, std::move(columns)));
-  for (std::size_t u = 0; u < sizes.size(); ++u) {
-    const auto i = static_cast<Index>(u);
-    const double deviation = std::sqrt(sure.determined_covariance[u * (sizes.size() + 1)]);
+  sure.ratios = likely(mixed_over_all(Ratios(noise, residuals, jacobian, sizes, accuracy, std::move(columns))));
+  sure.ratios_failed = sure.ratios.empty();
+  for (std::size_t u = 0; u < sizes.size() && !sure.ratios_failed; ++u) {
+    const std::size_t diagonal = u * (sizes.size() + 1);
+    const double deviation = std::sqrt(sure.determined_covariance[diagonal]);
     if (!(deviation > 0) || !std::isfinite(sure.factors[u])) continue;
-    double low = 0, high = sure.factors[u] * deviation;
-    constexpr int most_doublings = 60;
-    for (int k = 0; k < most_doublings && probability_within(mixed, i, high) < interval_confidence; ++k) high *= 2;
-    if (!(probability_within(mixed, i, high) >= interval_confidence)) continue;
-    constexpr double exact = 1e-5;
-    while (high - low > exact * high) {
-      const double middle = (low + high) / 2;
-      (probability_within(mixed, i, middle) < interval_confidence ? low : high) = middle;
-    }
-    sure.factors[u] = high / deviation;
+    std::vector<ShiftedT> mixture;
+    for (const GivenRatios& given : sure.ratios)
+      mixture.push_back({given.weight, given.shift[u], std::sqrt(given.covariance[diagonal]), given.degrees[u]});
+    const double half = half_width_of(mixture, sure.factors[u] * deviation);
+    sure.ratios_failed = std::isnan(half);
+    if (!sure.ratios_failed) sure.factors[u] = half / deviation;
   }
 }
 

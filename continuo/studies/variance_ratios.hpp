@@ -16,8 +16,18 @@
 
 namespace continuo::studies::detail {
 
-/// Sets the factors of `sure` where columns have two components that are not both known, and few enough rows for that
-/// to matter. Residuals are those of the fit, of squares, the variances those of restricted likelihood.
+/// Student's t about `shift` times `deviation`, as likely as `weight` says.
+struct ShiftedT {
+  double weight, shift, deviation, degrees;
+};
+
+/// Half the interval about zero that holds 95 % of such a mixture; not a number where there is none. `guess` is
+/// positive and about as large.
+double half_width_of(std::span<const ShiftedT> mixture, double guess);
+
+/// Sets the factors and the ratios of `sure`, or says that it failed, where columns have two components that are not
+/// both known, and few enough rows for that to matter. Residuals are those of the fit, of squares, the variances those
+/// of restricted likelihood.
 void widen_by_ratios(Uncertainty& sure, const VarianceComponents& noise, std::span<const double> residuals,
                      std::span<const double> jacobian, std::span<const double> sizes, double accuracy);
 

@@ -1,5 +1,6 @@
 // What every study says of a question that has no answer: each bad question is put to every verb it can be put to.
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -200,6 +201,81 @@ TEST(BadStudies, ConvergeOfWhatHasNoReference) {
   const Result result = folder.run("converge blow.sim --methods rk4");
   EXPECT_EQ(result.exit, 3);
   EXPECT_THAT(result.err, HasSubstr("there is no reference run"));
+}
+
+/// Commands that cannot be meant, each with what is said of it.
+void expect_refused(const Shell& shell, const std::vector<std::pair<std::string, std::string>>& commands) {
+  for (const auto& [command, said] : commands) {
+    const Result result = shell.run(command);
+    EXPECT_EQ(result.exit, 1) << command << "\n" << result.out;
+    EXPECT_THAT(result.err, HasSubstr(said)) << command;
+    EXPECT_EQ(result.out, "") << command;
+  }
+}
+
+TEST(BadStudies, NoRelativeToleranceIsOneOrMore) {
+  const Folder folder;
+  folder.write("at_both.sim", "param p = 1 in 0..3\nu'' = -p*u\nu(0) = 0; u(1) = 1\nrun 0..1\n");
+  const std::string why = "a relative tolerance is a part of the state's size, less than 1";
+  expect_refused(folder, {{"run good.sim --tol 2", why},
+                          {"run good.sim --tol x=1", why},
+                          {"run at_both.sim --family p=0..2 --tol 2", why},
+                          {"sense good.sim --param k --tol 2", why},
+                          {"orbit good.sim --tol 2", "no number from 1e-14 to less than 1"},
+                          {"orbit good.sim --tol 1e-30", "no number from 1e-14 to less than 1"}});
+  folder.write("loose.sim", "x' = -x\nx(0) = 1\nrun 0..1 tol 2\n");
+  const Result written = folder.run("check loose.sim");
+  EXPECT_EQ(written.exit, 2);
+  EXPECT_THAT(written.err, HasSubstr(why));
+  EXPECT_EQ(folder.run("run good.sim --atol 2").exit, 0);  // in the unit of the state
+}
+
+TEST(BadStudies, StepsAlongABranchLieWithinItsRange) {
+  const Folder folder;
+  folder.write("fold.sim", "param r = 1 in -1..2\nx' = r - x^2\nx(0) = 0.5\nrun 0..10\n");
+  for (const std::string& verb : {std::string("steady"), std::string("orbit")}) {
+    const std::string along = verb + " fold.sim --along r=-1..2 ";
+    expect_refused(folder, {{along + "--ds 2", "--ds is 2: a step is a part of the range, at most 1"},
+                            {along + "--ds-max 5", "--ds-max is 5: a step is a part of the range, at most 1"},
+                            {along + "--ds 1e-9", "--ds-min is 1e-07, and --ds is less, 1e-09"},
+                            {along + "--ds-max 1e-12", "--ds-min is 1e-07, and --ds-max is less, 1e-12"},
+                            {along + "--ds-min 0.5", "--ds-min is 0.5, and --ds-max is less, 0.05"}});
+  }
+  EXPECT_EQ(folder.run("steady fold.sim --along r=-1..2 --ds 0.2").exit, 0);
+}
+
+TEST(BadStudies, AnEmptyTextIsNoValueOfAnOption) {
+  const Folder folder;
+  for (const std::string& asked : {std::string("run good.sim -o ''"), std::string("run good.sim --family ''"),
+                                   std::string("steady good.sim --along ''"), std::string("steady good.sim --mode ''"),
+                                   std::string("orbit good.sim --along k=1..4 --ds ''"),
+                                   std::string("explore good.sim --plot ''"), std::string("sense good.sim --param ''"),
+                                   std::string("fit good.sim data.csv --param k --loss ''"), std::string("run ''")}) {
+    const Result result = folder.run(asked);
+    EXPECT_EQ(result.exit, 1) << asked;
+    EXPECT_THAT(result.err, HasSubstr("a value is missing")) << asked;
+  }
+}
+
+TEST(BadStudies, WhatHasNoPartIsRefusedAndNotPassedOver) {
+  const Folder folder;
+  folder.write("at_both.sim", "param p = 1 in 0..3\nu'' = -p*u\nu(0) = 0; u(1) = 1\nrun 0..1\n");
+  const std::string family = "run at_both.sim --family p=0..2 ";
+  expect_refused(folder,
+                 {{family + "--events e.csv", "there is no --events: leave it out"},
+                  {family + "--manifest m.json", "there is no --manifest: leave it out"},
+                  {family + "--estimate-error", "there is no --estimate-error: leave it out"},
+                  {family + "--output 0.1", "there is no --output: leave it out"},
+                  {"steady good.sim --of x", "--of requires --along"},
+                  {"steady good.sim --box x=0..1 --box x=0..2", "--box x=0..2: `x` is given twice"},
+                  {"sense good.sim --param k,k", "`k` is named twice"},
+                  {"sense good.sim --initial x,x", "`x(0)` is named twice"},
+                  {"sense good.sim --param k --of rest --until 3", "--of rest takes --param and --json alone"},
+                  {"sense good.sim --param k --of period --output 1", "--of period takes --param and --json alone"},
+                  {"orbit good.sim --period 0", "--period: 0 is no number above 0"},
+                  {"orbit good.sim --period nan", "--period: nan is no number above 0"}});
+  folder.write("fold.sim", "param r = 1 in -1..2\nx' = r - x^2\nx(0) = 0.5\nrun 0..10\n");
+  expect_refused(folder, {{"steady fold.sim --along r=-1..2 --of nope", "there is no state `nope`"}});
 }
 
 TEST(Fit, CtrlCKeepsWhatWasFound) {

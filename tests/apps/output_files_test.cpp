@@ -95,6 +95,28 @@ TEST(Options, OfAFitThatContradictEachOtherAreRefused) {
   EXPECT_THAT(refusal("--column x=-"), HasSubstr("data.csv:1: no column is left"));
   EXPECT_THAT(refusal("--error x=constant --sigma x=5%"), HasSubstr("`constant` was asked for"));
   EXPECT_THAT(shell.run("fit decay.sim . --param k").err, HasSubstr("it is a folder"));
+  EXPECT_THAT(refusal("--prior 'k=normal(nan, 1)'"), HasSubstr("is not NAME=normal(MEAN, DEVIATION)"));
+  const Result twice = shell.run("fit decay.sim data.csv ./data.csv --param k");
+  EXPECT_EQ(twice.exit, 1);
+  EXPECT_THAT(twice.err, HasSubstr("./data.csv is given twice"));
+}
+
+// gnuplot says nothing of a full disk and ends well: /dev/full stands where it writes a picture.
+TEST(OutputFiles, PicturesThatDoNotFitOnTheDiskAreNoPictures) {
+  const Shell shell;
+  shell.write("ball.sim", "h'' = -9.81\nh(0) = 1; h'(0) = 0\nrun 0..0.4 output 0.1\n");
+  const std::string record = "view ball.sim --record p --until 0.2 --fps 10";
+  ASSERT_EQ(shell.run(record).exit, 0);
+  const std::string first = shell.read("p/00001.png"), second = shell.read("p/00002.png");
+  ASSERT_GT(second.size(), 1000u);
+  shell.call("ln -s /dev/full p/00002.png.part");
+  const Result full = shell.run(record);
+  EXPECT_EQ(full.exit, 1);
+  EXPECT_THAT(full.err,
+              HasSubstr("cannot write p/00002.png whole: the disk may be full; those up to 00001.png are there"));
+  EXPECT_EQ(shell.read("p/00001.png"), first);
+  EXPECT_EQ(shell.read("p/00002.png"), second);  // what was there is not lost
+  EXPECT_EQ(shell.call("ls p/*.part").out, "");
 }
 
 }  // namespace

@@ -250,7 +250,24 @@ TEST(Steady, HoldsWhatIsConserved) {  // a + b = total, at rest a = total / 3
   for (const auto& point : found["branches"][0]["points"])
     EXPECT_NEAR(point["x"][0].get<double>(), point["total"].get<double>() / 3, 1e-9);
   EXPECT_THAT(shell.run("sense pair.sim --of rest --param total").out, HasSubstr("0.333333"));
-  EXPECT_THAT(shell.run("explore pair.sim").out, HasSubstr("a + b stays 3"));
+  EXPECT_THAT(shell.run("explore pair.sim").out, HasSubstr("kept     a + b = 3\nrests"));
+}
+
+TEST(Steady, SaysEverywhereThatEventsMayChangeWhatIsConserved) {
+  const Shell shell;
+  const std::string equations = "param total = 3\na' = b - 2*a\nb' = 2*a - b\na(0) = total; b(0) = 0\nrun 0..10\n";
+  shell.write("pair.sim", equations);
+  shell.write("fed.sim", equations + "when a falls through 0.5 { a := a + 1 }\n");
+  const std::string said = "by the equations; events that change it are not looked at\n";
+  EXPECT_THAT(shell.run("steady fed.sim").out, HasSubstr("conserved: a + b = 3\n           " + said));
+  EXPECT_THAT(shell.run("explore fed.sim").out, HasSubstr("kept     a + b = 3\n         " + said));
+  for (const std::string& verb : {std::string("steady"), std::string("explore")}) {
+    const auto with = nlohmann::json::parse(shell.run(verb + " fed.sim --json").out);
+    EXPECT_EQ(with["events_may_change_conserved"], true) << verb;
+    EXPECT_EQ(with["conserved"][0]["value"], 3) << verb;
+    const auto without = nlohmann::json::parse(shell.run(verb + " pair.sim --json").out);
+    EXPECT_EQ(without["events_may_change_conserved"], false) << verb;
+  }
 }
 
 TEST(Orbit, ABranchWithItsTableAndPicture) {

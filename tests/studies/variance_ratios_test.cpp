@@ -1,7 +1,8 @@
 // Intervals where the ratio of two variances is not known: against integrals in plain sums.
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -48,27 +49,29 @@ double half_width(const Constant& constant) {
 }
 
 /// The probability of the constant's being within `half` of `middle`: Student's t for each part w of the second kind,
-/// weighted by restricted likelihood and the root of the information about w, tr(P D P D)/2 - (tr P D)^2/(2 (n - 1)).
+/// weighted by restricted likelihood and the root of the information about log w, tr(P D P D)/2 - (tr P D)^2/(2 (n -
+/// 1)).
 double probability(const std::vector<double>& factors, double middle, double half) {
-  constexpr int many = 2000;
+  constexpr int many = 6000;
+  constexpr double farthest = 60;  // of the ratio's logarithm
   const auto n = static_cast<Eigen::Index>(measured.size());
   const double degrees = static_cast<double>(n) - 1;
   double all = 0, within = 0;
   for (int k = 0; k < many; ++k) {
-    const double angle = std::numbers::pi / 2 * (k + 0.5) / many, w = std::pow(std::sin(angle), 2);
+    const double ratio = std::exp(farthest * (2 * (k + 0.5) / many - 1)), w = ratio / (1 + ratio);
     Eigen::VectorXd v(n), d(n), y(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const double factor = factors[static_cast<std::size_t>(i)];
-      v[i] = 1 - w + w * factor, d[i] = factor - 1, y[i] = measured[static_cast<std::size_t>(i)];
+      v[i] = 1 / (1 + ratio) + w * factor, d[i] = factor, y[i] = measured[static_cast<std::size_t>(i)];
     }
     const Eigen::VectorXd u = v.cwiseInverse();
     const Eigen::MatrixXd inverse = u.asDiagonal();
     const Eigen::MatrixXd p = inverse - u * u.transpose() / u.sum();
-    const Eigen::MatrixXd pd = p * d.asDiagonal();
+    const Eigen::MatrixXd pd = w * p * d.asDiagonal();  // d v/d log w at the same constant part
     const double information = (pd * pd).trace() - std::pow(pd.trace(), 2) / degrees;
     const double mean = u.dot(y) / u.sum(), squares = (y.array() - mean).square().matrix().dot(u);
     const double likelihood = std::pow(v.prod() * u.sum(), -0.5) * std::pow(squares, -degrees / 2);
-    const double weight = likelihood * std::sqrt(information) * std::sin(2 * angle);
+    const double weight = likelihood * std::sqrt(std::max(information, 0.0));
     const double s = std::sqrt(squares / degrees / u.sum());
     all += weight;
     within += weight * (student_t_probability((middle + half - mean) / s, degrees) -
@@ -87,12 +90,45 @@ TEST(VarianceRatios, AreNothingWhereAllRowsAreAlike) {
 }
 
 TEST(VarianceRatios, AreIntegratedOver) {
-  for (const std::vector<double>& factors :
-       {std::vector{0.2, 0.5, 1.0, 2.0, 5.0}, {9.0, 0.1, 3.0, 1.0, 0.4}, {1.0, 1.0, 1.0, 1.0, 30.0}}) {
+  for (const std::vector<double>& factors : {std::vector{0.2, 0.5, 1.0, 2.0, 5.0},
+                                             {9.0, 0.1, 3.0, 1.0, 0.4},
+                                             {1.0, 1.0, 1.0, 1.0, 30.0},
+                                             {1e-6, 1e-3, 1.0, 1e3, 1e6},
+                                             {1e-9, 1e-9, 1.0, 1.0, 1e9}}) {
     const Constant constant(factors);
     // A tenth of a percent is what 48 places of a smooth density leave.
     EXPECT_NEAR(probability(factors, constant.mean(), half_width(constant)), 0.95, 1e-3);
   }
+}
+
+// Where one of the two is known and next to nothing, the other one is all there is: Student's t again.
+TEST(VarianceRatios, AreWhereTheLikelihoodIsThoughOneVarianceIsKnownToBeTiny) {
+  for (const double known : {1e-120, 1e-24, 1e-12, 1e-6}) {
+    Constant constant({1, 1, 1, 1, 1});
+    constant.noise.components = {{.variance = known, .known = true}, {.variance = 0.1}};
+    for (int round = 0; round < 50; ++round)
+      estimate_variances(constant.noise, constant.off, constant.rows, Loss::squares);
+    double squares = 0;
+    for (const double off : constant.off) squares += off * off;
+    const double expected = student_t_quantile(0.95, 4) * std::sqrt(squares / 4 / 5);
+    EXPECT_NEAR(half_width(constant), expected, 1e-3 * expected) << known;
+  }
+}
+
+// Where no ratio is likely at all, factors stay what they were, and that is said.
+TEST(VarianceRatios, SayWhereTheyCannotBeIntegratedOver) {
+  Constant constant({0.2, 0.5, 1, 2, 5});
+  const std::vector<double> sizes{1};
+  Uncertainty sure = uncertainty(constant.noise, constant.off, constant.rows, Loss::squares, sizes);
+  Uncertainty good = sure;
+  detail::widen_by_ratios(good, constant.noise, constant.off, constant.rows, sizes, 1e-12);
+  EXPECT_FALSE(good.ratios_failed);
+  EXPECT_FALSE(good.ratios.empty());
+  constant.off[2] = std::numeric_limits<double>::quiet_NaN();
+  const double before = sure.factors[0];
+  detail::widen_by_ratios(sure, constant.noise, constant.off, constant.rows, sizes, 1e-12);
+  EXPECT_TRUE(sure.ratios_failed);
+  EXPECT_EQ(sure.factors[0], before);
 }
 
 }  // namespace
