@@ -29,18 +29,19 @@ class HomoclinicFollower {
       : system_(system), options_(options), steps_(system, options), covered_(options) {}
 
   OrbitCurve from(const OrbitMark& start);
+  /// What a place where this test is zero is; nothing where the zero is none.
+  static std::optional<OrbitDegeneracy> kind_of(HomoclinicTest test, const HomoclinicPlace& place);
 
  private:
   OrbitCurveEnd followed(OrbitCurve& curve, const HomoclinicPlace& from, double direction);
   struct Found {
     double at;
     OrbitDegeneracy kind;
+    HomoclinicTest test;
     HomoclinicPlace place;
   };
   /// All that lies between two neighbours, in the order of the curve.
   std::vector<Found> found_between(const HomoclinicPlace& a, const HomoclinicPlace& b, double step);
-  /// What a place where this test is zero is; nothing where the zero is none.
-  static std::optional<OrbitDegeneracy> kind_of(HomoclinicTest test, const HomoclinicPlace& place);
   double size_of(const OrbitCurvePoint& point);
 
   const ParametricSystem& system_;
@@ -97,7 +98,10 @@ OrbitCurveEnd HomoclinicFollower::followed(OrbitCurve& curve, const HomoclinicPl
     }
     for (Found& found : found_between(here, *next, step)) {
       if (!is_inside(found.place.point, options_)) break;
-      curve.marks.push_back({.kind = found.kind, .at = found.place.point, .next = curve.points.size()});
+      curve.marks.push_back({.kind = found.kind,
+                             .at = found.place.point,
+                             .next = curve.points.size(),
+                             .homoclinic = std::make_shared<HomoclinicMark>(found.place, found.test, system_.advance)});
       if (found.kind != OrbitDegeneracy::saddle_node && found.kind != OrbitDegeneracy::hopf) continue;
       curve.points.push_back(found.place.point);
       return {OrbitCurveEnding::no_saddle, found.kind == OrbitDegeneracy::hopf
@@ -140,7 +144,7 @@ std::vector<HomoclinicFollower::Found> HomoclinicFollower::found_between(const H
     auto place = located_zero([&](double s) { return steps_.stepped(a, s); },
                               [&](const HomoclinicPlace& each) { return each.test(test); }, step, at_a, at_b, at);
     if (!place || !(std::abs(place->test(test)) < exactly_there)) continue;
-    if (const auto kind = kind_of(test, *place)) all.push_back({at, *kind, std::move(*place)});
+    if (const auto kind = kind_of(test, *place)) all.push_back({at, *kind, test, std::move(*place)});
   }
   std::ranges::sort(all, {}, &Found::at);
   return all;
@@ -184,6 +188,10 @@ std::optional<OrbitDegeneracy> HomoclinicFollower::kind_of(HomoclinicTest test, 
 }
 
 }  // namespace
+
+std::optional<OrbitDegeneracy> degeneracy_of(HomoclinicTest test, const HomoclinicPlace& place) {
+  return HomoclinicFollower::kind_of(test, place);
+}
 
 OrbitCurve homoclinic_curve(const ParametricSystem& system, const OrbitMark& start, const OrbitCurveOptions& options) {
   return HomoclinicFollower(system, options).from(start);

@@ -23,6 +23,9 @@ constexpr std::size_t most_homoclinic_intervals = 300, most_to_lengthen = 150;
 constexpr std::size_t most_added_intervals = 30;
 // How far an end may be from the saddle, in sizes, how far it is to be, and where it need not be that near.
 constexpr double ends_within = 1e-4, ends_wished = 1e-5, ends_needless = 1e-7;
+// Next to a saddle-node motions come like 1/t, ever nearer in ever more time; nor need they where that is hardly felt.
+constexpr double slow = 2;  // the rate times the length
+constexpr double slow_ends_within = 1e-2, hardly_felt = 1e-10;
 constexpr double error_at_most = 1000;  // of the error wanted: with which a mesh serves that could not be made better
 constexpr double most_longer = 10;      // times as long, in one go
 constexpr double worth_it = 1.02;       // likewise
@@ -145,6 +148,7 @@ std::optional<HomoclinicPlace> HomoclinicSteps::first(const OrbitMark& mark, std
 bool HomoclinicSteps::move_to(HomoclinicPlace& place, const std::shared_ptr<const OrbitMesh>& mesh, double begin,
                               double end) {
   const std::size_t rest = equations_->rest();
+  if (!equations_->refer_to(place.z, sizes_, scale_)) return false;  // they may be new
   const Eigen::MatrixXd a = equations_->matrix_at(Values(place.z).subspan(rest, n_), Values(place.z).last(2));
   const LinearTail before(a, place.spaces.unstable), after(a, place.spaces.stable);
   const double length_of_old = place.length;
@@ -183,6 +187,8 @@ bool HomoclinicSteps::move_to(HomoclinicPlace& place, const std::shared_ptr<cons
   for (std::size_t j = 0; j < tangent.size(); ++j) tangent[j] *= scale_[j];
   const Vector z = moved(place.z, true);
   tangent = moved(tangent, false);
+  std::vector<Vector> carried;
+  for (const Vector& each : place.carried) carried.push_back(moved(each, false));
   use(mesh, length_of_old * (end - begin));
   measure(z);
   for (std::size_t j = 0; j < tangent.size(); ++j) tangent[j] /= scale_[j];
@@ -190,6 +196,7 @@ bool HomoclinicSteps::move_to(HomoclinicPlace& place, const std::shared_ptr<cons
   auto again = corrected(z, z, tangent, &place);
   if (!again) return false;
   place = std::move(*again);
+  place.carried = std::move(carried);
   return true;
 }
 
@@ -200,6 +207,8 @@ bool HomoclinicSteps::lengthened(HomoclinicPlace& place) {
   const std::size_t rest = equations_->rest();
   const auto missing = [&](double apart, const Eigenspace& space) {
     const double rate = std::abs(space.eigenvalues.front().real());
+    if (rate * place.length < slow && place.point.truncation < hardly_felt)
+      return std::clamp(apart / slow_ends_within - 1, 0.0, most_longer);
     const double wish = apart > ends_within ? std::log(apart / ends_wished) / (rate * place.length) : 0;
     return std::min(wish, most_longer);
   };

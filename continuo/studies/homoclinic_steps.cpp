@@ -140,6 +140,25 @@ std::optional<HomoclinicPlace> HomoclinicSteps::described(Vector z, const Vector
   return place;
 }
 
+void HomoclinicSteps::take_up(const HomoclinicPlace& place, double longest) {
+  stable_ = place.spaces.stable.dimension();
+  longest_ = longest;
+}
+
+std::optional<HomoclinicPlace> HomoclinicSteps::near(const HomoclinicPlace& from, const Vector& guess,
+                                                     const Vector& last) {
+  use(from.mesh, from.length);
+  measure(from.z);
+  return corrected(guess, guess, last, &from);
+}
+
+HomoclinicSteps::Vector HomoclinicSteps::in_sizes(const HomoclinicPlace& at, Vector difference) {
+  use(at.mesh, at.length);
+  measure(at.z);
+  for (std::size_t j = 0; j < difference.size(); ++j) difference[j] /= scale_[j];
+  return difference;
+}
+
 std::optional<HomoclinicPlace> HomoclinicSteps::stepped(const HomoclinicPlace& from, double step) {
   use(from.mesh, from.length);
   measure(from.z);
@@ -149,7 +168,7 @@ std::optional<HomoclinicPlace> HomoclinicSteps::stepped(const HomoclinicPlace& f
   if (!place) return std::nullopt;
   Vector moved(guess.size());
   for (std::size_t j = 0; j < moved.size(); ++j) moved[j] = (place->z[j] - guess[j]) / scale_[j];
-  if (length(moved) > step) return std::nullopt;  // it leapt to elsewhere
+  if (length(moved) > std::abs(step)) return std::nullopt;  // it leapt to elsewhere
   return place;
 }
 
