@@ -241,7 +241,7 @@ std::optional<DegeneratePlace> DegenerateHomoclinicFollower::next_from(Degenerat
     const bool is_coarse = next && next->orbit.error > resolved_well;
     const double cosine = next ? steps_.alike(here, *next) : 0;
     if (next && !is_coarse && cosine > bends_little) return next;
-    // A shorter secant is nearer to the tangent than that of the step before.
+    // A shorter secant is nearer to the tangent than that of the step before, which another mesh may have changed.
     if (next && !is_coarse && cosine > bends_not_back) DegenerateHomoclinicSteps::take_direction(here, *next);
     step /= 2;
     if (step > options_.least_step) continue;

@@ -16,6 +16,7 @@ constexpr double zero_within = 1e-9;                       // along the curve in
 constexpr double first_trial = 1e-4, farthest_zero = 0.1;  // likewise
 constexpr double leaps = 100;                              // times as steep as at the first trial
 constexpr double clearly_faster = 1.5;                     // than the constant that is held
+constexpr double off_at_most = 2;                          // of a step: what is found from what was predicted
 constexpr double probing = 1e-3;                           // of a range: a step to find the direction at the start
 constexpr int most_probes = 4;                             // each a tenth as long as the one before
 
@@ -206,7 +207,7 @@ std::optional<DegeneratePlace> DegenerateHomoclinicSteps::stepped(const Degenera
   if (!place) return std::nullopt;
   Vector moved(place->orbit.z);
   for (std::size_t j = 0; j < moved.size(); ++j) moved[j] -= guess[j];
-  if (length(planes_[held]->steps.in_sizes(from.orbit, std::move(moved))) > step) return std::nullopt;
+  if (length(planes_[held]->steps.in_sizes(from.orbit, std::move(moved))) > off_at_most * step) return std::nullopt;
   set_direction(*place, from, part);
   return place;
 }

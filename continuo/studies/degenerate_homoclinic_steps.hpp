@@ -32,7 +32,7 @@ class DegenerateHomoclinicSteps {
   /// Where the first two constants are the unknowns, with the curve's direction. Nothing where it is not found.
   std::optional<DegeneratePlace> first(const HomoclinicPlace& start);
   /// Predicted along the direction, as far as `step` in sizes; with the direction of the secant. Nothing where none is
-  /// found, or only one that is farther off than the step is long. `from` holds the constant that `fastest` names.
+  /// found, or only one that is much farther off than the step is long. `from` holds the constant that `fastest` names.
   std::optional<DegeneratePlace> stepped(const DegeneratePlace& from, double step);
   /// Between neighbours, so far from the first, of which the second has been found.
   std::optional<DegeneratePlace> between(const DegeneratePlace& a, const DegeneratePlace& b, double part);
