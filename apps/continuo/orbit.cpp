@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <apps/continuo/command_line.hpp>
+#include <apps/continuo/degenerate_curves.hpp>
 #include <apps/continuo/hybrid_orbit.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/long_motion.hpp>
@@ -33,7 +34,8 @@ namespace {
 
 struct OrbitOptions {
   ExperimentOptions experiment;
-  std::string mode, section, along, and_along, of, out, plot;
+  std::string mode, section, along, of, out, plot;
+  std::vector<std::string> and_along;  // once or twice
   std::optional<double> settle;
   double duration = 0, tolerance = 1e-9;
   std::optional<double> forcing;
@@ -130,22 +132,40 @@ bool has_its_outputs(const OrbitOptions& options) {
   return false;
 }
 
+/// What moves, and the names of these parameters in this order.
+struct OrbitRanges {
+  std::optional<NamedRange> first{}, second{}, third{};
+  std::vector<std::string> names{};
+};
+/// Says what is wrong.
+std::optional<OrbitRanges> ranges_of(const OrbitOptions& options) {
+  OrbitRanges ranges;
+  if (options.and_along.size() > 2) {
+    say(fmt::format("--and is there {} times, and curves go through three parameters at most: that of --along and two",
+                    options.and_along.size()));
+    return std::nullopt;
+  }
+  const auto take = [&](std::optional<NamedRange>& range, std::optional<NamedRange> parsed) {
+    range = std::move(parsed);
+    if (range) ranges.names.push_back(range->name);
+    return range.has_value();
+  };
+  if (options.along.empty()) return ranges;
+  if (!take(ranges.first, parse_range(options.along))) return std::nullopt;
+  if (options.and_along.empty()) return ranges;
+  if (!take(ranges.second, parse_second(options.and_along[0], *ranges.first))) return std::nullopt;
+  if (options.and_along.size() < 2) return ranges;
+  if (!take(ranges.third, parse_third(options.and_along[1], {*ranges.first, *ranges.second}))) return std::nullopt;
+  return ranges;
+}
+
 ExitCode orbit(OrbitOptions options) {
   if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps) ||
       !are_apart({options.experiment.file}, {options.out}) || !has_its_outputs(options))
     return usage;
-  std::optional<NamedRange> range, second;
-  std::vector<std::string> constants;
-  if (!options.along.empty()) {
-    range = parse_range(options.along);
-    if (!range) return usage;
-    constants.push_back(range->name);
-  }
-  if (!options.and_along.empty()) {
-    second = parse_second(options.and_along, *range);
-    if (!second) return usage;
-    constants.push_back(second->name);
-  }
+  const auto ranges = ranges_of(options);
+  if (!ranges) return usage;
+  const auto& [range, second, third, constants] = *ranges;
   Studied studied = study(options.experiment, options.mode, constants);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
@@ -168,6 +188,7 @@ ExitCode orbit(OrbitOptions options) {
   if (range)
     return show_orbit_branches(studied, {.range = *range,
                                          .second = second,
+                                         .third = third,
                                          .search = search_of(options),
                                          .hybrid = hybrid ? std::optional(shooting_of(options)) : std::nullopt,
                                          .patient = options.patient,
@@ -226,8 +247,10 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
                     ->type_name("NAME=LOW..HIGH")
                     ->excludes(section)
                     ->excludes(lyapunov);
-  verb->add_option("--and", options->and_along, "Follow what is found on the way while this moves too")
+  verb->add_option("--and", options->and_along,
+                   "Follow what is found on the way while this moves too; once more: degenerate homoclinic orbits")
       ->type_name("NAME=LOW..HIGH")
+      ->allow_extra_args(false)
       ->needs(along);
   verb->add_flag("--from-hopf", options->from_hopf, "Begin where places of rest begin to oscillate")->needs(along);
   verb->add_option("--branches", options->others, "How many branches to follow that begin on others; else 3")

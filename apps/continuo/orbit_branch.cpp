@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <apps/continuo/branch_curves.hpp>
+#include <apps/continuo/degenerate_curves.hpp>
 #include <apps/continuo/interrupt.hpp>
 #include <apps/continuo/orbit_branch.hpp>
 #include <apps/continuo/orbit_curves.hpp>
@@ -294,19 +295,44 @@ nlohmann::json json_of(const std::vector<OrbitBranch>& branches, const model::Mo
   return {{"parameter", range.name}, {"states", states}, {"branches", list}};
 }
 
+/// What is marked on curves in two parameters, in three: the table and the picture are of this.
+ExitCode show_degenerate(const Studied& studied, const std::vector<studies::OrbitCurveOfDiagram>& curves,
+                         const OrbitBranchOptions& options, nlohmann::json& json) {
+  const model::Model& model = studied.prepared.program->model;
+  const NamedSpace space{options.range, *options.second, *options.third};
+  const auto degenerate = app::curves_of(studied, curves, space, options.steps);
+  if (options.json) {
+    json["three"] = app::json_of(degenerate, space);
+    print(json.dump(2) + "\n");
+  } else {
+    print(app::text_of(degenerate, space));
+  }
+  if (!options.out.empty()) {
+    const std::string csv = app::csv_of(degenerate, model, space);
+    if (options.out == "-") {
+      print(csv);
+    } else if (!written(results::write_file(options.out, csv)))
+      return usage;
+  }
+  if (!options.plot.empty() && !draw(degenerate, model, space, options.plot)) return usage;
+  return interrupt_flag() ? interrupted : done;
+}
+
 /// The branches, which are shown before, in both parameters.
 ExitCode show_curves(const Studied& studied, const std::vector<OrbitBranch>& branches,
                      const OrbitBranchOptions& options) {
   const model::Model& model = studied.prepared.program->model;
   const NamedPlane plane{options.range, *options.second};
   const auto curves = curves_of(studied, branches, plane, options.steps);
+  nlohmann::json json;
   if (options.json) {
-    nlohmann::json json = json_of(branches, model, options.range);
+    json = json_of(branches, model, options.range);
     json.update(app::json_of(curves, plane));
-    print(json.dump(2) + "\n");
+    if (!options.third) print(json.dump(2) + "\n");
   } else {
     print(text_of(curves, plane));
   }
+  if (options.third) return show_degenerate(studied, curves, options, json);
   if (!options.out.empty()) {
     const std::string csv = app::csv_of(curves, model, plane);
     if (options.out == "-") {
@@ -342,6 +368,7 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
     return usage;
   }
   if (options.second && !is_plane(studied, {range, *options.second}, "orbits")) return usage;
+  if (options.third && !is_space(studied, {range, *options.second, *options.third})) return usage;
   std::optional<std::size_t> component = 0;
   if (!options.of.empty()) component = state_named(model, options.of);
   if (!component) return usage;

@@ -14,6 +14,7 @@ namespace continuo::app {
 struct OrbitBranchOptions {
   NamedRange range;
   std::optional<NamedRange> second{};          // then both parameters move
+  std::optional<NamedRange> third{};           // then all three do
   studies::PeriodicOrbitOptions search{};      // of the orbit to begin with
   std::optional<HybridOrbitRequest> hybrid{};  // instead, where events or the time have a part in the motion
   bool patient = false;                        // look for it ten times and a hundred times as long, too
@@ -27,7 +28,7 @@ struct OrbitBranchOptions {
 /// The orbit that the motion comes to.
 studies::PeriodicOrbit find_orbit(const Studied& studied, studies::PeriodicOrbitOptions search, bool patient);
 
-/// `studied` has the parameter as its constant, and the second one behind it.
+/// `studied` has the parameter as its constant, and the second and the third one behind it.
 ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& options);
 
 }  // namespace continuo::app

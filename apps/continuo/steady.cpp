@@ -27,7 +27,8 @@ namespace {
 
 struct SteadyOptions {
   ExperimentOptions experiment;
-  std::string mode, along, and_along, plot, out, of;
+  std::string mode, along, plot, out, of;
+  std::vector<std::string> and_along;  // once, or it is refused
   BranchSteps steps;
   bool json = false;
   std::vector<std::string> box;
@@ -149,8 +150,13 @@ ExitCode steady(const SteadyOptions& options) {
     if (!range) return usage;
     constants.push_back(range->name);
   }
+  if (options.and_along.size() > 1) {
+    say("--and is there twice: folds and Hopf points are followed in two parameters (curves in three are those of "
+        "homoclinic orbits: continuo orbit)");
+    return usage;
+  }
   if (!options.and_along.empty()) {
-    second = parse_second(options.and_along, *range);
+    second = parse_second(options.and_along[0], *range);
     if (!second) return usage;
     constants.push_back(second->name);
   }
@@ -207,6 +213,7 @@ void add_steady(CLI::App& app, ExitCode& exit) {
           ->type_name("NAME=LOW..HIGH");
   verb->add_option("--and", options->and_along, "Follow the folds and Hopf points while this moves too")
       ->type_name("NAME=LOW..HIGH")
+      ->allow_extra_args(false)
       ->needs(along);
   add_branch_steps(*verb, options->steps, along);
   verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -41,6 +42,8 @@ class HomoclinicFollower {
       : system_(system), options_(options), steps_(system, options), covered_(options) {}
 
   std::vector<OrbitCurve> from(const OrbitMark& start, std::size_t most);
+  /// What a place where this test is zero is; nothing where it has no name, or the zero is none.
+  static std::optional<OrbitDegeneracy> kind_of(HomoclinicTest test, const HomoclinicPlace& place);
 
  private:
   OrbitCurve first_curve(const OrbitMark& start);
@@ -53,8 +56,6 @@ class HomoclinicFollower {
   };
   /// All that lies between two neighbours, in the order of the curve.
   std::vector<Found> found_between(const HomoclinicPlace& a, const HomoclinicPlace& b, double step);
-  /// What a place where this test is zero is; nothing where it has no name, or the zero is none.
-  static std::optional<OrbitDegeneracy> kind_of(HomoclinicTest test, const HomoclinicPlace& place);
   /// Why the curve ends at such a place; nothing where it goes on.
   static std::optional<std::string> reason_to_end(const Found& found);
   /// An orbit of a saddle-node that is not central: where a curve of saddles and one of saddle-nodes end on each other.
@@ -66,6 +67,9 @@ class HomoclinicFollower {
   std::optional<OrbitCurve> other_curve(const NonCentral& end);
   static HomoclinicRest other_rest(const NonCentral& end, std::size_t n);
   bool is_known(const HomoclinicPlace& place) const;
+  /// From which a curve in three constants begins, where the orbit is one of a saddle. A central one is not, nor is its
+  /// end; but where it is not central any more the other curve begins.
+  std::shared_ptr<const HomoclinicMark> start_in_three(const HomoclinicPlace& place, HomoclinicTest test) const;
   double size_of(const OrbitCurvePoint& point);
   /// Whether the last points differ by the length of the interval alone: the curve goes round a point where the orbit
   /// is one to another place of rest and back (a T-point, Glendinning and Sparrow, J. Stat. Phys. 43 (1986) 479-488).
@@ -139,11 +143,22 @@ std::optional<OrbitCurve> HomoclinicFollower::other_curve(const NonCentral& end)
   OrbitCurve curve{.kind = central ? OrbitBifurcation::central_homoclinic : OrbitBifurcation::homoclinic};
   curve.points.push_back(begin->point);
   curve.ends[0] = {OrbitCurveEnding::no_saddle, "it begins at an orbit of a saddle-node that is not central"};
+  if (!central)
+    curve.marks.push_back({.kind = OrbitDegeneracy::saddle_node,
+                           .at = begin->point,
+                           .next = 0,
+                           .homoclinic = start_in_three(*begin, test)});
   begin->tests[static_cast<std::size_t>(test)] = 0;
   greatest_.clear();
   (void)size_of(begin->point);
   curve.ends[1] = followed(curve, *begin, *direction);
   return curve;
+}
+
+std::shared_ptr<const HomoclinicMark> HomoclinicFollower::start_in_three(const HomoclinicPlace& place,
+                                                                         HomoclinicTest test) const {
+  if (place.rest.is_saddle_node) return nullptr;
+  return std::make_shared<const HomoclinicMark>(place, test, system_.advance);
 }
 
 bool HomoclinicFollower::is_known(const HomoclinicPlace& place) const {
@@ -208,7 +223,10 @@ OrbitCurveEnd HomoclinicFollower::followed(OrbitCurve& curve, const HomoclinicPl
     for (Found& found : found_between(here, *next, step)) {
       if (!is_inside(found.place.point, options_)) break;
       if (found.kind)
-        curve.marks.push_back({.kind = *found.kind, .at = found.place.point, .next = curve.points.size()});
+        curve.marks.push_back({.kind = *found.kind,
+                               .at = found.place.point,
+                               .next = curve.points.size(),
+                               .homoclinic = start_in_three(found.place, found.test)});
       const auto reason = reason_to_end(found);
       if (!reason) continue;
       curve.points.push_back(found.place.point);
@@ -325,6 +343,10 @@ std::optional<std::string> HomoclinicFollower::reason_to_end(const Found& found)
 }
 
 }  // namespace
+
+std::optional<OrbitDegeneracy> degeneracy_of(HomoclinicTest test, const HomoclinicPlace& place) {
+  return HomoclinicFollower::kind_of(test, place);
+}
 
 std::vector<OrbitCurve> homoclinic_curves(const ParametricSystem& system, const OrbitMark& start,
                                           const OrbitCurveOptions& options, std::size_t most) {

@@ -4,11 +4,16 @@
 // orbit_curve.
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+#include <continuo/studies/homoclinic_steps.hpp>
 #include <continuo/studies/orbit_curve.hpp>
 
 namespace continuo::studies::detail {
+
+/// What a place where this test is zero is; nothing where the zero is none.
+std::optional<OrbitDegeneracy> degeneracy_of(HomoclinicTest test, const HomoclinicPlace& place);
 
 /// The first one is that from the start; at most so many, and one at least.
 std::vector<OrbitCurve> homoclinic_curves(const ParametricSystem& system, const OrbitMark& start,

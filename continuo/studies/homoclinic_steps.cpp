@@ -146,6 +146,7 @@ std::optional<HomoclinicPlace> HomoclinicSteps::described(Vector z, const Vector
   point.high = std::move(extremes.high);
   place.error = std::ranges::max(closed.errors(sizes_));
   place.tests.fill(std::nan(""));
+  place.flips.fill(std::nan(""));
   if (kind_.is_saddle_node) {
     set_centre_tests(place);
     return place;
@@ -157,6 +158,25 @@ std::optional<HomoclinicPlace> HomoclinicSteps::described(Vector z, const Vector
   set_eigenvalue_tests(place);
   set_flip_tests(place, adjoint, before);
   return place;
+}
+
+void HomoclinicSteps::take_up(const HomoclinicPlace& place, double longest) {
+  kind_ = place.rest;
+  longest_ = longest;
+}
+
+std::optional<HomoclinicPlace> HomoclinicSteps::near(const HomoclinicPlace& from, const Vector& guess,
+                                                     const Vector& last) {
+  use(from.mesh, from.length);
+  measure(from.z);
+  return corrected(guess, guess, last, &from);
+}
+
+HomoclinicSteps::Vector HomoclinicSteps::in_sizes(const HomoclinicPlace& at, Vector difference) {
+  use(at.mesh, at.length);
+  measure(at.z);
+  for (std::size_t j = 0; j < difference.size(); ++j) difference[j] /= scale_[j];
+  return difference;
 }
 
 std::optional<HomoclinicPlace> HomoclinicSteps::stepped(const HomoclinicPlace& from, double step) {

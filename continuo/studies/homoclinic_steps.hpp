@@ -49,12 +49,23 @@ struct HomoclinicPlace {
   /// Each changes its sign where it is zero. Not a number where it says nothing.
   std::array<double, homoclinic_tests> tests{};
   double test(HomoclinicTest kind) const { return tests[static_cast<std::size_t>(kind)]; }
+  /// Of the tests of flips, what leads by itself: the tests are cosines of an angle, which changes within a hair's
+  /// breadth where what leads dies away ever so much slower than the rest.
+  std::array<double, 4> flips{};
   /// Eigenvectors of leading eigenvalues, each turned as at the place before: by a test of flips.
   std::array<Eigen::VectorXd, 4> leading{};
   // Of a central orbit.
   double curvature = 0;  // along the centre y' = curvature y^2 + ..., in sizes
   /// By how much the constants are off, in ranges, where `leaves_centre` and `comes_by_centre` are zero.
   std::array<double, 2> truncation_of_ends{};
+  std::vector<std::vector<double>> carried{};  // directions in the unknowns that a renewed place is to have as well
+};
+
+/// A place at which a test is zero, and how far each component goes on along the orbit.
+struct HomoclinicMark {
+  HomoclinicPlace place;
+  HomoclinicTest test;
+  std::vector<double> advance{};
 };
 
 class HomoclinicSteps {
@@ -69,7 +80,13 @@ class HomoclinicSteps {
   /// At an orbit of a saddle-node that is not central: as an orbit of the other kind, a saddle's or a central one, with
   /// a tangent of any direction.
   std::optional<HomoclinicPlace> switched(const HomoclinicPlace& from, HomoclinicRest kind);
-  /// Nothing where none is found, or only one that is farther off than the step is long.
+  /// From a place that is known, on intervals of this length at most.
+  void take_up(const HomoclinicPlace& place, double longest);
+  /// The one nearest to `guess` in the direction upright to `last` (in sizes), both on the mesh of `from`.
+  std::optional<HomoclinicPlace> near(const HomoclinicPlace& from, const Vector& guess, const Vector& last);
+  /// A difference of unknowns, as long as it counts at a place.
+  Vector in_sizes(const HomoclinicPlace& at, Vector difference);
+  /// Nothing where none is found, or only one that is farther off than the step is long. The step may be negative.
   std::optional<HomoclinicPlace> stepped(const HomoclinicPlace& from, double step);
   /// Between two neighbours on the same mesh, with one constant (0 or 1) at this value.
   std::optional<HomoclinicPlace> at_bound(const HomoclinicPlace& a, const HomoclinicPlace& b, std::size_t constant,

@@ -65,8 +65,9 @@ void HomoclinicSteps::set_eigenvalue_tests(HomoclinicPlace& place) const {
 void HomoclinicSteps::set_flip_tests(HomoclinicPlace& place, const Vector& adjoint,
                                      const HomoclinicPlace* before) const {
   using enum HomoclinicTest;
+  // The multipliers of the saddle's own equations, which come last, grow without bound as it becomes a saddle-node.
   double greatest = 0;
-  for (const double part : adjoint) greatest = std::max(greatest, std::abs(part));
+  for (std::size_t j = 0; j + n_ + 2 < adjoint.size(); ++j) greatest = std::max(greatest, std::abs(adjoint[j]));
   const auto set = [&](HomoclinicTest kind, std::size_t which, const Eigenspace& space, bool of_left,
                        const Eigen::VectorXd& seen, double least) {
     if (space.dimension() < 2 || !space.leading_is_real()) return;
@@ -78,7 +79,10 @@ void HomoclinicSteps::set_flip_tests(HomoclinicPlace& place, const Vector& adjoi
       if (cosine < 0) vector = -vector;
       is_clear = std::abs(cosine) > turns_clearly;
     }
-    if (is_clear && seen.norm() > least) place.tests[static_cast<std::size_t>(kind)] = vector.dot(seen) / seen.norm();
+    if (!is_clear) return;
+    const double part = vector.dot(seen);
+    if (seen.norm() > least) place.tests[static_cast<std::size_t>(kind)] = part / seen.norm();
+    place.flips[which] = of_left ? part : part / greatest;
   };
   const SaddleSpaces& spaces = place.spaces;
   set(orbit_flip_stable, 0, spaces.stable, true, equations_->from_rest(place.z, true), 0);

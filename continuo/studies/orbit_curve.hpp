@@ -9,6 +9,7 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,10 @@
 #include <continuo/studies/orbit_continuation.hpp>
 
 namespace continuo::studies {
+
+namespace detail {
+struct HomoclinicMark;
+}
 
 struct OrbitCurvePoint {
   std::array<double, 2> constants{};  // their values
@@ -75,11 +80,13 @@ struct DegenerateOrbit {
   OrbitDegeneracy kind;
   OrbitCurvePoint at;
   std::size_t next = 0;  // of the curve's points, the first behind it
+  /// Of a homoclinic orbit: from which a curve in three constants begins (degenerate_homoclinic.hpp).
+  std::shared_ptr<const detail::HomoclinicMark> homoclinic{};
 };
 
 /// Why a curve ends. `equilibrium`: the orbit shrinks to one. `long_period`: the period has grown to many times that at
 /// the start. `resonance`: 1:1 or 1:2, behind which there is no pair on the circle. `no_saddle`: a homoclinic orbit's
-/// place of rest is none any more.
+/// place of rest is none any more. `merged`: leading eigenvalues by which the orbits are special meet.
 enum class OrbitCurveEnding {
   bound,
   closed,
@@ -87,6 +94,7 @@ enum class OrbitCurveEnding {
   long_period,
   resonance,
   no_saddle,
+  merged,
   interrupted,
   too_many_points,
   lost
