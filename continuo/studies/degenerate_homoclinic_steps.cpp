@@ -191,7 +191,7 @@ std::optional<DegeneratePlace> DegenerateHomoclinicSteps::first(const Homoclinic
   place.constants = {start.point.constants[0], start.point.constants[1],
                      planes_[2]->system.constants[options_.constants[2]]};
   planes_[2]->hold(place.constants[2]);
-  for (const std::size_t held : {2, 1, 0})
+  for (const std::size_t held : std::array<std::size_t, 3>{2, 1, 0})
     if (auto here = near_start(place, held)) return here;
   return std::nullopt;
 }

@@ -57,5 +57,37 @@ TEST(OrbitPlane, HomoclinicOrbitsBeginAtADoubleZero) {
   }
 }
 
+// y^2 = x^2 (1 - x) is a homoclinic orbit for nu = 0 and any a and b; the saddle's eigenvalues are a + b and a - b.
+TEST(OrbitSpace, SaddleNodesAndNeutralSaddles) {
+  const Shell shell;
+  shell.write("loop.sim",
+              "param nu = 0.01\nparam a = -0.2\nparam b = 1\nx' = a*x + b*y - a*x^2 + nu*x*(2 - 3*x)\n"
+              "y' = b*x + a*y - 1.5*b*x^2 - 1.5*a*x*y - 2*nu*y\nx(0) = 0.7; y(0) = 0\nrun 0..40\n");
+  const std::string plane = "orbit loop.sim --from-hopf --along nu=-0.3..0.3 --and a=-0.4..1.2 ";
+  const Result result = shell.run(plane + "--and b=0.8..1.1 --json -o c.csv --plot c.svg");
+  EXPECT_EQ(result.exit, 0) << result.err;
+  const auto found = nlohmann::json::parse(result.out);
+  EXPECT_EQ(found["parameters"], nlohmann::json({"nu", "a"}));
+  EXPECT_EQ(found["three"]["parameters"], nlohmann::json({"nu", "a", "b"}));
+  ASSERT_EQ(found["three"]["curves"].size(), 2u);
+  for (const auto& curve : found["three"]["curves"]) {
+    ASSERT_GT(curve["points"].size(), 3u);
+    for (const auto& point : curve["points"]) {
+      const double nu = point["nu"], a = point["a"], b = point["b"];
+      EXPECT_NEAR(nu, 0, 1e-7);
+      EXPECT_NEAR(a, curve["kind"] == "saddle-node" ? b : 0, 1e-7);
+    }
+    EXPECT_EQ(curve["ends"].size(), 2u);
+  }
+  EXPECT_THAT(shell.read("c.csv"), StartsWith("curve,kind,nu,a,b,x min,x max,y min,y max"));
+  EXPECT_THAT(shell.read("c.svg"), HasSubstr("saddle-node"));
+  EXPECT_THAT(shell.run(plane + "--and nu=0..1").err, HasSubstr("nu moves already"));
+  EXPECT_THAT(shell.run(plane + "--and b=2..3").err, HasSubstr("b is 1, outside of 2..3"));
+  EXPECT_THAT(shell.run(plane + "--and c=2..3").err, HasSubstr("there is no parameter `c`"));
+  EXPECT_THAT(shell.run(plane + "--and b=0..2 --and c=2..3").err, HasSubstr("three parameters at most"));
+  EXPECT_THAT(shell.run("steady loop.sim --along nu=0..1 --and a=-1..1 --and b=0..2").err,
+              HasSubstr("--and is there twice"));
+}
+
 }  // namespace
 }  // namespace continuo::app
