@@ -99,6 +99,7 @@ z' = y - z
 x(0) = 1; y(0) = 0; z(0) = 0
 run 0..200
 """
+KPR3 = KPR.replace("param kappa = -0.15\n", "param kappa = -0.15\nparam a = 10\n").replace("x' = 10*", "x' = a*")
 # A travelling wave of Fisher's equation: it comes to u = 1 along the direction that is stable there.
 FSH = """model fsh
 param c = 11
@@ -226,6 +227,13 @@ PROBLEMS = [
       ("at lambda = 1.66276E-01", {"kappa": "-2.39270E+00"}),
       ("at lambda = 1.31384E-01", {"kappa": "-2.34974E+00"}),
       ("at lambda = 1.11202E-01", {"kappa": "-2.32497E+00"})]),
+    ("kpr, in three parameters", KPR3,
+     "orbit --from-hopf --along lambda=-3..1 --and kappa=-3..0.5 --and a=0.1685..10 --branches 0 --ds-max 0.03",
+     [("inclination flip of the stable manifold at a = 5.74477E-01", {"lambda": "1.28270E-01", "kappa": "-2.51932E+00"}),
+      ("saddle-node", {"lambda": "1.53542E-01", "kappa": "-2.45810E+00", "a": "1.17171E+00"}),
+      ("saddle-node at a = 6.48532E+00", {"lambda": "1.74822E-01", "kappa": "-2.40912E+00"}),
+      ("saddle-node at a = 1.48577E+00", {"lambda": "1.58937E-01", "kappa": "-2.44548E+00"}),
+      ("saddle-node at a = 1.94109E-01", {"kappa": "-2.88463E+00"})]),
     # Its extremes are those of AUTO's 101 mesh points, and not compared where these miss the top of the wave, or where u has
     # become so small that it hangs on the last digit of the period.
     *[(f"fsh, period {period}", FSH, f"run --set period={period}", [("wave", values)]) for period, values in [
@@ -249,8 +257,9 @@ PROBLEMS = [
 
 def found_of(result):
     """All that has a kind, and the ends of curves and branches; of a branch the orbit of the longest period."""
-    for group in ("branches", "curves"):
-        for entry in result.get(group, []):
+    for group, entries in (("branches", result.get("branches", [])), ("curves", result.get("curves", [])),
+                           ("curves", result.get("three", {}).get("curves", []))):
+        for entry in entries:
             for point in entry.get("bifurcations", []) + entry.get("degenerate", []):
                 yield point
             for end in entry.get("ends", []):
@@ -275,7 +284,14 @@ def through_nearest(points, goal, coordinate, kind, names):
 
 
 def between(result, kind):
-    """What a curve in two parameters has between its points, where the kind asks for it by the period or a parameter."""
+    """What a curve has between its points, where the kind asks for it by the period or a parameter."""
+    three = result.get("three", {})
+    for curve in three.get("curves", []):
+        what, at, where = kind.partition(" at ")
+        if at and what == curve["kind"]:
+            name, _, value = where.split()
+            yield from through_nearest(curve["points"], math.log(float(value)), lambda point: math.log(point[name]), kind,
+                                       three["parameters"])
     for curve in result.get("curves", []):
         points, names = curve["points"], result.get("parameters", [])
         if kind.startswith("of period ") and points and "period" in points[0]:

@@ -106,7 +106,9 @@ std::vector<DegenerateHomoclinicCurve> curves_from(const Space& space, F flow, c
   const auto curve = follow_orbit_bifurcation(system, start_of(space, flow(m), p[0], 22), plane);
   EXPECT_GT(curve.points.size(), 4u) << curve.message;
   const DegenerateHomoclinicOptions options{.low = {plane.low[0], plane.low[1], third[0]},
-                                            .high = {plane.high[0], plane.high[1], third[1]}};
+                                            .high = {plane.high[0], plane.high[1], third[1]},
+                                            .first_step = 0.05,
+                                            .largest_step = 0.4};
   return degenerate_homoclinic_curves(system, {{curve, {0}}}, options);
 }
 const DegenerateHomoclinicCurve* curve_of(const std::vector<DegenerateHomoclinicCurve>& curves, OrbitDegeneracy kind) {
