@@ -221,8 +221,8 @@ PROBLEMS = [
       ("at kappa = -1.50000E-01", {"lambda": "-1.85119E+00"}),
       ("at kappa = -6.20316E-02", {"lambda": "-1.93828E+00"}),
       ("saddle-node", {"lambda": "1.76506E-01", "kappa": "-2.40533E+00"}),
-      # With 40 intervals, as in its log, AUTO's curves of saddle-nodes are off by 4e-5, and what it prints further on by 1e-4
-      # in kappa. These are its digits with 300 intervals and tolerances of 1e-10, the demo being the same.
+      # With 40 intervals, as in its log, AUTO does not resolve central orbits, and is off by 1e-4 in kappa further on. These
+      # are its digits with 300 intervals and tolerances of 1e-10, the demo being the same.
       ("non-central homoclinic orbit", {"lambda": "1.76507E-01", "kappa": "-2.40533E+00"}),
       ("at lambda = 1.66276E-01", {"kappa": "-2.39270E+00"}),
       ("at lambda = 1.31384E-01", {"kappa": "-2.34974E+00"}),
