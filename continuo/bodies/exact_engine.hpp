@@ -12,8 +12,10 @@
 #include <string>
 #include <vector>
 
+#include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/contact_events.hpp>
-#include <continuo/bodies/exact_motion.hpp>
+#include <continuo/bodies/exact_options.hpp>
+#include <continuo/bodies/world.hpp>
 
 namespace continuo {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/bodies/exact_motion.hpp>
+#include <continuo/bodies/exact_options.hpp>
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/held_contacts.hpp>
 
