@@ -11,6 +11,7 @@
 #include <continuo/model/check_world.hpp>
 #include <continuo/model/format.hpp>
 #include <continuo/model/suggest.hpp>
+#include <continuo/model/words.hpp>
 
 namespace continuo::model::detail {
 

@@ -7,7 +7,7 @@
 
 #include <continuo/model/parser_core.hpp>
 #include <continuo/model/suggest.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/model/words.hpp>
 
 namespace continuo::model::detail {
 

@@ -1,6 +1,7 @@
 // continuo/model/words.hpp
 // The words of the language: what cannot be a name, and the functions that can be called.
 #pragma once
+#include <array>
 #include <span>
 #include <string_view>
 
@@ -17,5 +18,9 @@ bool is_reserved(std::string_view word);
 /// `sin`, `max`, `interp`, ...: `sin(0) = 1` is an equation, `h(0) = 1` an initial value.
 std::span<const std::string_view> function_names();
 bool is_function(std::string_view name);
+
+/// `combine restitution minimum`: how the numbers of two surfaces become those of their contact.
+inline constexpr std::array<std::string_view, 5> combinations{"average", "minimum", "maximum", "product",
+                                                              "geometric_mean"};
 
 }  // namespace continuo::model

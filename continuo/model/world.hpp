@@ -14,7 +14,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,13 +29,11 @@ struct MaterialDescription {
   NodeId restitution, friction, rolling;
 };
 
-/// How the numbers of two surfaces become those of their contact: each one of `combinations`.
+/// How the numbers of two surfaces become those of their contact: each one of `combinations` (words.hpp).
 struct MeetingDescription {
   std::string restitution = "maximum", friction = "geometric_mean", rolling = "maximum";
   friend bool operator==(const MeetingDescription&, const MeetingDescription&) = default;
 };
-inline constexpr std::array<std::string_view, 5> combinations{"average", "minimum", "maximum", "product",
-                                                              "geometric_mean"};
 
 /// Where it is and how it moves at the start are the initial values of its states.
 struct BodyDescription {
