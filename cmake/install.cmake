@@ -1,18 +1,18 @@
 # cmake --install: headers, libraries and the package that find_package(Continuo) reads. Continuo::Continuo is all of
-# it, Continuo::solve and its like are single rooms with what they stand on.
-get_property(rooms GLOBAL PROPERTY CONTINUO_ROOMS)
+# it, Continuo::solve and its like are single modules with what they stand on.
+get_property(modules GLOBAL PROPERTY CONTINUO_MODULES)
 add_library(continuo_all INTERFACE)
 set_target_properties(continuo_all PROPERTIES EXPORT_NAME Continuo)
 add_library(Continuo::Continuo ALIAS continuo_all)
-foreach(room IN LISTS rooms)
-  target_link_libraries(continuo_all INTERFACE continuo_${room})
+foreach(module IN LISTS modules)
+  target_link_libraries(continuo_all INTERFACE continuo_${module})
 endforeach()
 if(NOT PROJECT_IS_TOP_LEVEL)
   return()  # a project that contains Continuo installs itself
 endif()
 
 include(CMakePackageConfigHelpers)
-list(TRANSFORM rooms PREPEND continuo_ OUTPUT_VARIABLE libraries)
+list(TRANSFORM modules PREPEND continuo_ OUTPUT_VARIABLE libraries)
 install(TARGETS ${libraries} continuo_all EXPORT ContinuoTargets)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Continuo)
@@ -28,9 +28,9 @@ install(FILES ${PROJECT_BINARY_DIR}/ContinuoConfig.cmake ${PROJECT_BINARY_DIR}/C
         DESTINATION ${package_folder})
 
 if(TARGET continuo)
-  get_property(modules GLOBAL PROPERTY CONTINUO_MODULE_TARGETS)
+  get_property(loaded GLOBAL PROPERTY CONTINUO_MODULE_TARGETS)
   install(TARGETS continuo)
-  install(TARGETS ${modules} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo)
+  install(TARGETS ${loaded} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/continuo OPTIONAL)

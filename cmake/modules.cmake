@@ -1,8 +1,8 @@
 # Parts of the command in shared libraries of their own, opened when they are asked for: what they stand on would take
-# longer to load than all else that a short run does. The rooms have the same code for those who link against them.
+# longer to load than all else that a short run does. The library has the same code for those who link against them.
 
 # continuo_module(NAME OBJECTS PART...): continuo_NAME.so beside the command, of modules/NAME.cpp and of OBJECTS, a
-# source that its room has as LOADED, with what this stands on. Installed into a folder of the libraries, to which the
+# source that its library has as LOADED, with what this stands on. Installed into a folder of the libraries, to which the
 # command knows the way from its own, so that all can be moved together.
 function(continuo_module name objects)
   set(module continuo_module_${name})

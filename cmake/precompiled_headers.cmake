@@ -26,7 +26,7 @@ endfunction()
 if(CONTINUO_PRECOMPILED_HEADERS)
   continuo_precompile(continuo_headers ${continuo_standard_headers} <fmt/format.h>)
   target_link_libraries(continuo_headers PRIVATE fmt::fmt)
-  if(CONTINUO_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL Clang)  # a room that is fuzzed has a flag of its own
+  if(CONTINUO_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL Clang)  # a module that is fuzzed has a flag of its own
     continuo_precompile(continuo_fuzzed_headers ${continuo_standard_headers} <fmt/format.h>)
     target_link_libraries(continuo_fuzzed_headers PRIVATE fmt::fmt)
     target_compile_options(continuo_fuzzed_headers PRIVATE -fsanitize=fuzzer-no-link)

@@ -1,5 +1,5 @@
 // The house rules of docs/architecture.md, read off the sources. The order of the rooms is stated once, by the
-// continuo_room lines of CMakeLists.txt.
+// continuo_library lines of CMakeLists.txt.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -40,7 +40,7 @@ std::vector<std::string> all_matches(const std::string& text, const char* patter
 
 /// Lowest first.
 std::vector<std::string> rooms() {
-  return all_matches(text_of(root / "CMakeLists.txt"), R"(^continuo_room\((\w+))");
+  return all_matches(text_of(root / "CMakeLists.txt"), R"(^continuo_library\((\w+))");
 }
 
 std::vector<fs::path> sources_below(const fs::path& folder) {
@@ -63,7 +63,7 @@ std::vector<fs::path> folders_in(const fs::path& folder) {
 
 TEST(Architecture, NoRoomIncludesOneAboveIt) {
   const auto order = rooms();
-  ASSERT_GE(order.size(), 7u) << "no continuo_room lines found in CMakeLists.txt";
+  ASSERT_GE(order.size(), 7u) << "no continuo_library lines found in CMakeLists.txt";
   for (const auto& folder : folders_in(root / "continuo")) {
     const auto room = std::ranges::find(order, folder.filename().string());
     ASSERT_NE(room, order.end()) << folder << " is no room of CMakeLists.txt";
