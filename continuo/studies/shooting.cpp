@@ -13,7 +13,7 @@ constexpr int most_iterations = 40, most_halvings = 8;
 constexpr double longest_step = 1;  // in sizes of the motion
 constexpr double relative_noise = 1e-10;
 
-Eigen::Index index(std::size_t i) {
+Eigen::Index row_of(std::size_t i) {
   return static_cast<Eigen::Index>(i);
 }
 
@@ -36,8 +36,8 @@ Shooting::Shooting(const ReturnFlow& flow, std::vector<std::size_t> unknowns, st
       from_(std::move(from)) {
   if (forced_) return;
   const std::vector<double> rates = flow_.rates(from_.start);
-  phase_.resize(index(unknowns_.size()));
-  for (std::size_t k = 0; k < unknowns_.size(); ++k) phase_[index(k)] = rates[unknowns_[k]] / sizes_[unknowns_[k]];
+  phase_.resize(row_of(unknowns_.size()));
+  for (std::size_t k = 0; k < unknowns_.size(); ++k) phase_[row_of(k)] = rates[unknowns_[k]] / sizes_[unknowns_[k]];
   phase_.normalize();
 }
 
@@ -56,22 +56,22 @@ std::optional<Shot> Shooting::shoot(const ShootingPoint& point) {
     return std::nullopt;
   }
   const std::size_t n = unknowns_.size(), size = n + (forced_ ? 0 : 1);
-  shot.residual.setZero(index(size));
-  shot.matrix.setZero(index(size), index(size));
+  shot.residual.setZero(row_of(size));
+  shot.matrix.setZero(row_of(size), row_of(size));
   model::Instant end = point.start;
   end.x = image.x;
   end.t += point.period;
   const std::vector<double> rates = flow_.rates(end);
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t i = unknowns_[k];
-    shot.residual[index(k)] = (image.x[i] - point.start.x[i]) / sizes_[i];
+    shot.residual[row_of(k)] = (image.x[i] - point.start.x[i]) / sizes_[i];
     for (std::size_t l = 0; l < n; ++l)
-      shot.matrix(index(k), index(l)) =
+      shot.matrix(row_of(k), row_of(l)) =
           image.by_start[i * flow_.size() + unknowns_[l]] * sizes_[unknowns_[l]] / sizes_[i] - (k == l ? 1 : 0);
     if (forced_) continue;
-    shot.matrix(index(k), index(n)) = rates[i] / sizes_[i] * from_.period;
-    shot.matrix(index(n), index(k)) = phase_[index(k)];
-    shot.residual[index(n)] += phase_[index(k)] * (point.start.x[i] - from_.start.x[i]) / sizes_[i];
+    shot.matrix(row_of(k), row_of(n)) = rates[i] / sizes_[i] * from_.period;
+    shot.matrix(row_of(n), row_of(k)) = phase_[row_of(k)];
+    shot.residual[row_of(n)] += phase_[row_of(k)] * (point.start.x[i] - from_.start.x[i]) / sizes_[i];
   }
   if (shot.residual.allFinite() && shot.matrix.allFinite()) return shot;
   problem_ = "the derivative of the motion is not finite";
@@ -80,8 +80,8 @@ std::optional<Shot> Shooting::shoot(const ShootingPoint& point) {
 
 ShootingPoint Shooting::moved(ShootingPoint point, const Eigen::VectorXd& step) const {
   for (std::size_t k = 0; k < unknowns_.size(); ++k)
-    point.start.x[unknowns_[k]] += step[index(k)] * sizes_[unknowns_[k]];
-  if (!forced_) point.period += step[index(unknowns_.size())] * from_.period;
+    point.start.x[unknowns_[k]] += step[row_of(k)] * sizes_[unknowns_[k]];
+  if (!forced_) point.period += step[row_of(unknowns_.size())] * from_.period;
   return point;
 }
 

@@ -209,7 +209,7 @@ Estimated estimated(const VarianceComponents& noise, const Decomposed& parts) {
 }
 
 /// Each of the moves over the unknowns' sizes, its largest entry 1.
-std::vector<std::vector<double>> directions_of(const Dense& null, std::span<const double> sizes) {
+std::vector<std::vector<double>> null_directions(const Dense& null, std::span<const double> sizes) {
   if (null.cols() == 0) return {};
   Dense moves = null;
   for (Index i = 0; i < moves.rows(); ++i) {
@@ -271,7 +271,7 @@ Uncertainty uncertainty(const VarianceComponents& noise, std::span<const double>
   }
   const Dense covariance = parts.back * along * parts.back.transpose();
   constexpr double part_of_a_move = 1e-4;
-  result.directions = directions_of(parts.null, sizes);
+  result.directions = null_directions(parts.null, sizes);
   result.covariance.assign(m * m, 0);
   for (std::size_t i = 0; i < m; ++i) {
     const bool moves = std::ranges::any_of(
