@@ -297,13 +297,13 @@ nlohmann::json json_of(const std::vector<OrbitBranch>& branches, const model::Mo
 
 /// What is marked on curves in two parameters, in three: the table and the picture are of this.
 ExitCode show_degenerate(const Studied& studied, const std::vector<studies::OrbitCurveOfDiagram>& curves,
-                         const OrbitBranchOptions& options, nlohmann::json& json) {
+                         const OrbitBranchOptions& options, nlohmann::json& document) {
   const model::Model& model = studied.prepared.program->model;
   const NamedSpace space{options.range, *options.second, *options.third};
   const auto degenerate = app::curves_of(studied, curves, space, options.steps);
   if (options.json) {
-    json["three"] = app::json_of(degenerate, space);
-    print(json.dump(2) + "\n");
+    document["three"] = app::json_of(degenerate, space);
+    print(document.dump(2) + "\n");
   } else {
     print(app::text_of(degenerate, space));
   }
@@ -324,15 +324,15 @@ ExitCode show_curves(const Studied& studied, const std::vector<OrbitBranch>& bra
   const model::Model& model = studied.prepared.program->model;
   const NamedPlane plane{options.range, *options.second};
   const auto curves = curves_of(studied, branches, plane, options.steps);
-  nlohmann::json json;
+  nlohmann::json document;
   if (options.json) {
-    json = json_of(branches, model, options.range);
-    json.update(app::json_of(curves, plane));
-    if (!options.third) print(json.dump(2) + "\n");
+    document = json_of(branches, model, options.range);
+    document.update(app::json_of(curves, plane));
+    if (!options.third) print(document.dump(2) + "\n");
   } else {
     print(text_of(curves, plane));
   }
-  if (options.third) return show_degenerate(studied, curves, options, json);
+  if (options.third) return show_degenerate(studied, curves, options, document);
   if (!options.out.empty()) {
     const std::string csv = app::csv_of(curves, model, plane);
     if (options.out == "-") {

@@ -17,7 +17,7 @@ using Vec = Eigen::VectorXd;
 constexpr double least_cosine = 0.906;                // a step that turns by more than 25 degrees was too long
 constexpr double no_slope = 1e-6;                     // of a tangent: so little is no change of the parameter
 constexpr double beside_crossing = 0.1;               // of the first step
-constexpr double about_minus_one = 1e-2;              // of the multiplier where a period doubles
+constexpr double near_minus_one = 1e-2;               // of the multiplier where a period doubles
 constexpr double same_multipliers = 1e-2;             // of neighbours between which an event comes in that does nothing
 constexpr double hardly_crossed = 100;                // a time of an event that moves by so many periods a size
 constexpr double most_noise = 1e-5;                   // in multipliers: beyond, tests change their signs by chance
@@ -200,7 +200,7 @@ void HybridFollower::mark(OrbitBranch& branch, const Place& a, const Place& b, d
 
 void HybridFollower::add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, Place place, double at) {
   if (!inside(place)) return;
-  const auto rotation = borne_out(kind, place.point.multipliers, about_minus_one);
+  const auto rotation = borne_out(kind, place.point.multipliers, near_minus_one);
   if (!rotation) return;
   steps_.complete(place);
   // Where branches cross the equations leave two directions open, and the tangent may be any of them: that of this

@@ -239,14 +239,14 @@ std::vector<double> normalized(std::vector<double> logarithms) {
   return logarithms;
 }
 
-struct Place {
+struct RatioPlace {
   double ratio, density;
 };
 
 /// Places at even steps of the mean of (2/pi) arctan e^((ratio - center)/2). Of one center these are even angles, by
 /// whose sin^2 the second kind takes part: close to either end a kind of noise has no say, and its part is seen by its
 /// root.
-std::vector<Place> places(const TwoKinds& column, std::size_t count_of_one) {
+std::vector<RatioPlace> places(const TwoKinds& column, std::size_t count_of_one) {
   const auto& centers = column.centers;
   const auto share = [&](double ratio) {
     double sum = 0;
@@ -254,7 +254,7 @@ std::vector<Place> places(const TwoKinds& column, std::size_t count_of_one) {
     return sum / static_cast<double>(centers.size());
   };
   const std::size_t count = centers.size() == 1 ? count_of_one : count_of_one * centers.size() / 2;
-  std::vector<Place> result;
+  std::vector<RatioPlace> result;
   for (std::size_t k = 0; k < count; ++k) {
     const double wanted = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
     constexpr double beyond = 40;
@@ -269,11 +269,11 @@ std::vector<Place> places(const TwoKinds& column, std::size_t count_of_one) {
 }
 
 /// One ratio is integrated over its places.
-Mixed mixed_over(const Ratios& ratios, std::size_t column, const std::vector<Place>& places,
+Mixed mixed_over(const Ratios& ratios, std::size_t column, const std::vector<RatioPlace>& places,
                  const std::vector<double>& at) {
   Mixed result;
   std::vector<double> logarithms;
-  for (const Place& place : places) {
+  for (const RatioPlace& place : places) {
     std::vector<double> here = at;
     here[column] = place.ratio;
     result.at.push_back(ratios.at(here));
@@ -289,11 +289,11 @@ Mixed mixed_over(const Ratios& ratios, std::size_t column, const std::vector<Pla
 /// together.
 Mixed mixed_over_all(const Ratios& ratios) {
   const std::size_t columns = ratios.columns().size();
-  std::vector<std::vector<Place>> places_of;
+  std::vector<std::vector<RatioPlace>> places_of;
   std::vector<double> estimated;
   for (const TwoKinds& column : ratios.columns()) {
     places_of.push_back(places(column, columns == 1 ? 48 : 16));
-    const auto far = [&](const Place& place) { return std::abs(place.ratio - column.estimated); };
+    const auto far = [&](const RatioPlace& place) { return std::abs(place.ratio - column.estimated); };
     estimated.push_back(std::ranges::min_element(places_of.back(), {}, far)->ratio);
   }
   if (columns == 1) return mixed_over(ratios, 0, places_of[0], estimated);
