@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/methods/dop853.hpp>
-#include <continuo/methods/rodas5p.hpp>
-#include <continuo/model/load.hpp>
-#include <continuo/model/model_system.hpp>
-#include <continuo/model/step_enclosure.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/rosenbrock/rodas5p.hpp>
+#include <continuo/simulation/program/model_system.hpp>
+#include <continuo/simulation/program/step_enclosure.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::bench {

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <limits>
 
-#include <continuo/methods/dop853.hpp>
-#include <continuo/methods/tsitouras5.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::bench {

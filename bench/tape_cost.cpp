@@ -13,9 +13,9 @@
 #include <bench/problems/lorenz.hpp>
 #include <bench/problems/pleiades.hpp>
 
-#include <continuo/methods/tsitouras5.hpp>
-#include <continuo/model/load.hpp>
-#include <continuo/model/model_system.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/simulation/program/model_system.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::bench {

@@ -4,8 +4,8 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <apps/continuo/command_line.hpp>
-#include <apps/continuo/terminal.hpp>
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 

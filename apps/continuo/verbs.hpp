@@ -2,7 +2,7 @@
 // Every verb adds itself with its options to the command line; when it is chosen it leaves its exit code in `exit`.
 #pragma once
 #include <CLI/App.hpp>
-#include <apps/continuo/exit_codes.hpp>
+#include <apps/continuo/terminal/exit_codes.hpp>
 
 namespace continuo::app {
 

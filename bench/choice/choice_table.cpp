@@ -9,8 +9,8 @@
 #include <bench/choice/problems.hpp>
 #include <fmt/format.h>
 
-#include <continuo/model/load.hpp>
-#include <continuo/model/simulate.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/simulation/simulate.hpp>
 
 namespace {
 

@@ -12,8 +12,8 @@
 #include <bench/choice/problems.hpp>
 #include <fmt/format.h>
 
-#include <continuo/model/load.hpp>
-#include <continuo/model/simulate.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/simulation/simulate.hpp>
 #include <continuo/solve/catalogue.hpp>
 
 namespace continuo::bench {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/check.hpp>
-#include <continuo/model/parser.hpp>
+#include <continuo/language/check/check.hpp>
+#include <continuo/language/syntax/parser.hpp>
 #include <continuo/studies/fit.hpp>
 
 namespace {

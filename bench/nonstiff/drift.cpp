@@ -9,13 +9,13 @@
 #include <bench/problems/kepler.hpp>
 #include <bench/report.hpp>
 
-#include <continuo/methods/dop853.hpp>
-#include <continuo/methods/dormand_prince_nystrom8.hpp>
-#include <continuo/methods/kahan_li8.hpp>
-#include <continuo/methods/mclachlan_atela4.hpp>
-#include <continuo/methods/rk4.hpp>
-#include <continuo/methods/velocity_verlet.hpp>
-#include <continuo/methods/yoshida6.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/explicit_rk/rk4.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom8.hpp>
+#include <continuo/methods/symplectic/kahan_li8.hpp>
+#include <continuo/methods/symplectic/mclachlan_atela4.hpp>
+#include <continuo/methods/symplectic/velocity_verlet.hpp>
+#include <continuo/methods/symplectic/yoshida6.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::bench {

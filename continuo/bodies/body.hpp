@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-#include <continuo/bodies/vector.hpp>
+#include <continuo/bodies/support/vector.hpp>
 
 namespace continuo {
 

@@ -1,6 +1,6 @@
 #include <utility>
 
-#include <continuo/bodies/exact_engine.hpp>
+#include <continuo/bodies/event_driven/exact_engine.hpp>
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/forces.hpp>
 

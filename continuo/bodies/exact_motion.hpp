@@ -26,9 +26,9 @@
 #include <span>
 #include <string>
 
-#include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/exact_options.hpp>
+#include <continuo/bodies/support/bytes.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {

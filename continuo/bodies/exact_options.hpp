@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/vector.hpp>
+#include <continuo/bodies/support/vector.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {

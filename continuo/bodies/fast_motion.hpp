@@ -16,9 +16,9 @@
 #include <span>
 #include <string>
 
-#include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/contact_events.hpp>
-#include <continuo/bodies/integrator.hpp>
+#include <continuo/bodies/support/bytes.hpp>
+#include <continuo/bodies/time_stepping/integrator.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {

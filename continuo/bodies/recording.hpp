@@ -24,8 +24,8 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/bodies/blocks.hpp>
 #include <continuo/bodies/snapshot.hpp>
+#include <continuo/bodies/support/blocks.hpp>
 
 namespace continuo {
 

@@ -14,9 +14,9 @@
 #include <span>
 #include <string>
 
-#include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
+#include <continuo/bodies/support/bytes.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {

@@ -7,7 +7,7 @@
 
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/world.hpp>
-#include <continuo/methods/compensated_sum.hpp>
+#include <continuo/methods/support/compensated_sum.hpp>
 
 namespace continuo {
 

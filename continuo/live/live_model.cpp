@@ -3,8 +3,8 @@
 #include <map>
 #include <utility>
 
+#include <continuo/language/world.hpp>
 #include <continuo/live/live_model.hpp>
-#include <continuo/model/world.hpp>
 
 namespace continuo::live {
 

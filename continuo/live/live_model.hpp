@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <continuo/live/grip.hpp>
-#include <continuo/model/model_program.hpp>
+#include <continuo/live/motion/grip.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 
 namespace continuo::live {
 

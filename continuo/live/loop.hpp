@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include <continuo/live/commands.hpp>
 #include <continuo/live/session.hpp>
+#include <continuo/live/session/commands.hpp>
 
 namespace continuo::live {
 

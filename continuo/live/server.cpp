@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <pthread.h>
 
-#include <continuo/live/client.hpp>
-#include <continuo/live/messages.hpp>
-#include <continuo/model/load.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/live/server/client.hpp>
+#include <continuo/live/session/messages.hpp>
 
 namespace continuo::live {
 

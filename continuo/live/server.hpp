@@ -14,7 +14,7 @@
 #include <string>
 
 #include <continuo/live/audience.hpp>
-#include <continuo/live/commands.hpp>
+#include <continuo/live/session/commands.hpp>
 
 namespace continuo::live {
 

@@ -16,14 +16,14 @@
 #include <string_view>
 #include <vector>
 
+#include <continuo/language/load.hpp>
 #include <continuo/live/audience.hpp>
-#include <continuo/live/clock.hpp>
-#include <continuo/live/history.hpp>
 #include <continuo/live/live_model.hpp>
-#include <continuo/live/rows.hpp>
+#include <continuo/live/motion/clock.hpp>
+#include <continuo/live/motion/history.hpp>
+#include <continuo/live/motion/rows.hpp>
+#include <continuo/live/motion/track.hpp>
 #include <continuo/live/settings.hpp>
-#include <continuo/live/track.hpp>
-#include <continuo/model/load.hpp>
 
 namespace continuo::live {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/model.hpp>
+#include <continuo/language/model.hpp>
 
 namespace continuo::live {
 

@@ -5,14 +5,14 @@
 #include <string_view>
 #include <tuple>
 
-#include <continuo/methods/bdf.hpp>
-#include <continuo/methods/dop853.hpp>
-#include <continuo/methods/dormand_prince_nystrom12.hpp>
-#include <continuo/methods/dormand_prince_nystrom8.hpp>
-#include <continuo/methods/radau.hpp>
-#include <continuo/methods/rodas5p.hpp>
+#include <continuo/methods/collocation/radau.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/methods/multistep/bdf.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom12.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom8.hpp>
+#include <continuo/methods/rosenbrock/rodas5p.hpp>
 #include <continuo/methods/switching.hpp>
-#include <continuo/methods/tsitouras5.hpp>
 
 namespace continuo {
 

@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include <continuo/methods/method.hpp>
-#include <continuo/methods/stiffness_watch.hpp>
+#include <continuo/methods/support/stiffness_watch.hpp>
 #include <continuo/system/mass.hpp>
 
 namespace continuo {

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include <continuo/model/model.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/language/model.hpp>
+#include <continuo/language/world.hpp>
 #include <continuo/results/bodies_panel.hpp>
 #include <continuo/results/plots.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include <continuo/model/check_derivatives.hpp>
+#include <continuo/simulation/check_derivatives.hpp>
 
 namespace continuo::results {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/run.hpp>
+#include <continuo/simulation/run.hpp>
 
 namespace continuo::results {
 

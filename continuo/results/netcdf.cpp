@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/model/world.hpp>
+#include <continuo/language/world.hpp>
 #include <continuo/results/families.hpp>
 #include <continuo/results/netcdf.hpp>
 #include <continuo/results/netcdf_file.hpp>

@@ -13,8 +13,8 @@
 #include <string>
 #include <string_view>
 
-#include <continuo/model/model.hpp>
-#include <continuo/model/run.hpp>
+#include <continuo/language/model.hpp>
+#include <continuo/simulation/run.hpp>
 
 namespace continuo::results {
 

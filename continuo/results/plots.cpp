@@ -4,10 +4,10 @@
 #include <string_view>
 #include <utility>
 
-#include <continuo/model/simulate.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/language/world.hpp>
 #include <continuo/results/bodies_panel.hpp>
 #include <continuo/results/plots.hpp>
+#include <continuo/simulation/simulate.hpp>
 
 namespace continuo::results {
 namespace {

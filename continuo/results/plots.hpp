@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/model_program.hpp>
-#include <continuo/model/run.hpp>
 #include <continuo/results/figure.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/run.hpp>
 
 namespace continuo::results {
 

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <continuo/model/world.hpp>
+#include <continuo/language/world.hpp>
 #include <continuo/results/csv.hpp>
 #include <continuo/results/summary.hpp>
 

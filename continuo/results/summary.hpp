@@ -3,8 +3,8 @@
 #pragma once
 #include <string>
 
-#include <continuo/model/model.hpp>
-#include <continuo/model/run.hpp>
+#include <continuo/language/model.hpp>
+#include <continuo/simulation/run.hpp>
 
 namespace continuo::results {
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include <continuo/solve/step_control.hpp>
-#include <continuo/solve/steps.hpp>
+#include <continuo/solve/steps/step_control.hpp>
+#include <continuo/solve/steps/steps.hpp>
 
 namespace continuo {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include <continuo/solve/any_method.hpp>
-#include <continuo/solve/driver.hpp>
+#include <continuo/solve/driver/driver.hpp>
 
 namespace continuo {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/solve/controller.hpp>
 #include <continuo/solve/event.hpp>
+#include <continuo/solve/steps/controller.hpp>
 
 namespace continuo {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/diagnostic.hpp>
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
-#include <continuo/studies/boundary_family.hpp>
-#include <continuo/studies/measurements.hpp>
+#include <continuo/language/text/diagnostic.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/studies/boundary/boundary_family.hpp>
+#include <continuo/studies/support/measurements.hpp>
 
 namespace continuo::studies {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/simulate.hpp>
-#include <continuo/studies/measurements.hpp>
+#include <continuo/simulation/simulate.hpp>
+#include <continuo/studies/support/measurements.hpp>
 
 namespace continuo::studies {
 

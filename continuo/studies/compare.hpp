@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/simulate.hpp>
+#include <continuo/simulation/simulate.hpp>
 
 namespace continuo::studies {
 

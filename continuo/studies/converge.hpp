@@ -20,12 +20,12 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/solve/outcome.hpp>
-#include <continuo/studies/kinks.hpp>
-#include <continuo/studies/named_solve.hpp>
-#include <continuo/studies/observed_order.hpp>
+#include <continuo/studies/accuracy/kinks.hpp>
+#include <continuo/studies/accuracy/observed_order.hpp>
+#include <continuo/studies/support/named_solve.hpp>
 
 namespace continuo::studies {
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include <continuo/studies/observed_order.hpp>
+#include <continuo/studies/accuracy/observed_order.hpp>
 
 namespace continuo::studies {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <continuo/studies/algebraic_elimination.hpp>
+#include <continuo/studies/equilibria/algebraic_elimination.hpp>
 #include <continuo/studies/parametric_system.hpp>
 
 namespace continuo::studies {

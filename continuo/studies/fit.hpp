@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
-#include <continuo/studies/influence.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/studies/fit/variance_components.hpp>
 #include <continuo/studies/least_squares.hpp>
-#include <continuo/studies/measurements.hpp>
-#include <continuo/studies/variance_components.hpp>
+#include <continuo/studies/sensitivity/influence.hpp>
+#include <continuo/studies/support/measurements.hpp>
 
 namespace continuo::studies {
 

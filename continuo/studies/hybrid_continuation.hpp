@@ -10,8 +10,8 @@
 #include <memory>
 #include <optional>
 
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/studies/hybrid_orbit.hpp>
 #include <continuo/studies/orbit_continuation.hpp>
 

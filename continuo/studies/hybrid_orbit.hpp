@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
-#include <continuo/model/stepping.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/stepping.hpp>
 #include <continuo/studies/sensitivity.hpp>
 
 namespace continuo::studies {

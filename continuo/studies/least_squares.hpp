@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include <continuo/studies/robust_loss.hpp>
+#include <continuo/studies/fit/robust_loss.hpp>
 
 namespace continuo::studies {
 

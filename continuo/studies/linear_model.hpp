@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
-#include <continuo/studies/algebraic_elimination.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/studies/equilibria/algebraic_elimination.hpp>
 
 namespace continuo::studies {
 

@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/solve/outcome.hpp>
 #include <continuo/studies/parametric_system.hpp>
 

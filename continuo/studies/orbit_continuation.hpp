@@ -17,8 +17,8 @@
 #include <string_view>
 #include <vector>
 
-#include <continuo/model/stepping.hpp>
-#include <continuo/studies/hopf_point.hpp>
+#include <continuo/simulation/stepping.hpp>
+#include <continuo/studies/equilibria/hopf_point.hpp>
 #include <continuo/studies/parametric_system.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/studies/boundary_value.hpp>
 #include <continuo/studies/parametric_system.hpp>
 

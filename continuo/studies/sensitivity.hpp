@@ -15,12 +15,12 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/model/diagnostic.hpp>
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
-#include <continuo/model/stepping.hpp>
+#include <continuo/language/text/diagnostic.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/stepping.hpp>
 #include <continuo/solve/outcome.hpp>
-#include <continuo/studies/influence.hpp>
+#include <continuo/studies/sensitivity/influence.hpp>
 
 namespace continuo::studies {
 

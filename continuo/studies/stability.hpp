@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include <continuo/studies/amplification.hpp>
+#include <continuo/studies/accuracy/amplification.hpp>
 #include <continuo/studies/parametric_system.hpp>
 
 namespace continuo::studies {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <continuo/bodies/world.hpp>
-#include <continuo/model/evaluation.hpp>
-#include <continuo/model/model_program.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/language/world.hpp>
+#include <continuo/simulation/program/evaluation.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 
 namespace continuo::worlds {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/words.hpp>
+#include <continuo/language/text/words.hpp>
 #include <continuo/worlds/build_world.hpp>
 
 namespace continuo::worlds {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include <continuo/bodies/world.hpp>
-#include <continuo/model/model.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/language/model.hpp>
+#include <continuo/language/world.hpp>
 
 namespace continuo::worlds {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/worlds/world_run.hpp>
 
 namespace continuo::worlds {

@@ -19,10 +19,10 @@
 #include <string>
 #include <vector>
 
-#include <continuo/bodies/blocks.hpp>
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/run.hpp>
-#include <continuo/model/run_recorder.hpp>
+#include <continuo/bodies/support/blocks.hpp>
+#include <continuo/simulation/drive/run_recorder.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/run.hpp>
 #include <continuo/worlds/world_run.hpp>
 
 namespace continuo::worlds {

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <continuo/model/error_estimate.hpp>
-#include <continuo/model/run_checks.hpp>
-#include <continuo/model/run_recorder.hpp>
+#include <continuo/simulation/drive/error_estimate.hpp>
+#include <continuo/simulation/drive/run_checks.hpp>
+#include <continuo/simulation/drive/run_recorder.hpp>
 #include <continuo/worlds/prepared_world.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 #include <continuo/worlds/world_events.hpp>

@@ -14,7 +14,7 @@
 #include <memory>
 #include <optional>
 
-#include <continuo/model/simulate.hpp>
+#include <continuo/simulation/simulate.hpp>
 #include <continuo/worlds/run_log.hpp>
 
 namespace continuo::worlds {

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/model/diagnostic.hpp>
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
+#include <continuo/language/text/diagnostic.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/solve/outcome.hpp>
 
 namespace continuo::worlds {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <continuo/solve/guard_watch.hpp>
+#include <continuo/solve/events/guard_watch.hpp>
 #include <continuo/worlds/world_events.hpp>
 
 namespace continuo::worlds {

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include <continuo/model/model_events.hpp>
-#include <continuo/model/run_recorder.hpp>
+#include <continuo/simulation/drive/run_recorder.hpp>
+#include <continuo/simulation/program/model_events.hpp>
 #include <continuo/worlds/world_run.hpp>
 
 namespace continuo::worlds {

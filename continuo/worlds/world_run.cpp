@@ -7,7 +7,7 @@
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
-#include <continuo/methods/dop853.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/solve/integrator.hpp>
 #include <continuo/worlds/beside.hpp>
 #include <continuo/worlds/build_world.hpp>

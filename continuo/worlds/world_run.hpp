@@ -23,11 +23,11 @@
 #include <string>
 #include <vector>
 
-#include <continuo/bodies/bytes.hpp>
 #include <continuo/bodies/contact_events.hpp>
-#include <continuo/model/experiment.hpp>
-#include <continuo/model/model_program.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/bodies/support/bytes.hpp>
+#include <continuo/language/world.hpp>
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 
 namespace continuo::worlds {
 

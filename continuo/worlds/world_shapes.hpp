@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <continuo/bodies/world.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/language/world.hpp>
 #include <continuo/worlds/world_run.hpp>
 
 namespace continuo::worlds {

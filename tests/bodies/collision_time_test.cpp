@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/bodies/collision_time.hpp>
+#include <continuo/bodies/contacts/collision_time.hpp>
 
 namespace continuo::collision_time_test {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/bodies/contact_sweeps.hpp>
-#include <continuo/bodies/touching.hpp>
+#include <continuo/bodies/contacts/contact_sweeps.hpp>
+#include <continuo/bodies/contacts/touching.hpp>
 
 namespace continuo::contact_sweeps_test {
 namespace {

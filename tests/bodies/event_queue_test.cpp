@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/bodies/event_queue.hpp>
+#include <continuo/bodies/event_driven/event_queue.hpp>
 
 namespace continuo::event_queue_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "round.hpp"
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/snapshot.hpp>
-#include <continuo/methods/dop853.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::rolling_test {

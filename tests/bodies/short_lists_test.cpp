@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/bodies/short_lists.hpp>
+#include <continuo/bodies/support/short_lists.hpp>
 
 namespace continuo::short_lists_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/bodies/wavefront.hpp>
+#include <continuo/bodies/time_stepping/wavefront.hpp>
 
 namespace continuo::wavefront_test {
 namespace {

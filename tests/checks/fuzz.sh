@@ -5,7 +5,7 @@ set -euo pipefail
 target=$1 folder=$2 seconds=$3
 found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
-mapfile -t seeds < <(cd "$folder" && for seed in models "tests/fuzz/$(basename "${target#*fuzz_}")" tests/model/wrong; do
+mapfile -t seeds < <(cd "$folder" && for seed in models "tests/fuzz/$(basename "${target#*fuzz_}")" tests/language/wrong; do
   [[ -d $seed ]] && realpath "$seed"; done; true)
 "$target" -max_total_time="$seconds" -timeout=60 -max_len=4096 -rss_limit_mb=4096 -print_final_stats=1 \
   -artifact_prefix="$found/" "$found" "${seeds[@]}" >"$found.log" 2>&1 || {

@@ -6,9 +6,9 @@
 #include <iterator>
 #include <string>
 
-#include <continuo/model/check.hpp>
-#include <continuo/model/format.hpp>
-#include <continuo/model/parser.hpp>
+#include <continuo/language/check/check.hpp>
+#include <continuo/language/syntax/format.hpp>
+#include <continuo/language/syntax/parser.hpp>
 
 namespace {
 

@@ -21,8 +21,8 @@
 #include <tests/fuzz/right_sums.hpp>
 
 #include <continuo/bodies/recording.hpp>
-#include <continuo/model/check.hpp>
-#include <continuo/model/parser.hpp>
+#include <continuo/language/check/check.hpp>
+#include <continuo/language/syntax/parser.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 
 namespace {

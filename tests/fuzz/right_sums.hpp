@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include <continuo/bodies/bytes.hpp>
+#include <continuo/bodies/support/bytes.hpp>
 
 namespace continuo {
 

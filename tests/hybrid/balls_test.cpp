@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 #include <tests/hybrid/random.hpp>
 
-#include <continuo/model/load.hpp>
-#include <continuo/model/simulate.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/simulation/simulate.hpp>
 
 namespace continuo::hybrid {
 namespace {

@@ -12,8 +12,8 @@
 #include <tests/hybrid/shrink.hpp>
 #include <unistd.h>
 
-#include <continuo/model/load.hpp>
-#include <continuo/model/simulate.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/simulation/simulate.hpp>
 
 namespace continuo::hybrid {
 namespace {

@@ -9,7 +9,7 @@
 #include <tests/hybrid/referee.hpp>
 #include <tests/hybrid/sensitivities.hpp>
 
-#include <continuo/model/load.hpp>
+#include <continuo/language/load.hpp>
 #include <continuo/studies/sensitivity.hpp>
 
 namespace continuo::hybrid {

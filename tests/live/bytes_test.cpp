@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <continuo/live/commands.hpp>
-#include <continuo/live/frames.hpp>
-#include <continuo/live/gzip.hpp>
-#include <continuo/live/row_log.hpp>
+#include <continuo/live/server/frames.hpp>
+#include <continuo/live/server/gzip.hpp>
+#include <continuo/live/server/row_log.hpp>
+#include <continuo/live/session/commands.hpp>
 
 namespace continuo::live {
 namespace {

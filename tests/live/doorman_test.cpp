@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/live/doorman.hpp>
+#include <continuo/live/server/doorman.hpp>
 
 namespace continuo::live {
 namespace {

@@ -13,9 +13,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <continuo/live/gzip.hpp>
 #include <continuo/live/loop.hpp>
 #include <continuo/live/server.hpp>
+#include <continuo/live/server/gzip.hpp>
 
 namespace continuo::live {
 namespace {

@@ -1,7 +1,7 @@
 // Bodies in a session.
 #include <tests/live/spectator.hpp>
 
-#include <continuo/live/world_track.hpp>
+#include <continuo/live/motion/world_track.hpp>
 
 namespace continuo::live {
 namespace {

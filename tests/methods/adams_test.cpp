@@ -11,8 +11,8 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
-#include <continuo/methods/adams.hpp>
-#include <continuo/methods/dop853.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/multistep/adams.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::adams_test {

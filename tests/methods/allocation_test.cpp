@@ -6,24 +6,24 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/methods/adams.hpp>
 #include <continuo/methods/all.hpp>
-#include <continuo/methods/bdf2.hpp>
-#include <continuo/methods/dormand_prince_nystrom6.hpp>
-#include <continuo/methods/dormand_prince_nystrom8.hpp>
-#include <continuo/methods/generalized_alpha.hpp>
-#include <continuo/methods/implicit_euler.hpp>
-#include <continuo/methods/implicit_midpoint.hpp>
-#include <continuo/methods/kahan_li8.hpp>
-#include <continuo/methods/kencarp4.hpp>
-#include <continuo/methods/kvaerno5.hpp>
-#include <continuo/methods/mclachlan_atela4.hpp>
-#include <continuo/methods/newmark.hpp>
-#include <continuo/methods/rodas4.hpp>
-#include <continuo/methods/rodas5p.hpp>
-#include <continuo/methods/rosenbrock23.hpp>
-#include <continuo/methods/tr_bdf2.hpp>
-#include <continuo/methods/trapezoidal.hpp>
+#include <continuo/methods/dirk/implicit_euler.hpp>
+#include <continuo/methods/dirk/implicit_midpoint.hpp>
+#include <continuo/methods/dirk/kencarp4.hpp>
+#include <continuo/methods/dirk/kvaerno5.hpp>
+#include <continuo/methods/dirk/tr_bdf2.hpp>
+#include <continuo/methods/dirk/trapezoidal.hpp>
+#include <continuo/methods/multistep/adams.hpp>
+#include <continuo/methods/multistep/bdf2.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom6.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom8.hpp>
+#include <continuo/methods/rosenbrock/rodas4.hpp>
+#include <continuo/methods/rosenbrock/rodas5p.hpp>
+#include <continuo/methods/rosenbrock/rosenbrock23.hpp>
+#include <continuo/methods/structural/generalized_alpha.hpp>
+#include <continuo/methods/structural/newmark.hpp>
+#include <continuo/methods/symplectic/kahan_li8.hpp>
+#include <continuo/methods/symplectic/mclachlan_atela4.hpp>
 
 namespace {
 std::size_t allocations = 0;

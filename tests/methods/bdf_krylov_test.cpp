@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "stiff_promises.hpp"
-#include <continuo/methods/bdf_krylov.hpp>
+#include <continuo/methods/multistep/bdf_krylov.hpp>
 
 namespace continuo::bdf_krylov_test {
 namespace {

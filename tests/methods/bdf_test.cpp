@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "stiff_promises.hpp"
-#include <continuo/methods/bdf.hpp>
+#include <continuo/methods/multistep/bdf.hpp>
 
 namespace continuo::bdf_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
-#include <continuo/methods/collocation_table.hpp>
+#include <continuo/methods/collocation/collocation_table.hpp>
 
 namespace continuo::collocation::collocation_test {
 namespace {

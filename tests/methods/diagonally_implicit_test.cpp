@@ -13,13 +13,13 @@
 
 #include "implicit_problems.hpp"
 #include "rooted_trees.hpp"
-#include <continuo/methods/bdf2.hpp>
-#include <continuo/methods/implicit_euler.hpp>
-#include <continuo/methods/implicit_midpoint.hpp>
-#include <continuo/methods/kencarp4.hpp>
-#include <continuo/methods/kvaerno5.hpp>
-#include <continuo/methods/tr_bdf2.hpp>
-#include <continuo/methods/trapezoidal.hpp>
+#include <continuo/methods/dirk/implicit_euler.hpp>
+#include <continuo/methods/dirk/implicit_midpoint.hpp>
+#include <continuo/methods/dirk/kencarp4.hpp>
+#include <continuo/methods/dirk/kvaerno5.hpp>
+#include <continuo/methods/dirk/tr_bdf2.hpp>
+#include <continuo/methods/dirk/trapezoidal.hpp>
+#include <continuo/methods/multistep/bdf2.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::diagonally_implicit_test {

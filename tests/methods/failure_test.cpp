@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <continuo/methods/all.hpp>
-#include <continuo/methods/bdf_krylov.hpp>
+#include <continuo/methods/multistep/bdf_krylov.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::failure_test {

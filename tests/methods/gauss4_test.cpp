@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "stiff_promises.hpp"
-#include <continuo/methods/gauss4.hpp>
+#include <continuo/methods/collocation/gauss4.hpp>
 
 namespace continuo::gauss4_test {
 namespace {

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "stiff_promises.hpp"
-#include <continuo/methods/radau.hpp>
+#include <continuo/methods/collocation/radau.hpp>
 
 namespace continuo::radau_test {
 namespace {

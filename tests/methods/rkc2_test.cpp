@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "stiff_promises.hpp"
-#include <continuo/methods/rkc2.hpp>
+#include <continuo/methods/explicit_rk/rkc2.hpp>
 
 namespace continuo::rkc2_test {
 namespace {

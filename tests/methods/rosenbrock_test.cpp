@@ -11,9 +11,9 @@
 
 #include "implicit_problems.hpp"
 #include "rooted_trees.hpp"
-#include <continuo/methods/rodas4.hpp>
-#include <continuo/methods/rodas5p.hpp>
-#include <continuo/methods/rosenbrock23.hpp>
+#include <continuo/methods/rosenbrock/rodas4.hpp>
+#include <continuo/methods/rosenbrock/rodas5p.hpp>
+#include <continuo/methods/rosenbrock/rosenbrock23.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::rosenbrock_test {

@@ -13,9 +13,9 @@
 
 #include "dense_order.hpp"
 #include "nystrom_trees.hpp"
-#include <continuo/methods/dormand_prince_nystrom12.hpp>
-#include <continuo/methods/dormand_prince_nystrom6.hpp>
-#include <continuo/methods/dormand_prince_nystrom8.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom12.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom6.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom8.hpp>
 #include <continuo/system/second_order.hpp>
 
 namespace continuo::runge_kutta_nystrom_test {

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/methods/central_difference.hpp>
-#include <continuo/methods/semi_implicit_euler.hpp>
-#include <continuo/methods/velocity_verlet.hpp>
+#include <continuo/methods/structural/central_difference.hpp>
+#include <continuo/methods/symplectic/semi_implicit_euler.hpp>
+#include <continuo/methods/symplectic/velocity_verlet.hpp>
 
 namespace continuo::second_order_method_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include <continuo/studies/named_solve.hpp>
+#include <continuo/studies/support/named_solve.hpp>
 
 namespace continuo::promises {
 

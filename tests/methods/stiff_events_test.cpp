@@ -5,12 +5,12 @@
 #include <bench/stiff/measure.hpp>
 #include <gtest/gtest.h>
 
-#include <continuo/methods/bdf.hpp>
-#include <continuo/methods/kencarp4.hpp>
-#include <continuo/methods/kvaerno5.hpp>
-#include <continuo/methods/radau.hpp>
-#include <continuo/methods/rodas4.hpp>
-#include <continuo/methods/rodas5p.hpp>
+#include <continuo/methods/collocation/radau.hpp>
+#include <continuo/methods/dirk/kencarp4.hpp>
+#include <continuo/methods/dirk/kvaerno5.hpp>
+#include <continuo/methods/multistep/bdf.hpp>
+#include <continuo/methods/rosenbrock/rodas4.hpp>
+#include <continuo/methods/rosenbrock/rodas5p.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::stiff_events_test {

@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/methods/generalized_alpha.hpp>
-#include <continuo/methods/newmark.hpp>
+#include <continuo/methods/structural/generalized_alpha.hpp>
+#include <continuo/methods/structural/newmark.hpp>
 #include <continuo/solve/solve.hpp>
 #include <continuo/system/second_order.hpp>
 

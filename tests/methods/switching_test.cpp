@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "stiff_promises.hpp"
-#include <continuo/methods/bdf.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/methods/multistep/bdf.hpp>
 #include <continuo/methods/switching.hpp>
-#include <continuo/methods/tsitouras5.hpp>
 #include <continuo/solve/automatic.hpp>
 #include <continuo/system/second_order.hpp>
 

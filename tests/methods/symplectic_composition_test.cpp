@@ -15,9 +15,9 @@
 
 #include "dense_order.hpp"
 #include "nystrom_trees.hpp"
-#include <continuo/methods/kahan_li8.hpp>
-#include <continuo/methods/mclachlan_atela4.hpp>
-#include <continuo/methods/yoshida6.hpp>
+#include <continuo/methods/symplectic/kahan_li8.hpp>
+#include <continuo/methods/symplectic/mclachlan_atela4.hpp>
+#include <continuo/methods/symplectic/yoshida6.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::symplectic_composition_test {

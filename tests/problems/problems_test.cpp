@@ -25,7 +25,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include <continuo/methods/verner9.hpp>
+#include <continuo/methods/explicit_rk/verner9.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::bench {

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "example.hpp"
-#include <continuo/model/load.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/language/world.hpp>
 #include <continuo/results/bodies_panel.hpp>
 
 namespace continuo::results::bodies_panel_test {

@@ -8,8 +8,8 @@
 
 #include <unistd.h>
 
-#include <continuo/model/model.hpp>
-#include <continuo/model/run.hpp>
+#include <continuo/language/model.hpp>
+#include <continuo/simulation/run.hpp>
 
 namespace continuo::results {
 

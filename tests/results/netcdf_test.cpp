@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <netcdf.h>
 
-#include <continuo/model/load.hpp>
-#include <continuo/model/simulate.hpp>
-#include <continuo/model/world.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/language/world.hpp>
 #include <continuo/results/netcdf.hpp>
+#include <continuo/simulation/simulate.hpp>
 
 namespace continuo::results {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/methods/bdf.hpp>
-#include <continuo/methods/tsitouras5.hpp>
-#include <continuo/solve/consistent.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/methods/multistep/bdf.hpp>
 #include <continuo/solve/solve.hpp>
+#include <continuo/solve/steps/consistent.hpp>
 
 namespace continuo::consistent_test {
 namespace {

@@ -8,10 +8,10 @@
 #include <bench/problems/van_der_pol.hpp>
 #include <gtest/gtest.h>
 
-#include <continuo/methods/dop853.hpp>
-#include <continuo/methods/dormand_prince_nystrom8.hpp>
-#include <continuo/methods/stiffness_watch.hpp>
-#include <continuo/methods/tsitouras5.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom8.hpp>
+#include <continuo/methods/support/stiffness_watch.hpp>
 #include <continuo/solve/solve.hpp>
 #include <continuo/system/second_order.hpp>
 

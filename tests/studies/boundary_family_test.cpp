@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/studies/boundary_family.hpp>
+#include <continuo/studies/boundary/boundary_family.hpp>
 
 namespace {
 

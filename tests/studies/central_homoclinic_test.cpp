@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "coordinate_change.hpp"
-#include <continuo/studies/orbit_collocation.hpp>
 #include <continuo/studies/orbit_curve.hpp>
+#include <continuo/studies/orbits/collocation/orbit_collocation.hpp>
 
 namespace continuo::studies::central_homoclinic_test {
 namespace {

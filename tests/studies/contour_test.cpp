@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/studies/contour.hpp>
+#include <continuo/studies/accuracy/contour.hpp>
 
 namespace continuo::studies::contour_test {
 namespace {

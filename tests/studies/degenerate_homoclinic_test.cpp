@@ -12,7 +12,7 @@
 
 #include "coordinate_change.hpp"
 #include <continuo/studies/degenerate_homoclinic.hpp>
-#include <continuo/studies/orbit_collocation.hpp>
+#include <continuo/studies/orbits/collocation/orbit_collocation.hpp>
 
 namespace continuo::studies::degenerate_homoclinic_test {
 namespace {

@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <continuo/model/check.hpp>
-#include <continuo/model/parser.hpp>
+#include <continuo/language/check/check.hpp>
+#include <continuo/language/syntax/parser.hpp>
 #include <continuo/studies/fit.hpp>
 #include <continuo/studies/sensitivity.hpp>
 #include <continuo/worlds/world_along.hpp>

@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "problems.hpp"
-#include <continuo/studies/chi_squared.hpp>
 #include <continuo/studies/fit.hpp>
-#include <continuo/studies/student_t.hpp>
+#include <continuo/studies/fit/chi_squared.hpp>
+#include <continuo/studies/fit/student_t.hpp>
 
 namespace continuo::studies::fit_statistics_test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "problems.hpp"
 #include <continuo/studies/fit.hpp>
-#include <continuo/studies/student_t.hpp>
+#include <continuo/studies/fit/student_t.hpp>
 
 namespace continuo::studies::fit_test {
 namespace {

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "problems.hpp"
-#include <continuo/studies/forcing_period.hpp>
 #include <continuo/studies/hybrid_continuation.hpp>
+#include <continuo/studies/support/forcing_period.hpp>
 
 namespace continuo::studies::hybrid_continuation_test {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "problems.hpp"
 #include "random_flows.hpp"
-#include <continuo/studies/forcing_period.hpp>
 #include <continuo/studies/hybrid_orbit.hpp>
 #include <continuo/studies/lyapunov.hpp>
+#include <continuo/studies/support/forcing_period.hpp>
 
 namespace continuo::studies {
 namespace {

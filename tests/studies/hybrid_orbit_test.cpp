@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "problems.hpp"
-#include <continuo/model/simulate.hpp>
-#include <continuo/studies/forcing_period.hpp>
+#include <continuo/simulation/simulate.hpp>
 #include <continuo/studies/hybrid_orbit.hpp>
+#include <continuo/studies/support/forcing_period.hpp>
 
 namespace continuo::studies {
 namespace {

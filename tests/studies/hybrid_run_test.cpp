@@ -10,11 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "problems.hpp"
-#include <continuo/model/model_program.hpp>
-#include <continuo/model/simulate.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/simulate.hpp>
 #include <continuo/studies/lyapunov.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
-#include <continuo/studies/unseen.hpp>
+#include <continuo/studies/support/unseen.hpp>
 
 namespace continuo::studies {
 namespace {

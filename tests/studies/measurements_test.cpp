@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/studies/measurements.hpp>
+#include <continuo/studies/support/measurements.hpp>
 
 namespace continuo::studies::measurements_test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/model/load.hpp>
-#include <continuo/model/model_program.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/studies/parametric_system.hpp>
 
 namespace continuo::studies {

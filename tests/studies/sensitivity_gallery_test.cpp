@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/model/load.hpp>
-#include <continuo/model/simulate.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/simulation/simulate.hpp>
 #include <continuo/studies/boundary_of_model.hpp>
 #include <continuo/studies/sensitivity.hpp>
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "problems.hpp"
-#include <continuo/model/simulate.hpp>
+#include <continuo/simulation/simulate.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/of_model.hpp>
 #include <continuo/studies/stability.hpp>

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/studies/student_t.hpp>
+#include <continuo/studies/fit/student_t.hpp>
 
 namespace continuo::studies::student_t_test {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/studies/chi_squared.hpp>
-#include <continuo/studies/variance_components.hpp>
+#include <continuo/studies/fit/chi_squared.hpp>
+#include <continuo/studies/fit/variance_components.hpp>
 
 namespace continuo::studies::variance_components_test {
 namespace {

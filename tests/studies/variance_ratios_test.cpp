@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/studies/student_t.hpp>
-#include <continuo/studies/variance_ratios.hpp>
+#include <continuo/studies/fit/student_t.hpp>
+#include <continuo/studies/fit/variance_ratios.hpp>
 
 namespace continuo::studies::variance_ratios_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <tests/worlds/scene.hpp>
 
-#include <continuo/model/describe.hpp>
+#include <continuo/language/describe.hpp>
 
 namespace continuo::worlds::materials_test {
 namespace {

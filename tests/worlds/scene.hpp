@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/model/check.hpp>
-#include <continuo/model/parser.hpp>
+#include <continuo/language/check/check.hpp>
+#include <continuo/language/syntax/parser.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 #include <continuo/worlds/world_run.hpp>
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <tests/worlds/scene.hpp>
 
-#include <continuo/model/load.hpp>
+#include <continuo/language/load.hpp>
 
 namespace continuo::worlds::world_run_test {
 namespace {

@@ -10,18 +10,18 @@
 
 #include <bench/nonstiff/measure.hpp>
 
-#include <continuo/methods/adams.hpp>
-#include <continuo/methods/dop853.hpp>
-#include <continuo/methods/dormand_prince5.hpp>
-#include <continuo/methods/dormand_prince_nystrom12.hpp>
-#include <continuo/methods/dormand_prince_nystrom6.hpp>
-#include <continuo/methods/dormand_prince_nystrom8.hpp>
-#include <continuo/methods/kahan_li8.hpp>
-#include <continuo/methods/mclachlan_atela4.hpp>
-#include <continuo/methods/tsitouras5.hpp>
-#include <continuo/methods/verner7.hpp>
-#include <continuo/methods/verner9.hpp>
-#include <continuo/methods/yoshida6.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/explicit_rk/dormand_prince5.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/methods/explicit_rk/verner7.hpp>
+#include <continuo/methods/explicit_rk/verner9.hpp>
+#include <continuo/methods/multistep/adams.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom12.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom6.hpp>
+#include <continuo/methods/nystrom/dormand_prince_nystrom8.hpp>
+#include <continuo/methods/symplectic/kahan_li8.hpp>
+#include <continuo/methods/symplectic/mclachlan_atela4.hpp>
+#include <continuo/methods/symplectic/yoshida6.hpp>
 #include <continuo/solve/automatic.hpp>
 
 namespace continuo::bench {

@@ -7,11 +7,11 @@
 
 #include <bench/stiff/measure.hpp>
 
-#include <continuo/methods/bdf.hpp>
-#include <continuo/methods/radau.hpp>
-#include <continuo/methods/rodas4.hpp>
-#include <continuo/model/load.hpp>
-#include <continuo/model/model_system.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/methods/collocation/radau.hpp>
+#include <continuo/methods/multistep/bdf.hpp>
+#include <continuo/methods/rosenbrock/rodas4.hpp>
+#include <continuo/simulation/program/model_system.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::bench {

@@ -11,15 +11,15 @@
 #include <bench/stiff/measure.hpp>
 
 #include <continuo/methods/automatic.hpp>
-#include <continuo/methods/bdf.hpp>
-#include <continuo/methods/implicit_euler.hpp>
-#include <continuo/methods/kencarp4.hpp>
-#include <continuo/methods/kvaerno5.hpp>
-#include <continuo/methods/radau.hpp>
-#include <continuo/methods/rodas4.hpp>
-#include <continuo/methods/rodas5p.hpp>
-#include <continuo/methods/rosenbrock23.hpp>
-#include <continuo/methods/tr_bdf2.hpp>
+#include <continuo/methods/collocation/radau.hpp>
+#include <continuo/methods/dirk/implicit_euler.hpp>
+#include <continuo/methods/dirk/kencarp4.hpp>
+#include <continuo/methods/dirk/kvaerno5.hpp>
+#include <continuo/methods/dirk/tr_bdf2.hpp>
+#include <continuo/methods/multistep/bdf.hpp>
+#include <continuo/methods/rosenbrock/rodas4.hpp>
+#include <continuo/methods/rosenbrock/rodas5p.hpp>
+#include <continuo/methods/rosenbrock/rosenbrock23.hpp>
 #include <continuo/solve/automatic.hpp>
 
 namespace continuo::bench {

@@ -14,8 +14,8 @@
 
 #include <continuo/bodies/recording.hpp>
 #include <continuo/bodies/snapshot.hpp>
-#include <continuo/model/check.hpp>
-#include <continuo/model/parser.hpp>
+#include <continuo/language/check/check.hpp>
+#include <continuo/language/syntax/parser.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 
 namespace {

@@ -1,10 +1,10 @@
 #include <array>
 #include <cmath>
 
-#include <continuo/methods/tsitouras5.hpp>
-#include <continuo/model/load.hpp>
-#include <continuo/model/simulate.hpp>
+#include <continuo/language/load.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
 #include <continuo/results/netcdf.hpp>
+#include <continuo/simulation/simulate.hpp>
 #include <continuo/solve/solve.hpp>
 #include <continuo/studies/least_squares.hpp>
 

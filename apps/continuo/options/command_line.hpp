@@ -1,0 +1,37 @@
+// apps/continuo/options/command_line.hpp
+// What CLI11 leaves to us: help that begins with examples, and "did you mean".
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
+
+namespace continuo::app {
+
+/// A verb whose help begins with `examples` (lines of `continuo VERB ...`).
+CLI::App* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples);
+
+/// Help of every verb begins with its examples.
+void examples_first(CLI::App& app, std::string_view examples);
+
+/// For options that take a number: 1/60 is one, as in a model.
+CLI::Validator quotients();
+
+/// For options that count: a whole number from `least` to `most`. CLI11 itself takes -3 for a very large one.
+CLI::Validator count_from(std::size_t least, std::size_t most = 1'000'000);
+
+/// For options that take a number: neither infinite nor none, and not below `least`, or above it.
+CLI::Validator finite_number();
+CLI::Validator number_from(double least);
+CLI::Validator number_above(double least);
+/// From `least` to less than `below`.
+CLI::Validator number_between(double least, double below);
+/// A text that is empty, as an unset variable of a shell leaves it, is no value of any option.
+void refuse_empty(CLI::App& verb);
+
+/// What to say of words that no verb or option takes.
+std::string unexpected(const CLI::App& app, int argc, char** argv);
+
+}  // namespace continuo::app

@@ -1,0 +1,69 @@
+#include <vector>
+
+#include <apps/continuo/orbits/exploration.hpp>
+#include <apps/continuo/orbits/steady_branches.hpp>
+#include <nlohmann/json.hpp>
+
+namespace continuo::app {
+namespace {
+
+using nlohmann::json;
+
+json rests_json(const std::vector<Rest>& rests) {
+  json list = json::array();
+  for (const Rest& rest : rests) {
+    list.push_back({{"x", rest.at.x}, {"eigenvalues", json_of(rest.at.eigenvalues)}});
+    list.back()["stability"] = rest.jump ? "undecided" : std::string(to_string(rest.at.stability));
+    if (rest.jump) list.back()["jump"] = *rest.jump;
+  }
+  return list;
+}
+
+json slider_json(const Slider& slider) {
+  json branches = json::array();
+  for (const auto& [branch, starts, crossed] : slider.branches) {
+    json points = json::array();
+    for (const studies::BifurcationPoint& point : branch.bifurcations)
+      points.push_back({{"kind", to_string(point.kind)},
+                        {"at", point.at.constant},
+                        {"x", point.at.x},
+                        {"frequency", point.frequency}});
+    branches.push_back(
+        {{"rests", starts}, {"complete", branch.complete}, {"points", branch.points.size()}, {"bifurcations", points}});
+    if (crossed) branches.back()["crosses"] = *crossed;
+  }
+  return {{"name", slider.name}, {"low", slider.low}, {"high", slider.high}, {"branches", branches}};
+}
+
+}  // namespace
+
+std::string exploration_json(const Studied& studied, const Exploration& found) {
+  json states = json::array(), sliders = json::array(), influences = json::array();
+  for (const model::State& state : studied.prepared.program->model.states) states.push_back(state.column);
+  for (const Slider& slider : found.sliders) sliders.push_back(slider_json(slider));
+  for (const Influenced& one : found.influences)
+    influences.push_back({{"parameter", one.parameter}, {"state", one.state}, {"part", one.part}, {"t", one.t}});
+  json result{{"states", states},           {"low", found.low},
+              {"high", found.high},         {"rests", rests_json(found.rests)},
+              {"searches", found.searches}, {"sliders", sliders},
+              {"matters", influences},      {"not_moved", found.not_moved},
+              {"open", found.open},         {"complete", found.complete}};
+  add_conserved(result, studied);
+  if (found.simulated.run)
+    result["run"] = {{"ending", to_string(found.simulated.run->outcome.ending)},
+                     {"t", found.simulated.run->final_time()}};
+  if (found.comes_to) result["comes_to_rest"] = *found.comes_to;
+  if (found.orbit)
+    result["orbit"] = {{"period", found.orbit->period},
+                       {"stable", found.orbit->stable},
+                       {"multipliers", json_of(found.orbit->multipliers)}};
+  if (found.hybrid_orbit)
+    result["orbit"] = {{"period", found.hybrid_orbit->period},
+                       {"stable", found.hybrid_orbit->neighbours == studies::HybridOrbit::Neighbours::come_nearer},
+                       {"multipliers", json_of(found.hybrid_orbit->multipliers)}};
+  if (found.exponents)
+    result["exponents"] = {{"values", found.exponents->exponents}, {"spread", found.exponents->spread}};
+  return result.dump(2) + "\n";
+}
+
+}  // namespace continuo::app

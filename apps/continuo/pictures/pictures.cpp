@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include <apps/continuo/pictures/body_pictures.hpp>
+#include <apps/continuo/pictures/pictures.hpp>
+#include <apps/continuo/pictures/plot_pictures.hpp>
+#include <apps/continuo/pictures/scene_pictures.hpp>
+#include <apps/continuo/terminal/own_process.hpp>
+#include <apps/continuo/terminal/program.hpp>
+#include <fmt/format.h>
+
+#include <continuo/results/output_file.hpp>
+
+namespace continuo::app {
+namespace {
+
+constexpr int width = 960, height = 720;  // pixels
+
+/// With a margin, and square, so that what moves along a line has room to move.
+PictureFrame with_margin(PictureFrame frame) {
+  const double size = std::max({frame.right - frame.left, frame.high - frame.low, 1e-9});
+  frame.take({(frame.left + frame.right) / 2, (frame.low + frame.high) / 2}, size / 2);
+  const double margin = 0.08 * size;
+  frame.left -= margin, frame.right += margin, frame.low -= margin, frame.high += margin;
+  return frame;
+}
+
+/// The drawing of a model and its bodies.
+class ScenePictures {
+ public:
+  ScenePictures(const live::Session& session, const Recorder::Slices& slices)
+      : shown_(session.shown()), slices_(slices) {
+    PictureFrame frame;
+    take_scene(shown_, slices, frame);
+    if (session.world()) {
+      bodies_.emplace(*session.world());
+      for (const auto& slice : slices) bodies_->take(*slice->bodies, frame);
+    }
+    if (!frame.empty()) frame_ = with_margin(frame);
+  }
+  bool is_empty() const { return frame_.empty(); }
+
+  std::string set_up() const {
+    return fmt::format(
+        "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset grid lc rgb 'gray90'\n"
+        "set border lc rgb 'gray60'\n",
+        frame_.left, frame_.right, frame_.low, frame_.high);
+  }
+  std::string commands(std::size_t number) const {
+    PictureParts parts;
+    if (bodies_) {
+      bodies_->draw_walls(frame_, parts);
+      bodies_->draw(*slices_[number]->bodies, parts);
+    }
+    draw_scene(shown_, slices_, number, frame_, parts);
+    return fmt::format("unset object\nunset label\nunset arrow\n{}set title '{}'\nplot {}\n{}", parts.objects,
+                       title_of(slices_[number]->t, shown_), parts.curves.empty() ? "NaN notitle" : parts.curves,
+                       parts.data);
+  }
+
+ private:
+  const live::LiveModel& shown_;
+  const Recorder::Slices& slices_;
+  std::optional<BodyPictures> bodies_;
+  PictureFrame frame_;
+};
+
+std::string run_gnuplot(const ScratchFolder& scratch, const std::string& folder, const std::string& script) {
+  const std::string program = scratch.file("pictures.gnuplot");
+  if (const auto failure = results::write_file(program, script)) return *failure;
+  const int exit = run_program({"gnuplot", program});
+  if (exit == -1) return "pictures are drawn by gnuplot, which is not installed";
+  return exit == 0 ? "" : fmt::format("gnuplot could not draw into {}", folder);
+}
+
+std::filesystem::path picture_of(const std::string& folder, std::size_t number) {
+  return std::filesystem::path(folder) / fmt::format("{:05d}.png", number + 1);
+}
+std::filesystem::path part_of(const std::filesystem::path& picture) {
+  return picture.string() + ".part";
+}
+
+/// Whether its last chunk is there.
+bool is_whole(const std::filesystem::path& picture) {
+  static constexpr std::string_view end("\0\0\0\0IEND\xAE\x42\x60\x82", 12);
+  std::ifstream file(picture, std::ios::binary);
+  std::string last(end.size(), ' ');
+  file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+  return file.read(last.data(), static_cast<std::streamsize>(last.size())) && last == end;
+}
+
+/// Gives the pictures from `first` to before `end` their names, or says which could not be written: gnuplot does not
+/// see that a disk is full. What stood there before is replaced by whole pictures alone.
+std::string keep_whole(const std::string& folder, std::size_t first, std::size_t end) {
+  std::string problem;
+  for (std::size_t k = first; k < end; ++k) {
+    const std::filesystem::path picture = picture_of(folder, k), part = part_of(picture);
+    std::error_code error;
+    const bool whole = problem.empty() && is_whole(part);
+    if (whole) std::filesystem::rename(part, picture, error);
+    if (whole && !error) continue;
+    if (problem.empty())
+      problem = fmt::format("cannot write {}{}; {}", picture.string(),
+                            error ? ": " + error.message() : " whole: the disk may be full",
+                            k == 0 ? "no picture was written" : fmt::format("those up to {:05d}.png are there", k));
+    std::filesystem::remove(part, error);
+  }
+  return problem;
+}
+
+/// So many pictures at a time as fit into memory well.
+template <class Pictures>
+std::string draw_all(const std::string& folder, const std::string& set_up, const Pictures& pictures,
+                     std::size_t count) {
+  constexpr std::size_t much = std::size_t{32} << 20;  // bytes
+  const ScratchFolder scratch;
+  if (!scratch.exists()) return "cannot make a folder for what gnuplot reads";
+  const std::string head = fmt::format("cd '{}'\nset terminal pngcairo size {},{} font ',11' noenhanced\n{}",
+                                       std::filesystem::absolute(folder).string(), width, height, set_up);
+  std::string script;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    script += fmt::format("set output '{}'\n{}", part_of(picture_of("", k)).string(), pictures.commands(k));
+    if (script.size() < much && k + 1 < count) continue;
+    // The last picture is written when the next one begins, or gnuplot ends.
+    const std::string of_gnuplot = run_gnuplot(scratch, folder, head + script);
+    const std::string of_files = keep_whole(folder, first, k + 1);
+    if (!of_gnuplot.empty() || !of_files.empty()) return of_gnuplot.empty() ? of_files : of_gnuplot;
+    script.clear();
+    first = k + 1;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string draw_pictures(const std::string& folder, const live::Session& session, const Recorder::Slices& slices) {
+  if (folder.find('\'') != std::string::npos || folder.find('\n') != std::string::npos)
+    return fmt::format("gnuplot cannot write into a folder of this name: {}", folder);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return fmt::format("cannot make {}: {}", folder, error.message());
+  if (session.shown().drawing.empty() && !session.world()) {
+    const PlotPictures pictures(session.shown(), slices);
+    return draw_all(folder, pictures.data(), pictures, slices.size());
+  }
+  const ScenePictures pictures(session, slices);
+  if (pictures.is_empty()) return "nothing of the drawing has a place";
+  return draw_all(folder, pictures.set_up(), pictures, slices.size());
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,114 @@
+// apps/continuo/pictures/recording.cpp
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/pictures/pictures.hpp>
+#include <apps/continuo/pictures/recorder.hpp>
+#include <apps/continuo/pictures/recording.hpp>
+#include <apps/continuo/terminal/own_process.hpp>
+#include <apps/continuo/terminal/program.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <fmt/format.h>
+
+#include <continuo/live/server/gzip.hpp>
+#include <continuo/results/output_file.hpp>
+
+namespace continuo::app {
+namespace {
+
+constexpr std::string_view marker = "<!--recording-->";
+
+/// At a clock of its own, which moves from picture to picture and never within one.
+void play_to(double until, double rate, double& wall, live::Session& session) {
+  session.set_rate(rate);
+  session.play();
+  while (!session.has_ended() && session.shown_time() < until) {
+    wall += 1 / rate;
+    session.turn();
+  }
+  session.pause();
+  session.turn();
+}
+
+ExitCode write_page(const std::string& path, const std::string& compressed, const Recorder& recorder) {
+  std::string page = live::unzipped(compressed);
+  const std::size_t place = page.find(marker);
+  if (place == std::string::npos) {
+    say(page.empty() ? "this build has no page to replay a run: build with -DCONTINUO_PAGE=ON, or give --page FILE"
+                     : "the page has no place for a recording");
+    return usage;
+  }
+  page.replace(place, marker.size(), recorder.element());
+  return written(results::write_file(path, page)) ? done : usage;
+}
+
+ExitCode write_film(const std::string& path, double rate, const live::Session& session, const Recorder& recorder) {
+  const ScratchFolder scratch;
+  if (!scratch.exists()) {
+    say("cannot make a folder for the pictures of the film");
+    return usage;
+  }
+  const std::string folder = scratch.file("pictures");
+  if (const std::string problem = draw_pictures(folder, session, recorder.slices()); !problem.empty()) {
+    say(problem);
+    return usage;
+  }
+  const std::string part = path + ".part";  // a film is there whole or not at all
+  const int exit = run_program({"ffmpeg", "-y", "-framerate", fmt::format("{}", rate), "-i", folder + "/%05d.png",
+                                "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", part});
+  std::error_code error;
+  if (exit == 0) std::filesystem::rename(part, path, error);
+  if (exit == 0 && !error) return done;
+  std::filesystem::remove(part, error);
+  say(exit == -1 ? fmt::format("ffmpeg was ended before it had written {}; --record FOLDER writes pictures", path)
+                 : fmt::format("ffmpeg could not write {}; --record FOLDER writes pictures", path));
+  return usage;
+}
+
+/// What somebody who wants another format would write.
+bool is_one_file(const std::string& path) {
+  static constexpr std::array<std::string_view, 10> endings = {".avi", ".mov", ".webm", ".mkv", ".mpg",
+                                                               ".m4v", ".gif", ".png",  ".jpg", ".svg"};
+  return std::ranges::find(endings, std::filesystem::path(path).extension().string()) != endings.end();
+}
+
+}  // namespace
+
+ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std::string& page) {
+  const bool film = std::filesystem::path(request.pictures).extension() == ".mp4";
+  if (!film && is_one_file(request.pictures)) {
+    say(fmt::format("cannot record {}: pictures go into a folder, and the name of a film ends in .mp4",
+                    request.pictures));
+    return usage;
+  }
+  if (!writable(request.page) || (film && !writable(request.pictures))) return usage;
+  if (film && run_program({"ffmpeg", "-version"}) != 0) {
+    say("a film is made by ffmpeg, which is not installed; --record FOLDER writes pictures");
+    return usage;
+  }
+  double wall = 0;
+  Recorder recorder;
+  live::Session session([&wall] { return wall; }, recorder, {.path = request.model});
+  if (const ExitCode exit = set_up(session); exit != done) return exit;
+  recorder.begin();
+  session.reset();
+  session.turn();
+  const double until = request.until.value_or(session.planned_end());
+  if (!(until > session.shown_time() && std::isfinite(until))) {
+    say(fmt::format("--until must be after the start of the run, t = {:g}", session.shown_time()));
+    return usage;
+  }
+  play_to(until, request.rate, wall, session);
+  ExitCode exit = done;
+  if (!request.page.empty()) exit = write_page(request.page, page, recorder);
+  if (exit != done || request.pictures.empty()) return exit;
+  if (film) return write_film(request.pictures, request.rate, session, recorder);
+  const std::string problem = draw_pictures(request.pictures, session, recorder.slices());
+  if (!problem.empty()) say(problem);
+  return problem.empty() ? done : usage;
+}
+
+}  // namespace continuo::app

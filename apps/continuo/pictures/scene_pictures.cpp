@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <apps/continuo/pictures/scene_pictures.hpp>
+
+#include <continuo/results/figure.hpp>
+
+namespace continuo::app {
+namespace {
+
+/// What of a scene there is to draw with, in the plane of the picture: a scene in space is seen from above its corner.
+class Drawn {
+ public:
+  Drawn(const live::LiveModel& shown, const Recorder::Slices& slices) : shown_(shown), slices_(slices) {}
+
+  std::optional<Flat> point(const live::SceneItem& item, std::string_view name, std::size_t frame) const {
+    const live::SceneNumbers* part = find(item, name);
+    if (!part || part->places.size() < 2) return std::nullopt;
+    const auto at = [&](std::size_t i) { return number(frame, part->places[i]); };
+    if (part->places.size() == 2) return Flat{at(0), at(1)};
+    return flat_of(at(0), at(1), at(2));
+  }
+  double value(const live::SceneItem& item, std::string_view name, std::size_t frame, double otherwise) const {
+    const live::SceneNumbers* part = find(item, name);
+    return part ? number(frame, part->places.front()) : otherwise;
+  }
+  void add_path(const live::SceneItem& item, std::size_t frame, std::vector<Flat>& path) const {
+    const live::Slice& slice = *slices_[frame];
+    for (std::size_t row = 0; row < slice.row_t.size(); ++row) {
+      const auto at = [&](std::size_t i) {
+        return static_cast<double>(slice.paths[row * shown_.paths.size() + item.path[i]]);
+      };
+      path.push_back(item.path.size() == 2 ? Flat{at(0), at(1)} : flat_of(at(0), at(1), at(2)));
+    }
+  }
+  /// Of a ball in space too: as large as a sphere of that radius looks.
+  double radius(const live::SceneItem& item, std::size_t frame) const {
+    const live::SceneNumbers* at = find(item, "at");
+    const double seen = at && at->places.size() == 3 ? size_in_space : 1;
+    return seen * value(item, "radius", frame, 0.1);
+  }
+  const live::LiveModel& shown() const { return shown_; }
+  std::size_t frames() const { return slices_.size(); }
+  double time(std::size_t frame) const { return slices_[frame]->t; }
+
+ private:
+  static const live::SceneNumbers* find(const live::SceneItem& item, std::string_view name) {
+    const auto found = std::ranges::find(item.numbers, name, &live::SceneNumbers::name);
+    return found == item.numbers.end() ? nullptr : &*found;
+  }
+  double number(std::size_t frame, std::size_t place) const {
+    return static_cast<double>(slices_[frame]->scene[place]);
+  }
+
+  const live::LiveModel& shown_;
+  const Recorder::Slices& slices_;
+};
+
+/// A name that gnuplot knows, else the item's place in the palette.
+std::string color_of(const live::SceneItem& item, std::size_t number) {
+  static constexpr std::array<std::string_view, 12> known = {"red",   "green", "blue", "orange", "black", "gray",
+                                                             "brown", "cyan",  "gold", "purple", "pink",  "yellow"};
+  if (std::ranges::find(known, item.color) != known.end()) return item.color;
+  const bool hexadecimal = item.color.size() == 7 && item.color.front() == '#' &&
+                           item.color.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+  return hexadecimal ? item.color : std::string(results::color_of(number));
+}
+
+class Page {
+ public:
+  Page(const Drawn& drawn, std::size_t frame, PictureParts& parts) : drawn_(drawn), frame_(frame), parts_(parts) {}
+
+  void draw(const PictureFrame& view) {
+    std::size_t number = 0;
+    for (const live::SceneItem& item : drawn_.shown().drawing) add(item, color_of(item, number++), view);
+  }
+
+ private:
+  void line(const std::vector<Flat>& points, const std::string& color, double thick) {
+    parts_.line(points, color, thick);
+  }
+
+  void add(const live::SceneItem& item, const std::string& color, const PictureFrame& view) {
+    using model::Shape;
+    const auto at = drawn_.point(item, "at", frame_), to = drawn_.point(item, "to", frame_);
+    switch (item.shape) {
+      case Shape::floor: {
+        const double y = drawn_.value(item, "height", frame_, 0);
+        line({{view.left, y}, {view.right, y}}, "gray40", 3);
+        return;
+      }
+      case Shape::ball:
+        if (at) ball(*at, drawn_.radius(item, frame_), color);
+        break;
+      case Shape::box:
+        if (at) box(item, *at, color);
+        break;
+      case Shape::spring:
+        if (at && to) spring(item, *at, *to, color);
+        break;
+      case Shape::rod:
+      case Shape::rope:
+        if (at && to) line({*at, *to}, color, item.shape == Shape::rod ? 4 : 2);
+        break;
+      case Shape::arrow:
+        if (at && to)
+          parts_.objects +=
+              fmt::format("set arrow from {},{} to {},{} lw 3 lc rgb '{}'\n", at->x, at->y, to->x, to->y, color);
+        break;
+      case Shape::trail:
+        trail(item, color);
+        break;
+      case Shape::text:
+        if (at) label(item.text, *at);
+        break;
+    }
+    if (at && !item.label.empty()) label(item.label, *at);
+  }
+
+  void label(const std::string& text, Flat at) {
+    parts_.objects += fmt::format("set label '{}' at {},{} center front\n", safe_text(text), at.x, at.y);
+  }
+
+  void ball(Flat at, double radius, const std::string& color) {
+    parts_.objects += fmt::format("set object circle at {},{} size {} fc rgb '{}' fillstyle solid noborder front\n",
+                                  at.x, at.y, radius, color);
+  }
+
+  void box(const live::SceneItem& item, Flat at, const std::string& color) {
+    const auto found = std::ranges::find(item.numbers, "size", &live::SceneNumbers::name);
+    const auto size = found == item.numbers.end() ? std::optional<Flat>() : drawn_.point(item, "size", frame_);
+    const double wide = size ? size->x / 2 : 0.5, high = size ? size->y / 2 : 0.5;
+    const double angle = drawn_.value(item, "angle", frame_, 0), c = std::cos(angle), s = std::sin(angle);
+    std::string corners;
+    for (const auto [x, y] : {Flat{-wide, -high}, {wide, -high}, {wide, high}, {-wide, high}, {-wide, -high}})
+      corners += fmt::format("{}{},{}", corners.empty() ? "from " : " to ", at.x + c * x - s * y, at.y + s * x + c * y);
+    parts_.objects += fmt::format("set object polygon {} fc rgb '{}' fillstyle solid noborder\n", corners, color);
+  }
+
+  void spring(const live::SceneItem& item, Flat from, Flat to, const std::string& color) {
+    const double dx = to.x - from.x, dy = to.y - from.y, length = std::hypot(dx, dy);
+    if (!(length > 0)) return;
+    const int turns = std::clamp(static_cast<int>(drawn_.value(item, "turns", frame_, 10)), 1, 100);
+    const double wide = drawn_.value(item, "width", frame_, 0.1) / 2;
+    std::vector<Flat> zigzag = {from};
+    for (int k = 0; k < 2 * turns; ++k) {
+      const double part = 0.1 + 0.8 * (k + 0.5) / (2 * turns), side = k % 2 == 0 ? wide : -wide;
+      zigzag.push_back({from.x + part * dx - side * dy / length, from.y + part * dy + side * dx / length});
+    }
+    zigzag.push_back(to);
+    line(zigzag, color, 2);
+  }
+
+  /// Through the points of the rows, which are dense where it bends.
+  void trail(const live::SceneItem& item, const std::string& color) {
+    const double length = drawn_.value(item, "length", frame_, std::numeric_limits<double>::infinity());
+    std::vector<Flat> path;
+    for (std::size_t k = 0; k <= frame_; ++k) {
+      if (drawn_.time(k) < drawn_.time(frame_) - length) continue;
+      drawn_.add_path(item, k, path);
+    }
+    line(path, color, 1);
+  }
+
+  const Drawn& drawn_;
+  std::size_t frame_;
+  PictureParts& parts_;
+};
+
+}  // namespace
+
+std::string safe_text(std::string_view text) {
+  std::string safe;
+  for (const char c : text) {
+    const bool special = c == '\'' || c == '"' || c == '\\' || c == '`' || c == '\n';
+    safe += special ? ' ' : c;
+  }
+  return safe;
+}
+
+std::string title_of(double t, const live::LiveModel& shown) {
+  const std::string time = std::abs(t) < 1e6 ? fmt::format("{:.3f}", t) : fmt::format("{:.4g}", t);
+  return fmt::format("t = {} {}", time, safe_text(shown.model().time_unit));
+}
+
+void take_scene(const live::LiveModel& shown, const Recorder::Slices& slices, PictureFrame& frame) {
+  const Drawn drawn(shown, slices);
+  for (std::size_t k = 0; k < drawn.frames(); ++k) {
+    for (const live::SceneItem& item : shown.drawing) {
+      const double radius = item.shape == model::Shape::ball ? drawn.radius(item, k) : 0;
+      const double around = std::max(radius, drawn.value(item, "size", k, 0) / 2);
+      for (const char* name : {"at", "to"}) {
+        if (const auto p = drawn.point(item, name, k)) frame.take(*p, around);
+      }
+      if (item.shape == model::Shape::floor) frame.low = std::min(frame.low, drawn.value(item, "height", k, 0));
+    }
+  }
+}
+
+void draw_scene(const live::LiveModel& shown, const Recorder::Slices& slices, std::size_t number,
+                const PictureFrame& frame, PictureParts& parts) {
+  const Drawn drawn(shown, slices);
+  Page(drawn, number, parts).draw(frame);
+}
+
+}  // namespace continuo::app

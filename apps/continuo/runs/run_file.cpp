@@ -1,0 +1,62 @@
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/runs/run_file.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <fmt/format.h>
+
+namespace continuo::app {
+
+void add_record(CLI::App& verb, RecordTo& record) {
+  auto* path =
+      verb.add_option("--record", record.path, "Of a world: a file to replay, or to go on from")->type_name("FILE");
+  verb.add_option("--snapshots", record.standings, "In the recording: so many places to go on from (20)")
+      ->type_name("N")
+      ->check(count_from(0, 100'000))
+      ->needs(path);
+}
+
+bool can_be_written(const RecordTo& record) {
+  if (record.path != "-") return writable(record.path);
+  say("--record takes the name of a file");
+  return false;
+}
+
+worlds::RunLog* RunFile::begin(const worlds::RunHead& head) {
+  if (!is_wanted()) return nullptr;
+  file_.open(to_.path, std::ios::binary | std::ios::trunc);
+  if (!file_) return nullptr;
+  log_ = std::make_unique<worlds::RunLog>(file_, head, to_.standings);
+  return log_.get();
+}
+
+bool RunFile::close() {
+  if (!is_wanted()) return true;
+  const bool was_open = file_.is_open();
+  file_.close();
+  if (was_open && file_) return true;
+  say(fmt::format("cannot write {}: {}", to_.path, std::strerror(errno)));
+  return false;
+}
+
+std::optional<worlds::RunRecording> read_run(const std::string& path) {
+  if (!readable(path)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const auto size = file.tellg();
+  Bytes bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!file) {
+    say(fmt::format("cannot read {}", path));
+    return std::nullopt;
+  }
+  worlds::RunRecording recording = worlds::RunRecording::read(bytes);
+  if (recording.error.empty()) return recording;
+  say(fmt::format("{}: {}", path, recording.error));
+  return std::nullopt;
+}
+
+}  // namespace continuo::app

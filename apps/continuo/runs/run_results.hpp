@@ -1,0 +1,31 @@
+// What every verb does with a run that it has: files, pictures, a summary, how it ended.
+#pragma once
+#include <string>
+
+#include <CLI/App.hpp>
+#include <apps/continuo/terminal/exit_codes.hpp>
+
+#include <continuo/simulation/simulate.hpp>
+
+namespace continuo::app {
+
+struct RunOutputs {
+  std::string motion{}, events{}, plot{}, manifest{};  // files; empty: not wanted
+  bool json = false;
+
+  bool data_to_standard_output() const { return json || motion == "-" || events == "-" || manifest == "-"; }
+};
+/// -o, --events, --plot, --manifest and --json.
+void add_outputs(CLI::App& verb, RunOutputs& outputs);
+/// Said before a long run, not after it.
+bool can_be_written(const RunOutputs& outputs);
+std::vector<std::string> files_of(const RunOutputs& outputs);
+
+/// Writes and prints what is wanted. Checks are meant for a run as its model is written.
+ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
+              const RunOutputs& outputs, bool as_written);
+
+/// Why there is no run, as JSON.
+void print_no_run(std::span<const model::Diagnostic> diagnostics, const model::Source& source);
+
+}  // namespace continuo::app

@@ -1,0 +1,39 @@
+#include <cstdio>
+#include <cstdlib>
+
+#include <apps/continuo/terminal/terminal.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace continuo::app {
+
+void say(std::string_view message) {
+  fmt::print(stderr, "continuo: {}\n", message);
+}
+
+bool written(const std::optional<std::string>& failure) {
+  if (failure) say(*failure);
+  return !failure;
+}
+
+void print(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);  // in order with the messages
+}
+
+bool all_printed() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  say("standard output could not be written to its end");
+  return false;
+}
+
+bool colors_wanted() {
+  const char* no_color = std::getenv("NO_COLOR");
+  return watched() && (no_color == nullptr || *no_color == '\0');
+}
+
+bool watched() {
+  return isatty(STDERR_FILENO) == 1;
+}
+
+}  // namespace continuo::app

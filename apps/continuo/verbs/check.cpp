@@ -1,0 +1,108 @@
+// continuo check FILES: are text, names and units in order? Nothing is computed, unless the derivatives are to be
+// compared with differences (--jacobian).
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/language/text/diagnostic.hpp>
+#include <continuo/language/world.hpp>
+#include <continuo/results/derivatives.hpp>
+#include <continuo/simulation/check_derivatives.hpp>
+#include <continuo/simulation/simulate.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct CheckRequest {
+  std::vector<std::string> files;
+  bool json = false, jacobian = false;
+};
+
+std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+void print_verdict(const std::string& path, const model::Model& model) {
+  if (model.has_world()) {
+    const std::size_t bodies = model.world->bodies.size();
+    const std::size_t states = model.world->first_measure - model.world->body_states();
+    print(fmt::format(
+        "{}: in order; {}, {}, {}, {}, {}\n", path, bodies == 1 ? "1 body" : fmt::format("{} bodies", bodies),
+        counted(states, "state"), counted(model.parameters.size(), "parameter"),
+        counted(model.events.size() + model.schedule.size(), "event"), counted(model.checks.size(), "check")));
+    return;
+  }
+  print(fmt::format("{}: in order; {}, {}, {}, {}\n", path, counted(model.states.size(), "state"),
+                    counted(model.parameters.size(), "parameter"),
+                    counted(model.events.size() + model.schedule.size(), "event"),
+                    counted(model.checks.size(), "check")));
+}
+
+/// What --jacobian adds to the verdict.
+ExitCode compare_derivatives(const CheckRequest& request, const model::Loaded& loaded) {
+  std::vector<model::Diagnostic> problems;
+  if (loaded.model->has_world()) {
+    fmt::print(stderr, "{}",
+               model::render(model::no_study_of_worlds(*loaded.model), loaded.source, {.color = colors_wanted()}));
+    return wrong_model;
+  }
+  const auto report =
+      model::check_derivatives(model::compile(*loaded.model), {.interrupt = &interrupt_flag()}, problems);
+  if (request.json) {
+    print(fmt::format("{{\n  \"messages\": {},\n  \"jacobian\": {}\n}}\n", model::to_json(problems, loaded.source),
+                      report ? results::derivatives_json(*report) : "null"));
+  } else if (report) {
+    print(results::derivatives_text(*report));
+  } else {
+    fmt::print(stderr, "{}", model::render(problems, loaded.source, {.color = colors_wanted()}));
+  }
+  if (!report) return numerical_failure;
+  if (report->interrupted) return interrupted;
+  return report->agrees() ? done : check_failed;
+}
+
+ExitCode check(const CheckRequest& request) {
+  const ModelFiles files = find_models(request.files);
+  ExitCode exit = files.complete ? done : usage;
+  for (const std::string& path : files.paths) {
+    const model::Loaded loaded = request.json ? model::load(path) : load_model(path);
+    const bool jacobian = request.jacobian && loaded;
+    if (request.json && !jacobian) {
+      print(model::to_json(loaded.diagnostics, loaded.source) + "\n");
+    } else if (loaded && !request.json) {
+      print_verdict(path, *loaded.model);
+    }
+    if (!loaded) exit = wrong_model;
+    if (!jacobian) continue;
+    const ExitCode compared = compare_derivatives(request, loaded);
+    if (compared == interrupted) return compared;
+    if (exit == done) exit = compared;
+  }
+  return exit;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo check spring.sim\n"
+      "  continuo check models/          every model of a folder\n"
+      "  continuo check spring.sim --json\n"
+      "  continuo check spring.sim --jacobian   df/dx and df/dt against differences, along a run\n";
+  CLI::App* verb = add_verb(app, "check", "Checks text, names and units of models, and their derivatives", examples);
+  auto request = std::make_shared<CheckRequest>();
+  verb->add_option("files", request->files, "Models, or folders of models")->required()->type_name("");
+  verb->add_flag("--json", request->json, "What is wrong as JSON, one array per file");
+  verb->add_flag("--jacobian", request->jacobian,
+                 "The exact derivatives against differences along a short run, and where there are none");
+  verb->callback([&exit, request] { exit = check(*request); });
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,53 @@
+// continuo explain CODE: more about a message.
+#include <string>
+#include <vector>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/language/text/codes.hpp>
+#include <continuo/symbolic/names/suggest.hpp>
+
+namespace continuo::app {
+namespace {
+
+std::vector<model::Code> all_codes() {
+  std::vector<model::Code> codes;
+  for (const auto family : {model::syntax_codes(), model::check_codes(), model::numerical_codes()}) {
+    codes.insert(codes.end(), family.begin(), family.end());
+  }
+  return codes;
+}
+
+ExitCode list() {
+  for (const model::Code& code : all_codes()) print(fmt::format("{}  {}\n", code.code, code.title));
+  return done;
+}
+
+ExitCode explain(const std::string& wanted) {
+  if (const model::Code* code = model::find_code(wanted)) {
+    print(fmt::format("{}: {}\n\n{}\n", code->code, code->title, code->explanation));
+    return done;
+  }
+  std::vector<std::string_view> names;
+  for (const model::Code& code : all_codes()) names.push_back(code.code);
+  const std::string hint = model::did_you_mean(wanted, names);
+  say(fmt::format("there is no message {}; {}", wanted, hint.empty() ? "`continuo explain` lists them" : hint));
+  return usage;
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo explain E201     what it means, an example, how to mend it\n"
+      "  continuo explain          all codes\n";
+  CLI::App* verb = add_verb(app, "explain", "Says more about a message", examples);
+  auto code = std::make_shared<std::string>();
+  verb->add_option("code", *code, "The code of the message, E201")->type_name("");
+  verb->callback([&exit, code] { exit = code->empty() ? list() : explain(*code); });
+}
+
+}  // namespace continuo::app

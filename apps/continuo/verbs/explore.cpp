@@ -1,0 +1,63 @@
+// continuo explore FILE: what a model does, on one page.
+#include <memory>
+#include <string>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/orbits/exploration.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct ExploreOptions {
+  ExperimentOptions experiment;
+  std::string mode, plot;
+  ExplorationLimits limits;
+  bool json = false;
+};
+
+ExitCode explore_model(const ExploreOptions& options) {
+  if (!drawable(options.plot)) return usage;
+  Studied studied = study(options.experiment, options.mode, {}, Equations::algebraic_too);
+  if (studied.prepared.exit != done) return studied.prepared.exit;
+  if (studied.prepared.program->model.states.empty()) {
+    say("nothing moves in this model: there is no state");
+    return wrong_model;
+  }
+  hold_conserved(studied);
+  const Exploration found = explore(studied, options.limits);
+  print(options.json ? exploration_json(studied, found) : exploration_text(studied, found));
+  const ExitCode exit = found.complete ? done : interrupted;
+  if (options.plot.empty() || written(results::draw(exploration_figure(studied, found), options.plot))) return exit;
+  return exit == done ? usage : exit;
+}
+
+}  // namespace
+
+void add_explore(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo explore models/lorenz.sim                    rests, orbit, sliders, what matters; and what is open\n"
+      "  continuo explore models/van_der_pol.sim --plot page.svg\n"
+      "  continuo explore models/mass_spring_damper.sim --json\n";
+  CLI::App* verb = add_verb(app, "explore", "What a model does, on one page", examples);
+  auto options = std::make_shared<ExploreOptions>();
+  add_model(*verb, options->experiment);
+  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
+  verb->add_option("--starts", options->limits.starts, "Of the search for places of rest (200)")
+      ->check(count_from(0))
+      ->type_name("N");
+  verb->add_option("--settle", options->limits.settle, "Time for the motion to come to its orbit; else that of the run")
+      ->check(number_from(0))
+      ->type_name("T");
+  verb->add_option("--duration", options->limits.duration, "Within which an orbit must come back; else that of the run")
+      ->check(number_above(0))
+      ->type_name("T");
+  verb->add_flag("--json", options->json, "All of it as one JSON object");
+  verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
+  verb->callback([&exit, options] { exit = explore_model(*options); });
+}
+
+}  // namespace continuo::app

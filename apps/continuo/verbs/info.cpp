@@ -1,0 +1,33 @@
+// continuo info FILE: what Continuo made of a model.
+#include <memory>
+#include <string>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+
+#include <continuo/language/describe.hpp>
+
+namespace continuo::app {
+namespace {
+
+ExitCode info(const std::string& path) {
+  if (!readable(path)) return usage;
+  const model::Loaded loaded = load_model(path);
+  if (!loaded) return wrong_model;
+  print(model::describe(*loaded.model));
+  return done;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, ExitCode& exit) {
+  CLI::App* verb = add_verb(app, "info", "Shows the equations, states, parameters, events and experiment of a model",
+                            "  continuo info models/bouncing_ball.sim\n");
+  auto path = std::make_shared<std::string>();
+  verb->add_option("file", *path, "The model")->required()->type_name("");
+  verb->callback([&exit, path] { exit = info(*path); });
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,147 @@
+// continuo replay FILE: a recorded run again, without simulating. continuo resume FILE: on from a place in it.
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/experiment_options.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/runs/run_file.hpp>
+#include <apps/continuo/runs/run_results.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
+#include <apps/continuo/terminal/progress.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/language/load.hpp>
+#include <continuo/worlds/simulate_world.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct ReplayRequest {
+  std::string file;
+  RunOutputs outputs;
+  std::optional<double> at, until;
+  RecordTo record;
+};
+
+/// A recording and the model in it, or how the verb ends without.
+struct Opened {
+  ExitCode exit = usage;
+  worlds::RunRecording recording{};
+  model::Loaded loaded{model::Source("", ""), {}, {}};
+  std::shared_ptr<const model::ModelProgram> program{};
+};
+
+Opened open(const ReplayRequest& request) {
+  Opened opened;
+  if (!can_be_written(request.outputs) || !are_apart({request.file}, files_of(request.outputs))) return opened;
+  auto recording = read_run(request.file);
+  if (!recording) return opened;
+  opened.recording = std::move(*recording);
+  const worlds::RunHead& head = opened.recording.head;
+  model::CheckOptions options;
+  if (head.decides_size) options.overrides = head.experiment.parameters;
+  opened.loaded = model::load(model::Source(head.file, head.text), options);
+  if (!opened.loaded || !opened.loaded.model->has_world()) {
+    show(opened.loaded.diagnostics, opened.loaded.source);
+    say(fmt::format("{}: the model in the recording is not in order", request.file));
+    opened.exit = wrong_model;
+    return opened;
+  }
+  opened.program = model::compile(*opened.loaded.model);
+  opened.exit = done;
+  return opened;
+}
+
+std::string places_of(const worlds::RunRecording& recording) {
+  const auto& standings = recording.standings;
+  if (standings.empty()) return "none to go on from";
+  return fmt::format("{} to go on from, t = {:g} to {:g}: continuo resume", standings.size(),
+                     standings.front().world.time, standings.back().world.time);
+}
+
+ExitCode replay(const ReplayRequest& request) {
+  const Opened opened = open(request);
+  if (opened.exit != done) return opened.exit;
+  const auto& recording = opened.recording;
+  if (!recording.end) say(fmt::format("{} was cut off after t = {:g}", request.file, recording.notes.back().t));
+  const model::Simulated simulated = worlds::replay_world(opened.program, recording);
+  const ExitCode exit =
+      tell(simulated, opened.loaded.source, *opened.program, request.outputs, recording.head.as_written);
+  if (simulated.run && !request.outputs.data_to_standard_output())
+    print(fmt::format("places  {}\n", places_of(recording)));
+  return exit;
+}
+
+ExitCode resume(const ReplayRequest& request) {
+  if (!can_be_written(request.record) || !are_apart({request.file}, {request.record.path})) return usage;
+  const Opened opened = open(request);
+  if (opened.exit != done) return opened.exit;
+  const auto& recording = opened.recording;
+  if (recording.standings.empty()) {
+    say(fmt::format("{} has no place to go on from: it was recorded with --snapshots 0", request.file));
+    return usage;
+  }
+  const std::size_t standing = request.at ? recording.standing_at(*request.at) : recording.standings.size() - 1;
+  const double from = recording.standings[standing].world.time;
+  if ((request.at && *request.at < from) || (request.until && *request.until < from)) {
+    say(fmt::format("the run goes on from t = {:g} at the earliest here", from));
+    return usage;
+  }
+  say(fmt::format("goes on from t = {:g}", from));
+  RunFile file(request.record);
+  worlds::RunHead head = recording.head;
+  if (request.until) head.experiment.to = request.until;
+  worlds::RunLog* const log = file.begin(head);
+  const model::Simulated simulated = [&] {
+    Progress progress;
+    std::vector<model::Diagnostic> problems;  // the run itself will tell of them
+    const auto plan = model::plan(opened.program->model, head.experiment, problems);
+    return worlds::resume_world(opened.program, recording, standing,
+                                {.to = request.until,
+                                 .interrupt = &interrupt_flag(),
+                                 .progress = plan ? progress.over(from, plan->to) : nullptr},
+                                log);
+  }();
+  const ExitCode exit = tell(simulated, opened.loaded.source, *opened.program, request.outputs,
+                             recording.head.as_written && !request.until);
+  return file.close() || exit != done ? exit : usage;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo run gas.sim --record gas.run                      a world is moved, and recorded\n"
+      "  continuo replay gas.run                                    what came of it, at once\n"
+      "  continuo replay gas.run -o gas.nc --plot gas.svg           rows and a picture of it\n";
+  CLI::App* verb = add_verb(app, "replay", "Shows, plots or writes a recorded run, without simulating", examples);
+  auto request = std::make_shared<ReplayRequest>();
+  verb->add_option("file", request->file, "What --record has written")->required()->type_name("");
+  add_outputs(*verb, request->outputs);
+  verb->callback([&exit, request] { exit = replay(*request); });
+}
+
+void add_resume(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo resume gas.run                                    a run that was interrupted, to its end\n"
+      "  continuo resume gas.run --until 100 --record longer.run    on beyond its end\n"
+      "  continuo resume gas.run --at 20 -o gas.csv                 again from the last place before t = 20\n";
+  CLI::App* verb =
+      add_verb(app, "resume", "Goes on with a recorded run, to the same bits as without a break", examples);
+  auto request = std::make_shared<ReplayRequest>();
+  verb->add_option("file", request->file, "What --record has written")->required()->type_name("");
+  verb->add_option("--at", request->at, "From the last place that is not after this time (else from the last)")
+      ->type_name("T");
+  verb->add_option("--until", request->until, "The time at which the run ends")->type_name("T");
+  add_outputs(*verb, request->outputs);
+  add_record(*verb, request->record);
+  verb->callback([&exit, request] { exit = resume(*request); });
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,107 @@
+// continuo report FILE: a run and studies of a model on one page.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
+#include <apps/continuo/terminal/own_process.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/language/describe.hpp>
+#include <continuo/results/output_file.hpp>
+#include <continuo/results/report.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct ReportOptions {
+  std::string file, out;
+  std::vector<std::string> studies;
+};
+
+std::string quoted(const std::string& word) {
+  return word.find_first_of(" ;'\"[]()*") == std::string::npos ? word : "\"" + word + "\"";
+}
+
+/// What a verb says of the model, with its picture. A verb that takes no --plot is asked again without.
+results::ReportSection section_of(std::string title, std::vector<std::string> words, const ScratchFolder& scratch,
+                                  int& exit) {
+  results::ReportSection section{.title = std::move(title)};
+  for (const std::string& word : words) section.command += (section.command.empty() ? "continuo " : " ") + quoted(word);
+  const std::string picture = scratch.file("picture.svg");
+  std::vector<std::string> with_plot = words;
+  with_plot.insert(with_plot.end(), {"--plot", picture});
+  Printed printed = call_self(with_plot);
+  if (printed.exit == usage) printed = call_self(words);
+  section.text = printed.out;
+  section.messages = printed.err;
+  section.svg = contents_of(picture);
+  results::write_file(picture, "");
+  exit = printed.exit;
+  return section;
+}
+
+ExitCode report(const ReportOptions& options) {
+  if (!readable(options.file) || !writable(options.out) || !are_apart({options.file}, {options.out})) return usage;
+  const model::Loaded loaded = load_model(options.file);
+  if (!loaded) return wrong_model;
+  const model::Model& model = *loaded.model;
+  if (!are_apart(files_of(model, options.file), {options.out})) return usage;
+  const ScratchFolder scratch;
+  std::vector<results::ReportSection> sections;
+  sections.push_back({.title = "Model", .text = model.text.content});
+  sections.push_back({.title = "What Continuo made of it", .text = model::describe(model)});
+  int exit = 0;
+  const std::string manifest = scratch.file("manifest.json");
+  sections.push_back(section_of("Run", {"run", options.file, "--manifest", manifest}, scratch, exit));
+  sections.back().command = "continuo run " + quoted(options.file);
+  ExitCode worst = exit == done ? done : exit == interrupted ? interrupted : numerical_failure;
+  for (const std::string& line : options.studies) {
+    if (interrupt_flag() || worst == interrupted) break;
+    std::vector<std::string> words = words_of(line);
+    if (words.empty()) continue;
+    if (words.front() == "stability") {  // whose first word are methods
+      words.insert(words.end(), {"--model", options.file});
+    } else {
+      words.insert(words.begin() + 1, options.file);
+    }
+    sections.push_back(section_of(line, words, scratch, exit));
+    if (exit == usage) {
+      say(fmt::format("`{}` was refused:\n{}", line, sections.back().messages));
+      return usage;
+    }
+    if (exit != done) worst = exit == interrupted ? interrupted : numerical_failure;
+  }
+  if (const std::string text = contents_of(manifest); !text.empty())
+    sections.push_back({.title = "Manifest", .text = text, .folded = true});
+  if (const auto failure =
+          results::write_file(options.out, results::report_page(model.name, model.heading, sections))) {
+    say(*failure);
+    return usage;
+  }
+  return worst;  // the page is there all the same, and says what failed
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo report models/bouncing_ball.sim -o ball.html\n"
+      "  continuo report models/lorenz.sim --with steady --with \"steady --along rho=0..30\" -o lorenz.html\n"
+      "  continuo report models/pendulum.sim --with \"phase --box theta=-7..7\" --with linearize -o pendulum.html\n";
+  CLI::App* verb = add_verb(app, "report", "Puts a model, its run and studies of it on one page", examples);
+  auto options = std::make_shared<ReportOptions>();
+  verb->add_option("file", options->file, "The model")->required()->type_name("");
+  verb->add_option("--with", options->studies, "Another verb with its options, without the file; may be given again")
+      ->type_name("\"VERB ...\"")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("-o,--out", options->out, "The page, .html")->required()->type_name("FILE");
+  verb->callback([&exit, options] { exit = report(*options); });
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,122 @@
+// continuo run FILE: the motion, its events, plots, and what it cost.
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <apps/continuo/options/boundary_options.hpp>
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/experiment_options.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/runs/run_file.hpp>
+#include <apps/continuo/runs/run_results.hpp>
+#include <apps/continuo/studies/boundary_families.hpp>
+#include <apps/continuo/terminal/progress.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/studies/boundary_of_model.hpp>
+#include <continuo/worlds/simulate_world.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct RunRequest {
+  ExperimentOptions experiment;
+  RunOutputs outputs;
+  bool estimate_error = false;
+  BoundaryOptions boundary;
+  RecordTo record;
+};
+
+/// A world, written to a file as it goes.
+model::Simulated simulate_recorded(const RunRequest& request, const Prepared& prepared, RunFile& file) {
+  const worlds::RunHead head{.file = prepared.loaded.source.name(),
+                             .text = prepared.loaded.source.text(),
+                             .decides_size = prepared.decides_size,
+                             .as_written = request.experiment.as_written(),
+                             .experiment = prepared.experiment};
+  return worlds::simulate_world(prepared.program, prepared.experiment, file.begin(head));
+}
+
+/// Families are no run: nothing of it can be written, which is said and not passed over.
+bool shows_families(const RunRequest& request) {
+  const char* unused = !request.outputs.events.empty()     ? "--events"
+                       : !request.outputs.manifest.empty() ? "--manifest"
+                       : request.estimate_error            ? "--estimate-error"
+                       : request.experiment.output         ? "--output"
+                                                           : nullptr;
+  if (unused == nullptr) return true;
+  say(fmt::format("--family shows solutions over a parameter, of which there is no {}: leave it out", unused));
+  return false;
+}
+
+ExitCode run(const RunRequest& request) {
+  std::vector<std::string> written = files_of(request.outputs);
+  written.push_back(request.record.path);
+  if (!can_be_written(request.outputs) || !can_be_written(request.record) ||
+      !are_apart({request.experiment.file, request.boundary.guess}, written))
+    return usage;
+  Prepared prepared = prepare(request.experiment, Worlds::welcome);
+  const model::Source& source = prepared.loaded.source;
+  if (prepared.exit == done && !request.record.path.empty() && !prepared.program->model.has_world()) {
+    say("--record keeps the run of a world of bodies; that of equations is kept by -o");
+    return usage;
+  }
+  if (prepared.exit != done) {
+    if (request.outputs.json) print_no_run(prepared.loaded.diagnostics, source);
+    return prepared.exit;
+  }
+  if (!are_apart(files_of(prepared.program->model, request.experiment.file), written)) return usage;
+  const auto boundary = read_boundary(request.boundary, prepared);
+  if (!boundary) return usage;
+  if (!request.boundary.family.empty()) {
+    if (!shows_families(request)) return usage;
+    const auto range = read_family(request.boundary, prepared);
+    return range ? show_families(prepared, *boundary, *range, request.boundary.of, request.outputs) : usage;
+  }
+  RunFile file(request.record);
+  const model::Simulated simulated = [&] {
+    Progress progress;
+    prepared.experiment.progress = watcher_of(prepared, progress);
+    prepared.experiment.estimate_error = request.estimate_error;
+    prepared.experiment.doubts = true;
+    if (file.is_wanted()) return simulate_recorded(request, prepared, file);
+    return studies::run_model(prepared.program, prepared.experiment, *boundary);
+  }();
+  const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
+                             request.experiment.as_written() && request.boundary.as_written());
+  return file.close() || exit != done ? exit : usage;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo run models/bouncing_ball.sim                      the motion in a few lines\n"
+      "  continuo run ball.sim -o ball.csv --plot ball.svg          every row, and a picture\n"
+      "  continuo run gas.sim -o gas.nc                             the same for xarray, bodies as arrays\n"
+      "  continuo run ball.sim --set g=1.62 --until 20              on the Moon, for longer\n"
+      "  continuo run orbit.sim --method rk4 --step 0.01 --events apsides.csv\n"
+      "  continuo run scene.sim --method fast --step 0.01           a world of bodies, in steps\n"
+      "  continuo run gas.sim --record gas.run                      to be replayed, or to go on from (continuo "
+      "replay)\n"
+      "  continuo run ball.sim -o - | head                          rows to another program\n"
+      "  continuo run layer.sim --along eps=1..1e-4                 conditions at both ends, from an easy case on\n"
+      "  continuo run bratu.sim --family p=0.1..4 --plot bratu.svg  every solution, round folds and across branches\n"
+      "  continuo run ball.sim --json                               outcome, state, events, cost\n";
+  CLI::App* verb = add_verb(app, "run", "Runs a model and shows, plots or writes its motion", examples);
+  auto request = std::make_shared<RunRequest>();
+  add_experiment(*verb, request->experiment);
+  add_method(*verb, request->experiment);
+  add_limits(*verb, request->experiment);
+  add_outputs(*verb, request->outputs);
+  add_record(*verb, request->record);
+  verb->add_flag("--estimate-error", request->estimate_error,
+                 "The true error, by a second run a hundred times as strict");
+  add_boundary(*verb, request->boundary);
+  verb->callback([&exit, request] { exit = run(*request); });
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,228 @@
+// continuo steady FILE: where a model comes to rest, whether it stays there, and how that moves with a parameter.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/orbits/steady_branches.hpp>
+#include <apps/continuo/orbits/steady_curves.hpp>
+#include <apps/continuo/studies/studied_model.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
+#include <apps/continuo/terminal/progress.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <continuo/results/output_file.hpp>
+#include <continuo/results/summary.hpp>
+#include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/support/unseen.hpp>
+
+namespace continuo::app {
+namespace {
+
+struct SteadyOptions {
+  ExperimentOptions experiment;
+  std::string mode, along, plot, out, of;
+  std::vector<std::string> and_along;  // once, or it is refused
+  BranchSteps steps;
+  bool json = false;
+  std::vector<std::string> box;
+  std::size_t starts = 200;
+};
+
+constexpr std::size_t most_shown = 20;  // places; --along follows them all
+
+std::string table_of(const studies::Equilibria& found, const Studied& studied) {
+  const model::Model& model = studied.prepared.program->model;
+  std::string text;
+  const std::size_t shown = std::min(found.equilibria.size(), most_shown);
+  for (std::size_t k = 0; k < shown; ++k) {
+    const studies::Equilibrium& e = found.equilibria[k];
+    const auto jump =
+        studies::jump_at(*studied.prepared.program, studied.mode, e.x, studied.prepared.experiment.parameters);
+    text += jump ? fmt::format("{}  undecided: the equations jump here, with `{}`\n", k + 1, *jump)
+                 : fmt::format("{}  {}{}\n", k + 1, to_string(e.stability), e.isolated ? "" : ", not isolated");
+    for (std::size_t i = 0; i < e.x.size(); ++i) {
+      const std::string& unit = model.states[i].unit;
+      // What rounding leaves of a zero.
+      const double value = std::abs(e.x[i]) < 1e-13 ? 0 : e.x[i];
+      text += fmt::format("   {} = {}{}\n", model.states[i].column, results::short_number(value),
+                          unit.empty() || unit == "1" ? "" : " " + unit);
+    }
+    text += events_text(studied, e.x);
+    if (!e.undetermined.equations.empty()) {
+      text += fmt::format("   {}\n", describe_undetermined(studied, e.undetermined));
+      continue;
+    }
+    if (jump) continue;
+    text += "   eigenvalues";
+    for (std::size_t i = 0; i < e.eigenvalues.size(); ++i) {
+      if (e.eigenvalues[i].imag() < 0) continue;
+      text +=
+          fmt::format("{} {}", i == 0 ? "" : ",", eigenvalue_text(e.eigenvalues[i].real(), e.eigenvalues[i].imag()));
+    }
+    text += "\n";
+  }
+  if (shown < found.equilibria.size())
+    text += fmt::format("and {} more: perhaps a whole curve of places is at rest\n", found.equilibria.size() - shown);
+  text += fmt::format("{} of {} searches came to rest, at {} place{}", found.arrived, found.searches,
+                      found.equilibria.size(), found.equilibria.size() == 1 ? "" : "s");
+  if (found.outside > 0) text += fmt::format("; {} elsewhere, beyond where was looked (--box)", found.outside);
+  return text + "\n";
+}
+
+nlohmann::json json_of(const studies::Equilibria& found, const Studied& studied) {
+  auto places = nlohmann::json::array();
+  for (const studies::Equilibrium& e : found.equilibria) {
+    const auto jump =
+        studies::jump_at(*studied.prepared.program, studied.mode, e.x, studied.prepared.experiment.parameters);
+    nlohmann::json place{{"x", e.x}, {"isolated", e.isolated}};
+    place["stability"] = jump || !e.undetermined.equations.empty() ? "undecided" : to_string(e.stability);
+    if (!jump) place["eigenvalues"] = app::json_of(e.eigenvalues);
+    add_events(place, studied, e.x);
+    places.push_back(std::move(place));
+  }
+  auto states = nlohmann::json::array();
+  for (const model::State& state : studied.prepared.program->model.states) states.push_back(state.column);
+  nlohmann::json json{
+      {"states", states}, {"equilibria", places}, {"searches", found.searches}, {"arrived", found.arrived}};
+  add_conserved(json, studied);
+  return json;
+}
+
+/// The folds and Hopf points of the branches, which have been shown, in both parameters.
+ExitCode follow_curves(const Studied& studied, const studies::Equilibria& found, const SteadyDiagram& diagram,
+                       const NamedPlane& plane, const SteadyOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  const auto curves = curves_of(studied, diagram, plane, options.steps);
+  if (options.json) {
+    nlohmann::json json = json_of(found, studied);
+    json.update(json_of(diagram, model, plane.first));
+    json.update(json_of(curves, plane));
+    print(json.dump(2) + "\n");
+  } else {
+    print(text_of(curves, plane));
+  }
+  if (!options.out.empty() && !written(results::write_file(options.out, csv_of(curves, model, plane)))) return usage;
+  if (!options.plot.empty() && !draw(curves, model, plane, options.plot)) return usage;
+  return interrupt_flag() ? interrupted : done;
+}
+
+/// How they move. What was found at the parameter's present value has been shown.
+ExitCode follow(const Studied& studied, const studies::Equilibria& found, const NamedRange& range,
+                const std::optional<NamedRange>& second, const studies::EquilibriumBox& box, std::size_t component,
+                const SteadyOptions& options) {
+  const model::Model& model = studied.prepared.program->model;
+  const SteadyDiagram diagram = diagram_of(studied, found.equilibria, range, box, options.steps);
+  if (second) {
+    if (!options.json) print(text_of(diagram, range, found.equilibria.size()));
+    return follow_curves(studied, found, diagram, {range, *second}, options);
+  }
+  if (options.json) {
+    nlohmann::json json = json_of(found, studied);
+    json.update(json_of(diagram, model, range));
+    print(json.dump(2) + "\n");
+  } else {
+    print(text_of(diagram, range, found.equilibria.size()));
+  }
+  if (!options.out.empty() && !written(results::write_file(options.out, csv_of(diagram, model, range)))) return usage;
+  if (!options.plot.empty() && !draw(diagram, model, range, component, options.plot)) return usage;
+  return interrupt_flag() ? interrupted : done;
+}
+
+ExitCode steady(const SteadyOptions& options) {
+  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps) ||
+      !are_apart({options.experiment.file}, {options.out}))
+    return usage;
+  if (!options.plot.empty() && options.along.empty()) {
+    say("--plot draws how the places of rest move with a parameter: give --along NAME=LOW..HIGH");
+    return usage;
+  }
+  std::optional<NamedRange> range, second;
+  std::vector<std::string> constants;
+  if (!options.along.empty()) {
+    range = parse_range(options.along);
+    if (!range) return usage;
+    constants.push_back(range->name);
+  }
+  if (options.and_along.size() > 1) {
+    say("--and is there twice: folds and Hopf points are followed in two parameters (curves in three are those of "
+        "homoclinic orbits: continuo orbit)");
+    return usage;
+  }
+  if (!options.and_along.empty()) {
+    second = parse_second(options.and_along[0], *range);
+    if (!second) return usage;
+    constants.push_back(second->name);
+  }
+  Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
+  if (studied.prepared.exit != done) return studied.prepared.exit;
+  if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
+  if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
+  hold_conserved(studied);
+  if (second && !is_plane(studied, {*range, *second})) return usage;
+  studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
+  std::optional<std::size_t> component = 0;
+  if (!options.of.empty()) component = state_named(studied.prepared.program->model, options.of);
+  if (!component || !set_box(studied, options.box, box)) return usage;
+  const studies::Equilibria found = [&] {
+    Progress progress;
+    box.progress = progress.parts();
+    return studies::find_equilibria(studied.system, box);
+  }();
+  if (found.equilibria.empty()) {
+    if (interrupt_flag()) return interrupted;
+    say(
+        fmt::format("{}: no place of rest was found from {} starts; nearest to it, `{}` still changes by {} ({}). "
+                    "--box NAME=LOW..HIGH looks elsewhere",
+                    place_text(studied.prepared, studied.prepared.program->model.states[found.nearest.worst].span),
+                    found.searches, studied.system.name(found.nearest.worst),
+                    results::short_number(found.nearest.residual), to_string(found.nearest.ending)));
+    return numerical_failure;
+  }
+  if (!options.json) print(table_of(found, studied) + conserved_text(studied));
+  if (range && !interrupt_flag()) return follow(studied, found, *range, second, box, *component, options);
+  if (options.json) print(json_of(found, studied).dump(2) + "\n");
+  return interrupt_flag() ? interrupted : done;
+}
+
+}  // namespace
+
+void add_steady(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo steady models/lorenz.sim                              every place of rest, and whether it is stable\n"
+      "  continuo steady models/lorenz.sim --along rho=0..30            how they move, where their stability changes\n"
+      "  continuo steady models/lorenz.sim --along rho=0..30 --plot branches.svg -o branches.csv\n"
+      "  continuo steady models/lorenz.sim --along rho=0..30 --and sigma=5..20   where that happens, in both\n"
+      "  continuo steady models/pendulum.sim --box a=-7..7              where to look\n";
+  CLI::App* verb = add_verb(app, "steady", "Finds where a model comes to rest, and whether it stays there", examples);
+  auto options = std::make_shared<SteadyOptions>();
+  add_model(*verb, options->experiment);
+  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
+  verb->add_option("--box", options->box, "Where to look, of single states")
+      ->delimiter(',')
+      ->type_name("NAME=LOW..HIGH");
+  verb->add_option("--starts", options->starts, "How many places to begin from")->check(count_from(0))->type_name("N");
+  auto* along =
+      verb->add_option("--along", options->along, "Follow each place while a parameter moves, and what crosses")
+          ->type_name("NAME=LOW..HIGH");
+  verb->add_option("--and", options->and_along, "Follow the folds and Hopf points while this moves too")
+      ->type_name("NAME=LOW..HIGH")
+      ->allow_extra_args(false)
+      ->needs(along);
+  add_branch_steps(*verb, options->steps, along);
+  verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);
+  verb->add_flag("--json", options->json, "All of it for other programs");
+  verb->add_option("-o,--out", options->out, "The table of --along, or of --and, as CSV")
+      ->type_name("FILE")
+      ->needs(along);
+  verb->add_option("--plot", options->plot, "A picture of --along, or of --and, .svg or .png")->type_name("FILE");
+  verb->callback([&exit, options] { exit = steady(*options); });
+}
+
+}  // namespace continuo::app

@@ -1,0 +1,217 @@
+// continuo view: the motion live, in the browser.
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <thread>
+
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/experiment_options.hpp>
+#include <apps/continuo/options/models.hpp>
+#include <apps/continuo/page.hpp>
+#include <apps/continuo/pictures/recording.hpp>
+#include <apps/continuo/terminal/browser.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <apps/continuo/verbs.hpp>
+#include <fmt/format.h>
+
+#include <continuo/live/loop.hpp>
+#include <continuo/live/server.hpp>
+#include <continuo/live/server/gzip.hpp>
+#include <continuo/simulation/simulate.hpp>
+
+namespace continuo::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ViewRequest {
+  ExperimentOptions experiment;
+  live::ServerOptions server;
+  std::string page_file;
+  std::optional<double> speed;
+  bool no_open = false, paused = false;
+  RecordingRequest recording;
+};
+
+/// Beside the model, in the tree that the command was built in, or where it is installed.
+std::vector<live::GalleryModel> gallery_for(const std::string& file) {
+  std::error_code error;
+  const fs::path folder = fs::absolute(file, error).parent_path();
+  const fs::path command = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& place : {folder.filename() == "models" ? folder : folder / "models", command / "../models",
+                                command / "../share/continuo/models", fs::path(CONTINUO_INSTALLED_MODELS)}) {
+    auto found = live::gallery_in(place.lexically_normal().string());
+    if (!found.empty()) return found;
+  }
+  return live::gallery_in(folder.string());
+}
+
+/// What --set, --method and their like ask for, as if somebody had done it by hand.
+bool apply_options(const ExperimentOptions& options, live::Session& session) {
+  for (const std::string& text : options.settings) {
+    std::vector<model::Diagnostic> problems;
+    const auto setting = parse_setting(session.shown().model(), text, problems);
+    for (const model::Diagnostic& problem : problems) say(problem.message);
+    if (!setting) return false;
+    session.set_parameter(setting->name, setting->value);
+  }
+  live::MethodChoice choice{.name = options.method, .step = options.step};
+  for (const std::string& text : options.tolerances) {
+    std::vector<model::Diagnostic> problems;
+    const auto setting = parse_tolerance(session.shown().model(), model::ToleranceKind::relative, text, problems);
+    for (const model::Diagnostic& problem : problems) say(problem.message);
+    if (!setting) return false;
+    choice.rtol = setting->value;
+  }
+  if ((choice.name || choice.step || choice.rtol) && !session.take_method(choice)) {
+    for (const model::Diagnostic& problem : session.problems())
+      say(problem.help.empty() ? problem.message : fmt::format("{} ({})", problem.message, problem.help));
+    return false;
+  }
+  if (!options.settings.empty() || choice.name || choice.step || choice.rtol) session.reset();
+  return true;
+}
+
+/// Of the whole text, finite.
+std::optional<double> number_of(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool good = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return good ? std::optional(value) : std::nullopt;
+}
+
+std::optional<std::string> page_of(const ViewRequest& request) {
+  if (request.page_file.empty()) return std::string(built_in_page());
+  std::ifstream file(request.page_file, std::ios::binary);
+  if (!file) {
+    say(fmt::format("cannot read {}", request.page_file));
+    return std::nullopt;
+  }
+  return live::stored(std::string(std::istreambuf_iterator<char>(file), {}));
+}
+
+ExitCode show_to_the_world(const ViewRequest& request, live::Session& session, live::Server& server) {
+  const std::atomic<bool>& interrupted = interrupt_flag();
+  live::Loop loop(session, [&](std::uint64_t client, const std::string& problem) { server.complain(client, problem); });
+  std::atomic<bool> begun = request.paused;
+  server.start(
+      {.command = [&](live::Command command, std::uint64_t client) { return loop.post(std::move(command), client); },
+       .rate = [&](double pictures) { loop.set_rate(pictures); },
+       .attached =
+           [&](std::size_t) {
+             if (!begun.exchange(true)) loop.post({"play", R"({"do": "play"})"}, 0);
+           }});
+  loop.start();
+  const bool quiet = request.no_open;
+  print(fmt::format("{}\n", server.url()));
+  std::fflush(stdout);
+  say("Ctrl-C ends the view");
+  if (!quiet) open_browser(server.url());
+  while (!interrupted.load()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  loop.stop();
+  server.stop();
+  return done;
+}
+
+/// The model in the session, as the command line wants it.
+ExitCode open_session(const ViewRequest& request, live::Session& session) {
+  const model::Loaded loaded = session.open_file();
+  if (!loaded.diagnostics.empty()) fmt::print(stderr, "{}", loaded.text({.color = colors_wanted()}));
+  if (!loaded.model) return wrong_model;
+  if (!are_apart(files_of(*loaded.model, request.experiment.file), request.recording.files())) return usage;
+  if (!session.is_open()) {
+    fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
+    if (loaded.model->needs_boundary_solver())
+      say(fmt::format(
+          "the view shows what moves; this solution is found for all times at once, and `continuo report {}` "
+          "draws it",
+          request.experiment.file));
+    return usage;
+  }
+  if (!apply_options(request.experiment, session)) return usage;
+  if (request.speed) session.set_speed(*request.speed);
+  return done;
+}
+
+ExitCode view(ViewRequest& request) {
+  if (!readable(request.experiment.file) ||
+      !are_apart({request.experiment.file, request.page_file}, request.recording.files()))
+    return usage;
+  const auto page = page_of(request);
+  if (!page) return usage;
+  request.server.page = *page;
+  request.server.model_path = request.experiment.file;
+  const auto set_up = [&](live::Session& session) { return open_session(request, session); };
+  if (request.recording.wanted()) {
+    request.recording.model = request.experiment.file;
+    request.recording.until = request.experiment.until;
+    return record(request.recording, set_up, *page);
+  }
+  if (page->empty())
+    say("this build has no page: build with -DCONTINUO_PAGE=ON (needs npm), or give --page FILE; the address serves "
+        "docs/protocol.md all the same");
+  live::Server server(request.server, [](const std::string& text) { say(text); });
+  live::Session session(live::steady_seconds, server,
+                        {.path = request.experiment.file, .gallery = gallery_for(request.experiment.file)});
+  if (const std::string problem = server.listen(); !problem.empty()) {
+    say(problem);
+    return usage;
+  }
+  if (const ExitCode exit = set_up(session); exit != done) return exit;
+  return show_to_the_world(request, session, server);
+}
+
+std::string speed_fault(const std::string& text) {
+  const auto speed = number_of(text);
+  return speed && *speed >= 0 ? "" : fmt::format("a speed is a number, 0 or more, not {}", text);
+}
+std::string port_fault(const std::string& text) {
+  const auto port = number_of(text);
+  return port && *port >= 0 && *port <= 65535 && *port == std::floor(*port)
+             ? ""
+             : fmt::format("a port is a number up to 65535, not {}", text);
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, ExitCode& exit) {
+  static constexpr std::string_view examples =
+      "  continuo view models/spring_pendulum.sim                   live in the browser: drag the mass, slide k\n"
+      "  continuo view ball.sim --method euler --step 0.1           as Euler sees it\n"
+      "  continuo view ball.sim --export ball.html                  one page that replays the run, for a lecture\n"
+      "  continuo view ball.sim --record frames/                    pictures, without a browser\n"
+      "  continuo view ball.sim --listen 0.0.0.0 --port 8000        for others in this network too\n";
+  CLI::App* verb = add_verb(app, "view", "Shows a model live in the browser", examples);
+  auto request = std::make_shared<ViewRequest>();
+  add_model(*verb, request->experiment);
+  add_method(*verb, request->experiment);
+  verb->add_option("--until", request->experiment.until, "Of --export and --record: how long the run takes")
+      ->type_name("T");
+  verb->add_option("--speed", request->speed, "Times real time; 0: as fast as can be")
+      ->type_name("K")
+      ->check(CLI::Validator(speed_fault, ""));
+  verb->add_flag("--paused", request->paused, "Waits for somebody to press play");
+  verb->add_flag("--no-open", request->no_open, "Prints the address and opens no browser");
+  verb->add_option("--listen", request->server.address, "Where to listen: 127.0.0.1 is for this computer alone")
+      ->type_name("ADDRESS");
+  verb->add_option("--port", request->server.port, "The port; any free one where it is not given")
+      ->type_name("N")
+      ->check(CLI::Validator(port_fault, ""));
+  verb->add_option("--page", request->page_file, "Serves this page in place of the built-in one")->type_name("FILE");
+  verb->add_option("--export", request->recording.page, "Writes one page that replays the run, and ends")
+      ->type_name("FILE");
+  verb->add_option("--record", request->recording.pictures, "Writes pictures to a folder, or a film (.mp4, by ffmpeg)")
+      ->type_name("PATH");
+  verb->add_option("--fps", request->recording.rate, "Pictures a second, of --export and --record")
+      ->type_name("N")
+      ->check(CLI::Range(1, 120));
+  verb->callback([&exit, request] { exit = view(*request); });
+}
+
+}  // namespace continuo::app

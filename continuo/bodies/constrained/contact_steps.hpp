@@ -1,0 +1,149 @@
+// A step through contacts that come, slip and go too often to be followed one by one, or that no forces hold (bodies
+// jammed by friction): the impulses of all contacts over the step together, so that none sinks in, none pulls, and
+// friction stops the slip or rubs with all it has. J. J. Moreau, in "Nonsmooth Mechanics and Applications", CISM 302
+// (1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235-257. Of first order in the step.
+//
+// A gap s with the normal n may close by the end of the step and no further: s + h n . (v_b - v_a) >= 0. The distance
+// of two points on straight paths is convex, so that their gap then is no less than that: nothing overlaps. Bodies that
+// no contact pushes fall on their parabolas.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/contacts/contact_sweeps.hpp>
+#include <continuo/bodies/contacts/held_contact.hpp>
+#include <continuo/bodies/contacts/touching.hpp>
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class ContactSteps {
+ public:
+  using V = Vector<Real, Dim>;
+  using S = Spin<Real, Dim>;
+  /// The mean force of a contact in the last step: the next one begins with it.
+  struct Pushed {
+    Touching pair{};
+    ContactImpulse<Real, Dim> force{};
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(pair), archive(force);
+    }
+  };
+  struct Loads {
+    std::span<const V> force;
+    std::span<const S> torque;  // empty where there is none
+    Real pull{};                // the greatest acceleration by them
+  };
+
+  /// Moves the world by h, all but its time. `pairs`, in order: those that may meet.
+  void advance(World<Real, Dim>& world, std::span<const Touching> pairs, const Loads& loads, const Real& h) {
+    const std::size_t n = world.size();
+    begin(world, loads, h);
+    list_rows(world, pairs, loads.pull, h);
+    find_impulses(loads.pull * h);
+    pushed_.clear();
+    std::vector<bool> is_pushed(n + 1);
+    for (std::size_t k = 0; k < listed_.size(); ++k) {
+      const auto& row = sweeps_.rows()[k];
+      if (!(row.impulse.press > Real(0))) continue;
+      pushed_.push_back({listed_[k], row.impulse * (1 / h)});
+      is_pushed[row.a] = is_pushed[row.b] = true;
+    }
+    fastest_ = change_ = Real(0);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (world.is_fixed(i)) continue;
+      const auto& now = sweeps_.mover(i + 1);
+      const Real turned_by = world.radius[i] * length(S(now.spin - world.spin[i]));
+      fastest_ = std::max({fastest_, length(world.velocity[i]), length(now.v), turned_by});
+      change_ = std::max({change_, length(V(now.v - world.velocity[i])), turned_by});
+      world.position[i] += is_pushed[i + 1] ? now.v * h : (world.velocity[i] + now.v) * (h / 2);
+      world.orientation[i] = turned(world.orientation[i], S((world.spin[i] + now.spin) * (Real(1) / 2)), h);
+      world.velocity[i] = now.v, world.spin[i] = now.spin;
+    }
+    const Real by_forces = loads.pull * h;
+    if (by_forces > Real(0)) tolerance_ = std::clamp(Real(change_ / (10 * by_forces)), loosest / 1000, loosest);
+  }
+
+  std::span<const Pushed> pushed() const { return pushed_; }
+  /// What pushed other bodies, which have the numbers `to` here.
+  void take_over(const ContactSteps& other, std::span<const std::uint32_t> to) {
+    for (const Pushed& one : other.pushed_)
+      if (const auto pair = one.pair.moved(to)) pushed_.push_back({*pair, one.force});
+    std::ranges::sort(pushed_, {}, &Pushed::pair);
+  }
+  /// Of the last step: the greatest speed, and the greatest change of a velocity or of a spin times the radius.
+  Real fastest() const { return fastest_; }
+  Real greatest_change() const { return change_; }
+
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(pushed_), archive(tolerance_);
+  }
+  /// What was read makes sense, of this world.
+  bool is_of(const World<Real, Dim>& world) const {
+    return tolerance_ > Real(0) && tolerance_ <= loosest &&
+           std::ranges::all_of(pushed_, [&](const Pushed& one) { return one.pair.is_of(world); });
+  }
+
+ private:
+  static constexpr int most_sweeps = 200;
+  static constexpr Real loosest = Real(1e-3);
+
+  void begin(const World<Real, Dim>& world, const Loads& loads, const Real& h) {
+    sweeps_.clear();
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      auto& mover = sweeps_.mover(sweeps_.add(world, i));
+      mover.v += loads.force[i] * (h * world.inverse_mass[i]);
+      if (!loads.torque.empty()) mover.spin += loads.torque[i] * (h * world.inverse_inertia[i]);
+    }
+  }
+  void list_rows(const World<Real, Dim>& world, std::span<const Touching> pairs, const Real& pull, const Real& h) {
+    listed_.clear();
+    Real fastest(0);
+    for (const V& v : world.velocity) fastest = std::max(fastest, squared(v));
+    using std::sqrt;
+    const Real reach = 2 * h * (sqrt(fastest) + 2 * pull * h);
+    auto known = pushed_.begin();
+    for (const Touching& pair : pairs) {
+      const Real gap = gap_of(world, pair);
+      if (gap > reach) continue;
+      HeldContact<Real, Dim> contact(world, pair);
+      contact.place(world, world.position, world.velocity, world.spin);
+      auto& row = sweeps_.add(contact, pair.a + 1, pair.with_wall() ? 0 : pair.b + 1);
+      // What overlaps by errors parts again in the time in which a body falls its radius.
+      row.least = gap > Real(0) ? -gap / h : std::min(-gap, world.radius[pair.a]) * sqrt(pull / world.radius[pair.a]);
+      while (known != pushed_.end() && known->pair < pair) ++known;
+      if (known != pushed_.end() && known->pair == pair) row.begin_with(known->force * h);
+      listed_.push_back(pair);
+    }
+  }
+  /// The impulses of all contacts, from the forces of the last step. Where those were of an impact they throw bodies
+  /// about, which so many sweeps may not take back: impulses of contacts cannot but lower the energy.
+  void find_impulses(const Real& change_by_forces) {
+    const auto free = sweeps_.movers();
+    Real weight(0);
+    for (const auto& one : free)
+      if (one.inverse_mass > Real(0)) weight += 1 / one.inverse_mass;
+    const Real most = Real(1.001) * sweeps_.energy() + weight * change_by_forces * change_by_forces;
+    const Real least = tolerance_ * change_by_forces;
+    sweeps_.begin_and_sweep(least, most_sweeps);
+    if (sweeps_.energy() > most) sweeps_.sweep(least, 4 * most_sweeps);
+    if (!(sweeps_.energy() > most)) return;
+    sweeps_.restore(free);
+    sweeps_.sweep(least, 4 * most_sweeps);
+  }
+
+  ContactSweeps<Real, Dim> sweeps_;  // body i at the place i + 1
+  std::vector<Touching> listed_;     // of the rows
+  std::vector<Pushed> pushed_;
+  Real fastest_{}, change_{};
+  Real tolerance_ = loosest;  // a tenth of what the last step changed, as a part of what forces change in a step
+};
+
+}  // namespace continuo

@@ -1,0 +1,54 @@
+// continuo/bodies/contacts/impulse.hpp
+// What two spheres, or a sphere and a wall, do to each other in an instant: normal impulse by Newton's restitution,
+// tangential impulse by Coulomb's friction, which never more than stops the slip at the contact. O. Walton, R. Braun,
+// J. Rheol. 30 (1986) 949-980, without tangential restitution.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include <continuo/bodies/body.hpp>
+
+namespace continuo {
+
+/// The motion of a sphere as an impulse changes it. A wall is one with inverses 0.
+template <class Real, int Dim>
+struct Mover {
+  Vector<Real, Dim>& velocity;
+  Spin<Real, Dim>& spin;
+  Real radius, inverse_mass, inverse_inertia;
+};
+
+/// Velocity of b's surface relative to a's where they touch; `normal` points from a to b.
+template <class Real, int Dim>
+Vector<Real, Dim> slip_of(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b, const Vector<Real, Dim>& normal) {
+  const Vector<Real, Dim> rate =
+      b.velocity - turning(b.spin, normal * b.radius) - a.velocity - turning(a.spin, normal * a.radius);
+  return rate - normal * dot(rate, normal);
+}
+
+/// Collides the two; gives the size of the normal impulse. They must approach. Equal masses exchange their normal
+/// speeds to the last bit where e = 1: no rounding of a quotient of masses comes in.
+template <class Real, int Dim>
+Real collide(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b, const Vector<Real, Dim>& normal,
+             const Material<Real>& material) {
+  const Real approach = -dot(b.velocity - a.velocity, normal);
+  const Real sum = a.inverse_mass + b.inverse_mass;
+  const Vector<Real, Dim> slip = slip_of(a, b, normal);
+  const Real change = (1 + material.restitution) * approach;  // of the relative normal velocity
+  a.velocity -= normal * (a.inverse_mass / sum * change);
+  b.velocity += normal * (b.inverse_mass / sum * change);
+  const Real speed = length(slip);
+  if (!(material.friction > Real(0)) || !(speed > Real(0))) return change / sum;
+  // An impulse along the slip changes it by itself times 1/m1 + 1/m2 + r1^2/J1 + r2^2/J2.
+  const Real compliance = sum + a.radius * a.radius * a.inverse_inertia + b.radius * b.radius * b.inverse_inertia;
+  const Vector<Real, Dim> rub =
+      slip * (std::min(Real(material.friction * change / sum), Real(speed / compliance)) / speed);
+  a.velocity += rub * a.inverse_mass;
+  b.velocity -= rub * b.inverse_mass;
+  const Spin<Real, Dim> twist = moment(normal, rub);
+  a.spin += twist * (a.radius * a.inverse_inertia);
+  b.spin += twist * (b.radius * b.inverse_inertia);
+  return change / sum;
+}
+
+}  // namespace continuo

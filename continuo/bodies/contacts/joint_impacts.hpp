@@ -1,0 +1,51 @@
+// What does not bounce, in an instant: the impulses of all contacts together, so that none of them is pushed apart by
+// what is taken from another a moment later. No two approach afterwards, no impulse pulls, one is only where the two
+// stay together, and friction stops the slip, or rubs with all it has (J. J. Moreau, in "Nonsmooth Mechanics and
+// Applications", CISM 302, 1988).
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/contacts/contact_sweeps.hpp>
+#include <continuo/bodies/contacts/held_contact.hpp>
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+/// Changes the velocities and spins of the world until the sweeps change no speed by more than `least`, but no more
+/// often than some hundred times. Gives the normal impulses.
+template <class Real, int Dim>
+std::vector<Real> strike_together(World<Real, Dim>& world, std::span<const Touching> touching, const Real& least) {
+  std::vector<std::uint32_t> bodies;
+  for (const Touching& pair : touching) {
+    bodies.push_back(pair.a);
+    if (!pair.with_wall()) bodies.push_back(pair.b);
+  }
+  std::ranges::sort(bodies);
+  bodies.erase(std::ranges::unique(bodies).begin(), bodies.end());
+  ContactSweeps<Real, Dim> sweeps;
+  for (const std::uint32_t i : bodies) sweeps.add(world, i);
+  const auto place_of = [&](std::uint32_t i) {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, i) - bodies.begin()) + 1;
+  };
+  for (const Touching& pair : touching) {
+    HeldContact<Real, Dim> contact(world, pair);
+    contact.roll.most = Real(0);  // a blow is over before anything rolls
+    contact.place(world, world.position, world.velocity, world.spin);
+    sweeps.add(contact, place_of(pair.a), pair.with_wall() ? 0 : place_of(pair.b));
+  }
+  constexpr int most_sweeps = 1000;
+  sweeps.sweep(least, most_sweeps);
+  for (const std::uint32_t i : bodies) {
+    const auto& mover = sweeps.mover(place_of(i));
+    world.velocity[i] = mover.v, world.spin[i] = mover.spin;
+  }
+  std::vector<Real> impulses;
+  for (const auto& row : sweeps.rows()) impulses.push_back(row.impulse.press);
+  return impulses;
+}
+
+}  // namespace continuo

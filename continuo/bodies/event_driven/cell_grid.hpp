@@ -1,0 +1,109 @@
+// continuo/bodies/event_driven/cell_grid.hpp
+// Which bodies are in which cell of a grid without borders: cells whose numbers agree modulo the size of the table
+// share a list, which costs a test of two bodies that are far apart and nothing else. The first bodies of a list lie in
+// the table itself, so that gathering those of many cells follows no chain and takes no branch that is hard to foresee.
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <continuo/bodies/support/short_lists.hpp>
+#include <continuo/bodies/support/vector.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class CellGrid {
+ public:
+  using Cell = std::array<std::int64_t, static_cast<std::size_t>(Dim)>;
+
+  CellGrid() = default;
+  /// Room for `bodies` at about one in a list of the table.
+  CellGrid(const Real& edge, std::size_t bodies) : edge_(edge) {
+    while ((std::size_t{1} << (bits_ * Dim)) < bodies && bits_ < 20 / Dim + 2) ++bits_;
+    lists_ = ShortLists(std::size_t{1} << (bits_ * Dim), bodies);
+  }
+
+  Real edge() const { return edge_; }
+  /// Whether x is near enough to the origin for its digits to tell where in a cell it is.
+  bool has_cell(const Vector<Real, Dim>& x) const {
+    using std::abs;
+    for (std::size_t axis = 0; axis < x.size(); ++axis)
+      if (!(abs(x[axis]) < edge_ * farthest)) return false;
+    return true;
+  }
+  Cell cell_of(const Vector<Real, Dim>& x) const {
+    using std::floor;
+    Cell cell{};
+    for (std::size_t axis = 0; axis < x.size(); ++axis) cell[axis] = static_cast<std::int64_t>(floor(x[axis] / edge_));
+    return cell;
+  }
+
+  void insert(std::uint32_t body, const Cell& cell) { lists_.insert(list_of(cell), body); }
+  void remove(std::uint32_t body, const Cell& cell) { lists_.remove(list_of(cell), body); }
+
+  /// Writes the bodies of the cells from `lower` to `upper`, both included and at most three along an axis, to `found`,
+  /// which grows as needed; gives their count.
+  std::size_t gather(const Cell& lower, const Cell& upper, std::vector<std::uint32_t>& found) const {
+    constexpr std::size_t cells = Dim == 3 ? 27 : 9;
+    std::array<std::size_t, cells> lists;
+    std::size_t number = 0, count = 0;
+    for_each_list(lower, upper, [&](std::size_t list) { lists[number++] = list; });
+    for (std::size_t k = 0; k < number; ++k) {
+      if (found.size() < count + 2) found.resize(2 * count + 2 * cells);
+      count = lists_.append_to(found, count, lists[k]);
+    }
+    return count;
+  }
+
+  /// Of a cell and all its neighbours.
+  std::size_t gather_around(const Cell& cell, std::vector<std::uint32_t>& found) const {
+    return gather(shifted(cell, -1), shifted(cell, 1), found);
+  }
+  /// Their lists lie in rows, each in a cache line or two.
+  void ask_for_around(const Cell& cell) const {
+    const Cell lower = shifted(cell, -1);
+    Cell first = shifted(cell, 1);
+    first.back() = lower.back();
+    for_each_list(lower, first, [&](std::size_t list) { lists_.ask_for(list); });
+  }
+
+  /// Which list of the table a cell has: sorted by it, neighbours in space are neighbours in memory.
+  std::size_t list_of(const Cell& cell) const {
+    std::size_t list = 0;
+    for (const std::int64_t coordinate : cell) list = list << bits_ | part_of(coordinate);
+    return list;
+  }
+
+ private:
+  static constexpr Real farthest = Real(std::int64_t{1} << (std::numeric_limits<Real>::digits - 5));
+
+  static Cell shifted(Cell cell, std::int64_t by) {
+    for (std::int64_t& coordinate : cell) coordinate += by;
+    return cell;
+  }
+  std::size_t part_of(std::int64_t coordinate) const {
+    return static_cast<std::size_t>(coordinate) & ((std::size_t{1} << bits_) - 1);
+  }
+  template <class Visit>
+  void for_each_list(const Cell& lower, const Cell& upper, Visit&& visit) const {
+    for (std::int64_t x = lower[0]; x <= upper[0]; ++x)
+      for (std::int64_t y = lower[1]; y <= upper[1]; ++y) {
+        const std::size_t row = part_of(x) << bits_ | part_of(y);
+        if constexpr (Dim == 2) {
+          visit(row);
+        } else {
+          for (std::int64_t z = lower[2]; z <= upper[2]; ++z) visit(row << bits_ | part_of(z));
+        }
+      }
+  }
+
+  Real edge_ = Real(1);
+  std::size_t bits_ = 2;  // of a cell's number that the table knows, by axis: four cells, so that neighbours differ
+  ShortLists lists_;
+};
+
+}  // namespace continuo

@@ -1,8 +1,0 @@
-#include <continuo/bodies/fast_motion_members.hpp>
-
-namespace continuo {
-
-template class FastMotion<float, 2>;
-template class FastMotion<float, 3>;
-
-}  // namespace continuo

@@ -1,0 +1,146 @@
+// continuo/bodies/support/bytes.hpp
+// Values as bytes and back: little-endian on every machine, numbers by their bits. What is read is not trusted: a
+// reader that has met something wrong says where, gives zeros from then on, and never allocates more than the bytes
+// could hold.
+#pragma once
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/support/vector.hpp>
+
+namespace continuo {
+
+using Bytes = std::vector<std::byte>;
+
+namespace detail {
+
+template <std::size_t Size>
+using UnsignedOf = std::conditional_t<
+    Size == 1, std::uint8_t,
+    std::conditional_t<Size == 2, std::uint16_t, std::conditional_t<Size == 4, std::uint32_t, std::uint64_t>>>;
+
+/// A value of several parts says so by `template <class Archive> void transfer(Archive&)`, for both ways.
+template <class T, class Archive>
+concept Transferable = requires(T& value, Archive& archive) { value.transfer(archive); };
+
+template <class T>
+concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+}  // namespace detail
+
+class ByteWriter {
+ public:
+  static constexpr bool reads = false;
+
+  template <detail::Number T>
+  void operator()(const T& value) {
+    put(std::bit_cast<detail::UnsignedOf<sizeof(T)>>(value), sizeof(T));
+  }
+  void operator()(const Bytes& bytes) {
+    (*this)(static_cast<std::uint64_t>(bytes.size()));
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+  template <class T, std::size_t Size>
+  void operator()(const std::array<T, Size>& values) {
+    for (const T& value : values) (*this)(value);
+  }
+  template <class Real, int Size>
+  void operator()(const Vector<Real, Size>& v) {
+    (*this)(v.components);
+  }
+  template <class T, class Allocator>
+  void operator()(const std::vector<T, Allocator>& values) {
+    (*this)(static_cast<std::uint64_t>(values.size()));
+    for (const T& value : values) (*this)(value);
+  }
+  template <class T>
+    requires detail::Transferable<T, ByteWriter>
+  void operator()(const T& value) {
+    const_cast<T&>(value).transfer(*this);  // a writer only reads it
+  }
+
+  const Bytes& bytes() const { return bytes_; }
+  Bytes take() { return std::move(bytes_); }
+
+ private:
+  void put(std::uint64_t bits, std::size_t size);
+
+  Bytes bytes_;
+};
+
+class ByteReader {
+ public:
+  static constexpr bool reads = true;
+
+  explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <detail::Number T>
+  void operator()(T& value) {
+    const std::uint64_t bits = get(sizeof(T));
+    if constexpr (std::is_same_v<T, bool>) {
+      if (bits > 1) fail("a truth value that is neither 0 nor 1");
+      value = bits == 1;
+    } else {
+      value = std::bit_cast<T>(static_cast<detail::UnsignedOf<sizeof(T)>>(bits));
+    }
+  }
+  template <class T, std::size_t Size>
+  void operator()(std::array<T, Size>& values) {
+    for (T& value : values) (*this)(value);
+  }
+  template <class Real, int Size>
+  void operator()(Vector<Real, Size>& v) {
+    (*this)(v.components);
+  }
+  template <class T, class Allocator>
+  void operator()(std::vector<T, Allocator>& values) {
+    values.clear();
+    for (std::uint64_t i = 0, count = list_size(); i < count && ok(); ++i) (*this)(values.emplace_back());
+  }
+  void operator()(Bytes& bytes) {
+    const auto taken = take(list_size());
+    bytes.assign(taken.begin(), taken.end());
+  }
+  template <class T>
+    requires detail::Transferable<T, ByteReader>
+  void operator()(T& value) {
+    value.transfer(*this);
+  }
+
+  bool ok() const { return error_.empty(); }
+  const std::string& error() const { return error_; }
+  std::size_t position() const { return at_; }
+  std::size_t left() const { return bytes_.size() - at_; }
+  /// The first fault counts.
+  void fail(const std::string& what);
+  void expect(bool is_right, const char* what) {
+    if (!is_right) fail(what);
+  }
+  void expect_end() { expect(left() == 0, "bytes after the end"); }
+  std::span<const std::byte> take(std::uint64_t count);
+
+ private:
+  bool takes(std::uint64_t count);
+  /// Of the next bytes; 0 where there are none.
+  std::uint64_t get(std::size_t size);
+  /// An element has one byte at least.
+  std::uint64_t list_size();
+
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+  std::string error_;
+};
+
+/// FNV-1a, 64 bits (G. Fowler, L. Noll, K.-P. Vo): finds what went wrong by accident.
+std::uint64_t checksum(std::span<const std::byte> bytes);
+
+}  // namespace continuo

@@ -1,0 +1,346 @@
+// The contacts of a step: of the pairs that are listed those that may touch in it, coloured and packed. No two contacts
+// of a colour share a body that moves, so lanes and threads may solve them in any order, to the same bits. Impulses
+// outlive the step: they are kept by the places of the two bodies, and are the start of the next.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/time_stepping/contact_blocks.hpp>
+#include <continuo/bodies/time_stepping/contact_rows.hpp>
+#include <continuo/bodies/time_stepping/contact_solver.hpp>
+#include <continuo/bodies/time_stepping/kept_impulses.hpp>
+#include <continuo/bodies/time_stepping/reach.hpp>
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+/// What a body may touch: another body's place, or that of a wall's stand-in. Rows are in rising order, walls last; a
+/// pair of two that move stands with the lower place, one with a fixed body with the other.
+struct ContactEntry {
+  std::uint32_t other;
+  std::uint32_t lane = nowhere;  // in the packs of its kind, where it is solved
+};
+using ContactRows = Rows<ContactEntry>;
+
+template <class Real, int Dim>
+class ContactList {
+ public:
+  using V = Vector<Real, Dim>;
+  static constexpr std::size_t width = lanes_at_once<Real>;
+
+  ContactRows rows;
+  ColouredPacks<Real, Dim> between_movers, with_fixed, with_wall;
+
+  ContactBlocks blocks;
+
+  /// Whether there are contacts that are neither within a block nor across the end of one.
+  bool has_rest() const {
+    const auto& first = between_movers.groups[blocks.rest()].first;
+    return first.front() < first.back();
+  }
+  /// act(kind, packs, group) for the contacts of a group of those between bodies that move, see contact_blocks.hpp.
+  template <class Act>
+  void in_group(std::size_t group, Act&& act) {
+    act_on<ContactKind::between_movers>(between_movers, group, act);
+  }
+  /// The same for those that only a block's own bodies feel: with fixed ones and walls. Walls last, they yield least.
+  template <class Act>
+  void at_border(std::size_t block, Act&& act) {
+    act_on<ContactKind::with_fixed>(with_fixed, block, act);
+    act_on<ContactKind::with_wall>(with_wall, block, act);
+  }
+
+  /// Of two bodies, or of one and a wall, among those that are listed.
+  Real deepest_overlap(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls) const {
+    Real deepest(0);
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      for (const ContactEntry& entry : rows.row(k)) {
+        if (entry.other < bodies.size()) {
+          const Real distance = length(bodies.x(entry.other) - bodies.x(k));
+          deepest = std::max(deepest, bodies.radius(k) + bodies.radius(entry.other) - distance);
+        } else {
+          const Wall<Real, Dim> wall = facing(walls[entry.other - bodies.size()], bodies.x(k));
+          deepest = std::max(deepest, bodies.radius(k) + wall.offset - dot(wall.normal, bodies.x(k)));
+        }
+      }
+    }
+    return deepest;
+  }
+
+  /// Takes the impulses out of the packs, for the rows are to be others.
+  void keep(Team& team) {
+    make_rows(team, rows.rows(), kept_, [&](std::uint32_t k, KeptImpulses<Real, Dim>& part) {
+      for (const ContactEntry& entry : rows.row(k)) {
+        if (entry.lane == nowhere) continue;
+        const KeptContact contact = impulse_in_lane(entry, entry.lane, false);
+        if (!(contact.normal > Real(0))) continue;
+        part.entries.push_back({entry.other, contact.normal, contact.friction});
+        if (resists_rolling(entry)) part.rolling.push_back(contact.rolling);
+      }
+    });
+    kept_.fit();
+    has_kept_ = true;
+    for (auto* packs : {&between_movers, &with_fixed, &with_wall}) packs->before = {};
+  }
+
+  /// Packs what may touch. meeting_of(a, b) is how the bodies or walls at two places meet, which is asked for
+  /// only where they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept, if
+  /// they were (empty: at k). reach_of[block] is how near those of a block must be.
+  template <class MeetingOf>
+  void activate(Team& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
+                const MeetingOf& meeting_of, bool has_rare, std::span<const ActiveReach<Real>> reach_of,
+                std::span<const std::uint32_t> place_before) {
+    between_movers.clear(blocks.groups()), with_fixed.clear(blocks.count), with_wall.clear(blocks.count);
+    std::vector<std::uint8_t> has_rest(blocks.count, 0);
+    const auto lane_before = std::make_unique_for_overwrite<std::uint32_t[]>(rows.entries.size());
+    const auto lane_before_of = [&](const ContactEntry& entry) -> std::uint32_t& {
+      return lane_before[static_cast<std::size_t>(&entry - rows.entries.data())];
+    };
+    team.share(blocks.count, [&](std::size_t block) {
+      for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
+        choose(k, bodies, walls, reach_of[block], lane_before_of);
+      has_rest[block] = colour(block, bodies);
+    });
+    colour_rest(has_rest, bodies);
+    for (auto* packs : {&between_movers, &with_fixed, &with_wall}) packs->make_room(blocks, bodies, has_rare);
+    const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
+    const auto impulse_of = [&](std::uint32_t k, const ContactEntry& entry) {
+      if (has_kept_) return impulse_kept(before(k), before(entry.other), !place_before.empty());
+      const std::uint32_t lane = lane_before_of(entry);
+      return lane == nowhere ? KeptContact{} : impulse_in_lane(entry, lane, true);
+    };
+    team.share(blocks.count, [&](std::size_t block) {
+      for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
+        fill_row(block, k, bodies, walls, meeting_of, impulse_of);
+    });
+    kept_ = {};
+    has_kept_ = false;
+  }
+
+  /// What `keep` takes, to and fro.
+  template <class Archive>
+  void transfer_kept(Archive& archive) {
+    archive(kept_);
+    has_kept_ = true;
+  }
+  bool kept_fits(std::size_t bodies, std::size_t world_walls) const { return kept_.fits(bodies, bodies + world_walls); }
+
+  /// visit(k, other, is_wall, impulse) for the contacts that pressed in the last substep.
+  template <class Visit>
+  void for_each_touching(Visit&& visit) const {
+    for (std::uint32_t k = 0; k < rows.rows(); ++k)
+      for (const ContactEntry& entry : rows.row(k)) {
+        if (entry.lane == nowhere) continue;
+        const std::uint32_t lane = entry.lane & ~fixed_bit;
+        const Real pressed = packs_of(entry, entry.lane).impulses[lane / width].normal.lane[lane % width];
+        const auto bodies = static_cast<std::uint32_t>(rows.rows());
+        const bool is_wall = entry.other >= bodies;
+        if (pressed > Real(0)) visit(k, is_wall ? entry.other - bodies : entry.other, is_wall, pressed);
+      }
+  }
+
+  std::size_t memory() const {
+    std::size_t sum = rows.memory() + kept_.memory();
+    for (const auto* packs : {&between_movers, &with_fixed, &with_wall}) sum += packs->memory();
+    return sum;
+  }
+  std::size_t active() const {
+    std::size_t sum = 0;
+    for (const auto* packs : {&between_movers, &with_fixed, &with_wall}) sum += packs->contacts;
+    return sum;
+  }
+
+ private:
+  static constexpr std::uint32_t fixed_bit = 1u << 31;  // of an entry's lane: its packs are those with fixed bodies
+
+  template <ContactKind kind, class Act>
+  static void act_on(ColouredPacks<Real, Dim>& packs, std::size_t group, Act&& act) {
+    const auto& first = packs.groups[group].first;
+    if (first.front() < first.back()) act(std::integral_constant<ContactKind, kind>{}, packs, group);
+  }
+
+  const ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry, std::uint32_t lane) const {
+    if (entry.other >= rows.rows()) return with_wall;
+    return lane & fixed_bit ? with_fixed : between_movers;
+  }
+  ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry, std::uint32_t lane) {
+    return const_cast<ColouredPacks<Real, Dim>&>(std::as_const(*this).packs_of(entry, lane));
+  }
+  template <int Size>
+  static Vector<Real, Size> in_lane(const Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
+    Vector<Real, Size> v;
+    for (std::size_t axis = 0; axis < v.size(); ++axis) v[axis] = stored[axis].lane[lane];
+    return v;
+  }
+  template <int Size>
+  static void put_in_lane(const Vector<Real, Size>& v, Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
+    for (std::size_t axis = 0; axis < v.size(); ++axis) stored[axis].lane[lane] = v[axis];
+  }
+
+  static Real come_closer(const V& rate, const ActiveReach<Real>& reach) {
+    using std::abs;
+    Real sum(0);
+    for (std::size_t axis = 0; axis < V::size(); ++axis) sum += abs(rate[axis]);
+    return sum * reach.step + reach.extra;
+  }
+
+  // Until the packs have room, an entry's lane holds its colour and its number among those of that colour in its group.
+  static constexpr std::uint32_t colour_shift = 25;
+  static constexpr std::uint32_t last_colour = ColouredPacks<Real, Dim>::most_colours - 1;
+  static constexpr std::uint32_t chosen = nowhere - 1;  // but without a colour yet
+
+  /// The lowest colour that neither has.
+  static std::uint32_t lowest_free(std::uint64_t used) {
+    return std::min(static_cast<std::uint32_t>(std::countr_one(used)), last_colour);
+  }
+  static std::uint32_t number(ColouredPacks<Real, Dim>& packs, std::size_t group, std::uint32_t colour) {
+    return colour << colour_shift | packs.count[group][colour]++;
+  }
+  /// `taken`: the colours of what has the body as one of two that move, in their group.
+  std::uint32_t number(std::size_t group, std::uint64_t& taken_by_a, std::uint64_t& taken_by_b) {
+    const std::uint32_t free = lowest_free(taken_by_a | taken_by_b);
+    taken_by_a |= std::uint64_t{1} << free;
+    taken_by_b |= std::uint64_t{1} << free;
+    return number(between_movers, group, free);
+  }
+  /// Which entries of row k may touch: their lane is no longer `nowhere`.
+  template <class LaneBeforeOf>
+  void choose(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
+              const ActiveReach<Real>& reach, const LaneBeforeOf& lane_before_of) {
+    const V x = bodies.x(k), v = bodies.v(k);
+    const Real radius = bodies.radius(k);
+    for (ContactEntry& entry : rows.row(k)) {
+      const std::uint32_t j = entry.other;
+      bool may_touch = false;
+      if (j >= bodies.size()) {
+        const Wall<Real, Dim> wall = facing(walls[j - bodies.size()], x);
+        may_touch = dot(wall.normal, x) - wall.offset - radius < come_closer(v, reach);
+      } else {
+        const Real near = radius + bodies.radius(j) + come_closer(bodies.v(j) - v, reach);
+        may_touch = squared(bodies.x(j) - x) < near * near;
+      }
+      lane_before_of(entry) = entry.lane;
+      entry.lane = may_touch ? chosen : nowhere;
+    }
+  }
+  /// Of the rows of a block; says whether contacts are left that are neither within it nor across its end.
+  bool colour(std::size_t block, const SolverBodies<Real, Dim>& bodies) {
+    const std::uint32_t begin = blocks.first(block), end = blocks.last(block, rows.rows());
+    std::vector<std::uint64_t> within(2 * blocks.half, 0), across(2 * blocks.half, 0);
+    bool has_rest = false;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      std::uint32_t fixed = 0, at_walls = 0;  // each of these has a colour of its own
+      for (ContactEntry& entry : rows.row(k)) {
+        if (entry.lane == nowhere) continue;
+        const std::uint32_t j = entry.other;
+        if (j >= bodies.size()) {
+          entry.lane = number(with_wall, block, std::min(at_walls++, last_colour));
+        } else if (!bodies.moves(j)) {
+          entry.lane = number(with_fixed, block, std::min(fixed++, last_colour)) | fixed_bit;
+        } else if (const std::size_t group = blocks.group_of(block, k - begin, j - begin); group == block) {
+          entry.lane = number(group, within[k - begin], within[j - begin]);
+        } else if (group != blocks.rest()) {
+          entry.lane = number(group, across[k - begin - blocks.half], across[j - begin - blocks.half]);
+        } else {
+          has_rest = true;
+        }
+      }
+    }
+    return has_rest;
+  }
+  void colour_rest(std::span<const std::uint8_t> has_rest, const SolverBodies<Real, Dim>& bodies) {
+    if (std::ranges::find(has_rest, 1) == has_rest.end()) return;
+    std::vector<std::uint64_t> taken(bodies.size(), 0);
+    for (std::size_t block = 0; block < blocks.count; ++block)
+      for (std::uint32_t k = blocks.first(block); has_rest[block] && k < blocks.last(block, rows.rows()); ++k)
+        for (ContactEntry& entry : rows.row(k))
+          if (entry.lane == chosen) entry.lane = number(blocks.rest(), taken[k], taken[entry.other]);
+  }
+
+  /// The lane of a numbered contact, filled but for the impulses and the normal.
+  template <class MeetingOf>
+  std::uint32_t fill(ColouredPacks<Real, Dim>& packs, std::size_t group, std::uint32_t numbered, std::uint32_t a,
+                     std::uint32_t b, const MeetingOf& meeting_of) {
+    const std::uint32_t colour = numbered >> colour_shift, number = numbered & ((1u << colour_shift) - 1);
+    const std::uint32_t lanes = static_cast<std::uint32_t>(width);
+    const std::uint32_t p = packs.groups[group].first[colour] + (packs.is_shared(colour) ? number : number / lanes);
+    const std::uint32_t lane = packs.is_shared(colour) ? 0 : number % lanes;
+    packs.packs[p].a[lane] = a;
+    packs.packs[p].b[lane] = b;
+    if (RarePack<Real, Dim>* rare = packs.rare_of(p)) {
+      const Material<Real> both = meeting_of(a, b);
+      rare->friction.lane[lane] = both.friction;
+      rare->restitution.lane[lane] = both.restitution;
+      rare->rolling_resistance.lane[lane] = both.rolling_resistance;
+    }
+    return p * lanes + lane;
+  }
+  /// Of a contact that pressed.
+  struct KeptContact {
+    Real normal{};
+    V friction{};
+    Spin<Real, Dim> rolling{};
+  };
+  bool resists_rolling(const ContactEntry& entry) const { return !packs_of(entry, entry.lane).rare.empty(); }
+  KeptContact impulse_in_lane(const ContactEntry& entry, std::uint32_t lane_number, bool is_before) const {
+    const ColouredPacks<Real, Dim>& packs = packs_of(entry, lane_number);
+    const PackedImpulses<Real, Dim>& of_packs = is_before ? packs.before : packs;
+    const std::size_t p = (lane_number & ~fixed_bit) / width, lane = lane_number % width;
+    const PackImpulses<Real, Dim>& impulses = of_packs.impulses[p];
+    if (!(impulses.normal.lane[lane] > Real(0))) return {};
+    KeptContact contact{impulses.normal.lane[lane], in_lane(impulses.friction, lane)};
+    if (!of_packs.rare.empty()) contact.rolling = in_lane(of_packs.rare[p].rolling_impulse, lane);
+    return contact;
+  }
+  KeptContact impulse_kept(std::uint32_t a, std::uint32_t b, bool was_sorted) const {
+    Real direction(1);
+    std::size_t found = kept_.find(a, b);
+    if (found == nowhere && was_sorted) {
+      direction = Real(-1);  // the other way round then
+      found = kept_.find(b, a);
+    }
+    if (found == nowhere) return {};
+    KeptContact contact{kept_.entries[found].normal, kept_.entries[found].friction * direction};
+    if (!kept_.rolling.empty()) contact.rolling = kept_.rolling[found] * direction;
+    return contact;
+  }
+  void put_in(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, const KeptContact& contact) {
+    const std::size_t p = lane_number / width, lane = lane_number % width;
+    packs.impulses[p].normal.lane[lane] = contact.normal;
+    put_in_lane(contact.friction, packs.impulses[p].friction, lane);
+    if (RarePack<Real, Dim>* rare = packs.rare_of(p)) put_in_lane(contact.rolling, rare->rolling_impulse, lane);
+  }
+
+  template <class MeetingOf, class ImpulseOf>
+  void fill_row(std::size_t block, std::uint32_t k, const SolverBodies<Real, Dim>& bodies,
+                std::span<const Wall<Real, Dim>> walls, const MeetingOf& meeting_of, const ImpulseOf& impulse_of) {
+    const std::uint32_t begin = blocks.first(block);
+    for (ContactEntry& entry : rows.row(k)) {
+      if (entry.lane == nowhere) continue;
+      auto& packs = packs_of(entry, entry.lane);
+      const std::uint32_t bit = &packs == &with_fixed ? fixed_bit : 0, j = entry.other;
+      const std::size_t group = &packs == &between_movers ? blocks.group_of(block, k - begin, j - begin) : block;
+      const std::uint32_t lane = fill(packs, group, entry.lane & ~bit, k, j, meeting_of);
+      packs.bins[lane / width] |= blocks.bit_of(group, k - begin);
+      if (&packs == &between_movers) packs.bins[lane / width] |= blocks.bit_of(group, j - begin);
+      if (j >= bodies.size())
+        put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), packs.packs[lane / width].normal,
+                    lane % width);
+      put_in(packs, lane, impulse_of(k, entry));
+      entry.lane = lane | bit;
+    }
+  }
+
+  KeptImpulses<Real, Dim> kept_;
+  bool has_kept_ = false;  // else the impulses are those of the packs of the step before
+};
+
+}  // namespace continuo

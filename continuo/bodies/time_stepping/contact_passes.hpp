@@ -1,0 +1,162 @@
+// The passes over all contacts in a substep, block by block, see contact_blocks.hpp: what is done to a block's bodies
+// before a pass, and what its border does after the pass before, is done by the thread that has the block anyway.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/support/team.hpp>
+#include <continuo/bodies/time_stepping/contact_list.hpp>
+#include <continuo/bodies/time_stepping/contact_solver.hpp>
+#include <continuo/bodies/time_stepping/wavefront.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class ContactPasses {
+ public:
+  ContactPasses(Team& team, ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies)
+      : team_(team), contacts_(contacts), bodies_(bodies), blocks_(contacts.blocks) {}
+
+  /// push_body(k) for all bodies, then contacts begin and push.
+  template <class Push>
+  void push(const ContactStep<Real>& step, const Push& push_body) {
+    run_pushing({begin(push_body), solve<ContactPass::push>(step)}, step);
+  }
+  /// move_body(k) for all bodies, then contacts relax.
+  template <class Move>
+  void relax(const ContactStep<Real>& step, const Move& move_body) {
+    run(std::array{relaxing(step, move_body)});
+  }
+  /// The end of a substep and the next one's beginning.
+  template <class Move, class Push>
+  void relax_and_push(const ContactStep<Real>& step, const Move& move_body, const Push& push_body) {
+    run_pushing({relaxing(step, move_body), begin(push_body), solve<ContactPass::push>(step)}, step);
+  }
+
+ private:
+  /// All contacts between bodies that move, group by group; before(block) comes before those within a block, and at
+  /// last comes what only a block's own bodies feel.
+  struct Pass {
+    std::function<void(std::size_t)> before, in_group, at_border;
+  };
+
+  template <class Act>
+  Pass pass_of(const Act& act) {
+    return {[](std::size_t) {}, [this, act](std::size_t group) { contacts_.in_group(group, act); },
+            [this, act](std::size_t block) { contacts_.at_border(block, act); }};
+  }
+  template <ContactPass pass>
+  auto act_of(const ContactStep<Real>& step) {
+    return [this, &step](auto kind, auto& packs, std::size_t group) {
+      solve_packs<kind(), pass>(packs, group, bodies_, step);
+    };
+  }
+  template <ContactPass pass>
+  Pass solve(const ContactStep<Real>& step) {
+    return pass_of(act_of<pass>(step));
+  }
+  template <class Push>
+  Pass begin(const Push& push_body) {
+    Pass pass =
+        pass_of([this](auto kind, auto& packs, std::size_t group) { begin_packs<kind()>(packs, group, bodies_); });
+    pass.before = [this, &push_body](std::size_t block) {
+      forget_disturbances(block);
+      for_each_body(block, push_body);
+    };
+    return pass;
+  }
+  template <class Move>
+  Pass relaxing(const ContactStep<Real>& step, const Move& move_body) {
+    Pass pass = solve<ContactPass::relax>(step);
+    pass.before = [this, &move_body](std::size_t block) { for_each_body(block, move_body); };
+    return pass;
+  }
+
+  /// What is pushed again at first follows block by block, while the blocks are in the cache. Not where several threads
+  /// have chunks of them: each sweep more leaves more over at the ends of these; nor where sweeps wait for a rest, nor
+  /// where blocks are so few that they stay in the cache anyway.
+  void run_pushing(std::vector<Pass> passes, const ContactStep<Real>& step) {
+    const bool pays = team_.is_alone() && !contacts_.has_rest() && blocks_.count >= 4;
+    std::vector<ContactStep<Real>> again(pays ? 10 : 0, step);
+    std::uint8_t sweep = step.sweep;
+    for (ContactStep<Real>& next : again) {
+      next.sweep = ++sweep;
+      Pass& pass = passes.emplace_back(solve<ContactPass::push_again>(next));
+      pass.before = [this](std::size_t block) { begin_sweep(block); };
+    }
+    run(passes);
+    ContactStep<Real> rest = step;
+    rest.sweep = sweep;
+    push_again(rest);
+  }
+  void run(std::span<const Pass> passes) {
+    std::vector<Sweep> sweeps;
+    for (std::size_t i = 0; i <= passes.size(); ++i) {
+      const Pass* const last = i > 0 ? &passes[i - 1] : nullptr;
+      const Pass* const pass = i < passes.size() ? &passes[i] : nullptr;
+      Sweep& sweep = sweeps.emplace_back();
+      sweep.within = [last, pass](std::size_t block) {
+        if (last) last->at_border(block);
+        if (!pass) return;
+        pass->before(block);
+        pass->in_group(block);
+      };
+      if (!pass) break;
+      sweep.across = [this, pass](std::size_t block) { pass->in_group(blocks_.across(block)); };
+      if (contacts_.has_rest()) sweep.rest = [this, pass] { pass->in_group(blocks_.rest()); };
+    }
+    run_sweeps(team_, blocks_.count, sweeps);
+  }
+
+  template <class Act>
+  void for_each_body(std::size_t block, const Act& act) {
+    for (std::uint32_t k = blocks_.first(block); k < blocks_.last(block, bodies_.size()); ++k) act(k);
+  }
+
+  /// An impact on a ball that others hold takes many turns round all contacts until it has come through to what holds
+  /// them up, and the speed that is left after the last becomes overlap. Few contacts take part: those of bodies whose
+  /// velocities their contacts have just changed by a lot. These are pushed again until nothing is disturbed.
+  void push_again(ContactStep<Real> step) {
+    constexpr std::uint8_t most_sweeps = 20;  // a bound: what is squeezed between others may never settle
+    const auto again = act_of<ContactPass::push_again>(step);
+    auto& halves = bodies_.disturbances;
+    const auto share = [&](std::size_t first_half, const auto& act) {
+      meant_.clear();
+      for (std::size_t block = 0; block < blocks_.count; ++block)
+        if (halves[2 * block + first_half].any() != 0 || halves[2 * block + first_half + 1].any() != 0)
+          meant_.push_back(block);
+      team_.share(meant_.size(), [&](std::size_t i) { act(meant_[i]); });
+    };
+    const auto is_disturbed = [](const Disturbances& half) { return half.now != 0; };
+    while (std::ranges::any_of(halves, is_disturbed) && step.sweep < most_sweeps) {
+      ++step.sweep;
+      for (std::size_t block = 0; block < blocks_.count; ++block) begin_sweep(block);
+      share(0, [&](std::size_t block) { contacts_.in_group(block, again); });
+      share(1, [&](std::size_t block) { contacts_.in_group(blocks_.across(block), again); });
+      contacts_.in_group(blocks_.rest(), again);
+      share(0, [&](std::size_t block) { contacts_.at_border(block, again); });
+    }
+  }
+  /// From here on what was disturbed is what the last sweep has.
+  void begin_sweep(std::size_t block) {
+    for (std::size_t half = 2 * block; half < 2 * block + 2; ++half)
+      bodies_.disturbances[half] = {bodies_.disturbances[half].now, 0};
+  }
+  void forget_disturbances(std::size_t block) {
+    for_each_body(block, [&](std::uint32_t k) { bodies_.disturbed[k] = 0; });
+    for (std::size_t half = 2 * block; half < 2 * block + 2; ++half) bodies_.disturbances[half] = {};
+  }
+
+  Team& team_;
+  ContactList<Real, Dim>& contacts_;
+  SolverBodies<Real, Dim>& bodies_;
+  const ContactBlocks blocks_;
+  std::vector<std::size_t> meant_;
+};
+
+}  // namespace continuo

@@ -1,0 +1,87 @@
+// What resists turning where two spheres touch, several contacts at once: rolling resistance, and friction within the
+// patch in which they touch, which resists spinning about the normal. Each begins with the impulse of the last substep,
+// as a contact does, see contact_solver.hpp.
+#pragma once
+#include <numbers>
+
+#include <continuo/bodies/time_stepping/contact_packs.hpp>
+
+namespace continuo {
+
+/// What a contact may do: b a body that moves, one that is fixed, or a wall, whose normal stands.
+enum class ContactKind { between_movers, with_fixed, with_wall };
+
+template <class Real>
+ContactLanes<Real> inverse_or_zero(const ContactLanes<Real>& x) {
+  return select(x > ContactLanes<Real>(Real(0)), ContactLanes<Real>(Real(1)) / x, ContactLanes<Real>(Real(0)));
+}
+/// A torque's impulse on b, its opposite on a: the rim moves by impulse r / J.
+template <class Real, int Dim>
+void add_roll(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a,
+              const ContactLanes<Real>& radius_b, const Spin<ContactLanes<Real>, Dim>& impulse) {
+  a.rim -= impulse * (a.mobility * inverse_or_zero<Real>(radius_a));
+  b.rim += impulse * (b.mobility * inverse_or_zero<Real>(radius_b));
+}
+
+/// `impulse` no longer than `most`.
+template <class Number, int Size>
+Vector<Number, Size> clamped(const Vector<Number, Size>& impulse, const Number& most) {
+  using std::sqrt;
+  const Number square = squared(impulse);
+  return impulse * select(square > most * most, most / sqrt(square), Number(1));
+}
+
+template <class Real>
+ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLanes<Real>& b) {
+  return select(b > ContactLanes<Real>(Real(0)), min(a, b), a);  // a wall has none
+}
+
+template <class Real, int Dim>
+void resist_rolling(RarePack<Real, Dim>& rare, const ContactLanes<Real>& normal_impulse, LaneMotions<Real, Dim>& a,
+                    LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b) {
+  using L = ContactLanes<Real>;
+  const L one_a = inverse_or_zero<Real>(radius_a), one_b = inverse_or_zero<Real>(radius_b);
+  const L inertia = inverse_or_zero<Real>(a.mobility * one_a * one_a + b.mobility * one_b * one_b);
+  const Spin<L, Dim> before = loaded(rare.rolling_impulse);
+  const Spin<L, Dim> impulse =
+      clamped(Spin<L, Dim>(before - (b.rim * one_b - a.rim * one_a) * inertia),
+              L(L(rare.rolling_resistance) * smaller_radius<Real>(radius_a, radius_b) * normal_impulse));
+  store(impulse, rare.rolling_impulse);
+  add_roll<Real, Dim>(a, b, radius_a, radius_b, impulse - before);
+}
+
+/// A torque's impulse about the normal, over the smaller radius, on b, its opposite on a: it turns a rim by that times
+/// the mobility times the smaller radius over its own.
+template <class Real>
+void add_spin(LaneMotions<Real, 3>& a, LaneMotions<Real, 3>& b, const Vector<ContactLanes<Real>, 3>& normal,
+              const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b,
+              const ContactLanes<Real>& impulse) {
+  const ContactLanes<Real> over_both = impulse * inverse_or_zero<Real>(max(radius_a, radius_b));
+  a.rim -= normal * (over_both * a.mobility * radius_b);
+  b.rim += normal * (over_both * b.mobility * radius_a);
+}
+/// A wall has neither a radius nor a spin, and any radius will do.
+template <ContactKind kind, class Real>
+ContactLanes<Real> other_radius(const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b) {
+  return kind == ContactKind::with_wall ? radius_a : radius_b;
+}
+/// Soft spheres touch in a patch, which resists spinning about the normal by a torque of 3 pi / 16 friction times its
+/// radius times the normal force (Hertz's pressure; K. L. Johnson, "Contact Mechanics", 1985, 7.4). The radius is that
+/// of a sphere of radius r pressed in by 0.0025 r, as those within a pile are: sqrt(0.0025) r. Gives what it adds to
+/// the impulse of the last substep. If each substep began with none, what such a torque holds would turn a little in
+/// every one: a pile would creep by a millimetre in a second, and let go of a ball now and then for ever.
+template <class Real>
+ContactLanes<Real> resist_spinning(const ContactLanes<Real>& before, const ContactLanes<Real>& force,
+                                   const Vector<ContactLanes<Real>, 3>& normal, LaneMotions<Real, 3>& a,
+                                   LaneMotions<Real, 3>& b, const ContactLanes<Real>& radius_a,
+                                   const ContactLanes<Real>& radius_b) {
+  using L = ContactLanes<Real>;
+  const L stops = dot(a.rim * radius_b - b.rim * radius_a, normal) * max(radius_a, radius_b) *
+                  inverse_or_zero<Real>(a.mobility * radius_b * radius_b + b.mobility * radius_a * radius_a);
+  const L most = force * L(Real(3 * std::numbers::pi / 16 * 0.05));
+  const L impulse = max(min(before + stops, most), -most);
+  add_spin<Real>(a, b, normal, radius_a, radius_b, impulse - before);
+  return impulse - before;
+}
+
+}  // namespace continuo

@@ -1,0 +1,8 @@
+#include <continuo/bodies/time_stepping/fast_motion_members.hpp>
+
+namespace continuo {
+
+template class FastMotion<double, 2>;
+template class FastMotion<double, 3>;
+
+}  // namespace continuo

@@ -1,0 +1,194 @@
+// Collisions too fast for a soft contact, or with restitution, each at its instant within a substep: a queue of what is
+// foreseen on parabolic paths, as the exact motion has, over the pairs that are listed. Both go to the place of the
+// impact, change their velocities, and go back along their new paths to the beginning, from where contacts take over.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <queue>
+#include <vector>
+
+#include <continuo/bodies/contact_events.hpp>
+#include <continuo/bodies/contacts/collision_time.hpp>
+#include <continuo/bodies/contacts/impulse.hpp>
+#include <continuo/bodies/time_stepping/pair_list.hpp>
+
+namespace continuo {
+
+/// The world, its bodies and pairs are the stepper's.
+template <class Real, int Dim>
+class Impacts {
+ public:
+  using V = Vector<Real, Dim>;
+
+  /// Of a substep of `h` from `begin` on; paths of a step of `step` are looked at beyond the list. Gives how many there
+  /// were.
+  std::size_t make(const World<Real, Dim>& world, const PairList<Real, Dim>& list,
+                   const ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies,
+                   const ContactStep<Real>& substep, const Real& step, const Real& begin, ContactLog<Real, Dim>& log) {
+    const Making making{world, list, bodies, substep, step, begin, log};
+    for (std::uint32_t k = 0; k < bodies.size(); ++k) {
+      for (const ContactEntry& entry : contacts.rows.row(k)) {
+        if (entry.other < bodies.size()) {
+          foresee(making, k, entry.other, Real(0));
+        } else {
+          foresee_wall(making, k, entry.other - static_cast<std::uint32_t>(bodies.size()), Real(0));
+        }
+      }
+    }
+    std::size_t struck = 0, left = 64 * bodies.size();  // a bound for what never ends: balls squeezed between others
+    for (; !queue_.empty() && left > 0; --left) {
+      const Impact impact = queue_.top();
+      queue_.pop();
+      if (!is_current(making, impact)) continue;
+      strike(making, impact);
+      ++struck;
+    }
+    queue_ = {};
+    return struck;
+  }
+
+ private:
+  struct Making {
+    const World<Real, Dim>& world;
+    const PairList<Real, Dim>& list;
+    SolverBodies<Real, Dim>& bodies;
+    const ContactStep<Real>& substep;
+    Real step, begin;  // begin: of the substep
+    ContactLog<Real, Dim>& log;
+
+    const Material<Real>& material(std::uint32_t k) const { return world.material[list.order()[k]]; }
+  };
+  struct Impact {
+    Real time;
+    std::uint32_t a, b;  // b from the number of bodies on: walls
+    std::uint32_t impacts_a, impacts_b;
+    bool operator<(const Impact& other) const {  // for a queue whose top is the first
+      if (time != other.time) return time > other.time;
+      return a != other.a ? a > other.a : b > other.b;
+    }
+  };
+
+  /// As is_for_impacts of contact_solver.hpp.
+  static bool counts(const Making& making, const Real& speed, const Real& restitution, const Real& radius) {
+    const ContactStep<Real>& substep = making.substep;
+    return restitution > Real(0) ? speed > 4 * substep.greatest_acceleration * substep.h
+                                 : speed * substep.h > radius / 2;
+  }
+  static bool is_current(const Making& making, const Impact& impact) {
+    const auto& bodies = making.bodies;
+    return bodies.impacts[impact.a] == impact.impacts_a &&
+           (impact.b >= bodies.size() || bodies.impacts[impact.b] == impact.impacts_b);
+  }
+
+  void foresee(const Making& making, std::uint32_t i, std::uint32_t j, const Real& from) {
+    const auto& bodies = making.bodies;
+    const Real h = making.substep.h, reach = bodies.radius(i) + bodies.radius(j);
+    const V rate = bodies.v(j) - bodies.v(i), pull = bodies.acceleration(j) - bodies.acceleration(i);
+    const Real speed = length(rate) + length(pull) * h;
+    const V apart = bodies.x(j) - bodies.x(i) + rate * from + pull * (from * from / 2), rate_now = rate + pull * from;
+    if (squared(apart) > (reach + speed * h) * (reach + speed * h)) return;
+    const Real restitution =
+        combined(making.world.meeting.restitution, making.material(i).restitution, making.material(j).restitution);
+    const Real smaller = std::min(bodies.radius(i), bodies.radius(j));
+    if (!counts(making, speed, restitution, smaller)) return;
+    const Real wait = pull == V{} ? time_to_touch(apart, rate_now, reach)
+                                  : time_to_touch(apart, rate_now, pull, reach, Real(h - from));
+    if (!(from + wait < h)) return;
+    const V then = apart + rate_now * wait + pull * (wait * wait / 2), v_then = rate_now + pull * wait;
+    if (!counts(making, Real(-dot(v_then, then) / reach), restitution, smaller)) return;
+    queue_.push({from + wait, i, j, bodies.impacts[i], bodies.impacts[j]});
+  }
+  void foresee_wall(const Making& making, std::uint32_t i, std::uint32_t w, const Real& from) {
+    const auto& bodies = making.bodies;
+    const V acceleration = bodies.acceleration(i);
+    // Where it really is: a body that has struck is kept where its new path began, which nothing has seen.
+    const V x = bodies.x(i) + bodies.v(i) * from + acceleration * (from * from / 2);
+    const Wall<Real, Dim> wall = facing(making.world.walls()[w], x);
+    const Real pull = dot(acceleration, wall.normal), speed = dot(bodies.v(i), wall.normal) + pull * from;
+    const Real wait = time_to_close(Real(dot(wall.normal, x) - wall.offset - bodies.radius(i)), speed, pull);
+    if (!(from + wait < making.substep.h)) return;
+    const Real restitution =
+        combined(making.world.meeting.restitution, making.material(i).restitution, wall.material.restitution);
+    if (!counts(making, Real(-(speed + pull * wait)), restitution, bodies.radius(i))) return;
+    queue_.push({from + wait, i, bodies.wall(w), bodies.impacts[i], 0});
+  }
+
+  void strike(const Making& making, const Impact& impact) {
+    auto& bodies = making.bodies;
+    go(bodies, impact.a, impact.time);
+    State a = state(bodies, impact.a);
+    if (impact.b < bodies.size()) {
+      go(bodies, impact.b, impact.time);
+      State b = state(bodies, impact.b);
+      const V apart = bodies.x(impact.b) - bodies.x(impact.a);
+      const Real distance = length(apart);
+      V normal = apart * (distance > Real(0) ? 1 / distance : Real(0));
+      if (!(distance > Real(0))) normal[0] = Real(1);
+      const Material<Real> both = combined(making.world.meeting, making.material(impact.a), making.material(impact.b));
+      if (dot(b.v - a.v, normal) < Real(0)) note(making, impact, normal, collide(a.mover(), b.mover(), normal, both));
+      put_back(bodies, impact.b, b, impact.time);
+    } else {
+      State stand_in{};
+      const Wall<Real, Dim> wall = facing(making.world.walls()[impact.b - bodies.size()], bodies.x(impact.a));
+      const Material<Real> both = combined(making.world.meeting, making.material(impact.a), wall.material);
+      if (dot(a.v, wall.normal) < Real(0))
+        note(making, impact, V(-wall.normal), collide(a.mover(), stand_in.mover(), V(-wall.normal), both));
+    }
+    put_back(bodies, impact.a, a, impact.time);
+    foresee_all(making, impact.a, impact.time);
+    if (impact.b < bodies.size()) foresee_all(making, impact.b, impact.time);
+  }
+  static void note(const Making& making, const Impact& impact, const V& normal, const Real& impulse) {
+    if (!making.log.is_kept()) return;
+    const auto& bodies = making.bodies;
+    const auto handle = [&](std::uint32_t k) { return making.world.handle(making.list.order()[k]); };
+    ContactEvent<Real, Dim> event{.a = handle(impact.a),
+                                  .point = bodies.x(impact.a) + normal * bodies.radius(impact.a),
+                                  .normal = normal,
+                                  .impulse = impulse,
+                                  .time = making.begin + impact.time};
+    if (impact.b < bodies.size()) {
+      event.b = handle(impact.b);
+    } else {
+      event.wall = static_cast<std::uint32_t>(impact.b - bodies.size());
+    }
+    making.log.add(event);
+  }
+  /// A body that an impact made faster may get further than its pairs were listed for: then it looks itself.
+  void foresee_all(const Making& making, std::uint32_t i, const Real& from) {
+    making.list.for_each_neighbour(making.world, making.bodies, i, Real(length(making.bodies.v(i)) * making.step),
+                                   [&](std::uint32_t j) { foresee(making, std::min(i, j), std::max(i, j), from); });
+    if (making.bodies.moves(i))
+      for (std::uint32_t w = 0; w < making.world.walls().size(); ++w) foresee_wall(making, i, w, from);
+  }
+
+  struct State {
+    V v{};
+    Spin<Real, Dim> spin{};
+    Real radius{}, inverse_mass{}, inverse_inertia{};
+    Mover<Real, Dim> mover() { return {v, spin, radius, inverse_mass, inverse_inertia}; }
+  };
+  static State state(const SolverBodies<Real, Dim>& bodies, std::uint32_t i) {
+    const Real radius = bodies.radius(i);
+    const Quad<Real>& rim = bodies.motion[i].rim;
+    return {bodies.v(i), vector_of<Spin<Real, Dim>::size()>(rim) * (1 / radius), radius, bodies.inverse_mass(i),
+            rim[3] / (radius * radius)};
+  }
+  static void put_back(SolverBodies<Real, Dim>& bodies, std::uint32_t i, const State& state, const Real& time) {
+    put(state.v, bodies.motion[i].linear);
+    put(Spin<Real, Dim>(state.spin * state.radius), bodies.motion[i].rim);
+    go(bodies, i, Real(-time));
+    ++bodies.impacts[i];
+  }
+  static void go(SolverBodies<Real, Dim>& bodies, std::uint32_t i, const Real& duration) {
+    const V pull = bodies.acceleration(i), v = bodies.v(i);
+    put(V(bodies.x(i) + v * duration + pull * (duration * duration / 2)), bodies.place[i].x_and_radius);
+    put(V(v + pull * duration), bodies.motion[i].linear);
+  }
+
+  std::priority_queue<Impact> queue_;
+};
+
+}  // namespace continuo

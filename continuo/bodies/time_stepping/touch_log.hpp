@@ -1,0 +1,74 @@
+// continuo/bodies/time_stepping/touch_log.hpp
+// Contacts that last, from step to step: which have begun, which have ended, and the impulse each has passed on since.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/contact_events.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class TouchLog {
+ public:
+  /// In any order, once a step for each contact, with the impulse of the step.
+  void touch(const ContactEvent<Real, Dim>& contact) { now_.push_back({key(contact), contact}); }
+
+  /// The step ends at `time`.
+  void end_step(const Real& time, ContactLog<Real, Dim>& log) {
+    std::ranges::sort(now_, {}, &Touch::first);
+    auto old = before_.begin();
+    const auto end_old = [&] {
+      old->second.change = ContactChange::end;
+      old->second.time = time;
+      log.add(old->second);
+      ++old;
+    };
+    for (Touch& touch : now_) {
+      while (old != before_.end() && old->first < touch.first) end_old();
+      const bool lasts = old != before_.end() && old->first == touch.first;
+      if (lasts) {
+        touch.second.impulse += old->second.impulse;
+        ++old;
+      } else {
+        ContactEvent<Real, Dim> event = touch.second;
+        event.change = ContactChange::begin;
+        event.time = time;
+        event.impulse = Real(0);
+        log.add(event);
+      }
+    }
+    while (old != before_.end()) end_old();
+    std::swap(before_, now_);
+    now_.clear();
+  }
+
+  template <class Archive>
+  void transfer(Archive& archive) {
+    auto count = static_cast<std::uint64_t>(before_.size());
+    archive(count);
+    if constexpr (Archive::reads) {
+      if (count > archive.left()) return archive.fail("a list longer than the bytes that are left");
+      before_.resize(static_cast<std::size_t>(count));
+    }
+    for (auto& [of, event] : before_) {
+      archive(of), archive(event.a.slot), archive(event.a.generation), archive(event.b.slot);
+      archive(event.b.generation), archive(event.wall), archive(event.point), archive(event.normal);
+      archive(event.impulse);
+    }
+  }
+
+ private:
+  using Key = std::array<std::uint32_t, 5>;
+  using Touch = std::pair<Key, ContactEvent<Real, Dim>>;
+  static Key key(const ContactEvent<Real, Dim>& contact) {
+    return {contact.a.slot, contact.a.generation, contact.wall, contact.b.slot, contact.b.generation};
+  }
+
+  std::vector<Touch> before_, now_;
+};
+
+}  // namespace continuo

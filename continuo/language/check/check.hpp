@@ -1,0 +1,34 @@
+// continuo/language/check/check.hpp
+// From the syntax tree to the checked model: names, orders, families, units, equations solved for their highest
+// derivatives, events and the experiment.
+//
+//   ParseResult parsed = parse(source);
+//   Checked checked = check(parsed.model, source);
+//   if (!checked.model) std::cerr << render(checked.diagnostics, source);
+//
+// The codes are in codes.hpp; every message stands where the author can mend it.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include <continuo/language/model.hpp>
+#include <continuo/language/syntax/ast.hpp>
+#include <continuo/language/text/diagnostic.hpp>
+#include <continuo/language/text/source.hpp>
+
+namespace continuo::model {
+
+struct CheckOptions {
+  /// Parameters by name, as if the text had these values. The only way to change one that decides the size of a
+  /// family (`Parameter::structural`). Names that are no parameter are reported with E210.
+  Overrides overrides = {};
+};
+
+struct Checked {
+  std::optional<Model> model;           // there iff no diagnostic is an error
+  std::vector<Diagnostic> diagnostics;  // in order of place
+};
+
+Checked check(const ast::Model& tree, const Source& source, const CheckOptions& options = {});
+
+}  // namespace continuo::model

@@ -1,0 +1,32 @@
+// continuo/language/load.cpp
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <continuo/language/load.hpp>
+#include <continuo/language/syntax/parser.hpp>
+
+namespace continuo::model {
+
+Loaded load(Source source, const CheckOptions& options) {
+  Loaded loaded{std::move(source), std::nullopt, {}};
+  ParseResult parsed = parse(loaded.source);
+  loaded.diagnostics = std::move(parsed.diagnostics);
+  if (has_errors(loaded.diagnostics)) return loaded;  // what is not understood is not judged
+  Checked checked = check(parsed.model, loaded.source, options);
+  loaded.model = std::move(checked.model);
+  std::ranges::move(checked.diagnostics, std::back_inserter(loaded.diagnostics));
+  return loaded;
+}
+
+Loaded load(const std::filesystem::path& path, const CheckOptions& options) {
+  if (auto source = read_source(path)) return load(std::move(*source), options);
+  std::error_code ignored;
+  const bool there = std::filesystem::exists(path, ignored);
+  Loaded loaded{Source(path.string(), ""), std::nullopt, {}};
+  loaded.diagnostics.push_back(error("E270", {}, fmt::format("`{}` cannot be read", path.string()), {},
+                                     there ? "is it a folder, or not yours to read?" : "there is no such file"));
+  return loaded;
+}
+
+}  // namespace continuo::model

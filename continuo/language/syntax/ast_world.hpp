@@ -1,0 +1,112 @@
+// continuo/language/syntax/ast_world.hpp
+// `world { ... }` and `force on ...` in the syntax tree; ast.hpp holds the statements they are.
+#pragma once
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <continuo/language/syntax/ast_expression.hpp>
+
+namespace continuo::model::ast {
+
+/// `radius 0.5`, `at (0, 10) [m]` (a List, or a Quantity of one), `integrator central_difference` (a Name); `fixed` has
+/// no value and is Missing.
+struct WorldAttribute {
+  Identifier name;
+  Expression value;
+
+  bool has_value() const { return !std::holds_alternative<Missing>(value.node); }
+};
+using WorldAttributes = std::vector<WorldAttribute>;
+
+/// `dimension 2`, `gravity (0, -9.81)`, `attraction 6.67e-11 softening 1`, `drag linear 0.1`, `material friction 0.3`,
+/// `combine restitution minimum`, `mode fast step 1/60`.
+struct WorldSetting {
+  Identifier word;
+  std::optional<Expression> value;  // of dimension, gravity and attraction; of mode a Name
+  WorldAttributes attributes;
+};
+
+/// `wall ground (0, 1) at 0 friction 0.3`: where (0, 1) . x >= 0 is free; with `thin` both sides are.
+struct WorldWall {
+  std::optional<Identifier> name;
+  Expression normal, offset;
+  WorldAttributes attributes;
+};
+
+/// `container box (0, 0) to (20, 20)`: the inside of a box.
+struct WorldContainer {
+  std::optional<Identifier> name;
+  Expression lower, upper;
+  WorldAttributes attributes;
+};
+
+/// `body ball at (0, 10) radius 0.5 mass 1`.
+struct WorldBody {
+  Name name;
+  WorldAttributes attributes;
+};
+
+/// `bodies grain grid 10 x 20 from (1, 1) ...`, `bodies gas random 1000 in (0, 0) to (20, 20) ...`,
+/// `bodies tower stack 10 from (3, 0.5) ...`.
+enum class Pattern { grid, random, stack };
+struct WorldBodies {
+  Identifier name;
+  Pattern pattern{};
+  std::vector<Expression> counts;          // of a grid one per axis
+  std::optional<Expression> lower, upper;  // of random
+  WorldAttributes attributes;
+};
+
+/// `spring ball to anchor stiffness 40`, `spring ball to (0, 5) stiffness 40`.
+struct WorldSpring {
+  Name a;
+  std::variant<Name, Expression> b;
+  WorldAttributes attributes;
+};
+
+/// `springs of cloth stiffness 40`: between the neighbours of a pattern.
+struct WorldSprings {
+  Identifier pattern;
+  WorldAttributes attributes;
+};
+
+/// `fix cloth[1], cloth[8]`.
+struct WorldFix {
+  std::vector<Name> bodies;
+};
+
+/// `ignore pegs with pegs`: bodies of these groups pass through each other.
+struct WorldIgnore {
+  Identifier a, b;
+};
+
+struct WorldItem;
+
+/// `for i in 1..5 { body ball[i] at (i, 0) }` in a world.
+struct WorldFamily {
+  Identifier index;
+  Range range;
+  std::vector<WorldItem> body;
+};
+
+struct WorldItem {
+  std::variant<WorldSetting, WorldWall, WorldContainer, WorldBody, WorldBodies, WorldSpring, WorldSprings, WorldFix,
+               WorldIgnore, WorldFamily>
+      node;
+  Span span;
+};
+
+struct World {
+  std::vector<WorldItem> items;
+};
+
+/// `force on ball = (-k*ball.x, 0)`, `torque on ball = -c*ball.angle`.
+struct Force {
+  Name body;
+  Expression value;  // a List, or a Quantity of one; of a torque in the plane a number
+  bool is_torque = false;
+};
+
+}  // namespace continuo::model::ast

@@ -1,0 +1,268 @@
+// continuo/language/syntax/parser_core.hpp
+// The recursive descent behind parser.hpp, one class over several sources: statements (parser.cpp), definitions
+// (parser_definitions.cpp), expressions (parser_expressions.cpp, parser_values.cpp), events and their actions
+// (parser_events.cpp), run, plot, draw and check (parser_settings.cpp), worlds (parser_world.cpp). The reading of
+// tokens and what happens after an error is parser_core.cpp.
+#pragma once
+#include <cstddef>
+#include <deque>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <continuo/language/syntax/lexer.hpp>
+#include <continuo/language/syntax/parser.hpp>
+
+namespace continuo::model::detail {
+
+/// Thrown when a statement cannot be read further, after its diagnostic is recorded; caught where the next begins.
+struct StatementFailed {};
+/// Thrown when nothing more shall be read.
+struct ReadingStopped {};
+
+/// An expression with the height of its tree, which bounds the recursion of all who walk it later.
+struct Tree {
+  ast::Expression expression;
+  int height = 1;
+};
+
+/// Where a statement stands.
+enum class Context { top, family, mode };
+
+class Parser {
+ public:
+  explicit Parser(const Source& source) : source_(source), lexer_(source) {}
+
+  ParseResult parse_model();
+  ParsedExpression parse_only_expression();
+
+ private:
+  // Limits, far above what a person writes and low enough for the stack and the memory of any machine.
+  static constexpr int deepest_nesting = 200;
+  static constexpr int tallest_tree = 500;
+  static constexpr std::size_t most_tokens = 1'000'000;
+  static constexpr std::size_t most_errors = 20;
+  static constexpr int most_primes = 32;
+
+  /// Counts one level of nesting while it lives.
+  class Nesting {
+   public:
+    explicit Nesting(Parser& parser);
+    ~Nesting() { --parser_.nesting_; }
+    Nesting(const Nesting&) = delete;
+    Nesting& operator=(const Nesting&) = delete;
+
+   private:
+    Parser& parser_;
+  };
+
+  // --- tokens (parser_core.cpp)
+  const Token& current() { return look(0); }
+  const Token& look(std::size_t ahead);
+  /// The first token that is no line end, at or after the current one.
+  const Token& look_past_line_ends();
+  Token advance();
+  bool at(TokenKind kind) { return current().kind == kind; }
+  bool at_word(std::string_view word);
+  bool at_statement_end();
+  bool accept(TokenKind kind);
+  bool accept_word(std::string_view word);
+  Token expect(TokenKind kind, std::string_view wanted);
+  void expect_word(std::string_view word, std::string_view wanted);
+  void skip_line_ends();
+  std::string_view spelled(const Token& token) const { return source_.slice(token.span); }
+  Span since(std::uint32_t begin) const { return {begin, last_end_}; }
+
+  // --- errors (parser_core.cpp)
+  void report(Diagnostic diagnostic);
+  [[noreturn]] void fail(Diagnostic diagnostic);
+  /// At a bad token its own problem, else "expected ..., found ...".
+  [[noreturn]] void unexpected(std::string_view wanted, std::string help = {});
+  /// The current token stands where the statement should have ended, or gone on with one of the words.
+  [[noreturn]] void left_over(std::initializer_list<std::string_view> words);
+  void expect_statement_end(std::initializer_list<std::string_view> words = {});
+  std::string continuation_help();
+  std::string product_help();
+  void recover();
+  void recover_to_block();
+  bool at_unclosed_block();
+
+  /// `{ item item }`, each item read by `read`, with recovery after each.
+  template <class Read>
+  void read_block(std::string_view wanted, Read read);
+  template <class Read>
+  void read_item(Read read);
+
+  // --- expressions (parser_expressions.cpp)
+  enum class Level { logical_or = 1, logical_and, comparison, additive, multiplicative };
+  struct Operator {
+    ast::BinaryOperator op;
+    Level level;
+  };
+  std::optional<Operator> operator_at(const Token& token);
+  Tree parse_tree(Level lowest);
+  Tree parse_chain(Level lowest);
+  Tree parse_prefix();
+  Tree parse_power(bool with_unit);
+  Tree parse_primary(bool with_unit);
+  Tree parse_round();
+  Tree parse_conditional();
+  Tree parse_sum();
+  Tree parse_name_or_call();
+  Tree parse_arguments(ast::Name callee, int height);
+  Tree with_unit_after(Tree value);
+  Tree grow(ast::Expression::Node node, Span span, int height);
+  static void lift_unit(ast::Expression& expression);
+  void require_single(const ast::Expression& expression);
+  void go_on_inside_brackets();
+  [[noreturn]] void value_missing();
+
+  // The values of a statement (parser_values.cpp). Where `height` is given it is raised to the tree's.
+
+  /// A condition or number, the whole of what stands there, without `=`.
+  ast::Expression parse_expression(int* height = nullptr);
+  /// The same, where a comparison would be the reader's own (`a..b`, `check a < b`).
+  ast::Expression parse_sum_of_terms(int* height = nullptr);
+  /// The right side of a definition: an expression whose unit may be the whole's, or a list.
+  ast::Expression parse_value();
+  ast::Expression parse_value_or_list();
+  ast::Expression parse_condition(std::string_view where);
+  ast::Name parse_name(std::string_view wanted, int* height = nullptr);
+  ast::Name parse_indices_and_primes(const Token& token, int* height);
+  void close_index(const Token& open);
+  ast::Identifier parse_identifier(std::string_view wanted);
+  ast::Range parse_range(int* height = nullptr);
+  ast::Range parse_range_from(ast::Expression first, int* height = nullptr);
+  std::string parse_text(std::string_view wanted);
+
+  // --- statements (parser.cpp)
+  ast::Statement parse_statement(Context context);
+  std::optional<ast::Statement::Node> parse_worded(std::string_view word, Context context);
+  ast::Statement::Node parse_defining(std::string_view word);
+  void parse_model_name();
+  std::vector<ast::Definition> parse_definitions(bool with_range);
+  ast::Definition parse_definition(bool with_range);
+  void parse_element_range(ast::Definition& definition);
+  ast::Input parse_input();
+  ast::Table parse_table();
+  ast::Unknown parse_unknown();
+  ast::Guess parse_guess();
+  ast::Mode parse_mode();
+  ast::Family parse_family(Context context);
+  ast::Statement::Node parse_equation();
+  ast::Condition as_condition(ast::Expression left, ast::Expression value);
+  void explain_left_side(const ast::Expression& left);
+  void require_allowed(std::string_view word, Context context);
+  [[noreturn]] void unknown_statement();
+  std::vector<ast::Statement> parse_statements(std::string_view wanted, Context context);
+  /// `i in 1..N` of families and sums.
+  std::pair<ast::Identifier, ast::Range> parse_index(int* height = nullptr);
+
+  // --- events (parser_events.cpp)
+  ast::When parse_when();
+  void parse_direction(ast::When& event);
+  std::optional<std::vector<ast::Action>> parse_limit_actions();
+  ast::At parse_at();
+  ast::Every parse_every();
+  std::vector<ast::Action> parse_actions(std::string_view wanted);
+  ast::Action parse_action();
+  ast::If parse_if();
+  ast::Stop parse_stop();
+  ast::ActionFamily parse_action_family();
+  ast::Assignment parse_assignment();
+
+  // --- settings (parser_settings.cpp)
+  ast::Run parse_run();
+  bool parse_run_part(ast::Run& run);
+  void parse_limit_of_steps(ast::Run& run);
+  ast::OutputTimes parse_output_times();
+  void parse_tolerances(ast::Run& run, bool relative);
+  ast::Plot parse_plot();
+  ast::Draw parse_draw();
+  ast::DrawItem parse_draw_item();
+  ast::Shape parse_shape();
+  ast::Expression parse_point();
+  ast::Expression parse_point_with_unit();
+  void parse_attributes(ast::Shape& shape, std::span<const std::string_view> known);
+  ast::Check parse_check();
+  ast::Measure parse_measure();
+  ast::Moment parse_moment();
+  ast::AtEvent parse_event_reference(bool after);
+
+  // --- worlds (parser_world.cpp)
+  bool at_world_word(Context context);
+  ast::Statement::Node parse_world_or_force();
+  ast::World parse_world();
+  ast::Force parse_force(bool is_torque);
+  ast::WorldItem parse_world_item();
+  ast::WorldSetting parse_world_setting(ast::Identifier word);
+  ast::WorldWall parse_world_wall();
+  ast::WorldContainer parse_world_container();
+  ast::WorldBodies parse_world_bodies();
+  ast::WorldSpring parse_world_spring();
+  ast::WorldSprings parse_world_springs();
+  ast::WorldFix parse_world_fix();
+  ast::WorldIgnore parse_world_ignore();
+  ast::WorldFamily parse_world_family();
+  std::optional<ast::Identifier> parse_name_of_wall();
+  ast::WorldAttributes parse_world_attributes(std::string_view of, std::span<const std::string_view> known,
+                                              bool all_names = false);
+  void skip_to_attribute(std::span<const std::string_view> known);
+  ast::Expression parse_world_value(std::string_view word);
+  ast::Expression parse_world_name(std::string_view word);
+
+  const Source& source_;
+  Lexer lexer_;
+  std::deque<Token> ahead_;
+  std::uint32_t last_end_ = 0;  // end of the token read last
+  TokenKind last_kind_ = TokenKind::line_end;
+  Span last_span_;
+  std::optional<Span> continuation_;  // what made the current statement go on over a line end, the latest
+  std::uint32_t item_begin_ = 0;      // where the current statement, action or shape begins
+  int nesting_ = 0;
+  int round_brackets_ = 0;  // open round brackets, inside which a line may end before an operator
+  std::size_t errors_ = 0;
+  std::vector<std::string> indices_;  // of the families and sums around
+  ParseResult result_;
+};
+
+template <class Read>
+void Parser::read_item(Read read) {
+  const std::uint32_t begin = current().span.begin;
+  const std::size_t indices = indices_.size();
+  continuation_.reset();
+  item_begin_ = begin;
+  round_brackets_ = 0;
+  try {
+    read();
+  } catch (const StatementFailed&) {
+    indices_.resize(indices);
+    recover();
+    // An item that read nothing would be met again for ever.
+    if (current().span.begin == begin && !at(TokenKind::end) && !at(TokenKind::close_brace)) advance();
+  }
+}
+
+template <class Read>
+void Parser::read_block(std::string_view wanted, Read read) {
+  const Nesting nesting(*this);
+  if (at(TokenKind::line_end) && look_past_line_ends().kind == TokenKind::open_brace) skip_line_ends();
+  const Token open = expect(TokenKind::open_brace, wanted);
+  while (true) {
+    while (accept(TokenKind::line_end) || accept(TokenKind::semicolon)) {
+    }
+    if (accept(TokenKind::close_brace)) return;
+    if (at(TokenKind::end) || at_unclosed_block()) {
+      Diagnostic diagnostic = error("E114", open.span, "this block has no end", "opened here",
+                                    "close it with `}` before " + describe(current(), source_));
+      report(std::move(diagnostic));
+      return;
+    }
+    read_item(read);
+  }
+}
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,22 @@
+// continuo/language/world.cpp
+#include <continuo/language/world.hpp>
+
+namespace continuo::model {
+
+std::vector<std::string> world_measures(int dimension) {
+  std::vector<std::string> names{"kinetic", "potential", "momentum_x", "momentum_y"};
+  if (dimension == 3) names.emplace_back("momentum_z");
+  names.emplace_back("collisions");
+  return names;
+}
+
+std::vector<std::string> world_methods() {
+  return {"exact",         "dop853", "rk4", "fast", "semi_implicit_euler", "implicit_euler", "central_difference",
+          "explicit_euler"};
+}
+
+double collisions_of(const WorldDescription& world, std::span<const double> state) {
+  return state[world.first_measure + world_measures(world.dimension).size() - 1];
+}
+
+}  // namespace continuo::model

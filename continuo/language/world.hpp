@@ -1,0 +1,118 @@
+// continuo/language/world.hpp
+// The `world` of a checked model: bodies, walls, springs and forces as plain data. Numbers are nodes of the model's
+// graph that depend on parameters only; forces may depend on everything. worlds/ builds and moves it.
+//
+//   if (const WorldDescription* world = loaded.model->world.get())
+//     for (const BodyDescription& body : world->bodies) fmt::print("{}\n", body.name);
+//
+// Numbers are in the model's unit of length (`length_unit`, that of the first position), kilograms where that has a
+// unit, and the model's unit of time.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/language/text/source.hpp>
+#include <continuo/symbolic/graph/expression.hpp>
+
+namespace continuo::model {
+
+inline constexpr std::size_t no_body = static_cast<std::size_t>(-1);
+using NodePoint = std::array<NodeId, 3>;  // the third is not valid in the plane
+
+struct MaterialDescription {
+  NodeId restitution, friction, rolling;
+};
+
+/// How the numbers of two surfaces become those of their contact: each one of `combinations` (words.hpp).
+struct MeetingDescription {
+  std::string restitution = "maximum", friction = "geometric_mean", rolling = "maximum";
+  friend bool operator==(const MeetingDescription&, const MeetingDescription&) = default;
+};
+
+/// Where it is and how it moves at the start are the initial values of its states.
+struct BodyDescription {
+  std::string name;  // "ball", "grain[3]"
+  NodeId radius;
+  NodeId mass;     // not valid: density times volume
+  NodeId density;  // not valid where there is a mass
+  bool fixed = false;
+  std::uint32_t group = 0;
+  MaterialDescription material;
+  std::size_t first_state = 0;  // of its body_states(dimension) in Model::states
+  Span span;
+};
+
+/// A wall of the half-space normal . x >= offset; a thin one has two sides. A container is several of one name.
+struct WallDescription {
+  std::string name;  // "wall 2" where it has none
+  NodePoint normal;
+  NodeId offset;
+  MaterialDescription material;
+  bool thin = false;
+  Span span;
+};
+
+struct SpringDescription {
+  std::size_t a = no_body, b = no_body;  // no body: the point
+  NodePoint point;
+  NodeId stiffness, length, damping;
+  Span span;
+};
+
+/// `force on ball = (...)`, or `torque on ball = ...`, which has one component in the plane: any expressions of the
+/// model.
+struct ForceDescription {
+  std::size_t body;
+  NodePoint components;
+  Span span;
+};
+
+/// How it is moved unless the caller says otherwise. What is not valid is left to the motion.
+struct WorldMode {
+  bool fast = false;
+  NodeId tolerance, contact_time;                  // exact
+  NodeId step, hertz, sleep_after, sleep_speed;    // fast
+  int substeps = 4, threads = 1;                   //
+  std::string integrator = "semi_implicit_euler";  //
+};
+
+struct WorldDescription {
+  int dimension = 2;
+  std::string length_unit, mass_unit, energy_unit;
+  NodePoint gravity;
+  NodeId attraction, softening, opening;  // not valid without attraction
+  NodeId drag_linear, drag_quadratic;     // not valid without drag
+  MeetingDescription meeting;
+  std::vector<BodyDescription> bodies;  // their states are the first of the model, in this order
+  std::vector<WallDescription> walls;
+  std::vector<SpringDescription> springs;
+  std::vector<ForceDescription> forces, torques;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // groups
+  WorldMode mode;
+  std::size_t first_measure = 0;  // of `measures(dimension)` in Model::states: world.kinetic, ...; the last states
+  Span span;
+
+  std::size_t body_states() const { return bodies.size() * states_of_body(dimension); }
+  /// In the plane x, x', y, y', angle, angle'; in space x, x', y, y', z, z', q_w, q_x, q_y, q_z, spin_x, spin_y,
+  /// spin_z.
+  static constexpr std::size_t states_of_body(int dimension) { return dimension == 2 ? 6 : 13; }
+  static constexpr std::size_t components_of_spin(int dimension) { return dimension == 2 ? 1 : 3; }
+};
+
+/// What a world tells of itself: `world.kinetic`, `world.potential`, `world.momentum_x`, ..., `world.collisions`.
+std::vector<std::string> world_measures(int dimension);
+
+/// So many there were until the model was in this state.
+double collisions_of(const WorldDescription& world, std::span<const double> state);
+
+/// What can stand in place of the mode of a world: `exact`, and its paths by `dop853` or `rk4` with a step; `fast` with
+/// the integrator that the world names, or by the name of one.
+std::vector<std::string> world_methods();
+
+}  // namespace continuo::model

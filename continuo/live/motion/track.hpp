@@ -1,0 +1,92 @@
+// continuo/live/motion/track.hpp
+// One motion that the view draws on: asked for a step where its last one has been shown to the end, and put back to any
+// instant of that step where a hand changes something there. Of equations, or of bodies.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/simulation/stepping.hpp>
+#include <continuo/worlds/world_run.hpp>
+
+namespace continuo::live {
+
+/// All that it takes to go on from there.
+struct Instant : model::Instant {
+  std::shared_ptr<const worlds::Snapshot> world{};  // of bodies; null where nobody will go on from it
+  bool moved = false;                               // a hand has changed x since
+};
+
+/// Events of one instant as they happened.
+struct Passed {
+  struct Name {
+    std::string event, mark;
+  };
+  double t;
+  std::vector<Name> names;  // empty: the step of an input, which is nobody's event
+  std::vector<double> before, after;
+  std::size_t mode;  // afterwards, like
+  std::vector<std::size_t> stops;
+};
+
+/// A body in a hand.
+struct HeldBody {
+  std::size_t body;
+  worlds::Point to;
+};
+
+class Track {
+ public:
+  using X = std::vector<double>;
+
+  explicit Track(model::Plan plan) : plan_(std::move(plan)) {}
+  Track(const Track&) = delete;
+  Track& operator=(const Track&) = delete;
+  virtual ~Track() = default;
+
+  virtual double t() const = 0;
+  /// One step, or less where an event changes the state; `wanted` is how far somebody looks ahead. False: it is over.
+  virtual bool advance(double wanted) = 0;
+  /// The events of the last step, in order.
+  const std::vector<Passed>& passed() const { return passed_; }
+  /// x at a time of the last step.
+  virtual void at(double t, X& x) = 0;
+  /// What it takes to go on from a time of the last step; with `whole` false only to look at it.
+  virtual Instant instant_at(double t, bool whole = true) = 0;
+  /// Empty, or why it cannot go on with these parameters.
+  virtual std::string go_on(const Instant& instant, std::span<const double> variables,
+                            std::span<const std::size_t> held) = 0;
+
+  virtual const Outcome<double>& outcome() const = 0;
+  virtual const std::string& stop_text() const = 0;
+  virtual Statistics statistics() const = 0;
+  const model::Plan& plan() const { return plan_; }
+
+  /// Null of bodies; null of equations.
+  virtual const model::Stepping* equations() const { return nullptr; }
+  virtual const worlds::WorldRun* world() const { return nullptr; }
+  /// From here on the body stays where the hand is, or as near as others leave it room.
+  virtual void hold(std::optional<HeldBody>) {}
+  /// No longer, and it goes on with this velocity.
+  virtual void let_go(std::size_t /*body*/, const worlds::Point& /*velocity*/) {}
+
+ protected:
+  /// The text says how long a run takes; a view goes on for as long as somebody looks.
+  double length() const { return plan_.to > plan_.from ? plan_.to - plan_.from : 1; }
+
+  model::Plan plan_;
+  std::vector<Passed> passed_;
+};
+
+/// `plan` as `plan_run` gives it, of a world as `model::plan` does. Null where it cannot begin, and why.
+struct MadeTrack {
+  std::unique_ptr<Track> track;
+  std::string error;
+};
+MadeTrack make_track(const std::shared_ptr<const model::ModelProgram>& program, const model::Plan& plan);
+
+}  // namespace continuo::live

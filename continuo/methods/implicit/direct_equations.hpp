@@ -1,0 +1,64 @@
+// The equations of an implicit step, solved by decomposing their matrix: what a method asks of `Equations`. The same
+// without a matrix is in krylov_equations.hpp.
+//
+//   equations.prepare(system, x)                                   once; allocates
+//   equations.is_always_current(system)                            no old Jacobian is ever used: a retry is no use
+//   equations.linearize(system, t, x, h, tolerance, f) -> evaluations    J is that of (t, x) from here on; f is scratch
+//   equations.decompose(system, c) -> StepStatus                   the equations are those of c M - J from here on
+//   equations.solve(system, t, x, f, tolerance, target, b) -> evaluations    b becomes the solution of (c M - J) y = b,
+//       near an iterate (t, x) where f(t, x) = f, to `target` in the norm of the tolerance
+#pragma once
+#include <cstddef>
+
+#include <continuo/methods/implicit/linearization.hpp>
+#include <continuo/methods/implicit/newton.hpp>
+
+namespace continuo {
+
+template <State X>
+class DirectEquations {
+ public:
+  using Real = Scalar<X>;
+
+  explicit DirectEquations(const X& x) : linear_(x), lu_(x) {}
+
+  bool prepared() const { return linear_.prepared(); }
+  template <class System>
+  void prepare(System& system, const X& x) {
+    linear_.prepare(system, x);
+  }
+  template <class System>
+  static constexpr bool is_always_current(const System&) {
+    return false;
+  }
+
+  bool has_mass() const { return linear_.has_mass(); }
+  void multiply_mass(const X& v, X& product) const { linear_.multiply_mass(v, product); }
+  const EquationCosts& costs() const { return costs_; }
+
+  template <class System>
+  int linearize(System& system, const Real& t, const X& x, const Real& h, const Tolerance<Real>& tolerance, X& f) {
+    evaluate(system, t, x, f);
+    ++costs_.jacobians;
+    return 1 + linear_.evaluate(system, t, x, f, LeastIncrements(tolerance, h, x, f, has_mass()));
+  }
+  template <class System>
+  StepStatus decompose(System&, const Real& c) {
+    ++costs_.decompositions;
+    if (lu_.factor(linear_, c)) return StepStatus::done;
+    return linear_.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
+  }
+  template <class System>
+  int solve(System&, const Real&, const X&, const X&, const Tolerance<Real>&, const Real&, X& b) {
+    lu_.solve(b.data());
+    ++costs_.solutions;
+    return 0;
+  }
+
+ private:
+  Linearization<X> linear_;
+  Decomposition<X> lu_;
+  EquationCosts costs_;
+};
+
+}  // namespace continuo

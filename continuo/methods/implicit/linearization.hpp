@@ -1,0 +1,219 @@
+// continuo/methods/implicit/linearization.hpp
+// What an implicit method needs of a system M x' = f(t, x): J = df/dx at one point, the constant M, and the solution of
+// (c M - J) y = b for numbers c, real or complex, that the method chooses. M is the identity where the system has none.
+//
+//   work.linear.prepare(system, x);                       // once; the only place that allocates
+//   evaluations += work.linear.evaluate(system, t, x, fx, least);
+//   if (!work.lu.factor(work.linear, 1 / (gamma * h))) ...;  // singular
+//   work.lu.solve(b);
+#pragma once
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <continuo/methods/implicit/constant_mass.hpp>
+#include <continuo/methods/method.hpp>
+#include <continuo/numerics/band_layout.hpp>
+#include <continuo/numerics/banded_lu.hpp>
+#include <continuo/numerics/dense_lu.hpp>
+#include <continuo/numerics/sparse_lu.hpp>
+#include <continuo/system/jacobian.hpp>
+
+namespace continuo {
+
+/// Systems of run-time size with at least this many components and a pattern with at most this part of all entries are
+/// solved by a sparse solver, if their scalar is double.
+inline constexpr std::size_t least_sparse_size = 20;
+inline constexpr double greatest_sparse_part = 0.3;
+
+template <State X>
+class Linearization {
+ public:
+  using Real = Scalar<X>;
+  static constexpr std::size_t N = fixed_size<X>();
+
+  explicit Linearization(const X& x) : size_(dimension(x)), moved_(x), slope_(x) {}
+
+  std::size_t size() const { return size_; }
+  bool prepared() const { return prepared_; }
+  bool sparse() const { return sparse_; }
+  /// Sparse and near the diagonal.
+  bool banded() const { return banded_; }
+
+  /// Learns the structure of the system: pattern and mass. To be called before anything else.
+  template <class F>
+  void prepare(F& f, const X&) {
+    prepared_ = true;
+    mass_.read(f, size_);
+    if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
+      pattern_ = f.jacobian_pattern();
+      sparse_ = !mass_.is_matrix() && size_ >= least_sparse_size &&
+                static_cast<double>(pattern_.entries()) <=
+                    greatest_sparse_part * static_cast<double>(size_) * static_cast<double>(size_);
+      if (sparse_) {
+        rows_.assign(pattern_.entries(), 0);
+        if constexpr (!HasSparseJacobian<F, X>) groups_ = ColumnGroups(pattern_);
+        banded_ = pattern_.is_banded();
+        if (banded_) prepare_band();
+        diagonal_.resize(size_);
+        for (std::size_t i = 0; i < size_; ++i) diagonal_[i] = pattern_.find(i, i);
+      }
+    }
+    if constexpr (N == run_time_size) {
+      if (!sparse_) rows_.assign(size_ * size_, Real(0));
+    }
+  }
+
+  /// J at (t, x); fx = f(t, x), least(j) the least increment for a difference. Returns the number of evaluations of f.
+  template <class F, class Least>
+  int evaluate(F& f, const Real& t, const X& x, const X& fx, const Least& least) {
+    if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
+      if constexpr (HasBandJacobian<F, X>) {
+        if (banded_) {
+          f.jacobian_band(t, x, std::span<Real>(rows_));
+          return 0;
+        }
+      }
+      if (sparse_) {
+        const std::span<Real> values(banded_ ? values_ : rows_);
+        const int evaluations = evaluate_jacobian(f, t, x, fx, moved_, slope_, least, pattern_, groups_, values);
+        for (std::size_t p = 0; p < values_.size(); ++p) rows_[places_[p]] = values_[p];
+        return evaluations;
+      }
+    }
+    return evaluate_jacobian(f, t, x, fx, moved_, slope_, least, std::span<Real>(rows_));
+  }
+
+  bool is_finite() const {
+    Real sum(0);
+    for (const Real& entry : rows_) sum += Real(0) * entry;
+    return sum == Real(0);
+  }
+
+  bool has_mass() const { return !mass_.is_identity(); }
+  /// Mv = M v.
+  void multiply_mass(const X& v, X& product) const { mass_.multiply(v, product); }
+  /// Jv = J v.
+  void multiply_jacobian(const X& v, X& product) const {
+    for (std::size_t i = 0; i < size_; ++i) product.data()[i] = Real(0);
+    if (sparse_) {
+      for (std::size_t j = 0; j < size_; ++j)
+        for (std::size_t p = pattern_.begin(j); p < pattern_.end(j); ++p)
+          product.data()[pattern_.row(p)] += rows_[place(p)] * v.data()[j];
+      return;
+    }
+    for (std::size_t i = 0; i < size_; ++i)
+      for (std::size_t j = 0; j < size_; ++j) product.data()[i] += rows_[i * size_ + j] * v.data()[j];
+  }
+
+  /// c M - J, row by row; dense only.
+  template <class Number>
+  void shifted(const Number& c, Number* matrix) const {
+    for (std::size_t i = 0; i < size_ * size_; ++i) matrix[i] = Number(-rows_[i]);
+    if (mass_.is_matrix()) {
+      for (std::size_t i = 0; i < size_ * size_; ++i) matrix[i] += c * Number(mass_[i]);
+    } else {
+      for (std::size_t i = 0; i < size_; ++i) matrix[i * size_ + i] += mass_.is_identity() ? c : c * Number(mass_[i]);
+    }
+  }
+  /// Its entries in the order of the pattern; sparse, not banded.
+  template <class Number>
+  void shifted_entries(const Number& c, Number* values) const {
+    for (std::size_t p = 0; p < rows_.size(); ++p) values[p] = Number(-rows_[p]);
+    for (std::size_t j = 0; j < size_; ++j) values[diagonal_[j]] += mass_.is_identity() ? c : c * Number(mass_[j]);
+  }
+  const BandLayout& band() const { return band_; }
+  /// The diagonal of M; empty where it is the identity.
+  std::span<const Real> mass_diagonal() const { return mass_.diagonal(); }
+  const SparsePattern& pattern() const { return pattern_; }
+  /// Of J: row by row, of its pattern or of its band.
+  std::span<const Real> entries() const { return rows_; }
+  /// Entry p of the pattern.
+  const Real& entry(std::size_t p) const { return rows_[place(p)]; }
+  /// Whether row and column i of M are zero: of the unknown of an algebraic equation.
+  bool is_without_mass(std::size_t i) const { return mass_.is_zero(i, size_); }
+  Real mass(std::size_t i, std::size_t j) const {
+    if (mass_.is_matrix()) return mass_[i * size_ + j];
+    if (i != j) return Real(0);
+    return mass_.is_identity() ? Real(1) : mass_[i];
+  }
+
+ private:
+  void prepare_band() {
+    band_ = pattern_.band();
+    rows_.assign(band_.numbers(), Real(0));
+    values_.assign(pattern_.entries(), Real(0));
+    places_ = pattern_.places_in_band();
+  }
+  std::size_t place(std::size_t p) const { return banded_ ? places_[p] : p; }
+
+  std::size_t size_;
+  X moved_, slope_;
+  BlockOf<Real, N, N * N> rows_{};     // of J, or the entries of its pattern, or its band
+  std::vector<Real> values_;           // the entries of the pattern, where they have to be brought to the band
+  std::vector<std::uint32_t> places_;  // where they are there
+  BandLayout band_;
+  ConstantMass<X> mass_;
+  SparsePattern pattern_;
+  ColumnGroups groups_;
+  std::vector<std::size_t> diagonal_;  // where the pattern has it
+  bool sparse_ = false, banded_ = false, prepared_ = false;
+};
+
+/// c M - J, decomposed. Number is the scalar of the state or a ComplexNumber of it.
+template <State X, class Number = Scalar<X>>
+class Decomposition {
+ public:
+  static constexpr std::size_t N = fixed_size<X>();
+
+  explicit Decomposition(const X& x) : dense_(N == run_time_size ? 0 : dimension(x)) {}
+
+  /// False where the matrix is singular or not finite.
+  bool factor(const Linearization<X>& linear, const Number& c) {
+    if constexpr (has_sparse) {
+      if (linear.banded()) return factor_band(linear, c);
+      if (linear.sparse()) {
+        if (!sparse_) sparse_.emplace(linear.pattern());
+        linear.shifted_entries(c, sparse_->values().data());
+        return sparse_->factor();
+      }
+    }
+    if constexpr (N == run_time_size) {
+      if (dense_.size() != linear.size()) dense_ = DenseLU<Number, N>(linear.size());
+    }
+    linear.shifted(c, dense_.matrix().data());
+    return dense_.factor();
+  }
+
+  /// b becomes the solution. Compiled into the caller, as b of a small system is in registers there.
+  [[gnu::always_inline]] void solve(Number* b) {
+    if constexpr (has_sparse) {
+      if (band_.size() > 0) return band_.solve(b);
+      if (sparse_) return sparse_->solve(b);
+    }
+    dense_.solve(b);
+  }
+
+ private:
+  static constexpr bool has_sparse =
+      N == run_time_size && (std::same_as<Number, double> || std::same_as<Number, ComplexNumber<double>>);
+  struct None {};
+  using Sparse = std::conditional_t<has_sparse, SparseLU<std::conditional_t<has_sparse, Number, double>>, None>;
+
+  bool factor_band(const Linearization<X>& linear, const Number& c) {
+    if (band_.size() == 0) band_ = BandedLU<Number>(linear.band());
+    return band_.factor(linear.entries(), c, linear.mass_diagonal());
+  }
+
+  DenseLU<Number, N> dense_;
+  std::optional<Sparse> sparse_;
+  std::conditional_t<has_sparse, BandedLU<Number>, None> band_;
+};
+
+}  // namespace continuo

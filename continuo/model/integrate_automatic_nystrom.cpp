@@ -1,9 +1,0 @@
-#include <continuo/methods/automatic.hpp>
-#include <continuo/model/model_method_body.hpp>
-
-namespace continuo::model {
-
-template ModelMethod model_method<DormandPrinceNystrom8Radau>();
-template ModelMethod model_method<DormandPrinceNystrom12Radau>();
-
-}  // namespace continuo::model

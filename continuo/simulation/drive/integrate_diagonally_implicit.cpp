@@ -1,0 +1,13 @@
+// continuo/simulation/drive/integrate_diagonally_implicit.cpp
+#include <continuo/methods/dirk/kencarp4.hpp>
+#include <continuo/methods/dirk/kvaerno5.hpp>
+#include <continuo/methods/dirk/tr_bdf2.hpp>
+#include <continuo/simulation/drive/model_method_body.hpp>
+
+namespace continuo::model {
+
+template ModelMethod model_method<KenCarp4>();
+template ModelMethod model_method<Kvaerno5>();
+template ModelMethod model_method<TrBdf2>();
+
+}  // namespace continuo::model

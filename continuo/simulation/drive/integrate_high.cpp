@@ -1,0 +1,13 @@
+// continuo/simulation/drive/integrate_high.cpp
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/explicit_rk/verner7.hpp>
+#include <continuo/methods/explicit_rk/verner9.hpp>
+#include <continuo/simulation/drive/model_method_body.hpp>
+
+namespace continuo::model {
+
+template ModelMethod model_method<Dop853>();
+template ModelMethod model_method<Verner7>();
+template ModelMethod model_method<Verner9>();
+
+}  // namespace continuo::model

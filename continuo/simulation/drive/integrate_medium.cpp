@@ -1,0 +1,13 @@
+// continuo/simulation/drive/integrate_medium.cpp
+#include <continuo/methods/explicit_rk/bogacki_shampine3.hpp>
+#include <continuo/methods/explicit_rk/dormand_prince5.hpp>
+#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/simulation/drive/model_method_body.hpp>
+
+namespace continuo::model {
+
+template ModelMethod model_method<BogackiShampine3>();
+template ModelMethod model_method<DormandPrince5>();
+template ModelMethod model_method<Tsitouras5>();
+
+}  // namespace continuo::model

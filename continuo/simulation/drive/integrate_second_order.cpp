@@ -1,0 +1,13 @@
+// continuo/simulation/drive/integrate_second_order.cpp
+#include <continuo/methods/structural/central_difference.hpp>
+#include <continuo/methods/symplectic/semi_implicit_euler.hpp>
+#include <continuo/methods/symplectic/velocity_verlet.hpp>
+#include <continuo/simulation/drive/model_method_body.hpp>
+
+namespace continuo::model {
+
+template ModelMethod model_method<SemiImplicitEuler>();
+template ModelMethod model_method<CentralDifference>();
+template ModelMethod model_method<VelocityVerlet>();
+
+}  // namespace continuo::model

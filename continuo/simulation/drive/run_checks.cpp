@@ -1,0 +1,194 @@
+// continuo/simulation/drive/run_checks.cpp
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/simulation/drive/run_checks.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+double snapped(double t, const Plan& plan) {
+  return std::abs(t - plan.to) <= 1e-12 * std::max(std::abs(plan.to), std::abs(plan.from)) ? plan.to : t;
+}
+
+double time_of(const Model& model, const Setting& setting, const Plan& plan) {
+  return snapped(evaluate(model, setting.node, plan.variables), plan);
+}
+
+bool holds(Relation relation, double value, double expected, double tolerance) {
+  switch (relation) {
+    case Relation::equal:
+      return std::abs(value - expected) <= tolerance;
+    case Relation::less:
+      return value < expected + tolerance;
+    case Relation::less_equal:
+      return value <= expected + tolerance;
+    case Relation::greater:
+      return value > expected - tolerance;
+    case Relation::greater_equal:
+      return value >= expected - tolerance;
+  }
+  return false;
+}
+
+class Judge {
+ public:
+  Judge(const Model& model, const Run& run, const RunRecorder& recorder)
+      : model_(model), run_(run), recorder_(recorder) {}
+
+  std::vector<CheckResult> results() {
+    std::vector<CheckResult> all;
+    for (const Check& check : model_.checks) all.push_back(result(check));
+    return all;
+  }
+
+ private:
+  CheckResult result(const Check& check) {
+    CheckResult r;
+    r.text = check.text;
+    r.unit = check.unit;
+    std::vector<double> variables = run_.plan.variables;
+    if (!place_moment(check, variables, r.message) || !place_samples(check, variables, r.message)) return r;
+    r.tolerance = check.tolerance.valid() ? evaluate(model_, check.tolerance, variables) : 0;
+    r.expected = evaluate(model_, check.value, variables);
+    if (check.measure == Measure::always) return always(check, std::move(r));
+    r.value = measured(check, variables);
+    r.passed = holds(check.relation, r.value, r.expected, r.tolerance);
+    if (!succeeded(run_.outcome.ending)) {
+      r.passed = false;
+      r.message = "the run failed";
+    }
+    return r;
+  }
+
+  CheckResult always(const Check& check, CheckResult r) {
+    const Extremes& e = recorder_.extremes()[always_++];
+    const bool upper = check.relation == Relation::less || check.relation == Relation::less_equal;
+    const bool lower = check.relation == Relation::greater || check.relation == Relation::greater_equal;
+    const double worst = upper || (!lower && std::abs(e.high) > std::abs(e.low)) ? e.high : e.low;
+    r.value = r.expected + worst;
+    const bool kept = holds(check.relation, worst, 0, r.tolerance);
+    r.passed = kept && succeeded(run_.outcome.ending);
+    if (!kept) {
+      r.message = fmt::format("worst at t = {}", worst == e.high ? e.t_high : e.t_low);
+    } else if (!r.passed) {
+      r.message = "the run failed";
+    }
+    return r;
+  }
+
+  double measured(const Check& check, const std::vector<double>& variables) const {
+    switch (check.measure) {
+      case Measure::energy_drift:
+        return run_.energy ? run_.energy->drift : 0;
+      case Measure::event_time:
+        return find_event(check.moment)->t;
+      case Measure::event_count:
+        return static_cast<double>(count_events(check.moment));
+      case Measure::end_time:
+        return run_.final_time();
+      case Measure::value:
+      case Measure::always:
+        break;
+    }
+    return evaluate(model_, check.node, variables);
+  }
+
+  /// Contacts of bodies are meant only where they are named.
+  bool matches(const Moment& moment, const Happened& event) const {
+    return event.name.starts_with(moment.event) && !(moment.event.empty() && event.is_contact());
+  }
+
+  std::size_t count_events(const Moment& moment) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(run_.events, [&](const Happened& event) { return matches(moment, event); }));
+  }
+
+  const Happened* find_event(const Moment& moment) const {
+    std::size_t number = 0;
+    for (const Happened& event : run_.events) {
+      if (matches(moment, event) && ++number == moment.number) return &event;
+    }
+    return nullptr;
+  }
+
+  void place(std::vector<double>& variables, double t, std::span<const double> x) const {
+    variables[Layout::time] = t;
+    std::copy(x.begin(), x.end(), variables.begin() + model_.layout.states);
+    for (const Input& input : model_.inputs) {
+      if (input.points) variables[input.variable] = input.points->value(t);
+    }
+  }
+
+  bool place_at(std::vector<double>& variables, double t, std::string& message) const {
+    if (const SampledState* sample = recorder_.sample(t)) {
+      place(variables, t, sample->x);
+      return true;
+    }
+    message = t > run_.final_time() || t < run_.plan.from
+                  ? fmt::format("the run went from {} to {}", run_.plan.from, run_.final_time())
+                  : fmt::format("the state at t = {} was not kept", t);
+    return false;
+  }
+
+  bool place_moment(const Check& check, std::vector<double>& variables, std::string& message) const {
+    const bool needs_event = check.measure == Measure::event_time ||
+                             (check.measure == Measure::value && check.moment.kind == Moment::Kind::event);
+    if (needs_event) {
+      const Happened* event = find_event(check.moment);
+      if (event == nullptr) {
+        message = fmt::format("there were only {} such events", count_events(check.moment));
+        return false;
+      }
+      if (check.measure == Measure::event_time) return true;
+      if (event->is_contact()) {
+        message = "the state at a contact is not kept; take a time a little before or after it";
+        return false;
+      }
+      place(variables, event->t, check.moment.after ? event->after : event->before);
+      return true;
+    }
+    if (check.measure == Measure::value && check.moment.kind == Moment::Kind::time) {
+      return place_at(variables, time_of(model_, *check.moment.time, run_.plan), message);
+    }
+    place(variables, run_.final_time(), run_.final_state());
+    return true;
+  }
+
+  bool place_samples(const Check& check, std::vector<double>& variables, std::string& message) const {
+    for (const Sample& sample : check.samples) {
+      std::vector<double> there = run_.plan.variables;
+      if (!place_at(there, time_of(model_, sample.when, run_.plan), message)) return false;
+      variables[sample.variable] = evaluate(model_, sample.of, there);
+    }
+    return true;
+  }
+
+  const Model& model_;
+  const Run& run_;
+  const RunRecorder& recorder_;
+  std::size_t always_ = 0;
+};
+
+}  // namespace
+
+std::vector<double> sample_times(const Model& model, const Plan& plan) {
+  std::vector<double> times;
+  for (const Check& check : model.checks) {
+    if (check.moment.time) times.push_back(time_of(model, *check.moment.time, plan));
+    for (const Sample& sample : check.samples) times.push_back(time_of(model, sample.when, plan));
+  }
+  std::ranges::sort(times);
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+std::vector<CheckResult> judge(const Model& model, const Run& run, const RunRecorder& recorder) {
+  return Judge(model, run, recorder).results();
+}
+
+}  // namespace continuo::model

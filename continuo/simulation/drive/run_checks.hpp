@@ -1,0 +1,17 @@
+// continuo/simulation/drive/run_checks.hpp
+// The checks of a model held against a run. Internal to simulate.
+#pragma once
+#include <vector>
+
+#include <continuo/language/model.hpp>
+#include <continuo/simulation/drive/run_recorder.hpp>
+
+namespace continuo::model {
+
+/// The times at which checks read the motion, ascending, each once. A time a rounding beyond the end is the end.
+std::vector<double> sample_times(const Model& model, const Plan& plan);
+
+/// Every check's result; `recorder` has given its rows to the run already.
+std::vector<CheckResult> judge(const Model& model, const Run& run, const RunRecorder& recorder);
+
+}  // namespace continuo::model

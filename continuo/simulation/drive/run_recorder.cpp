@@ -1,0 +1,164 @@
+// continuo/simulation/drive/run_recorder.cpp
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <continuo/language/world.hpp>
+#include <continuo/simulation/drive/run_recorder.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+std::vector<NodeId> quantity_nodes(const Model& model) {
+  std::vector<NodeId> nodes;
+  for (const Quantity& output : model.outputs) nodes.push_back(output.node);
+  for (const Quantity& energy : model.energies) nodes.push_back(energy.node);
+  if (model.total_energy.valid()) nodes.push_back(model.total_energy);
+  return nodes;
+}
+
+std::string energy_unit(const Model& model) {
+  return model.has_world() ? model.world->energy_unit : model.energies[0].unit;
+}
+
+std::vector<Column> columns_of(const Model& model) {
+  std::vector<Column> columns = {{"t", model.time_unit}};
+  for (const State& state : model.states) columns.push_back({state.column, state.unit});
+  for (const Quantity& output : model.outputs) columns.push_back({output.name, output.unit});
+  for (const Quantity& energy : model.energies) columns.push_back({energy.name, energy.unit});
+  return columns;
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(const ModelProgram& program, const Plan& plan, bool keep_rows,
+                         std::vector<double> sample_times, std::span<const NodeId> watched)
+    : program_(program),
+      times_(plan),
+      every_step_(plan.output == OutputPlan::Kind::steps),
+      keep_rows_(keep_rows),
+      has_energy_(program.model.total_energy.valid()) {
+  const Model& model = program.model;
+  motion_.columns = columns_of(model);
+  motion_.states = model.states.size();
+  const std::vector<NodeId> quantities = quantity_nodes(model);
+  quantities_ = Evaluation(program.tape_of(quantities), plan.variables);
+  quantity_values_.resize(quantities.size());
+  std::vector<NodeId> all;
+  if (has_energy_) all = {model.total_energy, program.energy_scale};
+  all.insert(all.end(), watched.begin(), watched.end());
+  watched_ = Evaluation(program.tape_of(all), plan.variables);
+  watched_values_.resize(all.size());
+  for (const double t : sample_times) samples_.push_back({t, {}});
+}
+
+void RunRecorder::set_inputs(Evaluation& evaluation, double t) const {
+  for (const TableInput& input : program_.step_inputs) evaluation.set(input.variable, input.table.value(t));
+}
+
+void RunRecorder::add_row(double t, const X& x) {
+  last_row_ = t;
+  motion_.values.push_back(t);
+  motion_.values.insert(motion_.values.end(), x.begin(), x.end());
+  if (quantity_values_.empty()) return;
+  set_inputs(quantities_, t);
+  quantities_(t, x, quantity_values_);
+  const auto end = quantity_values_.end() - (has_energy_ ? 1 : 0);
+  motion_.values.insert(motion_.values.end(), quantity_values_.begin(), end);
+  if (has_energy_) total_energy_.push_back(quantity_values_.back());
+}
+
+void RunRecorder::watch(double t, const X& x) {
+  if (watched_values_.empty()) return;
+  set_inputs(watched_, t);
+  watched_(t, x, watched_values_);
+  if (!any_) {
+    for (const double value : watched_values_) extremes_.push_back({value, value, t, t});
+    if (has_energy_) energy_ = {watched_values_[0], watched_values_[0], 0, energy_unit(program_.model)};
+  }
+  any_ = true;
+  for (std::size_t k = 0; k < watched_values_.size(); ++k) {
+    const double value = watched_values_[k];
+    Extremes& e = extremes_[k];
+    // Not a number is below everything: it must not pass for anything.
+    if (!(value >= e.low)) e.low = value, e.t_low = t;
+    if (!(value <= e.high)) e.high = value, e.t_high = t;
+  }
+  if (has_energy_) energy_->last = watched_values_[0];
+}
+
+void RunRecorder::begin(double t, const X& x) {
+  x_ = x;
+  add_row(t, x);
+  watch(t, x);
+  while (times_[next_output_] <= t) ++next_output_;
+  for (; next_sample_ < samples_.size() && samples_[next_sample_].t <= t; ++next_sample_) {
+    if (samples_[next_sample_].t == t) samples_[next_sample_].x = x;
+  }
+}
+
+void RunRecorder::stretch(double to, const At& at) {
+  const bool sampled = next_sample_ < samples_.size() && samples_[next_sample_].t <= to;
+  if (keep_rows_ && !every_step_) {
+    for (; times_[next_output_] <= to; ++next_output_) {
+      at(times_[next_output_], x_);
+      add_row(times_[next_output_], x_);
+      watch(times_[next_output_], x_);
+    }
+  }
+  if (sampled) {
+    for (; next_sample_ < samples_.size() && samples_[next_sample_].t <= to; ++next_sample_) {
+      samples_[next_sample_].x.resize(x_.size());
+      at(samples_[next_sample_].t, samples_[next_sample_].x);
+    }
+  }
+  if (watched_values_.empty() && !every_step_) return;
+  at(to, x_);
+  watch(to, x_);
+  if (every_step_ && keep_rows_) add_row(to, x_);
+}
+
+void RunRecorder::happening(double t, std::span<const Name> names, const X& before, const X& after) {
+  for (const Name& name : names) events_.push_back({name.event, name.mark, t, before, after});
+  watch(t, after);
+  for (std::size_t k = next_sample_; k-- > 0 && samples_[k].t == t;) samples_[k].x = after;
+  if (!keep_rows_ || (names.empty() && before == after)) return;
+  if (last_row_ != t) add_row(t, before);
+  if (before != after) add_row(t, after);
+}
+
+void RunRecorder::sample_until(double t, const X& x) {
+  for (; next_sample_ < samples_.size() && samples_[next_sample_].t <= t; ++next_sample_) samples_[next_sample_].x = x;
+}
+
+void RunRecorder::contact(double t, std::string name, double impulse) {
+  events_.push_back({.name = std::move(name), .mark = {}, .t = t, .before = {}, .after = {}, .impulse = impulse});
+}
+
+void RunRecorder::finish(double t, const X& x) {
+  if (last_row_ != t) add_row(t, x);
+}
+
+const SampledState* RunRecorder::sample(double t) const {
+  const auto found = std::ranges::find(samples_, t, &SampledState::t);
+  return found == samples_.end() || found->x.empty() ? nullptr : &*found;
+}
+
+void RunRecorder::give(Run& run) {
+  if (energy_ && !extremes_.empty()) {
+    const Extremes& e = extremes_.front();
+    const double largest = std::max(e.high - energy_->first, energy_->first - e.low);
+    // Kinetic and potential energy that cancel at the start leave rounding, which is no measure.
+    energy_->relative = std::abs(energy_->first) > 1e-12 * extremes_[1].high;
+    energy_->drift = energy_->relative ? largest / std::abs(energy_->first) : largest;
+    extremes_.erase(extremes_.begin(), extremes_.begin() + 2);
+  }
+  run.motion = std::move(motion_);
+  run.total_energy = std::move(total_energy_);
+  run.events = std::move(events_);
+  run.statistics.events = run.events.size();  // without the steps of inputs
+  run.energy = energy_;
+}
+
+}  // namespace continuo::model

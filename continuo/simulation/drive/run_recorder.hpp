@@ -1,0 +1,83 @@
+// continuo/simulation/drive/run_recorder.hpp
+// Watches an integration and keeps what a Run holds. Internal to simulate.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/simulation/program/evaluation.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/simulation/run.hpp>
+
+namespace continuo::model {
+
+/// x(t) within the last stretch: any integrator, without being a template.
+struct At {
+  void* integrator;
+  void (*call)(void* integrator, double t, std::vector<double>& x);
+  void operator()(double t, std::vector<double>& x) const { call(integrator, t, x); }
+};
+
+/// The state at a time that some check asks for.
+struct SampledState {
+  double t;
+  std::vector<double> x;  // empty until the run has come there
+};
+
+/// The extreme of an expression over the whole run.
+struct Extremes {
+  double low, high;
+  double t_low, t_high;
+};
+
+class RunRecorder {
+ public:
+  using X = std::vector<double>;
+
+  /// `sample_times` ascending; `watched`: expressions whose extremes over the run are wanted.
+  RunRecorder(const ModelProgram& program, const Plan& plan, bool keep_rows, std::vector<double> sample_times,
+              std::span<const NodeId> watched);
+
+  void begin(double t, const X& x);
+  void stretch(double to, const At& at);
+  struct Name {
+    std::string event, mark;
+  };
+  void happening(double t, std::span<const Name> names, const X& before, const X& after);
+  /// Where nothing is interpolated: extremes at t, and samples up to t.
+  void look(double t, const X& x) { watch(t, x); }
+  void sample_until(double t, const X& x);
+  /// Of bodies; before and after are not kept.
+  void contact(double t, std::string name, double impulse);
+  void finish(double t, const X& x);
+
+  std::span<const SampledState> samples() const { return samples_; }
+  const SampledState* sample(double t) const;
+  std::span<const Extremes> extremes() const { return extremes_; }
+  /// Moves what was kept into the run.
+  void give(Run& run);
+
+ private:
+  void add_row(double t, const X& x);
+  void watch(double t, const X& x);
+  void set_inputs(Evaluation& evaluation, double t) const;
+
+  const ModelProgram& program_;
+  OutputTimes times_;
+  bool every_step_, keep_rows_;
+  std::size_t next_output_ = 0, next_sample_ = 0;
+  Motion motion_;
+  std::vector<double> total_energy_;
+  std::vector<Happened> events_;
+  Evaluation quantities_, watched_;
+  std::vector<double> quantity_values_, watched_values_;
+  std::vector<SampledState> samples_;
+  std::vector<Extremes> extremes_;  // of the total energy and its scale (if any), then of `watched`
+  std::optional<EnergyBalance> energy_;
+  X x_;
+  double last_row_ = 0;
+  bool has_energy_, any_ = false;
+};
+
+}  // namespace continuo::model

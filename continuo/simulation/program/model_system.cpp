@@ -1,0 +1,170 @@
+// continuo/simulation/program/model_system.cpp
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <continuo/simulation/program/model_system.hpp>
+
+namespace continuo::model {
+
+ModelSystem::ModelSystem(std::shared_ptr<const ModelProgram> program, std::span<const double> variables)
+    : autonomous(program->autonomous),
+      program_(std::move(program)),
+      mode_(program_->model.start_mode),
+      variables_(variables.begin(), variables.end()) {
+  for (const auto& tape : program_->derivatives) derivatives_.emplace_back(tape, variables);
+  for (const ProgramGuards& guards : program_->guards) {
+    guards_.emplace_back(guards.tape, variables);
+    truths_.emplace_back(guards.truths, variables);
+  }
+  for (const ProgramBlock& block : program_->event_blocks) event_blocks_.emplace_back(block.tape, variables);
+  for (const ProgramBlock& block : program_->limit_blocks) limit_blocks_.emplace_back(block.tape, variables);
+  for (const ProgramBlock& block : program_->schedule_blocks) {
+    schedule_blocks_.emplace_back(block.tape, variables);
+  }
+  guard_values_.resize(program_->model.events.size());
+}
+
+template <class Visit>
+void ModelSystem::for_each(Visit&& visit) {
+  for (auto* list : {&derivatives_, &guards_, &truths_, &event_blocks_, &limit_blocks_, &schedule_blocks_})
+    std::ranges::for_each(*list, visit);
+}
+
+void ModelSystem::set(std::uint32_t variable, double value) {
+  variables_[variable] = value;
+  if (derivatives_of_f_) derivatives_of_f_->set(variable, value);
+  if (switched_) switched_->set(variable, value);
+  for_each([&](Evaluation& evaluation) { evaluation.set(variable, value); });
+}
+
+void ModelSystem::guards(double t, const X& x, std::span<double> values) {
+  const std::vector<std::size_t>& events = program_->guards[mode_].events;
+  if (events.empty()) return;
+  guards_[mode_](t, x, std::span(guard_values_).first(events.size()));
+  const std::vector<std::size_t>& conditions = program_->guards[mode_].conditions;
+  const auto is_zero = [&](std::size_t k) { return guard_values_[k] == 0; };
+  if (std::ranges::any_of(conditions, is_zero)) {
+    const std::vector<double> truths = truths_[mode_](t, x);
+    for (std::size_t c = 0; c < conditions.size(); ++c) {
+      constexpr double least = std::numeric_limits<double>::denorm_min();
+      if (is_zero(conditions[c])) guard_values_[conditions[c]] = truths[c] != 0 ? least : -least;
+    }
+  }
+  for (std::size_t k = 0; k < events.size(); ++k) values[events[k]] = guard_values_[k];
+}
+
+ModelDerivatives& ModelSystem::derivatives_of_f() {
+  if (!derivatives_of_f_) {
+    derivatives_of_f_.emplace(*program_, variables_, switched_.has_value());
+    place_switches();
+  }
+  return *derivatives_of_f_;
+}
+
+void ModelSystem::hold_switches(double t, const X& x) {
+  const bool any = std::ranges::any_of(program_->switches, [](const SwitchedEquations& e) { return !e.empty(); });
+  if (!any) return;
+  switched_.emplace(*program_, variables_);
+  derivatives_of_f_.reset();
+  settle_switches(t, x, nullptr);
+}
+
+void ModelSystem::settle_switches(double t, const X& x, const X* before) {
+  if (!switched_) return;
+  switched_->settle(mode_, t, x, before);
+  place_switches();
+}
+
+Passage ModelSystem::pass_switch(std::size_t k, double t, const X& x) {
+  const Passage passage = switched_->pass(mode_, k, t, x);
+  place_switches();
+  return passage;
+}
+
+void ModelSystem::place_switches() {
+  if (!derivatives_of_f_ || !has_switches()) return;
+  const std::vector<Switch>& switches = program_->switches[mode_].switches;
+  for (std::size_t k = 0; k < switches.size(); ++k)
+    derivatives_of_f_->set(switches[k].variable, switched_->values()[k]);
+}
+
+/// df/dx of a motion that slides, whose weights hang on x, too: by central differences.
+void ModelSystem::difference_rows(double t, const X& x, std::span<double> rows) {
+  const std::size_t n = x.size();
+  X moved = x, above(n), below(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    // The third root of the rounding balances it with the error of the difference.
+    const double h = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(std::abs(x[j]), 1e-3);
+    moved[j] = x[j] + h;
+    (*this)(t, moved, above);
+    moved[j] = x[j] - h;
+    (*this)(t, moved, below);
+    moved[j] = x[j];
+    for (std::size_t i = 0; i < n; ++i) rows[i * n + j] = (above[i] - below[i]) / (2 * h);
+  }
+}
+
+void ModelSystem::set_all(std::span<const double> variables) {
+  const Layout& layout = program_->model.layout;
+  for (std::uint32_t i = layout.parameters; i < layout.samples; ++i) {
+    if (variables_[i] != variables[i]) set(i, variables[i]);
+  }
+}
+
+void ModelSystem::jacobian(double t, const X& x, std::span<double> rows) {
+  if (slides()) return difference_rows(t, x, rows);
+  derivatives_of_f().jacobian(mode_, t, x, rows);
+  for (const std::size_t i : held_) std::ranges::fill(rows.subspan(i * x.size(), x.size()), 0.0);
+}
+
+void ModelSystem::jacobian_values(double t, const X& x, std::span<double> values) {
+  derivatives_of_f().jacobian_values(mode_, t, x, values);
+  const SparsePattern& pattern = jacobian_pattern();
+  if (slides() && pattern.entries() == x.size() * x.size()) {
+    std::vector<double> rows(pattern.entries());
+    difference_rows(t, x, rows);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (std::size_t j = 0; j < x.size(); ++j) values[pattern.find(i, j)] = rows[i * x.size() + j];
+  }
+  for (const std::size_t i : held_) {
+    for (std::size_t column = 0; column < x.size(); ++column) {
+      const std::size_t entry = pattern.find(i, column);
+      if (entry < pattern.entries()) values[entry] = 0;
+    }
+  }
+}
+
+void ModelSystem::jacobian_band(double t, const X& x, std::span<double> band) {
+  derivatives_of_f().jacobian_band(mode_, t, x, band);
+  if (held_.empty() && !slides()) return;
+  const SparsePattern& pattern = jacobian_pattern();
+  const BandLayout layout = pattern.band();
+  if (slides() && pattern.entries() == x.size() * x.size()) {
+    std::vector<double> rows(pattern.entries());
+    difference_rows(t, x, rows);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (std::size_t j = 0; j < x.size(); ++j) band[layout.place(i, j)] = rows[i * x.size() + j];
+  }
+  for (const std::size_t i : held_) {
+    for (std::size_t column = 0; column < x.size(); ++column)
+      if (pattern.find(i, column) < pattern.entries()) band[layout.place(i, column)] = 0;
+  }
+}
+
+// An input that follows a table over time is a variable to the graph, so its change is measured: by a difference.
+void ModelSystem::time_derivative(double t, const X& x, X& dfdt) {
+  if (program_->linear_inputs.empty() && !slides()) {
+    derivatives_of_f().time_derivative(mode_, t, x, dfdt);
+    for (const std::size_t i : held_) dfdt[i] = 0;
+    return;
+  }
+  const double moved = t + std::sqrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));
+  X now(x.size());
+  (*this)(t, x, now);
+  (*this)(moved, x, dfdt);
+  for (std::size_t i = 0; i < x.size(); ++i) dfdt[i] = (dfdt[i] - now[i]) / (moved - t);
+}
+
+}  // namespace continuo::model

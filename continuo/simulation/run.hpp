@@ -1,0 +1,88 @@
+// continuo/simulation/run.hpp
+// What a run of a model leaves: rows, events, marks, energies, checks, outcome and cost. Plain data.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/model_events.hpp>
+#include <continuo/solve/outcome.hpp>
+
+namespace continuo::model {
+
+struct Column {
+  std::string name, unit;
+};
+
+/// Rows of t, the states, then the outputs and the energies; both sides of an event that changes the state.
+struct Motion {
+  std::vector<Column> columns;
+  std::vector<double> values;  // row after row
+  std::size_t states = 0;      // how many columns after t are states
+
+  std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
+  std::span<const double> row(std::size_t i) const { return {values.data() + i * columns.size(), columns.size()}; }
+  double time(std::size_t i) const { return row(i)[0]; }
+  std::span<const double> state(std::size_t i) const { return row(i).subspan(1, states); }
+};
+
+/// An event of the model as it happened.
+struct Happened {
+  std::string name;
+  std::string mark;  // the text of a `mark` among its actions; empty for none
+  double t;
+  std::vector<double> before, after;  // both empty for a contact
+  std::optional<double> impulse{};    // of a contact of bodies: along the normal
+
+  bool is_contact() const { return impulse.has_value(); }
+};
+
+/// The sum of the energies; `drift` is the largest |E - first| of the run, relative to |first| where that is
+/// more than rounding of its parts.
+struct EnergyBalance {
+  double first, last, drift;
+  std::string unit;
+  bool relative = true;  // whether `drift` is; else it is in `unit`
+};
+
+struct CheckResult {
+  std::string text;
+  bool passed = false;
+  double value = 0, expected = 0, tolerance = 0;
+  std::string unit;
+  std::string message;  // why there is no value; else empty
+};
+
+/// The true error of a run, as a second, stricter one shows it: |difference| per state.
+struct ErrorEstimate {
+  std::vector<double> at_end;
+  std::vector<double> largest;  // of all rows; empty where the two runs have no rows in common
+  std::string message;          // why there is no estimate; else empty
+};
+
+struct Run {
+  Plan plan;
+  Motion motion;
+  std::vector<double> total_energy;  // at each row, if the model declares energies
+  std::vector<Happened> events;
+  std::string stop_text;  // of the `stop` that ended the run
+  Outcome<double> outcome;
+  Statistics statistics;
+  std::optional<EnergyBalance> energy;
+  std::vector<CheckResult> checks;
+  std::optional<ErrorEstimate> error;
+
+  double final_time() const { return motion.time(motion.rows() - 1); }
+  std::span<const double> final_state() const { return motion.state(motion.rows() - 1); }
+  bool checks_passed() const {
+    for (const CheckResult& check : checks) {
+      if (!check.passed) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace continuo::model

@@ -1,0 +1,131 @@
+// continuo/simulation/simulate.cpp
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/language/world.hpp>
+#include <continuo/simulation/drive/error_estimate.hpp>
+#include <continuo/simulation/drive/integrate.hpp>
+#include <continuo/simulation/drive/run_checks.hpp>
+#include <continuo/simulation/drive/run_recorder.hpp>
+#include <continuo/simulation/simulate.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+/// Models that no integration from the start can run.
+std::optional<Diagnostic> no_integration(const Model& model) {
+  if (model.has_world()) return no_study_of_worlds(model);
+  if (!model.needs_boundary_solver()) return std::nullopt;
+  return error("E321", model.boundary.front().span, "conditions at different times cannot be integrated from the start",
+               "this makes it a boundary-value problem",
+               "`continuo run` solves it; or give all conditions at the start");
+}
+
+Options<ModelSystem::X> options_of(const Plan& plan, const Experiment& experiment) {
+  Options<ModelSystem::X> options{.rtol = plan.rtol, .atol = plan.atol.front()};
+  const std::size_t n = std::max(plan.atol.size(), plan.rtol_each.size());
+  if (n > 1) {
+    for (std::size_t i = 0; i < n; ++i) {
+      options.rtol_each.push_back(plan.rtol_of(i));
+      options.atol_each.push_back(plan.atol_of(i));
+    }
+  }
+  options.step = plan.step;
+  options.max_step = std::min(plan.max_step, experiment.max_step.value_or(plan.max_step));
+  options.max_steps = experiment.max_steps.value_or(plan.max_steps);
+  options.interrupt = experiment.interrupt;
+  options.progress = experiment.progress;
+  return options;
+}
+
+void place_step_inputs(const ModelProgram& program, Plan& plan) {
+  for (const TableInput& input : program.step_inputs) plan.variables[input.variable] = input.table.value(plan.from);
+}
+
+bool is_positive_period(const Model& model, const Plan& plan, std::vector<Diagnostic>& problems) {
+  for (const Scheduled& scheduled : model.schedule) {
+    if (scheduled.kind != Scheduled::Kind::every) continue;
+    const double period = evaluate(model, scheduled.time->node, plan.variables);
+    if (period > 0) continue;
+    problems.push_back(error("E333", scheduled.span, fmt::format("`every` needs a positive interval, not {}", period)));
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Diagnostic no_study_of_worlds(const Model& model) {
+  return error("E323", model.world->span, "a world of bodies is not integrated like equations",
+               "its bodies collide, and no study of equations can see that",
+               "`continuo run`, `verify`, `compare`, `converge`, `sense` and `fit` move it");
+}
+
+std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
+                             std::vector<Diagnostic>& problems) {
+  if (auto problem = no_integration(program.model)) {
+    problems.push_back(std::move(*problem));
+    return std::nullopt;
+  }
+  auto planned = plan(program.model, experiment, problems);
+  if (!planned || !is_positive_period(program.model, *planned, problems)) return std::nullopt;
+  place_step_inputs(program, *planned);
+  return planned;
+}
+
+Integration integration_of(const std::shared_ptr<const ModelProgram>& program, const Plan& plan,
+                           const Experiment& experiment) {
+  const Model& model = program->model;
+  const auto first = plan.variables.begin() + model.layout.states;
+  ModelSystem system(program, plan.variables);
+  ModelSystem::X x0(first, first + static_cast<std::ptrdiff_t>(model.states.size()));
+  system.hold_switches(plan.from, x0);
+  return {std::move(system), std::move(x0), options_of(plan, experiment),
+          ModelEvents(*program, plan.variables, plan.from, true)};
+}
+
+Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {
+  Simulated simulated;
+  const Model& model = program->model;
+  auto planned = plan_run(*program, experiment, simulated.diagnostics);
+  if (!planned) return simulated;
+
+  Run run;
+  run.plan = std::move(*planned);
+  RunRecorder recorder(*program, run.plan, experiment.keep_rows, sample_times(model, run.plan), program->always);
+  integrate(run.plan.method, integration_of(program, run.plan, experiment), recorder, run);
+  recorder.give(run);
+  run.checks = judge(model, run, recorder);
+  if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(*program, run));
+  if (experiment.estimate_error && succeeded(run.outcome.ending)) run.error = estimate_error(program, experiment, run);
+  if (experiment.doubts && !run.error && succeeded(run.outcome.ending)) {
+    const std::string doubt = doubt_of(program, experiment, run);
+    if (!doubt.empty()) run.outcome.hint += (run.outcome.hint.empty() ? "" : "; ") + doubt;
+  }
+  simulated.run = std::move(run);
+  return simulated;
+}
+
+Simulated simulate(const Model& model, const Experiment& experiment) {
+  if (auto problem = no_integration(model)) return {std::nullopt, {std::move(*problem)}};
+  return simulate(compile(model), experiment);
+}
+
+std::vector<std::vector<double>> values_along(const ModelProgram& program, const Run& run,
+                                              std::span<const NodeId> nodes) {
+  std::vector<std::vector<double>> columns(nodes.size());
+  if (nodes.empty()) return columns;
+  Evaluation evaluation(program.tape_of(nodes), run.plan.variables);
+  for (std::size_t row = 0; row < run.motion.rows(); ++row) {
+    const double t = run.motion.time(row);
+    for (const TableInput& input : program.step_inputs) evaluation.set(input.variable, input.table.value(t));
+    const std::vector<double> values = evaluation(t, run.motion.state(row));
+    for (std::size_t k = 0; k < nodes.size(); ++k) columns[k].push_back(values[k]);
+  }
+  return columns;
+}
+
+}  // namespace continuo::model

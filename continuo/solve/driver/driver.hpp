@@ -1,0 +1,543 @@
+// The loop of a run: step by step, past the events of each. It knows the steps of a method only as `Steps`, so that it
+// is compiled once for a system and not once for each method; `Integrator` gives it a method.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/solve/driver/step_marks.hpp>
+#include <continuo/solve/events/event_logic.hpp>
+#include <continuo/solve/observer.hpp>
+#include <continuo/solve/steps/consistent.hpp>
+#include <continuo/solve/steps/steps.hpp>
+
+namespace continuo {
+
+template <class System, State X, class Events>
+class Driver {
+ public:
+  using Real = Scalar<X>;
+
+  /// Takes one step, cut short at an event that changes what f reads, never beyond interval.to. True while there is
+  /// more.
+  template <class Observer = NoObserver>
+  bool advance(Observer&& observer = {}) {
+    if (!started_) start(observer);
+    if (ended_) return false;
+    if (!consistent_) return end_inconsistent();
+    if (t_ == interval_.to) return end(Ending::reached_end, steps().stiff() ? stiff_hint : "");
+    if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) return end(Ending::interrupted);
+    if (statistics().steps + statistics().rejected >= options_.max_steps)
+      return end(Ending::too_many_steps, hint_of_too_many());
+    const Real limit = logic_.next_restart(t_, interval_.to);
+    // An event that restarts the motion could change everything; without one it is no use to go on to the limit of
+    // steps.
+    if (const Real needed = logic_.any_turning_guard() ? Real(0) : steps().endless(limit, options_); needed > 0)
+        [[unlikely]]
+      return end(Ending::too_many_steps, hint_of_endless(needed));
+    begin_step();
+    if (!steps().take(limit, options_, outcome_)) {
+      ended_ = true;
+      return false;
+    }
+    marks_.mark(statistics().steps + statistics().rejected, steps().end());
+    pass_events(observer);
+    if (!ended_ && t_ == interval_.to) return end(Ending::reached_end, steps().stiff() ? stiff_hint : "");
+    return !ended_;
+  }
+
+  Real t() const { return t_; }
+  const X& x() const { return x_; }
+  const System& system() const { return steps().system(); }
+  const Events& events() const { return logic_.events(); }
+  const Outcome<Real>& outcome() const { return outcome_; }
+  const Statistics& statistics() const { return steps().statistics(); }
+  const Interval<Real>& interval() const { return interval_; }
+  const Options<X>& options() const { return options_; }
+
+  /// x at a time of the last step, on the dense output, the unknowns of algebraic equations solved for; at an event
+  /// what was before it, but for t().
+  void at(Real t, X& x) {
+    if (t == t_) {
+      x = x_;
+      if (!solved_to_rounding_) solve_unknowns(t, x);
+      return;
+    }
+    steps().at(t, x);
+    for (const Shift& shift : shifts_)
+      if (shift.earlier || forward() * (t - shift.t) > 0) x.data()[shift.component] = shift.value;
+    solve_unknowns(t, x);
+  }
+
+  /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant. Unknowns of algebraic
+  /// equations are not solved for: they are as near as the method's polynomial.
+  std::span<const X> dense_output() {
+    const std::span<const X> output = steps().dense_output();
+    if (shifted_.empty()) return output;
+    shifted_output_.assign(output.begin(), output.end());
+    for (const Shift& shift : shifted_) {
+      shifted_output_[0].data()[shift.component] = shift.value;
+      for (std::size_t j = 1; j < shifted_output_.size(); ++j) shifted_output_[j].data()[shift.component] = Real(0);
+    }
+    return shifted_output_;
+  }
+  Real step_begin() const { return steps().begin(); }
+  Real step_size() const { return steps().size(); }
+
+  /// Somebody else changed the state (a hand on the mouse): the run goes on from here.
+  void set_state(const X& x) {
+    x_ = x;
+    restart();
+  }
+  /// Somebody changes the system (a parameter, an input): `change` gets it by reference.
+  template <class Change>
+  void change_system(Change&& change) {
+    change(steps().system());
+    restart();
+  }
+  /// Moves the end of the run.
+  void extend_to(Real to) {
+    interval_.to = to;
+    if (ended_ && outcome_.ending == Ending::reached_end) ended_ = false;
+  }
+
+ protected:
+  Driver(std::unique_ptr<Steps<System, X>> steps, X x0, Interval<Real> interval, Options<X> options, Events events)
+      : options_(std::move(options)),
+        interval_(interval),
+        t_(interval.from),
+        x_(x0),
+        before_(std::move(x0)),
+        steps_(std::move(steps)),
+        logic_(std::move(events), x_, interval.to < interval.from ? Real(-1) : Real(1), length_of(interval)),
+        guard_values_(logic_.events().size()),
+        later_values_(logic_.events().size()) {
+    if (settle_algebraic()) this->steps().jump(t_, x_, options_);
+  }
+
+  Steps<System, X>& steps() { return *steps_; }
+  const Steps<System, X>& steps() const { return *steps_; }
+
+ private:
+  using Logic = EventLogic<System, X, Events>;
+  static constexpr const char* stiff_hint =
+      "the system is stiff: stability, not accuracy, holds the steps of this method; name no method, or take rodas5p, "
+      "radau or bdf";
+
+  /// A component that f does not read and that stands still has been changed by an event: the steps know nothing of it.
+  struct Shift {
+    bool earlier;  // than the present step
+    Real t;
+    std::size_t component;
+    Real value;
+  };
+
+  static Real length_of(const Interval<Real>& interval) {
+    using std::abs;
+    return abs(interval.to - interval.from);
+  }
+
+  /// Where the steps went, and what can be done about it.
+  std::string hint_of_too_many() {
+    const std::size_t all = statistics().steps + statistics().rejected;
+    const auto crowd = marks_.crowd();
+    std::string hint =
+        crowd ? where_steps_lie(static_cast<double>(crowd->first), static_cast<double>(crowd->second)) : std::string();
+    const auto add = [&](bool applies, const char* what) {
+      if (applies) hint += (hint.empty() ? "" : "; ") + std::string(what);
+    };
+    add(2 * statistics().rejected > all, "most of the steps were rejected");
+    add(2 * restarts_ > all, "most of the steps end at events");
+    add(steps().stiff(), stiff_hint);
+    add(!steps().stiff(), "raise max_steps or loosen the tolerance");
+    return hint;
+  }
+  static std::string hint_of_endless(Real steps) {
+    using std::floor, std::log10;
+    const auto power = static_cast<int>(static_cast<double>(floor(log10(steps))));
+    return "some 1e" + std::to_string(power) + " steps more would be needed; " + stiff_hint;
+  }
+
+  Real forward() const { return interval_.to < interval_.from ? Real(-1) : Real(1); }
+
+  bool end(Ending ending, std::string hint = {}) {
+    outcome_ = {};
+    outcome_.ending = ending;
+    outcome_.t = t_;
+    outcome_.h = ending == Ending::reached_end ? Real(0) : steps().size();
+    outcome_.hint = std::move(hint);
+    ended_ = true;
+    return false;
+  }
+
+  template <class Observer>
+  void start(Observer& observer) {
+    started_ = true;
+    std::string why = wrong_input(steps().needs(x_), system(), x_, interval_, options_);
+    if constexpr (requires { events().schedule_problem(interval_.to); })
+      if (why.empty()) why = events().schedule_problem(interval_.to);
+    if (!why.empty()) {
+      end(Ending::invalid_input, why);
+      return;
+    }
+    if (!consistent_) {
+      end_inconsistent();
+      return;
+    }
+    logic_.begin_instant(t_);
+    logic_.arm(steps(), t_, x_);
+    fire(observer);
+  }
+
+  void restart() {
+    settle_algebraic();
+    begin_anew();
+    logic_.arm(steps(), t_, x_);
+    logic_.clear();
+  }
+  void begin_anew() {
+    steps().jump(t_, x_, options_);
+    shifts_end_ = true;
+  }
+
+  // Unknowns of algebraic equations follow the rest of the state wherever a run begins anew. True where there are any.
+  bool settle_algebraic() {
+    if constexpr (HasMassDiagonal<System, X>) {
+      if (!has_mass<X>(system())) return false;
+      consistent_ = make_consistent(steps().system(), t_, x_, steps().tolerance(options_), SolvedTo::rounding);
+      solved_to_rounding_ = true;
+      steps().statistics().evaluations += static_cast<std::size_t>(consistent_.evaluations);
+      return true;
+    }
+    return false;
+  }
+  // Between steps: what the polynomial gives for the unknowns is only where the search for them begins. Where it does
+  // not lead to them, the polynomial stands.
+  void solve_unknowns(Real t, X& x) {
+    if constexpr (HasMassDiagonal<System, X>) {
+      if (!has_mass<X>(system())) return;
+      solved_ = x;
+      const Consistency found =
+          make_consistent(steps().system(), t, solved_, steps().tolerance(options_), SolvedTo::rounding);
+      steps().statistics().evaluations += static_cast<std::size_t>(found.evaluations);
+      if (found) x = solved_;
+    }
+  }
+  bool end_inconsistent() {
+    end(Ending::nonlinear_solve_failed, hint_of(consistent_));
+    outcome_.component = component_name(system(), consistent_.equation);
+    return false;
+  }
+
+  void begin_step() {
+    if (std::exchange(shifts_end_, false)) shifted_.clear();
+    for (Shift& shift : shifted_) shift.earlier = true;
+    shifts_ = shifted_;
+  }
+
+  // The events of the step that was just taken, in the order of time.
+  template <class Observer>
+  void pass_events(Observer& observer) {
+    using std::abs;
+    const Real begin = steps().begin();
+    Real length = steps().end() - begin, from = t_, offset = t_ - begin;
+    const Real instant = 4 * std::numeric_limits<Real>::epsilon() * abs(steps().end());
+    const auto evaluate = [&](Real place, std::span<Real> values) { guards_at(place, length, values); };
+    bool from_here = true;  // the search begins at t_
+    while (true) {
+      if (logic_.any_guard() && Logic::has_enclosures) logic_.take_step(steps(), dense_output());
+      const std::optional<Real> tick = logic_.next_quiet(t_, steps().end());
+      const bool to_tick = tick && *tick != steps().end();
+      const Real to = to_tick ? *tick - begin : length;
+      const Crossing<Real>* crossing =
+          logic_.any_guard() ? logic_.first_crossing(offset, to, instant, from_here, evaluate) : nullptr;
+      if (!crossing && !to_tick) break;
+      if (crossing && !is_event(*crossing, length)) {
+        offset = crossing->offset;
+        from_here = false;
+        continue;
+      }
+      if (crossing) {
+        look_at(*crossing, offset, length);
+        const std::optional<Real> landed = land(*crossing, length);
+        if (!landed) return end_before_event();
+        offset = *landed;
+        const bool is_new_step = steps().end() - begin != length;
+        length = steps().end() - begin;
+        t_ = offset == length ? steps().end() : begin + offset;
+        if (tick && abs(t_ - *tick) <= instant) t_ = *tick;
+        state_at(offset, length, x_);
+        solved_to_rounding_ = true;
+        if (is_new_step) logic_.allow_for(steps(), t_, x_, steps().tolerance(options_));
+      } else {
+        offset = to;
+        t_ = *tick;
+        state_at(offset, length, x_);
+        solved_to_rounding_ = true;
+        if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
+      }
+      observer.stretch(*this, from, t_);
+      logic_.begin_instant(t_);
+      logic_.arrive(steps(), t_, x_, crossing);
+      if (fire(observer) || t_ == steps().end()) return;
+      from = t_;
+      from_here = true;
+    }
+    end_step(from, observer);
+  }
+
+  template <class Observer>
+  void end_step(Real from, Observer& observer) {
+    t_ = steps().end();
+    x_ = steps().x_end();
+    shift(x_);
+    if (logic_.any_guard()) solve_unknowns(t_, x_);
+    solved_to_rounding_ = logic_.any_guard();
+    observer.stretch(*this, from, t_);
+    if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
+    logic_.begin_instant(t_);
+    if (logic_.fired().empty()) return;
+    steps().dense_output();  // while the state and f are those of the step: `at` promises it
+    logic_.arrive(steps(), t_, x_, nullptr);
+    fire(observer);
+  }
+
+  // Whether there is an event at a crossing, and not only a guard that leaves a zero it began at.
+  bool is_event(const Crossing<Real>& found, Real length) {
+    if (!logic_.leaves_first_zero(found)) return true;
+    state_at(found.offset, length, before_);
+    return logic_.keep_true_crossings(steps(), steps().begin() + found.offset, before_);
+  }
+
+  std::span<const Real> guards_at(Real offset, Real length, std::span<Real> values) {
+    state_at(offset, length, before_);
+    logic_.events().guards(steps().system(), offset == length ? steps().end() : steps().begin() + offset, before_,
+                           values);
+    return values;
+  }
+
+  void look_at(const Crossing<Real>& crossing, Real from, Real length) {
+    if (logic_.others_are_at_zero(crossing))
+      logic_.leave_zero(crossing, guards_at(from + (crossing.offset - from) / 2, length, guard_values_));
+    const std::span<const Real> values = guards_at(crossing.offset, length, guard_values_);
+    const Real later = crossing.offset + length / Real(1000000);
+    state_at(later, length, before_);
+    logic_.look_at(steps(), crossing, values, steps().begin() + later, before_);
+  }
+
+  // x at an offset into the last step: by theta, which keeps what is lost in begin + offset.
+  void state_at(Real offset, Real length, X& x) {
+    if (offset == length) {
+      x = steps().x_end();
+      shift(x);
+      solve_unknowns(steps().end(), x);
+      return;
+    }
+    steps().at_part(offset / steps().size(), x);
+    shift(x);
+    solve_unknowns(steps().begin() + offset, x);
+  }
+  void shift(X& x) const {
+    for (const Shift& one : shifted_) x.data()[one.component] = one.value;
+  }
+
+  // The polynomial of a stiff step leaves the slow path between its ends: where an event begins the motion anew, a step
+  // of the method is taken to it, and the instant follows that step's end. The offset of the event; none where the
+  // equations of no step can be solved any more.
+  std::optional<Real> land(const Crossing<Real>& crossing, Real length) {
+    using std::abs;
+    const Real place = crossing.offset;
+    const bool restarts = std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
+    // Within some roundings of t from its beginning no step is to be had, and the polynomial has not left it.
+    const Real nothing = 1000 * std::numeric_limits<Real>::epsilon() * abs(steps().begin());
+    if (!restarts || place == length || !steps().lands() || abs(place) <= nothing) return place;
+    const std::size_t guard = crossing.guards.front();
+    if (logic_.jumps(guard)) return land_beyond_jump(guard, place, length);
+    // The slope of the guard by a difference over a thousandth of the step.
+    const Real apart = length / 1000, before = guards_at(place - apart, length, later_values_)[guard];
+    const Real slope = (guards_at(place, length, guard_values_)[guard] - before) / apart;
+    // One part of a condition may hold it at zero until another leaves: as of a jump, there is only the side to go by.
+    if (abs(before) <= std::numeric_limits<Real>::min()) return land_beyond_jump(guard, place, length);
+    Real h = place, best = place, taken = length, least = std::numeric_limits<Real>::infinity();
+    for (int tries = 0; tries < 4 && steps().retake(h, options_); ++tries) {
+      taken = h;
+      events_guards(steps().end(), steps().x_end());
+      const Real g = guard_values_[guard];
+      if (!(abs(g) < least)) break;
+      least = abs(g);
+      best = h;
+      const Real next = h - g / slope;
+      const Real unit = 2 * std::numeric_limits<Real>::epsilon() * abs(steps().end());
+      if (!(forward() * next > 0) || forward() * (next - length) >= 0 || abs(next - h) <= unit) break;
+      h = next;
+    }
+    if (taken != best && !steps().retake(best, options_)) return stay(place, length);
+    return steps().end() - steps().begin();
+  }
+  // The step as it was, with the event on its dense output.
+  std::optional<Real> stay(Real place, Real length) {
+    return steps().retake(length, options_) ? std::optional<Real>(place) : std::nullopt;
+  }
+  void end_before_event() {
+    t_ = steps().begin();
+    x_ = steps().x_begin();
+    solved_to_rounding_ = false;
+    end(Ending::nonlinear_solve_failed,
+        "Newton's iteration does not converge on a step to the event: take smaller steps");
+  }
+  // Of a guard that jumps there is nothing but its side: the first step, some units in the last place longer, that ends
+  // beyond.
+  std::optional<Real> land_beyond_jump(std::size_t guard, Real place, Real length) {
+    using std::abs;
+    const int far = sign_of(guards_at(place, length, guard_values_)[guard]);
+    Real longer = 2 * std::numeric_limits<Real>::epsilon() * abs(place);
+    constexpr int most_tries = 24;
+    Real h = place;
+    for (int tries = 0; tries < most_tries && steps().retake(h, options_); ++tries) {
+      if (is_surely_on(far, guard)) return steps().end() - steps().begin();
+      h = place + forward() * longer;
+      longer *= 4;
+    }
+    return stay(place, length);
+  }
+  // At the end of the step, and wherever rounding may leave the unknowns when they are solved for once more.
+  bool is_surely_on(int side, std::size_t guard) {
+    events_guards(steps().end(), steps().x_end());
+    if (sign_of(guard_values_[guard]) != side) return false;
+    if constexpr (HasMassDiagonal<System, X>) {
+      if (!has_mass<X>(system())) return true;
+      X solved = steps().x_end();
+      shift(solved);
+      solve_unknowns(steps().end(), solved);
+      for (const Real roundings : {Real(-16), Real(16)}) {
+        before_ = solved;
+        for (std::size_t i = 0; i < dimension(before_); ++i)
+          if (is_algebraic<X>(system(), i)) before_.data()[i] *= 1 + roundings * std::numeric_limits<Real>::epsilon();
+        logic_.events().guards(steps().system(), steps().end(), before_, std::span<Real>(guard_values_));
+        if (sign_of(guard_values_[guard]) != side) return false;
+      }
+    }
+    return true;
+  }
+  void events_guards(Real t, X x) {
+    shift(x);
+    solve_unknowns(t, x);
+    logic_.events().guards(steps().system(), t, x, std::span<Real>(guard_values_));
+  }
+
+  // Fires the list of the instant at (t_, x_), round by round. True where the step ends here.
+  template <class Observer>
+  bool fire(Observer& observer) {
+    bool restarted = false;
+    while (!logic_.fired().empty()) {
+      logic_.begin_round();
+      std::optional<std::size_t> stopped;
+      for (const std::size_t i : logic_.fired()) {
+        const EventResponse response = act(i, observer, false);
+        restarted = restarted || response.restart;
+        if (!consistent_) return !end_inconsistent();
+        if (response.stop && !stopped) stopped = i;
+      }
+      if (stopped) return stop(*stopped);
+      if (ended_) return true;
+      logic_.end_round(steps(), t_, x_);
+      if (statistics().events >= options_.max_steps || interrupted()) return end_among_events();
+    }
+    if (restarted) begin_anew(), ++restarts_;
+    return restarted;
+  }
+
+  // One event, and where its firings accumulate what it does at the limit.
+  template <class Observer>
+  EventResponse act(std::size_t i, Observer& observer, bool at_limit) {
+    before_ = x_;
+    EventResponse response = at_limit ? limit_action(i) : logic_.events().fire(steps().system(), i, t_, before_, x_);
+    if (!at_limit) ++steps().statistics().events;
+    if (response.restart) settle_algebraic();
+    if (response.changed && !response.restart) note_shifts();
+    observer.happening(*this, Happening<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
+    logic_.acted(steps(), i, response, t_, x_);
+    if (at_limit || !logic_.events().is_guard(i)) return response;
+    std::optional<Real> limit = logic_.accumulation().fired(i, t_);
+    if (!limit && ((logic_.is_held(i) && !response.restart) || logic_.stays(i))) limit = t_;
+    if (!limit) return response;
+    logic_.accumulation().forget(i);
+    if (!has_limit_action(i)) {
+      if (!ended_) accumulate(i, *limit);
+      return response;
+    }
+    const EventResponse further = act(i, observer, true);
+    return {response.stop || further.stop, response.restart || further.restart, response.changed || further.changed};
+  }
+
+  bool has_limit_action(std::size_t i) const {
+    if constexpr (requires { logic_.events().has_limit_action(i); }) {
+      return logic_.events().has_limit_action(i);
+    } else {
+      return false;
+    }
+  }
+  EventResponse limit_action(std::size_t i) {
+    if constexpr (requires { logic_.events().at_limit(steps().system(), i, t_, before_, x_); }) {
+      return logic_.events().at_limit(steps().system(), i, t_, before_, x_);
+    } else {
+      return {};
+    }
+  }
+
+  void note_shifts() {
+    for (std::size_t k = 0; k < dimension(x_); ++k) {
+      if (x_.data()[k] == before_.data()[k]) continue;
+      shifts_.push_back({false, t_, k, x_.data()[k]});
+      const auto known = std::ranges::find(shifted_, k, &Shift::component);
+      known == shifted_.end() ? shifted_.push_back(shifts_.back()) : void(*known = shifts_.back());
+    }
+  }
+
+  bool stop(std::size_t event) {
+    end(Ending::stopped_by_event);
+    outcome_.event = events().name(event);
+    return true;
+  }
+  void accumulate(std::size_t event, Real limit) {
+    end(Ending::events_accumulate, "give the event a `then` for what happens at the limit, or stop at it");
+    outcome_.event = events().name(event);
+    outcome_.limit_time = limit;
+  }
+  bool interrupted() const { return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed); }
+  bool end_among_events() {
+    if (interrupted()) {
+      end(Ending::interrupted);
+    } else {
+      end(Ending::too_many_steps, "as many events as the run may have steps: look for one that fires without end");
+    }
+    return true;
+  }
+
+  Options<X> options_;
+  Interval<Real> interval_;
+  Real t_;
+  X x_, before_;
+  X solved_ = x_;
+  StepsValue<System, X> steps_;
+  Logic logic_;
+  std::vector<Real> guard_values_, later_values_;
+  std::vector<Shift> shifts_, shifted_;  // those of the present step in order; the last one of each component
+  std::vector<X> shifted_output_;
+  Consistency consistent_;
+  StepMarks<Real> marks_;
+  std::size_t restarts_ = 0;  // by events
+  bool started_ = false, ended_ = false;
+  bool solved_to_rounding_ = true;  // the unknowns in x_
+  bool shifts_end_ = false;         // the next step begins with the whole state
+  Outcome<Real> outcome_;
+};
+
+}  // namespace continuo

@@ -1,0 +1,611 @@
+// What fires, and when: the sides of guards from event to event, and the schedule. docs/events.md states the rules. The
+// driver moves the state; what stands here only reads it.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/solve/event.hpp>
+#include <continuo/solve/events/accumulation.hpp>
+#include <continuo/solve/events/guard_motion.hpp>
+#include <continuo/solve/events/guard_watch.hpp>
+#include <continuo/solve/steps/consistent.hpp>
+#include <continuo/solve/steps/steps.hpp>
+
+namespace continuo {
+
+template <class System, State X, class Events>
+class EventLogic {
+ public:
+  using Real = Scalar<X>;
+  using StepsOf = Steps<System, X>;
+
+  EventLogic(Events events, const X& x, Real forward, Real longest)
+      : events_(std::move(events)),
+        watch_(events_.size()),
+        accumulation_(events_.size()),
+        g_(events_.size()),
+        rounding_(events_.size()),
+        wide_(events_.size()),
+        scratch_(events_.size()),
+        slack_(events_.size()),
+        marks_(events_.size()),
+        jumps_(events_.size()),
+        held_(events_.size()),
+        forward_(forward),
+        longest_(longest),
+        moved_(x),
+        first_(x),
+        second_(x) {
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      any_guard_ = any_guard_ || events_.is_guard(i);
+      any_turning_guard_ = any_turning_guard_ || (events_.is_guard(i) && can_restart(i));
+      any_scheduled_ = any_scheduled_ || !events_.is_guard(i);
+    }
+    fired_.reserve(events_.size());
+    next_.reserve(events_.size());
+  }
+
+  const Events& events() const { return events_; }
+  Events& events() { return events_; }
+  bool any_guard() const { return any_guard_; }
+  /// One that can change the motion.
+  bool any_turning_guard() const { return any_turning_guard_; }
+  AccumulationWatch<Real>& accumulation() { return accumulation_; }
+
+  bool can_restart(std::size_t i) const {
+    if constexpr (requires { events_.can_restart(i); }) {
+      return events_.can_restart(i);
+    } else {
+      return true;
+    }
+  }
+
+  // ---- the schedule
+  // --------------------------------------------------------------------------------------------------
+
+  /// The first scheduled time after t of an event that can change the motion, at most `to`: a step ends there.
+  Real next_restart(Real t, Real to) const {
+    return next_scheduled(t, to, [&](std::size_t i) { return can_restart(i); });
+  }
+  /// Of the others, which happen within steps; infinity where there is none up to `to`.
+  std::optional<Real> next_quiet(Real t, Real to) const {
+    const Real none = forward_ * std::numeric_limits<Real>::infinity();
+    const Real next = next_scheduled(t, none, [&](std::size_t i) { return !can_restart(i); });
+    return forward_ * (next - to) <= 0 ? std::optional<Real>(next) : std::nullopt;
+  }
+
+  /// Begins the list of an instant: what is scheduled for t and has not happened yet.
+  void begin_instant(Real t) {
+    fired_.clear();
+    if (!any_scheduled_ || scheduled_at_ == t) return;
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (!events_.is_guard(i) && events_.next_time(i, t, true) == t) fired_.push_back(i);
+    if (!fired_.empty()) scheduled_at_ = t;
+  }
+  std::span<const std::size_t> fired() const { return fired_; }
+
+  // ---- guards over a step
+  // --------------------------------------------------------------------------------------------
+
+  /// The first crossing on offsets from..to of the present step; evaluate(offset, values) gives the guards. `from_here`
+  /// says that the search begins where the guards were settled, armed or fired last: there they are known.
+  template <class Evaluate>
+  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, bool from_here, Evaluate&& evaluate) {
+    const auto direction = [this](std::size_t i) { return events_.direction(i); };
+    const std::span<const Real> known = from_here ? std::span<const Real>(g_) : std::span<const Real>();
+    if constexpr (has_enclosures) {
+      return watch_.first_crossing(from, to, instant, known, evaluate, direction,
+                                   EnclosedStep<Events, Real>{events_, size_});
+    } else {
+      return watch_.first_crossing(from, to, instant, known, evaluate, direction, NotEnclosed{});
+    }
+  }
+  /// The step that is to be searched, by its dense output.
+  void take_step(StepsOf& steps, std::span<const X> dense_output) {
+    size_ = steps.size();
+    if constexpr (has_enclosures) events_.take_step(steps.system(), steps.begin(), size_, dense_output);
+  }
+  static constexpr bool has_enclosures = requires(Events& events, System& system, std::span<const X> coefficients) {
+    events.take_step(system, Real{}, Real{}, coefficients);
+  };
+
+  /// No event up to the offset that was searched last: the sides there, where the guards are as at (t, x).
+  void settle(StepsOf& steps, Real t, const X& x) {
+    evaluate(steps, t, x, g_);
+    watch_.settle(g_);
+  }
+
+  // ---- an instant
+  // ----------------------------------------------------------------------------------------------------
+
+  /// The run begins, or somebody has changed the state: every guard gets its side. One at zero, which the motion takes
+  /// to the side that its event watches, is no crossing, unless the event would turn the motion back: a ball that lies
+  /// on the floor does not fall through it. Those are added to the list of the instant.
+  void arm(StepsOf& steps, Real t, const X& x) {
+    if (!any_guard_) return;
+    std::ranges::fill(slack_, Real(0));
+    evaluate(steps, t, x, g_);
+    find_rounding(steps, t, x);
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      if (!place(steps, i, t, x)) continue;
+      GuardState<Real>& state = watch_.states()[i];
+      if (!state.at_zero || state.side == 0) continue;
+      const bool starts_false = is_condition(i) && sign_of(g_[i]) < 0 && state.side > 0;
+      held_[i] = watches(events_.direction(i), state.side) && restores(steps, i, t, x, -state.side);
+      if (starts_false || held_[i]) add(fired_, i);
+    }
+    std::sort(fired_.begin(), fired_.end());
+  }
+
+  /// Looks at located crossings on the dense output: `values` are the guards there, `later` a millionth of the step
+  /// later, at `later_t` and `later_x`. What g still is at its far side is less than it becomes until then, or
+  /// rounding, but where g jumps.
+  void look_at(StepsOf& steps, const Crossing<Real>& crossing, std::span<const Real> values, Real later_t,
+               const X& later_x) {
+    using std::abs;
+    std::ranges::fill(jumps_, char{0});
+    std::ranges::fill(slack_, Real(0));
+    evaluate(steps, later_t, later_x, g_);
+    bool rounded = false;
+    for (const std::size_t i : crossing.guards) {
+      const Real beyond = values[i] - watch_.states()[i].level(), becomes = abs(g_[i] - values[i]);
+      if (!(abs(beyond) > becomes)) continue;
+      if (!std::exchange(rounded, true)) find_rounding(steps, later_t, later_x);
+      jumps_[i] = abs(beyond) > becomes + 4 * rounding_[i];
+    }
+  }
+  /// Whether a guard that takes no part in a crossing may leave zero before it.
+  bool others_are_at_zero(const Crossing<Real>& crossing) const {
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (watch_.states()[i].active && watch_.states()[i].at_zero &&
+          std::ranges::find(crossing.guards, i) == crossing.guards.end())
+        return true;
+    return false;
+  }
+  /// The guards half way to a crossing: of those that take no part in it, what is beyond its band has left zero.
+  void leave_zero(const Crossing<Real>& crossing, std::span<const Real> values) {
+    using std::abs;
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      GuardState<Real>& state = watch_.states()[i];
+      if (!state.active || !state.at_zero || !(abs(values[i]) > state.band)) continue;
+      if (std::ranges::find(crossing.guards, i) == crossing.guards.end()) state.at_zero = false;
+    }
+  }
+  /// A step was taken to the instant, whose state is off by the tolerance: guards may be off by as much as that makes.
+  void allow_for(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance) {
+    using std::min;
+    const Real few(2), many(1 << 10);
+    evaluate(steps, t, x, g_);
+    changes_by_tolerance(steps, t, x, tolerance, few, slack_);
+    // A jump nearby changes a guard by as much over a longer way, which is no inaccuracy.
+    changes_by_tolerance(steps, t, x, tolerance, many, wide_);
+    for (std::size_t i = 0; i < events_.size(); ++i) slack_[i] = min(slack_[i], wide_[i] / (many / (2 * few)));
+  }
+  /// Whether guard i of the crossing that was looked at jumps across zero.
+  bool jumps(std::size_t i) const { return jumps_[i] != 0; }
+  /// The motion has come to the instant t, before any action: guards that cross here are added to the list. `crossing`
+  /// are those that were located, null where the instant is a scheduled one.
+  void arrive(StepsOf& steps, Real t, const X& x, const Crossing<Real>* crossing) {
+    if (!any_guard_) return;
+    evaluate(steps, t, x, g_);
+    find_rounding(steps, t, x);
+    std::ranges::fill(marks_, char{0});
+    if (!crossing) {
+      std::ranges::fill(jumps_, char{0});
+      std::ranges::fill(slack_, Real(0));
+    }
+    if (crossing)
+      for (const std::size_t i : crossing->guards) cross(i);
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (marks_[i] == 0) pass(steps, i, t, x);
+    std::sort(fired_.begin(), fired_.end());
+  }
+
+  /// Whether a guard of the crossing may leave a zero that it had from the start of the run.
+  bool leaves_first_zero(const Crossing<Real>& crossing) const {
+    return std::ranges::any_of(crossing.guards, [this](std::size_t i) { return watch_.states()[i].side == 0; });
+  }
+  /// Takes out of the crossing that was found last those guards that leave a zero they had from the start of the run
+  /// and whose events would not turn the motion back: these only get their side. False where no guard is left.
+  bool keep_true_crossings(StepsOf& steps, Real t, const X& x) {
+    std::vector<std::size_t>& guards = watch_.crossing().guards;
+    std::erase_if(guards, [&](std::size_t i) {
+      GuardState<Real>& state = watch_.states()[i];
+      if (state.side != 0 || restores(steps, i, t, x, -watch_.side_after(i))) return false;
+      state = {.side = watch_.side_after(i)};
+      return true;
+    });
+    return !guards.empty();
+  }
+
+  /// A round of the instant begins: `fired()` are to act, one after the other.
+  void begin_round() {
+    next_.clear();
+    std::ranges::fill(marks_, char{0});
+    for (const std::size_t i : fired_) marks_[i] = pending;
+    jumped_ = restarted_ = false;
+  }
+  /// Event i has acted and left x.
+  void acted(StepsOf& steps, std::size_t i, const EventResponse& response, Real t, const X& x) {
+    marks_[i] = response.restart ? turned : done;
+    restarted_ = restarted_ || response.restart;
+    if (!any_guard_ || !(response.restart || response.changed)) return;
+    jumped_ = true;
+    evaluate(steps, t, x, g_);
+    bool rounded = false;
+    for (std::size_t k = 0; k < events_.size(); ++k) {
+      if (!watched(k)) continue;
+      GuardState<Real>& state = watch_.states()[k];
+      if (!state.active || !events_.active(steps.system(), k) || sign_of(g_[k]) == state.side) continue;
+      if (k == i && renews_guard(i)) continue;
+      if (!std::exchange(rounded, true)) find_rounding(steps, t, x);
+      jump(k);
+    }
+  }
+  /// Every event of the round has acted. What is at zero now goes where the motion takes it; then `fired()` is the next
+  /// round's list.
+  void end_round(StepsOf& steps, Real t, const X& x) {
+    std::ranges::fill(held_, char{0});
+    if (any_guard_ && jumped_) {
+      evaluate(steps, t, x, g_);
+      find_rounding(steps, t, x);
+      for (std::size_t i = 0; i < events_.size(); ++i) carry(steps, i, t, x);
+    }
+    last_event_ = t;
+    std::swap(fired_, next_);
+    std::sort(fired_.begin(), fired_.end());
+  }
+  /// Event i fires since the motion, not turned back, would leave zero by the far side at once: a ball without
+  /// restitution on its floor. If its action changes nothing either, it would fire for ever.
+  bool is_held(std::size_t i) const { return held_[i] != 0; }
+  /// Event i has fired too often without its guard having left zero in between: the motion stays there.
+  bool stays(std::size_t i) const { return watch_.states()[i].returns >= most_returns; }
+  void clear() { fired_.clear(); }
+
+ private:
+  static constexpr int most_returns = 20;
+  static constexpr double chatter = 1e-6;  // of the longest way that the motion is followed
+  static constexpr char pending = 1, done = 2, turned = 3;
+
+  static void add(std::vector<std::size_t>& list, std::size_t i) {
+    if (std::ranges::find(list, i) == list.end()) list.push_back(i);
+  }
+
+  bool watched(std::size_t i) const { return events_.is_guard(i); }
+
+  /// A guard that was made of a condition: its sign at zero itself says whether the condition holds.
+  bool is_condition(std::size_t i) const {
+    if constexpr (requires { events_.is_condition(i); }) {
+      return events_.is_condition(i);
+    } else {
+      return false;
+    }
+  }
+
+  /// The guard of a jump of the equations, which only the motion crosses: where an action changes the state, the source
+  /// settles the jumps by itself. Firing gives the guard another meaning: it has the side that it then has.
+  bool renews_guard(std::size_t i) const {
+    if constexpr (requires { events_.renews_guard(i); }) {
+      return events_.renews_guard(i);
+    } else {
+      return false;
+    }
+  }
+
+  template <class Counts>
+  Real next_scheduled(Real t, Real to, Counts&& counts) const {
+    Real next = to;
+    for (std::size_t i = 0; any_scheduled_ && i < events_.size(); ++i) {
+      if (events_.is_guard(i) || !counts(i)) continue;
+      const Real time = events_.next_time(i, t, false);
+      if (time < next) next = time;
+    }
+    return next;
+  }
+
+  void evaluate(StepsOf& steps, Real t, const X& x, std::vector<Real>& values) {
+    events_.guards(steps.system(), t, x, std::span<Real>(values));
+  }
+
+  void find_rounding(StepsOf& steps, Real t, const X& x) {
+    using std::abs, std::min;
+    const Real few(4), many(1 << 20);
+    largest_changes(steps, t, x, few, rounding_);
+    const auto is_near = [&](std::size_t i) {
+      return watched(i) && rounding_[i] > 0 && abs(g_[i]) <= 8 * rounding_[i];
+    };
+    bool any = false;
+    for (std::size_t i = 0; i < events_.size() && !any; ++i) any = is_near(i);
+    if (!any) return;
+    // A jump nearby changes a guard by as much over a longer way, which is no rounding.
+    largest_changes(steps, t, x, many, wide_);
+    for (std::size_t i = 0; i < events_.size(); ++i)
+      if (is_near(i)) rounding_[i] = min(rounding_[i], wide_[i] / (many / (2 * few)));
+  }
+  void changes_by_tolerance(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance, Real times,
+                            std::vector<Real>& changes) {
+    using std::abs, std::max;
+    std::ranges::fill(changes, Real(0));
+    for (int pattern = 0; pattern < 2; ++pattern) {
+      for (std::size_t k = 0; k < dimension(x); ++k) {
+        const Real part = times * tolerance.scale(k, x.data()[k], x.data()[k]);
+        moved_.data()[k] = x.data()[k] + (pattern == 0 || k % 2 == 0 ? part : -part);
+      }
+      evaluate(steps, t, moved_, scratch_);
+      for (std::size_t i = 0; i < events_.size(); ++i)
+        if (watched(i)) changes[i] = max(changes[i], abs(scratch_[i] - g_[i]));
+    }
+  }
+  void largest_changes(StepsOf& steps, Real t, const X& x, Real units, std::vector<Real>& changes) {
+    using std::abs, std::max;
+    std::ranges::fill(changes, Real(0));
+    const auto look = [&](Real moved_t, const X& moved) {
+      evaluate(steps, moved_t, moved, scratch_);
+      for (std::size_t i = 0; i < events_.size(); ++i)
+        if (watched(i)) changes[i] = max(changes[i], abs(scratch_[i] - g_[i]));
+    };
+    for_each_rounded(t, x, moved_, look, units);
+  }
+
+  Carried carried(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    if constexpr (requires { events_.carried(steps.system(), i, t, x, forward_); }) {
+      if (const std::optional<Carried> known = events_.carried(steps.system(), i, t, x, forward_)) {
+        if (known->order != 1 || known->surely) return *known;
+        // What may be off by more than rounding, since a jump of the equations is near, shows by differences.
+        const Carried seen = carried_to_first_orders(steps, i, t, x);
+        return seen.surely ? seen : *known;
+      }
+    }
+    return carried_to_first_orders(steps, i, t, x);
+  }
+
+  // Where the motion takes a guard at zero. Of a condition that only a step's inaccuracy keeps from zero, derivatives
+  // say which way the part of it goes that is nearest, not whether the condition comes to hold: `x > 1 and x < 1` rises
+  // until x = 1 and falls from there on. That shows where the motion has left the inaccuracy behind.
+  Carried way_from_zero(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs;
+    if (is_condition(i) && abs(g_[i]) > rounding_[i])
+      if (const int side = sign_beyond(steps, i, t, x, 2 * inaccuracy(i)); side != 0) return {side, 1, true};
+    return carried(steps, i, t, x);
+  }
+
+  Carried carried_to_first_orders(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    return carried_by_differences(
+        t, x, g_[i], forward_ * length_to_follow(steps, t), rounding_[i], first_, second_, moved_,
+        [&](Real at, X& y) {
+          solve_unknowns(steps, at, y);
+          evaluate(steps, at, y, scratch_);
+          return scratch_[i];
+        },
+        [&](Real at, X y, X& out) {
+          solve_unknowns(steps, at, y);
+          out = steps.slope(at, y);
+        });
+  }
+
+  // Of a condition at zero that no derivative carries away: one part of it may stay at zero for good, and its sign
+  // there says whether it holds, while others leave. Which it is shows a little later.
+  int sign_a_little_later(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    sign_beyond(steps, i, t, x, rounding_[i]);
+    return sign_of(scratch_[i]);
+  }
+  // The sign of guard i, in scratch_, where the motion has taken it beyond the band; 0 where it does not soon.
+  int sign_beyond(StepsOf& steps, std::size_t i, Real t, const X& x, Real band) {
+    using std::abs;
+    const Real longest = forward_ * length_to_follow(steps, t) / 10000;
+    first_ = steps.slope(t, x);
+    for (Real dt = longest / 10000; abs(dt) <= abs(longest); dt *= 4) {
+      for (std::size_t k = 0; k < dimension(x); ++k) moved_.data()[k] = x.data()[k] + dt * first_.data()[k];
+      solve_unknowns(steps, t + dt, moved_);
+      evaluate(steps, t + dt, moved_, scratch_);
+      if (abs(scratch_[i]) > band) return sign_of(scratch_[i]);
+    }
+    return 0;
+  }
+
+  /// How far the motion may be followed without coming to what happens next.
+  Real length_to_follow(const StepsOf& steps, Real t) const {
+    using std::abs, std::max, std::min;
+    const Real length = min(max(abs(steps.size()), longest_ / Real(1e6)), longest_);  // a step to an event is short
+    const Real same_instant = 1000 * std::numeric_limits<Real>::epsilon() * abs(t);
+    return last_event_ && abs(t - *last_event_) > same_instant ? min(length, abs(t - *last_event_)) : length;
+  }
+
+  static void solve_unknowns(StepsOf& steps, Real t, X& x) {
+    if constexpr (HasMassDiagonal<System, X>) {
+      const Tolerance<Real> close{std::numeric_limits<Real>::epsilon() * 1000, std::numeric_limits<Real>::epsilon()};
+      if (has_mass<X>(steps.system())) make_consistent(steps.system(), t, x, close);
+    }
+  }
+
+  /// What g can be off by at the present instant. A surface of the equations that has not been come to is where the
+  /// system says that it is.
+  Real inaccuracy(std::size_t i) const { return renews_guard(i) ? rounding_[i] : std::max(rounding_[i], slack_[i]); }
+  bool at_zero(std::size_t i) const {
+    using std::abs;
+    return !(abs(g_[i]) > inaccuracy(i));
+  }
+
+  /// The same, or in the band that it has not left since its last event.
+  bool is_still_zero(std::size_t i) const {
+    using std::abs;
+    const GuardState<Real>& state = watch_.states()[i];
+    return at_zero(i) || (state.at_zero && abs(g_[i]) <= state.band);
+  }
+
+  // A guard as it is found, without a past. False where it is not watched now.
+  bool place(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    GuardState<Real>& state = watch_.states()[i];
+    state = {};
+    state.active = watched(i) && events_.active(steps.system(), i);
+    if (!state.active) return false;
+    state.at_zero = at_zero(i);
+    state.band = rounding_[i];
+    state.side = state.at_zero ? way_from_zero(steps, i, t, x).side : sign_of(g_[i]);
+    if (state.side == 0 && is_condition(i)) state.side = sign_a_little_later(steps, i, t, x);
+    return true;
+  }
+
+  // A located crossing. A step taken to the instant may leave g a little on either side of zero: that is zero.
+  void cross(std::size_t i) {
+    using std::abs, std::max;
+    GuardState<Real>& state = watch_.states()[i];
+    state.side = watch_.side_after(i);
+    state.returns = watch_.returns_after(i);
+    slack_[i] = jumps_[i] ? Real(0) : max(rounding_[i] + abs(g_[i]), slack_[i]);
+    state.band = slack_[i];
+    state.at_zero = !jumps_[i];
+    marks_[i] = turned;
+    add(fired_, i);
+  }
+
+  // Any other guard at an instant, before the actions: by now it may have moved to its other side, unwatched, or be at
+  // zero on its way there.
+  void pass(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs;
+    GuardState<Real>& state = watch_.states()[i];
+    if (!state.active || state.side == 0) return;
+    const bool zero = is_still_zero(i);
+    if (!zero && sign_of(g_[i]) == state.side) {
+      if (state.at_zero && !(Real(state.side) * g_[i] <= state.band)) state.at_zero = false;
+      return;
+    }
+    int side = !zero ? sign_of(g_[i]) : state.at_zero ? state.side : way_from_zero(steps, i, t, x).side;
+    if (side == 0 && is_condition(i)) side = sign_a_little_later(steps, i, t, x);
+    if (side == 0 || side == state.side) return;
+    state = {.side = side, .at_zero = zero, .active = true, .band = inaccuracy(i)};
+    if (watches(events_.direction(i), side)) add(fired_, i);
+  }
+
+  // After an action: a guard that is on the other side of zero now, beyond what rounding does.
+  void jump(std::size_t i) {
+    if (is_still_zero(i)) return;
+    GuardState<Real>& state = watch_.states()[i];
+    const int side = sign_of(g_[i]);
+    const bool from_zero = state.side == 0;
+    state = {.side = side, .at_zero = false, .active = true, .band = rounding_[i]};
+    const Direction direction = events_.direction(i);
+    if (renews_guard(i)) return;
+    if (watches(direction, side) && !(from_zero && direction == Direction::crosses)) add(next_, i);
+  }
+
+  // At the end of a round: guards at zero go where the motion takes them.
+  void carry(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs, std::max;
+    GuardState<Real>& state = watch_.states()[i];
+    if (!watched(i)) return;
+    const bool was_active = std::exchange(state.active, events_.active(steps.system(), i));
+    if (!state.active) return;
+    if (!was_active) return enter(steps, i, t, x);
+    const bool fired = marks_[i] == done || marks_[i] == turned;
+    if (fired && jumps_[i] && sign_of(g_[i]) == state.side) return;
+    const Real band = state.at_zero ? max(state.band, inaccuracy(i)) : inaccuracy(i);
+    state.at_zero = abs(g_[i]) <= band;
+    state.band = band;
+    if (!state.at_zero) {
+      if (fired) state.side = sign_of(g_[i]);
+      return;
+    }
+    if (!restarted_ && !is_condition(i)) return;
+    const Carried way = way_from_zero(steps, i, t, x);
+    marks_[i] == turned ? turn(steps, i, way, t, x) : take(steps, i, way, t, x);
+  }
+
+  // A guard that the present mode watches and the one before did not.
+  void enter(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    const Direction direction = events_.direction(i);
+    place(steps, i, t, x);
+    const GuardState<Real>& state = watch_.states()[i];
+    if (state.at_zero && state.side != 0 && direction != Direction::crosses && watches(direction, state.side))
+      add(next_, i);
+  }
+
+  // The guard of an event that has acted and is at zero.
+  void turn(StepsOf& steps, std::size_t i, const Carried& way, Real t, const X& x) {
+    using std::abs;
+    GuardState<Real>& state = watch_.states()[i];
+    if (renews_guard(i)) {
+      if (way.side != 0) state.side = way.side;
+    } else if (way.side == 0 && is_condition(i)) {
+      state.side = sign_a_little_later(steps, i, t, x);
+      // A part of the condition stays at zero for good. That it has not left zero since the event before shows no
+      // chatter, unless hardly any time has passed.
+      if (!last_event_ || abs(t - *last_event_) > longest_ * Real(chatter)) state.returns = 0;
+    } else if (way.side != state.side) {
+      // Turned back, which an event that watches both directions sees as well, or held at zero. What it is beyond zero
+      // already is all that it may be.
+      state.side = -state.side;
+      state.band = abs(g_[i]) + rounding_[i];
+      if (way.side != 0 && watches(events_.direction(i), state.side)) add(next_, i);
+    } else if (way.order > 1 || !way.surely) {
+      held_[i] = 1;
+      add(next_, i);
+    }
+  }
+  // Any other guard at zero.
+  void take(StepsOf& steps, std::size_t i, const Carried& way, Real t, const X& x) {
+    GuardState<Real>& state = watch_.states()[i];
+    const int side = way.side != 0 ? way.side : is_condition(i) ? sign_a_little_later(steps, i, t, x) : 0;
+    if (side == 0 || side == state.side) return;
+    const bool from_zero = state.side == 0;
+    state.side = side;
+    const Direction direction = events_.direction(i);
+    if (renews_guard(i)) return;
+    if (watches(direction, side) && !(from_zero && direction == Direction::crosses)) add(next_, i);
+  }
+
+  // Whether the event of guard i, which the motion carries from zero to the far side, would turn it back: tried on
+  // copies, a little beyond zero.
+  bool restores(StepsOf& steps, std::size_t i, Real t, const X& x, int near) {
+    if constexpr (requires { events_.can_assign(i); }) {
+      if (!events_.can_assign(i)) return false;
+    } else if (!can_restart(i)) {
+      return false;
+    }
+    for (const double part : {1e-4, 1e-6, 1e-8})
+      if (restores_after(steps, i, t, x, near, forward_ * longest_ * Real(part))) return true;
+    return false;
+  }
+
+  bool restores_after(StepsOf& steps, std::size_t i, Real t, const X& x, int near, Real dt) {
+    Events events = events_;
+    System system = steps.system();
+    X slope = steps.slope(t, x), before = x;
+    for (std::size_t k = 0; k < dimension(x); ++k) before.data()[k] += dt * slope.data()[k];
+    const X later = steps.slope(t + dt, before);
+    for (std::size_t k = 0; k < dimension(x); ++k)
+      before.data()[k] = x.data()[k] + dt * (slope.data()[k] + later.data()[k]) / 2;
+    X after = before;
+    if (!events.fire(system, i, t + dt, before, after).restart) return false;
+    events.guards(system, t + dt, after, std::span<Real>(scratch_));
+    const Real g = scratch_[i];
+    continuo::evaluate(system, t + dt, after, slope);
+    divide_by_mass(system, slope);
+    for (std::size_t k = 0; k < dimension(x); ++k) after.data()[k] += dt * slope.data()[k];
+    events.guards(system, t + 2 * dt, after, std::span<Real>(scratch_));
+    return Real(near) * (scratch_[i] - g) > 0 || Real(near) * g > 0;
+  }
+
+  Events events_;
+  GuardWatch<Real> watch_;
+  AccumulationWatch<Real> accumulation_;
+  std::vector<Real> g_, rounding_, wide_, scratch_;
+  std::vector<Real> slack_;  // of the last instant that a step was taken to
+  std::vector<char> marks_;  // of the present round
+  std::vector<char> jumps_;  // of the guards of the last crossing: g jumps across zero
+  std::vector<char> held_;   // the event fires because the motion would leave zero at once by its far side
+  std::vector<std::size_t> fired_, next_;
+  std::optional<Real> last_event_, scheduled_at_;
+  Real forward_, longest_, size_{};
+  X moved_, first_, second_;
+  bool any_guard_ = false, any_turning_guard_ = false, any_scheduled_ = false;
+  bool jumped_ = false, restarted_ = false;  // of the present round
+};
+
+}  // namespace continuo

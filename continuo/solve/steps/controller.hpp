@@ -1,0 +1,86 @@
+// continuo/solve/steps/controller.hpp
+// The next step size from the errors so far: h_new = h * safety * err_n^-b1 * err_(n-1)^-b2 * err_(n-2)^-b3, each
+// exponent divided by the order of the error estimate plus one. G. Soderlind, "Digital filters in adaptive
+// time-stepping", ACM TOMS 29 (2003).
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+namespace continuo {
+
+/// A step controller is three exponents and the bounds of one change.
+struct Controller {
+  double beta1, beta2, beta3;
+  /// How far below the greatest step that would pass the next one aims. A rejected step of a method with many stages is
+  /// dear, and bench/ found 0.7 to 0.8 the cheapest at equal true error for every pair of orders 5 to 9.
+  double safety = 0.75;
+  double least_factor = 0.2, greatest_factor = 10;
+};
+
+/// The elementary controller: each error alone.
+inline constexpr Controller I{1, 0, 0};
+/// The proportional-integral controller of Hairer's DOPRI5 (beta = 0.04): follows a solution that changes its pace as
+/// fast as the elementary one, with fewer rejections, and keeps step sizes calm where stability bounds them.
+/// E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", IV.2, eq. 2.43. Against PI.3.4 of K. Gustafsson
+/// (0.7, -0.4; safety 0.9) it saves 6 to 10 % of the evaluations at equal true error.
+inline constexpr Controller PI{0.85, -0.2, 0};
+/// The PID controller of C. Kennedy, M. Carpenter, Appl. Numer. Math. 44 (2003), for noisy right-hand sides.
+inline constexpr Controller PID{0.58, -0.21, 0.1};
+
+namespace detail {
+
+/// log2 of a positive finite number and 2^x, to 0.001: a step size needs no more, and between one small step and the
+/// next the library's functions are the longest wait. Exponents are taken from the bits; the cubics have the least
+/// greatest error that leaves no jump from one power of two to the next, and are summed in pairs of terms, to be ready
+/// sooner.
+inline float quick_log2(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const float m = std::bit_cast<float>((bits & 0x007fffffU) | 0x3f800000U);
+  const float below = static_cast<float>(static_cast<std::int32_t>(bits >> 23) - 127) - 2.16416994F;
+  return (below + 3.06469457F * m) + m * m * (0.159219831F * m - 1.05974446F);
+}
+inline float quick_exp2(float x) {  // for x in -126..127, bounded where it is not
+  const float bounded = std::clamp(x, -126.0F, 127.0F);
+  // The sum has the nearest whole number in its last bits.
+  constexpr float shift = 0x1.8p23F;
+  const float shifted = bounded + shift;
+  const float power = std::bit_cast<float>((std::bit_cast<std::uint32_t>(shifted) + 127U) << 23);
+  const float f = bounded - (shifted - shift);
+  return power * ((0.999928014F + 0.693261013F * f) + f * f * (0.242612141F + 0.0551720782F * f));
+}
+
+}  // namespace detail
+
+/// The memory of a controller: the logarithms of the last two errors, squared. A jump of the state clears it. Errors
+/// come squared, as the mean of squares is found: the next step would have to wait for the root.
+struct ErrorHistory {
+  float last = 0, before_last = 0;
+
+  /// The factor for the next step after an accepted one; the error is kept for the steps after.
+  float accept(const Controller& controller, int error_order, float error_square) {
+    const float exponent = exponent_of(error_order);
+    const float here = detail::quick_log2(std::max(error_square, 1e-20F));
+    const float older =
+        static_cast<float>(controller.beta2) * last + static_cast<float>(controller.beta3) * before_last;
+    before_last = last;
+    last = here;
+    // The rest of this line was known before `here`, for which the next step waits.
+    const float factor = static_cast<float>(controller.safety) *
+                         detail::quick_exp2(-exponent * older - exponent * static_cast<float>(controller.beta1) * here);
+    return std::clamp(factor, static_cast<float>(controller.least_factor),
+                      static_cast<float>(controller.greatest_factor));
+  }
+
+  /// The factor for another try of a rejected step.
+  static float reject(const Controller& controller, int error_order, float error_square) {
+    const float wanted = detail::quick_exp2(-exponent_of(error_order) * detail::quick_log2(error_square));
+    return std::clamp(static_cast<float>(controller.safety) * wanted, static_cast<float>(controller.least_factor) / 2,
+                      0.9F);
+  }
+
+ private:
+  static float exponent_of(int error_order) { return 0.5F / static_cast<float>(error_order + 1); }
+};
+
+}  // namespace continuo

@@ -1,0 +1,280 @@
+// Takes accepted steps: tries, measures the error, rejects, shrinks, grows. Knows nothing of events.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/solve/steps/consistent.hpp>
+#include <continuo/solve/steps/steps.hpp>
+
+namespace continuo {
+
+/// The steps of one method.
+template <class System, State X, class M>
+class StepControl final : public Steps<System, X> {
+  using Base = Steps<System, X>;
+
+ public:
+  using Real = Scalar<X>;
+
+  StepControl(System f, X x0, Real t0, Real forward, const Options<X>& options)
+      : Base(std::move(f), x0, t0, forward), work_(M::workspace(x0)), interpolant_(x0), origin_(t0) {
+    this->jump(t0, x0, options);
+  }
+
+  std::unique_ptr<Base> clone() const override { return std::make_unique<StepControl>(*this); }
+
+  MethodNeeds needs(const X& x) const override { return needs_of<M>(system_, x); }
+
+  bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) override {
+    advance_to_end();
+    if constexpr (M::error_order > 0) {
+      if (!fixed(options)) {
+        if (next_ == 0 && !this->estimate_first(detail::starting_order<M>(), limit, options, outcome)) return false;
+        return take_adaptive(limit, options, outcome);
+      }
+    }
+    return take_fixed(limit, options, outcome);
+  }
+
+  const Interpolant<X, M::dense_degree>& interpolant() {
+    if (!interpolated_) {
+      statistics_.evaluations +=
+          static_cast<std::size_t>(M::interpolate(system_, begin_, x_begin_, h_, x_end_, work_, interpolant_));
+      interpolated_ = true;
+    }
+    return interpolant_;
+  }
+  std::span<const X> dense_output() override { return interpolant().c; }
+  void at_part(Real theta, X& x) override { interpolant()(theta, x); }
+
+  bool lands() const override { return detail::is_implicit<M>(); }
+  bool retake(Real size, const Options<X>& options) override {
+    if constexpr (requires { M::retaken(work_); }) M::retaken(work_);
+    jumped_ = began_anew_;
+    attempt(size, options);
+    jumped_ = false;
+    interpolated_ = false;
+    end_ = begin_ + size;
+    carried_ = 0;
+    return detail::status_of<M>(work_) == StepStatus::done && finite_end();
+  }
+
+ private:
+  using Base::accepted, Base::fail, Base::fail_to_solve, Base::finite_end, Base::first_not_finite, Base::fixed,
+      Base::interrupted, Base::singular_hint, Base::tolerance;
+  using Base::begin_, Base::carried_, Base::end_, Base::errors_, Base::forward_, Base::grid_, Base::grid_steps_,
+      Base::h_, Base::interpolated_, Base::jumped_, Base::next_, Base::statistics_, Base::step_begin_, Base::system_,
+      Base::x_begin_, Base::x_end_;
+
+  void advance_to_end() {
+    if (!jumped_) M::accept(work_);
+    begin_ = step_begin_ = end_;
+    std::swap(x_begin_, x_end_);
+    interpolated_ = false;
+  }
+
+  void attempt(Real h, const Options<X>& options) {
+    h_ = h;
+    began_anew_ = jumped_;
+    if constexpr (requires { M::aim(work_, tolerance(options)); }) M::aim(work_, tolerance_of_step(h, options));
+    statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
+    if constexpr (requires { M::costs(work_); }) {
+      const EquationCosts costs = M::costs(work_);
+      statistics_.jacobians = costs.jacobians;
+      statistics_.decompositions = costs.decompositions;
+      statistics_.solutions = costs.solutions;
+    }
+  }
+
+  /// What a step of size h can be measured by.
+  Tolerance<Real> tolerance_of_step(const Real& h, const Options<X>& options) const {
+    using std::abs, std::max, std::min;
+    constexpr double times_rounded = 4;
+    Tolerance<Real> weights = tolerance(options);
+    if constexpr (detail::is_implicit<M>() && (HasMassDiagonal<System, X> || HasMassMatrix<System, X>)) {
+      if (!has_mass<X>(system_)) return weights;
+      const Real spacing = std::numeric_limits<Real>::epsilon() * max(abs(begin_), abs(begin_ + h));
+      weights.rounding_of_time = min(Real(greatest_rounding_of_time), Real(times_rounded) * spacing / abs(h));
+    }
+    return weights;
+  }
+
+  /// The square of M::error_norm, without its root where the method has it so.
+  Real error_square(const Tolerance<Real>& weights) const {
+    if constexpr (requires { M::error_square(work_, h_, x_begin_, x_end_, weights); }) {
+      return M::error_square(work_, h_, x_begin_, x_end_, weights);
+    } else {
+      const Real norm = M::error_norm(work_, h_, x_begin_, x_end_, weights);
+      return norm * norm;
+    }
+  }
+
+  bool take_fixed(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+    // The grid is computed afresh at each step, so a million steps do not drift.
+    const Real nominal = forward_ * options.step;
+    const Real on_grid = grid_ + Real(grid_steps_ + 1) * nominal;
+    using std::abs;
+    const bool last = forward_ * (on_grid - limit) > Real(-1e-9) * options.step;
+    const bool short_step = last && abs(on_grid - limit) > Real(1e-9) * options.step;
+    if (!last && on_grid == begin_) {
+      h_ = nominal;
+      return fail(Ending::step_too_small, 0, {}, "the step is below the spacing of numbers at t: take a longer one",
+                  outcome);
+    }
+    attempt(short_step ? limit - begin_ : nominal, options);
+    const StepStatus status = detail::status_of<M>(work_);
+    if (status == StepStatus::newton_diverged || status == StepStatus::singular_matrix)
+      return fail_to_solve(status, options, outcome);
+    if (status == StepStatus::not_finite || !finite_end()) {
+      return fail(Ending::not_finite, 0, first_not_finite(x_end_),
+                  "f, its Jacobian or the state is not finite: take a smaller step, or a method with error control",
+                  outcome);
+    }
+    end_ = last ? limit : on_grid;
+    ++grid_steps_;
+    if (short_step) grid_ = limit, grid_steps_ = 0;
+    return accepted();
+  }
+
+  static constexpr int parts_of_run = 50;
+  static constexpr std::size_t rejects_before_settling = 4;
+  static constexpr double least_off = 1e-3;  // tolerances
+  static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0;
+
+  bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+    using std::abs, std::max, std::min, std::sqrt;
+    const Real epsilon = std::numeric_limits<Real>::epsilon();
+    Tolerance<Real> weights = tolerance(options);
+    const Real room = limit - begin_;
+    bool was_rejected = false, last_not_finite = false;
+    Real error = 0, h = next_;
+    if (const Real longest = longest_step(limit, options); abs(h) > longest) [[unlikely]]
+      h = forward_ * longest;
+    for (std::size_t rejects = 0;; ++rejects) {
+      // A step that would leave a crumb before the limit takes it along.
+      const bool last = forward_ * (Real(1.01) * h - room) >= 0;
+      if (last) [[unlikely]] {
+        attempt(room, options);
+      } else {
+        attempt(h, options);
+      }
+      weights = tolerance_of_step(h_, options);
+      const bool solved = detail::status_of<M>(work_) == StepStatus::done;
+      const Real square = solved ? error_square(weights) : std::numeric_limits<Real>::infinity();
+      // Neither true nor false of a number that is none: it is one where x_end_ is not finite.
+      const bool finite = square < std::numeric_limits<Real>::infinity();
+      if (finite && square <= 1) {
+        const Real factor = factor_after(static_cast<float>(square), was_rejected, weights, options);
+        if (last) [[unlikely]] {
+          // A step cut short by the limit says little about the next: never below what was planned.
+          next_ = forward_ * max(abs(h), abs(h_) * factor);
+          end_ = limit;
+          carried_ = 0;
+        } else {
+          next_ = h_ * factor;
+          // What the sum loses is carried to the next (W. Kahan): a million steps do not drift.
+          const Real wanted = h_ + carried_;
+          end_ = begin_ + wanted;
+          carried_ = wanted - (end_ - begin_);
+          if (end_ == begin_ && this->stands_still()) [[unlikely]]
+            return fail(Ending::step_too_small, sqrt(square), worst_component(weights), singular_hint, outcome);
+        }
+        if constexpr (watches_stiffness) {
+          if (statistics_.steps % Base::probe_every == 0 && statistics_.steps >= Base::first_probe) [[unlikely]]
+            this->probe_stiffness(M::derivative(work_), weights, options.max_steps);
+        }
+        return accepted();
+      }
+      ++statistics_.rejected;
+      was_rejected = true;
+      last_not_finite = detail::status_of<M>(work_) == StepStatus::not_finite || (solved && !finite);
+      error = sqrt(square);
+      h = h_ * factor_of_rejected(solved, finite, static_cast<float>(min(square, Real(1e30))), options);
+      if constexpr (requires { M::rejected(work_, h); }) M::rejected(work_, h);
+      if constexpr (HasMassDiagonal<System, X>) {
+        if (rejects == rejects_before_settling) settle_unknowns(weights);
+      }
+      if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
+          interrupted(options))
+        return give_up(rejects >= options.max_rejects_in_a_row, last_not_finite, error, weights, options, outcome);
+    }
+  }
+
+  // An unknown that the step before has left off its equation is an error that no h makes smaller: where a diode begins
+  // to conduct, an estimate may have missed it. The unknowns alone are solved for once more, from the state as it is.
+  void settle_unknowns(const Tolerance<Real>& weights) {
+    if (!has_mass<X>(system_)) return;
+    X settled = x_begin_;
+    const Consistency found = make_consistent(system_, begin_, settled, weights);
+    statistics_.evaluations += static_cast<std::size_t>(found.evaluations);
+    if (!found) return;
+    std::swap(x_begin_, settled);
+    for (std::size_t i = 0; i < dimension(settled); ++i) settled.data()[i] -= x_begin_.data()[i];
+    // A method begins anew where its start was off, and only there.
+    jumped_ = jumped_ || weighted_norm(settled, x_begin_, x_begin_, weights) > least_off;
+  }
+
+  // What f does at a later time shows in no step before it, if f is known to hang on the time (a model says so, a
+  // function alone does not): beside a solution at rest steps would grow until one of
+  // them takes a whole pulse of the input between its stages. A fiftieth of the run so far known is what somebody sees
+  // who looks at a plot of it.
+  Real longest_step(Real limit, const Options<X>& options) {
+    using std::abs, std::max, std::min;
+    if (!is_known_to_depend_on_time(system_)) return options.max_step;
+    reach_ = max(reach_, Real(abs(limit - origin_)));
+    return min(options.max_step, reach_ / Real(parts_of_run));
+  }
+
+  Real factor_after(float error_square, bool was_rejected, const Tolerance<Real>& weights, const Options<X>& options) {
+    using std::min;
+    float factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error_square);
+    if (was_rejected) factor = min(factor, 1.0F);
+    if constexpr (requires { M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights); }) {
+      const Real wanted = M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights);
+      return was_rejected ? min(wanted, Real(1)) : wanted;
+    } else {
+      return Real(factor);
+    }
+  }
+
+  Real factor_of_rejected(bool solved, bool finite, float error_square, const Options<X>& options) const {
+    if (!solved) return Real(0.25);
+    if (!finite) return Real(0.2);
+    return Real(ErrorHistory::reject(options.controller, detail::error_order_of<M>(work_), error_square));
+  }
+
+  bool give_up(bool too_many, bool not_finite, Real error, const Tolerance<Real>& weights, const Options<X>& options,
+               Outcome<Real>& outcome) {
+    if (interrupted(options)) return fail(Ending::interrupted, error, {}, {}, outcome);
+    if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done && !not_finite)
+      return fail_to_solve(status, options, outcome);
+    if (not_finite) return this->fail_not_finite(outcome);
+    return fail(too_many ? Ending::too_many_rejects : Ending::step_too_small, error, worst_component(weights),
+                singular_hint, outcome);
+  }
+
+  std::string worst_component(const Tolerance<Real>& weights) const {
+    using std::abs;
+    std::size_t worst = 0;
+    Real greatest = -1;
+    for (std::size_t i = 0; i < dimension(x_begin_); ++i) {
+      const Real part = abs(M::error_of(work_, h_, i)) / weights.scale_of_step(i, x_begin_.data()[i], x_end_.data()[i]);
+      if (part > greatest) greatest = part, worst = i;
+    }
+    return dimension(x_begin_) == 0 ? std::string{} : component_name(system_, worst);
+  }
+
+  typename M::template Workspace<X> work_;
+  Interpolant<X, M::dense_degree> interpolant_;
+  Real origin_, reach_{};   // the start of the run, and how far from it limits have been
+  bool began_anew_ = true;  // the last step: nothing was kept from before it
+};
+
+}  // namespace continuo

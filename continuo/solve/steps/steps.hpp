@@ -1,0 +1,263 @@
+// What there is of the steps of a run whatever the method: where the last one lies, what the next one needs, how a run
+// fails. The method's part is in step_control.hpp.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <continuo/methods/method.hpp>
+#include <continuo/methods/support/stiffness_watch.hpp>
+#include <continuo/solve/options.hpp>
+#include <continuo/solve/outcome.hpp>
+#include <continuo/solve/steps/check_input.hpp>
+#include <continuo/solve/steps/first_step.hpp>
+#include <continuo/solve/steps/pace.hpp>
+#include <continuo/system/mass.hpp>
+
+namespace continuo {
+
+/// The last accepted step and what the next one needs. Steps run from begin() to end(); the state at end() is where
+/// the next begins unless jump() says otherwise.
+template <class System, State X>
+class Steps {
+ public:
+  using Real = Scalar<X>;
+
+  virtual ~Steps() = default;
+  virtual std::unique_ptr<Steps> clone() const = 0;
+
+  virtual MethodNeeds needs(const X& x) const = 0;
+  /// One accepted step from end(), not beyond limit. False: failed, and outcome says how.
+  virtual bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) = 0;
+  /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant.
+  virtual std::span<const X> dense_output() = 0;
+  virtual void at_part(Real theta, X& x) = 0;
+  /// Whether the state between the ends of a step is to be found by a shorter step, not on the dense output: the
+  /// polynomial of an implicit method leaves the slow path of a stiff system.
+  virtual bool lands() const = 0;
+  /// The last step once more, from its beginning and of this size. False where its equations could not be solved: then
+  /// the step is to be taken again at another size.
+  virtual bool retake(Real size, const Options<X>& options) = 0;
+
+  System& system() { return system_; }
+  const System& system() const { return system_; }
+  /// Of the last step, whatever has jumped since.
+  Real begin() const { return step_begin_; }
+  Real end() const { return end_; }
+  Real size() const { return h_; }
+  const X& x_begin() const { return x_begin_; }
+  const X& x_end() const { return x_end_; }
+  const Statistics& statistics() const { return statistics_; }
+  Statistics& statistics() { return statistics_; }
+
+  /// The trajectory goes on from another state (or with another f): step size and history begin anew.
+  void jump(Real t, const X& x, const Options<X>& options) {
+    begin_ = end_ = grid_ = t;
+    carried_ = 0;
+    grid_steps_ = 0;
+    x_end_ = x;
+    jumped_ = true;
+    errors_ = {};
+    pace_.forget();
+    next_ = fixed(options) ? forward_ * options.step : Real(0);  // 0: to be estimated
+  }
+
+  /// x' at (t, x) by an evaluation of its own; 0 for the unknown of an algebraic equation.
+  const X& slope(Real t, const X& x) {
+    ++statistics_.evaluations;
+    evaluate(system_, t, x, slope_);
+    divide_by_mass(system_, slope_);
+    return slope_;
+  }
+
+  /// Whether stability held most of the steps of an explicit method (of a run of some length).
+  bool stiff() const { return probes_ >= least_probes && 2 * stiff_probes_ > probes_; }
+
+  /// The steps that a run to `limit` would need, where stiffness holds them and they are far too many; else 0.
+  Real endless(Real limit, const Options<X>& options) const {
+    if (!pace_.steady()) [[likely]]
+      return 0;
+    const Real steps = pace_.steps_for(limit - end_);
+    return steps > Real(Pace<Real>::far_beyond) * Real(static_cast<double>(options.max_steps)) ? steps : Real(0);
+  }
+
+  /// x at a time of the last step, on the dense output.
+  void at(Real t, X& x) {
+    if (t == end_) {
+      x = x_end_;
+    } else {
+      at_part((t - step_begin_) / h_, x);
+    }
+  }
+
+  static Tolerance<Real> tolerance(const Options<X>& options) {
+    return {options.rtol, options.atol, options.rtol_each.empty() ? nullptr : options.rtol_each.data(),
+            options.atol_each.empty() ? nullptr : options.atol_each.data()};
+  }
+
+ protected:
+  static constexpr std::size_t first_probe = 1000, probe_every = 50, least_probes = 10;
+  static constexpr const char* singular_hint =
+      "the solution may be singular here, or f jumps: declare an event at the jump, or loosen the tolerance";
+
+  Steps(System f, X x0, Real t0, Real forward)
+      : system_(std::move(f)),
+        forward_(forward),
+        begin_(t0),
+        end_(t0),
+        grid_(t0),
+        x_begin_(x0),
+        x_end_(x0),
+        scratch_(x0),
+        slope_(std::move(x0)) {}
+  Steps(const Steps&) = default;
+  Steps(Steps&&) = default;
+  Steps& operator=(const Steps&) = default;
+  Steps& operator=(Steps&&) = default;
+
+  static bool fixed(const Options<X>& options) { return options.step > 0; }
+  static bool interrupted(const Options<X>& options) {
+    return options.interrupt && options.interrupt->load(std::memory_order_relaxed);
+  }
+
+  // x_begin_ is the start of the step from here on; after a failure the start is all that stands.
+  bool fail(Ending ending, Real error, std::string component, std::string hint, Outcome<Real>& outcome) {
+    outcome = {ending, begin_, h_, error, std::move(component), {}, {}, std::move(hint)};
+    end_ = begin_;
+    x_end_ = x_begin_;
+    jumped_ = true;
+    return false;
+  }
+
+  // A step whose equations were not solved.
+  bool fail_to_solve(StepStatus status, const Options<X>& options, Outcome<Real>& outcome) {
+    const char* hint =
+        fixed(options)
+            ? "Newton's iteration does not converge: take a smaller step, or look for a jump in f and declare "
+              "an event there"
+            : "Newton's iteration does not converge, however small the step: the solution may be singular or "
+              "end here, or f jumps: declare an event at the jump";
+    if (status == StepStatus::singular_matrix)
+      hint =
+          "the matrix of the step's equations is singular: a system with algebraic equations may be of an index above "
+          "1, or an unknown appears in no equation";
+    return fail(Ending::nonlinear_solve_failed, 0, {}, hint, outcome);
+  }
+
+  // The equations of a step spread what is not finite over all components: which it comes from f knows.
+  bool fail_not_finite(Outcome<Real>& outcome) {
+    std::string component = first_not_finite(slope(begin_ + h_, x_begin_));
+    if (!component.empty())
+      return fail(Ending::not_finite, 0, component,
+                  "f is not finite just beyond this state: look for a division by zero, a root or logarithm of a "
+                  "negative number, or a solution that grows without bound",
+                  outcome);
+    return fail(
+        Ending::not_finite, 0, {},
+        "f is finite at this state, but it, or its Jacobian, is not around it: look for an infinite slope, such "
+        "as that of a root at 0, or a solution that grows without bound",
+        outcome);
+  }
+
+  /// For a step that did not move t, and only some part of what is carried: a few may be, at the start of a fast
+  /// motion.
+  bool stands_still() {
+    constexpr std::size_t most = 1000;
+    if (stood_at_ != begin_) stood_at_ = begin_, standing_ = 0;
+    return ++standing_ >= most;
+  }
+
+  bool finite_end() const {
+    Real sum = 0;  // one NaN or infinity makes 0 * sum NaN
+    for (std::size_t i = 0; i < dimension(x_end_); ++i) sum += Real(0) * x_end_.data()[i];
+    return sum == Real(0);
+  }
+
+  std::string first_not_finite(const X& x) const {
+    for (std::size_t i = 0; i < dimension(x); ++i)
+      if (!(Real(0) * x.data()[i] == Real(0))) return component_name(system_, i);
+    return {};
+  }
+
+  bool accepted() {
+    jumped_ = false;
+    ++statistics_.steps;
+    return true;
+  }
+
+  /// The first h of an adaptive run, for a method of this order.
+  bool estimate_first(int order, Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+    using std::abs, std::min;
+    const Real longest = min(abs(limit - begin_), options.max_step);
+    if (options.first_step > 0) {
+      next_ = forward_ * min(options.first_step, longest);
+      return true;
+    }
+    slope(begin_, x_begin_);
+    if (const std::string component = first_not_finite(slope_); !component.empty())
+      return fail(Ending::not_finite, 0, component,
+                  "f is not finite at this state: look for a division by zero, a root "
+                  "or logarithm of a negative number",
+                  outcome);
+    next_ = forward_ * first_step(system_, begin_, x_begin_, slope_, order, forward_, longest, tolerance(options),
+                                  scratch_, x_end_);
+    ++statistics_.evaluations;
+    return true;
+  }
+
+  // Kept out of line: the loop of short steps has no room for it.
+  [[gnu::noinline]] void probe_stiffness(const X& slope_begin, const Tolerance<Real>& weights, std::size_t max_steps) {
+    if (!stiffness_) stiffness_.emplace(x_begin_);
+    stiffness_->probe(system_, begin_, x_begin_, slope_begin, weights);
+    int evaluations = 1;
+    const bool held = stiffness_->holds(system_, begin_, x_begin_, slope_begin, h_, weights, evaluations);
+    statistics_.evaluations += static_cast<std::size_t>(evaluations);
+    ++probes_;
+    if (held) ++stiff_probes_;
+    held ? pace_.mark(statistics_.steps, max_steps, begin_) : pace_.forget();
+  }
+
+  System system_;
+  Real forward_, begin_, end_, h_{}, next_{};  // begin_: of the next step, once there was a jump
+  Real step_begin_ = begin_;
+  Real carried_{};  // of adaptive steps: what end_ lacks
+  Real grid_;       // fixed steps are counted from here
+  std::size_t grid_steps_ = 0, standing_ = 0;
+  Real stood_at_{};  // where the last steps stood, while t did not move
+  bool jumped_ = true, interpolated_ = false;
+  ErrorHistory errors_;
+  X x_begin_, x_end_, scratch_, slope_;
+  Statistics statistics_;
+  std::optional<StiffnessWatch<X>> stiffness_;
+  std::size_t probes_ = 0, stiff_probes_ = 0;
+  Pace<Real> pace_;
+};
+
+/// Steps as a value: a copy is a checkpoint.
+template <class System, State X>
+class StepsValue {
+ public:
+  explicit StepsValue(std::unique_ptr<Steps<System, X>> steps) : steps_(std::move(steps)) {}
+  StepsValue(const StepsValue& other) : steps_(other.steps_->clone()) {}
+  StepsValue(StepsValue&&) noexcept = default;
+  StepsValue& operator=(const StepsValue& other) {
+    steps_ = other.steps_->clone();
+    return *this;
+  }
+  StepsValue& operator=(StepsValue&&) noexcept = default;
+  ~StepsValue() = default;
+
+  Steps<System, X>& operator*() { return *steps_; }
+  const Steps<System, X>& operator*() const { return *steps_; }
+
+ private:
+  std::unique_ptr<Steps<System, X>> steps_;
+};
+
+}  // namespace continuo

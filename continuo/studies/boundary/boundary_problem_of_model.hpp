@@ -1,0 +1,86 @@
+// The boundary-value problem that a model's conditions at several times pose. Internal to the studies of such models.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/program/evaluation.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+#include <continuo/studies/boundary_value.hpp>
+#include <continuo/studies/support/measurements.hpp>
+
+namespace continuo::studies::detail {
+
+/// The conditions as one function of x at the times that they name.
+class BoundaryConditions {
+ public:
+  BoundaryConditions(const model::ModelProgram& program, const model::Plan& plan);
+
+  const std::vector<double>& times() const { return times_; }
+  /// Which of `times` this setting of a condition is.
+  std::size_t place_of(const model::Setting& setting) const;
+
+  void operator()(Values x, std::span<double> residuals);
+
+  /// Which entries of the Jacobian may differ from zero.
+  std::vector<MatrixPlace> places() const;
+
+  /// The values that state `i` is given without reference to others: times and values.
+  std::vector<std::pair<double, double>> known(std::size_t state);
+
+ private:
+  struct SampleAt {
+    std::uint32_t variable;
+    std::size_t time;  // which of times_
+    model::NodeId of;
+    model::Evaluation evaluation;
+  };
+  struct Condition {
+    std::size_t column = 0;
+    model::Evaluation value;
+    std::vector<SampleAt> samples;
+  };
+
+  double value(std::size_t i, Values x);
+  double time_of(const model::Setting& setting) const;
+
+  const model::Model& model_;
+  std::size_t n_;
+  double from_, to_;
+  std::vector<double> variables_, times_;
+  std::vector<Condition> conditions_;
+};
+
+/// Ready to be solved.
+struct PosedBoundary {
+  std::shared_ptr<const model::ModelProgram> program;
+  model::Plan plan;
+  std::shared_ptr<BoundaryConditions> conditions;
+  BoundaryValueProblem problem;
+  BoundaryValueOptions options;
+};
+/// Nothing where the model does not go together with such conditions, or with the experiment; `problems` says why.
+std::optional<PosedBoundary> pose_boundary(const std::shared_ptr<const model::ModelProgram>& program,
+                                           const model::Experiment& experiment,
+                                           std::vector<model::Diagnostic>& problems);
+
+/// How many guesses the model has: at least one.
+std::size_t guess_count(const model::Model& model);
+/// The k-th of them: what the model guesses, else straight lines between the values of the conditions. It refers to
+/// `posed`.
+BoundaryValueGuess guess_of(const PosedBoundary& posed, std::size_t k);
+/// From the columns of a table; states that it does not have as in the first guess, derivatives as slopes. E349 where
+/// it has none of them, or is outside of the run.
+std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const Measurements& table,
+                                             std::vector<model::Diagnostic>& problems);
+/// The solution that it leads to.
+BoundaryValueSolution solve_from_guess(const PosedBoundary& posed, std::size_t k);
+/// Why there is none: E307, E322.
+model::Diagnostic boundary_failure(const model::Model& model, const BoundaryValueSolution& solution);
+
+}  // namespace continuo::studies::detail

@@ -1,0 +1,364 @@
+// continuo/studies/equilibria/continuation.cpp
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <continuo/studies/continuation.hpp>
+#include <continuo/studies/equilibria/branch_point.hpp>
+#include <continuo/studies/equilibria/equilibrium_branch.hpp>
+#include <continuo/studies/equilibria/normal_form.hpp>
+
+namespace continuo::studies {
+
+namespace {
+
+using Vector = std::vector<double>;
+
+constexpr double near_the_axis = 1e-5;  // of a pair, in parts of its frequency
+constexpr double no_slope = 1e-5;       // of a direction of length 1: so little is no change of the constant
+
+// In sizes at the start; of the constant in parts of its range.
+constexpr double far_away = 1e4, large = 4, standstill = 1e-3;
+
+using Place = detail::EquilibriumPlace;
+
+class Follower {
+ public:
+  Follower(const ParametricSystem& system, const Vector& x, const ContinuationOptions& options)
+      : system_(system),
+        options_(options),
+        steps_(system, x, options),
+        n_(system.size),
+        range_(options.high - options.low) {}
+
+  Branch operator()(const Vector& x) {
+    Branch branch;
+    const Vector z = steps_.scaled(x, system_.constants[options_.constant]);
+    const auto start = steps_.corrected(z, z, Vector(n_ + 1, 0.0), true);
+    if (!start) {
+      branch.message = "there is no equilibrium near the start";
+      return branch;
+    }
+    const Place first = steps_.described(*start, {});
+    branch.points.push_back(first.point);
+    return joined(followed(first, -1), std::move(branch), followed(first, 1));
+  }
+
+  /// The other branch through a crossing. Next to it alone are the equations good enough to go on from.
+  Branch through(const BifurcationPoint& from) {
+    Branch branch;
+    Vector z = steps_.scaled(from.at.x, from.at.constant), along(from.other);
+    for (std::size_t i = 0; i <= n_; ++i) along[i] /= steps_.unit(i);
+    detail::normalize(along);
+    branch.points.push_back(from.at);
+    Branch back = beside(z, along, -1), ahead = beside(z, along, 1);
+    return joined(std::move(back), std::move(branch), std::move(ahead));
+  }
+
+  /// Whether the branch passes through this place: where it crosses the plane through the place that is upright on the
+  /// way between its two neighbours.
+  bool passes(const Branch& branch, const Vector& x, double constant) {
+    constexpr double same = 1e-6;
+    const Vector z = steps_.scaled(x, constant);
+    const auto apart = [&](const Vector& a) {
+      double sum = 0;
+      for (std::size_t i = 0; i <= n_; ++i) sum += (a[i] - z[i]) * (a[i] - z[i]);
+      return std::sqrt(sum);
+    };
+    for (std::size_t k = 1; k < branch.points.size(); ++k) {
+      const Vector a = steps_.scaled(branch.points[k - 1].x, branch.points[k - 1].constant),
+                   b = steps_.scaled(branch.points[k].x, branch.points[k].constant);
+      if (apart(a) < same || apart(b) < same) return true;
+      Vector way(n_ + 1), guess(n_ + 1);
+      double length = 0, part = 0;
+      for (std::size_t i = 0; i <= n_; ++i) way[i] = b[i] - a[i], length += way[i] * way[i];
+      for (std::size_t i = 0; i <= n_; ++i) part += way[i] * (z[i] - a[i]) / length;
+      if (!(part > -0.01 && part < 1.01)) continue;
+      for (std::size_t i = 0; i <= n_; ++i) guess[i] = a[i] + part * way[i];
+      if (apart(guess) > std::sqrt(length)) continue;
+      detail::normalize(way);
+      const auto there = steps_.corrected(guess, guess, way, false);
+      if (there && apart(*there) < same) return true;
+    }
+    return false;
+  }
+
+ private:
+  static Branch joined(Branch back, Branch middle, Branch ahead) {
+    std::ranges::reverse(back.points);
+    std::ranges::reverse(back.bifurcations);
+    for (BifurcationPoint& point : back.bifurcations) point.next = back.points.size() - point.next;
+    const std::size_t before = back.points.size() + middle.points.size();
+    for (BifurcationPoint& point : ahead.bifurcations) point.next += before;
+    Branch branch = std::move(back);
+    for (Branch* part : {&middle, &ahead}) {
+      branch.points.insert(branch.points.end(), part->points.begin(), part->points.end());
+      branch.bifurcations.insert(branch.bifurcations.end(), part->bifurcations.begin(), part->bifurcations.end());
+    }
+    branch.complete = branch.complete && ahead.complete;
+    if (branch.message.empty()) branch.message = ahead.message;
+    return branch;
+  }
+  Branch beside(const Vector& z, const Vector& along, double direction) {
+    for (double step = options_.first_step; step > options_.least_step; step /= 2) {
+      Vector guess(z);
+      for (std::size_t i = 0; i <= n_; ++i) guess[i] += direction * step * along[i];
+      const auto found = steps_.corrected(guess, guess, along, false);
+      if (!found) continue;
+      double moved = 0;
+      for (std::size_t i = 0; i <= n_; ++i) moved += std::pow((*found)[i] - guess[i], 2);
+      if (std::sqrt(moved) > step / 2) continue;  // it leapt to elsewhere
+      Branch branch;
+      const Place place = steps_.described(*found, along);
+      if (!inside(place.z)) {
+        branch.complete = true;
+        return branch;
+      }
+      Branch rest = followed(place, direction);
+      branch.points.push_back(place.point);
+      Branch none;
+      none.complete = true;
+      return joined(std::move(none), std::move(branch), std::move(rest));
+    }
+    Branch branch;
+    branch.message = "the branch could not be followed from where it crosses the other";
+    return branch;
+  }
+  bool inside(const Vector& z) const {
+    return steps_.constant_of(z) >= options_.low && steps_.constant_of(z) <= options_.high;
+  }
+
+  Branch followed(const Place& from, double direction) {
+    Branch branch;
+    Place here = from;
+    for (double& part : here.tangent) part *= direction;
+    here.direction_sign *= direction;
+    const Vector origin = here.z;
+    double step = options_.first_step, reached = 1, reached_at = origin[n_];
+    while (branch.points.size() < options_.most_points) {
+      if (options_.interrupt && options_.interrupt->load()) {
+        branch.message = "interrupted";
+        return branch;
+      }
+      // States that grow far beyond their size at the start are measured by what they are now; where they double and
+      // the constant keeps still there is nothing more to see.
+      double reach = 1;
+      for (std::size_t i = 0; i < n_; ++i) reach = std::max(reach, std::abs(here.z[i]));
+      if (reach >= 2 * reached) {
+        const bool still = std::abs(here.z[n_] - reached_at) < standstill;
+        if (reach > far_away || (still && reached >= large)) {
+          branch.message = "it goes off to infinity";
+          return branch;
+        }
+        reached = reach;
+        reached_at = here.z[n_];
+      }
+      auto next = steps_.stepped(here, step * reach);
+      if (!next || turns(here, *next)) {
+        step /= 2;
+        if (step > options_.least_step) continue;
+        branch.message = "the branch could not be followed further";
+        return branch;
+      }
+      mark(branch, here, *next, step * reach);
+      const Place before = std::exchange(here, std::move(*next));
+      if (inside(here.z)) {
+        branch.points.push_back(here.point);
+      } else if (auto last = at_bound(before.z, here.z)) {
+        branch.points.push_back(std::move(last->point));
+      }
+      report(here.point.constant);
+      if (!inside(here.z) || (branch.points.size() > 20 && near(here.z, origin, step))) {
+        branch.complete = true;
+        return branch;
+      }
+      step = std::min(1.3 * step, options_.largest_step);
+    }
+    branch.message = "too many points";
+    return branch;
+  }
+  /// Between a place inside of the range and one outside.
+  std::optional<Place> at_bound(const Vector& a, const Vector& b) {
+    const double bound = std::clamp(steps_.constant_of(b), options_.low, options_.high) / range_;
+    if (a[n_] == b[n_] || a[n_] == bound) return std::nullopt;
+    const double part = (bound - a[n_]) / (b[n_] - a[n_]);
+    Vector guess(a);
+    for (std::size_t i = 0; i < n_; ++i) guess[i] += part * (b[i] - a[i]);
+    guess[n_] = bound;
+    auto z = steps_.corrected(guess, guess, {}, true);
+    return z ? std::optional(steps_.described(std::move(*z), {})) : std::nullopt;
+  }
+  void report(double constant) {
+    low_ = std::min(low_, constant);
+    high_ = std::max(high_, constant);
+    if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
+  }
+  /// By more than 25 degrees: the step was too long to be sure of the branch.
+  static bool turns(const Place& a, const Place& b) {
+    double cosine = 0;
+    for (std::size_t i = 0; i < a.tangent.size(); ++i) cosine += a.tangent[i] * b.tangent[i];
+    return cosine < 0.906;
+  }
+  static bool near(const Vector& a, const Vector& b, double step) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(sum) < step / 2;
+  }
+
+  /// What lies between two neighbours, narrowed down to where its test is zero.
+  void mark(Branch& branch, const Place& a, const Place& b, double step) {
+    double at = 0;  // how far from a what was located last is
+    const auto located = [&](auto&& test) {
+      double low = 0, high = step;
+      std::optional<Place> best;
+      const bool positive = test(a) > 0;
+      for (int k = 0; k < 60; ++k) {
+        const double middle = (low + high) / 2;
+        auto place = steps_.stepped(a, middle);
+        if (!place) break;
+        ((test(*place) > 0) == positive ? low : high) = middle;
+        best = std::move(place);
+        at = middle;
+      }
+      return best;
+    };
+    const auto add = [&](Bifurcation kind, std::optional<Place> place, double frequency) {
+      if (!place || !inside(place->z)) return;
+      BifurcationPoint point{kind, std::move(place->point), frequency, branch.points.size()};
+      Vector p(system_.constants);
+      p[options_.constant] = point.at.constant;
+      if (kind == Bifurcation::fold) point.coefficient = fold_coefficient(system_, point.at.x, p, options_.t);
+      if (kind == Bifurcation::hopf)
+        if (const auto found =
+                first_lyapunov_coefficient(system_, point.at.x, p, 2 * std::numbers::pi * frequency, options_.t))
+          point.coefficient = std::abs(found->value) <= found->rounding ? 0 : found->value;
+      branch.bifurcations.push_back(std::move(point));
+    };
+    const bool crosses = a.direction_sign * b.direction_sign < 0;  // a pitchfork also turns round
+    if (a.tangent[n_] * b.tangent[n_] < 0 && !crosses)
+      add(Bifurcation::fold, located([&](const Place& p) { return p.tangent[n_]; }), 0);
+    if (crosses) add_crossing(branch, located([](const Place& p) { return p.direction_sign; }));
+    if (a.hopf_test * b.hopf_test < 0)
+      if (const auto near = located([](const Place& p) { return p.hopf_test; }))
+        if (auto place = hopf_point_near(a, *near, at, step))
+          add(Bifurcation::hopf, std::move(place->first), place->second / (2 * std::numbers::pi));
+  }
+
+  /// The pair that passes the axis near a place where the test changes its sign, located, and its angular frequency.
+  /// Other pairs may lie on the axis all along, to rounding: of the one that passes the real part is more than
+  /// rounding, and of opposite sign, at both ends of some way round the place. Nothing where two real eigenvalues of
+  /// opposite sign are what vanishes, or where a pair comes to the axis and stays.
+  std::optional<std::pair<Place, double>> hopf_point_near(const Place& a, const Place& place, double at, double step) {
+    for (const std::complex<double>& pair : place.point.eigenvalues) {
+      const double near =
+          std::max(near_the_axis * pair.imag(), 10 * detail::rounding_of_sum * size_of(place.point.eigenvalues));
+      if (!(pair.imag() > 0) || std::abs(pair.real()) > near) continue;
+      for (double wide = 1e-9 * step; wide < step; wide *= 10)
+        if (auto found = passing(a, pair.imag(), at - wide, at + wide)) return found;
+    }
+    return std::nullopt;
+  }
+  /// Bisected between the two, if the pair nearest to i times the frequency passes the axis there.
+  std::optional<std::pair<Place, double>> passing(const Place& a, double frequency, double low, double high) {
+    const auto pair_at = [&](const Place& p) {
+      std::complex<double> nearest = std::numeric_limits<double>::infinity();
+      for (const std::complex<double>& value : p.point.eigenvalues)
+        if (value.imag() > 0 && std::abs(value - std::complex<double>(0, frequency)) <
+                                    std::abs(nearest - std::complex<double>(0, frequency)))
+          nearest = value;
+      return nearest;
+    };
+    const auto before = steps_.stepped(a, low), after = steps_.stepped(a, high);
+    if (!before || !after) return std::nullopt;
+    const double first = pair_at(*before).real(), last = pair_at(*after).real();
+    const double rounding = detail::rounding_of_sum * size_of(after->point.eigenvalues);
+    if (!(first * last < 0) || std::min(std::abs(first), std::abs(last)) <= rounding) return std::nullopt;
+    std::optional<std::pair<Place, double>> best;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = (low + high) / 2;
+      auto place = steps_.stepped(a, middle);
+      if (!place) break;
+      const std::complex<double> pair = pair_at(*place);
+      (pair.real() * first > 0 ? low : high) = middle;
+      best = {std::move(*place), pair.imag()};
+    }
+    return best;
+  }
+  static double size_of(const std::vector<std::complex<double>>& values) {
+    double size = 0;
+    for (const auto& value : values) size = std::max(size, std::abs(value));
+    return size;
+  }
+
+  /// Whether a branch that leaves a place upright turns to either side. It does not where all of it is at rest for one
+  /// value of the constant.
+  bool bends(const Vector& z, const Vector& along) {
+    for (const double step : {0.1, -0.1, 0.01, -0.01}) {
+      Vector guess(z);
+      for (std::size_t i = 0; i <= n_; ++i) guess[i] += step * along[i];
+      const auto there = steps_.corrected(guess, guess, along, false);
+      if (there) return std::abs((*there)[n_] - z[n_]) > 1e-10;
+    }
+    return true;
+  }
+
+  void add_crossing(Branch& branch, const std::optional<Place>& near_it) {
+    if (!near_it) return;
+    const detail::CrossingEquations equations{.n = n_,
+                                              .f = [this](const Vector& z) { return steps_.f(z); },
+                                              .jacobian = [this](const Vector& z) { return steps_.jacobian(z); }};
+    const auto crossing = detail::find_crossing(equations, near_it->z, near_it->tangent);
+    BifurcationPoint point{Bifurcation::crossing, near_it->point, 0, branch.points.size()};
+    if (crossing) {
+      Place place{.z = crossing->z, .tangent = {}, .point = {}};
+      steps_.describe(place);
+      point.at = std::move(place.point);
+      const bool own_upright = std::abs(crossing->own[n_]) < no_slope,
+                 upright = own_upright || std::abs(crossing->other[n_]) < no_slope;
+      if (!upright) point.kind = Bifurcation::transcritical;
+      if (upright && bends(crossing->z, own_upright ? crossing->own : crossing->other))
+        point.kind = Bifurcation::pitchfork;
+      point.other = crossing->other;
+      for (std::size_t i = 0; i <= n_; ++i) point.other[i] *= steps_.unit(i);
+    }
+    if (point.at.constant >= options_.low && point.at.constant <= options_.high)
+      branch.bifurcations.push_back(std::move(point));
+  }
+
+  const ParametricSystem& system_;
+  const ContinuationOptions& options_;
+  detail::EquilibriumSteps steps_;
+  std::size_t n_;
+  double range_;
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // what has been covered
+};
+
+}  // namespace
+
+std::string_view to_string(Bifurcation kind) {
+  constexpr std::array<std::string_view, 5> names{"fold", "Hopf point", "transcritical point", "pitchfork",
+                                                  "crossing of branches"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+Branch continue_equilibrium(const ParametricSystem& system, std::vector<double> x, const ContinuationOptions& options) {
+  return Follower(system, x, options)(x);
+}
+Branch continue_equilibrium(const ParametricSystem& system, const BifurcationPoint& from,
+                            const ContinuationOptions& options) {
+  if (!from.other.empty()) return Follower(system, from.at.x, options).through(from);
+  Branch branch;
+  branch.message = "no other branch is known there";
+  return branch;
+}
+
+bool passes_through(const ParametricSystem& system, const Branch& branch, const BranchStart& place,
+                    const ContinuationOptions& options) {
+  return Follower(system, place.x, options).passes(branch, place.x, place.constant);
+}
+
+}  // namespace continuo::studies

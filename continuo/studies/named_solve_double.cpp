@@ -1,8 +1,0 @@
-#include <continuo/studies/named_solve_body.hpp>
-
-namespace continuo::studies {
-
-template Solution<std::vector<double>> named_solve(std::string_view, const NamedSystem<double>&, std::vector<double>,
-                                                   Interval<double>, const Options<std::vector<double>>&);
-
-}  // namespace continuo::studies

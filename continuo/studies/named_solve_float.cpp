@@ -1,8 +1,0 @@
-#include <continuo/studies/named_solve_body.hpp>
-
-namespace continuo::studies {
-
-template Solution<std::vector<float>> named_solve(std::string_view, const NamedSystem<float>&, std::vector<float>,
-                                                  Interval<float>, const Options<std::vector<float>>&);
-
-}  // namespace continuo::studies

@@ -1,0 +1,54 @@
+// Along a branch of closed orbits through events, from its start to where it ends. Internal to hybrid_continuation.
+#pragma once
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <continuo/studies/orbits/hybrid/hybrid_branch.hpp>
+
+namespace continuo::studies::detail {
+
+class HybridFollower {
+  using Place = HybridPlace;
+
+ public:
+  HybridFollower(const HybridContinuationOptions& options, std::string name, HybridBranchSteps& steps)
+      : options_(options), name_(std::move(name)), steps_(steps), range_(options.high - options.low) {}
+
+  OrbitBranch from_orbit(const model::Instant& start, double period, double constant);
+  OrbitBranch from_mark(const OrbitMark& start);
+
+ private:
+  OrbitBranch both_ways(Place first);
+  OrbitBranchEnd followed(OrbitBranch& branch, const Place& from, double direction);
+  std::optional<Place> beside(const model::Instant& start, const Eigen::VectorXd& z, const Eigen::VectorXd& other,
+                              double direction);
+  /// Whether the orbits go on as they were, though other events pass: some do nothing.
+  static bool goes_on(const Place& a, const Place& b);
+  OrbitBranchEnd lost(const Place& here) const;
+  OrbitBranchEnd at_bound(OrbitBranch& branch, const Place& a, const Place& b);
+  std::optional<OrbitBranchEnd> turns_become_one(OrbitBranch& branch, const Place& here, const Place& next,
+                                                 double step);
+  /// What the last points say: the period grows without bound, or neighbours part too fast to go on.
+  std::optional<OrbitBranchEnd> ending_of(std::span<const OrbitPoint> way, const Place& here);
+  bool comes_back(const Place& here, const Place& origin, double step) const;
+  /// What lies between two neighbours.
+  void mark(OrbitBranch& branch, const Place& a, const Place& b, double step);
+  /// `at`: so far from `before` the place was found.
+  void add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, Place place, double at);
+  bool is_interrupted() const { return options_.interrupt && options_.interrupt->load(); }
+  bool inside(const Place& place) const {
+    return place.point.constant >= options_.low && place.point.constant <= options_.high;
+  }
+  void report(double constant);
+
+  const HybridContinuationOptions& options_;
+  std::string name_;
+  HybridBranchSteps& steps_;
+  double range_;
+  bool doubled_ = false;                                                 // from a period doubling: twice round
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // the part of the range that was covered
+};
+
+}  // namespace continuo::studies::detail

@@ -1,0 +1,109 @@
+// What happens in a model, and what it does to the sensitivities: its events, and the jumps of its equations. Internal
+// to sensitivity.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <continuo/simulation/program/model_events.hpp>
+#include <continuo/studies/sensitivity/sensitive_system.hpp>
+
+namespace continuo::studies::detail {
+
+/// An event as it happened.
+struct SensitiveHappening {
+  std::size_t event;  // of the model, in the order of the text
+  double t;
+  std::vector<double> time_moves{};  // dt/dp
+};
+
+class SensitiveEvents {
+ public:
+  using X = SensitiveSystem::X;
+
+  SensitiveEvents(const SensitiveProgram& program, std::span<const double> variables, double from, double length);
+
+  std::size_t size() const { return plain_.size(); }
+  std::string_view name(std::size_t i) const { return plain_.name(i); }
+  Direction direction(std::size_t i) const { return plain_.direction(i); }
+  bool is_guard(std::size_t i) const { return plain_.is_guard(i); }
+  bool can_assign(std::size_t i) const { return plain_.can_assign(i); }
+  bool is_condition(std::size_t i) const { return plain_.is_condition(i); }
+  bool renews_guard(std::size_t i) const { return plain_.renews_guard(i); }
+  bool active(const SensitiveSystem& system, std::size_t i) const { return plain_.active(system.plain(), i); }
+  double next_time(std::size_t i, double t, bool inclusive) const { return plain_.next_time(i, t, inclusive); }
+  void guards(SensitiveSystem& system, double t, const X& x, std::span<double> values);
+  std::optional<Carried> carried(const SensitiveSystem& system, std::size_t i, double t, const X& x, double forward);
+  // The guards over a step, enclosed as in a run of the model alone.
+  void take_step(const SensitiveSystem& system, double begin, double size, std::span<const X> coefficients);
+  bool is_enclosed(std::size_t i) const { return plain_.is_enclosed(i); }
+  void enclose_all(double from, double to) { plain_.enclose_all(from, to); }
+  const Enclosure<double>& whole(std::size_t i) const { return plain_.whole(i); }
+  EnclosureWithSlope<double> enclosure(std::size_t i, double from, double to) { return plain_.enclosure(i, from, to); }
+  Enclosure<double> value_enclosure(std::size_t i, double at) { return plain_.value_enclosure(i, at); }
+
+  EventResponse fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x);
+  /// The run goes on from t: what was scheduled for that very instant has happened.
+  void resume(double t, std::span<const std::size_t> stops) { plain_.resume(t, stops); }
+
+  std::span<const SensitiveHappening> happened() const { return happened_; }
+  bool is_declared(std::size_t i) const { return plain_.is_declared(i); }
+  /// Why the motion has no derivative; empty where it has.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  struct Jump;
+  /// A surface of the equations as it was before it was crossed, and whether the motion slid along it.
+  struct Surface {
+    const Variation* variation;
+    std::vector<double> values;
+    bool slid;
+  };
+  /// What an event has done, and how its time moves.
+  struct Change {
+    X before, after;
+    std::vector<double> moves;
+  };
+  /// What is known of an event before its actions: what its tape gives, x', and which event set it off, if any.
+  struct Acting {
+    const Change* set_off_by;
+    std::vector<double> values;
+    X rates;
+  };
+  const Change* set_off_by(SensitiveSystem& system, std::size_t fired, double t);
+  std::vector<double> time_moves(std::size_t event, std::span<const double> values, double t,
+                                 std::span<const double> rates);
+  std::vector<double> crossing_moves(std::string_view name, const Variation& guard, std::span<const double> values,
+                                     std::span<const double> rates);
+  void cross_surface(std::size_t fired, const Surface& surface, SensitiveSystem& system, double t, const X& rates,
+                     X& now);
+  void act(std::size_t fired, SensitiveSystem& system, double t, const Acting& acting, X& now);
+  void perform(const std::vector<SensitiveAction>& actions, std::span<const double> values,
+               std::span<const double> rates, std::span<const double> moves, Jump& jump) const;
+
+  double length_;  // of the run
+  model::ModelEvents plain_;
+  std::size_t undeclared_ = 0;           // steps of inputs, then surfaces of jumps, come before the text's events
+  std::vector<std::size_t> first_jump_;  // by mode
+  std::size_t n_, count_;
+  struct Schedule {
+    double first = 0, period = 0;
+    std::vector<double> first_moves{}, period_moves{};
+  };
+  std::vector<std::optional<Schedule>> schedules_;  // by event of the model
+  const SensitiveProgram* program_;
+  X x_;  // of the model alone
+  std::vector<X> coefficients_;
+  std::vector<SensitiveHappening> happened_;
+  double instant_t_;  // of what follows
+  std::vector<Change> instant_{};
+  std::vector<double> moves_{};  // of the event that is firing
+  std::string problem_;
+};
+
+static_assert(EventSource<SensitiveEvents, SensitiveSystem, SensitiveSystem::X>);
+
+}  // namespace continuo::studies::detail

@@ -1,0 +1,184 @@
+// continuo/symbolic/graph/expression.cpp
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include <continuo/symbolic/graph/expression.hpp>
+
+namespace continuo::model {
+
+namespace {
+
+constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
+
+std::uint64_t mix(std::uint64_t h, std::uint64_t value) {
+  h ^= value + 0x9e3779b97f4a7c15u + (h << 6) + (h >> 2);
+  return h * 0xff51afd7ed558ccdu;  // multiplier of MurmurHash3's finaliser (A. Appleby, public domain)
+}
+
+std::uint64_t hash(const Node& node) {
+  std::uint64_t h = mix(static_cast<std::uint64_t>(node.op), node.number);
+  h = mix(h, node.a.index);
+  h = mix(h, (std::uint64_t{node.b.index} << 32) | node.c.index);
+  h = mix(h, std::bit_cast<std::uint64_t>(node.value));
+  return h ^ (h >> 29);
+}
+
+bool same(const Node& p, const Node& q) {
+  return p.op == q.op && p.number == q.number && p.a == q.a && p.b == q.b && p.c == q.c &&
+         std::bit_cast<std::uint64_t>(p.value) == std::bit_cast<std::uint64_t>(q.value);
+}
+
+}  // namespace
+
+Graph::Graph() : slots_(64, empty) {}
+
+void Graph::grow() {
+  slots_.assign(2 * slots_.size(), empty);
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+    std::size_t slot = hash(nodes_[i]) & (slots_.size() - 1);
+    while (slots_[slot] != empty) slot = (slot + 1) & (slots_.size() - 1);
+    slots_[slot] = i;
+  }
+}
+
+NodeId Graph::intern(const Node& node) {
+  if (2 * nodes_.size() >= slots_.size()) grow();
+  std::size_t slot = hash(node) & (slots_.size() - 1);
+  for (; slots_[slot] != empty; slot = (slot + 1) & (slots_.size() - 1)) {
+    if (same(nodes_[slots_[slot]], node)) return NodeId{slots_[slot]};
+  }
+  slots_[slot] = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back(node);
+  return NodeId{slots_[slot]};
+}
+
+NodeId Graph::constant(double value) {
+  if (value == 0) value = 0;  // one zero: -0 would differ only after a division by it
+  return intern({.op = Op::constant, .finite = std::isfinite(value), .value = value});
+}
+
+NodeId Graph::variable(std::uint32_t number) {
+  return intern({.op = Op::variable, .finite = true, .number = number});
+}
+
+NodeId Graph::interpolate(std::uint32_t table, NodeId x) {
+  return intern({.op = Op::interpolate, .finite = (*this)[x].finite, .corners = true, .number = table, .a = x});
+}
+
+NodeId Graph::interpolate_slope(std::uint32_t table, NodeId x) {
+  return intern({.op = Op::interpolate_slope, .finite = (*this)[x].finite, .corners = true, .number = table, .a = x});
+}
+
+std::optional<double> Graph::value(NodeId id) const {
+  const Node& node = (*this)[id];
+  return node.op == Op::constant ? std::optional(node.value) : std::nullopt;
+}
+
+bool Graph::is(NodeId id, double value) const {
+  const Node& node = (*this)[id];
+  return node.op == Op::constant && node.value == value;
+}
+
+std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots) {
+  std::uint32_t top = 0;
+  for (const NodeId root : roots) top = std::max(top, root.index + 1);
+  std::vector<bool> seen(top, false);
+  std::vector<NodeId> found;
+  const auto visit = [&](NodeId id) {
+    if (!seen[id.index]) found.push_back(id);
+    seen[id.index] = true;
+  };
+  std::ranges::for_each(roots, visit);
+  for (std::size_t next = 0; next < found.size(); ++next) std::ranges::for_each(arguments(graph[found[next]]), visit);
+  std::ranges::sort(found);
+  return found;
+}
+
+bool depends_on(const Graph& graph, NodeId node, std::uint32_t variable) {
+  return std::ranges::any_of(reachable(graph, {&node, 1}),
+                             [&](NodeId id) { return graph[id].op == Op::variable && graph[id].number == variable; });
+}
+
+namespace {
+
+std::vector<std::uint32_t> numbers_of(const Graph& graph, std::span<const NodeId> roots, auto&& wanted) {
+  std::vector<std::uint32_t> numbers;
+  for (const NodeId id : reachable(graph, roots)) {
+    if (wanted(graph[id].op)) numbers.push_back(graph[id].number);
+  }
+  std::ranges::sort(numbers);
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> variables_of(const Graph& graph, std::span<const NodeId> nodes) {
+  return numbers_of(graph, nodes, [](Op op) { return op == Op::variable; });
+}
+
+std::vector<std::uint32_t> variables_of(const Graph& graph, NodeId node) {
+  return variables_of(graph, {&node, 1});
+}
+
+std::vector<std::uint32_t> tables_of(const Graph& graph, NodeId node) {
+  return numbers_of(graph, {&node, 1}, [](Op op) { return op >= Op::interpolate; });
+}
+
+NodeId with_arguments(Graph& graph, NodeId node, const std::function<NodeId(NodeId)>& image) {
+  const Node old = graph[node];  // a copy: the graph grows below
+  if (arity(old.op) == 0) return node;
+  const NodeId a = image(old.a);
+  if (old.op == Op::interpolate) return graph.interpolate(old.number, a);
+  if (old.op == Op::interpolate_slope) return graph.interpolate_slope(old.number, a);
+  if (arity(old.op) == 1) return graph.apply(old.op, a);
+  if (arity(old.op) == 2) return graph.apply(old.op, a, image(old.b));
+  return graph.select(a, image(old.b), image(old.c));
+}
+
+NodeId substitute(Graph& graph, NodeId node, const Replacement& replacement) {
+  std::vector<NodeId> image(node.index + 1);
+  const std::function<NodeId(NodeId)> of = [&](NodeId id) { return image[id.index]; };
+  for (const NodeId id : reachable(graph, {&node, 1})) {
+    image[id.index] =
+        graph[id].op == Op::variable ? replacement(graph[id].number).value_or(id) : with_arguments(graph, id, of);
+  }
+  return of(node);
+}
+
+NodeId substitute(Graph& graph, NodeId node, std::uint32_t variable, NodeId replacement) {
+  return substitute(graph, node, [&](std::uint32_t number) {
+    return number == variable ? std::optional(replacement) : std::nullopt;
+  });
+}
+
+std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> nodes, std::span<const double> variables,
+                             const TableLookup& table) {
+  std::uint32_t top = 0;
+  for (const NodeId node : nodes) top = std::max(top, node.index + 1);
+  std::vector<double> value(top);
+  const auto of = [&](NodeId id) { return id.valid() ? value[id.index] : 0.0; };
+  for (const NodeId id : reachable(graph, nodes)) {
+    const Node& n = graph[id];
+    if (n.op == Op::constant) {
+      value[id.index] = n.value;
+    } else if (n.op == Op::variable) {
+      value[id.index] = variables[n.number];
+    } else if (n.op >= Op::interpolate && table) {
+      value[id.index] = table(n.number, of(n.a), n.op == Op::interpolate_slope);
+    } else {
+      value[id.index] = compute(n.op, of(n.a), of(n.b), of(n.c));
+    }
+  }
+  std::vector<double> results;
+  results.reserve(nodes.size());
+  for (const NodeId node : nodes) results.push_back(of(node));
+  return results;
+}
+
+double evaluate(const Graph& graph, NodeId node, std::span<const double> variables, const TableLookup& table) {
+  return evaluate(graph, {&node, 1}, variables, table).front();
+}
+
+}  // namespace continuo::model

@@ -1,0 +1,150 @@
+// continuo/symbolic/graph/expression.hpp
+// Expressions as a graph in which equal expressions are one node:
+//
+//   Graph g;
+//   const NodeId x = g.variable(1), k = g.variable(3);
+//   const NodeId force = g.negate(g.multiply(k, x));                  // -k*x
+//   const NodeId stiffness = differentiate(g, force, 1);             // -k    (derivative.hpp)
+//   to_text(g, stiffness, [](auto i) { return i == 3 ? "k" : "x"; });  // "-k"
+//
+// A node's arguments always have smaller indices than the node: a walk in the order of the indices meets every
+// argument before its use, and nothing here recurses.
+#pragma once
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <continuo/symbolic/graph/operation.hpp>
+
+namespace continuo::model {
+
+/// An expression of a Graph: cheap to copy, equal where the expressions are equal.
+struct NodeId {
+  std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
+  bool valid() const { return index != std::numeric_limits<std::uint32_t>::max(); }
+  friend auto operator<=>(NodeId, NodeId) = default;
+};
+
+struct Node {
+  Op op = Op::constant;
+  bool finite = false;       // it cannot be infinite or NaN where the variables are not
+  bool corners = false;      // it, or what it is made of, has jumps or kinks that no `smooth` stands around
+  std::uint32_t number = 0;  // of a variable, or of a table
+  NodeId a{}, b{}, c{};      // as many as arity(op)
+  double value = 0;          // of a constant
+};
+
+/// Owns the nodes. The makers simplify as they build: constants are folded, `x + 0`, `1*x`, `--x` and their like
+/// vanish, `x^2` becomes `x*x`. Only what holds for every number is used: `0*x` is 0 where x cannot be infinite.
+class Graph {
+ public:
+  Graph();
+
+  NodeId constant(double value);
+  NodeId truth(bool value) { return constant(value ? 1 : 0); }
+  NodeId variable(std::uint32_t number);
+  NodeId apply(Op op, NodeId a);
+  NodeId apply(Op op, NodeId a, NodeId b);
+  NodeId select(NodeId condition, NodeId if_true, NodeId if_false);
+  NodeId interpolate(std::uint32_t table, NodeId x);
+  NodeId interpolate_slope(std::uint32_t table, NodeId x);
+
+  NodeId add(NodeId a, NodeId b) { return apply(Op::add, a, b); }
+  NodeId subtract(NodeId a, NodeId b) { return apply(Op::subtract, a, b); }
+  NodeId multiply(NodeId a, NodeId b) { return apply(Op::multiply, a, b); }
+  NodeId divide(NodeId a, NodeId b) { return apply(Op::divide, a, b); }
+  NodeId power(NodeId a, NodeId b) { return apply(Op::power, a, b); }
+  NodeId negate(NodeId a) { return apply(Op::negate, a); }
+  NodeId less(NodeId a, NodeId b) { return apply(Op::less, a, b); }
+  NodeId less_equal(NodeId a, NodeId b) { return apply(Op::less_equal, a, b); }
+  NodeId greater(NodeId a, NodeId b) { return apply(Op::less, b, a); }
+  NodeId greater_equal(NodeId a, NodeId b) { return apply(Op::less_equal, b, a); }
+
+  const Node& operator[](NodeId id) const { return nodes_[id.index]; }
+  std::size_t size() const { return nodes_.size(); }
+
+  /// The number this node is, if it is one.
+  std::optional<double> value(NodeId id) const;
+  bool is(NodeId id, double value) const;
+
+ private:
+  friend struct Simplifier;
+  NodeId intern(const Node& node);
+  void grow();
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> slots_;  // open addressing over nodes_, a power of two in size
+};
+
+/// The arguments of a node, arity(op) of them: `for (const NodeId a : arguments(node))`.
+struct Arguments {
+  std::array<NodeId, 3> ids;
+  std::size_t count;
+  const NodeId* begin() const { return ids.data(); }
+  const NodeId* end() const { return ids.data() + count; }
+};
+inline Arguments arguments(const Node& node) {
+  return {{node.a, node.b, node.c}, arity(node.op)};
+}
+
+/// The nodes the roots are made of, each once, arguments before their use.
+std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots);
+
+/// Whether the expression contains the variable.
+bool depends_on(const Graph& graph, NodeId node, std::uint32_t variable);
+
+/// The variables it contains, ascending.
+std::vector<std::uint32_t> variables_of(const Graph& graph, NodeId node);
+std::vector<std::uint32_t> variables_of(const Graph& graph, std::span<const NodeId> nodes);
+
+/// The tables it reads, ascending.
+std::vector<std::uint32_t> tables_of(const Graph& graph, NodeId node);
+
+/// The expression with every variable replaced that `replacement` gives a node for.
+using Replacement = std::function<std::optional<NodeId>(std::uint32_t variable)>;
+NodeId substitute(Graph& graph, NodeId node, const Replacement& replacement);
+NodeId substitute(Graph& graph, NodeId node, std::uint32_t variable, NodeId replacement);
+
+/// The same operation on the images of its arguments.
+NodeId with_arguments(Graph& graph, NodeId node, const std::function<NodeId(NodeId)>& image);
+
+/// node = coefficient*variable + remainder, neither of which contains the variable.
+struct Linear {
+  NodeId coefficient, remainder;
+};
+std::optional<Linear> linear_in(Graph& graph, NodeId node, std::uint32_t variable);
+
+/// One row for each of `residuals`: what stands before each of `unknowns`, and last what is left without them; if all
+/// are linear in all of them together.
+using LinearRows = std::vector<std::vector<NodeId>>;
+std::optional<LinearRows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
+                                      std::span<const std::uint32_t> unknowns);
+
+/// The values of the unknowns at which every one of the residuals is zero (accelerations coupled through a mass
+/// matrix); nothing where the matrix is singular. Elimination without exchange for size: meant for a handful. What
+/// `vanishes` says of is divided by only where nothing else is left.
+using Vanishes = std::function<bool(NodeId)>;
+std::optional<std::vector<NodeId>> solve_linear(Graph& graph, LinearRows rows, const Vanishes& vanishes = {});
+std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const NodeId> residuals,
+                                                std::span<const std::uint32_t> unknowns);
+
+/// The number the expression has at these values of the variables. For single numbers; a Tape is for many.
+/// `table` computes interp and its slope; without it they are NaN.
+using TableLookup = std::function<double(std::uint32_t table, double x, bool slope)>;
+double evaluate(const Graph& graph, NodeId node, std::span<const double> variables, const TableLookup& table = {});
+/// Of many at once: what they share is computed once.
+std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> nodes, std::span<const double> variables,
+                             const TableLookup& table = {});
+
+/// The expression as a model would write it, cut off after about `longest` characters.
+using VariableName = std::function<std::string(std::uint32_t variable)>;
+std::string to_text(const Graph& graph, NodeId node, const VariableName& name, std::size_t longest = 2000);
+
+}  // namespace continuo::model

@@ -1,0 +1,122 @@
+// continuo/symbolic/graph/table.cpp
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <continuo/symbolic/graph/cells.hpp>
+#include <continuo/symbolic/graph/table.hpp>
+
+namespace continuo::model {
+
+Table::Table(std::vector<double> x, std::vector<double> y, Between between) : between_(between), x_(std::move(x)) {
+  pieces_.reserve(x_.size() + 1);
+  pieces_.push_back({x_.front(), y.front(), 0});
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const bool slanted = between == Between::linear && i + 1 < x_.size();
+    pieces_.push_back({x_[i], y[i], slanted ? (y[i + 1] - y[i]) / (x_[i + 1] - x_[i]) : 0});
+  }
+}
+
+const Table::Piece& Table::at(double x) const {
+  return pieces_[static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end(), x) - x_.begin())];
+}
+
+std::span<const Table::Piece> Table::pieces(double from, double to) const {
+  const Piece *first = &at(from), *last = &at(to);
+  return {first, last + 1};
+}
+
+namespace {
+
+class Reader {
+ public:
+  Reader(const std::string& name, std::string_view x, std::string_view y) : name_(name), x_name_(x), y_name_(y) {}
+
+  ReadTable read(std::string_view text, Table::Between between) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the mark some spreadsheets put before UTF-8
+    while (!text.empty() && problem_.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      ++line_;
+      row(text.substr(0, std::min(text.find_first_of("#\r\n"), end)));
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    if (problem_.empty() && xs_.empty()) fail("no numbers here");
+    if (!problem_.empty()) return {std::nullopt, std::move(problem_)};
+    return {Table(std::move(xs_), std::move(ys_), between), {}};
+  }
+
+ private:
+  void fail(std::string_view what) {
+    problem_ = fmt::format("{}:{}: {}", name_, std::max<std::size_t>(line_, 1), what);
+  }
+
+  void row(std::string_view line) {
+    const auto cells = split_cells(line);
+    if (cells.empty()) return;
+    if (!started_) {
+      started_ = true;
+      const bool is_heading = std::ranges::none_of(cells, [](auto cell) { return cell_number(cell).has_value(); });
+      if (!choose_columns(cells, is_heading) || is_heading) return;
+    }
+    if (cells.size() <= std::max(x_column_, y_column_)) {
+      return fail(fmt::format("{} columns, but column {} is needed", cells.size(), std::max(x_column_, y_column_) + 1));
+    }
+    const auto x = cell_number(cells[x_column_]), y = cell_number(cells[y_column_]);
+    if (!x) return fail(fmt::format("`{}` is not a number", cells[x_column_]));
+    if (!y) return fail(fmt::format("`{}` is not a number", cells[y_column_]));
+    if (!std::isfinite(*x) || !std::isfinite(*y)) return fail("a number is not finite");
+    if (!xs_.empty() && !(*x > xs_.back())) {
+      return fail(fmt::format("{} comes after {}: {} must increase", *x, xs_.back(), x_title_));
+    }
+    xs_.push_back(*x);
+    ys_.push_back(*y);
+  }
+
+  bool choose_columns(const std::vector<std::string_view>& cells, bool is_heading) {
+    if (is_heading) x_title_ = cells.front();
+    if (x_name_.empty() && y_name_.empty()) return true;
+    if (!is_heading) return fail("columns are asked for by name, but the first line has no names"), false;
+    const auto find = [&](std::string_view name, std::size_t& column) {
+      const auto found = std::ranges::find(cells, name);
+      if (name.empty()) return true;
+      if (found == cells.end()) {
+        fail(fmt::format("no column `{}`; there are: {}", name, fmt::join(cells, ", ")));
+        return false;
+      }
+      column = static_cast<std::size_t>(found - cells.begin());
+      return true;
+    };
+    if (!find(x_name_, x_column_) || !find(y_name_, y_column_)) return false;
+    x_title_ = cells[x_column_];
+    return true;
+  }
+
+  const std::string& name_;
+  std::string_view x_name_, y_name_;
+  std::size_t x_column_ = 0, y_column_ = 1, line_ = 0;
+  bool started_ = false;
+  std::string x_title_ = "the first column";
+  std::vector<double> xs_, ys_;
+  std::string problem_;
+};
+
+}  // namespace
+
+ReadTable parse_table(std::string_view text, const std::string& name, Table::Between between, std::string_view x,
+                      std::string_view y) {
+  return Reader(name, x, y).read(text, between);
+}
+
+ReadTable read_table(const std::filesystem::path& file, Table::Between between, std::string_view x,
+                     std::string_view y) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return {std::nullopt, fmt::format("{}:1: the file cannot be read", file.string())};
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parse_table(text, file.string(), between, x, y);
+}
+
+}  // namespace continuo::model

@@ -1,0 +1,80 @@
+// continuo/symbolic/units/units.hpp
+// Units of measurement: what a number counts.
+//
+//   const Unit stiffness = *parse_unit("N/m").unit, metre = *parse_unit("m").unit;
+//   to_text(stiffness * metre);                                          // "N"
+//   conversion_factor(*parse_unit("km/h").unit, *parse_unit("m/s").unit);  // 1/3.6
+//
+// The names come from UDUNITS-2; the usual ones are known here already, so that most models never load its database.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace continuo::model {
+
+/// Exponents of the base units m, kg, s, A, K, mol, cd and of the two scales whose zero is not that of the kelvin,
+/// in sixtieths: roots up to the sixth are whole numbers.
+/// `degC` and `degF` are dimensions of their own: 20 degC is no number of kelvins until somebody says how.
+struct Dimension {
+  static constexpr int one = 60;
+  static constexpr std::size_t count = 9;
+  std::array<int, count> exponent{};
+  friend bool operator==(const Dimension&, const Dimension&) = default;
+};
+
+class Unit {
+ public:
+  /// The unit 1 of pure numbers.
+  Unit() = default;
+  /// A unit of one name, worth `factor` coherent SI units of this dimension.
+  Unit(std::string symbol, Dimension dimension, double factor);
+
+  const Dimension& dimension() const { return dimension_; }
+  double factor() const { return factor_; }
+  bool dimensionless() const { return dimension_ == Dimension{}; }
+
+  friend Unit operator*(const Unit& a, const Unit& b);
+  friend Unit operator/(const Unit& a, const Unit& b);
+  friend std::optional<Unit> power(const Unit& unit, int numerator, int denominator);
+  friend std::string to_text(const Unit& unit);
+
+ private:
+  using Factors = std::vector<std::pair<std::string, int>>;  // symbol and exponent in sixtieths, as the user wrote
+  Dimension dimension_;
+  double factor_ = 1;
+  Factors symbols_;
+};
+
+/// unit^(numerator/denominator); empty where the exponents leave the sixtieths.
+std::optional<Unit> power(const Unit& unit, int numerator, int denominator = 1);
+
+/// unit^exponent for an exponent that is a fraction with a small denominator.
+std::optional<Unit> power(const Unit& unit, double exponent);
+
+/// They measure the same thing: a number of one is so many of the other.
+bool convertible(const Unit& a, const Unit& b);
+
+/// The same thing at the same size: N and kg*m/s^2.
+bool operator==(const Unit& a, const Unit& b);
+
+/// How many `to` one `from` is; empty where they are not convertible.
+std::optional<double> conversion_factor(const Unit& from, const Unit& to);
+
+/// As short as it can be said: what the user wrote where symbols cancel to that, N for kg*m/s^2, `1` for a number.
+std::string to_text(const Unit& unit);
+
+/// A unit, or what is wrong with the text.
+struct ParsedUnit {
+  std::optional<Unit> unit;
+  std::string problem;     // "`meterz` is not a unit"
+  std::string suggestion;  // a unit that may have been meant, or empty
+};
+
+/// Reads `m/s^2`, `N*s`, `kg m2 s-2`, `km/h`, `1/s`, `(m/s)^0.5`, `60 s`, `rad`, `degC`, `1`.
+ParsedUnit parse_unit(std::string_view text);
+
+}  // namespace continuo::model
