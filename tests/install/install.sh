@@ -7,6 +7,15 @@ prefix=$(mktemp -d)
 trap 'rm -rf "$prefix"' EXIT
 
 "$cmake" --install "$build" --prefix "$prefix" >/dev/null
+# Public headers lie directly in a module; of the others only those come along that one of these includes.
+(cd "$prefix/include" && ls continuo/*.hpp continuo/*/*.hpp) >"$prefix/headers"
+mkdir "$prefix/consumer"
+sed 's/.*/#include <&>/' "$prefix/headers" >"$prefix/consumer/public_headers.cpp"
+for private in language/syntax/parser_core live/server/client studies/orbits/continuation/orbit_marks; do
+  if [[ -e $prefix/include/continuo/$private.hpp ]]; then echo "$private.hpp is private, and installed" >&2; exit 1; fi
+  if [[ ! -e $here/../../continuo/$private.hpp ]]; then echo "$private.hpp is no more" >&2; exit 1; fi
+done
+
 "$cmake" -S "$here/consumer" -B "$prefix/consumer" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 "$cmake" --build "$prefix/consumer"
 cd "$prefix"

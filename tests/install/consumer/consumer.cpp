@@ -1,11 +1,8 @@
 #include <array>
 #include <cmath>
 
-#include <continuo/language/load.hpp>
-#include <continuo/methods/explicit_rk/tsitouras5.hpp>
+#include <continuo/continuo.hpp>
 #include <continuo/results/netcdf.hpp>
-#include <continuo/simulation/simulate.hpp>
-#include <continuo/solve/solve.hpp>
 #include <continuo/studies/least_squares.hpp>
 
 int main() {
