@@ -1,6 +1,6 @@
 // Parts of the command in files of their own, opened when they are asked for: cmake/modules.cmake makes them, modules/
-// says what is in them. modules.cpp has the functions of the rooms that are there; the linker takes these before it
-// looks into the rooms' libraries, so that whoever calls them need not know.
+// says what is in them. modules.cpp has the functions of the library that are there; the linker takes these before it
+// looks into the library, so that whoever calls them need not know.
 #pragma once
 
 namespace continuo::app {
