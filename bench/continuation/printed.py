@@ -233,7 +233,12 @@ PROBLEMS = [
       ("saddle-node", {"lambda": "1.53542E-01", "kappa": "-2.45810E+00", "a": "1.17171E+00"}),
       ("saddle-node at a = 6.48532E+00", {"lambda": "1.74822E-01", "kappa": "-2.40912E+00"}),
       ("saddle-node at a = 1.48577E+00", {"lambda": "1.58937E-01", "kappa": "-2.44548E+00"}),
-      ("saddle-node at a = 1.94109E-01", {"kappa": "-2.88463E+00"})]),
+      ("saddle-node at a = 1.94109E-01", {"kappa": "-2.88463E+00"}),
+      # Of the other saddle-node, on the second curve of homoclinic orbits; but for the first again with 300 intervals.
+      ("saddle-node at a = 7.28412E+00", {"lambda": "1.75346E-01", "kappa": "-2.40794E+00"}),
+      ("saddle-node at a = 3.64011E+00", {"lambda": "1.71091E-01", "kappa": "-2.41756E+00"}),
+      ("saddle-node at a = 1.44095E+00", {"lambda": "1.58319E-01", "kappa": "-2.44692E+00"}),
+      ("saddle-node at a = 3.11682E-01", {"lambda": "8.18799E-02", "kappa": "-2.64364E+00"})]),
     # Its extremes are those of AUTO's 101 mesh points, and not compared where these miss the top of the wave, or where u has
     # become so small that it hangs on the last digit of the period.
     *[(f"fsh, period {period}", FSH, f"run --set period={period}", [("wave", values)]) for period, values in [
