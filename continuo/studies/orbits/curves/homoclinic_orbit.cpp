@@ -268,6 +268,14 @@ Vector HomoclinicOrbit::missed(std::span<const double> z) const {
   return result;
 }
 
+double HomoclinicOrbit::unfolding() const {
+  std::array<double, 2> speed{};
+  for (std::size_t c = 0; c < 2; ++c)
+    for (std::size_t i = 0; i < n_; ++i)
+      speed[c] += spaces_.centre->left(index(i)) * rest_by_constant_[i * 2 + c] * scale_[rest() + n_ + c] / sizes_[i];
+  return std::hypot(speed[0], speed[1]) / rate_;
+}
+
 // By a second difference of f along the centre: (f(x0 + e v) + f(x0 - e v) - 2 f(x0)) / 2 e^2, seen by the left
 // eigenvector. Its error is of order e^2 and of rounding / e^2, alike at the fourth root of epsilon.
 double HomoclinicOrbit::centre_curvature(std::span<const double> z) const {

@@ -67,6 +67,9 @@ class HomoclinicOrbit {
   Eigen::VectorXd from_rest(std::span<const double> z, bool at_end) const;
   /// Along the centre of a saddle-node at z, y' = c y^2 + ...: c.
   double centre_curvature(std::span<const double> z) const;
+  /// At the last evaluation, of a saddle-node: how fast f along the centre changes with the constants, in ranges and
+  /// rates. About 0 where x0 is a place of rest whatever they are, or by a symmetry: it is no fold then.
+  double unfolding() const;
   /// Of a solution of the transposed equations: the adjoint solution at the beginning, or at the end.
   Eigen::VectorXd adjoint_at(const Vector& solution, bool at_end) const;
   /// By how much each equation of both ends misses its manifold, as a right-hand side.

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int most_homoclinic_iterations = 10;
 constexpr double homoclinic_solved_to = 1e-9, rounding_of_homoclinic = 1e-6;  // a correction, in sizes
-constexpr double error_of_rtol = 100;                                         // as in orbit_branch
+constexpr double unfolds = 1e-6;       // of the rates, over the ranges of the constants
+constexpr double error_of_rtol = 100;  // as in orbit_branch
 
 }  // namespace
 
@@ -211,8 +212,12 @@ std::optional<HomoclinicPlace> HomoclinicSteps::settled(const std::shared_ptr<co
     if (!equations_->refer_to(z) || !equations_->evaluate(z)) return std::nullopt;
     rows.insert(rows.begin(), {centre_part(false), centre_part(true)});
   }
-  for (const Vector& row : rows)
-    if (auto place = corrected(z, z, row, nullptr)) return place;
+  for (const Vector& row : rows) {
+    auto place = corrected(z, z, row, nullptr);
+    if (!place) continue;
+    if (kind_.is_saddle_node && equations_->unfolding() < unfolds) return std::nullopt;
+    return place;
+  }
   return std::nullopt;
 }
 
