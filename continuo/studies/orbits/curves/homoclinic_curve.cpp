@@ -28,8 +28,8 @@ constexpr double ends_open = 0.02;        // of the orbit
 constexpr double same_end = 1e-3;         // of the ranges and of the orbit
 constexpr std::size_t points_round = 12;  // of a closed curve
 constexpr std::size_t points_at_rest = 24;
-constexpr double at_rest = 1e-5;     // of the ranges, within which so many points lie where a curve winds itself up
-constexpr double same_shape = 0.01;  // of the size of the orbit
+constexpr double stands_still = 1e-5;  // of the ranges, within which so many points lie where a curve winds itself up
+constexpr double same_shape = 0.01;    // of the size of the orbit
 
 /// Of a central orbit the truncation is its own, in sizes.
 double truncated_by_at_most(const HomoclinicPlace& place) {
@@ -191,7 +191,7 @@ bool HomoclinicFollower::winds_up(const OrbitCurve& curve) const {
   const auto before = std::span(curve.points).last(points_at_rest).first(points_at_rest - 1);
   return std::ranges::all_of(before, [&](const OrbitCurvePoint& point) {
     for (std::size_t c = 0; c < 2; ++c)
-      if (std::abs(point.constants[c] - last.constants[c]) > at_rest * (options_.high[c] - options_.low[c]))
+      if (std::abs(point.constants[c] - last.constants[c]) > stands_still * (options_.high[c] - options_.low[c]))
         return false;
     for (std::size_t i = 0; i < last.low.size(); ++i)
       if (std::abs(point.low[i] - last.low[i]) + std::abs(point.high[i] - last.high[i]) > same_shape * greatest_[i])

@@ -25,7 +25,7 @@ constexpr std::size_t most_added_intervals = 30;
 // How far an end may be from the saddle, in sizes, how far it is to be, and where it need not be that near.
 constexpr double ends_within = 1e-4, ends_wished = 1e-5, ends_needless = 1e-7;
 // Next to a saddle-node motions come like 1/t, ever nearer in ever more time; nor need they where that is hardly felt.
-constexpr double slow = 2;  // the rate times the length
+constexpr double slowly = 2;  // the rate times the length
 constexpr double slow_ends_within = 1e-2, hardly_felt = 1e-10;
 constexpr double error_at_most = 1000;  // of the error wanted: with which a mesh serves that could not be made better
 constexpr double most_longer = 10;      // times as long, in one go
@@ -295,7 +295,7 @@ double HomoclinicSteps::missing(const HomoclinicPlace& place, bool at_end) const
   const Eigenspace& space = at_end ? place.spaces.stable : place.spaces.unstable;
   if (space.dimension() == 0) return 0;
   const double rate = std::abs(space.eigenvalues.front().real());
-  if (rate * place.length < slow && place.point.truncation < hardly_felt)
+  if (rate * place.length < slowly && place.point.truncation < hardly_felt)
     return std::clamp(apart / slow_ends_within - 1, 0.0, most_longer);
   return std::min(std::log(apart / ends_wished) / (rate * place.length), most_longer);
 }
