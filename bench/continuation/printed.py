@@ -328,7 +328,7 @@ def time_of_demo(auto, name):
         for _ in range(2):
             begin = time.perf_counter()
             run = subprocess.run([os.path.join(auto, "bin", "auto"), name + ".auto"], cwd=demo, env={**os.environ, **paths},
-                                 capture_output=True, text=True, timeout=600)
+                                 capture_output=True, text=True, timeout=1800)
             if run.returncode:
                 return None
         return time.perf_counter() - begin
@@ -355,7 +355,7 @@ def main():
             verb, *rest = arguments.split()
             begin = time.perf_counter()
             run = subprocess.run([options.command, verb, file, *rest, "--json"] + (["-o", table] if verb == "run" else []),
-                                 capture_output=True, text=True, timeout=600)
+                                 capture_output=True, text=True, timeout=1800)
             demo = name.partition(",")[0]
             seconds[demo] = seconds.get(demo, 0) + time.perf_counter() - begin
             result = json.loads(run.stdout) if run.stdout else {}

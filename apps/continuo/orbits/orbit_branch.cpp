@@ -347,12 +347,12 @@ ExitCode show_curves(const Studied& studied, const std::vector<OrbitBranch>& bra
 }  // namespace
 
 studies::PeriodicOrbit find_orbit(const Studied& studied, studies::PeriodicOrbitOptions search, bool patient) {
-  constexpr double longer = 10;
+  constexpr double times_longer = 10;
   constexpr int most_tries = 3;
   auto found = studies::find_periodic_orbit(studied.system, studied.start, search);
   for (int k = 1; k < most_tries && patient && !found.outcome && found.wanders && !interrupt_flag(); ++k) {
-    search.settle *= longer;
-    search.duration *= longer;
+    search.settle *= times_longer;
+    search.duration *= times_longer;
     found = studies::find_periodic_orbit(studied.system, studied.start, search);
   }
   return found;

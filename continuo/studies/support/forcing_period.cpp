@@ -166,13 +166,13 @@ std::optional<double> common_period(std::span<const double> periods) {
     const double ratio = period / common;
     double m = 1, m_before = 0, n = 0, n_before = 1, rest = ratio;
     while (true) {
-      const double whole = std::floor(rest);
-      m_before = std::exchange(m, whole * m + m_before);
-      n_before = std::exchange(n, whole * n + n_before);
+      const double part = std::floor(rest);
+      m_before = std::exchange(m, part * m + m_before);
+      n_before = std::exchange(n, part * n + n_before);
       if (m > largest || n > largest) return std::nullopt;
       if (m > 0 && std::abs(m / n - ratio) <= exact * ratio) break;
-      if (!(rest - whole > 0)) return std::nullopt;
-      rest = 1 / (rest - whole);
+      if (!(rest - part > 0)) return std::nullopt;
+      rest = 1 / (rest - part);
     }
     common *= m;
   }

@@ -117,12 +117,12 @@ void OrbitBranchSteps::exchange_mesh(OrbitPlace& place, const std::shared_ptr<co
 
 /// Unknowns on the mesh that is used, read off on another.
 Vector OrbitBranchSteps::on_mesh(const Vector& z, const OrbitMesh& mesh) const {
-  constexpr std::size_t degree = OrbitCollocation::degree;
-  Vector result((mesh.size() - 1) * degree * n_);
+  constexpr std::size_t nodes = OrbitCollocation::degree;
+  Vector result((mesh.size() - 1) * nodes * n_);
   for (std::size_t k = 0; k + 1 < mesh.size(); ++k)
-    for (std::size_t j = 0; j < degree; ++j)
+    for (std::size_t j = 0; j < nodes; ++j)
       equations_->state(z, mesh[k] + OrbitCollocation::table().nodes[j] * (mesh[k + 1] - mesh[k]),
-                        std::span(result).subspan((k * degree + j) * n_, n_));
+                        std::span(result).subspan((k * nodes + j) * n_, n_));
   result.push_back(z[z.size() - 2]);
   result.push_back(z.back());
   return result;
