@@ -19,7 +19,7 @@ struct Sphere {
 template <class Real, int Dim>
 using Shape = std::variant<Sphere<Real>>;
 
-/// How a surface answers a contact. Two surfaces meet as the `Meeting` of their world says.
+/// How a surface answers a contact. Two surfaces meet as the `CombineRule` of their world says.
 template <class Real>
 struct Material {
   Real restitution = Real(0);         // e: speed of parting over speed of approach, 0 to 1
@@ -32,9 +32,9 @@ enum class Combine : std::uint8_t { average, minimum, maximum, product, geometri
 
 /// How two surfaces meet. The geometric mean of frictions (one smooth surface makes a smooth contact), the greater
 /// restitution (a ball that bounces does so on any floor) and rolling resistance: what Box2D and most engines do.
-struct Meeting {
+struct CombineRule {
   Combine restitution = Combine::maximum, friction = Combine::geometric_mean, rolling_resistance = Combine::maximum;
-  friend bool operator==(const Meeting&, const Meeting&) = default;
+  friend bool operator==(const CombineRule&, const CombineRule&) = default;
 };
 
 template <class Real>
@@ -55,10 +55,10 @@ Real combined(Combine how, const Real& a, const Real& b) {
   return sqrt(a * b);
 }
 template <class Real>
-Material<Real> combined(const Meeting& meeting, const Material<Real>& a, const Material<Real>& b) {
-  return {combined(meeting.restitution, a.restitution, b.restitution),
-          combined(meeting.friction, a.friction, b.friction),
-          combined(meeting.rolling_resistance, a.rolling_resistance, b.rolling_resistance)};
+Material<Real> combined(const CombineRule& combine_rule, const Material<Real>& a, const Material<Real>& b) {
+  return {combined(combine_rule.restitution, a.restitution, b.restitution),
+          combined(combine_rule.friction, a.friction, b.friction),
+          combined(combine_rule.rolling_resistance, a.rolling_resistance, b.rolling_resistance)};
 }
 
 template <class Real, int Dim>

@@ -12,7 +12,7 @@ bool ExactMotion<Real, Dim>::is_parabolic() const {
 }
 template <class Real, int Dim>
 std::unique_ptr<ExactEngine<Real, Dim>> ExactMotion<Real, Dim>::engine() const {
-  if (!is_parabolic()) return forced_flight(*world_, options_, companions_);
+  if (!is_parabolic()) return constrained_motion(*world_, options_, companions_);
   if (world_->gravity == Vector<Real, Dim>{}) return event_driven(*world_, options_);
   return islands(*world_, options_);
 }

@@ -9,17 +9,17 @@
 //
 // Under other forces an error-controlled method (dop853) moves all bodies together between contacts, which are located
 // on its dense output to neighbouring times; impulses are as exact as before. What is approximate then is the path, by
-// `tolerance`. What these forces press together is held, see held_contacts.hpp; where flights become too short, or no
-// forces hold what friction jams, steps lead through, see contact_steps.hpp.
+// `tolerance`. What these forces press together is held, see persistent_contacts.hpp; where flights become too short,
+// or no forces hold what friction jams, steps lead through, see contact_steps.hpp.
 //
 // Several collisions at one instant are resolved one after the other, pairs of lower numbers first, until nobody
 // approaches: Newton's cradle sends out as many as came in.
 //
-// Where energy is lost, collisions can pile up without end (inelastic collapse): see pile_up.hpp. Without gravity, all
-// that touch are struck together then. Under gravity a ball that would leave a wall for less than the contact time
-// stays on it; one that would leave a body for less than that moves on no parabola: the two, and whoever comes near, go
-// on as under other forces, until for some time they have not lain on each other. All others stay on their parabolas,
-// see islands.cpp.
+// Where energy is lost, collisions can pile up without end (inelastic collapse): see inelastic_collapse.hpp. Without
+// gravity, all that touch are struck together then. Under gravity a ball that would leave a wall for less than the
+// contact time stays on it; one that would leave a body for less than that moves on no parabola: the two, and whoever
+// comes near, go on as under other forces, until for some time they have not lain on each other. All others stay on
+// their parabolas, see islands.cpp.
 #pragma once
 #include <cstddef>
 #include <memory>

@@ -95,7 +95,8 @@ struct SnapshotAccess {
     archive(world.time), archive(world.gravity);
     archive(world.attraction.constant), archive(world.attraction.softening), archive(world.attraction.opening);
     archive(world.drag.linear), archive(world.drag.quadratic);
-    for (Combine* how : {&world.meeting.restitution, &world.meeting.friction, &world.meeting.rolling_resistance}) {
+    for (Combine* how :
+         {&world.combine_rule.restitution, &world.combine_rule.friction, &world.combine_rule.rolling_resistance}) {
       archive(*how);
       if constexpr (Archive::reads)
         archive.expect(*how <= Combine::geometric_mean, "materials that meet in no known way");

@@ -101,7 +101,7 @@ bool World<Real, Dim>::remove(BodyHandle body) {
 template <class Real, int Dim>
 World<Real, Dim> World<Real, Dim>::part(std::span<const std::uint32_t> bodies) const {
   World some;
-  some.gravity = gravity, some.meeting = meeting, some.time = time;
+  some.gravity = gravity, some.combine_rule = combine_rule, some.time = time;
   some.walls_ = walls_, some.ignored_ = ignored_;
   const auto copy = [&](auto& to, const auto& from) {
     for (const std::uint32_t i : bodies) to.push_back(from[i]);

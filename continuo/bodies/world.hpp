@@ -109,7 +109,7 @@ class World {
   Drag<Real> drag{};
   std::vector<ForceLaw<Real, Dim>> force_laws;
   std::vector<TorqueLaw<Real, Dim>> torque_laws;
-  Meeting meeting{};  // of the materials of any two surfaces
+  CombineRule combine_rule{};  // of the materials of any two surfaces
   Real time = Real(0);
 
   struct Added {

@@ -111,9 +111,9 @@ class Writer {
     if (world.attraction.valid()) line("  attraction {}", number(world.attraction, start));
     if (world.drag_linear.valid())
       line("  drag linear {} quadratic {}", number(world.drag_linear, start), number(world.drag_quadratic, start));
-    if (world.meeting != MeetingDescription{})
-      line("  surfaces combine: restitution {}, friction {}, rolling {}", world.meeting.restitution,
-           world.meeting.friction, world.meeting.rolling);
+    if (world.combine_rule != CombineRuleDescription{})
+      line("  surfaces combine: restitution {}, friction {}, rolling {}", world.combine_rule.restitution,
+           world.combine_rule.friction, world.combine_rule.rolling);
     if (!world.springs.empty()) line("  {} springs", world.springs.size());
     section(fmt::format("Bodies ({})", world.bodies.size()), world.bodies, [&](const BodyDescription& body) -> Row {
       std::vector<NodeId> at;

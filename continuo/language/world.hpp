@@ -30,9 +30,9 @@ struct MaterialDescription {
 };
 
 /// How the numbers of two surfaces become those of their contact: each one of `combinations` (words.hpp).
-struct MeetingDescription {
+struct CombineRuleDescription {
   std::string restitution = "maximum", friction = "geometric_mean", rolling = "maximum";
-  friend bool operator==(const MeetingDescription&, const MeetingDescription&) = default;
+  friend bool operator==(const CombineRuleDescription&, const CombineRuleDescription&) = default;
 };
 
 /// Where it is and how it moves at the start are the initial values of its states.
@@ -88,7 +88,7 @@ struct WorldDescription {
   NodePoint gravity;
   NodeId attraction, softening, opening;  // not valid without attraction
   NodeId drag_linear, drag_quadratic;     // not valid without drag
-  MeetingDescription meeting;
+  CombineRuleDescription combine_rule;
   std::vector<BodyDescription> bodies;  // their states are the first of the model, in this order
   std::vector<WallDescription> walls;
   std::vector<SpringDescription> springs;

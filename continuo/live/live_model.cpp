@@ -100,7 +100,8 @@ class Preparation {
 
   void draw(const model::DrawItem& item) {
     using model::Shape;
-    SceneItem made{.shape = item.shape, .label = {}, .color = {}, .text = {}, .numbers = {}, .grip = {}, .path = {}};
+    SceneItem made{
+        .shape = item.shape, .label = {}, .color = {}, .text = {}, .numbers = {}, .drag_target = {}, .path = {}};
     for (std::size_t i = 0; i < item.arguments.size(); ++i) {
       const model::DrawArgument& argument = item.arguments[i];
       if (argument.numbers.empty()) {
@@ -126,8 +127,8 @@ class Preparation {
       }
     }
     if (is_dragged(item)) {
-      made.grip = made_.grips.size();
-      made_.grips.push_back(make_grip(model_, item.arguments.front().numbers));
+      made.drag_target = made_.drag_targets.size();
+      made_.drag_targets.push_back(make_drag_target(model_, item.arguments.front().numbers));
     }
     made_.drawing.push_back(std::move(made));
   }

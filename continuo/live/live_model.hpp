@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <continuo/live/motion/grip.hpp>
+#include <continuo/live/motion/drag_target.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 
 namespace continuo::live {
@@ -43,8 +43,8 @@ struct SceneItem {
   model::Shape shape;
   std::string label, color, text;
   std::vector<SceneNumbers> numbers;
-  std::optional<std::size_t> grip;  // of LiveModel::grips, where the mouse may move it
-  std::vector<std::size_t> path{};  // of a trail: where its point stands in the paths
+  std::optional<std::size_t> drag_target;  // of LiveModel::drag_targets, where the mouse may move it
+  std::vector<std::size_t> path{};         // of a trail: where its point stands in the paths
 };
 
 struct LiveModel {
@@ -54,7 +54,7 @@ struct LiveModel {
   std::vector<LivePlot> plots;
   std::vector<SceneItem> drawing;
   std::vector<model::NodeId> quantities, scene, paths;  // paths: the points of trails, for each row
-  std::vector<Grip> grips;
+  std::vector<DragTarget> drag_targets;
   std::vector<std::size_t> apart;            // the states in which a ghost's distance is measured
   std::optional<std::size_t> energy, drift;  // columns
   int dimension = 2;

@@ -37,7 +37,7 @@ std::string Server::listen() {
   if (error)
     return fmt::format("cannot listen at {}:{}: {}", parts_->options.address, endpoint.port(), error.message());
   parts_->port = parts_->acceptor->local_endpoint().port();
-  parts_->doorman.emplace(parts_->token, parts_->options.address, parts_->port);
+  parts_->origin_guard.emplace(parts_->token, parts_->options.address, parts_->port);
   return {};
 }
 

@@ -154,7 +154,7 @@ class Session {
   };
   void watch_hand(double wall);
   std::vector<double> speed_of_hand() const;
-  void stop_at_guards(const Grip& grip, const std::vector<double>& from, std::vector<double>& to);
+  void stop_at_guards(const DragTarget& drag_target, const std::vector<double>& from, std::vector<double>& to);
 
   Now now_;
   Audience& audience_;
@@ -180,11 +180,11 @@ class Session {
 
   std::shared_ptr<const std::vector<double>> variables_, evaluated_;  // as they are; those of the evaluations
   model::Evaluation quantities_, scene_, paths_;
-  std::vector<model::Evaluation> grips_;
+  std::vector<model::Evaluation> drag_targets_;
   std::vector<double> values_;
   double first_energy_ = 0;
   std::vector<std::size_t> held_;
-  std::size_t held_grip_ = 0;  // whose these are
+  std::size_t held_drag_target_ = 0;  // whose these are
   std::deque<InHand> in_hand_;
 
   std::optional<Row> last_row_;  // that was put

@@ -67,7 +67,7 @@ enum class StepStatus { done, newton_diverged, singular_matrix, not_finite };
 
 /// What the solving of equations cost since the workspace was made.
 struct EquationCosts {
-  std::size_t jacobians = 0, decompositions = 0, solutions = 0;
+  std::size_t jacobians = 0, factorizations = 0, linear_solves = 0;
 };
 
 /// A method is a type with these static members. M::Workspace<X> holds the stages; it lives as long as the run.
@@ -76,8 +76,8 @@ struct EquationCosts {
 ///   M::dense_order    order of the interpolant, M::dense_degree its degree in theta
 ///   M::second_order   true where the system must be SecondOrder (x'' = a(t, x))
 ///   M::workspace(x)   allocates once
-///   M::step(system, t, x, h, made_jump, work, x_new) -> number of evaluations of f;
-///       made_jump: x is not where the last step ended, drop what was kept of it (FSAL stage, history)
+///   M::step(system, t, x, h, discontinuity, work, x_new) -> number of evaluations of f;
+///       discontinuity: x is not where the last step ended, drop what was kept of it (FSAL stage, history)
 ///   M::error_norm(work, h, x, x_new, tolerance) -> the step is good where it is <= 1 (root mean square); not a number
 ///       where a component of x_new is not finite
 ///   M::error_of(work, h, i) -> estimated local error of component i, to name the worst one
@@ -85,11 +85,12 @@ struct EquationCosts {
 ///   M::accept(work)   the step stands: its end becomes the start of the next
 ///   M::derivative(work) -> x' at the start of the last step
 /// Methods that need more of the driver have, each found by its name and missing elsewhere:
-///   M::why_not(system, x)  what the method has against this system, to be read after its name; empty where nothing. A
+///   M::unsupported_reason(system, x)  what the method has against this system, to be read after its name; empty where
+///   nothing. A
 ///       run of what it refuses does not begin
 ///   M::implicit       true where M x' = f(t, x) with a mass matrix (singular, of index 1) can be integrated
 ///   M::automatic      true where it is an explicit and a stiff method that hand over to each other
-///   M::aim(work, tolerance)  before every step: how close the equations of the step must be solved
+///   M::set_tolerance(work, tolerance)  before every step: how close the equations of the step must be solved
 ///   M::status(work)   -> StepStatus of the last step; what is not `done` is rejected and tried with a smaller h
 ///   M::costs(work)    -> EquationCosts
 ///   M::error_order_of(work) -> error_order where the order varies (then M::order and M::error_order are the greatest)
@@ -97,7 +98,7 @@ struct EquationCosts {
 ///   M::order_of_fixed_steps where the order varies: the one that steps of a fixed size keep
 ///   M::next_factor(work, factor, h, x, x_new, tolerance) -> after a step whose error passed and before `accept`: the
 ///       factor for the next h, where `factor` is what the controller wants. A method of variable order chooses its
-///       next order here; one that keeps a decomposition may answer 1.
+///       next order here; one that keeps a factorization may answer 1.
 ///   M::rejected(work, h_next) the last step was not accepted and will be tried again
 ///   M::retaken(work)  the last step was good and is taken once more, to end at an event; where there is none, nothing
 ///       needs to be done

@@ -56,28 +56,29 @@ struct Switching {
   }
 
   template <class System, State X>
-  static std::string_view why_not(const System& system, const X& x) {
-    if constexpr (requires { NonStiff::why_not(system, x); }) return NonStiff::why_not(system, x);
+  static std::string_view unsupported_reason(const System& system, const X& x) {
+    if constexpr (requires { NonStiff::unsupported_reason(system, x); }) return NonStiff::unsupported_reason(system, x);
     return {};
   }
 
   template <State X>
-  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.tolerance = tolerance;
     if constexpr (requires { Stiff::expect_oscillation(work.stiff, true); })
       Stiff::expect_oscillation(work.stiff, work.watch.oscillates());
-    if constexpr (requires { Stiff::aim(work.stiff, tolerance); }) Stiff::aim(work.stiff, tolerance);
+    if constexpr (requires { Stiff::set_tolerance(work.stiff, tolerance); })
+      Stiff::set_tolerance(work.stiff, tolerance);
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     if (!work.begun) {
       work.begun = true;
       work.has_mass = work.is_stiff = continuo::has_mass<X>(system);
     }
-    if (made_jump) work.in_favour = 0;
-    const bool anew = made_jump || work.fresh;
+    if (discontinuity) work.in_favour = 0;
+    const bool anew = discontinuity || work.fresh;
     int evaluations = work.is_stiff ? Stiff::step(system, t, x, h, anew, work.stiff, x_new)
                                     : NonStiff::step(system, t, x, h, anew, work.nonstiff, x_new);
     if (!work.has_mass && (work.begins || work.steps % probe_every == probe_every - 1)) {

@@ -1,4 +1,4 @@
-// The decomposition of a narrow band whose rows may stay where they are, as they mostly may: U reaches no further than
+// The factorization of a narrow band whose rows may stay where they are, as they mostly may: U reaches no further than
 // the band, and both ends go through the same arithmetic, each in a lane of one register. BandedLU says the rest.
 #pragma once
 #include <algorithm>

@@ -1,4 +1,4 @@
-// LU decomposition with partial pivoting of a matrix c M - J whose entries lie near its diagonal, P A = L D U with unit
+// LU factorization with partial pivoting of a matrix c M - J whose entries lie near its diagonal, P A = L D U with unit
 // diagonals as in small_lu.hpp. The numbers are double or ComplexNumber<double>, which banded_lu.cpp is compiled for.
 //
 //   const BandLayout band(n, lower, upper);

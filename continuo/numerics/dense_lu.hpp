@@ -1,5 +1,5 @@
 // continuo/numerics/dense_lu.hpp
-// LU decomposition with partial pivoting of a matrix stored row by row. For sizes known when compiling the loops are
+// LU factorization with partial pivoting of a matrix stored row by row. For sizes known when compiling the loops are
 // unrolled and the matrix stays on the stack; the numbers may be real or complex, of any scalar.
 //
 //   DenseLU<double, 3> lu(3);

@@ -1,5 +1,5 @@
 // continuo/numerics/small_lu.hpp
-// LU decomposition with partial pivoting of matrices of at most eight rows, written out by the compiler. A solution is
+// LU factorization with partial pivoting of matrices of at most eight rows, written out by the compiler. A solution is
 // a chain of operations that wait for each other, and an implicit method asks for many with one matrix; therefore both
 // factors get a unit diagonal (P A = L D U), so that the chain has no division and no product by the diagonal, and the
 // newest unknown enters each sum last.

@@ -22,7 +22,7 @@ double* doubles(ComplexNumber<double>* numbers) {
 template <class Number>
 constexpr bool is_real = std::is_same_v<Number, double>;
 
-// A decomposition with old pivots is good while no entry grew beyond this against the matrix.
+// A factorization with old pivots is good while no entry grew beyond this against the matrix.
 constexpr double least_pivot_growth = 1e-10;
 
 }  // namespace

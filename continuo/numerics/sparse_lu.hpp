@@ -1,5 +1,5 @@
 // continuo/numerics/sparse_lu.hpp
-// LU decomposition of sparse matrices of one pattern, by KLU of SuiteSparse (T. Davis, E. Palamadai Natarajan, ACM TOMS
+// LU factorization of sparse matrices of one pattern, by KLU of SuiteSparse (T. Davis, E. Palamadai Natarajan, ACM TOMS
 // 37 (2010)): the pattern is analysed once, the pivots of one matrix serve the next ones as long as they are good.
 //
 //   SparseLU<double> lu(pattern);

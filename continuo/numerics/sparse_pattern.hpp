@@ -33,7 +33,7 @@ class SparsePattern {
     std::size_t lower, upper;
   };
   Bandwidth bandwidth() const;
-  /// Whether a decomposition as a band, with what pivoting adds, has at most four times the entries of the pattern:
+  /// Whether a factorization as a band, with what pivoting adds, has at most four times the entries of the pattern:
   /// then it takes a half to a third of the time of a sparse solver, which is faster where most of a band would be
   /// empty.
   bool is_banded() const;

@@ -22,10 +22,10 @@ Json statistics_of(const Statistics& statistics) {
             {"evaluations", statistics.evaluations},
             {"events", statistics.events},
             {"seconds", statistics.seconds}};
-  if (statistics.decompositions > 0) {
+  if (statistics.factorizations > 0) {
     json["jacobians"] = statistics.jacobians;
-    json["decompositions"] = statistics.decompositions;
-    json["solutions"] = statistics.solutions;
+    json["factorizations"] = statistics.factorizations;
+    json["linear_solves"] = statistics.linear_solves;
   }
   return json;
 }

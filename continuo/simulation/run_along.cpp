@@ -20,8 +20,8 @@ Run run_along(const ModelProgram& program, Plan plan, std::span<const double> st
   const At call{&motion,
                 [](void* of, double t, std::vector<double>& state) { (*static_cast<Function*>(of))(t, state); }};
   for (const double t : steps)
-    if (t > run.plan.from && t < run.plan.to) recorder.stretch(t, call);
-  recorder.stretch(run.plan.to, call);
+    if (t > run.plan.from && t < run.plan.to) recorder.on_segment(t, call);
+  recorder.on_segment(run.plan.to, call);
   at(run.plan.to, x);
   recorder.finish(run.plan.to, x);
   run.outcome.ending = Ending::reached_end;

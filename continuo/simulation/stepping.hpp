@@ -45,8 +45,8 @@ class Stepping;
 class StepWatcher {
  public:
   virtual ~StepWatcher() = default;
-  virtual void stretch(Stepping& run, double to) = 0;
-  virtual void happening(Stepping& run, const Happening<ModelSystem::X>& now) = 0;
+  virtual void on_segment(Stepping& run, double to) = 0;
+  virtual void on_event(Stepping& run, const Happening<ModelSystem::X>& now) = 0;
 };
 
 class Stepping {

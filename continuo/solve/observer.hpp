@@ -17,13 +17,13 @@ struct Happening {
   const X& after;
 };
 
-/// Who watches a run: `stretch(integrator, from, to)` for every piece of trajectory that stands (integrator.at(t, x)
-/// gives x there), `happening(integrator, Happening)` at every event.
+/// Who watches a run: `on_segment(integrator, from, to)` for every piece of trajectory that stands (integrator.at(t, x)
+/// gives x there), `on_event(integrator, Happening)` at every event.
 struct NoObserver {
   template <class I, class Real>
-  void stretch(I&, Real, Real) {}
+  void on_segment(I&, Real, Real) {}
   template <class I, class H>
-  void happening(I&, const H&) {}
+  void on_event(I&, const H&) {}
 };
 
 }  // namespace continuo

@@ -50,12 +50,12 @@ std::string describe(const Outcome<double>& outcome);
 
 /// What a run cost.
 struct Statistics {
-  std::size_t steps = 0;                                         // accepted
-  std::size_t rejected = 0;                                      // tried and not accepted
-  std::size_t evaluations = 0;                                   // of f
-  std::size_t jacobians = 0, decompositions = 0, solutions = 0;  // of the equations of implicit methods
-  std::size_t events = 0;                                        // fired
-  double seconds = 0;                                            // wall time
+  std::size_t steps = 0;                                             // accepted
+  std::size_t rejected = 0;                                          // tried and not accepted
+  std::size_t evaluations = 0;                                       // of f
+  std::size_t jacobians = 0, factorizations = 0, linear_solves = 0;  // of the equations of implicit methods
+  std::size_t events = 0;                                            // fired
+  double seconds = 0;                                                // wall time
 };
 
 }  // namespace continuo

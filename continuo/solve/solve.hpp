@@ -19,11 +19,11 @@ namespace continuo {
 
 /// Keeps of a run what `save` says.
 template <State X>
-class Keeper {
+class SolutionRecorder {
  public:
   using Real = Scalar<X>;
 
-  Keeper(const Save<X>& save, Interval<Real> interval, const X& x0, Solution<X>& solution)
+  SolutionRecorder(const Save<X>& save, Interval<Real> interval, const X& x0, Solution<X>& solution)
       : save_(save), interval_(interval), x_(x0), solution_(solution) {
     if (save_.kind == Save<X>::Kind::times || save_.kind == Save<X>::Kind::grid) skip_to_start();
     if (save_.kind == Save<X>::Kind::end) return;
@@ -33,7 +33,7 @@ class Keeper {
   }
 
   template <class I>
-  void stretch(I& integrator, Real from, Real to) {
+  void on_segment(I& integrator, Real from, Real to) {
     switch (save_.kind) {
       case Save<X>::Kind::steps:
         integrator.at(to, x_);
@@ -60,7 +60,7 @@ class Keeper {
   }
 
   template <class I>
-  void happening(I&, const Happening<X>& now) {
+  void on_event(I&, const Happening<X>& now) {
     for (const std::size_t event : now.events) solution_.events.push_back({event, now.t, now.before, now.after});
     if (save_.kind == Save<X>::Kind::end) return;
     if (!kept_at(now.t)) keep(now.t, now.before);
@@ -129,7 +129,7 @@ Solution<X> run(Driver<System, X, Events>& integrator) {
   for (std::size_t i = 0; i < integrator.events().size(); ++i)
     solution.event_names.emplace_back(integrator.events().name(i));
   const Options<X>& options = integrator.options();
-  Keeper<X> keeper(options.save, integrator.interval(), integrator.x(), solution);
+  SolutionRecorder<X> keeper(options.save, integrator.interval(), integrator.x(), solution);
   for (std::size_t count = 1; integrator.advance(keeper); ++count)
     if (count % 1024 == 0 && options.progress) options.progress(integrator.t());
   keeper.finish(integrator);

@@ -134,9 +134,9 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
     made.damping = values.next();
     world.springs.push_back(made);
   }
-  world.meeting = {.restitution = combination(text.meeting.restitution),
-                   .friction = combination(text.meeting.friction),
-                   .rolling_resistance = combination(text.meeting.rolling)};
+  world.combine_rule = {.restitution = combination(text.combine_rule.restitution),
+                        .friction = combination(text.combine_rule.friction),
+                        .rolling_resistance = combination(text.combine_rule.rolling)};
   for (const auto& [a, b] : text.ignored) world.ignore(a, b);
   return built;
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<char, 8> magic{'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'};
 constexpr std::uint32_t version = 1;
-enum class Part : std::uint8_t { head, note, standing, end };
+enum class Part : std::uint8_t { head, note, checkpoint, end };
 
 // What each part is made of, once for both ways.
 
@@ -82,17 +82,18 @@ void transfer(Archive& archive, Note& note) {
   if constexpr (Archive::reads) archive.expect(note.kind <= Note::Kind::finish, "a note of no known kind");
 }
 template <class Archive>
-void transfer(Archive& archive, Standing& standing) {
-  Snapshot& world = standing.world;
+void transfer(Archive& archive, Checkpoint& checkpoint) {
+  Snapshot& world = checkpoint.world;
   archive(world.bodies), archive(world.equations), archive(world.variables);
   archive(world.time), archive(world.start), archive(world.steps);
   auto collisions = static_cast<std::uint64_t>(world.collisions), mode = static_cast<std::uint64_t>(world.mode);
   archive(collisions), archive(mode);
   transfer(archive, world.method), archive(world.step);
-  archive(standing.next_output), archive(standing.next_sample), archive(standing.contacts), archive(standing.stops);
+  archive(checkpoint.next_output), archive(checkpoint.next_sample), archive(checkpoint.contacts),
+      archive(checkpoint.stops);
   if constexpr (Archive::reads) {
     world.collisions = static_cast<std::size_t>(collisions), world.mode = static_cast<std::size_t>(mode);
-    archive.expect(std::isfinite(world.time) && std::isfinite(world.start), "a standing at no time");
+    archive.expect(std::isfinite(world.time) && std::isfinite(world.start), "a checkpoint at no time");
   }
 }
 template <class Archive>
@@ -130,20 +131,20 @@ void tell(model::RunRecorder& recorder, const Note& note) {
     case Note::Kind::arrival:
       if (note.is_sampled) recorder.sample_until(note.until, note.x);
       if (!note.is_row) return recorder.look(note.t, note.x);
-      return recorder.stretch(
+      return recorder.on_segment(
           note.t, model::At{const_cast<std::vector<double>*>(&note.x), [](void* from, double, std::vector<double>& x) {
                               x = *static_cast<const std::vector<double>*>(from);
                             }});
     case Note::Kind::contact:
       return recorder.contact(note.t, note.name, note.impulse);
     case Note::Kind::happening:
-      return recorder.happening(note.t, note.names, note.before, note.x);
+      return recorder.on_event(note.t, note.names, note.before, note.x);
     case Note::Kind::finish:
       return recorder.finish(note.t, note.x);
   }
 }
 
-RunLog::RunLog(std::ostream& out, const RunHead& head, std::size_t standings) : out_(out), standings_(standings) {
+RunLog::RunLog(std::ostream& out, const RunHead& head, std::size_t checkpoints) : out_(out), checkpoints_(checkpoints) {
   ByteWriter writer;
   writer(magic), writer(version);
   out_.write(writer.bytes());
@@ -153,8 +154,8 @@ void RunLog::add(const Note& note) {
   out_.write(Part::note, bytes_of(note));
 }
 /// A run that is killed keeps what came before.
-void RunLog::add(const Standing& standing) {
-  out_.write(Part::standing, bytes_of(standing));
+void RunLog::add(const Checkpoint& checkpoint) {
+  out_.write(Part::checkpoint, bytes_of(checkpoint));
   out_.flush();
 }
 void RunLog::add(const RunEnd& end) {
@@ -185,9 +186,9 @@ RunRecording RunRecording::read(std::span<const std::byte> bytes) {
       read_part(reader, block->bytes, recording.notes.emplace_back());
       const bool is_first = recording.notes.size() == 1;
       reader.expect((recording.notes.back().kind == Note::Kind::begin) == is_first, "notes in another order");
-    } else if (block->kind == Part::standing) {
-      read_part(reader, block->bytes, recording.standings.emplace_back());
-      recording.standings.back().notes = recording.notes.size();
+    } else if (block->kind == Part::checkpoint) {
+      read_part(reader, block->bytes, recording.checkpoints.emplace_back());
+      recording.checkpoints.back().notes = recording.notes.size();
     } else {
       read_part(reader, block->bytes, recording.end.emplace());
     }
@@ -198,10 +199,10 @@ RunRecording RunRecording::read(std::span<const std::byte> bytes) {
   return recording;
 }
 
-std::size_t RunRecording::standing_at(double t) const {
+std::size_t RunRecording::checkpoint_at(double t) const {
   std::size_t found = 0;
-  for (std::size_t i = 0; i < standings.size(); ++i)
-    if (standings[i].world.time <= t) found = i;
+  for (std::size_t i = 0; i < checkpoints.size(); ++i)
+    if (checkpoints[i].world.time <= t) found = i;
   return found;
 }
 

@@ -7,7 +7,7 @@
 //   const RunRecording recording = RunRecording::read(bytes_of_the_file);
 //   if (!recording.error.empty()) ...
 //   replay_world(program, recording);                              // the same run, without moving a body
-//   resume_world(program, recording, recording.standings.size() - 1, {.to = 20});
+//   resume_world(program, recording, recording.checkpoints.size() - 1, {.to = 20});
 //
 // A file that was cut off is read as far as its blocks are whole.
 #pragma once
@@ -50,7 +50,7 @@ struct Note {
 void tell(model::RunRecorder& recorder, const Note& note);
 
 /// Between two notes: the world, and how far its run is.
-struct Standing {
+struct Checkpoint {
   Snapshot world;
   std::uint64_t next_output = 0, next_sample = 0, contacts = 0;
   std::vector<std::uint64_t> stops{};
@@ -67,29 +67,29 @@ struct RunEnd {
 class RunLog {
  public:
   /// The stream must be binary and stay; whether writing went well is for the caller to ask of it.
-  RunLog(std::ostream& out, const RunHead& head, std::size_t standings = 20);
+  RunLog(std::ostream& out, const RunHead& head, std::size_t checkpoints = 20);
 
   void add(const Note& note);
-  void add(const Standing& standing);
+  void add(const Checkpoint& checkpoint);
   void add(const RunEnd& end);
-  /// So many standings are wanted, evenly over the run, and more where that takes long; none for 0.
-  std::size_t standings() const { return standings_; }
+  /// So many checkpoints are wanted, evenly over the run, and more where that takes long; none for 0.
+  std::size_t checkpoints() const { return checkpoints_; }
 
  private:
   BlockWriter out_;
-  std::size_t standings_;
+  std::size_t checkpoints_;
 };
 
 struct RunRecording {
   std::string error{};  // why there is nothing; else all below is as the file says
   RunHead head{};
   std::vector<Note> notes{};
-  std::vector<Standing> standings{};
+  std::vector<Checkpoint> checkpoints{};
   std::optional<RunEnd> end{};  // none where the file was cut off
 
   static RunRecording read(std::span<const std::byte> bytes);
-  /// The last standing not after t; the first where all are.
-  std::size_t standing_at(double t) const;
+  /// The last checkpoint not after t; the first where all are.
+  std::size_t checkpoint_at(double t) const;
 };
 
 }  // namespace continuo::worlds

@@ -21,7 +21,7 @@ namespace {
 using model::Diagnostic;
 using X = std::vector<double>;
 
-constexpr std::chrono::seconds standing_of_clock{10};  // no more is lost where a long run is killed
+constexpr std::chrono::seconds checkpoint_of_clock{10};  // no more is lost where a long run is killed
 constexpr std::size_t contacts_of_a_run = 100'000;
 
 /// Steps do not end at round times: rows are written when the time has come, with the time that it is.
@@ -52,9 +52,9 @@ class Simulation {
         recorder_(*program, as_the_recorder_sees(plan), experiment.keep_rows, samples_, program->always) {
     run_.plan = std::move(plan);
     end_time_ = run_.plan.to;
-    if (log_ && log_->standings() > 0)
-      stand_every_ = (end_time_ - run_.plan.from) / static_cast<double>(log_->standings());
-    next_standing_ = run_.plan.from;
+    if (log_ && log_->checkpoints() > 0)
+      stand_every_ = (end_time_ - run_.plan.from) / static_cast<double>(log_->checkpoints());
+    next_checkpoint_ = run_.plan.from;
   }
 
   void begin() {
@@ -68,16 +68,17 @@ class Simulation {
     stand();
   }
 
-  /// Empty, or why that standing is none of this model.
-  std::string resume(const RunRecording& recording, std::size_t standing) {
-    const Standing& at = recording.standings[standing];
+  /// Empty, or why that checkpoint is none of this model.
+  std::string resume(const RunRecording& recording, std::size_t checkpoint) {
+    const Checkpoint& at = recording.checkpoints[checkpoint];
     if (at.stops.size() != events_.stops().size() || at.next_sample > samples_.size() ||
         at.world.mode >= program_->model.modes.size())
       return "it stands where this model cannot";
     if (std::string fault = world_->fault_of(at.world); !fault.empty()) return fault;
     for (std::size_t i = 0, k = 0; i < at.notes; ++i) {
       note(recording.notes[i]);
-      for (; log_ && k <= standing && recording.standings[k].notes == i + 1; ++k) log_->add(recording.standings[k]);
+      for (; log_ && k <= checkpoint && recording.checkpoints[k].notes == i + 1; ++k)
+        log_->add(recording.checkpoints[k]);
     }
     if (std::string error = world_->restore(at.world); !error.empty()) return error;
     next_output_ = static_cast<std::size_t>(at.next_output);
@@ -85,7 +86,7 @@ class Simulation {
     contacts_ = static_cast<std::size_t>(at.contacts);
     const std::vector<std::size_t> stops(at.stops.begin(), at.stops.end());
     events_.go_on(*world_, world_->variables(), stops);
-    next_standing_ = world_->time() + stand_every_;
+    next_checkpoint_ = world_->time() + stand_every_;
     return {};
   }
 
@@ -120,14 +121,14 @@ class Simulation {
   void stand(bool is_end = false) {
     const double t = world_->time();
     const auto now = std::chrono::steady_clock::now();
-    if (!log_ || !(stand_every_ > 0) || (!is_end && t < next_standing_ && now - stood_ < standing_of_clock)) return;
+    if (!log_ || !(stand_every_ > 0) || (!is_end && t < next_checkpoint_ && now - stood_ < checkpoint_of_clock)) return;
     stood_ = now;
     log_->add({.world = world_->snapshot(),
                .next_output = next_output_,
                .next_sample = next_sample_,
                .contacts = contacts_,
                .stops = {events_.stops().begin(), events_.stops().end()}});
-    next_standing_ = t + stand_every_;
+    next_checkpoint_ = t + stand_every_;
   }
   bool in_steps() const { return world_->step() > 0; }
   double slack() const { return slack_of(*world_); }
@@ -222,7 +223,7 @@ class Simulation {
   model::RunRecorder recorder_;
   model::Run run_{};
   std::size_t next_output_ = 0, next_sample_ = 0, contacts_ = 0;
-  double end_time_ = 0, stand_every_ = 0, next_standing_ = 0;
+  double end_time_ = 0, stand_every_ = 0, next_checkpoint_ = 0;
   std::chrono::steady_clock::time_point stood_ = std::chrono::steady_clock::now();
   bool ended_ = false;
   std::string error_;
@@ -262,7 +263,7 @@ model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>
 }
 
 model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording,
-                              std::size_t standing, const GoOn& how, RunLog* log) {
+                              std::size_t checkpoint, const GoOn& how, RunLog* log) {
   model::Simulated simulated;
   model::Experiment experiment = recording.head.experiment;
   const auto as_recorded = plan(program->model, experiment, simulated.diagnostics);
@@ -278,7 +279,7 @@ model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& 
   }
   Simulation simulation(program, experiment, std::move(*prepared.plan), std::move(prepared.world),
                         look_of(*as_recorded), log);
-  if (const std::string error = simulation.resume(recording, standing); !error.empty()) {
+  if (const std::string error = simulation.resume(recording, checkpoint); !error.empty()) {
     simulated.diagnostics.push_back(does_not_fit(program->model, error));
     return simulated;
   }

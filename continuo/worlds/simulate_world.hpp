@@ -4,7 +4,7 @@
 //   const model::Simulated simulated = worlds::simulate_world(program, {.method = "fast", .step = 0.01});
 //
 // Events are looked for between looks: in the exact mode a thousand in a run, every row, at contacts and where
-// conditions turn (world_looks.cpp); there the instant is then found to neighbouring times, by moving a copy of the
+// conditions turn (event_search.cpp); there the instant is then found to neighbouring times, by moving a copy of the
 // world again. In the fast mode every step ends with a look, and an event happens there. Rows of the fast mode are the
 // first ends of steps that are not before the wanted times.
 #pragma once
@@ -32,10 +32,10 @@ struct GoOn {
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
 };
-/// The recorded run up to one of its standings, and from there on simulated: to the end that it was to have, to the
+/// The recorded run up to one of its checkpoints, and from there on simulated: to the end that it was to have, to the
 /// same bits as without a break, or to another.
 model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording,
-                              std::size_t standing, const GoOn& how = {}, RunLog* log = nullptr);
+                              std::size_t checkpoint, const GoOn& how = {}, RunLog* log = nullptr);
 
 /// By simulate_world where the model has a world, else by model::simulate.
 model::Simulated simulate_any(const std::shared_ptr<const model::ModelProgram>& program,

@@ -68,7 +68,7 @@ class WorldEvents {
   void place_guards(WorldRun& world);
   bool passed(std::size_t i) const;
   bool any_passed() const;
-  std::string look_at_first_contact(WorldRun& world, const Snapshot& saved);  // world_looks.cpp
+  std::string look_at_first_contact(WorldRun& world, const Snapshot& saved);  // event_search.cpp
   std::string look_where_guards_turn(WorldRun& world, const Snapshot& saved, const X& before);
   double slope(std::size_t i, double t, const X& state, double length);
   void find_watched();

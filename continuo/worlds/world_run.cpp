@@ -9,8 +9,8 @@
 #include <continuo/bodies/snapshot.hpp>
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/solve/integrator.hpp>
-#include <continuo/worlds/beside.hpp>
 #include <continuo/worlds/build_world.hpp>
+#include <continuo/worlds/coupled_equations.hpp>
 #include <continuo/worlds/world_run.hpp>
 #include <continuo/worlds/world_shapes.hpp>
 
@@ -42,17 +42,17 @@ class Moving final : public WorldRun {
       : program_(std::move(program)),
         options_(std::move(options)),
         variables_(variables.begin(), variables.end()),
-        beside_(*program_, variables),
+        coupled_(*program_, variables),
         start_(variables[model::Layout::time]) {
     const auto first = variables.begin() + static_cast<std::ptrdiff_t>(model().layout.states);
     state_.assign(first, first + static_cast<std::ptrdiff_t>(model().states.size()));
-    const auto z = state_.begin() + static_cast<std::ptrdiff_t>(beside_.first());
-    companions_.state.assign(z, z + static_cast<std::ptrdiff_t>(beside_.states()));
+    const auto z = state_.begin() + static_cast<std::ptrdiff_t>(coupled_.first());
+    companions_.state.assign(z, z + static_cast<std::ptrdiff_t>(coupled_.states()));
     companions_.absolute_tolerance = options_.tolerance * 1e-3;
-    companions_.twists = beside_.has_torques();
+    companions_.twists = coupled_.has_torques();
     companions_.law = [this](double t, const BodyStates<double, Dim>& at, std::span<const double> z_now,
                              std::span<V> force, std::span<Spin<double, Dim>> torque,
-                             std::span<double> rate) { beside_(world_, t, at, z_now, force, torque, rate); };
+                             std::span<double> rate) { coupled_(world_, t, at, z_now, force, torque, rate); };
   }
 
   /// Empty, or why the world cannot be as its parameters say. Bodies keep their places.
@@ -116,7 +116,7 @@ class Moving final : public WorldRun {
     for (std::size_t i = 0; i < world_.size(); ++i)
       write_body<Dim>(state_.data() + i * per_body, world_.position[i], world_.velocity[i], world_.orientation[i],
                       world_.spin[i]);
-    std::ranges::copy(companions_.state, state_.begin() + static_cast<std::ptrdiff_t>(beside_.first()));
+    std::ranges::copy(companions_.state, state_.begin() + static_cast<std::ptrdiff_t>(coupled_.first()));
     double* measure = state_.data() + model().world->first_measure;
     *measure++ = kinetic_energy();
     *measure++ = potential_energy();
@@ -159,7 +159,7 @@ class Moving final : public WorldRun {
     const model::Layout& layout = model().layout;
     const bool is_parameter = variable >= layout.parameters && variable < layout.inputs;
     variables_[variable] = value;
-    beside_.set(variable, value);
+    coupled_.set(variable, value);
     if (!is_parameter) {
       renew();
       return {};
@@ -169,14 +169,14 @@ class Moving final : public WorldRun {
       const model::Parameter& parameter = model().parameters[i];
       if (parameter.independent || std::ranges::find(set_, parameter.variable) != set_.end()) continue;
       variables_[parameter.variable] = evaluate(model(), parameter.expression, variables_);
-      beside_.set(parameter.variable, variables_[parameter.variable]);
+      coupled_.set(parameter.variable, variables_[parameter.variable]);
     }
     std::string error = build();
     if (!error.empty()) {
       variables_ = before;
       set_.pop_back();
       for (const model::Parameter& parameter : model().parameters)
-        beside_.set(parameter.variable, variables_[parameter.variable]);
+        coupled_.set(parameter.variable, variables_[parameter.variable]);
     }
     return error;
   }
@@ -186,9 +186,9 @@ class Moving final : public WorldRun {
     std::ranges::copy(state(), variables_.begin() + static_cast<std::ptrdiff_t>(model().layout.states));
     return variables_;
   }
-  std::size_t mode() const override { return beside_.mode(); }
+  std::size_t mode() const override { return coupled_.mode(); }
   void go(std::size_t mode) override {
-    beside_.go(mode);
+    coupled_.go(mode);
     renew();
   }
 
@@ -200,7 +200,7 @@ class Moving final : public WorldRun {
             .start = start_,
             .steps = steps_,
             .collisions = collisions(),
-            .mode = beside_.mode(),
+            .mode = coupled_.mode(),
             .method = options_.method,
             .step = options_.step};
   }
@@ -229,10 +229,10 @@ class Moving final : public WorldRun {
     steps_ = saved.steps;
     collisions_apart_ = saved.collisions - counted();
     for (std::uint32_t i = model().layout.parameters; i < model().layout.samples; ++i) {
-      if (variables_[i] != saved.variables[i]) beside_.set(i, saved.variables[i]);
+      if (variables_[i] != saved.variables[i]) coupled_.set(i, saved.variables[i]);
     }
     variables_ = saved.variables;
-    beside_.go(saved.mode);
+    coupled_.go(saved.mode);
     contacts_.clear();
     shapes_ = shapes_of(world_, *model().world);
     return {};
@@ -260,7 +260,7 @@ class Moving final : public WorldRun {
           .tolerance = options_.tolerance, .contact_events = options_.most_contacts, .interrupt = options_.interrupt};
       if (mode.contact_time.valid()) options.contact_time = evaluate(model(), mode.contact_time, variables_);
       if (options_.method == "rk4") options.step = options_.step;
-      if (beside_.is_empty()) {
+      if (coupled_.is_empty()) {
         exact_.emplace(world_, options);
       } else {
         exact_.emplace(world_, options, companions_);
@@ -275,14 +275,14 @@ class Moving final : public WorldRun {
     options.contact_events = options_.most_contacts;
     options.integrator = *integrator_named(options_.method == "fast" ? mode.integrator : options_.method);
     world_.force_laws.clear(), world_.torque_laws.clear();
-    if (beside_.has_forces())
+    if (coupled_.has_forces())
       world_.force_laws.push_back(
           [this](const World<double, Dim>& world, double t, std::span<const V> x, std::span<const V> v,
-                 std::span<V> force) { beside_(world, t, {x, v, {}, {}}, companions_.state, force, {}, {}); });
-    if (beside_.has_torques())
+                 std::span<V> force) { coupled_(world, t, {x, v, {}, {}}, companions_.state, force, {}, {}); });
+    if (coupled_.has_torques())
       world_.torque_laws.push_back(
           [this](const World<double, Dim>& world, double t, const BodyStates<double, Dim>& at,
-                 std::span<Spin<double, Dim>> torque) { beside_(world, t, at, companions_.state, {}, torque, {}); });
+                 std::span<Spin<double, Dim>> torque) { coupled_(world, t, at, companions_.state, {}, torque, {}); });
     fast_.emplace(world_, options);
   }
   void renew() {
@@ -315,7 +315,7 @@ class Moving final : public WorldRun {
     if (companions_.state.empty()) return {};
     using Others = std::vector<double>;
     const auto rates = [this](double t, const Others& z, Others& rate) {
-      beside_(world_, t, {world_.position, world_.velocity, {}, {}}, z, {}, {}, rate);
+      coupled_(world_, t, {world_.position, world_.velocity, {}, {}}, z, {}, {}, rate);
     };
     Options<Others> options{.rtol = std::max(options_.tolerance, 1e-13), .atol = companions_.absolute_tolerance};
     options.save = Save<Others>::only_end();
@@ -356,7 +356,7 @@ class Moving final : public WorldRun {
   WorldOptions options_;
   std::vector<double> variables_;
   std::vector<std::uint32_t> set_;  // parameters that were set
-  Beside<Dim> beside_;
+  CoupledEquations<Dim> coupled_;
   World<double, Dim> world_;
   Companions<double, Dim> companions_;  // the equations
   std::optional<ExactMotion<double, Dim>> exact_;

@@ -147,7 +147,7 @@ TEST(Islands, LeaveWhatFliesOnItsParabolas) {
   Space world;
   world.gravity = {{0, 0, -10}};
   ASSERT_EQ(world.add_container({}, {{20, 20, 20}}, elastic), "");
-  world.meeting.restitution = Combine::minimum;
+  world.combine_rule.restitution = Combine::minimum;
   std::mt19937 engine(4);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int i = 0; i < 60; ++i)

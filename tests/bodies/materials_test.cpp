@@ -46,10 +46,11 @@ void move(World<double, 2>& world, Motion motion, double t) {
   ASSERT_EQ(exact.advance_to(t), "");
 }
 
-World<double, 2> over_a_floor(const Meeting& meeting, const Material<double>& ball, const Material<double>& floor) {
+World<double, 2> over_a_floor(const CombineRule& combine_rule, const Material<double>& ball,
+                              const Material<double>& floor) {
   World<double, 2> world;
   world.gravity = {{0, -g}};
-  world.meeting = meeting;
+  world.combine_rule = combine_rule;
   EXPECT_EQ(world.add_wall({.material = floor}), "");
   EXPECT_TRUE(world.add({.position = {{0, 0.5}}, .mass = 2, .material = ball}));
   return world;
@@ -80,7 +81,7 @@ TEST(Materials, TwoBallsPartByTheRuleOfTheirWorld) {
   for (const Combine how : every_way) {
     for (const Motion motion : {Motion::exact, Motion::forced, Motion::fast}) {
       World<double, 2> world;
-      world.meeting.restitution = how;
+      world.combine_rule.restitution = how;
       world.add({.velocity = {{3, 0}}, .mass = 1, .material = {.restitution = 0.2}});
       world.add({.position = {{2, 0}}, .mass = 1, .material = {.restitution = 0.8}});
       move(world, motion, 1);

@@ -45,7 +45,7 @@ World<Real, Dim> crowd(unsigned seed, bool has_springs) {
     last = added.handle;
   }
   world.ignore(2, 3);
-  world.meeting = {.restitution = Combine::average, .rolling_resistance = Combine::product};
+  world.combine_rule = {.restitution = Combine::average, .rolling_resistance = Combine::product};
   return world;
 }
 

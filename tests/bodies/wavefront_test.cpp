@@ -56,7 +56,7 @@ TEST(Wavefront, ActsOnEachBlockAsSweepsOneAfterAnother) {
         for (const bool has_rest : {false, true}) {
           Trace trace(blocks);
           const std::vector<Sweep> sweeps = sweeps_of(trace, count, has_rest);
-          Team team(threads);
+          ThreadTeam team(threads);
           team.run([&] { run_sweeps(team, blocks, sweeps); });
           EXPECT_EQ(trace.halves, one_after_another(blocks, count, has_rest).halves)
               << threads << " threads, " << blocks << " blocks, " << count << " sweeps";
@@ -70,7 +70,7 @@ TEST(Wavefront, StaysWithinAsManyBlocksAsThereAreSweeps) {
   std::vector<std::size_t> acts;
   std::vector<Sweep> sweeps(count);
   for (Sweep& sweep : sweeps) sweep.within = sweep.across = [&](std::size_t block) { acts.push_back(block); };
-  Team team(1);
+  ThreadTeam team(1);
   run_sweeps(team, blocks, sweeps);
   ASSERT_EQ(acts.size(), 2 * blocks * count);
   std::size_t newest = 0;

@@ -76,14 +76,14 @@ void tell_and_go_on(const std::shared_ptr<const model::ModelProgram>& program, c
   if (!is_short(recording.head.experiment, 0)) return;
   const model::Simulated told = replay_world(program, recording);
   if (!told.run && told.diagnostics.empty()) std::abort();
-  if (recording.standings.empty()) return;
-  const double from = recording.standings.back().world.time;
+  if (recording.checkpoints.empty()) return;
+  const double from = recording.checkpoints.back().world.time;
   std::atomic<bool> enough = false;
   const Timer timer(enough);
   std::ostringstream file;
   RunLog log(file, recording.head, 3);
-  const model::Simulated on =
-      resume_world(program, recording, recording.standings.size() - 1, {.to = from + 0.05, .interrupt = &enough}, &log);
+  const model::Simulated on = resume_world(program, recording, recording.checkpoints.size() - 1,
+                                           {.to = from + 0.05, .interrupt = &enough}, &log);
   if (!on.run && on.diagnostics.empty()) std::abort();
   if (!on.run) return;
   // What it wrote is in order whatever it went on from.
@@ -114,7 +114,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   play<double, 3>(bytes);
   play<float, 2>(bytes);
   put_sums_right(bytes, 12, [](std::uint8_t kind, std::span<std::byte> block) {
-    if (kind != 2 || block.size() < 8) return;  // a standing begins with its bodies
+    if (kind != 2 || block.size() < 8) return;  // a checkpoint begins with its bodies
     std::uint64_t count = 0;
     ByteReader reader(block);
     reader(count);

@@ -230,7 +230,7 @@ TYPED_TEST(AdaptiveDiagonal, MeetsTheToleranceOnRobertson) {
     const auto& x = solution.final_state();
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(x[i], reference[i], 30 * rtol * reference[i]) << rtol << " " << i;
     EXPECT_LT(solution.statistics.jacobians, solution.statistics.steps);
-    EXPECT_LT(solution.statistics.decompositions, solution.statistics.steps + 20);
+    EXPECT_LT(solution.statistics.factorizations, solution.statistics.steps + 20);
   }
 }
 

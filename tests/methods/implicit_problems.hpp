@@ -139,7 +139,8 @@ Real error_of_steps(Problem problem, int n) {
   Real worst(0);
   auto x = problem.exact(Real(0)), x_new = x;
   auto work = M::workspace(x);
-  if constexpr (requires { M::aim(work, Tolerance<Real>{}); }) M::aim(work, Tolerance<Real>{Real(1e-14), Real(1e-14)});
+  if constexpr (requires { M::set_tolerance(work, Tolerance<Real>{}); })
+    M::set_tolerance(work, Tolerance<Real>{Real(1e-14), Real(1e-14)});
   for (int i = 0; i < n; ++i) {
     M::step(problem, Real(h * i), x, h, i == 0, work, x_new);
     M::accept(work);
@@ -155,7 +156,8 @@ Real dense_error(Problem problem, int n) {
   const Real t(0.25), h = Real(1) / n;
   auto x = problem.exact(t), x_new = x, value = x;
   auto work = M::workspace(x);
-  if constexpr (requires { M::aim(work, Tolerance<Real>{}); }) M::aim(work, Tolerance<Real>{Real(1e-14), Real(1e-14)});
+  if constexpr (requires { M::set_tolerance(work, Tolerance<Real>{}); })
+    M::set_tolerance(work, Tolerance<Real>{Real(1e-14), Real(1e-14)});
   Interpolant<std::array<Real, 2>, M::dense_degree> interpolant(x);
   M::step(problem, t, x, h, true, work, x_new);
   M::interpolate(problem, t, x, h, x_new, work, interpolant);

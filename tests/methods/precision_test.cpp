@@ -44,9 +44,9 @@ Real error_of_step(const Real& h) {
   const auto x = Soliton<Real>::exact(t);
   auto x_new = x;
   auto work = M::workspace(x);
-  if constexpr (requires { M::aim(work, Tolerance<Real>{}); }) {
+  if constexpr (requires { M::set_tolerance(work, Tolerance<Real>{}); }) {
     const Real tolerance = 10 * std::numeric_limits<Real>::epsilon();
-    M::aim(work, Tolerance<Real>{tolerance, tolerance});
+    M::set_tolerance(work, Tolerance<Real>{tolerance, tolerance});
   }
   M::step(system, t, x, h, true, work, x_new);
   if (detail::status_of<M>(work) != StepStatus::done) return std::numeric_limits<Real>::infinity();

@@ -195,7 +195,7 @@ TYPED_TEST(Rosenbrock, MeetsTheToleranceOnRobertson) {
     const auto& x = solution.final_state();
     EXPECT_NEAR(x[0] + x[1] + x[2], 1, 1e-11);                            // round-off: 1e4 steps of some units of 1e-16
     EXPECT_EQ(solution.statistics.jacobians, solution.statistics.steps);  // one for each start, rejected or not
-    EXPECT_EQ(solution.statistics.decompositions, solution.statistics.steps + solution.statistics.rejected);
+    EXPECT_EQ(solution.statistics.factorizations, solution.statistics.steps + solution.statistics.rejected);
   }
 }
 

@@ -137,7 +137,8 @@ RealOf<M> of_solved_equations(const ErrorBy& error_by) {
   Real error(0);
   for (Real tolerance(0.001); tolerance > std::numeric_limits<Real>::epsilon(); tolerance /= 100) {
     error = error_by([&](auto& work) {
-      if constexpr (requires { M::aim(work, Tolerance<Real>{}); }) M::aim(work, Tolerance<Real>{tolerance, tolerance});
+      if constexpr (requires { M::set_tolerance(work, Tolerance<Real>{}); })
+        M::set_tolerance(work, Tolerance<Real>{tolerance, tolerance});
     });
     if (error > 1000 * tolerance) return error;
   }
@@ -155,14 +156,14 @@ auto work_at(std::size_t k, const Problem& problem, const Real& t, const Real& h
 
 /// The greatest error of a component after n equal steps; infinite where one of them cannot be solved.
 template <class M, class Problem>
-RealOf<M> error_of_steps(std::size_t k, int n, std::size_t component, const auto& aim) {
+RealOf<M> error_of_steps(std::size_t k, int n, std::size_t component, const auto& set_tolerance) {
   using Real = RealOf<M>;
   using std::abs;
   Problem problem;
   const Real h = Real(Problem::duration) / n;
   auto x = Problem::exact(Real(0)), x_new = x;
   auto work = work_at<M>(k, problem, Real(0), h);
-  aim(work);
+  set_tolerance(work);
   Real worst(0);
   for (int i = 0; i < n; ++i) {
     M::step(problem, Real(h * i), x, h, i == 0 && !formula<M>, work, x_new);
@@ -179,7 +180,7 @@ RealOf<M> error_of_steps(std::size_t k, int n, std::size_t component, const auto
 
 /// The greatest error of the interpolant of one step from the exact state.
 template <class M, class Problem>
-RealOf<M> error_within_step(std::size_t k, int n, std::size_t component, const auto& aim) {
+RealOf<M> error_within_step(std::size_t k, int n, std::size_t component, const auto& set_tolerance) {
   using Real = RealOf<M>;
   using std::abs;
   Problem problem;
@@ -187,7 +188,7 @@ RealOf<M> error_within_step(std::size_t k, int n, std::size_t component, const a
   const Real t(formula<M> ? 1 : 0.25), h = Real(1) / n;
   auto x = Problem::exact(t), x_new = x, value = x;
   auto work = work_at<M>(k, problem, t, h);
-  aim(work);
+  set_tolerance(work);
   Interpolant<decltype(x), M::dense_degree> interpolant(x);
   M::step(problem, t, x, h, !formula<M>, work, x_new);
   M::interpolate(problem, t, x, h, x_new, work, interpolant);
@@ -220,14 +221,16 @@ std::optional<double> order_of(const Error& error) {
 template <class M, class Problem>
 std::optional<double> order_of_steps(std::size_t k, std::size_t component) {
   return order_of([=](int n) {
-    return of_solved_equations<M>([&](const auto& aim) { return error_of_steps<M, Problem>(k, n, component, aim); });
+    return of_solved_equations<M>(
+        [&](const auto& set_tolerance) { return error_of_steps<M, Problem>(k, n, component, set_tolerance); });
   });
 }
 
 template <class M, class Problem>
 std::optional<double> order_within_step(std::size_t k) {
   return order_of([=](int n) {
-    return of_solved_equations<M>([&](const auto& aim) { return error_within_step<M, Problem>(k, n, 0, aim); });
+    return of_solved_equations<M>(
+        [&](const auto& set_tolerance) { return error_within_step<M, Problem>(k, n, 0, set_tolerance); });
   });
 }
 

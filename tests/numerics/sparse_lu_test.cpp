@@ -1,4 +1,4 @@
-// Sparse decomposition against the dense one, which has tests of its own.
+// Sparse factorization against the dense one, which has tests of its own.
 #include <cstddef>
 #include <random>
 #include <vector>

@@ -69,10 +69,10 @@ struct Recorded {
   model::Run run;
   std::string file;
 };
-Recorded recorded(const std::string& text, std::size_t standings = 10) {
+Recorded recorded(const std::string& text, std::size_t checkpoints = 10) {
   Recorded made{program_of(text), {}, {}};
   std::ostringstream file;
-  RunLog log(file, {.file = "scene.sim", .text = text}, standings);
+  RunLog log(file, {.file = "scene.sim", .text = text}, checkpoints);
   model::Simulated simulated = simulate_world(made.program, {}, &log);
   EXPECT_TRUE(simulated.run);
   made.run = std::move(*simulated.run);
@@ -119,18 +119,18 @@ TEST(RunLog, GoesOnToTheSameBits) {
     // At every step; of these each twelfth, after 0.1, the scheduled events among them: some are off by rounding.
     const Recorded made = recorded(each.text, 400);
     const RunRecording recording = RunRecording::read(bytes_of(made.file));
-    ASSERT_GE(recording.standings.size(), 20U) << each.name;
-    for (std::size_t k = 0; k < recording.standings.size(); k += recording.standings.size() > 50 ? 12 : 1) {
+    ASSERT_GE(recording.checkpoints.size(), 20U) << each.name;
+    for (std::size_t k = 0; k < recording.checkpoints.size(); k += recording.checkpoints.size() > 50 ? 12 : 1) {
       std::ostringstream file;
       RunLog log(file, recording.head, 400);
       const model::Simulated on = resume_world(made.program, recording, k, {}, &log);
-      const std::string what = each.name + (" from standing " + std::to_string(k));
+      const std::string what = each.name + (" from checkpoint " + std::to_string(k));
       ASSERT_TRUE(on.run) << what;
       expect_same(made.run, *on.run, what);
       // What it has recorded is a whole run, too.
       const RunRecording longer = RunRecording::read(bytes_of(file.str()));
       ASSERT_EQ(longer.error, "");
-      EXPECT_GE(longer.standings.size(), recording.standings.size()) << what;
+      EXPECT_GE(longer.checkpoints.size(), recording.checkpoints.size()) << what;
       expect_same(made.run, *replay_world(made.program, longer).run, what);
     }
   }
@@ -143,11 +143,11 @@ TEST(RunLog, GoesOnBeyondItsEnd) {
   };
   const Recorded made = recorded(text("2"));
   const RunRecording recording = RunRecording::read(bytes_of(made.file));
-  const model::Simulated on = resume_world(made.program, recording, recording.standings.size() - 1, {.to = 3});
+  const model::Simulated on = resume_world(made.program, recording, recording.checkpoints.size() - 1, {.to = 3});
   ASSERT_TRUE(on.run);
   expect_same(run_of(text("3")), *on.run, "beyond");
-  EXPECT_EQ(recording.standing_at(0.01), 0U);
-  EXPECT_EQ(recording.standing_at(100), recording.standings.size() - 1);
+  EXPECT_EQ(recording.checkpoint_at(0.01), 0U);
+  EXPECT_EQ(recording.checkpoint_at(100), recording.checkpoints.size() - 1);
 }
 
 // What is cut off anywhere is a shorter run, or none, and can be gone on with to the end as it was.
@@ -167,8 +167,8 @@ TEST(RunLog, MayBeCutOffAnywhere) {
     ASSERT_LE(again.run->motion.values.size(), made.run.motion.values.size());
     EXPECT_TRUE(std::ranges::equal(again.run->motion.values,
                                    std::span(made.run.motion.values).first(again.run->motion.values.size())));
-    if (recording.standings.empty() || ++usable % 10 != 0) continue;
-    const model::Simulated on = resume_world(made.program, recording, recording.standings.size() - 1);
+    if (recording.checkpoints.empty() || ++usable % 10 != 0) continue;
+    const model::Simulated on = resume_world(made.program, recording, recording.checkpoints.size() - 1);
     ASSERT_TRUE(on.run);
     expect_same(made.run, *on.run, "cut off after " + std::to_string(size));
   }
@@ -205,10 +205,10 @@ TEST(RunLog, IsRefusedWhereItIsWrong) {
     EXPECT_TRUE(is_mended || !recording.end) << "a changed byte was not seen";  // a changed size looks cut off
     for (const model::Simulated& simulated :
          {replay_world(made.program, recording),
-          recording.standings.empty()
+          recording.checkpoints.empty()
               ? model::Simulated{}
-              : resume_world(made.program, recording, engine() % recording.standings.size(), {.to = 1.5})})
-      EXPECT_TRUE(simulated.run || recording.standings.empty() || has_errors(simulated.diagnostics));
+              : resume_world(made.program, recording, engine() % recording.checkpoints.size(), {.to = 1.5})})
+      EXPECT_TRUE(simulated.run || recording.checkpoints.empty() || has_errors(simulated.diagnostics));
   }
   EXPECT_GT(refused, 100U);
   EXPECT_GT(taken, 50U);
@@ -230,7 +230,7 @@ TEST(RunLog, OfAnotherModelIsRefused) {
 TEST(RunLog, DoesNotGoOnFromPlacesThatAreNoneOfItsRun) {
   const Recorded made = recorded(cases()[2].text, 5);
   const RunRecording recording = RunRecording::read(bytes_of(made.file));
-  const std::size_t last = recording.standings.size() - 1;
+  const std::size_t last = recording.checkpoints.size() - 1;
   const auto more_bodies = [] {
     std::string text = cases()[2].text;
     text.replace(text.find("random 8"), 8, "random 9");
@@ -238,15 +238,15 @@ TEST(RunLog, DoesNotGoOnFromPlacesThatAreNoneOfItsRun) {
   }();
   const auto expect_refused = [&](auto&& change, const std::string& why) {
     RunRecording wrong = recording;
-    change(wrong.standings[last].world);
+    change(wrong.checkpoints[last].world);
     const model::Simulated on = resume_world(made.program, wrong, last, {.to = 1.6});
     EXPECT_FALSE(on.run) << why;
     ASSERT_EQ(on.diagnostics.size(), 1U) << why;
     EXPECT_EQ(on.diagnostics[0].code, "E325");
     EXPECT_NE(on.diagnostics[0].label.find(why), std::string::npos) << on.diagnostics[0].label;
   };
-  expect_refused([&](Snapshot& world) { world.bodies = more_bodies.standings[last].world.bodies; }, "other bodies");
-  expect_refused([&](Snapshot& world) { world.bodies = recording.standings[0].world.bodies; }, "another time");
+  expect_refused([&](Snapshot& world) { world.bodies = more_bodies.checkpoints[last].world.bodies; }, "other bodies");
+  expect_refused([&](Snapshot& world) { world.bodies = recording.checkpoints[0].world.bodies; }, "another time");
   expect_refused([](Snapshot& world) { world.start = -1e300; }, "none of its steps");
   expect_refused([](Snapshot& world) { world.steps += 5; }, "none of its steps");
   expect_refused([](Snapshot& world) { world.equations[0] = std::nan(""); }, "not finite");

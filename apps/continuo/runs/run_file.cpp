@@ -13,7 +13,7 @@ namespace continuo::app {
 void add_record(CLI::App& verb, RecordTo& record) {
   auto* path =
       verb.add_option("--record", record.path, "Of a world: a file to replay, or to go on from")->type_name("FILE");
-  verb.add_option("--snapshots", record.standings, "In the recording: so many places to go on from (20)")
+  verb.add_option("--snapshots", record.checkpoints, "In the recording: so many places to go on from (20)")
       ->type_name("N")
       ->check(count_from(0, 100'000))
       ->needs(path);
@@ -29,7 +29,7 @@ worlds::RunLog* RunFile::begin(const worlds::RunHead& head) {
   if (!is_wanted()) return nullptr;
   file_.open(to_.path, std::ios::binary | std::ios::trunc);
   if (!file_) return nullptr;
-  log_ = std::make_unique<worlds::RunLog>(file_, head, to_.standings);
+  log_ = std::make_unique<worlds::RunLog>(file_, head, to_.checkpoints);
   return log_.get();
 }
 

@@ -14,7 +14,7 @@ namespace continuo::app {
 
 struct RecordTo {
   std::string path{};  // empty: nowhere
-  std::size_t standings = 20;
+  std::size_t checkpoints = 20;
 };
 /// --record and --snapshots.
 void add_record(CLI::App& verb, RecordTo& record);

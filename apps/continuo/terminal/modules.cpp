@@ -20,8 +20,8 @@ struct Module {
   std::string problem{};          // why there is none
 };
 
-/// Beside the command, where it was built, or in the folder of libraries that it was installed with. Links to the
-/// command are followed.
+/// CoupledEquations the command, where it was built, or in the folder of libraries that it was installed with. Links to
+/// the command are followed.
 Module load(const std::string& name) {
   std::error_code error;
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();

@@ -59,10 +59,10 @@ Opened open(const ReplayRequest& request) {
 }
 
 std::string places_of(const worlds::RunRecording& recording) {
-  const auto& standings = recording.standings;
-  if (standings.empty()) return "none to go on from";
-  return fmt::format("{} to go on from, t = {:g} to {:g}: continuo resume", standings.size(),
-                     standings.front().world.time, standings.back().world.time);
+  const auto& checkpoints = recording.checkpoints;
+  if (checkpoints.empty()) return "none to go on from";
+  return fmt::format("{} to go on from, t = {:g} to {:g}: continuo resume", checkpoints.size(),
+                     checkpoints.front().world.time, checkpoints.back().world.time);
 }
 
 ExitCode replay(const ReplayRequest& request) {
@@ -83,12 +83,12 @@ ExitCode resume(const ReplayRequest& request) {
   const Opened opened = open(request);
   if (opened.exit != done) return opened.exit;
   const auto& recording = opened.recording;
-  if (recording.standings.empty()) {
+  if (recording.checkpoints.empty()) {
     say(fmt::format("{} has no place to go on from: it was recorded with --snapshots 0", request.file));
     return usage;
   }
-  const std::size_t standing = request.at ? recording.standing_at(*request.at) : recording.standings.size() - 1;
-  const double from = recording.standings[standing].world.time;
+  const std::size_t checkpoint = request.at ? recording.checkpoint_at(*request.at) : recording.checkpoints.size() - 1;
+  const double from = recording.checkpoints[checkpoint].world.time;
   if ((request.at && *request.at < from) || (request.until && *request.until < from)) {
     say(fmt::format("the run goes on from t = {:g} at the earliest here", from));
     return usage;
@@ -102,7 +102,7 @@ ExitCode resume(const ReplayRequest& request) {
     Progress progress;
     std::vector<model::Diagnostic> problems;  // the run itself will tell of them
     const auto plan = model::plan(opened.program->model, head.experiment, problems);
-    return worlds::resume_world(opened.program, recording, standing,
+    return worlds::resume_world(opened.program, recording, checkpoint,
                                 {.to = request.until,
                                  .interrupt = &interrupt_flag(),
                                  .progress = plan ? progress.over(from, plan->to) : nullptr},

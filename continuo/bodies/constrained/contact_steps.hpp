@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/contacts/contact_sweeps.hpp>
-#include <continuo/bodies/contacts/held_contact.hpp>
+#include <continuo/bodies/contacts/persistent_contact.hpp>
+#include <continuo/bodies/contacts/projected_gauss_seidel.hpp>
 #include <continuo/bodies/contacts/touching.hpp>
 #include <continuo/bodies/world.hpp>
 
@@ -113,7 +113,7 @@ class ContactSteps {
     for (const Touching& pair : pairs) {
       const Real gap = gap_of(world, pair);
       if (gap > reach) continue;
-      HeldContact<Real, Dim> contact(world, pair);
+      PersistentContact<Real, Dim> contact(world, pair);
       contact.place(world, world.position, world.velocity, world.spin);
       auto& row = sweeps_.add(contact, pair.a + 1, pair.with_wall() ? 0 : pair.b + 1);
       // What overlaps by errors parts again in the time in which a body falls its radius.
@@ -139,8 +139,8 @@ class ContactSteps {
     sweeps_.sweep(least, 4 * most_sweeps);
   }
 
-  ContactSweeps<Real, Dim> sweeps_;  // body i at the place i + 1
-  std::vector<Touching> listed_;     // of the rows
+  ProjectedGaussSeidel<Real, Dim> sweeps_;  // body i at the place i + 1
+  std::vector<Touching> listed_;            // of the rows
   std::vector<Pushed> pushed_;
   Real fastest_{}, change_{};
   Real tolerance_ = loosest;  // a tenth of what the last step changed, as a part of what forces change in a step

@@ -1,7 +1,7 @@
 // Under gravity most bodies fly on parabolas, or lie on walls, and some lie on each other. Those are islands: each in a
-// world of its own, moved by the engine of general forces (forced_flight.cpp), as fast as its own contacts allow, or
-// not at all where nothing moves in it. All others go from event to event (event_driven.cpp), where a sphere stands in
-// place of each body of an island.
+// world of its own, moved by the engine of general forces (constrained_motion.cpp), as fast as its own contacts allow,
+// or not at all where nothing moves in it. All others go from event to event (event_driven.cpp), where a sphere stands
+// in place of each body of an island.
 //
 // An island is moved ahead, for a window of time in which none of its bodies leaves its sphere: what is outside of the
 // spheres cannot meet it. Where somebody comes to a sphere before the window ends, the island goes back to its
@@ -134,7 +134,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     for (const auto& [id, island] : islands_) {
       if (!(island.end < never)) continue;
       awake.push_back(id);
-      set_aside(island);
+      replace_by_proxy(island);
     }
     std::string fault;
     for (const std::uint32_t id : awake)
@@ -222,7 +222,7 @@ class Islands final : public ExactEngine<Real, Dim> {
   /// Draws the sphere of one, and takes in whom it overlaps.
   void look_round(Pool& pool, std::size_t k, std::string& fault) {
     const std::uint32_t i = pool.bodies[k];
-    gas_->set_aside(i, world_.position[i], world_.radius[i] + pool.room);
+    gas_->replace_by_proxy(i, world_.position[i], world_.radius[i] + pool.room);
     gas_->find_overlapping(i, near_);
     for (const std::uint32_t j : near_) {
       if (world_.is_fixed(j)) {
@@ -289,7 +289,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     island.world->time = now;
     ExactOptions<Real> options = options_;
     options.interrupt = nullptr;  // that is looked at between windows
-    island.engine = forced_flight<Real, Dim>(*island.world, options, nullptr);
+    island.engine = constrained_motion<Real, Dim>(*island.world, options, nullptr);
     island.bodies = std::move(bodies);
     return island;
   }
@@ -312,7 +312,7 @@ class Islands final : public ExactEngine<Real, Dim> {
   /// Moves it ahead through its next window.
   std::string open(Island& island, std::uint32_t id, const Real& room) {
     if (island.engine->is_steady()) {
-      set_aside(island);
+      replace_by_proxy(island);
       island.end = never;
       return {};
     }
@@ -328,9 +328,9 @@ class Islands final : public ExactEngine<Real, Dim> {
     return fault;
   }
   /// Without spheres: it stands where it is in the world.
-  void set_aside(const Island& island) {
+  void replace_by_proxy(const Island& island) {
     for (const std::uint32_t i : island.bodies)
-      if (!world_.is_fixed(i)) gas_->set_aside(i, world_.position[i], world_.radius[i]);
+      if (!world_.is_fixed(i)) gas_->replace_by_proxy(i, world_.position[i], world_.radius[i]);
   }
   /// To a time in its window, or to any where it is at rest.
   std::string bring_to(Island& island, const Real& t) {

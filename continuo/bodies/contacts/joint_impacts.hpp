@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/contacts/contact_sweeps.hpp>
-#include <continuo/bodies/contacts/held_contact.hpp>
+#include <continuo/bodies/contacts/persistent_contact.hpp>
+#include <continuo/bodies/contacts/projected_gauss_seidel.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
@@ -26,13 +26,13 @@ std::vector<Real> strike_together(World<Real, Dim>& world, std::span<const Touch
   }
   std::ranges::sort(bodies);
   bodies.erase(std::ranges::unique(bodies).begin(), bodies.end());
-  ContactSweeps<Real, Dim> sweeps;
+  ProjectedGaussSeidel<Real, Dim> sweeps;
   for (const std::uint32_t i : bodies) sweeps.add(world, i);
   const auto place_of = [&](std::uint32_t i) {
     return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, i) - bodies.begin()) + 1;
   };
   for (const Touching& pair : touching) {
-    HeldContact<Real, Dim> contact(world, pair);
+    PersistentContact<Real, Dim> contact(world, pair);
     contact.roll.most = Real(0);  // a blow is over before anything rolls
     contact.place(world, world.position, world.velocity, world.spin);
     sweeps.add(contact, place_of(pair.a), pair.with_wall() ? 0 : place_of(pair.b));

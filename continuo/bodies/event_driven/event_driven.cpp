@@ -6,15 +6,15 @@
 
 #include <continuo/bodies/contacts/contact_time.hpp>
 #include <continuo/bodies/contacts/impulse.hpp>
-#include <continuo/bodies/event_driven/aside.hpp>
-#include <continuo/bodies/event_driven/cluster.hpp>
+#include <continuo/bodies/event_driven/event_prefetch.hpp>
 #include <continuo/bodies/event_driven/event_queue.hpp>
 #include <continuo/bodies/event_driven/exact_engine.hpp>
 #include <continuo/bodies/event_driven/flight_bytes.hpp>
 #include <continuo/bodies/event_driven/flights.hpp>
-#include <continuo/bodies/event_driven/foresight.hpp>
-#include <continuo/bodies/event_driven/pile_up.hpp>
+#include <continuo/bodies/event_driven/inelastic_collapse.hpp>
 #include <continuo/bodies/event_driven/resting.hpp>
+#include <continuo/bodies/event_driven/simultaneous_impacts.hpp>
+#include <continuo/bodies/event_driven/sphere_proxy.hpp>
 
 namespace continuo {
 
@@ -49,7 +49,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
       if (++events > options_.most_events) return "more events than `most_events`: bodies may be caught between others";
       if (events % 1024 == 0 && options_.is_interrupted()) return "interrupted";
       flights_.now = std::max(flights_.now, queue_.time());
-      foresight_.look_ahead(queue_, flights_);
+      prefetch_.look_ahead(queue_, flights_);
       handle(queue_.first());
       if (met) return {};
       if (crossings_since_sort_ > 4 * flights_.paths.size()) sort();
@@ -67,7 +67,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     world_.velocity[number] = flights_.paths[i].v;
     world_.spin[number] = flights_.turnings[i].spin;
   }
-  void set_aside(std::uint32_t number, const V& centre, const Real& radius) override {
+  void replace_by_proxy(std::uint32_t number, const V& centre, const Real& radius) override {
     put_sphere(flights_, place_[number], centre, radius);
     predict(place_[number]);
   }
@@ -113,7 +113,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
 
   void synchronize(const Real& t) override {
     for (std::size_t i = 0; i < flights_.paths.size(); ++i) {
-      if (flights_.acts[i] == Act::is_aside) continue;
+      if (flights_.acts[i] == Act::is_proxy) continue;
       Path<Real, Dim> at = flights_.paths[i];
       const Plan<Real, Dim>& plan = flights_.plans[i];
       Flights<Real, Dim>::advance(at, plan.acceleration, t);
@@ -155,7 +155,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
       ++statistics.outdated;
       return predict(i);
     }
-    if (flights_.acts[i] == Act::is_aside || flights_.acts[j] == Act::is_aside) return stop_at(i, j);
+    if (flights_.acts[i] == Act::is_proxy || flights_.acts[j] == Act::is_proxy) return stop_at(i, j);
     plan.number < flights_.plans[j].number ? hit(i, j) : hit(j, i);
   }
 
@@ -187,7 +187,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     schedule(i);
   }
 
-  PileUp<Real, Dim> pile_up() const { return {is_heavy(), contact_time_}; }
+  InelasticCollapse<Real, Dim> pile_up() const { return {is_heavy(), contact_time_}; }
   bool is_piled(const Material<Real>& material, std::uint32_t i) const {
     return pile_up().is_piled(material, pile_up().in_a_row(flights_.plans[i], flights_.now));
   }
@@ -254,10 +254,10 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
 
   void hit(std::uint32_t i, std::uint32_t j) {
     ++statistics.collisions;
-    Material<Real> material = combined(world_.meeting, flights_.material(i), flights_.material(j));
+    Material<Real> material = combined(world_.combine_rule, flights_.material(i), flights_.material(j));
     const bool caught = is_caught(material, i) || is_caught(material, j),
                piled = is_piled(material, i) || is_piled(material, j);
-    if (piled && !caught && !is_heavy() && strike_cluster(i, j)) return;
+    if (piled && !caught && !is_heavy() && strike_simultaneously(i, j)) return;
     if (piled) material.restitution = Real(0);
     const bool rubs = material.friction > Real(0);
     bring(i, rubs);
@@ -288,23 +288,23 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   }
 
   /// All that touch, through others too, so that none approach afterwards. Whether that changed anything.
-  bool strike_cluster(std::uint32_t i, std::uint32_t j) {
+  bool strike_simultaneously(std::uint32_t i, std::uint32_t j) {
     const V& v = flights_.paths[i].v;
     const V rate = i == j ? v : V(flights_.paths[j].v - v);
-    cluster_.gather(flights_, i, Real(length(rate) * contact_time_));
-    for (const std::uint32_t k : cluster_.members()) bring(k);
+    simultaneous_.gather(flights_, i, Real(length(rate) * contact_time_));
+    for (const std::uint32_t k : simultaneous_.members()) bring(k);
     const Real speeds = length(v) + length(flights_.paths[j].v);
     const Real least = std::numeric_limits<Real>::epsilon() * std::max(speeds, flights_.slow);
-    const std::vector<Real> impulses = cluster_.strike(world_, flights_, least);
+    const std::vector<Real> impulses = simultaneous_.strike(world_, flights_, least);
     for (std::size_t k = 0; k < impulses.size(); ++k) {
       if (!(impulses[k] > Real(0))) continue;
-      const Touching& at = cluster_.pairs()[k];
+      const Touching& at = simultaneous_.pairs()[k];
       ++(at.with_wall() ? statistics.wall_collisions : statistics.collisions);
       if (contacts.is_kept()) contacts.add(event_of(world_, at, flights_.now, ContactChange::impact, impulses[k]));
     }
-    for (const std::uint32_t k : cluster_.struck()) note_collision(k, true);
-    for (const std::uint32_t k : cluster_.struck()) predict(k);
-    return !cluster_.struck().empty();
+    for (const std::uint32_t k : simultaneous_.struck()) note_collision(k, true);
+    for (const std::uint32_t k : simultaneous_.struck()) predict(k);
+    return !simultaneous_.struck().empty();
   }
 
   /// Whether the two, having collided, would fly for less than the contact time: on a sphere nobody rests on a
@@ -317,9 +317,9 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
 
   void hit_wall(std::uint32_t i, std::uint32_t w) {
     ++statistics.wall_collisions;
-    Material<Real> material = combined(world_.meeting, flights_.material(i), world_.walls()[w].material);
+    Material<Real> material = combined(world_.combine_rule, flights_.material(i), world_.walls()[w].material);
     const bool caught = is_caught(material, i), piled = is_piled(material, i);
-    if (piled && !caught && !is_heavy() && strike_cluster(i, i)) return;
+    if (piled && !caught && !is_heavy() && strike_simultaneously(i, i)) return;
     if (piled) material.restitution = Real(0);
     const bool rubs = material.friction > Real(0);
     bring(i, rubs);
@@ -378,8 +378,8 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   Real contact_time_;
   Flights<Real, Dim> flights_;
   EventQueue<Real> queue_;
-  Foresight<Real, Dim> foresight_;
-  Cluster<Real, Dim> cluster_;
+  EventPrefetch<Real, Dim> prefetch_;
+  SimultaneousImpacts<Real, Dim> simultaneous_;
   std::size_t crossings_since_sort_ = 0;
   std::vector<std::uint32_t> place_;  // of each number
   S no_spin_{};

@@ -49,7 +49,7 @@ class ParabolicEngine : public ExactEngine<Real, Dim> {
   virtual void synchronize(const Real& t) = 0;
   /// One body in the world as it is now, and that it lies on no wall any more.
   virtual void bring_out(std::uint32_t number) = 0;
-  virtual void set_aside(std::uint32_t number, const Vector<Real, Dim>& centre, const Real& radius) = 0;
+  virtual void replace_by_proxy(std::uint32_t number, const Vector<Real, Dim>& centre, const Real& radius) = 0;
   /// On its parabola again, from where it is in the world.
   virtual void take_back(std::uint32_t number) = 0;
   /// Those that overlap with a body, or the sphere in its place, and do not pass through it.
@@ -91,10 +91,10 @@ std::string fault_of_motion(const World<Real, Dim>& world) {
 template <class Real, int Dim>
 std::unique_ptr<ParabolicEngine<Real, Dim>> event_driven(World<Real, Dim>& world, const ExactOptions<Real>& options);
 
-/// From contact to contact on whatever paths forces make, by an error-controlled method: forced_flight.cpp.
+/// From contact to contact on whatever paths forces make, by an error-controlled method: constrained_motion.cpp.
 template <class Real, int Dim>
-std::unique_ptr<ContactEngine<Real, Dim>> forced_flight(World<Real, Dim>& world, const ExactOptions<Real>& options,
-                                                        Companions<Real, Dim>* companions);
+std::unique_ptr<ContactEngine<Real, Dim>> constrained_motion(World<Real, Dim>& world, const ExactOptions<Real>& options,
+                                                             Companions<Real, Dim>* companions);
 
 /// The one, and of those that lie on each other the other: islands.cpp.
 template <class Real, int Dim>

@@ -23,7 +23,7 @@ void transfer_flight(Archive& archive, Flight<Real, Dim>& flight) {
   auto act_byte = static_cast<std::uint8_t>(act);
   archive(collisions), archive(act_byte);
   if constexpr (Archive::reads) {
-    archive.expect(act_byte <= static_cast<std::uint8_t>(Act::is_aside), "a body that moves in no known way");
+    archive.expect(act_byte <= static_cast<std::uint8_t>(Act::is_proxy), "a body that moves in no known way");
     act = static_cast<Act>(act_byte & 3u);
   }
 }
@@ -45,7 +45,7 @@ const char* fault_of_flight(const World<Real, Dim>& world, const Flight<Real, Di
   if ((act == Act::is_fixed) != world.is_fixed(plan.number)) return "a flight of a body that does not move";
   if (act == Act::is_fixed && (plan.collision_time < never || plan.crossing_time < never))
     return "an event of a body that does not move";
-  if (act == Act::is_aside && world.gravity == Vector<Real, Dim>{}) return "a body that nobody moves";
+  if (act == Act::is_proxy && world.gravity == Vector<Real, Dim>{}) return "a body that nobody moves";
   const bool is_body = plan.partner < first_wall, is_wall = !is_body && plan.partner < look_again;
   if (plan.partner == nobody ? plan.collision_time < never
                              : (is_body && (plan.partner >= world.size() || plan.partner == plan.number)) ||

@@ -67,8 +67,8 @@ struct alignas(sizeof(Real) * (Dim == 3 ? 8 : 2)) Path {
   Real t{}, radius{};
 };
 
-/// How a body is accelerated. Set aside: somebody else moves it, see aside.hpp.
-enum class Act : std::uint8_t { falls, rests, is_fixed, is_aside };
+/// How a body is accelerated. Set aside: somebody else moves it, see sphere_proxy.hpp.
+enum class Act : std::uint8_t { falls, rests, is_fixed, is_proxy };
 
 /// What every event of a body reads and writes: two cache lines, of which the first tells what comes next.
 template <class Real, int Dim>

@@ -27,8 +27,8 @@ void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& conta
   const V pull = gravity + wall.normal * press;
   const Real rounding = 16 * std::numeric_limits<Real>::epsilon() * length(gravity);
   move_along(flights.paths[i], plan, flights.turnings[i], wall.normal,
-             combined(flights.world.meeting, flights.material(i), wall.material), length(pull) > rounding ? pull : V{},
-             press, flights.now, contact_time);
+             combined(flights.world.combine_rule, flights.material(i), wall.material),
+             length(pull) > rounding ? pull : V{}, press, flights.now, contact_time);
 }
 
 /// What becomes of a body that has met a wall. In a groove, on several walls that rub, no parabola is known.
@@ -84,7 +84,8 @@ Rest rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t h
   }
   if (plan.support_count == 0) return Rest::flies;
   const auto rubs = [&](std::uint32_t w) {
-    return combined(world.meeting.friction, flights.material(i).friction, world.walls()[w].material.friction) > Real(0);
+    return combined(world.combine_rule.friction, flights.material(i).friction, world.walls()[w].material.friction) >
+           Real(0);
   };
   if (plan.support_count > 1 && std::any_of(plan.supports.begin(), plan.supports.begin() + plan.support_count, rubs)) {
     plan.support_count = 0;

@@ -17,7 +17,7 @@
 #include <continuo/bodies/time_stepping/contact_rows.hpp>
 #include <continuo/bodies/time_stepping/contact_solver.hpp>
 #include <continuo/bodies/time_stepping/kept_impulses.hpp>
-#include <continuo/bodies/time_stepping/reach.hpp>
+#include <continuo/bodies/time_stepping/swept_bounds.hpp>
 #include <continuo/bodies/world.hpp>
 
 namespace continuo {
@@ -26,7 +26,7 @@ namespace continuo {
 /// pair of two that move stands with the lower place, one with a fixed body with the other.
 struct ContactEntry {
   std::uint32_t other;
-  std::uint32_t lane = nowhere;  // in the packs of its kind, where it is solved
+  std::uint32_t lane = nowhere;  // in the batches of its kind, where it is solved
 };
 using ContactRows = Rows<ContactEntry>;
 
@@ -37,7 +37,7 @@ class ContactList {
   static constexpr std::size_t width = lanes_at_once<Real>;
 
   ContactRows rows;
-  ColouredPacks<Real, Dim> between_movers, with_fixed, with_wall;
+  ColouredBatches<Real, Dim> between_movers, with_fixed, with_wall;
 
   ContactBlocks blocks;
 
@@ -46,7 +46,7 @@ class ContactList {
     const auto& first = between_movers.groups[blocks.rest()].first;
     return first.front() < first.back();
   }
-  /// act(kind, packs, group) for the contacts of a group of those between bodies that move, see contact_blocks.hpp.
+  /// act(kind, batches, group) for the contacts of a group of those between bodies that move, see contact_blocks.hpp.
   template <class Act>
   void in_group(std::size_t group, Act&& act) {
     act_on<ContactKind::between_movers>(between_movers, group, act);
@@ -75,8 +75,8 @@ class ContactList {
     return deepest;
   }
 
-  /// Takes the impulses out of the packs, for the rows are to be others.
-  void keep(Team& team) {
+  /// Takes the impulses out of the batches, for the rows are to be others.
+  void keep(ThreadTeam& team) {
     make_rows(team, rows.rows(), kept_, [&](std::uint32_t k, KeptImpulses<Real, Dim>& part) {
       for (const ContactEntry& entry : rows.row(k)) {
         if (entry.lane == nowhere) continue;
@@ -88,16 +88,16 @@ class ContactList {
     });
     kept_.fit();
     has_kept_ = true;
-    for (auto* packs : {&between_movers, &with_fixed, &with_wall}) packs->before = {};
+    for (auto* batches : {&between_movers, &with_fixed, &with_wall}) batches->before = {};
   }
 
-  /// Packs what may touch. meeting_of(a, b) is how the bodies or walls at two places meet, which is asked for
+  /// Packs what may touch. combine_rule_of(a, b) is how the bodies or walls at two places meet, which is asked for
   /// only where they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept, if
   /// they were (empty: at k). reach_of[block] is how near those of a block must be.
-  template <class MeetingOf>
-  void activate(Team& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-                const MeetingOf& meeting_of, bool has_rare, std::span<const ActiveReach<Real>> reach_of,
-                std::span<const std::uint32_t> place_before) {
+  template <class CombineRuleOf>
+  void activate(ThreadTeam& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
+                const CombineRuleOf& combine_rule_of, bool has_special_material,
+                std::span<const BlockSweptBounds<Real>> reach_of, std::span<const std::uint32_t> place_before) {
     between_movers.clear(blocks.groups()), with_fixed.clear(blocks.count), with_wall.clear(blocks.count);
     std::vector<std::uint8_t> has_rest(blocks.count, 0);
     const auto lane_before = std::make_unique_for_overwrite<std::uint32_t[]>(rows.entries.size());
@@ -110,7 +110,8 @@ class ContactList {
       has_rest[block] = colour(block, bodies);
     });
     colour_rest(has_rest, bodies);
-    for (auto* packs : {&between_movers, &with_fixed, &with_wall}) packs->make_room(blocks, bodies, has_rare);
+    for (auto* batches : {&between_movers, &with_fixed, &with_wall})
+      batches->make_room(blocks, bodies, has_special_material);
     const auto before = [&](std::uint32_t k) { return k < place_before.size() ? place_before[k] : k; };
     const auto impulse_of = [&](std::uint32_t k, const ContactEntry& entry) {
       if (has_kept_) return impulse_kept(before(k), before(entry.other), !place_before.empty());
@@ -119,7 +120,7 @@ class ContactList {
     };
     team.share(blocks.count, [&](std::size_t block) {
       for (std::uint32_t k = blocks.first(block); k < blocks.last(block, rows.rows()); ++k)
-        fill_row(block, k, bodies, walls, meeting_of, impulse_of);
+        fill_row(block, k, bodies, walls, combine_rule_of, impulse_of);
     });
     kept_ = {};
     has_kept_ = false;
@@ -140,7 +141,7 @@ class ContactList {
       for (const ContactEntry& entry : rows.row(k)) {
         if (entry.lane == nowhere) continue;
         const std::uint32_t lane = entry.lane & ~fixed_bit;
-        const Real pressed = packs_of(entry, entry.lane).impulses[lane / width].normal.lane[lane % width];
+        const Real pressed = batches_of(entry, entry.lane).impulses[lane / width].normal.lane[lane % width];
         const auto bodies = static_cast<std::uint32_t>(rows.rows());
         const bool is_wall = entry.other >= bodies;
         if (pressed > Real(0)) visit(k, is_wall ? entry.other - bodies : entry.other, is_wall, pressed);
@@ -149,30 +150,30 @@ class ContactList {
 
   std::size_t memory() const {
     std::size_t sum = rows.memory() + kept_.memory();
-    for (const auto* packs : {&between_movers, &with_fixed, &with_wall}) sum += packs->memory();
+    for (const auto* batches : {&between_movers, &with_fixed, &with_wall}) sum += batches->memory();
     return sum;
   }
   std::size_t active() const {
     std::size_t sum = 0;
-    for (const auto* packs : {&between_movers, &with_fixed, &with_wall}) sum += packs->contacts;
+    for (const auto* batches : {&between_movers, &with_fixed, &with_wall}) sum += batches->contacts;
     return sum;
   }
 
  private:
-  static constexpr std::uint32_t fixed_bit = 1u << 31;  // of an entry's lane: its packs are those with fixed bodies
+  static constexpr std::uint32_t fixed_bit = 1u << 31;  // of an entry's lane: its batches are those with fixed bodies
 
   template <ContactKind kind, class Act>
-  static void act_on(ColouredPacks<Real, Dim>& packs, std::size_t group, Act&& act) {
-    const auto& first = packs.groups[group].first;
-    if (first.front() < first.back()) act(std::integral_constant<ContactKind, kind>{}, packs, group);
+  static void act_on(ColouredBatches<Real, Dim>& batches, std::size_t group, Act&& act) {
+    const auto& first = batches.groups[group].first;
+    if (first.front() < first.back()) act(std::integral_constant<ContactKind, kind>{}, batches, group);
   }
 
-  const ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry, std::uint32_t lane) const {
+  const ColouredBatches<Real, Dim>& batches_of(const ContactEntry& entry, std::uint32_t lane) const {
     if (entry.other >= rows.rows()) return with_wall;
     return lane & fixed_bit ? with_fixed : between_movers;
   }
-  ColouredPacks<Real, Dim>& packs_of(const ContactEntry& entry, std::uint32_t lane) {
-    return const_cast<ColouredPacks<Real, Dim>&>(std::as_const(*this).packs_of(entry, lane));
+  ColouredBatches<Real, Dim>& batches_of(const ContactEntry& entry, std::uint32_t lane) {
+    return const_cast<ColouredBatches<Real, Dim>&>(std::as_const(*this).batches_of(entry, lane));
   }
   template <int Size>
   static Vector<Real, Size> in_lane(const Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
@@ -185,24 +186,25 @@ class ContactList {
     for (std::size_t axis = 0; axis < v.size(); ++axis) stored[axis].lane[lane] = v[axis];
   }
 
-  static Real come_closer(const V& rate, const ActiveReach<Real>& reach) {
+  static Real come_closer(const V& rate, const BlockSweptBounds<Real>& reach) {
     using std::abs;
     Real sum(0);
     for (std::size_t axis = 0; axis < V::size(); ++axis) sum += abs(rate[axis]);
     return sum * reach.step + reach.extra;
   }
 
-  // Until the packs have room, an entry's lane holds its colour and its number among those of that colour in its group.
+  // Until the batches have room, an entry's lane holds its colour and its number among those of that colour in its
+  // group.
   static constexpr std::uint32_t colour_shift = 25;
-  static constexpr std::uint32_t last_colour = ColouredPacks<Real, Dim>::most_colours - 1;
+  static constexpr std::uint32_t last_colour = ColouredBatches<Real, Dim>::most_colours - 1;
   static constexpr std::uint32_t chosen = nowhere - 1;  // but without a colour yet
 
   /// The lowest colour that neither has.
   static std::uint32_t lowest_free(std::uint64_t used) {
     return std::min(static_cast<std::uint32_t>(std::countr_one(used)), last_colour);
   }
-  static std::uint32_t number(ColouredPacks<Real, Dim>& packs, std::size_t group, std::uint32_t colour) {
-    return colour << colour_shift | packs.count[group][colour]++;
+  static std::uint32_t number(ColouredBatches<Real, Dim>& batches, std::size_t group, std::uint32_t colour) {
+    return colour << colour_shift | batches.count[group][colour]++;
   }
   /// `taken`: the colours of what has the body as one of two that move, in their group.
   std::uint32_t number(std::size_t group, std::uint64_t& taken_by_a, std::uint64_t& taken_by_b) {
@@ -214,7 +216,7 @@ class ContactList {
   /// Which entries of row k may touch: their lane is no longer `nowhere`.
   template <class LaneBeforeOf>
   void choose(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
-              const ActiveReach<Real>& reach, const LaneBeforeOf& lane_before_of) {
+              const BlockSweptBounds<Real>& reach, const LaneBeforeOf& lane_before_of) {
     const V x = bodies.x(k), v = bodies.v(k);
     const Real radius = bodies.radius(k);
     for (ContactEntry& entry : rows.row(k)) {
@@ -266,20 +268,20 @@ class ContactList {
   }
 
   /// The lane of a numbered contact, filled but for the impulses and the normal.
-  template <class MeetingOf>
-  std::uint32_t fill(ColouredPacks<Real, Dim>& packs, std::size_t group, std::uint32_t numbered, std::uint32_t a,
-                     std::uint32_t b, const MeetingOf& meeting_of) {
+  template <class CombineRuleOf>
+  std::uint32_t fill(ColouredBatches<Real, Dim>& batches, std::size_t group, std::uint32_t numbered, std::uint32_t a,
+                     std::uint32_t b, const CombineRuleOf& combine_rule_of) {
     const std::uint32_t colour = numbered >> colour_shift, number = numbered & ((1u << colour_shift) - 1);
     const std::uint32_t lanes = static_cast<std::uint32_t>(width);
-    const std::uint32_t p = packs.groups[group].first[colour] + (packs.is_shared(colour) ? number : number / lanes);
-    const std::uint32_t lane = packs.is_shared(colour) ? 0 : number % lanes;
-    packs.packs[p].a[lane] = a;
-    packs.packs[p].b[lane] = b;
-    if (RarePack<Real, Dim>* rare = packs.rare_of(p)) {
-      const Material<Real> both = meeting_of(a, b);
-      rare->friction.lane[lane] = both.friction;
-      rare->restitution.lane[lane] = both.restitution;
-      rare->rolling_resistance.lane[lane] = both.rolling_resistance;
+    const std::uint32_t p = batches.groups[group].first[colour] + (batches.is_shared(colour) ? number : number / lanes);
+    const std::uint32_t lane = batches.is_shared(colour) ? 0 : number % lanes;
+    batches.batches[p].a[lane] = a;
+    batches.batches[p].b[lane] = b;
+    if (SpecialMaterialBatch<Real, Dim>* special = batches.special_material_of(p)) {
+      const Material<Real> both = combine_rule_of(a, b);
+      special->friction.lane[lane] = both.friction;
+      special->restitution.lane[lane] = both.restitution;
+      special->rolling_resistance.lane[lane] = both.rolling_resistance;
     }
     return p * lanes + lane;
   }
@@ -289,15 +291,15 @@ class ContactList {
     V friction{};
     Spin<Real, Dim> rolling{};
   };
-  bool resists_rolling(const ContactEntry& entry) const { return !packs_of(entry, entry.lane).rare.empty(); }
+  bool resists_rolling(const ContactEntry& entry) const { return !batches_of(entry, entry.lane).special.empty(); }
   KeptContact impulse_in_lane(const ContactEntry& entry, std::uint32_t lane_number, bool is_before) const {
-    const ColouredPacks<Real, Dim>& packs = packs_of(entry, lane_number);
-    const PackedImpulses<Real, Dim>& of_packs = is_before ? packs.before : packs;
+    const ColouredBatches<Real, Dim>& batches = batches_of(entry, lane_number);
+    const StoredImpulses<Real, Dim>& of_batches = is_before ? batches.before : batches;
     const std::size_t p = (lane_number & ~fixed_bit) / width, lane = lane_number % width;
-    const PackImpulses<Real, Dim>& impulses = of_packs.impulses[p];
+    const BatchImpulses<Real, Dim>& impulses = of_batches.impulses[p];
     if (!(impulses.normal.lane[lane] > Real(0))) return {};
     KeptContact contact{impulses.normal.lane[lane], in_lane(impulses.friction, lane)};
-    if (!of_packs.rare.empty()) contact.rolling = in_lane(of_packs.rare[p].rolling_impulse, lane);
+    if (!of_batches.special.empty()) contact.rolling = in_lane(of_batches.special[p].rolling_impulse, lane);
     return contact;
   }
   KeptContact impulse_kept(std::uint32_t a, std::uint32_t b, bool was_sorted) const {
@@ -312,35 +314,37 @@ class ContactList {
     if (!kept_.rolling.empty()) contact.rolling = kept_.rolling[found] * direction;
     return contact;
   }
-  void put_in(ColouredPacks<Real, Dim>& packs, std::uint32_t lane_number, const KeptContact& contact) {
+  void put_in(ColouredBatches<Real, Dim>& batches, std::uint32_t lane_number, const KeptContact& contact) {
     const std::size_t p = lane_number / width, lane = lane_number % width;
-    packs.impulses[p].normal.lane[lane] = contact.normal;
-    put_in_lane(contact.friction, packs.impulses[p].friction, lane);
-    if (RarePack<Real, Dim>* rare = packs.rare_of(p)) put_in_lane(contact.rolling, rare->rolling_impulse, lane);
+    batches.impulses[p].normal.lane[lane] = contact.normal;
+    put_in_lane(contact.friction, batches.impulses[p].friction, lane);
+    if (SpecialMaterialBatch<Real, Dim>* special = batches.special_material_of(p))
+      put_in_lane(contact.rolling, special->rolling_impulse, lane);
   }
 
-  template <class MeetingOf, class ImpulseOf>
+  template <class CombineRuleOf, class ImpulseOf>
   void fill_row(std::size_t block, std::uint32_t k, const SolverBodies<Real, Dim>& bodies,
-                std::span<const Wall<Real, Dim>> walls, const MeetingOf& meeting_of, const ImpulseOf& impulse_of) {
+                std::span<const Wall<Real, Dim>> walls, const CombineRuleOf& combine_rule_of,
+                const ImpulseOf& impulse_of) {
     const std::uint32_t begin = blocks.first(block);
     for (ContactEntry& entry : rows.row(k)) {
       if (entry.lane == nowhere) continue;
-      auto& packs = packs_of(entry, entry.lane);
-      const std::uint32_t bit = &packs == &with_fixed ? fixed_bit : 0, j = entry.other;
-      const std::size_t group = &packs == &between_movers ? blocks.group_of(block, k - begin, j - begin) : block;
-      const std::uint32_t lane = fill(packs, group, entry.lane & ~bit, k, j, meeting_of);
-      packs.bins[lane / width] |= blocks.bit_of(group, k - begin);
-      if (&packs == &between_movers) packs.bins[lane / width] |= blocks.bit_of(group, j - begin);
+      auto& batches = batches_of(entry, entry.lane);
+      const std::uint32_t bit = &batches == &with_fixed ? fixed_bit : 0, j = entry.other;
+      const std::size_t group = &batches == &between_movers ? blocks.group_of(block, k - begin, j - begin) : block;
+      const std::uint32_t lane = fill(batches, group, entry.lane & ~bit, k, j, combine_rule_of);
+      batches.bins[lane / width] |= blocks.bit_of(group, k - begin);
+      if (&batches == &between_movers) batches.bins[lane / width] |= blocks.bit_of(group, j - begin);
       if (j >= bodies.size())
-        put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), packs.packs[lane / width].normal,
+        put_in_lane(V(-facing(walls[j - bodies.size()], bodies.x(k)).normal), batches.batches[lane / width].normal,
                     lane % width);
-      put_in(packs, lane, impulse_of(k, entry));
+      put_in(batches, lane, impulse_of(k, entry));
       entry.lane = lane | bit;
     }
   }
 
   KeptImpulses<Real, Dim> kept_;
-  bool has_kept_ = false;  // else the impulses are those of the packs of the step before
+  bool has_kept_ = false;  // else the impulses are those of the batches of the step before
 };
 
 }  // namespace continuo

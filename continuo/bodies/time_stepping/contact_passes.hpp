@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/support/team.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/bodies/time_stepping/contact_list.hpp>
 #include <continuo/bodies/time_stepping/contact_solver.hpp>
 #include <continuo/bodies/time_stepping/wavefront.hpp>
@@ -19,7 +19,7 @@ namespace continuo {
 template <class Real, int Dim>
 class ContactPasses {
  public:
-  ContactPasses(Team& team, ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies)
+  ContactPasses(ThreadTeam& team, ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies)
       : team_(team), contacts_(contacts), bodies_(bodies), blocks_(contacts.blocks) {}
 
   /// push_body(k) for all bodies, then contacts begin and push.
@@ -52,8 +52,8 @@ class ContactPasses {
   }
   template <ContactPass pass>
   auto act_of(const ContactStep<Real>& step) {
-    return [this, &step](auto kind, auto& packs, std::size_t group) {
-      solve_packs<kind(), pass>(packs, group, bodies_, step);
+    return [this, &step](auto kind, auto& batches, std::size_t group) {
+      solve_batches<kind(), pass>(batches, group, bodies_, step);
     };
   }
   template <ContactPass pass>
@@ -62,8 +62,8 @@ class ContactPasses {
   }
   template <class Push>
   Pass begin(const Push& push_body) {
-    Pass pass =
-        pass_of([this](auto kind, auto& packs, std::size_t group) { begin_packs<kind()>(packs, group, bodies_); });
+    Pass pass = pass_of(
+        [this](auto kind, auto& batches, std::size_t group) { begin_batches<kind()>(batches, group, bodies_); });
     pass.before = [this, &push_body](std::size_t block) {
       forget_disturbances(block);
       for_each_body(block, push_body);
@@ -152,7 +152,7 @@ class ContactPasses {
     for (std::size_t half = 2 * block; half < 2 * block + 2; ++half) bodies_.disturbances[half] = {};
   }
 
-  Team& team_;
+  ThreadTeam& team_;
   ContactList<Real, Dim>& contacts_;
   SolverBodies<Real, Dim>& bodies_;
   const ContactBlocks blocks_;

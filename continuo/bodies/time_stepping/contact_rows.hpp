@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <continuo/bodies/support/large_array.hpp>
-#include <continuo/bodies/support/team.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
 
 namespace continuo {
 
@@ -41,7 +41,7 @@ struct Rows {
 
 /// make_row(k, result) appends what row k has.
 template <class AnyRows, class MakeRow>
-void make_rows(Team& team, std::size_t rows, AnyRows& result, MakeRow&& make_row) {
+void make_rows(ThreadTeam& team, std::size_t rows, AnyRows& result, MakeRow&& make_row) {
   const auto make = [&](std::size_t from, std::size_t to, AnyRows& part) {
     for (std::size_t k = from; k < to; ++k) {
       make_row(static_cast<std::uint32_t>(k), part);

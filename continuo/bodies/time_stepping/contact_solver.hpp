@@ -78,37 +78,37 @@ Vector<ContactLanes<Real>, Dim> clamped_across(const Vector<ContactLanes<Real>, 
 /// Where the two are now, and the impulses of the last substep to begin with: all contacts do so before any is solved,
 /// for each must see what the others carry.
 template <ContactKind kind, class Real, int Dim>
-void begin(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Dim>& bodies) {
-  ContactPack<Real, Dim>& pack = packs.packs[p];
-  PackImpulses<Real, Dim>& impulses = packs.impulses[p];
+void begin(ColouredBatches<Real, Dim>& batches, std::size_t p, SolverBodies<Real, Dim>& bodies) {
+  ContactBatch<Real, Dim>& batch = batches.batches[p];
+  BatchImpulses<Real, Dim>& impulses = batches.impulses[p];
   using L = ContactLanes<Real>;
   using std::sqrt;
-  const auto place_a = load_places(bodies, pack.a), place_b = load_places(bodies, pack.b);
+  const auto place_a = load_places(bodies, batch.a), place_b = load_places(bodies, batch.b);
   const Vector<L, Dim> apart = place_b.x - place_a.x;
-  Vector<L, Dim> normal = loaded(pack.normal);
+  Vector<L, Dim> normal = loaded(batch.normal);
   if constexpr (kind == ContactKind::with_wall) {
-    pack.separation = dot(apart, normal) - place_a.radius;
+    batch.separation = dot(apart, normal) - place_a.radius;
   } else {
     const L distance = sqrt(squared(apart));
     const auto are_apart = distance > L(Real(0));
     normal = apart * select(are_apart, L(Real(1)) / distance, L(Real(0)));
     normal[0] = select(are_apart, normal[0], L(Real(1)));  // any direction will do
-    store(normal, pack.normal);
-    pack.separation = distance - (place_a.radius + place_b.radius);
+    store(normal, batch.normal);
+    batch.separation = distance - (place_a.radius + place_b.radius);
   }
   // What friction did along the normal of then is not along that of now: in space a little of it becomes a torque.
   Vector<L, Dim> rub = loaded(impulses.friction);
   const L along = dot(rub, normal);
   rub -= normal * along;
   if constexpr (Dim == 2) store(rub, impulses.friction);
-  auto a = load_motions(bodies, pack.a), b = load_motions(bodies, pack.b);
+  auto a = load_motions(bodies, batch.a), b = load_motions(bodies, batch.b);
   add_impulse<Real, Dim>(a, b, normal, normal * L(impulses.normal) + rub, rub);
   if constexpr (Dim == 3)
     add_spin<Real>(a, b, normal, place_a.radius, other_radius<kind, Real>(place_a.radius, place_b.radius), along);
-  if (const auto* rare = packs.rare_of(p))
-    add_roll<Real, Dim>(a, b, place_a.radius, place_b.radius, loaded(rare->rolling_impulse));
-  store_motions(a, bodies, pack.a);
-  if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
+  if (const auto* special = batches.special_material_of(p))
+    add_roll<Real, Dim>(a, b, place_a.radius, place_b.radius, loaded(special->rolling_impulse));
+  store_motions(a, bodies, batch.a);
+  if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, batch.b);
 }
 
 /// Too fast for a soft contact: it has struck in this substep and parts, or it will at the beginning of the next.
@@ -117,7 +117,7 @@ void begin(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Di
 /// the end it may be slower than an impact is, and then nothing would hold them apart. What has struck begins so far
 /// behind where it did, perhaps, that it comes from the other side of the other.
 template <class Real, int Dim>
-typename ContactLanes<Real>::Mask is_for_impacts(const ContactPack<Real, Dim>& pack,
+typename ContactLanes<Real>::Mask is_for_impacts(const ContactBatch<Real, Dim>& batch,
                                                  const ContactLanes<Real>& restitution,
                                                  const SolverBodies<Real, Dim>& bodies,
                                                  const ContactLanes<Real>& separation,
@@ -130,37 +130,38 @@ typename ContactLanes<Real>::Mask is_for_impacts(const ContactPack<Real, Dim>& p
   std::array<Real, lanes_at_once<Real>> struck{};
   for (std::size_t lane = 0; lane < struck.size(); ++lane) {
     const auto of = [&](std::uint32_t i) { return i < bodies.size() ? bodies.impacts[i] : 0u; };
-    struck[lane] = of(pack.a[lane]) + of(pack.b[lane]) > 0 ? Real(1) : Real(0);
+    struck[lane] = of(batch.a[lane]) + of(batch.b[lane]) > 0 ? Real(1) : Real(0);
   }
   const auto has_struck = (L(struck) > zero) & (separation < zero) & ((parting > zero) | parts_in_the_end);
   const L approach = -parting;
   const auto bounces = restitution > zero;
   const auto will_strike = (bounces & (approach > L(4 * step.greatest_acceleration * step.h))) |
                            ((!bounces) & (approach * L(step.h) > radius * L(Real(0.5))));
-  return has_struck | (will_strike & (L(pack.separation) > zero));
+  return has_struck | (will_strike & (L(batch.separation) > zero));
 }
 
 template <ContactKind kind, class Real, int Dim>
-void mark_touched(const ContactPack<Real, Dim>& pack, const PackImpulses<Real, Dim>& impulses,
+void mark_touched(const ContactBatch<Real, Dim>& batch, const BatchImpulses<Real, Dim>& impulses,
                   SolverBodies<Real, Dim>& bodies) {
   for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
     const auto is_pressed = static_cast<std::uint8_t>(impulses.normal.lane[lane] > Real(0));
-    bodies.touched[pack.a[lane]] |= is_pressed;  // no branch: nobody could foresee it
-    if (kind == ContactKind::between_movers) bodies.touched[pack.b[lane]] |= is_pressed;
+    bodies.touched[batch.a[lane]] |= is_pressed;  // no branch: nobody could foresee it
+    if (kind == ContactKind::between_movers) bodies.touched[batch.b[lane]] |= is_pressed;
   }
 }
 
 /// 1 in the lanes of bodies that the last sweep, or this one, disturbed.
 template <class Real, int Dim>
-std::array<Real, lanes_at_once<Real>> disturbed_lanes(const ContactPack<Real, Dim>& pack,
+std::array<Real, lanes_at_once<Real>> disturbed_lanes(const ContactBatch<Real, Dim>& batch,
                                                       const SolverBodies<Real, Dim>& bodies, std::uint8_t sweep) {
   std::array<Real, lanes_at_once<Real>> is{};
   for (std::size_t lane = 0; lane < is.size(); ++lane)
-    is[lane] = static_cast<Real>(std::max(bodies.disturbed[pack.a[lane]], bodies.disturbed[pack.b[lane]]) + 1 >= sweep);
+    is[lane] =
+        static_cast<Real>(std::max(bodies.disturbed[batch.a[lane]], bodies.disturbed[batch.b[lane]]) + 1 >= sweep);
   return is;
 }
 template <ContactKind kind, class Real, int Dim>
-void mark_disturbed(const ContactPack<Real, Dim>& pack, const ContactLanes<Real>& change,
+void mark_disturbed(const ContactBatch<Real, Dim>& batch, const ContactLanes<Real>& change,
                     SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& step) {
   using L = ContactLanes<Real>;
   const L way = abs(change) * L(step.h);
@@ -172,45 +173,45 @@ void mark_disturbed(const ContactPack<Real, Dim>& pack, const ContactLanes<Real>
       const ContactBlocks& blocks = bodies.blocks;
       bodies.disturbances[body / blocks.half].now |= 1u << blocks.bin_of(body % blocks.half);
     };
-    mark(pack.a[lane]);
-    if (kind == ContactKind::between_movers) mark(pack.b[lane]);
+    mark(batch.a[lane]);
+    if (kind == ContactKind::between_movers) mark(batch.b[lane]);
   }
 }
 
 template <ContactKind kind, ContactPass pass, bool is_plain, class Real, int Dim>
-void solve(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Dim>& bodies,
+void solve(ColouredBatches<Real, Dim>& batches, std::size_t p, SolverBodies<Real, Dim>& bodies,
            const ContactStep<Real>& step) {
   using L = ContactLanes<Real>;
-  const ContactPack<Real, Dim>& pack = packs.packs[p];
-  PackImpulses<Real, Dim>& impulses = packs.impulses[p];
-  [[maybe_unused]] RarePack<Real, Dim>* const rare = is_plain ? nullptr : packs.rare_of(p);
+  const ContactBatch<Real, Dim>& batch = batches.batches[p];
+  BatchImpulses<Real, Dim>& impulses = batches.impulses[p];
+  [[maybe_unused]] SpecialMaterialBatch<Real, Dim>* const special = is_plain ? nullptr : batches.special_material_of(p);
   const L zero(Real(0)), one(Real(1));
   typename L::Mask is_meant(true);
   if constexpr (pass == ContactPass::push_again) {
-    is_meant = L(disturbed_lanes(pack, bodies, step.sweep)) > zero;
+    is_meant = L(disturbed_lanes(batch, bodies, step.sweep)) > zero;
     if (none(is_meant)) return;
   }
-  auto a = load_motions(bodies, pack.a), b = load_motions(bodies, pack.b);
-  const Vector<L, Dim> normal = loaded(pack.normal);
+  auto a = load_motions(bodies, batch.a), b = load_motions(bodies, batch.b);
+  const Vector<L, Dim> normal = loaded(batch.normal);
   const L so_far = impulses.normal;
-  L separation = pack.separation, radius_a, radius_b;
+  L separation = batch.separation, radius_a, radius_b;
   Vector<L, Dim> apart;
   if (pass == ContactPass::relax || !is_plain) {
-    const auto place_a = load_places(bodies, pack.a), place_b = load_places(bodies, pack.b);
+    const auto place_a = load_places(bodies, batch.a), place_b = load_places(bodies, batch.b);
     radius_a = place_a.radius;
     radius_b = place_b.radius;
     apart = place_b.x - place_a.x;
     if (pass == ContactPass::relax) separation = dot(apart, normal) - (radius_a + radius_b);
   }
   if constexpr (!is_plain && pass != ContactPass::push_again)
-    if (rare) resist_rolling(*rare, so_far, a, b, radius_a, radius_b);
+    if (special) resist_rolling(*special, so_far, a, b, radius_a, radius_b);
 
   const Vector<L, Dim> between = b.v - a.v;
   const L speed = dot(between, normal), inverse = a.inverse_mass + b.inverse_mass;
   const Vector<L, Dim> slip = between - turning(Spin<L, Dim>(a.rim + b.rim), normal) - normal * speed;
   L coefficient(step.friction);
   if constexpr (!is_plain)
-    if (rare) coefficient = rare->friction;
+    if (special) coefficient = special->friction;
   const Vector<L, Dim> friction_before = loaded(impulses.friction);
   Vector<L, Dim> friction = clamped_across<Real, Dim>(
       friction_before - slip * (one / (inverse + a.mobility + b.mobility)), normal, coefficient * so_far);
@@ -234,11 +235,11 @@ void solve(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Di
     }
   };
   if constexpr (!is_plain) {
-    const L restitution = rare ? L(rare->restitution) : zero;
+    const L restitution = special ? L(special->restitution) : zero;
     const Vector<L, Dim> at_end = pass == ContactPass::relax ? apart : Vector<L, Dim>(apart + between * L(step.h));
     const auto parts_in_the_end =
         kind == ContactKind::with_wall ? typename L::Mask(false) : dot(at_end, between) > zero;
-    leave(is_for_impacts<Real, Dim>(pack, restitution, bodies, separation, speed, parts_in_the_end,
+    leave(is_for_impacts<Real, Dim>(batch, restitution, bodies, separation, speed, parts_in_the_end,
                                     smaller_radius<Real>(radius_a, radius_b), step),
           zero, {});
   }
@@ -249,90 +250,91 @@ void solve(ColouredPacks<Real, Dim>& packs, std::size_t p, SolverBodies<Real, Di
     friction += normal * resist_spinning<Real>(dot(friction, normal), coefficient * normal_impulse, normal, a, b,
                                                radius_a, other_radius<kind, Real>(radius_a, radius_b));
   store(friction, impulses.friction);
-  store_motions(a, bodies, pack.a);
-  if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, pack.b);
+  store_motions(a, bodies, batch.a);
+  if constexpr (kind == ContactKind::between_movers) store_motions(b, bodies, batch.b);
   if constexpr (pass != ContactPass::relax) {
-    mark_touched<kind>(pack, impulses, bodies);
-    mark_disturbed<kind>(pack, change * inverse, bodies, step);
+    mark_touched<kind>(batch, impulses, bodies);
+    mark_disturbed<kind>(batch, change * inverse, bodies, step);
   }
 }
 
-// Loops over packs. Everything is inlined into them, for a call would send registers full of lanes through memory.
+// Loops over batches. Everything is inlined into them, for a call would send registers full of lanes through memory.
 
-/// Asks for a pack that is soon to come, and for the bodies of one that is: they lie where they lie.
+/// Asks for a batch that is soon to come, and for the bodies of one that is: they lie where they lie.
 template <class Pack>
-void prefetch_lines(const Pack& pack) {
+void prefetch_lines(const Pack& batch) {
   constexpr std::size_t line = 64;
-  const auto* bytes = reinterpret_cast<const std::byte*>(&pack);
+  const auto* bytes = reinterpret_cast<const std::byte*>(&batch);
   for (std::size_t at = 0; at < sizeof(Pack); at += line) __builtin_prefetch(bytes + at);
 }
 template <class Real, int Dim>
-void prefetch_bodies(const ContactPack<Real, Dim>& pack, const SolverBodies<Real, Dim>& bodies) {
+void prefetch_bodies(const ContactBatch<Real, Dim>& batch, const SolverBodies<Real, Dim>& bodies) {
   for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
-    __builtin_prefetch(&bodies.motion[pack.a[lane]]);
-    __builtin_prefetch(&bodies.motion[pack.b[lane]]);
-    __builtin_prefetch(&bodies.place[pack.a[lane]]);
-    __builtin_prefetch(&bodies.place[pack.b[lane]]);
+    __builtin_prefetch(&bodies.motion[batch.a[lane]]);
+    __builtin_prefetch(&bodies.motion[batch.b[lane]]);
+    __builtin_prefetch(&bodies.place[batch.a[lane]]);
+    __builtin_prefetch(&bodies.place[batch.b[lane]]);
   }
 }
-/// number(i) for i = 0 ... count - 1 are those of packs.
+/// number(i) for i = 0 ... count - 1 are those of batches.
 template <class Real, int Dim, class Number, class Act>
-void for_each_ahead(const ColouredPacks<Real, Dim>& packs, const SolverBodies<Real, Dim>& bodies, std::size_t count,
+void for_each_ahead(const ColouredBatches<Real, Dim>& batches, const SolverBodies<Real, Dim>& bodies, std::size_t count,
                     const Number& number, const Act& act) {
   constexpr std::size_t ahead = 3;
   for (std::size_t i = 0; i < count; ++i) {
     if (i + 2 * ahead < count) {
-      prefetch_lines(packs.packs[number(i + 2 * ahead)]);
-      prefetch_lines(packs.impulses[number(i + 2 * ahead)]);
+      prefetch_lines(batches.batches[number(i + 2 * ahead)]);
+      prefetch_lines(batches.impulses[number(i + 2 * ahead)]);
     }
-    if (i + ahead < count) prefetch_bodies(packs.packs[number(i + ahead)], bodies);
+    if (i + ahead < count) prefetch_bodies(batches.batches[number(i + ahead)], bodies);
     act(number(i));
   }
 }
 /// Those of a group in which the last sweep, or this one, disturbed anything. Packs of a colour share no body, so that
 /// which ones are meant can be seen before the first of them is solved; those of the shared one are few.
 template <class Real, int Dim, class Act>
-void for_each_disturbed(const ColouredPacks<Real, Dim>& packs, std::size_t group, const SolverBodies<Real, Dim>& bodies,
-                        const Act& act) {
+void for_each_disturbed(const ColouredBatches<Real, Dim>& batches, std::size_t group,
+                        const SolverBodies<Real, Dim>& bodies, const Act& act) {
   if (bodies.disturbed_bins(group) == 0) return;
-  const auto& first = packs.groups[group].first;
+  const auto& first = batches.groups[group].first;
   std::array<std::uint32_t, 256> meant;
-  for (std::size_t c = 0; c < packs.most_colours && first[c] < first.back(); ++c)
+  for (std::size_t c = 0; c < batches.most_colours && first[c] < first.back(); ++c)
     for (std::size_t from = first[c]; from < first[c + 1]; from += meant.size()) {
-      const std::uint64_t bins = packs.is_shared(c) ? ~std::uint64_t{0} : bodies.disturbed_bins(group);
+      const std::uint64_t bins = batches.is_shared(c) ? ~std::uint64_t{0} : bodies.disturbed_bins(group);
       const std::size_t to = std::min<std::size_t>(from + meant.size(), first[c + 1]);
       std::size_t count = 0;
       for (std::size_t p = from; p < to; ++p) {
         meant[count] = static_cast<std::uint32_t>(p);
-        count += (packs.bins[p] & bins) != 0;  // no branch: nobody could foresee it
+        count += (batches.bins[p] & bins) != 0;  // no branch: nobody could foresee it
       }
-      for_each_ahead(packs, bodies, count, [&](std::size_t i) { return meant[i]; }, act);
+      for_each_ahead(batches, bodies, count, [&](std::size_t i) { return meant[i]; }, act);
     }
 }
 
 template <ContactKind kind, class Real, int Dim>
-[[gnu::flatten]] void begin_packs(ColouredPacks<Real, Dim>& packs, std::size_t group, SolverBodies<Real, Dim>& bodies) {
-  const std::size_t from = packs.groups[group].first.front(), to = packs.groups[group].first.back();
+[[gnu::flatten]] void begin_batches(ColouredBatches<Real, Dim>& batches, std::size_t group,
+                                    SolverBodies<Real, Dim>& bodies) {
+  const std::size_t from = batches.groups[group].first.front(), to = batches.groups[group].first.back();
   for_each_ahead(
-      packs, bodies, to - from, [&](std::size_t i) { return from + i; },
-      [&](std::size_t p) { begin<kind>(packs, p, bodies); });
+      batches, bodies, to - from, [&](std::size_t i) { return from + i; },
+      [&](std::size_t p) { begin<kind>(batches, p, bodies); });
 }
 template <ContactKind kind, ContactPass pass, class Real, int Dim>
-[[gnu::flatten]] void solve_packs(ColouredPacks<Real, Dim>& packs, std::size_t group, SolverBodies<Real, Dim>& bodies,
-                                  const ContactStep<Real>& of_all) {
+[[gnu::flatten]] void solve_batches(ColouredBatches<Real, Dim>& batches, std::size_t group,
+                                    SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& of_all) {
   const ContactStep<Real> step = of_all;  // a copy, which no store to a body can change: it stays in registers
   const auto for_each = [&](const auto& act) {
-    const std::size_t from = packs.groups[group].first.front(), to = packs.groups[group].first.back();
+    const std::size_t from = batches.groups[group].first.front(), to = batches.groups[group].first.back();
     if constexpr (pass == ContactPass::push_again) {
-      for_each_disturbed(packs, group, bodies, act);
+      for_each_disturbed(batches, group, bodies, act);
     } else {
-      for_each_ahead(packs, bodies, to - from, [&](std::size_t i) { return from + i; }, act);
+      for_each_ahead(batches, bodies, to - from, [&](std::size_t i) { return from + i; }, act);
     }
   };
-  if (packs.rare.empty() && !step.may_strike) {
-    for_each([&](std::size_t p) { solve<kind, pass, true>(packs, p, bodies, step); });
+  if (batches.special.empty() && !step.may_strike) {
+    for_each([&](std::size_t p) { solve<kind, pass, true>(batches, p, bodies, step); });
   } else {
-    for_each([&](std::size_t p) { solve<kind, pass, false>(packs, p, bodies, step); });
+    for_each([&](std::size_t p) { solve<kind, pass, false>(batches, p, bodies, step); });
   }
 }
 

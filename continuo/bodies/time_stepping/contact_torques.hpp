@@ -4,7 +4,7 @@
 #pragma once
 #include <numbers>
 
-#include <continuo/bodies/time_stepping/contact_packs.hpp>
+#include <continuo/bodies/time_stepping/contact_batches.hpp>
 
 namespace continuo {
 
@@ -37,16 +37,17 @@ ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLane
 }
 
 template <class Real, int Dim>
-void resist_rolling(RarePack<Real, Dim>& rare, const ContactLanes<Real>& normal_impulse, LaneMotions<Real, Dim>& a,
-                    LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b) {
+void resist_rolling(SpecialMaterialBatch<Real, Dim>& special, const ContactLanes<Real>& normal_impulse,
+                    LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a,
+                    const ContactLanes<Real>& radius_b) {
   using L = ContactLanes<Real>;
   const L one_a = inverse_or_zero<Real>(radius_a), one_b = inverse_or_zero<Real>(radius_b);
   const L inertia = inverse_or_zero<Real>(a.mobility * one_a * one_a + b.mobility * one_b * one_b);
-  const Spin<L, Dim> before = loaded(rare.rolling_impulse);
+  const Spin<L, Dim> before = loaded(special.rolling_impulse);
   const Spin<L, Dim> impulse =
       clamped(Spin<L, Dim>(before - (b.rim * one_b - a.rim * one_a) * inertia),
-              L(L(rare.rolling_resistance) * smaller_radius<Real>(radius_a, radius_b) * normal_impulse));
-  store(impulse, rare.rolling_impulse);
+              L(L(special.rolling_resistance) * smaller_radius<Real>(radius_a, radius_b) * normal_impulse));
+  store(impulse, special.rolling_impulse);
   add_roll<Real, Dim>(a, b, radius_a, radius_b, impulse - before);
 }
 

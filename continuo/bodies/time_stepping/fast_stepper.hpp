@@ -13,8 +13,8 @@
 #include <continuo/bodies/time_stepping/contact_passes.hpp>
 #include <continuo/bodies/time_stepping/impacts.hpp>
 #include <continuo/bodies/time_stepping/sleep.hpp>
+#include <continuo/bodies/time_stepping/torque_integration.hpp>
 #include <continuo/bodies/time_stepping/touch_log.hpp>
-#include <continuo/bodies/time_stepping/twist.hpp>
 
 namespace continuo {
 
@@ -64,7 +64,7 @@ class FastMotion<Real, Dim>::Stepper {
     place_before_ = {};  // not needed most of the time
     const Real h = options_.step / static_cast<Real>(options_.substeps);
     log.clear();
-    twist_.begin(world_, list_.order());
+    torque_integration_.begin(world_, list_.order());
     may_strike_soon_ = has_other_forces_ || may_strike(h, Real(0.1), length(world_.gravity) * options_.step);
     if (!substeps(world_.time, h))
       return "the equations of implicit Euler could not be solved: a smaller step may help";
@@ -99,7 +99,7 @@ class FastMotion<Real, Dim>::Stepper {
     }
     writer(x), writer(reach);
     ContactList<Real, Dim> contacts = contacts_;
-    Team alone(1);
+    ThreadTeam alone(1);
     if (!is_restored_) contacts.keep(alone);
     contacts.transfer_kept(writer);
     writer(touches_), writer(sleep_), writer(is_other_at_rest_);
@@ -223,8 +223,8 @@ class FastMotion<Real, Dim>::Stepper {
     const auto store_body = [&](std::size_t k, std::size_t i) {
       if (!bodies_.moves(k)) return;
       const Spin<Real, Dim> spin = vector_of<Spin<Real, Dim>::size()>(bodies_.motion[k].rim) * (1 / bodies_.radius(k));
-      world_.orientation[i] =
-          twist_.acts() ? twist_.orientation(i) : turned(world_.orientation[i], spin, options_.step);
+      world_.orientation[i] = torque_integration_.acts() ? torque_integration_.orientation(i)
+                                                         : turned(world_.orientation[i], spin, options_.step);
       world_.position[i] = bodies_.x(k);
       world_.velocity[i] = bodies_.v(k);
       world_.spin[i] = spin;
@@ -239,7 +239,7 @@ class FastMotion<Real, Dim>::Stepper {
       for (std::uint32_t& place : place_before_) place = earlier[place];
     is_other_at_rest_ = false;
     load();
-    list_within(ListReach<Real>(bodies_, options_.step));
+    list_within(SweptBounds<Real>(bodies_, options_.step));
   }
   template <class Reach>
   void list_within(const Reach& reach) {
@@ -257,17 +257,18 @@ class FastMotion<Real, Dim>::Stepper {
     const auto material_of = [this, &order = list_.order()](std::uint32_t k) -> const Material<Real>& {
       return k < order.size() ? world_.material[order[k]] : world_.walls()[k - order.size()].material;
     };
-    const auto meeting_of = [this, &material_of](std::uint32_t a, std::uint32_t b) {
-      return combined(world_.meeting, material_of(a), material_of(b));
+    const auto combine_rule_of = [this, &material_of](std::uint32_t a, std::uint32_t b) {
+      return combined(world_.combine_rule, material_of(a), material_of(b));
     };
     const Material<Real> first = bodies_.size() > 0 ? world_.material[0] : Material<Real>{};
-    friction_ = combined(world_.meeting.friction, first.friction, first.friction);
+    friction_ = combined(world_.combine_rule.friction, first.friction, first.friction);
     may_bounce_ = any_material([](const Material<Real>& material) { return material.restitution > Real(0); });
-    const bool has_rare = may_bounce_ || any_material([&](const Material<Real>& material) {
-                            return material.rolling_resistance > Real(0) || material.friction != first.friction;
-                          });
-    contacts_.activate(team_, bodies_, world_.walls(), meeting_of, has_rare,
-                       active_reaches(team_, bodies_, options_.step), place_before_);
+    const bool has_special_material =
+        may_bounce_ || any_material([&](const Material<Real>& material) {
+          return material.rolling_resistance > Real(0) || material.friction != first.friction;
+        });
+    contacts_.activate(team_, bodies_, world_.walls(), combine_rule_of, has_special_material,
+                       swept_bounds_of_blocks(team_, bodies_, options_.step), place_before_);
   }
 
   /// Accelerations by all forces at time t; with h, at the end of a step of that. False where that could not be solved.
@@ -296,7 +297,7 @@ class FastMotion<Real, Dim>::Stepper {
 
   /// The substeps of a step from time t on; false where equations could not be solved.
   bool substeps(const Real& t, const Real& h) {
-    const bool is_simple = !has_other_forces_ && !twist_.acts() && !may_strike_soon_;
+    const bool is_simple = !has_other_forces_ && !torque_integration_.acts() && !may_strike_soon_;
     const IntegratorRule rule = rule_of(options_.integrator);
     ContactPasses passes(team_, contacts_, bodies_);
     const auto push_body = [&](std::uint32_t k) {
@@ -318,10 +319,10 @@ class FastMotion<Real, Dim>::Stepper {
       }
       if (has_other_forces_ && !accelerate(now, rule.solves_equations ? h : Real(0))) return false;
       look_for_impacts(step, now);
-      twist_.push(bodies_, now, h);
+      torque_integration_.push(bodies_, now, h);
       passes.push(step, push_body);
       if (is_simple) continue;
-      twist_.turn(bodies_, rule, h);
+      torque_integration_.turn(bodies_, rule, h);
       passes.relax(step, move_body);
       if (has_other_forces_ && rule.ends_with_correction) correct(now, h);
     }
@@ -346,7 +347,7 @@ class FastMotion<Real, Dim>::Stepper {
       if (bodies_.touched[k]) return;
       put(V(bodies_.v(k) + (bodies_.accelerations[k] - before[k]) * (h / 2)), bodies_.motion[k].linear);
     });
-    twist_.correct(bodies_, t + h, h);
+    torque_integration_.correct(bodies_, t + h, h);
   }
 
   void look_for_impacts(ContactStep<Real>& step, const Real& t) {
@@ -376,12 +377,12 @@ class FastMotion<Real, Dim>::Stepper {
 
   World<Real, Dim>& world_;
   FastOptions<Real> options_;
-  Team team_;
+  ThreadTeam team_;
   SolverBodies<Real, Dim> bodies_;
   PairList<Real, Dim> list_;
   ContactList<Real, Dim> contacts_;
   Impacts<Real, Dim> impacts_;
-  Twist<Real, Dim> twist_;
+  TorqueIntegration<Real, Dim> torque_integration_;
   TouchLog<Real, Dim> touches_;
   bool is_restored_ = false;  // the impulses of the last step have been kept already
   bool has_other_forces_ = false, may_bounce_ = false;

@@ -90,7 +90,7 @@ class Impacts {
     const V apart = bodies.x(j) - bodies.x(i) + rate * from + pull * (from * from / 2), rate_now = rate + pull * from;
     if (squared(apart) > (reach + speed * h) * (reach + speed * h)) return;
     const Real restitution =
-        combined(making.world.meeting.restitution, making.material(i).restitution, making.material(j).restitution);
+        combined(making.world.combine_rule.restitution, making.material(i).restitution, making.material(j).restitution);
     const Real smaller = std::min(bodies.radius(i), bodies.radius(j));
     if (!counts(making, speed, restitution, smaller)) return;
     const Real wait = pull == V{} ? time_to_touch(apart, rate_now, reach)
@@ -110,7 +110,7 @@ class Impacts {
     const Real wait = time_to_close(Real(dot(wall.normal, x) - wall.offset - bodies.radius(i)), speed, pull);
     if (!(from + wait < making.substep.h)) return;
     const Real restitution =
-        combined(making.world.meeting.restitution, making.material(i).restitution, wall.material.restitution);
+        combined(making.world.combine_rule.restitution, making.material(i).restitution, wall.material.restitution);
     if (!counts(making, Real(-(speed + pull * wait)), restitution, bodies.radius(i))) return;
     queue_.push({from + wait, i, bodies.wall(w), bodies.impacts[i], 0});
   }
@@ -126,13 +126,14 @@ class Impacts {
       const Real distance = length(apart);
       V normal = apart * (distance > Real(0) ? 1 / distance : Real(0));
       if (!(distance > Real(0))) normal[0] = Real(1);
-      const Material<Real> both = combined(making.world.meeting, making.material(impact.a), making.material(impact.b));
+      const Material<Real> both =
+          combined(making.world.combine_rule, making.material(impact.a), making.material(impact.b));
       if (dot(b.v - a.v, normal) < Real(0)) note(making, impact, normal, collide(a.mover(), b.mover(), normal, both));
       put_back(bodies, impact.b, b, impact.time);
     } else {
       State stand_in{};
       const Wall<Real, Dim> wall = facing(making.world.walls()[impact.b - bodies.size()], bodies.x(impact.a));
-      const Material<Real> both = combined(making.world.meeting, making.material(impact.a), wall.material);
+      const Material<Real> both = combined(making.world.combine_rule, making.material(impact.a), wall.material);
       if (dot(a.v, wall.normal) < Real(0))
         note(making, impact, V(-wall.normal), collide(a.mover(), stand_in.mover(), V(-wall.normal), both));
     }

@@ -61,7 +61,8 @@ class PairList {
 
   /// Lists what may touch while body k moves by reach(k) at most.
   template <class Reach>
-  void list(Team& team, const World<Real, Dim>& world, const Bodies& bodies, const Reach& reach, ContactRows& rows) {
+  void list(ThreadTeam& team, const World<Real, Dim>& world, const Bodies& bodies, const Reach& reach,
+            ContactRows& rows) {
     ++lists_;
     walls_ = world.walls().size();
     all_collide_ = !world.has_ignored_groups();
@@ -131,7 +132,7 @@ class PairList {
     }
   }
   /// Row k: with whom the pairs are that have one that reaches far and stand with the body at k.
-  Rows<std::uint32_t> pairs_with_far(Team& team, const World<Real, Dim>& world, const Bodies& bodies) const {
+  Rows<std::uint32_t> pairs_with_far(ThreadTeam& team, const World<Real, Dim>& world, const Bodies& bodies) const {
     Rows<std::uint32_t> found, result;
     if (far_.empty()) return result;
     make_rows(team, far_.size(), found, [&](std::uint32_t f, Rows<std::uint32_t>& part) {

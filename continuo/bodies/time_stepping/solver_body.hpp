@@ -78,7 +78,7 @@ struct SolverBodies {
     place.assign(all, {});
   }
   std::uint32_t wall(std::size_t number) const { return static_cast<std::uint32_t>(size() + number); }
-  /// Two for each lane of a pack, for each block; they are apart, have mass, and never move.
+  /// Two for each lane of a batch, for each block; they are apart, have mass, and never move.
   static constexpr std::size_t stand_ins = 2 * lanes_at_once<Real>;
   std::uint32_t stand_in(std::size_t block, std::size_t number) const {
     return static_cast<std::uint32_t>(motion.size() - stand_ins * (block + 1) + number);

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include <continuo/bodies/support/team.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
 
 namespace continuo {
 
@@ -55,7 +55,7 @@ inline void run_chunk(const BlockRange& chunk, std::size_t blocks, std::span<con
 }  // namespace detail
 
 /// As if each sweep went over all blocks before the next begins.
-inline void run_sweeps(Team& team, std::size_t blocks, std::span<const Sweep> sweeps) {
+inline void run_sweeps(ThreadTeam& team, std::size_t blocks, std::span<const Sweep> sweeps) {
   if (sweeps.size() > 1 && std::ranges::any_of(sweeps, [](const Sweep& sweep) { return bool(sweep.rest); })) {
     for (const Sweep& sweep : sweeps) {
       run_sweeps(team, blocks, {&sweep, 1});

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include <continuo/language/syntax/box.hpp>
+#include <continuo/language/syntax/value_ptr.hpp>
 #include <continuo/language/text/source.hpp>
 
 namespace continuo::model::ast {
@@ -67,13 +67,13 @@ enum class BinaryOperator {
 
 struct Unary {
   UnaryOperator op{};
-  Box<Expression> operand;
+  ValuePtr<Expression> operand;
 };
 
 struct Binary {
   BinaryOperator op{};
-  Box<Expression> left;
-  Box<Expression> right;
+  ValuePtr<Expression> left;
+  ValuePtr<Expression> right;
 };
 
 /// `sin(x)`, `interp(table, x)`; also a state at a time as in `check h'(1) = ...`, hence the primes and indices.
@@ -84,22 +84,22 @@ struct Call {
 
 /// `if condition then a else b`.
 struct Conditional {
-  Box<Expression> condition;
-  Box<Expression> when_true;
-  Box<Expression> when_false;
+  ValuePtr<Expression> condition;
+  ValuePtr<Expression> when_true;
+  ValuePtr<Expression> when_false;
 };
 
 /// `value [unit]`: a number with its unit, or a unit stated for a value made otherwise, as in `sqrt(2) [m]`.
 /// Numbers alone that end with one unit have it as a whole: `1/2 [m]` is half a metre, the unit is outermost here.
 struct Quantity {
-  Box<Expression> value;
+  ValuePtr<Expression> value;
   Unit unit;
 };
 
 /// `first..last`; `run 0..60 [s]` has its unit for both ends.
 struct Range {
-  Box<Expression> first;
-  Box<Expression> last;
+  ValuePtr<Expression> first;
+  ValuePtr<Expression> last;
   std::optional<Unit> unit;
   Span span;  // without the unit
 };
@@ -108,8 +108,8 @@ struct Range {
 struct Sum {
   Identifier index;
   Range range;
-  std::optional<Box<Expression>> condition;
-  Box<Expression> body;
+  std::optional<ValuePtr<Expression>> condition;
+  ValuePtr<Expression> body;
 };
 
 /// `(a, b, c)`: values of an indexed parameter, tolerances, a point of a drawing. Nowhere inside another expression.

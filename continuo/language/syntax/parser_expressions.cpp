@@ -295,7 +295,7 @@ Tree Parser::parse_sum() {
   int height = 0;
   auto [index, range] = parse_index(&height);
   indices_.push_back(index.text);
-  std::optional<Box<Expression>> condition;
+  std::optional<ValuePtr<Expression>> condition;
   go_on_inside_brackets();
   if (accept_word("where") || accept_word("if")) {
     Tree tree = parse_tree(Level::logical_or);

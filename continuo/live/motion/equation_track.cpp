@@ -81,8 +81,8 @@ class EquationTrack final : public Track, model::StepWatcher {
     passed_.clear();
   }
 
-  void stretch(model::Stepping&, double) override {}
-  void happening(model::Stepping& run, const Happening<X>& now) override {
+  void on_segment(model::Stepping&, double) override {}
+  void on_event(model::Stepping& run, const Happening<X>& now) override {
     const model::ModelEvents& events = run.events();
     const auto marks = events.marks().subspan(marks_seen_);
     const auto stops = events.stops();

@@ -74,11 +74,11 @@ class Door : public std::enable_shared_from_this<Door> {
   void answer() {
     const auto& request = parser_.get();
     const auto text = [](beast::string_view part) { return std::string_view(part.data(), part.size()); };
-    const Verdict verdict = parts_->doorman->judge({.method = text(request.method_string()),
-                                                    .target = text(request.target()),
-                                                    .host = text(request[http::field::host]),
-                                                    .origin = text(request[http::field::origin]),
-                                                    .upgrade = beast::websocket::is_upgrade(request)});
+    const Verdict verdict = parts_->origin_guard->judge({.method = text(request.method_string()),
+                                                         .target = text(request.target()),
+                                                         .host = text(request[http::field::host]),
+                                                         .origin = text(request[http::field::origin]),
+                                                         .upgrade = beast::websocket::is_upgrade(request)});
     if (verdict == Verdict::live) return upgrade();
     if (verdict == Verdict::page) return send_page(text(request[http::field::accept_encoding]));
     const Refusal refusal = refusal_of(verdict);

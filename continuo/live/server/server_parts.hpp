@@ -14,7 +14,7 @@
 #include <boost/asio/thread_pool.hpp>
 
 #include <continuo/live/server.hpp>
-#include <continuo/live/server/doorman.hpp>
+#include <continuo/live/server/origin_guard.hpp>
 #include <continuo/live/server/row_log.hpp>
 
 namespace continuo::live {
@@ -35,7 +35,7 @@ struct Server::Parts : std::enable_shared_from_this<Parts> {
   ServerOptions options;
   SayOnce once;
   std::string token = make_token();
-  std::optional<Doorman> doorman;
+  std::optional<OriginGuard> origin_guard;
   ServerHooks hooks;
 
   // Ends before the rest does: what still waits in it holds on to its connection, and through that to all of this.

@@ -68,7 +68,7 @@ json drawing_of(const LiveModel& shown) {
     json numbers = json::object();
     for (const SceneNumbers& part : item.numbers)
       numbers[part.name] = part.is_point ? json(part.places) : json(part.places.front());
-    json made = {{"shape", word_of(item.shape)}, {"numbers", numbers}, {"drag", item.grip.has_value()}};
+    json made = {{"shape", word_of(item.shape)}, {"numbers", numbers}, {"drag", item.drag_target.has_value()}};
     if (!item.label.empty()) made["label"] = item.label;
     if (!item.color.empty()) made["color"] = item.color;
     if (!item.text.empty()) made["text"] = item.text;

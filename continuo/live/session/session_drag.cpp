@@ -25,20 +25,20 @@ bool is_crossed(double before, double after) {
 }  // namespace
 
 void Session::drag(std::size_t item, std::span<const double> to) {
-  if (item >= shown_->drawing.size() || !shown_->drawing[item].grip) return say_note("this cannot be dragged");
-  const std::size_t number = *shown_->drawing[item].grip;
-  const Grip& grip = shown_->grips[number];
-  if (to.size() != grip.dimension || !std::ranges::all_of(to, [](double v) { return std::isfinite(v); }))
-    return say_note(fmt::format("a drag needs {} coordinates", grip.dimension));
+  if (item >= shown_->drawing.size() || !shown_->drawing[item].drag_target) return say_note("this cannot be dragged");
+  const std::size_t number = *shown_->drawing[item].drag_target;
+  const DragTarget& drag_target = shown_->drag_targets[number];
+  if (to.size() != drag_target.dimension || !std::ranges::all_of(to, [](double v) { return std::isfinite(v); }))
+    return say_note(fmt::format("a drag needs {} coordinates", drag_target.dimension));
   leave_look();
-  if (held_.empty() || held_grip_ != number) in_hand_.clear();
-  held_ = grip.held();
-  held_grip_ = number;
+  if (held_.empty() || held_drag_target_ != number) in_hand_.clear();
+  held_ = drag_target.held();
+  held_drag_target_ = number;
   use_variables(variables_);
   Instant instant = main_->instant_at(cursor_);
-  std::vector<double> x = pull(grip, grips_[number], cursor_, instant.x, to);
-  stop_at_guards(grip, instant.x, x);
-  const bool moved = std::ranges::any_of(grip.positions, [&](std::size_t i) { return x[i] != instant.x[i]; });
+  std::vector<double> x = pull(drag_target, drag_targets_[number], cursor_, instant.x, to);
+  stop_at_guards(drag_target, instant.x, x);
+  const bool moved = std::ranges::any_of(drag_target.positions, [&](std::size_t i) { return x[i] != instant.x[i]; });
   if (moved) instant.mode = shown_->model().start_mode;
   instant.moved = true;
   instant.x = std::move(x);
@@ -81,7 +81,7 @@ void Session::watch_hand(double wall) {
     now.x.assign(place.begin(), place.end());
   } else {
     const Track::X x = main_->instant_at(cursor_, false).x;
-    for (const std::size_t i : shown_->grips[held_grip_].positions) now.x.push_back(x[i]);
+    for (const std::size_t i : shown_->drag_targets[held_drag_target_].positions) now.x.push_back(x[i]);
   }
   if (!in_hand_.empty() && in_hand_.back().x == now.x) return;
   in_hand_.push_back(std::move(now));
@@ -113,7 +113,7 @@ void Session::release(bool still) {
   const std::vector<std::size_t> were_held = std::exchange(held_, {});
   if (std::ranges::all_of(speed, [](double v) { return v == 0; })) return touch();
   Instant instant = main_->instant_at(cursor_);
-  const std::vector<std::size_t>& positions = shown_->grips[held_grip_].positions;
+  const std::vector<std::size_t>& positions = shown_->drag_targets[held_drag_target_].positions;
   for (std::size_t k = 0; k < speed.size(); ++k) {
     const auto pair = std::ranges::find(shown_->model().pairs, positions[k], &PositionVelocity::position);
     if (pair != shown_->model().pairs.end()) instant.x[pair->velocity] = speed[k];
@@ -124,7 +124,7 @@ void Session::release(bool still) {
 
 /// A hand does not push through what an event would have turned back: where a guard whose event changes something would
 /// have fired, the way ends just before.
-void Session::stop_at_guards(const Grip& grip, const std::vector<double>& from, std::vector<double>& to) {
+void Session::stop_at_guards(const DragTarget& drag_target, const std::vector<double>& from, std::vector<double>& to) {
   constexpr int halvings = 50;
   if (!main_->equations()) return;
   model::ModelSystem system = main_->equations()->system();
@@ -147,7 +147,7 @@ void Session::stop_at_guards(const Grip& grip, const std::vector<double>& from, 
   std::vector<double> tried = to;
   double good = 0, bad = 1;
   const auto at = [&](double part) {
-    for (const std::size_t i : grip.positions) tried[i] = from[i] + part * (to[i] - from[i]);
+    for (const std::size_t i : drag_target.positions) tried[i] = from[i] + part * (to[i] - from[i]);
     return tried;
   };
   for (int k = 0; k < halvings; ++k) {

@@ -15,8 +15,9 @@ void Session::show_run() {
   scene_ = model::Evaluation(program.tape_of(shown_->scene), *variables_);
   paths_ = model::Evaluation(program.tape_of(shown_->paths), *variables_);
   values_.assign(shown_->quantities.size(), 0.0);
-  grips_.clear();
-  for (const Grip& grip : shown_->grips) grips_.emplace_back(program.tape_of(grip.nodes), *variables_);
+  drag_targets_.clear();
+  for (const DragTarget& drag_target : shown_->drag_targets)
+    drag_targets_.emplace_back(program.tape_of(drag_target.nodes), *variables_);
   evaluated_ = variables_;
   bends_ = Bends(*shown_);
   last_row_.reset();
@@ -32,7 +33,7 @@ void Session::use_variables(const std::shared_ptr<const std::vector<double>>& va
     quantities_.set(i, value);
     scene_.set(i, value);
     paths_.set(i, value);
-    for (model::Evaluation& grip : grips_) grip.set(i, value);
+    for (model::Evaluation& drag_target : drag_targets_) drag_target.set(i, value);
   }
   evaluated_ = variables;
 }

@@ -49,7 +49,7 @@ struct CollocationMethod {
   }
 
   template <State X>
-  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.tolerance = tolerance;
     using std::max;
     Scalar<X> rtol = tolerance.rtol;
@@ -79,13 +79,13 @@ struct CollocationMethod {
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     if (!work.linear.prepared()) {
       work.linear.prepare(system, x);
       if (work.linear.has_mass()) work.rtol = Scalar<X>(-1);  // whose looseness it is was not known yet
     }
-    if (made_jump) work.restart(least);
+    if (discontinuity) work.restart(least);
     int evaluations = 0;
     if (!work.has_f) {
       evaluate(system, t, x, work.f);
@@ -337,7 +337,7 @@ struct CollocationMethod {
       work.status = StepStatus::singular_matrix;
       return 0;
     }
-    ++work.costs.decompositions;
+    ++work.costs.factorizations;
     return detail::settle_unknowns(system, Scalar<X>(t + h), x, work.linear, work.lu, work.tolerance, work.target,
                                    work.f_end, x_new, work.status);
   }
@@ -362,7 +362,7 @@ struct CollocationMethod {
     work.linear.multiply_mass(work.slope, work.right);
     for (std::size_t i = 0; i < n; ++i) work.error.data()[i] = work.f.data()[i] - work.right.data()[i];
     work.lu.solve(work.error.data());
-    ++work.costs.solutions;
+    ++work.costs.linear_solves;
     // Once more where h may be far off: the filter alone does not go to 0 with it (eq. 8.20).
     const bool doubtful = work.was_rejected || work.ahead_degree == 0;
     if (!doubtful || !(norm_of_error(work, x, x_new, work.tolerance) >= Scalar<X>(1))) return 0;
@@ -370,7 +370,7 @@ struct CollocationMethod {
     evaluate(system, t, work.point, work.error);
     for (std::size_t i = 0; i < n; ++i) work.error.data()[i] -= work.right.data()[i];
     work.lu.solve(work.error.data());
-    ++work.costs.solutions;
+    ++work.costs.linear_solves;
     return 1;
   }
 
@@ -393,7 +393,7 @@ struct CollocationMethod {
                                            (work.f.data()[i] - work.slope.data()[i]));
     }
     work.pair_lu[0].solve(pair.data());
-    ++work.costs.solutions;
+    ++work.costs.linear_solves;
     for (std::size_t i = 0; i < n; ++i) work.error.data()[i] = pair[i].re;
     return 1;
   }

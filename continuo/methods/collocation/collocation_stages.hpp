@@ -27,7 +27,7 @@ bool decompose(const Scalar<X>& h, Workspace<X, most>& work) {
     done = work.pair_lu[p].factor(work.linear,
                                   ComplexNumber<Real>(numbers.eigenvalue[m] / h, numbers.eigenvalue[m + 1] / h));
   }
-  work.costs.decompositions += reals + pairs;
+  work.costs.factorizations += reals + pairs;
   work.decomposed_for = done ? h : Real(0);
   work.decomposed_stages = s;
   if (!done) work.status = work.linear.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
@@ -144,7 +144,7 @@ template <Nodes nodes, std::size_t s, State X, std::size_t most>
   set_right<nodes, s>(h, work);
   if constexpr (reals == 1) work.lu.solve(work.right.data());
   for (std::size_t p = 0; p < pairs; ++p) work.pair_lu[p].solve(work.pair_right[p].data());
-  work.costs.solutions += reals + pairs;
+  work.costs.linear_solves += reals + pairs;
   const std::size_t n = dimension(work.f);
   for_each_component(work.f, [&](std::size_t i) __attribute__((always_inline)) {
     std::array<Real, s> change;

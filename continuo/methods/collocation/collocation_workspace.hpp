@@ -44,7 +44,7 @@ struct Workspace {
         right(x),
         linear(x),
         lu(x),
-        pair_lu(copies<Decomposition<X, ComplexNumber<Real>>, pairs>(x)),
+        pair_lu(copies<Factorization<X, ComplexNumber<Real>>, pairs>(x)),
         stages(stages_),
         next_stages(stages_) {
     if constexpr (fixed_size<X>() == run_time_size) pair_right.fill(ComplexRow(dimension(x)));
@@ -58,8 +58,8 @@ struct Workspace {
   X point, weight, right;           // scratch: an argument of f; 1 / scale; the right-hand side of the real system
   std::array<ComplexRow, pairs> pair_right{};
   Linearization<X> linear;
-  Decomposition<X> lu;
-  std::array<Decomposition<X, ComplexNumber<Real>>, pairs> pair_lu;
+  Factorization<X> lu;
+  std::array<Factorization<X, ComplexNumber<Real>>, pairs> pair_lu;
   NewtonMemory<Real> memory{};
   // Where nobody says how close, the equations are solved down to rounding.
   Tolerance<Real> tolerance{10 * std::numeric_limits<Real>::epsilon(), 10 * std::numeric_limits<Real>::epsilon()};
@@ -67,7 +67,7 @@ struct Workspace {
   EquationCosts costs{};
   StepStatus status = StepStatus::done;
   Real h{}, ahead_h{};          // of the last step; of `ahead`
-  Real decomposed_for{};        // the h of the decompositions, 0 for none
+  Real decomposed_for{};        // the h of the factorizations, 0 for none
   Real last_h{}, last_error{};  // of the last accepted step, last_h = 0 for none
   std::size_t decomposed_stages = 0;
   std::size_t stages, next_stages;

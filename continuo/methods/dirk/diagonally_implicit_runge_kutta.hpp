@@ -59,18 +59,18 @@ struct DiagonallyImplicitRungeKutta {
   }
 
   template <State X>
-  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.solver.tolerance = tolerance;
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     if constexpr (treats_as_split<System, X>()) {
       detail::StiffPart<System> stiff{system};
-      return take_step(system, stiff, t, x, h, made_jump, work, x_new);
+      return take_step(system, stiff, t, x, h, discontinuity, work, x_new);
     } else {
-      return take_step(system, system, t, x, h, made_jump, work, x_new);
+      return take_step(system, system, t, x, h, discontinuity, work, x_new);
     }
   }
 
@@ -193,17 +193,17 @@ struct DiagonallyImplicitRungeKutta {
   }
 
   template <class System, class Stiff, State X>
-  static int take_step(System& system, Stiff& stiff, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
-                       Workspace<X>& work, X& x_new) {
+  static int take_step(System& system, Stiff& stiff, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                       bool discontinuity, Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
     constexpr std::size_t stages = Derived::tableau.stages;
     auto& solver = work.solver;
     const Real c = 1 / (h * Derived::tableau.gamma.template as<Real>());
-    int evaluations = solver.prepare(stiff, t, x, h, made_jump);
+    int evaluations = solver.prepare(stiff, t, x, h, discontinuity);
     if constexpr (Derived::tableau.starts_explicit()) {
-      if (made_jump || !work.start_fresh) evaluations += start(system, stiff, t, x, h, work);
+      if (discontinuity || !work.start_fresh) evaluations += start(system, stiff, t, x, h, work);
     }
-    if (made_jump) work.has_guess = false;
+    if (discontinuity) work.has_guess = false;
     for (;;) {
       if (!solver.decompose(c)) return evaluations;
       const bool solved = [&]<std::size_t... s>(std::index_sequence<s...>) {

@@ -60,12 +60,12 @@ struct ExplicitRungeKutta {
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     if constexpr (detail::Packed<X>) {
-      return flat_step(system, t, x, h, made_jump, work, x_new);
+      return flat_step(system, t, x, h, discontinuity, work, x_new);
     } else {
-      return take_step(system, t, x, h, made_jump, work, x_new);
+      return take_step(system, t, x, h, discontinuity, work, x_new);
     }
   }
 
@@ -154,12 +154,12 @@ struct ExplicitRungeKutta {
  private:
   template <class System, State X>
   [[gnu::always_inline]] static int take_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                                              bool made_jump, Workspace<X>& work, X& x_new) {
+                                              bool discontinuity, Workspace<X>& work, X& x_new) {
     constexpr auto& tableau = Derived::tableau;
     constexpr bool ends_with_f = tableau.first_same_as_last();
     constexpr std::size_t inner = tableau.stages - (ends_with_f ? 1 : 0);
     int evaluations = static_cast<int>(tableau.stages) - 1;
-    if (made_jump || !work.start_fresh) {
+    if (discontinuity || !work.start_fresh) {
       detail::evaluate_kept<X>(system, t, x, work.k[0]);
       work.start_fresh = true;
       ++evaluations;
@@ -175,9 +175,9 @@ struct ExplicitRungeKutta {
   /// With f compiled into it, however often it occurs: a call would cost more than the f of a small state, and would
   /// send what is kept in registers through memory.
   template <class System, State X>
-  [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h, bool made_jump,
+  [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h, bool discontinuity,
                                         Workspace<X>& work, X& x_new) {
-    return take_step(system, t, x, h, made_jump, work, x_new);
+    return take_step(system, t, x, h, discontinuity, work, x_new);
   }
 
   struct EndWeight {

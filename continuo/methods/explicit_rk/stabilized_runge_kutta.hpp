@@ -49,23 +49,23 @@ struct StabilizedRungeKutta {
   }
 
   template <State X>
-  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.tolerance = tolerance;
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
     using std::abs;
     int evaluations = 1;
     const bool again = work.retry && work.t == t;
-    if (made_jump && !again) {
+    if (discontinuity && !again) {
       evaluate(system, t, x, work.start);
       ++evaluations;
       work.spectrum.known = false;
     }
-    const bool stale = made_jump || work.radius_age >= oldest_radius || again;
+    const bool stale = discontinuity || work.radius_age >= oldest_radius || again;
     if constexpr (HasSpectralRadius<System, X>) {
       if (!again) work.radius = system.spectral_radius(t, x);
     } else if (stale && !(again && work.radius_age == 0)) {

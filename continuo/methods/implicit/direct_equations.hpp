@@ -44,20 +44,20 @@ class DirectEquations {
   }
   template <class System>
   StepStatus decompose(System&, const Real& c) {
-    ++costs_.decompositions;
+    ++costs_.factorizations;
     if (lu_.factor(linear_, c)) return StepStatus::done;
     return linear_.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
   }
   template <class System>
   int solve(System&, const Real&, const X&, const X&, const Tolerance<Real>&, const Real&, X& b) {
     lu_.solve(b.data());
-    ++costs_.solutions;
+    ++costs_.linear_solves;
     return 0;
   }
 
  private:
   Linearization<X> linear_;
-  Decomposition<X> lu_;
+  Factorization<X> lu_;
   EquationCosts costs_;
 };
 

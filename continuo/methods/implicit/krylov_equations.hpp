@@ -47,7 +47,7 @@ class KrylovEquations {
   StepStatus decompose(System& system, const Real& c) {
     c_ = c;
     if constexpr (HasPreconditioner<System, X>) {
-      ++costs_.decompositions;
+      ++costs_.factorizations;
       system.set_up_preconditioner(t_, point_, c);
     }
     return StepStatus::done;
@@ -76,7 +76,7 @@ class KrylovEquations {
         },
         b, Real(part_of_target) * target * root, most_products);
     for (std::size_t i = 0; i < n; ++i) b.data()[i] /= weights_.data()[i];
-    ++costs_.solutions;
+    ++costs_.linear_solves;
     return evaluations;
   }
 

@@ -168,11 +168,11 @@ class Linearization {
 
 /// c M - J, decomposed. Number is the scalar of the state or a ComplexNumber of it.
 template <State X, class Number = Scalar<X>>
-class Decomposition {
+class Factorization {
  public:
   static constexpr std::size_t N = fixed_size<X>();
 
-  explicit Decomposition(const X& x) : dense_(N == run_time_size ? 0 : dimension(x)) {}
+  explicit Factorization(const X& x) : dense_(N == run_time_size ? 0 : dimension(x)) {}
 
   /// False where the matrix is singular or not finite.
   bool factor(const Linearization<X>& linear, const Number& c) {

@@ -1,8 +1,8 @@
 // continuo/methods/implicit/stage_solver.hpp
 // Solves the equation of one implicit stage, M z = gamma h f(t, base + z), by simplified Newton iterations, and looks
-// after the Jacobian and its decomposition from stage to stage and from step to step.
+// after the Jacobian and its factorization from stage to stage and from step to step.
 //
-//   evaluations += solver.prepare(system, t, x, h, made_jump);  // a Jacobian, if there is none or it has grown old
+//   evaluations += solver.prepare(system, t, x, h, discontinuity);  // a Jacobian, if there is none or it has grown old
 //   if (!solver.decompose(1 / (gamma * h))) return solver.status;
 //   // z: the guess, then the solution
 //   if (!solver.solve(system, t_stage, base, x, z, target, evaluations)) return solver.status;
@@ -23,7 +23,7 @@ struct StageSolver {
   using Real = Scalar<X>;
 
   Linearization<X> linear;
-  Decomposition<X> lu;
+  Factorization<X> lu;
   X argument, residual, product;
   Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
   NewtonMemory<Real> memory{};
@@ -47,13 +47,13 @@ struct StageSolver {
 
   /// Where a step begins: J at (t, x) unless the one at hand will do.
   template <class System>
-  int prepare(System& system, const Real& t, const X& x, const Real& h, bool made_jump) {
+  int prepare(System& system, const Real& t, const X& x, const Real& h, bool discontinuity) {
     status = StepStatus::done;
     slowest = Real(0);
     memory.matrix_is_known = is_current;
     using std::abs;
     const bool is_old = grown_old || abs(h) > Real(most_growth) * abs(evaluated_for);
-    return made_jump || (is_old && !is_current) ? evaluate_jacobian(system, t, x, h) : 0;
+    return discontinuity || (is_old && !is_current) ? evaluate_jacobian(system, t, x, h) : 0;
   }
   template <class System>
   int evaluate_jacobian(System& system, const Real& t, const X& x, const Real& h) {
@@ -77,7 +77,7 @@ struct StageSolver {
   /// c M - J. False where it is singular, or J is not finite.
   bool decompose(const Real& c) {
     if (shift == c) return true;
-    ++costs.decompositions;
+    ++costs.factorizations;
     if (lu.factor(linear, c)) {
       shift = c;
       return true;
@@ -100,7 +100,7 @@ struct StageSolver {
       linear.multiply_mass(z, product);
       for (std::size_t i = 0; i < n; ++i) residual.data()[i] -= shift * product.data()[i];
       lu.solve(residual.data());
-      ++costs.solutions;
+      ++costs.linear_solves;
       Real sum(0);
       for (std::size_t i = 0; i < n; ++i) {
         z.data()[i] += residual.data()[i];
@@ -131,7 +131,7 @@ struct StageSolver {
     grown_old = grown_old || slowest > Real(worst_rate);
     is_current = false;
   }
-  /// Keeps h, and with it the decomposition, where it would grow only little (E. Hairer, G. Wanner II, IV.8).
+  /// Keeps h, and with it the factorization, where it would grow only little (E. Hairer, G. Wanner II, IV.8).
   Real next_factor(const Real& factor) const {
     return factor >= 1 && factor <= Real(1.2) && slowest <= Real(worst_rate) ? Real(1) : factor;
   }

@@ -63,14 +63,14 @@ struct Adams {
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
     int evaluations = 1;
-    if (made_jump || work.has_new_point) {
+    if (discontinuity || work.has_new_point) {
       evaluate(system, t, x, work.f);
       ++evaluations;
-      if (made_jump) {
+      if (discontinuity) {
         begin(work);
       } else {
         add_point(work);

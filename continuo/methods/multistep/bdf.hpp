@@ -86,7 +86,7 @@ struct BackwardDifferentiation {
   }
 
   template <State X>
-  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.tolerance = tolerance;
   }
   template <State X>
@@ -103,11 +103,11 @@ struct BackwardDifferentiation {
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     if (!work.equations.prepared()) work.equations.prepare(system, x);
     int evaluations = 0;
-    if (made_jump) {
+    if (discontinuity) {
       evaluations += begin(system, t, x, h, work);
     } else if (h != work.h) {
       respace(work, h / work.h);

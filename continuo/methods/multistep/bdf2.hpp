@@ -37,16 +37,16 @@ struct Bdf2 {
     return work;
   }
   template <State X>
-  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.start.solver.tolerance = tolerance;
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     work.current = x;
     work.h_current = h;
-    work.started = made_jump || work.h_before == Scalar<X>(0);
+    work.started = discontinuity || work.h_before == Scalar<X>(0);
     if (!work.started) return two_step(system, t, x, h, work, x_new);
     const int evaluations = TrBdf2::step(system, t, x, h, true, work.start, x_new);
     work.slope = work.start.k.front();

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <tuple>
 
-#include <continuo/methods/support/packs.hpp>
+#include <continuo/methods/support/simd_state.hpp>
 #include <continuo/methods/support/weighted_sum.hpp>
 #include <continuo/system/second_order.hpp>
 

@@ -19,9 +19,9 @@
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/nystrom/pairs.hpp>
 #include <continuo/methods/support/hermite.hpp>
-#include <continuo/methods/support/packs.hpp>
 #include <continuo/methods/support/refined_quintic.hpp>
 #include <continuo/methods/support/second_order_method.hpp>
+#include <continuo/methods/support/simd_state.hpp>
 #include <continuo/methods/support/weighted_sum.hpp>
 #include <continuo/system/second_order.hpp>
 
@@ -81,18 +81,18 @@ struct RungeKuttaNystrom {
   }
 
   template <class System, State X>
-  static std::string_view why_not(const System& system, const X& x) {
-    return why_not_positions_only(system, x);
+  static std::string_view unsupported_reason(const System& system, const X& x) {
+    return unsupported_reason_positions_only(system, x);
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
     if constexpr (detail::Packed<X>) {
-      return flat_step(system, t, x, h, made_jump, work, x_new);
+      return flat_step(system, t, x, h, discontinuity, work, x_new);
     } else {
-      return take_step(system, t, x, h, made_jump, work, x_new);
+      return take_step(system, t, x, h, discontinuity, work, x_new);
     }
   }
 
@@ -170,11 +170,11 @@ struct RungeKuttaNystrom {
  private:
   template <class System, State X>
   [[gnu::always_inline]] static int take_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                                              bool made_jump, Workspace<X>& work, X& x_new) {
+                                              bool discontinuity, Workspace<X>& work, X& x_new) {
     constexpr std::size_t stages = Derived::tableau.stages;
     int evaluations = static_cast<int>(stages) - 1;
     work.end_fresh = false;
-    if (made_jump || !work.start_fresh) {
+    if (discontinuity || !work.start_fresh) {
       detail::evaluate_accelerations(system, t, x, work.k[0]);
       work.start_fresh = true;
       ++evaluations;
@@ -199,9 +199,9 @@ struct RungeKuttaNystrom {
 
   /// With f compiled into it, as in ExplicitRungeKutta.
   template <class System, State X>
-  [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h, bool made_jump,
+  [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h, bool discontinuity,
                                         Workspace<X>& work, X& x_new) {
-    return take_step(system, t, x, h, made_jump, work, x_new);
+    return take_step(system, t, x, h, discontinuity, work, x_new);
   }
 
   template <class System, State X>
@@ -277,7 +277,7 @@ struct RungeKuttaNystrom {
     const auto kv = detail::stages_of<Velocity, P>(work.k);
     const auto eq = detail::stages_of<PositionOff, P>(work.k);
     const auto ev = detail::stages_of<VelocityOff, P>(work.k);
-    if (!why_not(system, x).empty()) {
+    if (!unsupported_reason(system, x).empty()) {
       for (std::size_t i = 0; i < dimension(x); ++i) x_new.data()[i] = Real(std::numeric_limits<double>::quiet_NaN());
       return;
     }

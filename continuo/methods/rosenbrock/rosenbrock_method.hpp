@@ -34,7 +34,7 @@ struct RosenbrockMethod {
     X argument, right, product;  // of f; of the linear systems; M times a sum: where X has no fixed size
     X rest, rest_new;            // what the sums that made x, and x_new, have lost: see takes_many_steps
     Linearization<X> linear;
-    Decomposition<X> lu;
+    Factorization<X> lu;
     Tolerance<Scalar<X>> tolerance{Scalar<X>(1e-6), Scalar<X>(1e-9)};
     UnknownsBetween<Derived, X> unknowns{};
     EquationCosts costs{};
@@ -47,20 +47,20 @@ struct RosenbrockMethod {
   static Workspace<X> workspace(const X& x) {
     return [&]<std::size_t... s>(std::index_sequence<s...>) {
       return Workspace<X>{
-          {((void)s, detail::keep(x))...}, x, x, x, x, x, x, x, x, Linearization<X>(x), Decomposition<X>(x)};
+          {((void)s, detail::keep(x))...}, x, x, x, x, x, x, x, x, Linearization<X>(x), Factorization<X>(x)};
     }(std::make_index_sequence<Derived::tableau.stages>());
   }
 
   template <State X>
-  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.tolerance = tolerance;
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
-    int evaluations = linearize(system, t, x, h, made_jump, work);
-    ++work.costs.decompositions;
+    int evaluations = linearize(system, t, x, h, discontinuity, work);
+    ++work.costs.factorizations;
     if (!work.lu.factor(work.linear, 1 / (h * constant<GammaValue, Scalar<X>>()))) {
       work.status = work.linear.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
       return evaluations;
@@ -71,8 +71,8 @@ struct RosenbrockMethod {
     } else {
       stages(system, t, x, h, work, x_new);
     }
-    work.costs.solutions += Derived::tableau.stages;
-    if constexpr (takes_many_steps()) sum_with_rest(x, made_jump, work, x_new);
+    work.costs.linear_solves += Derived::tableau.stages;
+    if constexpr (takes_many_steps()) sum_with_rest(x, discontinuity, work, x_new);
     if constexpr (estimates_its_own_error<Derived>()) filter_error(h, work);
     evaluations += work.unknowns.measure(system, t, h, x, work.linear, work.lu, [&](auto& interpolant) {
       interpolate(system, t, x, h, x_new, work, interpolant);
@@ -191,10 +191,10 @@ struct RosenbrockMethod {
 
   /// x_new once more, from x and what was lost when it was made.
   template <State X>
-  static void sum_with_rest(const X& x, bool made_jump, Workspace<X>& work, X& x_new) {
+  static void sum_with_rest(const X& x, bool discontinuity, Workspace<X>& work, X& x_new) {
     using Weights = detail::Row<EndWeight, Derived::tableau.stages>;
     const auto u = detail::stages_of<Weights, X>(work.u);
-    if (made_jump) {
+    if (discontinuity) {
       for (std::size_t i = 0; i < dimension(x); ++i) work.rest.data()[i] = Scalar<X>(0);
     }
     detail::for_each_unit(x, [&](std::size_t i) {
@@ -217,7 +217,7 @@ struct RosenbrockMethod {
     const Scalar<X> c = 1 / (h * constant<GammaValue, Scalar<X>>());
     for (std::size_t i = 0; i < dimension(work.product); ++i) work.product.data()[i] *= c;
     work.lu.solve(work.product.data());
-    ++work.costs.solutions;
+    ++work.costs.linear_solves;
   }
 
   /// One coefficient, 0 too.
@@ -232,15 +232,15 @@ struct RosenbrockMethod {
 
   /// f, J and df/dt at the start of the step, as far as they are not known.
   template <class System, State X>
-  static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                        Workspace<X>& work) {
     int evaluations = 0;
-    if (made_jump || !work.start_fresh) {
+    if (discontinuity || !work.start_fresh) {
       evaluate(system, t, x, work.slope);
       work.start_fresh = true;
       ++evaluations;
     }
-    if (!made_jump && work.linear_fresh) return evaluations;
+    if (!discontinuity && work.linear_fresh) return evaluations;
     if (!work.linear.prepared()) work.linear.prepare(system, x);
     evaluations += work.linear.evaluate(system, t, x, work.slope,
                                         LeastIncrements(work.tolerance, h, x, work.slope, work.linear.has_mass()));

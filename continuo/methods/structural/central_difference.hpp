@@ -33,10 +33,10 @@ struct CentralDifference : SecondOrderMethod {
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
-    const int evaluations = work.evaluate_start(system, t, x, made_jump);
-    if (made_jump || !work.has_history) {
+    const int evaluations = work.evaluate_start(system, t, x, discontinuity);
+    if (discontinuity || !work.has_history) {
       work.half = x;
       work.h_last = Scalar<X>(0);
       work.has_history = true;

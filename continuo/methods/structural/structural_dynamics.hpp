@@ -64,7 +64,7 @@ struct StructuralDynamics {
   }
 
   template <State X>
-  static void aim(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
+  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.tolerance = tolerance;
   }
   template <State X>
@@ -77,7 +77,7 @@ struct StructuralDynamics {
   }
 
   template <class System, State X>
-  static std::string_view why_not(const System& system, const X& x) {
+  static std::string_view unsupported_reason(const System& system, const X& x) {
     static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
     const std::size_t n = dimension(x);
     if (2 * system.pair_count(n) != n) return "needs positions and velocities, and no other components";
@@ -86,13 +86,13 @@ struct StructuralDynamics {
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     if (!work.linear.prepared()) {
       work.linear.prepare(system, x);
       work.effective.prepare(system, work.linear);
     }
-    int evaluations = made_jump ? begin(system, t, x, work) : 0;
+    int evaluations = discontinuity ? begin(system, t, x, work) : 0;
     work.h = h;
     for (;;) {
       if (!work.has_jacobian) evaluations += linearize(system, t, x, work);
@@ -131,7 +131,7 @@ struct StructuralDynamics {
     return 0;
   }
 
-  /// A step a little longer is not worth a decomposition (E. Hairer, G. Wanner, "Solving Ordinary Differential
+  /// A step a little longer is not worth a factorization (E. Hairer, G. Wanner, "Solving Ordinary Differential
   /// Equations II", IV.8).
   template <State X>
   static Scalar<X> next_factor(const Workspace<X>&, const Scalar<X>& factor, const Scalar<X>&, const X&, const X&,
@@ -233,7 +233,7 @@ struct StructuralDynamics {
   static bool decompose(const System& system, const Scalar<X>& h, Workspace<X>& work) {
     using Real = Scalar<X>;
     const StructuralNumbers<Real> m = Derived::template numbers<Real>();
-    ++work.costs.decompositions;
+    ++work.costs.factorizations;
     const Real ahead = Real(1) - m.alpha_f;
     const bool done = work.effective.factor(
         system, work.linear, {Real(1) - m.alpha_m, Real(ahead * m.gamma * h), Real(ahead * m.beta * h * h)});
@@ -278,7 +278,7 @@ struct StructuralDynamics {
       for (std::size_t i = 0; i < dimension(x); ++i)
         work.correction.data()[i] = work.f.data()[i] - work.correction.data()[i];
       work.effective.solve(system, work.correction);
-      ++work.costs.solutions;
+      ++work.costs.linear_solves;
       for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
         const Real change = work.correction.data()[velocity];
         work.a_new.data()[velocity] += change;

@@ -21,9 +21,9 @@ struct EndDerivatives {
 
   /// Returns the number of evaluations.
   template <class System>
-  int evaluate_start(System& system, const Scalar<X>& t, const X& x, bool made_jump) {
+  int evaluate_start(System& system, const Scalar<X>& t, const X& x, bool discontinuity) {
     end_fresh = false;
-    if (start_fresh && !made_jump) return 0;
+    if (start_fresh && !discontinuity) return 0;
     evaluate(system, t, x, start);
     start_fresh = true;
     return 1;
@@ -32,7 +32,7 @@ struct EndDerivatives {
 
 /// What a method for q'' = a(t, q) has against a system of another form; empty where it has nothing.
 template <class System, State X>
-std::string_view why_not_positions_only(const System& system, const X& x) {
+std::string_view unsupported_reason_positions_only(const System& system, const X& x) {
   static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
   if (2 * system.pair_count(dimension(x)) != dimension(x))
     return "needs q'' = a(t, q): here a component is neither a position nor a velocity; take velocity_verlet or dop853";

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <utility>
 
-#include <continuo/methods/support/packs.hpp>
+#include <continuo/methods/support/simd_state.hpp>
 #include <continuo/numerics/coefficient.hpp>
 #include <continuo/numerics/state.hpp>
 

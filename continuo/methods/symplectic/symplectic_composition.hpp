@@ -73,20 +73,20 @@ struct SymplecticComposition : SecondOrderMethod {
   }
 
   template <class System, State X>
-  static std::string_view why_not(const System& system, const X& x) {
-    return why_not_positions_only(system, x);
+  static std::string_view unsupported_reason(const System& system, const X& x) {
+    return unsupported_reason_positions_only(system, x);
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
-    int evaluations = work.evaluate_start(system, t, x, made_jump);
-    if (!why_not(system, x).empty()) {
+    int evaluations = work.evaluate_start(system, t, x, discontinuity);
+    if (!unsupported_reason(system, x).empty()) {
       for (std::size_t i = 0; i < dimension(x); ++i)
         x_new.data()[i] = Scalar<X>(std::numeric_limits<double>::quiet_NaN());
       return evaluations;
     }
-    if (made_jump) {
+    if (discontinuity) {
       for (std::size_t i = 0; i < dimension(x); ++i) work.rest.data()[i] = Scalar<X>(0);
     }
     x_new = x;

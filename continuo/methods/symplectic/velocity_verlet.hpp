@@ -18,9 +18,9 @@ struct VelocityVerlet : SecondOrderMethod {
   static constexpr int order = 2, dense_order = 2;
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool made_jump,
+  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
-    const int evaluations = work.evaluate_start(system, t, x, made_jump);
+    const int evaluations = work.evaluate_start(system, t, x, discontinuity);
     const Scalar<X> half = h * Scalar<X>(0.5);
     euler(x, h, work.start, x_new);
     for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {

@@ -20,12 +20,12 @@ class Recording final : public StepWatcher {
  public:
   explicit Recording(RunRecorder& recorder) : recorder_(recorder) {}
 
-  void stretch(Stepping& run, double to) override {
-    recorder_.stretch(to,
-                      At{&run, [](void* of, double t, ModelSystem::X& x) { static_cast<Stepping*>(of)->at(t, x); }});
+  void on_segment(Stepping& run, double to) override {
+    recorder_.on_segment(to,
+                         At{&run, [](void* of, double t, ModelSystem::X& x) { static_cast<Stepping*>(of)->at(t, x); }});
   }
 
-  void happening(Stepping& run, const Happening<ModelSystem::X>& now) override {
+  void on_event(Stepping& run, const Happening<ModelSystem::X>& now) override {
     names_.clear();
     const ModelEvents& events = run.events();
     const auto marks = events.marks().subspan(marks_seen_);
@@ -39,7 +39,7 @@ class Recording final : public StepWatcher {
       }
     }
     marks_seen_ = events.marks().size();
-    recorder_.happening(now.t, names_, now.before, now.after);
+    recorder_.on_event(now.t, names_, now.before, now.after);
   }
 
  private:
@@ -89,8 +89,8 @@ class SteppingByName final : public Stepping {
   struct Forward {
     SteppingByName& run;
     StepWatcher& watcher;
-    void stretch(Driving&, double, double to) { watcher.stretch(run, to); }
-    void happening(Driving&, const Happening<X>& now) { watcher.happening(run, now); }
+    void on_segment(Driving&, double, double to) { watcher.on_segment(run, to); }
+    void on_event(Driving&, const Happening<X>& now) { watcher.on_event(run, now); }
   };
 
   void begin(ModelSystem system, X x0, Interval<double> interval, Options<X> options, ModelEvents events) {
@@ -109,8 +109,8 @@ Statistics sum(const Statistics& a, const Statistics& b) {
           .rejected = a.rejected + b.rejected,
           .evaluations = a.evaluations + b.evaluations,
           .jacobians = a.jacobians + b.jacobians,
-          .decompositions = a.decompositions + b.decompositions,
-          .solutions = a.solutions + b.solutions,
+          .factorizations = a.factorizations + b.factorizations,
+          .linear_solves = a.linear_solves + b.linear_solves,
           .events = a.events + b.events,
           .seconds = a.seconds + b.seconds};
 }

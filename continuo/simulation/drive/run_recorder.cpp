@@ -98,7 +98,7 @@ void RunRecorder::begin(double t, const X& x) {
   }
 }
 
-void RunRecorder::stretch(double to, const At& at) {
+void RunRecorder::on_segment(double to, const At& at) {
   const bool sampled = next_sample_ < samples_.size() && samples_[next_sample_].t <= to;
   if (keep_rows_ && !every_step_) {
     for (; times_[next_output_] <= to; ++next_output_) {
@@ -119,7 +119,7 @@ void RunRecorder::stretch(double to, const At& at) {
   if (every_step_ && keep_rows_) add_row(to, x_);
 }
 
-void RunRecorder::happening(double t, std::span<const Name> names, const X& before, const X& after) {
+void RunRecorder::on_event(double t, std::span<const Name> names, const X& before, const X& after) {
   for (const Name& name : names) events_.push_back({name.event, name.mark, t, before, after});
   watch(t, after);
   for (std::size_t k = next_sample_; k-- > 0 && samples_[k].t == t;) samples_[k].x = after;

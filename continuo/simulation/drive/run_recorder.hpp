@@ -40,11 +40,11 @@ class RunRecorder {
               std::span<const NodeId> watched);
 
   void begin(double t, const X& x);
-  void stretch(double to, const At& at);
+  void on_segment(double to, const At& at);
   struct Name {
     std::string event, mark;
   };
-  void happening(double t, std::span<const Name> names, const X& before, const X& after);
+  void on_event(double t, std::span<const Name> names, const X& before, const X& after);
   /// Where nothing is interpolated: extremes at t, and samples up to t.
   void look(double t, const X& x) { watch(t, x); }
   void sample_until(double t, const X& x);

@@ -283,7 +283,7 @@ class Driver {
         solved_to_rounding_ = true;
         if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
       }
-      observer.stretch(*this, from, t_);
+      observer.on_segment(*this, from, t_);
       logic_.begin_instant(t_);
       logic_.arrive(steps(), t_, x_, crossing);
       if (fire(observer) || t_ == steps().end()) return;
@@ -300,7 +300,7 @@ class Driver {
     shift(x_);
     if (logic_.any_guard()) solve_unknowns(t_, x_);
     solved_to_rounding_ = logic_.any_guard();
-    observer.stretch(*this, from, t_);
+    observer.on_segment(*this, from, t_);
     if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
     logic_.begin_instant(t_);
     if (logic_.fired().empty()) return;
@@ -462,7 +462,7 @@ class Driver {
     if (!at_limit) ++steps().statistics().events;
     if (response.restart) settle_algebraic();
     if (response.changed && !response.restart) note_shifts();
-    observer.happening(*this, Happening<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
+    observer.on_event(*this, Happening<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
     logic_.acted(steps(), i, response, t_, x_);
     if (at_limit || !logic_.events().is_guard(i)) return response;
     std::optional<Real> limit = logic_.accumulation().fired(i, t_);

@@ -15,13 +15,15 @@ namespace continuo {
 struct MethodNeeds {
   std::string_view name;
   bool implicit, estimates_error;
-  std::string_view why_not;  // what it has against the system, to be read after its name; empty where nothing
+  std::string_view
+      unsupported_reason;  // what it has against the system, to be read after its name; empty where nothing
 };
 
 template <class M, class System, State X>
 MethodNeeds needs_of(const System& system, const X& x) {
   MethodNeeds needs{M::name, detail::is_implicit<M>(), M::error_order > 0, {}};
-  if constexpr (requires { M::why_not(system, x); }) needs.why_not = M::why_not(system, x);
+  if constexpr (requires { M::unsupported_reason(system, x); })
+    needs.unsupported_reason = M::unsupported_reason(system, x);
   return needs;
 }
 
@@ -36,7 +38,7 @@ std::string wrong_input(const MethodNeeds& method, const System& system, const X
   const auto hint = [&](std::string_view text) { return std::string(method.name).append(text); };
   if (has_mass<X>(system) && !method.implicit)
     return hint(" cannot integrate M x' = f(t, x): take an implicit method, such as rodas5p");
-  if (!method.why_not.empty()) return hint(" ").append(method.why_not);
+  if (!method.unsupported_reason.empty()) return hint(" ").append(method.unsupported_reason);
   if (!method.estimates_error && !(options.step > 0)) return hint(" has no error estimate: give it a step");
   for (const auto* each : {&options.rtol_each, &options.atol_each})
     if (!each->empty() && each->size() != dimension(x)) return "a tolerance per component needs one for each";

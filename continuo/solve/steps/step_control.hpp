@@ -83,13 +83,14 @@ class StepControl final : public Steps<System, X> {
   void attempt(Real h, const Options<X>& options) {
     h_ = h;
     began_anew_ = jumped_;
-    if constexpr (requires { M::aim(work_, tolerance(options)); }) M::aim(work_, tolerance_of_step(h, options));
+    if constexpr (requires { M::set_tolerance(work_, tolerance(options)); })
+      M::set_tolerance(work_, tolerance_of_step(h, options));
     statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
     if constexpr (requires { M::costs(work_); }) {
       const EquationCosts costs = M::costs(work_);
       statistics_.jacobians = costs.jacobians;
-      statistics_.decompositions = costs.decompositions;
-      statistics_.solutions = costs.solutions;
+      statistics_.factorizations = costs.factorizations;
+      statistics_.linear_solves = costs.linear_solves;
     }
   }
 

@@ -17,7 +17,7 @@
 #include <continuo/solve/outcome.hpp>
 #include <continuo/solve/steps/check_input.hpp>
 #include <continuo/solve/steps/first_step.hpp>
-#include <continuo/solve/steps/pace.hpp>
+#include <continuo/solve/steps/step_budget.hpp>
 #include <continuo/system/mass.hpp>
 
 namespace continuo {
@@ -64,7 +64,7 @@ class Steps {
     x_end_ = x;
     jumped_ = true;
     errors_ = {};
-    pace_.forget();
+    step_budget_.forget();
     next_ = fixed(options) ? forward_ * options.step : Real(0);  // 0: to be estimated
   }
 
@@ -81,10 +81,10 @@ class Steps {
 
   /// The steps that a run to `limit` would need, where stiffness holds them and they are far too many; else 0.
   Real endless(Real limit, const Options<X>& options) const {
-    if (!pace_.steady()) [[likely]]
+    if (!step_budget_.steady()) [[likely]]
       return 0;
-    const Real steps = pace_.steps_for(limit - end_);
-    return steps > Real(Pace<Real>::far_beyond) * Real(static_cast<double>(options.max_steps)) ? steps : Real(0);
+    const Real steps = step_budget_.steps_for(limit - end_);
+    return steps > Real(StepBudget<Real>::far_beyond) * Real(static_cast<double>(options.max_steps)) ? steps : Real(0);
   }
 
   /// x at a time of the last step, on the dense output.
@@ -220,7 +220,7 @@ class Steps {
     statistics_.evaluations += static_cast<std::size_t>(evaluations);
     ++probes_;
     if (held) ++stiff_probes_;
-    held ? pace_.mark(statistics_.steps, max_steps, begin_) : pace_.forget();
+    held ? step_budget_.mark(statistics_.steps, max_steps, begin_) : step_budget_.forget();
   }
 
   System system_;
@@ -236,7 +236,7 @@ class Steps {
   Statistics statistics_;
   std::optional<StiffnessWatch<X>> stiffness_;
   std::size_t probes_ = 0, stiff_probes_ = 0;
-  Pace<Real> pace_;
+  StepBudget<Real> step_budget_;
 };
 
 /// Steps as a value: a copy is a checkpoint.

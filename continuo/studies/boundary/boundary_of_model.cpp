@@ -34,7 +34,7 @@ model::Run run_of(const ModelProgram& program, const Plan& plan, const BoundaryV
   model::Run run = model::run_along(program, plan, steps, [&](double t, std::vector<double>& x) { solution.at(t, x); });
   run.statistics.steps = solution.mesh.size() - 1;
   run.statistics.evaluations = solution.evaluations;
-  run.statistics.decompositions = run.statistics.jacobians = solution.iterations;
+  run.statistics.factorizations = run.statistics.jacobians = solution.iterations;
   return run;
 }
 

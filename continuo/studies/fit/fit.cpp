@@ -20,8 +20,8 @@ using detail::FitProblem;
 using detail::FitSearch;
 
 /// Why the run at p has no rows to compare: said once, at the start.
-std::string why_not(const FitRequest& request, const FitProblem& problem, std::span<const double> p,
-                    std::vector<model::Diagnostic>& diagnostics) {
+std::string unsupported_reason(const FitRequest& request, const FitProblem& problem, std::span<const double> p,
+                               std::vector<model::Diagnostic>& diagnostics) {
   for (std::size_t part = 0; part < problem.parts().size(); ++part) {
     SensitivityRun run;
     const FitPart::Values values = problem.values(part, p, problem.parts()[part].times(), &run);
@@ -305,7 +305,7 @@ Fit fit(const FitRequest& request) {
   Fitting(request, problem).fit_from(start, result);
   result.runs = result.least.evaluations * request.data.size();
   if (!result.found()) {
-    if (!result.least.interrupted) result.problem = why_not(request, problem, start, result.diagnostics);
+    if (!result.least.interrupted) result.problem = unsupported_reason(request, problem, start, result.diagnostics);
     return result;
   }
   if (!model.has_world() || result.least.interrupted) return result;

@@ -198,7 +198,7 @@ SensitivityRun boundary_sensitivity(const std::shared_ptr<const SensitiveProgram
   }
   run.statistics.steps = found.mesh.size() - 1;
   run.statistics.evaluations = plain.evaluations + found.evaluations;
-  run.statistics.jacobians = run.statistics.decompositions = plain.iterations + found.iterations;
+  run.statistics.jacobians = run.statistics.factorizations = plain.iterations + found.iterations;
   run.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return run;
 }

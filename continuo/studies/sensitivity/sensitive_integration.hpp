@@ -51,7 +51,7 @@ struct SensitiveObserver {
     }
   }
   template <class I>
-  void stretch(I& integrator, double, double to) {
+  void on_segment(I& integrator, double, double to) {
     const auto at = [&](double t, SensitiveSystem::X& state) { integrator.at(t, state); };
     upto(to, at);
     if (rows.time) return;
@@ -59,7 +59,7 @@ struct SensitiveObserver {
     rows.keep(to, x);
   }
   template <class I>
-  void happening(I& integrator, const Happening<SensitiveSystem::X>& now) {
+  void on_event(I& integrator, const Happening<SensitiveSystem::X>& now) {
     if (!rows.events) return;
     const bool declared =
         std::ranges::any_of(now.events, [&](std::size_t i) { return integrator.events().is_declared(i); });

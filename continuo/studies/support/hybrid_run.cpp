@@ -56,12 +56,12 @@ model::Instant HybridRun::instant() const {
   return {run_->t(), run_->x(), run_->system().mode(), {stops.begin(), stops.end()}};
 }
 
-void HybridRun::stretch(model::Stepping& run, double to) {
+void HybridRun::on_segment(model::Stepping& run, double to) {
   if (on_stretch && to > from_) on_stretch(from_, to, [&run](double t, X& x) { run.at(t, x); });
   from_ = to;
 }
 
-void HybridRun::happening(model::Stepping& run, const Happening<X>& now) {
+void HybridRun::on_event(model::Stepping& run, const Happening<X>& now) {
   const bool jumps = std::ranges::any_of(now.events, [&](std::size_t i) { return run.events().is_jump(i); });
   const std::size_t mode = run.system().mode();
   if (now.before == now.after && mode == mode_ && !jumps) return;

@@ -57,8 +57,8 @@ class HybridRun final : private model::StepWatcher {
   std::function<void(double t, const X& before, const X& after)> on_jump{};
 
  private:
-  void stretch(model::Stepping& run, double to) override;
-  void happening(model::Stepping& run, const Happening<X>& now) override;
+  void on_segment(model::Stepping& run, double to) override;
+  void on_event(model::Stepping& run, const Happening<X>& now) override;
 
   std::vector<double> variables_;
   std::unique_ptr<model::Stepping> run_;

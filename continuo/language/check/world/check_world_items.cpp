@@ -230,7 +230,7 @@ void Checker::read_world_setting(const ast::WorldSetting& setting, Scope& scope)
 }
 
 void Checker::read_combinations(const ast::WorldSetting& setting) {
-  MeetingDescription& meeting = world_.made.meeting;
+  CombineRuleDescription& combine_rule = world_.made.combine_rule;
   if (setting.attributes.empty())
     fail("E225", setting.word.span, "combine what?", {},
          "write combine restitution minimum, or combine friction average");
@@ -242,7 +242,9 @@ void Checker::read_combinations(const ast::WorldSetting& setting) {
       continue;
     }
     const std::string& word = text.name.text;
-    (word == "restitution" ? meeting.restitution : word == "friction" ? meeting.friction : meeting.rolling) = name;
+    (word == "restitution" ? combine_rule.restitution
+     : word == "friction"  ? combine_rule.friction
+                           : combine_rule.rolling) = name;
   }
 }
 

@@ -6,7 +6,7 @@
 // the block below and to the right of it is what the others do. These blocks are never multiplied as they are, for
 // along a canard a product is first 1e200 and then 1e-300: orthonormal columns are carried round until they point where
 // they did (orthogonal iteration), and what remains are triangular matrices, whose product keeps the digits of small
-// multipliers beside large ones. A. Bojanczyk, G. Golub, P. Van Dooren, "The periodic Schur decomposition", Proc. SPIE
+// multipliers beside large ones. A. Bojanczyk, G. Golub, P. Van Dooren, "The periodic Schur factorization", Proc. SPIE
 // 1770 (1992); T. F. Fairgrieve, A. D. Jepson, "O.K. Floquet multipliers", SIAM J. Numer. Anal. 28 (1991).
 #include <algorithm>
 #include <cmath>

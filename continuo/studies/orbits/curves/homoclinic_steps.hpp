@@ -114,7 +114,7 @@ class HomoclinicSteps {
   Vector adjoint_of(const HomoclinicPlace& place) const;
   void set_eigenvalue_tests(HomoclinicPlace& place) const;
   void set_flip_tests(HomoclinicPlace& place, const Vector& adjoint, const HomoclinicPlace* before) const;
-  /// Of a central orbit, at the last decomposition.
+  /// Of a central orbit, at the last factorization.
   void set_centre_tests(HomoclinicPlace& place) const;
   /// How the first or the last state's part along the centre changes with the unknowns, in scale.
   Vector centre_part(bool at_end) const;

@@ -174,7 +174,7 @@ class OrbitSearch {
     orbit.events = shot.image.run.events;
     const Eigen::MatrixXd m = derivative(shot);
     if (!confirms({program_, exact_, unknowns_, held_, sizes_}, point, m)) {
-      orbit = without_hybrid_orbit(why_not_confirmed(shot, point.period));
+      orbit = without_hybrid_orbit(unsupported_reason_confirmed(shot, point.period));
       return;
     }
     Eigen::VectorXd f(at(unknowns_.size()));
@@ -223,7 +223,7 @@ class OrbitSearch {
     }
   }
 
-  std::string why_not_confirmed(const Shot& shot, double period) const;
+  std::string unsupported_reason_confirmed(const Shot& shot, double period) const;
 
   std::shared_ptr<const model::ModelProgram> program_;
   const HybridOrbitOptions& options_;
@@ -240,7 +240,7 @@ class OrbitSearch {
 
 /// Which event is to blame: two at the same time that neighbours pass one after the other, or one whose time hangs on
 /// the start too much.
-std::string OrbitSearch::why_not_confirmed(const Shot& shot, double period) const {
+std::string OrbitSearch::unsupported_reason_confirmed(const Shot& shot, double period) const {
   const std::vector<SensitivityEvent>& events = shot.image.run.events;
   const auto part = [&](double moves, std::size_t i) { return moves * sizes_[i] / period; };
   for (std::size_t a = 0; a + 1 < events.size(); ++a) {

@@ -1,0 +1,10 @@
+#include <continuo/bodies/contacts/projected_gauss_seidel.hpp>
+
+namespace continuo {
+
+template class ProjectedGaussSeidel<float, 2>;
+template class ProjectedGaussSeidel<float, 3>;
+template class ProjectedGaussSeidel<double, 2>;
+template class ProjectedGaussSeidel<double, 3>;
+
+}  // namespace continuo

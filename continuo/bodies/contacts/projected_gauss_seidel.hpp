@@ -1,0 +1,230 @@
+// The impulses of many contacts that act together, found in sweeps over them: the projected Gauss-Seidel iteration.
+// Each contact in turn has its whole impulse so far set right for what the others do; none pulls, and friction stops
+// the slip or rubs with all it has (J. J. Moreau, in "Nonsmooth Mechanics and Applications", CISM 302, 1988; M. Jean,
+// Comput. Methods Appl. Mech. Eng. 177 (1999) 235-257). Without friction each turn lowers the energy as far as its
+// contact can.
+//
+// Through a tall heap a push goes by one body a sweep, and what lies on much else comes to its end slowly. So every
+// second sweep, there and back, goes on in the direction in which the impulses change, as conjugate gradients do, until
+// the changes grow, when it begins anew: M. Silcowitz, S. Niebe, K. Erleben, "A nonsmooth nonlinear conjugate gradient
+// method for interactive contact force problems", The Visual Computer 26 (2010) 893-901.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <continuo/bodies/contacts/persistent_contact.hpp>
+#include <continuo/bodies/contacts/touching.hpp>
+#include <continuo/bodies/world.hpp>
+
+namespace continuo {
+
+/// What a contact does to its second body, and back to the first.
+template <class Real, int Dim>
+struct ContactImpulse {
+  Real press{};             // along the normal
+  Vector<Real, Dim> rub{};  // across it
+  Spin<Real, Dim> roll{};   // against rolling, over the smaller radius, as in PersistentContact
+
+  ContactImpulse operator+(const ContactImpulse& other) const {
+    return {press + other.press, rub + other.rub, roll + other.roll};
+  }
+  ContactImpulse operator-(const ContactImpulse& other) const {
+    return {press - other.press, rub - other.rub, roll - other.roll};
+  }
+  ContactImpulse operator*(const Real& factor) const { return {press * factor, rub * factor, roll * factor}; }
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(press), archive(rub), archive(roll);
+  }
+};
+
+template <class Real, int Dim>
+class ProjectedGaussSeidel {
+ public:
+  using V = Vector<Real, Dim>;
+  using S = Spin<Real, Dim>;
+  using Impulse = ContactImpulse<Real, Dim>;
+  struct Moving {
+    V v{};
+    S spin{};
+    Real inverse_mass{}, turn{}, radius{};  // turn: radius over the inertia
+  };
+  struct Row {
+    std::uint32_t a = 0, b = 0;  // places
+    V normal{};
+    Real friction{}, resistance{}, arm{};
+    Real of_normal{}, of_slip{}, of_roll{};  // speeds by impulses of 1
+    Real least{};                            // at which the two must part
+    Impulse impulse{};
+
+    /// An impulse that was found before the normal turned to what it is.
+    void begin_with(const Impulse& one) {
+      impulse = one;
+      impulse.rub -= normal * dot(one.rub, normal);
+      impulse.roll = across_normal(one.roll, normal);
+    }
+  };
+
+  void clear() {
+    movers_.assign(1, {});
+    rows_.clear();
+  }
+  /// The place of body i.
+  std::uint32_t add(const World<Real, Dim>& world, std::size_t i) {
+    movers_.push_back({world.velocity[i], world.spin[i], world.inverse_mass[i],
+                       world.radius[i] * world.inverse_inertia[i], world.radius[i]});
+    return static_cast<std::uint32_t>(movers_.size() - 1);
+  }
+  /// One that was placed, between two places: 0 for a wall.
+  Row& add(const PersistentContact<Real, Dim>& contact, std::uint32_t at_a, std::uint32_t at_b) {
+    Row row{.a = at_a,
+            .b = at_b,
+            .normal = contact.normal,
+            .friction = contact.slip.most,
+            .resistance = contact.roll.most,
+            .arm = contact.arm};
+    const Moving &a = movers_[at_a], &b = movers_[at_b];
+    row.of_normal = a.inverse_mass + b.inverse_mass;
+    row.of_slip = row.of_normal + a.radius * a.turn + b.radius * b.turn;
+    row.of_roll = row.arm * row.arm * (over(a) + over(b));
+    return rows_.emplace_back(row);
+  }
+
+  /// Until a sweep changes no speed by more than `least`, but at most so many; from the impulses that rows have.
+  void begin_and_sweep(const Real& least, int most) {
+    for (const Row& row : rows_) push(row, row.impulse);
+    sweep(least, most);
+  }
+  /// As often as that again.
+  void sweep(const Real& least, int most) {
+    before_.resize(rows_.size()), way_.resize(rows_.size());
+    Real size_before(0);  // of the changes by the last two sweeps
+    for (int k = 0; k < most; k += 2) {
+      for (std::size_t r = 0; r < rows_.size(); ++r) before_[r] = rows_[r].impulse;
+      Real greatest(0);
+      for (Row& row : rows_) greatest = std::max(greatest, set_right(row));
+      if (!(greatest > least * least)) return;
+      greatest = Real(0);
+      for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) greatest = std::max(greatest, set_right(*row));
+      if (!(greatest > least * least)) return;
+      if (k + 2 < most) size_before = go_on(size_before);
+    }
+  }
+
+  Moving& mover(std::size_t place) { return movers_[place]; }
+  const Moving& mover(std::size_t place) const { return movers_[place]; }
+  const std::vector<Row>& rows() const { return rows_; }
+  /// Back to what the movers were, and no impulses.
+  void restore(const std::vector<Moving>& movers) {
+    movers_ = movers;
+    for (Row& row : rows_) row.impulse = {};
+  }
+  const std::vector<Moving>& movers() const { return movers_; }
+  /// Twice as much.
+  Real energy() const {
+    Real sum(0);
+    for (const Moving& one : movers_)
+      if (one.inverse_mass > Real(0)) sum += squared(one.v) / one.inverse_mass + squared(one.spin) / over(one);
+    return sum;
+  }
+
+ private:
+  static Real over(const Moving& one) { return one.radius > Real(0) ? one.turn / one.radius : Real(0); }
+  static S across_normal(const S& spin, const V& normal) {
+    if constexpr (Dim == 3) {
+      return spin - normal * dot(spin, normal);
+    } else {
+      return spin;
+    }
+  }
+
+  void push(const Row& row, const Impulse& by) {
+    Moving &a = movers_[row.a], &b = movers_[row.b];
+    const V impulse = row.normal * by.press + by.rub;
+    a.v -= impulse * a.inverse_mass;
+    b.v += impulse * b.inverse_mass;
+    if (!(row.friction > Real(0))) return;
+    const S twist = moment(row.normal, by.rub);
+    a.spin -= twist * a.turn;
+    b.spin -= twist * b.turn;
+    if (!(row.resistance > Real(0))) return;
+    a.spin -= by.roll * (row.arm * over(a));
+    b.spin += by.roll * (row.arm * over(b));
+  }
+  static Real square(const Real& value) { return value * value; }
+  /// The whole impulse of one contact, for what the others do. How much it changed, as a speed squared.
+  Real set_right(Row& row) {
+    const Moving &a = movers_[row.a], &b = movers_[row.b];
+    V rate = b.v - a.v;
+    const Real parting = dot(rate, row.normal);
+    Impulse change;
+    const Real press = std::max(Real(0), Real(row.impulse.press + (row.least - parting) / row.of_normal));
+    if (press == Real(0) && row.impulse.press == Real(0)) return Real(0);  // as of most that are near, but apart
+    change.press = press - row.impulse.press;
+    row.impulse.press = press;
+    Real greatest = square(change.press * row.of_normal);
+    if (row.friction > Real(0)) {
+      rate -= row.normal * parting + turning(S(a.spin * a.radius + b.spin * b.radius), row.normal);
+      const V rub = limited(V(row.impulse.rub - rate * (1 / row.of_slip)), Real(row.friction * press));
+      change.rub = rub - row.impulse.rub;
+      row.impulse.rub = rub;
+      greatest = std::max(greatest, Real(squared(change.rub) * square(row.of_slip)));
+      if (row.resistance > Real(0)) {
+        const S rolling = across_normal(S((b.spin - a.spin) * row.arm), row.normal);
+        const S roll = limited(S(row.impulse.roll - rolling * (1 / row.of_roll)), Real(row.resistance * press));
+        change.roll = roll - row.impulse.roll;
+        row.impulse.roll = roll;
+        greatest = std::max(greatest, Real(squared(change.roll) * square(row.of_roll)));
+      }
+    }
+    push(row, change);
+    return greatest;
+  }
+  template <class W>
+  static W limited(const W& load, const Real& most) {
+    const Real size = length(load);
+    return size > most ? load * (most / size) : load;
+  }
+
+  /// Farther along the way so far, by as much as the last two sweeps changed against those before. Gives their size.
+  Real go_on(const Real& size_before) {
+    Real size(0);
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const Row& row = rows_[r];
+      const Impulse change = row.impulse - before_[r];
+      size += change.press * change.press * row.of_normal + squared(change.rub) * row.of_slip;
+      if (row.resistance > Real(0)) size += squared(change.roll) * row.of_roll;
+    }
+    const bool is_new =
+        !(size <= size_before && size_before > Real(0) && size_before < std::numeric_limits<Real>::max());
+    const Real factor = is_new ? Real(0) : size / size_before;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      Row& row = rows_[r];
+      const Impulse change = row.impulse - before_[r];
+      if (is_new) {
+        way_[r] = size_before > Real(0) ? Impulse{} : change;
+        continue;
+      }
+      const Impulse farther = way_[r] * factor;
+      push(row, farther);
+      row.impulse = row.impulse + farther;
+      way_[r] = farther + change;
+    }
+    return size;
+  }
+
+  std::vector<Moving> movers_{1};  // first of all the place of walls, which no impulse moves
+  std::vector<Row> rows_;
+  std::vector<Impulse> before_, way_;  // of rows: before the last two sweeps, and the way since the last beginning
+};
+
+extern template class ProjectedGaussSeidel<float, 2>;
+extern template class ProjectedGaussSeidel<float, 3>;
+extern template class ProjectedGaussSeidel<double, 2>;
+extern template class ProjectedGaussSeidel<double, 3>;
+
+}  // namespace continuo

@@ -1,0 +1,99 @@
+// Bodies on straight paths that touch one another: those between which collisions pile up without end, and that are
+// struck together then.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/contacts/joint_impacts.hpp>
+#include <continuo/bodies/contacts/touching.hpp>
+#include <continuo/bodies/event_driven/flights.hpp>
+#include <continuo/bodies/event_driven/inelastic_collapse.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class SimultaneousImpacts {
+ public:
+  using V = Vector<Real, Dim>;
+
+  /// Body i, and whoever touches it or one that does, at the present: whose gap is at most `reach`, or rounding. What
+  /// loses nothing where it collides comes to an end by itself, and is none of the pairs.
+  void gather(const Flights<Real, Dim>& flights, std::uint32_t i, const Real& reach) {
+    is_member_.resize(flights.paths.size());
+    for (const std::uint32_t k : members_) is_member_[k] = false;
+    members_.clear(), pairs_.clear();
+    add(i);
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      const std::uint32_t a = members_[k];
+      const std::uint32_t number = flights.plans[a].number;
+      const V x = flights.place_now(a);
+      for (std::uint32_t w = 0; w < flights.world.walls().size(); ++w) {
+        const Wall<Real, Dim> wall = facing(flights.world.walls()[w], x);
+        const Real radius = flights.paths[a].radius, gap = dot(wall.normal, x) - wall.offset - radius;
+        if (gap <= reach + rounding(x, radius) &&
+            loses(combined(flights.world.combine_rule, flights.material(a), wall.material)))
+          pairs_.push_back({.a = number, .b = number, .wall = w});
+      }
+      flights.for_each_near(a, near_, [&](std::uint32_t b) {
+        const V apart = flights.place_now(b) - x;
+        const Real distance = length(apart), sum = flights.paths[a].radius + flights.paths[b].radius;
+        const std::uint32_t other = flights.plans[b].number;
+        if (a == b || !(distance <= sum + reach + rounding(x, sum)) || !(distance > Real(0))) return;
+        if (!flights.world.collide(number, other)) return;
+        if (!loses(combined(flights.world.combine_rule, flights.material(a), flights.material(b)))) return;
+        const bool is_fixed = flights.acts[b] == Act::is_fixed;
+        if (is_fixed || number < other) pairs_.push_back({.a = number, .b = other});
+        if (!is_fixed) add(b);
+      });
+    }
+    std::ranges::sort(pairs_);
+  }
+
+  /// Impulses after which no two approach by more than `least`: those along the normals, pair by pair. The members are
+  /// to be at the present.
+  std::vector<Real> strike(World<Real, Dim>& world, Flights<Real, Dim>& flights, const Real& least) {
+    for (const std::uint32_t k : members_) {
+      const std::uint32_t number = flights.plans[k].number;
+      world.position[number] = flights.paths[k].x, world.velocity[number] = flights.paths[k].v;
+      world.spin[number] = flights.turnings[k].spin;
+    }
+    std::vector<Real> impulses = strike_together<Real, Dim>(world, pairs_, least);
+    struck_.clear();
+    for (const std::uint32_t k : members_) {
+      const std::uint32_t number = flights.plans[k].number;
+      auto& v = flights.paths[k].v;
+      auto& spin = flights.turnings[k].spin;
+      if (world.velocity[number] == v && world.spin[number] == spin) continue;
+      v = world.velocity[number], spin = world.spin[number];
+      struck_.push_back(k);
+    }
+    return impulses;
+  }
+
+  /// By places.
+  std::span<const std::uint32_t> members() const { return members_; }
+  /// Those whose motion the last strike changed.
+  std::span<const std::uint32_t> struck() const { return struck_; }
+  /// By numbers, in order.
+  std::span<const Touching> pairs() const { return pairs_; }
+
+ private:
+  static Real rounding(const V& x, const Real& radius) {
+    return 64 * std::numeric_limits<Real>::epsilon() * (length(x) + radius);
+  }
+  void add(std::uint32_t i) {
+    if (is_member_[i]) return;
+    is_member_[i] = true;
+    members_.push_back(i);
+  }
+
+  std::vector<std::uint32_t> members_, struck_, near_;
+  std::vector<Touching> pairs_;
+  std::vector<bool> is_member_;
+};
+
+}  // namespace continuo

@@ -1,0 +1,136 @@
+// Contacts in batches of as many as there are lanes, by group and colour.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <continuo/bodies/time_stepping/contact_blocks.hpp>
+#include <continuo/bodies/time_stepping/lane_bodies.hpp>
+
+namespace continuo {
+
+/// As many contacts as there are lanes. Of one of a body and a wall, b is the wall's stand-in.
+template <class Real, int Dim>
+struct ContactBatch {
+  using L = StoredLanes<Real>;
+  LaneIndices<Real> a{}, b{};
+  Vector<L, Dim> normal{};  // from a to b
+  L separation{};
+};
+/// What every pass over contacts changes lies apart from what it only reads, in a line of the cache.
+template <class Real, int Dim>
+struct alignas(64) BatchImpulses {
+  using L = StoredLanes<Real>;
+  L normal{};
+  Vector<L, Dim> friction{};  // on b; in space what lies along the normal resists spinning
+};
+/// What few worlds have: several materials, bounces, rolling resistance.
+template <class Real, int Dim>
+struct SpecialMaterialBatch {
+  using L = StoredLanes<Real>;
+  L friction{}, restitution{}, rolling_resistance{};
+  Spin<L, Dim> rolling_impulse{};
+};
+
+/// What the batches of a step hand on to those of the next.
+template <class Real, int Dim>
+struct StoredImpulses {
+  LargeArray<BatchImpulses<Real, Dim>> impulses{};
+  LargeArray<SpecialMaterialBatch<Real, Dim>> special{};  // empty where all are alike, and neither bounce nor resist
+
+  std::size_t memory() const {
+    return impulses.capacity() * sizeof(impulses[0]) + special.capacity() * sizeof(special[0]);
+  }
+};
+
+/// The contacts of one kind, group by group and colour by colour.
+template <class Real, int Dim>
+struct ColouredBatches : StoredImpulses<Real, Dim> {
+  using StoredImpulses<Real, Dim>::impulses;
+  using StoredImpulses<Real, Dim>::special;
+  static constexpr std::size_t width = lanes_at_once<Real>;
+  static constexpr std::size_t most_colours = 64;
+
+  /// Packs first[c] ... first[c + 1] - 1 are those of a colour.
+  struct Group {
+    std::array<std::uint32_t, most_colours + 1> first{};
+  };
+  LargeArray<ContactBatch<Real, Dim>> batches{};
+  StoredImpulses<Real, Dim> before{};  // those of the step before
+  std::vector<std::uint64_t> bins{};   // of a batch's bodies, see contact_blocks.hpp
+  std::vector<Group> groups{};
+  std::vector<std::array<std::uint32_t, most_colours>> count{};  // of each group's contacts, until there is room
+  std::size_t contacts = 0;
+  std::size_t colours = 0;  // of the group that has most
+
+  /// What more than 63 neighbours leave over goes to the last colour, one contact a batch: these do share bodies, and
+  /// are for one after the other.
+  static bool is_shared(std::size_t colour) { return colour == most_colours - 1; }
+
+  SpecialMaterialBatch<Real, Dim>* special_material_of(std::size_t batch) {
+    return special.empty() ? nullptr : &special[batch];
+  }
+
+  void clear(std::size_t number_of_groups) {
+    groups.assign(number_of_groups, {});
+    count.assign(number_of_groups, {});
+  }
+  /// Room for what was counted; lanes that no contact will fill have stand-ins.
+  void make_room(const ContactBlocks& blocks, const SolverBodies<Real, Dim>& bodies, bool has_special_material) {
+    std::uint32_t total = 0;
+    colours = contacts = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (std::size_t c = 0; c < most_colours; ++c) {
+        const std::uint32_t lanes = static_cast<std::uint32_t>(width), of_colour = count[g][c];
+        groups[g].first[c] = total;
+        total += is_shared(c) ? of_colour : (of_colour + lanes - 1) / lanes;
+        contacts += of_colour;
+        if (of_colour > 0) colours = std::max(colours, c + 1);
+      }
+      groups[g].first[most_colours] = total;
+    }
+    std::swap<StoredImpulses<Real, Dim>>(*this, before);
+    // Nothing in them is needed, and half as much again would be a good part of all memory.
+    if (batches.capacity() < total) {
+      batches = {}, bins = {};
+      batches.reserve(total + total / 64), bins.reserve(batches.capacity());
+    }
+    if (impulses.capacity() < total) {
+      impulses = {};
+      impulses.reserve(total + total / 64);
+    }
+    batches.resize(total), impulses.resize(total);
+    bins.assign(total, 0);
+    special.resize(has_special_material ? total : 0);
+    for (std::size_t g = 0; g < groups.size(); ++g) clear_spare(g, blocks.stand_ins_of(g), bodies);
+    count = {};
+  }
+  std::size_t memory() const {
+    return StoredImpulses<Real, Dim>::memory() + before.memory() + batches.capacity() * sizeof(batches[0]) +
+           bins.capacity() * sizeof(bins[0]) + groups.capacity() * sizeof(groups[0]);
+  }
+
+ private:
+  void clear_spare(std::size_t g, std::size_t stand_ins, const SolverBodies<Real, Dim>& bodies) {
+    const Group& group = groups[g];
+    for (std::size_t c = 0; c < most_colours; ++c) {
+      if (is_shared(c))
+        for (std::size_t p = group.first[c]; p < group.first[c + 1]; ++p) clear(p, stand_ins, bodies);
+      else if (count[g][c] % width != 0)
+        clear(group.first[c + 1] - 1, stand_ins, bodies);
+    }
+  }
+  void clear(std::size_t batch, std::size_t stand_ins, const SolverBodies<Real, Dim>& bodies) {
+    batches[batch] = {}, impulses[batch] = {};
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      batches[batch].a[lane] = bodies.stand_in(stand_ins, 2 * lane);
+      batches[batch].b[lane] = bodies.stand_in(stand_ins, 2 * lane + 1);
+    }
+    if (!special.empty()) special[batch] = {};
+  }
+};
+
+}  // namespace continuo

@@ -1,0 +1,88 @@
+// How torques turn bodies in the fast motion: as forces move them, by the same integrator, but for implicit Euler,
+// which takes torques as the semi-implicit one does. Without a law of torques nothing here costs anything.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <continuo/bodies/forces.hpp>
+#include <continuo/bodies/time_stepping/integrator.hpp>
+#include <continuo/bodies/time_stepping/solver_body.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class TorqueIntegration {
+ public:
+  using S = Spin<Real, Dim>;
+  using Bodies = SolverBodies<Real, Dim>;
+
+  bool acts() const { return acts_; }
+
+  /// At the start of a step; `order` says which body of the world stands at each place.
+  void begin(const World<Real, Dim>& world, const std::vector<std::uint32_t>& order) {
+    acts_ = !world.torque_laws.empty();
+    if (!acts_) return;
+    world_ = &world;
+    order_ = &order;
+    orientation_ = world.orientation;
+  }
+  /// The change of the spins by the torques at the start of a substep; x and v are the world's, by number.
+  void push(Bodies& bodies, const Real& t, const Real& h) {
+    if (!acts_) return;
+    find_rates(bodies, t, rate_);
+    for (std::size_t k = 0; k < bodies.size(); ++k) add(bodies, k, rate_[k] * h);
+  }
+  /// The orientations at its end.
+  void turn(const Bodies& bodies, const IntegratorRule& rule, const Real& h) {
+    if (!acts_) return;
+    const Real lag = static_cast<Real>(rule.lag) * h;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      if (!bodies.moves(k)) continue;
+      S spin = spin_of(bodies, k);
+      if (!bodies.touched[k]) spin -= rate_[k] * lag;
+      auto& orientation = orientation_[(*order_)[k]];
+      orientation = turned(orientation, spin, h);
+    }
+  }
+  /// The mean of the rates at the beginning and at the end is what changed the spin.
+  void correct(Bodies& bodies, const Real& t, const Real& h) {
+    if (!acts_) return;
+    find_rates(bodies, t, rate_after_);
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      if (!bodies.touched[k]) add(bodies, k, (rate_after_[k] - rate_[k]) * (h / 2));
+  }
+  const Orientation<Real, Dim>& orientation(std::size_t body) const { return orientation_[body]; }
+
+ private:
+  static S spin_of(const Bodies& bodies, std::size_t k) {
+    return vector_of<S::size()>(bodies.motion[k].rim) * (1 / bodies.radius(k));
+  }
+  static void add(Bodies& bodies, std::size_t k, const S& change) {
+    Quad<Real>& rim = bodies.motion[k].rim;
+    for (std::size_t axis = 0; axis < S::size(); ++axis) rim[axis] += change[axis] * bodies.radius(k);
+  }
+  void find_rates(const Bodies& bodies, const Real& t, std::vector<S>& rates) {
+    const std::size_t n = bodies.size();
+    x_.resize(n), v_.resize(n), spin_.resize(n), torque_.resize(n), rates.resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t i = (*order_)[k];
+      x_[i] = bodies.x(k), v_[i] = bodies.v(k), spin_[i] = spin_of(bodies, k);
+    }
+    torques<Real, Dim>(*world_, t, {x_, v_, orientation_, spin_}, torque_);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Real radius = bodies.radius(k);
+      rates[k] = torque_[(*order_)[k]] * (bodies.motion[k].rim[3] / (radius * radius));
+    }
+  }
+
+  bool acts_ = false;
+  const World<Real, Dim>* world_ = nullptr;
+  const std::vector<std::uint32_t>* order_ = nullptr;
+  std::vector<Orientation<Real, Dim>> orientation_;  // by number of the body, as spin and torque
+  std::vector<Vector<Real, Dim>> x_, v_;
+  std::vector<S> spin_, torque_;
+  std::vector<S> rate_, rate_after_;  // by place
+};
+
+}  // namespace continuo

@@ -1,0 +1,53 @@
+// continuo/live/server/origin_guard.hpp
+// Who is let in: the page and the socket, to those who know the token, at the address the server goes by, from no page
+// but its own. A page of somebody else's, open in the same browser, can reach 127.0.0.1 as well.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace continuo::live {
+
+/// The parts of a request that decide.
+struct Request {
+  std::string_view method{}, target{}, host{}, origin{};  // origin empty where there is none: no browser
+  bool upgrade = false;
+};
+
+enum class Verdict { page, live, wrong_token, wrong_origin, wrong_host, not_found, wrong_method };
+
+/// 128 bits from the operating system, in hexadecimal digits.
+std::string make_token();
+
+class OriginGuard {
+ public:
+  /// `address`, `port`: where the server listens. At an address that only this computer reaches, the names it goes by
+  /// are known, and a request by another name was led here by somebody's name server.
+  OriginGuard(std::string token, std::string address, unsigned port);
+
+  Verdict judge(const Request& request) const;
+
+ private:
+  bool knows_host(std::string_view host) const;
+  bool is_token(std::string_view given) const;
+
+  std::string token_, address_;
+  unsigned port_;
+};
+
+/// Says each kind of thing once, and counts the others: a flood of requests is no flood of lines.
+class SayOnce {
+ public:
+  using Say = std::function<void(const std::string&)>;
+  explicit SayOnce(Say say) : say_(std::move(say)) {}
+  void operator()(const std::string& kind);
+  const std::map<std::string, std::size_t>& counts() const { return counts_; }
+
+ private:
+  Say say_;
+  std::map<std::string, std::size_t> counts_;
+};
+
+}  // namespace continuo::live

@@ -1,0 +1,59 @@
+// continuo/worlds/coupled_equations.hpp
+// What the text of a model adds to its bodies: forces written as expressions, and equations with states of their own.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <continuo/bodies/world.hpp>
+#include <continuo/language/world.hpp>
+#include <continuo/simulation/program/evaluation.hpp>
+#include <continuo/simulation/program/model_program.hpp>
+
+namespace continuo::worlds {
+
+/// The states of bodies as the model counts them: of one body x, x', y, y', ..., angle or spin.
+template <int Dim>
+void write_body(double* state, const Vector<double, Dim>& x, const Vector<double, Dim>& v,
+                const Orientation<double, Dim>& orientation, const Spin<double, Dim>& spin);
+
+template <int Dim>
+class CoupledEquations {
+ public:
+  using V = Vector<double, Dim>;
+
+  CoupledEquations(const model::ModelProgram& program, std::span<const double> variables);
+
+  std::size_t states() const { return count_; }
+  bool has_forces() const { return !forces_of_.empty(); }
+  bool has_torques() const { return !torques_of_.empty(); }
+  bool is_empty() const { return count_ == 0 && !has_forces() && !has_torques(); }
+  /// Where the states of the equations begin among the model's.
+  std::size_t first() const { return first_; }
+  void set(std::uint32_t variable, double value);
+  std::size_t mode() const { return mode_; }
+  void go(std::size_t mode) { mode_ = mode; }
+
+  /// Adds to forces and torques and gives the rates of the equations' states z; each may be left out by an empty span.
+  /// Without orientations and spins the world's hold, from its time on.
+  void operator()(const World<double, Dim>& world, double t, const BodyStates<double, Dim>& at,
+                  std::span<const double> z, std::span<V> force, std::span<Spin<double, Dim>> torque,
+                  std::span<double> rate);
+
+ private:
+  void fill(const World<double, Dim>& world, double t, const BodyStates<double, Dim>& at, std::span<const double> z);
+
+  std::size_t first_ = 0, count_ = 0, mode_ = 0;
+  std::vector<std::size_t> forces_of_, torques_of_;  // the body of each
+  std::vector<std::size_t> bodies_read_;             // whose states are read
+  std::vector<model::Evaluation> rates_;             // by mode
+  model::Evaluation forces_, torques_;
+  std::vector<double> state_, values_;
+};
+
+extern template class CoupledEquations<2>;
+extern template class CoupledEquations<3>;
+
+}  // namespace continuo::worlds

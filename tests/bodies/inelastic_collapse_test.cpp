@@ -1,0 +1,162 @@
+// Where nothing but collisions changes the motion and they lose energy, they may pile up without end: each one counts
+// as it should, and what never ends is ended by impulses to all that touch.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include <bench/bodies/overlap.hpp>
+#include <gtest/gtest.h>
+
+#include <continuo/bodies/exact_motion.hpp>
+
+namespace continuo::inelastic_collapse_test {
+namespace {
+
+/// One ball comes in at speed 1, to `count` - 1 others that are so far apart, the last of which leaves.
+template <int Dim>
+World<double, Dim> cradle(std::size_t count, double restitution, double gap) {
+  World<double, Dim> world;
+  for (std::size_t i = 0; i < count; ++i) {
+    BodyDefinition<double, Dim> ball{.material = {.restitution = restitution}};
+    ball.position[0] = static_cast<double>(i) * (1 + gap) + (i == 0 ? 0 : 0.5);
+    ball.velocity[0] = i == 0 ? 1 : 0;
+    EXPECT_TRUE(world.add(ball));
+  }
+  return world;
+}
+
+// Each ball hands on (1 + e)/2 of what it gets, touching or not.
+TEST(InelasticCollapse, ACradleThatLosesEnergySendsOutWhatOneAfterAnotherHandOn) {
+  for (const double restitution : {0.9, 0.6})
+    for (const double gap : {0.0, 1e-12, 1e-9, 1e-6, 1e-3}) {
+      auto world = cradle<2>(5, restitution, gap);
+      ExactMotion motion(world);
+      ASSERT_EQ(motion.advance_to(2.0), "");
+      EXPECT_NEAR(world.velocity[4][0], std::pow((1 + restitution) / 2, 4), 1e-13) << restitution << " " << gap;
+      EXPECT_NEAR(momentum(world)[0], momentum(cradle<2>(5, restitution, gap))[0], 1e-14);
+    }
+  auto world = cradle<3>(12, 0.9, 0);
+  ExactMotion motion(world);
+  ASSERT_EQ(motion.advance_to(2.0), "");
+  EXPECT_NEAR(world.velocity[11][0], std::pow(0.95, 11), 1e-13);
+}
+
+// Nothing bounces: all go on as one, with the momentum that came in.
+TEST(InelasticCollapse, WhatDoesNotBounceGoesOnTogether) {
+  for (const double gap : {0.0, 1e-9, 1e-3}) {
+    auto world = cradle<2>(10, 0, gap);
+    ExactMotion motion(world);
+    ASSERT_EQ(motion.advance_to(20.0), "");
+    for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(world.velocity[i][0], 0.1, 1e-13) << gap << " " << i;
+    EXPECT_LT(motion.statistics().collisions, 1000u);
+  }
+}
+
+/// A row of balls that flies into a wall at speed 1.
+World<double, 2> row(std::size_t count, double restitution, double gap) {
+  World<double, 2> world;
+  Wall<double, 2> wall{.material = {.restitution = restitution}};
+  EXPECT_EQ(world.add_wall(wall), "");
+  for (std::size_t i = 0; i < count; ++i) {
+    BodyDefinition<double, 2> ball{.material = wall.material};
+    ball.position[1] = 1 + static_cast<double>(i) * (1 + gap);
+    ball.velocity[1] = -1;
+    EXPECT_TRUE(world.add(ball));
+  }
+  return world;
+}
+
+// What the wall stops stops what comes behind it: nothing comes back from it, where the last used to with all its
+// speed.
+TEST(InelasticCollapse, WhatFliesIntoAWallTogetherWithoutRestitutionStopsThere) {
+  for (const std::size_t count : {2u, 3u, 20u})
+    for (const double gap : {0.0, 1e-7}) {
+      auto world = row(count, 0, gap);
+      ExactMotion motion(world);
+      ASSERT_EQ(motion.advance_to(10.0), "");
+      for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_NEAR(world.velocity[i][1], 0, 1e-13) << count << " " << gap << " " << i;
+        EXPECT_NEAR(world.position[i][1], 0.5 + static_cast<double>(i), static_cast<double>(i) * gap + 1e-12);
+      }
+    }
+}
+
+// Two hundred and more collisions of a ball in one instant are as any other: beside them, the same velocities by
+// collisions one after the other until nobody approaches, wall first, then the lowest pair.
+TEST(InelasticCollapse, ManyCollisionsAtOneInstantAreEachAsAnyOther) {
+  constexpr std::size_t count = 20;
+  constexpr double restitution = 0.9;
+  std::vector<double> v(count, -1);
+  while (true) {
+    if (v[0] < -1e-15) {
+      v[0] *= -restitution;
+      continue;
+    }
+    std::size_t i = 0;
+    while (i + 1 < count && !(v[i] - v[i + 1] > 1e-15)) ++i;
+    if (i + 1 == count) break;
+    const double mean = (v[i] + v[i + 1]) / 2, half = (v[i] - v[i + 1]) / 2 * restitution;
+    v[i] = mean - half, v[i + 1] = mean + half;
+  }
+  auto world = row(count, restitution, 0);
+  ExactMotion motion(world);
+  ASSERT_EQ(motion.advance_to(1.0), "");
+  for (std::size_t i = 0; i < count; ++i) EXPECT_NEAR(world.velocity[i][1], v[i], 1e-12) << i;
+}
+
+/// Balls that fly towards one place.
+template <int Dim>
+World<double, Dim> implosion(std::size_t count, Material<double> material) {
+  World<double, Dim> world;
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto side = static_cast<std::size_t>(std::ceil(std::pow(static_cast<double>(count), 1.0 / Dim)));
+  for (std::size_t i = 0; i < count; ++i) {
+    BodyDefinition<double, Dim> ball{.material = material};
+    std::size_t rest = i;
+    for (std::size_t axis = 0; axis < Dim; ++axis, rest /= side) {
+      ball.position[axis] =
+          (static_cast<double>(rest % side) - static_cast<double>(side) / 2) * 1.5 + 0.2 * uniform(engine);
+      ball.velocity[axis] = -0.3 * ball.position[axis] + 0.05 * uniform(engine);
+    }
+    EXPECT_TRUE(world.add(ball));
+  }
+  return world;
+}
+
+// It collapses into a clump, and what was is kept: the momentum, the angular momentum, and nothing overlaps; the energy
+// only falls. Friction acts on two at the rims of both, though their gap is as wide as they may fly in the contact
+// time, a hundred-thousandth of what they fly their radius in at the greatest speed of all: that gap is a lever.
+template <int Dim>
+void collapses(std::size_t count, Material<double> material) {
+  auto world = implosion<Dim>(count, material);
+  ExactMotion motion(world, {.most_events = 2'000'000, .contact_events = 2'000'000});
+  const auto before = momentum(world);
+  const auto turning_before = angular_momentum(world);
+  double energy = kinetic_energy(world);
+  const double mass = std::accumulate(world.mass.begin(), world.mass.end(), 0.0), scale = std::sqrt(2 * energy * mass);
+  double struck = 0;
+  for (int k = 1; k <= 8; ++k) {
+    ASSERT_EQ(motion.advance_to(0.75 * k), "") << material.restitution;
+    EXPECT_LE(kinetic_energy(world), energy * (1 + 1e-12));
+    energy = kinetic_energy(world);
+    for (const auto& event : motion.contact_events()) struck += event.impulse;
+    EXPECT_LT(deepest_overlap_of_bodies(world), 1e-12) << material.restitution << " " << k;
+  }
+  constexpr double lever = 2 * 1e-5 * 0.5;
+  EXPECT_EQ(motion.lost_contact_events(), 0u);
+  EXPECT_LT(length(momentum(world) - before), 1e-12 * scale);
+  EXPECT_LT(length(angular_momentum(world) - turning_before), 1e-11 * scale + lever * material.friction * struck);
+}
+TEST(InelasticCollapse, AClumpThatCollapsesKeepsItsMomenta) {
+  for (const double restitution : {0.0, 0.3, 0.7})
+    for (const double friction : {0.0, 0.5}) collapses<2>(64, {.restitution = restitution, .friction = friction});
+  collapses<3>(125, {.restitution = 0, .friction = 0.3});
+  collapses<3>(125, {.restitution = 0.5});
+}
+
+}  // namespace
+}  // namespace continuo::inelastic_collapse_test
