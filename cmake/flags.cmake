@@ -11,6 +11,15 @@ if(CONTINUO_LINE_NUMBERS)
   string(APPEND CMAKE_CXX_FLAGS_RELWITHDEBINFO " -g1")
 endif()
 
+# Where ccache is installed, what has been compiled once is not compiled again: after a change of branch, in a second
+# checkout. Precompiled headers need its leave to trust them.
+find_program(CONTINUO_CCACHE ccache)
+if(CONTINUO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      ${CONTINUO_CCACHE})
+endif()
+
 add_library(continuo_flags INTERFACE)
 target_compile_features(continuo_flags INTERFACE cxx_std_20)
 target_compile_options(continuo_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror)
@@ -19,6 +28,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   target_compile_options(continuo_flags INTERFACE -Wno-restrict -Wno-stringop-overflow)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  if(CONTINUO_CCACHE)
+    target_compile_options(continuo_flags INTERFACE -fpch-preprocess)
+  endif()
   if(CMAKE_UNITY_BUILD)
     # What has a type of an unnamed namespace is unsafe in a header, and a joined source passes for one.
     target_compile_options(continuo_flags INTERFACE -Wno-subobject-linkage)
@@ -29,6 +41,10 @@ endif()
 # Nobody reads errno or the exception flags after arithmetic; with them sqrt is a call and loops do not vectorize.
 # No result changes.
 target_compile_options(continuo_flags INTERFACE -fno-math-errno -fno-trapping-math)
+if(CONTINUO_CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  # A precompiled header carries the time of its making, which would be another one each time.
+  target_compile_options(continuo_flags INTERFACE "SHELL:-Xclang -fno-pch-timestamp")
+endif()
 if(CONTINUO_NATIVE)
   target_compile_options(continuo_flags INTERFACE -march=native)
 endif()
