@@ -320,7 +320,7 @@ run 0..10
 )";
   std::string through = text, meeting = text;
   through.replace(through.find("GROUP"), 5, "ghosts");
-  meeting.replace(combine_rule.find("group GROUP"), 11, "");
+  meeting.replace(meeting.find("group GROUP"), 11, "");
   EXPECT_NEAR(last(run_of(through), "a.x"), 10, 1e-12);
   EXPECT_NEAR(last(run_of(meeting), "b.x'"), 0.5, 1e-12);  // equal masses, restitution 0
 }
