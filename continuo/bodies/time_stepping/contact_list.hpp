@@ -1,6 +1,6 @@
-// The contacts of a step: of the pairs that are listed those that may touch in it, coloured and packed. No two contacts
-// of a colour share a body that moves, so lanes and threads may solve them in any order, to the same bits. Impulses
-// outlive the step: they are kept by the places of the two bodies, and are the start of the next.
+// The contacts of a step: of the pairs that are listed those that may touch in it, coloured and put into batches. No two
+// contacts of a colour share a body that moves, so lanes and threads may solve them in any order, to the same bits.
+// Impulses outlive the step: they are kept by the places of the two bodies, and are the start of the next.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,9 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/bodies/time_stepping/contact_blocks.hpp>
+#include <continuo/bodies/contact_solver/contact_batches.hpp>
+#include <continuo/bodies/contact_solver/contact_blocks.hpp>
+#include <continuo/bodies/contact_solver/contact_step.hpp>
 #include <continuo/bodies/time_stepping/contact_rows.hpp>
-#include <continuo/bodies/time_stepping/contact_solver.hpp>
 #include <continuo/bodies/time_stepping/kept_impulses.hpp>
 #include <continuo/bodies/time_stepping/swept_bounds.hpp>
 #include <continuo/bodies/world.hpp>
@@ -91,8 +92,8 @@ class ContactList {
     for (auto* batches : {&between_movers, &with_fixed, &with_wall}) batches->before = {};
   }
 
-  /// Packs what may touch. combine_rule_of(a, b) is how the bodies or walls at two places meet, which is asked for
-  /// only where they differ or do what is rare; place_before[k] is where the body at k was when impulses were kept, if
+  /// Puts into batches what may touch. combine_rule_of(a, b) is how the bodies or walls at two places meet, which is
+  /// asked for only where materials are special; place_before[k] is where the body at k was when impulses were kept, if
   /// they were (empty: at k). reach_of[block] is how near those of a block must be.
   template <class CombineRuleOf>
   void activate(ThreadTeam& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,

@@ -1,5 +1,11 @@
-// The passes over all contacts in a substep, block by block, see contact_blocks.hpp: what is done to a block's bodies
-// before a pass, and what its border does after the pass before, is done by the thread that has the block anyway.
+// The order in which the kernels of contact_solver/ pass over all contacts in a substep (docs/contact_solver.md):
+//
+//   push    bodies take up their forces; contacts are prepared, start warm, and are solved: overlaps are undone;
+//   again   those are solved again whose bodies the last sweep disturbed, until nothing is disturbed;
+//   relax   bodies move; contacts are solved without the velocity that undid overlaps.
+//
+// Each goes block by block (contact_blocks.hpp): what is done to a block's bodies before a pass, and what its border
+// does after the pass before, is done by the thread that has the block anyway.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -9,9 +15,9 @@
 #include <span>
 #include <vector>
 
+#include <continuo/bodies/contact_solver/batch_loops.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
 #include <continuo/bodies/time_stepping/contact_list.hpp>
-#include <continuo/bodies/time_stepping/contact_solver.hpp>
 #include <continuo/bodies/time_stepping/wavefront.hpp>
 
 namespace continuo {
@@ -22,7 +28,7 @@ class ContactPasses {
   ContactPasses(ThreadTeam& team, ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies)
       : team_(team), contacts_(contacts), bodies_(bodies), blocks_(contacts.blocks) {}
 
-  /// push_body(k) for all bodies, then contacts begin and push.
+  /// push_body(k) for all bodies, then contacts start warm and push.
   template <class Push>
   void push(const ContactStep<Real>& step, const Push& push_body) {
     run_pushing({begin(push_body), solve<ContactPass::push>(step)}, step);
@@ -65,7 +71,7 @@ class ContactPasses {
     Pass pass = pass_of(
         [this](auto kind, auto& batches, std::size_t group) { begin_batches<kind()>(batches, group, bodies_); });
     pass.before = [this, &push_body](std::size_t block) {
-      forget_disturbances(block);
+      bodies_.disturbances.forget(block, bodies_.size());
       for_each_body(block, push_body);
     };
     return pass;
@@ -87,7 +93,7 @@ class ContactPasses {
     for (ContactStep<Real>& next : again) {
       next.sweep = ++sweep;
       Pass& pass = passes.emplace_back(solve<ContactPass::push_again>(next));
-      pass.before = [this](std::size_t block) { begin_sweep(block); };
+      pass.before = [this](std::size_t block) { bodies_.disturbances.begin_sweep(block); };
     }
     run(passes);
     ContactStep<Real> rest = step;
@@ -124,32 +130,21 @@ class ContactPasses {
   void push_again(ContactStep<Real> step) {
     constexpr std::uint8_t most_sweeps = 20;  // a bound: what is squeezed between others may never settle
     const auto again = act_of<ContactPass::push_again>(step);
-    auto& halves = bodies_.disturbances;
-    const auto share = [&](std::size_t first_half, const auto& act) {
+    Disturbances& disturbances = bodies_.disturbances;
+    const auto share = [&](std::size_t first_half, const auto& act) {  // of blocks in which there may be any
       meant_.clear();
       for (std::size_t block = 0; block < blocks_.count; ++block)
-        if (halves[2 * block + first_half].any() != 0 || halves[2 * block + first_half + 1].any() != 0)
-          meant_.push_back(block);
+        if (disturbances.any_from(2 * block + first_half)) meant_.push_back(block);
       team_.share(meant_.size(), [&](std::size_t i) { act(meant_[i]); });
     };
-    const auto is_disturbed = [](const Disturbances& half) { return half.now != 0; };
-    while (std::ranges::any_of(halves, is_disturbed) && step.sweep < most_sweeps) {
+    while (disturbances.any_now() && step.sweep < most_sweeps) {
       ++step.sweep;
-      for (std::size_t block = 0; block < blocks_.count; ++block) begin_sweep(block);
+      for (std::size_t block = 0; block < blocks_.count; ++block) disturbances.begin_sweep(block);
       share(0, [&](std::size_t block) { contacts_.in_group(block, again); });
       share(1, [&](std::size_t block) { contacts_.in_group(blocks_.across(block), again); });
       contacts_.in_group(blocks_.rest(), again);
       share(0, [&](std::size_t block) { contacts_.at_border(block, again); });
     }
-  }
-  /// From here on what was disturbed is what the last sweep has.
-  void begin_sweep(std::size_t block) {
-    for (std::size_t half = 2 * block; half < 2 * block + 2; ++half)
-      bodies_.disturbances[half] = {bodies_.disturbances[half].now, 0};
-  }
-  void forget_disturbances(std::size_t block) {
-    for_each_body(block, [&](std::uint32_t k) { bodies_.disturbed[k] = 0; });
-    for (std::size_t half = 2 * block; half < 2 * block + 2; ++half) bodies_.disturbances[half] = {};
   }
 
   ThreadTeam& team_;

@@ -70,7 +70,7 @@ class Impacts {
     }
   };
 
-  /// As is_for_impacts of contact_solver.hpp.
+  /// As is_for_impacts of restitution.hpp.
   static bool counts(const Making& making, const Real& speed, const Real& restitution, const Real& radius) {
     const ContactStep<Real>& substep = making.substep;
     return restitution > Real(0) ? speed > 4 * substep.greatest_acceleration * substep.h

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <continuo/bodies/contact_solver/solver_body.hpp>
 #include <continuo/bodies/support/thread_team.hpp>
-#include <continuo/bodies/time_stepping/solver_body.hpp>
 
 namespace continuo {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include <continuo/bodies/contact_solver/solver_body.hpp>
 #include <continuo/bodies/forces.hpp>
 #include <continuo/bodies/time_stepping/integrator.hpp>
-#include <continuo/bodies/time_stepping/solver_body.hpp>
 
 namespace continuo {
 

@@ -6,9 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include <continuo/bodies/contact_solver/contact_blocks.hpp>
+#include <continuo/bodies/contact_solver/disturbances.hpp>
 #include <continuo/bodies/support/large_array.hpp>
 #include <continuo/bodies/support/vector.hpp>
-#include <continuo/bodies/time_stepping/contact_blocks.hpp>
 #include <continuo/numerics/lanes.hpp>
 
 namespace continuo {
@@ -31,13 +32,6 @@ struct alignas(4 * sizeof(Real)) BodyPlace {
   Quad<Real> x_and_radius{};
 };
 
-/// The bins of contact_blocks.hpp in which the last sweep over contacts disturbed a body, and in which this one has.
-struct Disturbances {
-  std::uint32_t last = 0, now = 0;
-
-  std::uint32_t any() const { return last | now; }
-};
-
 template <int Size, class Real>
 Vector<Real, Size> vector_of(const Quad<Real>& quad) {
   Vector<Real, Size> v;
@@ -56,11 +50,10 @@ struct SolverBodies {
 
   LargeArray<BodyMotion<Real>> motion{};
   LargeArray<BodyPlace<Real>> place{};
-  std::vector<std::uint8_t> touched{};       // by a contact that lasts, in this substep
-  std::vector<std::uint8_t> disturbed{};     // the sweep over contacts in which one last changed it a lot
-  std::vector<Disturbances> disturbances{};  // of every half of a block, and of none at the end
-  std::vector<std::uint32_t> impacts{};      // of this substep; empty where nothing can strike
-  std::vector<V> accelerations{};            // empty where gravity is the only force
+  std::vector<std::uint8_t> touched{};  // by a contact that lasts, in this substep
+  Disturbances disturbances{};
+  std::vector<std::uint32_t> impacts{};  // of this substep; empty where nothing can strike
+  std::vector<V> accelerations{};        // empty where gravity is the only force
   V gravity{};
   ContactBlocks blocks{};
   std::size_t bodies = 0;
@@ -72,8 +65,7 @@ struct SolverBodies {
     if (bodies == count && motion.size() == all) return;
     bodies = count;
     touched.assign(all, 0);
-    disturbed.assign(all, 0);
-    disturbances.assign(2 * blocks.count + 1, {});
+    disturbances.resize(all, blocks);
     motion.assign(all, {});
     place.assign(all, {});
   }
@@ -86,14 +78,7 @@ struct SolverBodies {
 
   std::size_t memory() const {
     return motion.capacity() * sizeof(motion[0]) + place.capacity() * sizeof(place[0]) + touched.capacity() +
-           disturbed.capacity() + impacts.capacity() * sizeof(impacts[0]) + accelerations.capacity() * sizeof(V);
-  }
-
-  /// What sweeps have disturbed among the bodies of a group, see contact_blocks.hpp.
-  std::uint64_t disturbed_bins(std::size_t group) const {
-    if (group == blocks.rest()) return ~std::uint64_t{0};
-    const Disturbances* half = &disturbances[blocks.first_half(group)];
-    return half[0].any() | std::uint64_t{half[1].any()} << 32;
+           disturbances.memory() + impacts.capacity() * sizeof(impacts[0]) + accelerations.capacity() * sizeof(V);
   }
 
   V x(std::size_t k) const { return vector_of<Dim>(place[k].x_and_radius); }

@@ -8,7 +8,7 @@
 
 #include <xsimd/xsimd.hpp>
 
-#include <continuo/bodies/time_stepping/solver_body.hpp>
+#include <continuo/bodies/contact_solver/solver_body.hpp>
 
 namespace continuo {
 

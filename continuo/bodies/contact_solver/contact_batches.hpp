@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/bodies/time_stepping/contact_blocks.hpp>
-#include <continuo/bodies/time_stepping/lane_bodies.hpp>
+#include <continuo/bodies/contact_solver/contact_blocks.hpp>
+#include <continuo/bodies/contact_solver/lane_bodies.hpp>
 
 namespace continuo {
 
@@ -54,7 +54,7 @@ struct ColouredBatches : StoredImpulses<Real, Dim> {
   static constexpr std::size_t width = lanes_at_once<Real>;
   static constexpr std::size_t most_colours = 64;
 
-  /// Packs first[c] ... first[c + 1] - 1 are those of a colour.
+  /// Batches first[c] ... first[c + 1] - 1 are those of a colour.
   struct Group {
     std::array<std::uint32_t, most_colours + 1> first{};
   };

@@ -1,40 +1,13 @@
 // What resists turning where two spheres touch, several contacts at once: rolling resistance, and friction within the
 // patch in which they touch, which resists spinning about the normal. Each begins with the impulse of the last substep,
-// as a contact does, see contact_solver.hpp.
+// as a contact does (warm_start.hpp).
 #pragma once
 #include <numbers>
 
-#include <continuo/bodies/time_stepping/contact_batches.hpp>
+#include <continuo/bodies/contact_solver/contact_batches.hpp>
+#include <continuo/bodies/contact_solver/impulses.hpp>
 
 namespace continuo {
-
-/// What a contact may do: b a body that moves, one that is fixed, or a wall, whose normal stands.
-enum class ContactKind { between_movers, with_fixed, with_wall };
-
-template <class Real>
-ContactLanes<Real> inverse_or_zero(const ContactLanes<Real>& x) {
-  return select(x > ContactLanes<Real>(Real(0)), ContactLanes<Real>(Real(1)) / x, ContactLanes<Real>(Real(0)));
-}
-/// A torque's impulse on b, its opposite on a: the rim moves by impulse r / J.
-template <class Real, int Dim>
-void add_roll(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a,
-              const ContactLanes<Real>& radius_b, const Spin<ContactLanes<Real>, Dim>& impulse) {
-  a.rim -= impulse * (a.mobility * inverse_or_zero<Real>(radius_a));
-  b.rim += impulse * (b.mobility * inverse_or_zero<Real>(radius_b));
-}
-
-/// `impulse` no longer than `most`.
-template <class Number, int Size>
-Vector<Number, Size> clamped(const Vector<Number, Size>& impulse, const Number& most) {
-  using std::sqrt;
-  const Number square = squared(impulse);
-  return impulse * select(square > most * most, most / sqrt(square), Number(1));
-}
-
-template <class Real>
-ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLanes<Real>& b) {
-  return select(b > ContactLanes<Real>(Real(0)), min(a, b), a);  // a wall has none
-}
 
 template <class Real, int Dim>
 void resist_rolling(SpecialMaterialBatch<Real, Dim>& special, const ContactLanes<Real>& normal_impulse,
@@ -51,21 +24,6 @@ void resist_rolling(SpecialMaterialBatch<Real, Dim>& special, const ContactLanes
   add_roll<Real, Dim>(a, b, radius_a, radius_b, impulse - before);
 }
 
-/// A torque's impulse about the normal, over the smaller radius, on b, its opposite on a: it turns a rim by that times
-/// the mobility times the smaller radius over its own.
-template <class Real>
-void add_spin(LaneMotions<Real, 3>& a, LaneMotions<Real, 3>& b, const Vector<ContactLanes<Real>, 3>& normal,
-              const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b,
-              const ContactLanes<Real>& impulse) {
-  const ContactLanes<Real> over_both = impulse * inverse_or_zero<Real>(max(radius_a, radius_b));
-  a.rim -= normal * (over_both * a.mobility * radius_b);
-  b.rim += normal * (over_both * b.mobility * radius_a);
-}
-/// A wall has neither a radius nor a spin, and any radius will do.
-template <ContactKind kind, class Real>
-ContactLanes<Real> other_radius(const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b) {
-  return kind == ContactKind::with_wall ? radius_a : radius_b;
-}
 /// Soft spheres touch in a patch, which resists spinning about the normal by a torque of 3 pi / 16 friction times its
 /// radius times the normal force (Hertz's pressure; K. L. Johnson, "Contact Mechanics", 1985, 7.4). The radius is that
 /// of a sphere of radius r pressed in by 0.0025 r, as those within a pile are: sqrt(0.0025) r. Gives what it adds to

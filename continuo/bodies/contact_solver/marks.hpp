@@ -1,0 +1,50 @@
+// What a pass that pushes notes of the bodies in a batch: whether a contact presses them, and whether it has disturbed
+// them (disturbances.hpp).
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <continuo/bodies/contact_solver/contact_batches.hpp>
+#include <continuo/bodies/contact_solver/contact_step.hpp>
+#include <continuo/bodies/contact_solver/disturbances.hpp>
+
+namespace continuo {
+
+/// What a contact presses moves as its contacts allow, not on its parabola.
+template <ContactKind kind, class Real, int Dim>
+void mark_touched(const ContactBatch<Real, Dim>& batch, const BatchImpulses<Real, Dim>& impulses,
+                  SolverBodies<Real, Dim>& bodies) {
+  for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
+    const auto is_pressed = static_cast<std::uint8_t>(impulses.normal.lane[lane] > Real(0));
+    bodies.touched[batch.a[lane]] |= is_pressed;  // no branch: nobody could foresee it
+    if (kind == ContactKind::between_movers) bodies.touched[batch.b[lane]] |= is_pressed;
+  }
+}
+/// 1 in the lanes of bodies that the last sweep, or this one, disturbed.
+template <class Real, int Dim>
+std::array<Real, lanes_at_once<Real>> disturbed_lanes(const ContactBatch<Real, Dim>& batch,
+                                                      const SolverBodies<Real, Dim>& bodies, std::uint8_t sweep) {
+  std::array<Real, lanes_at_once<Real>> is{};
+  const Disturbances& disturbances = bodies.disturbances;
+  for (std::size_t lane = 0; lane < is.size(); ++lane)
+    is[lane] = static_cast<Real>(
+        std::max(disturbances.sweep_of(batch.a[lane]), disturbances.sweep_of(batch.b[lane])) + 1 >= sweep);
+  return is;
+}
+/// `change`: of the relative velocity.
+template <ContactKind kind, class Real, int Dim>
+void mark_disturbed(const ContactBatch<Real, Dim>& batch, const ContactLanes<Real>& change,
+                    SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& step) {
+  using L = ContactLanes<Real>;
+  const L way = abs(change) * L(step.h);
+  if (all(way <= L(step.disturbance))) return;
+  for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
+    if (way[lane] <= step.disturbance) continue;
+    bodies.disturbances.mark(batch.a[lane], step.sweep);
+    if (kind == ContactKind::between_movers) bodies.disturbances.mark(batch.b[lane], step.sweep);
+  }
+}
+
+}  // namespace continuo
