@@ -8,6 +8,9 @@
 #include <vector>
 
 #include <continuo/bodies/contact_events.hpp>
+#include <continuo/bodies/contact_solver/solver_body.hpp>
+#include <continuo/bodies/time_stepping/contact_list.hpp>
+#include <continuo/bodies/world.hpp>
 
 namespace continuo {
 
@@ -70,5 +73,29 @@ class TouchLog {
 
   std::vector<Touch> before_, now_;
 };
+
+/// The contacts that pressed in the last of so many substeps, at the end of the step. `order` says which body of the
+/// world stands at each place.
+template <class Real, int Dim>
+void note_touching(const World<Real, Dim>& world, const SolverBodies<Real, Dim>& bodies,
+                   const std::vector<std::uint32_t>& order, const ContactList<Real, Dim>& contacts, int substeps,
+                   TouchLog<Real, Dim>& touches) {
+  const auto handle = [&](std::uint32_t k) { return world.handle(order[k]); };
+  contacts.for_each_touching([&](std::uint32_t k, std::uint32_t other, bool is_wall, const Real& impulse) {
+    ContactEvent<Real, Dim> event{.a = handle(k)};
+    event.impulse = impulse * static_cast<Real>(substeps);
+    if (is_wall) {
+      event.wall = other;
+      event.normal = -facing(world.walls()[other], bodies.x(k)).normal;
+    } else {
+      event.b = handle(other);
+      if (event.b.slot < event.a.slot) std::swap(event.a, event.b);
+      const Vector<Real, Dim> apart = world.position_of(event.b) - world.position_of(event.a);
+      if (const Real distance = length(apart); distance > Real(0)) event.normal = apart * (1 / distance);
+    }
+    event.point = world.position_of(event.a) + event.normal * world.radius[world.index(event.a)];
+    touches.touch(event);
+  });
+}
 
 }  // namespace continuo

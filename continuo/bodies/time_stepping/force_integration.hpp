@@ -1,0 +1,82 @@
+// Forces beside gravity in the fast motion: the accelerations that they give at each substep, by one of the integrators
+// of integrator.hpp. Without such forces nothing here costs anything.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <continuo/bodies/contact_solver/solver_body.hpp>
+#include <continuo/bodies/forces.hpp>
+#include <continuo/bodies/support/thread_team.hpp>
+#include <continuo/bodies/time_stepping/integrator.hpp>
+
+namespace continuo {
+
+template <class Real, int Dim>
+class ForceIntegration {
+ public:
+  using V = Vector<Real, Dim>;
+  using Bodies = SolverBodies<Real, Dim>;
+
+  bool acts() const { return acts_; }
+
+  /// At the start of a step; `order` says which body of the world stands at each place.
+  void begin(const World<Real, Dim>& world, const std::vector<std::uint32_t>& order) {
+    acts_ = !only_gravity(world);
+    world_ = &world;
+    order_ = &order;
+  }
+  /// The accelerations by all forces in a substep of h from t on. False where the equations of those at its end could
+  /// not be solved.
+  bool accelerate(Bodies& bodies, const IntegratorRule& rule, const Real& t, const Real& h) {
+    if (!acts_) return true;
+    return find(bodies, t, rule.solves_equations ? h : Real(0));
+  }
+  /// The mean of the accelerations at the beginning and at the end of a substep that ends at t is what changed the
+  /// velocity.
+  void correct(Bodies& bodies, ThreadTeam& team, const Real& t, const Real& h) {
+    const std::vector<V> before = bodies.accelerations;
+    find(bodies, t, Real(0));
+    team.for_each(0, bodies.size(), 1024, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k)
+        if (!bodies.touched[k])
+          put(V(bodies.v(k) + (bodies.accelerations[k] - before[k]) * (h / 2)), bodies.motion[k].linear);
+    });
+  }
+  /// Whether gravity and the constant force are all that acts on the body at place k.
+  bool is_steady(const Bodies& bodies, std::size_t k) const {
+    if (!acts_ || !bodies.moves(k)) return true;
+    const std::size_t i = (*order_)[k];
+    return bodies.acceleration(k) ==
+           (world_->mass[i] * world_->gravity + world_->constant_force[i]) * bodies.inverse_mass(k);
+  }
+
+  std::size_t memory() const {
+    return (x_.capacity() + v_.capacity() + force_.capacity()) * sizeof(V) + inverse_mass_.capacity() * sizeof(Real);
+  }
+
+ private:
+  /// Accelerations at time t; with h, at the end of a step of that.
+  bool find(Bodies& bodies, const Real& t, const Real& h) {
+    const std::vector<std::uint32_t>& order = *order_;
+    x_.resize(bodies.size()), v_.resize(bodies.size()), force_.resize(bodies.size());
+    inverse_mass_.resize(bodies.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::size_t i = order[k];
+      x_[i] = bodies.x(k), v_[i] = bodies.v(k), inverse_mass_[i] = bodies.inverse_mass(k);
+    }
+    const bool is_solved = h == Real(0) || forces_at_end<Real, Dim>(*world_, t, h, x_, v_, inverse_mass_, force_);
+    if (h == Real(0)) forces<Real, Dim>(*world_, t, x_, v_, force_);
+    bodies.accelerations.resize(bodies.size());
+    for (std::size_t k = 0; k < order.size(); ++k) bodies.accelerations[k] = force_[order[k]] * bodies.inverse_mass(k);
+    return is_solved;
+  }
+
+  bool acts_ = false;
+  const World<Real, Dim>* world_ = nullptr;
+  const std::vector<std::uint32_t>* order_ = nullptr;
+  std::vector<V> x_, v_, force_;  // by number of the body
+  std::vector<Real> inverse_mass_;
+};
+
+}  // namespace continuo
