@@ -1,5 +1,5 @@
-// What ends a flight under general forces: two that come to touch, a contact that lets go or begins to slip, or a list
-// of candidates that is good no more.
+// What ends a flight under general forces: two bodies that come to touch, a contact that lets go or begins to slip, or
+// bodies that have gone further than the list of candidates is good for.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -16,14 +16,14 @@ namespace continuo {
 /// Two that can meet before the candidates are listed anew.
 template <class Real>
 struct Candidate {
-  enum class Watched { gap, approach, nothing };  // approach: of two that overlap and part; nothing: held
+  enum class Watched { gap, approach, nothing };  // approach: of two that overlap and part; nothing: in contact
   Touching pair{};
   Watched watched = Watched::gap;
   Real lowest{};  // to which the gap may fall
 };
 
-/// Guards that fall through 0, each of which stops the flight: of every candidate; of every contact that is held three;
-/// and last, how far bodies are from where the list ends.
+/// Guards that fall through 0, each of which stops the flight: one of every candidate, three of every persistent
+/// contact, and last, how far bodies are from where the list ends.
 template <class Real, int Dim>
 class ConstrainedEvents {
  public:

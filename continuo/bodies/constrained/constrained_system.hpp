@@ -24,8 +24,8 @@ Vector<Real, 4> rate_of_orientation(const Vector<Real, 4>& q, const Vector<Real,
   return {{-dot(spin, imaginary) / 2, rate[0], rate[1], rate[2]}};
 }
 
-/// All places, all velocities, where torques act all orientations and spins, the impulses of contacts that are held,
-/// and last what moves with the bodies. Fixed bodies stand in it too.
+/// The state: all positions, all velocities, where torques act all orientations and spins, the impulses of persistent
+/// contacts, and last the companions. Fixed bodies are in it too.
 template <class Real, int Dim>
 class ConstrainedSystem {
  public:

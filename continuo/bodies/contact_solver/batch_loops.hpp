@@ -65,7 +65,7 @@ void for_each_disturbed(const ColouredBatches<Real, Dim>& batches, std::size_t g
 }
 
 template <ContactKind kind, class Real, int Dim>
-[[gnu::flatten]] void begin_batches(ColouredBatches<Real, Dim>& batches, std::size_t group,
+[[gnu::flatten]] void start_batches(ColouredBatches<Real, Dim>& batches, std::size_t group,
                                     SolverBodies<Real, Dim>& bodies) {
   const std::size_t from = batches.groups[group].first.front(), to = batches.groups[group].first.back();
   for_each_ahead(

@@ -1,6 +1,6 @@
-// Contacts that last while forces of any kind press: held closed, with the forces that this takes, until one would have
-// to pull. Coulomb's friction is held where it can hold (a ball then rolls), and rubs against the slip where it cannot;
-// so rolling resistance against rolling, where nothing slips.
+// Bodies in persistent contact are constrained by normal and friction forces, under other forces of any kind, until a
+// normal force would have to pull. Coulomb's friction keeps a contact from slipping where it can (a ball then rolls),
+// and acts against the slip where it cannot; so does rolling resistance against rolling, where nothing slips.
 //
 // With the relative velocity u = J v of the surfaces in contact, forces f change it by A f, A = J M^-1 J^T; they are
 // chosen so that u' = 0 in the directions held, no normal force pulls, and a normal force that vanishes lets go (a

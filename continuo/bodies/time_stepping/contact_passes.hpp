@@ -31,7 +31,7 @@ class ContactPasses {
   /// push_body(k) for all bodies, then contacts start warm and push.
   template <class Push>
   void push(const ContactStep<Real>& step, const Push& push_body) {
-    run_pushing({begin(push_body), solve<ContactPass::push>(step)}, step);
+    run_pushing({starting(push_body), solve<ContactPass::push>(step)}, step);
   }
   /// move_body(k) for all bodies, then contacts relax.
   template <class Move>
@@ -41,7 +41,7 @@ class ContactPasses {
   /// The end of a substep and the next one's beginning.
   template <class Move, class Push>
   void relax_and_push(const ContactStep<Real>& step, const Move& move_body, const Push& push_body) {
-    run_pushing({relaxing(step, move_body), begin(push_body), solve<ContactPass::push>(step)}, step);
+    run_pushing({relaxing(step, move_body), starting(push_body), solve<ContactPass::push>(step)}, step);
   }
 
  private:
@@ -67,9 +67,9 @@ class ContactPasses {
     return pass_of(act_of<pass>(step));
   }
   template <class Push>
-  Pass begin(const Push& push_body) {
+  Pass starting(const Push& push_body) {
     Pass pass = pass_of(
-        [this](auto kind, auto& batches, std::size_t group) { begin_batches<kind()>(batches, group, bodies_); });
+        [this](auto kind, auto& batches, std::size_t group) { start_batches<kind()>(batches, group, bodies_); });
     pass.before = [this, &push_body](std::size_t block) {
       bodies_.disturbances.forget(block, bodies_.size());
       for_each_body(block, push_body);
