@@ -1,35 +1,10 @@
+// The outcome of a run in words.
 #include <cmath>
 #include <cstdio>
 
 #include <continuo/solve/outcome.hpp>
 
 namespace continuo {
-
-std::string_view to_string(Ending ending) {
-  switch (ending) {
-    case Ending::reached_end:
-      return "reached end";
-    case Ending::stopped_by_event:
-      return "stopped by event";
-    case Ending::step_too_small:
-      return "step too small";
-    case Ending::too_many_steps:
-      return "too many steps";
-    case Ending::too_many_rejects:
-      return "too many rejects";
-    case Ending::not_finite:
-      return "not finite";
-    case Ending::nonlinear_solve_failed:
-      return "nonlinear solve failed";
-    case Ending::events_accumulate:
-      return "events accumulate";
-    case Ending::interrupted:
-      return "interrupted";
-    case Ending::invalid_input:
-      return "invalid input";
-  }
-  return "unknown";
-}
 
 namespace {
 std::string number(double value) {
@@ -55,6 +30,11 @@ std::string describe(const Outcome<double>& outcome) {
   if (!outcome.component.empty()) text += ", worst in " + outcome.component;
   if (!outcome.hint.empty()) text += "; " + outcome.hint;
   return text;
+}
+
+Status status(const Outcome<double>& outcome) {
+  if (succeeded(outcome.ending)) return {.ending = outcome.ending};
+  return {.ending = outcome.ending, .message = describe(outcome), .place = "t = " + number(outcome.t)};
 }
 
 }  // namespace continuo

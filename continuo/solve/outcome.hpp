@@ -3,30 +3,10 @@
 #pragma once
 #include <cstddef>
 #include <string>
-#include <string_view>
+
+#include <continuo/status/status.hpp>
 
 namespace continuo {
-
-enum class Ending {
-  reached_end,
-  stopped_by_event,
-  step_too_small,
-  too_many_steps,
-  too_many_rejects,
-  not_finite,
-  nonlinear_solve_failed,
-  events_accumulate,
-  interrupted,
-  invalid_input,
-};
-
-/// `reached end`, `step too small`, ...
-std::string_view to_string(Ending ending);
-
-/// True where the run gave what was asked: it reached the end or an event stopped it.
-constexpr bool succeeded(Ending ending) {
-  return ending == Ending::reached_end || ending == Ending::stopped_by_event;
-}
 
 /// How a run ended. t and h are those of the last attempt; `error` is its estimate in units of the tolerance
 /// (accepted where <= 1), `component` the worst of it.
@@ -46,7 +26,10 @@ struct Outcome {
 std::string where_steps_lie(double from, double to);
 
 /// One sentence: what happened, where, why, what to try.
-std::string describe(const Outcome<double>& outcome);
+[[nodiscard]] std::string describe(const Outcome<double>& outcome);
+
+/// The same as every other function of the library tells how it ended; the place is the time.
+Status status(const Outcome<double>& outcome);
 
 /// What a run cost.
 struct Statistics {

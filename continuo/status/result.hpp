@@ -1,0 +1,43 @@
+// continuo/status/result.hpp
+// A value, or the reason why there is none:
+//
+//   const continuo::Result<World<double, 2>> world = read(path);
+//   if (!world) return world.status();
+//   advance(*world);
+#pragma once
+#include <cassert>
+#include <optional>
+#include <utility>
+
+#include <continuo/status/status.hpp>
+
+namespace continuo {
+
+/// A value of type T where the operation succeeded, else its Status alone. Costs a T and a Status.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : value_(std::move(value)) {}  // NOLINT(google-explicit-constructor): `return value;` is meant
+  /// Why there is no value. A status that succeeded needs one, so that it is given with it.
+  Result(Status status) : status_(std::move(status)) { assert(!status_); }  // NOLINT(google-explicit-constructor)
+
+  /// Whether there is a value.
+  explicit operator bool() const { return value_.has_value(); }
+  [[nodiscard]] bool has_value() const { return value_.has_value(); }
+
+  /// The value, which must be there.
+  T& operator*() & { return *value_; }
+  const T& operator*() const& { return *value_; }
+  T&& operator*() && { return *std::move(value_); }
+  T* operator->() { return &*value_; }
+  const T* operator->() const { return &*value_; }
+
+  /// How the operation ended.
+  const Status& status() const { return status_; }
+
+ private:
+  std::optional<T> value_;
+  Status status_;
+};
+
+}  // namespace continuo
