@@ -16,6 +16,7 @@
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
+#include <continuo/status/require.hpp>
 
 namespace continuo::bench {
 namespace {
@@ -51,7 +52,7 @@ Result by_exact_motion(const Scene& scene) {
   World<double, 3> world = before;
   const double begin = processor_seconds();
   ExactMotion<double, 3> motion(world);
-  if (const std::string error = motion.advance_to(scene.duration); !error.empty()) std::puts(error.c_str());
+  require(motion.advance_to(scene.duration));
   return judged(before, world, processor_seconds() - begin);
 }
 
@@ -64,7 +65,7 @@ Result by_fast_motion(const Scene& scene) {
   double seconds = processor_seconds() - begin;
   for (int i = 0; i < std::lround(scene.duration / scene.step); ++i) {
     begin = processor_seconds();
-    if (const std::string error = motion.advance(); !error.empty()) std::puts(error.c_str());
+    require(motion.advance());
     seconds += processor_seconds() - begin;
     deepest = std::max(deepest, static_cast<double>(motion.deepest_overlap()));
   }

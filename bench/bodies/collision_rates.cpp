@@ -12,6 +12,7 @@
 #include <bench/processor_time.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
+#include <continuo/status/require.hpp>
 
 namespace continuo::bench {
 namespace {
@@ -24,7 +25,7 @@ World<double, Dim> gas(int count, double packing) {
   Vector<double, Dim> upper;
   for (std::size_t axis = 0; axis < upper.size(); ++axis) upper[axis] = edge;
   const Material<double> elastic{.restitution = 1, .friction = 0};
-  world.add_container({}, upper, elastic);
+  require(world.add_container({}, upper, elastic));
   std::mt19937 engine(1);
   std::normal_distribution<double> normal;
   const int side = static_cast<int>(std::ceil(std::pow(count, 1.0 / Dim) - 1e-9));
@@ -36,7 +37,7 @@ World<double, Dim> gas(int count, double packing) {
       ball.velocity[axis] = normal(engine);
     }
     ball.velocity *= 5 / length(ball.velocity);
-    world.add(ball);
+    require(world.add(ball));
   }
   return world;
 }
@@ -52,8 +53,8 @@ void measure(int count, int repeats) {
     const auto run = [&](std::size_t at_least, double interval) {
       const std::size_t until = collisions() + at_least;
       while (collisions() < until)
-        if (const std::string error = motion.advance_to(world.time + interval); !error.empty())
-          return void(std::puts(error.c_str()));
+        if (const Status status = motion.advance_to(world.time + interval); !status)
+          return void(std::puts(status.message.c_str()));
     };
     const auto n = static_cast<std::size_t>(count);
     run(5 * n, 0.05);

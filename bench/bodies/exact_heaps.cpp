@@ -12,6 +12,7 @@
 #include <bench/processor_time.hpp>
 
 #include <continuo/bodies/exact_motion.hpp>
+#include <continuo/status/require.hpp>
 
 namespace continuo::bench {
 namespace {
@@ -24,13 +25,13 @@ World<double, 3> boxful(int count, double edge, const Material<double>& material
 World<double, 2> funnelful(int count, const Material<double>& material) {
   World<double, 2> world;
   world.gravity = {{0, -9.81}};
-  for (const double side : {1.0, -1.0}) world.add_wall({.normal = {{side, 1}}, .material = material});
+  for (const double side : {1.0, -1.0}) require(world.add_wall({.normal = {{side, 1}}, .material = material}));
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> jitter(-0.01, 0.01);
   for (int i = 0; i < count; ++i)
-    world.add({.shape = Sphere<double>{0.2},
-               .position = {{-2.75 + 0.5 * (i % 12) + jitter(engine), 4 + 0.5 * (i / 12)}},
-               .material = material});
+    require(world.add({.shape = Sphere<double>{0.2},
+                       .position = {{-2.75 + 0.5 * (i % 12) + jitter(engine), 4 + 0.5 * (i / 12)}},
+                       .material = material}));
   return world;
 }
 
@@ -42,8 +43,8 @@ void measure(const char* scene, World<double, Dim> world, const Material<double>
   constexpr int looks = 30;
   for (int k = 1; k <= looks; ++k) {
     const double begin = processor_seconds();
-    if (const std::string error = motion.advance_to(until * k / looks); !error.empty())
-      return void(std::puts(error.c_str()));
+    if (const Status status = motion.advance_to(until * k / looks); !status)
+      return void(std::puts(status.message.c_str()));
     seconds += processor_seconds() - begin;
     deepest = std::max(deepest, deepest_overlap(world));
     rise = std::max(rise, energy() / last - 1);

@@ -12,6 +12,7 @@
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
+#include <continuo/status/require.hpp>
 
 namespace continuo::bench {
 namespace {
@@ -38,19 +39,19 @@ template <int Dim>
 World<double, Dim> one(double height, const Material<double>& material, double speed = 0) {
   World<double, Dim> world;
   world.gravity = up<Dim>(-9.81);
-  world.add_wall({.material = {.restitution = 0, .friction = material.friction}});
+  require(world.add_wall({.material = {.restitution = 0, .friction = material.friction}}));
   Vector<double, Dim> v;
   v[0] = speed;
-  world.add({.position = up<Dim>(height), .velocity = v, .material = material});
+  require(world.add({.position = up<Dim>(height), .velocity = v, .material = material}));
   return world;
 }
 
 World<double, 3> cradle(int in, double gap) {
   World<double, 3> world;
   for (int i = 0; i < 5; ++i)
-    world.add({.position = {{i * (1 + gap) - (i < in ? 1.0 : 0.0), 0, 0}},
-               .velocity = {{i < in ? 1.0 : 0.0, 0, 0}},
-               .material = {.restitution = 1, .friction = 0}});
+    require(world.add({.position = {{i * (1 + gap) - (i < in ? 1.0 : 0.0), 0, 0}},
+                       .velocity = {{i < in ? 1.0 : 0.0, 0, 0}},
+                       .material = {.restitution = 1, .friction = 0}}));
   return world;
 }
 
@@ -60,7 +61,7 @@ World<double, Dim> gas(int side, double restitution, double smallest) {
   World<double, Dim> world;
   const double spacing = 1.6;
   const Material<double> material{.restitution = restitution, .friction = 0};
-  world.add_container({}, all<Dim>(spacing * side), material);
+  require(world.add_container({}, all<Dim>(spacing * side), material));
   std::mt19937 engine(1);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> radius(smallest, 0.5);
@@ -74,10 +75,10 @@ World<double, Dim> gas(int side, double restitution, double smallest) {
       v[axis] = normal(engine);
       rest /= many;
     }
-    world.add({.shape = Sphere<double>{smallest < 0.5 ? radius(engine) : 0.5},
-               .position = x,
-               .velocity = v * (5 / length(v)),
-               .material = material});
+    require(world.add({.shape = Sphere<double>{smallest < 0.5 ? radius(engine) : 0.5},
+                       .position = x,
+                       .velocity = v * (5 / length(v)),
+                       .material = material}));
   }
   return world;
 }
@@ -85,11 +86,12 @@ World<double, Dim> gas(int side, double restitution, double smallest) {
 World<double, 2> billiards() {
   World<double, 2> world;
   const Material<double> material{.restitution = 0.95, .friction = 0.05};
-  world.add_container({{-15, -8}}, {{30, 8}}, material);
+  require(world.add_container({{-15, -8}}, {{30, 8}}, material));
   const double row = std::sqrt(3.0) / 2 * 1.001;
   for (int i = 0; i < 5; ++i)
-    for (int j = 0; j <= i; ++j) world.add({.position = {{row * i, 1.001 * (j - 0.5 * i)}}, .material = material});
-  world.add({.position = {{-10, 0.1}}, .velocity = {{10, 0}}, .material = material});
+    for (int j = 0; j <= i; ++j)
+      require(world.add({.position = {{row * i, 1.001 * (j - 0.5 * i)}}, .material = material}));
+  require(world.add({.position = {{-10, 0.1}}, .velocity = {{10, 0}}, .material = material}));
   return world;
 }
 
@@ -97,17 +99,18 @@ World<double, 2> galton() {
   World<double, 2> world;
   world.gravity = {{0, -9.81}};
   const Material<double> material{.restitution = 0.4, .friction = 0.1};
-  world.add_container({{-12, -30}}, {{12, 100}}, material);
+  require(world.add_container({{-12, -30}}, {{12, 100}}, material));
   for (int i = 0; i < 10; ++i)
     for (int j = 0; j <= i; ++j)
-      world.add({.shape = Sphere<double>{0.2},
-                 .position = {{2.0 * (j - 0.5 * i), -2.0 * i}},
-                 .fixed = true,
-                 .material = material});
+      require(world.add({.shape = Sphere<double>{0.2},
+                         .position = {{2.0 * (j - 0.5 * i), -2.0 * i}},
+                         .fixed = true,
+                         .material = material}));
   std::mt19937 engine(2);
   std::uniform_real_distribution<double> jitter(-0.3, 0.3);
   for (int i = 0; i < 40; ++i)
-    world.add({.shape = Sphere<double>{0.3}, .position = {{jitter(engine), 2.0 + 2 * i}}, .material = material});
+    require(
+        world.add({.shape = Sphere<double>{0.3}, .position = {{jitter(engine), 2.0 + 2 * i}}, .material = material}));
   return world;
 }
 
@@ -118,14 +121,14 @@ World<double, Dim> rain(int count, double restitution, double edge) {
   const Material<double> material{.restitution = restitution, .friction = 0.5};
   Vector<double, Dim> upper = all<Dim>(edge);
   upper[static_cast<std::size_t>(Dim - 1)] = 1000;
-  world.add_container({}, upper, material);
+  require(world.add_container({}, upper, material));
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> place(0.6, edge - 0.6);
   for (int i = 0; i < count; ++i) {
     Vector<double, Dim> x;
     for (std::size_t axis = 0; axis + 1 < x.size(); ++axis) x[axis] = place(engine);
     x[x.size() - 1] = 1 + 1.1 * i;
-    world.add({.position = x, .material = material});
+    require(world.add({.position = x, .material = material}));
   }
   return world;
 }
@@ -133,17 +136,20 @@ World<double, Dim> rain(int count, double restitution, double edge) {
 World<double, 3> shot(double aside) {
   World<double, 3> world;
   const Material<double> material{.restitution = 1, .friction = 0};
-  world.add({.shape = Sphere<double>{0.01}, .fixed = true, .material = material});
-  world.add(
-      {.shape = Sphere<double>{0.01}, .position = {{-20, aside, 0}}, .velocity = {{1000, 0, 0}}, .material = material});
+  require(world.add({.shape = Sphere<double>{0.01}, .fixed = true, .material = material}));
+  require(world.add({.shape = Sphere<double>{0.01},
+                     .position = {{-20, aside, 0}},
+                     .velocity = {{1000, 0, 0}},
+                     .material = material}));
   return world;
 }
 
 World<double, 3> oblique() {
   World<double, 3> world;
   const Material<double> material{.restitution = 0.9, .friction = 0.3};
-  world.add({.position = {{-3, 0.2, 0.1}}, .velocity = {{4, 0, 0}}, .spin = {{0, 5, 3}}, .material = material});
-  world.add({.position = {{3, -0.2, 0.3}}, .velocity = {{-2, 0, 0}}, .mass = 2, .material = material});
+  require(
+      world.add({.position = {{-3, 0.2, 0.1}}, .velocity = {{4, 0, 0}}, .spin = {{0, 5, 3}}, .material = material}));
+  require(world.add({.position = {{3, -0.2, 0.3}}, .velocity = {{-2, 0, 0}}, .mass = 2, .material = material}));
   return world;
 }
 
@@ -151,8 +157,8 @@ World<double, 3> heavy_and_light() {
   World<double, 3> world;
   const Material<double> material{.restitution = 1, .friction = 0};
   for (int i = 0; i < 10; ++i)
-    world.add({.position = {{1.1 * i, 0, 0}}, .mass = std::pow(0.5, i), .material = material});
-  world.add({.position = {{-4, 0, 0}}, .velocity = {{3, 0, 0}}, .mass = 10, .material = material});
+    require(world.add({.position = {{1.1 * i, 0, 0}}, .mass = std::pow(0.5, i), .material = material}));
+  require(world.add({.position = {{-4, 0, 0}}, .velocity = {{3, 0, 0}}, .mass = 10, .material = material}));
   return world;
 }
 
@@ -185,17 +191,17 @@ void compare(const char* name, const World<double, Dim>& start, double duration)
   sizes.see(start);
   double begin = processor_milliseconds();
   ExactMotion<double, Dim> exact_motion(exact, {.most_events = 2'000'000});
-  const std::string error = exact_motion.advance_to(duration);
+  const Status status = exact_motion.advance_to(duration);
   const double exact_time = processor_milliseconds() - begin;
-  if (!error.empty()) {
-    std::printf("| %s | the exact motion: %s |\n", name, error.c_str());
+  if (!status) {
+    std::printf("| %s | the exact motion: %s |\n", name, status.message.c_str());
     return;
   }
   begin = processor_milliseconds();
   double seen = 0;  // what looking costs
   FastMotion<double, Dim> motion(fast);
   for (int i = 0; i < std::lround(duration * 60); ++i) {
-    if (const std::string fault = motion.advance(); !fault.empty()) std::printf("%s: %s\n", name, fault.c_str());
+    if (const Status step = motion.advance(); !step) std::printf("%s: %s\n", name, step.message.c_str());
     const double before = processor_milliseconds();
     sizes.see(fast);
     seen += processor_milliseconds() - before;

@@ -14,6 +14,7 @@
 #include <bench/bodies/scenes.hpp>
 
 #include <continuo/bodies/fast_motion.hpp>
+#include <continuo/status/require.hpp>
 
 namespace continuo::bench {
 namespace {
@@ -28,8 +29,7 @@ Cost cost_of(const Scene& scene, int steps, int threads) {
   FastMotion<Real, 3> motion(world, {.threads = threads});
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t processor = std::clock();  // of all threads
-  for (int i = 0; i < steps; ++i)
-    if (const std::string error = motion.advance(); !error.empty()) std::puts(error.c_str());
+  for (int i = 0; i < steps; ++i) require(motion.advance());
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   return {1e3 * wall.count() / steps, 1e3 * static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC / steps};
 }

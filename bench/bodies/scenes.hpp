@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <continuo/bodies/world.hpp>
+#include <continuo/status/require.hpp>
 
 namespace continuo::bench {
 
@@ -59,9 +60,9 @@ World<Real, 3> world_of(const Scene& scene) {
                                 static_cast<Real>(scene.material.friction), 0};
   World<Real, 3> world;
   world.gravity = as(scene.gravity);
-  world.add_container({}, as(scene.upper), material);
+  require(world.add_container({}, as(scene.upper), material));
   for (std::size_t i = 0; i < scene.position.size(); ++i)
-    world.add({.position = as(scene.position[i]), .velocity = as(scene.velocity[i]), .material = material});
+    require(world.add({.position = as(scene.position[i]), .velocity = as(scene.velocity[i]), .material = material}));
   return world;
 }
 

@@ -36,12 +36,15 @@ template <class Real, int Dim>
 ExactMotion<Real, Dim>::~ExactMotion() = default;
 
 template <class Real, int Dim>
-std::string ExactMotion<Real, Dim>::advance_to(const Real& t) {
+Status ExactMotion<Real, Dim>::advance_to(const Real& t) {
   if (!(t >= world_->time) || !(t - t == Real(0)))
-    return "the time to advance to must be finite and not before the present";
+    return invalid_input("the time to advance to must be finite and not before the present");
   if (is_parabolic() != was_parabolic_) refresh();
   engine_->contacts.clear();
-  return engine_->advance_to(t);
+  std::string fault = engine_->advance_to(t);
+  if (fault.empty()) return {};
+  return {.ending = options_.is_interrupted() ? Ending::interrupted : Ending::cannot_continue,
+          .message = std::move(fault)};
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::refresh() {

@@ -24,12 +24,12 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <string>
 
 #include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/exact_options.hpp>
 #include <continuo/bodies/support/bytes.hpp>
 #include <continuo/bodies/world.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo {
 
@@ -47,9 +47,9 @@ class ExactMotion {
   ExactMotion& operator=(ExactMotion&&) noexcept;
   ~ExactMotion();
 
-  /// Brings the world to time t, all its bodies to the same instant. Empty, or what went wrong; the world is then at
-  /// the time of the last event.
-  std::string advance_to(const Real& t);
+  /// Brings the world to time t, all its bodies to the same instant. Where it fails the world is at the time of
+  /// the last event.
+  Status advance_to(const Real& t);
   /// Predicts everything again from the world as it is.
   void refresh();
 

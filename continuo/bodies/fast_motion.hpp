@@ -14,12 +14,12 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <string>
 
 #include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/support/bytes.hpp>
 #include <continuo/bodies/time_stepping/integrator.hpp>
 #include <continuo/bodies/world.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo {
 
@@ -51,8 +51,8 @@ class FastMotion {
   FastMotion& operator=(FastMotion&&) noexcept;
   ~FastMotion();
 
-  /// One step. Empty, or what went wrong: the world is then as it was before the step.
-  std::string advance();
+  /// One step. Where it fails the world is as it was before the step.
+  Status advance();
   void refresh();
 
   /// The deepest overlap of two bodies, or of one and a wall, now.

@@ -64,13 +64,15 @@ Real distance_to_box(const Vector<Real, Dim>& x, const Vector<Real, Dim>& lower,
 
 /// Makes the direction a unit; says what is wrong with the ray.
 template <class Real, int Dim>
-std::string prepare(Ray<Real, Dim>& ray) {
-  if (!is_finite(ray.origin) || !is_finite(ray.direction)) return "origin and direction of a ray must be finite";
-  if (!(ray.reach >= Real(0))) return "the reach of a ray must be 0 or more; infinity for a ray without end";
+Status prepare(Ray<Real, Dim>& ray) {
+  if (!is_finite(ray.origin) || !is_finite(ray.direction))
+    return invalid_input("origin and direction of a ray must be finite");
+  if (!(ray.reach >= Real(0)))
+    return invalid_input("the reach of a ray must be 0 or more; infinity for a ray without end");
   Real largest(0);
   for (std::size_t axis = 0; axis < ray.direction.size(); ++axis)
     largest = std::max(largest, std::abs(ray.direction[axis]));
-  if (!(largest > Real(0))) return "the direction of a ray must not be 0";
+  if (!(largest > Real(0))) return invalid_input("the direction of a ray must not be 0");
   for (std::size_t axis = 0; axis < ray.direction.size(); ++axis) ray.direction[axis] /= largest;
   ray.direction *= 1 / length(ray.direction);
   return {};
@@ -191,10 +193,10 @@ RayHit<Real, Dim> hit_of(const Ray<Real, Dim>& ray, const Item& item, const Real
 }  // namespace
 
 template <class Real, int Dim>
-Answer<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_hit(const Ray<Real, Dim>& asked,
+Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_hit(const Ray<Real, Dim>& asked,
                                                                      const QueryFilter& filter) const {
   Ray<Real, Dim> ray = asked;
-  if (std::string fault = prepare(ray); !fault.empty()) return {{}, std::move(fault)};
+  if (Status fault = prepare(ray); !fault) return fault;
   const Item* nearest = nullptr;
   Ray<Real, Dim> left = ray;  // ends at the nearest hit so far
   walk([&](const Box& box) { return entry(left, box.lower, box.upper); },
@@ -206,20 +208,20 @@ Answer<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::first_hit(const Ray<R
          nearest = &item;
          left.reach = distance;
        });
-  Answer<std::vector<RayHit<Real, Dim>>> answer;
-  if (nearest) answer.value = {hit_of(ray, *nearest, left.reach)};
+  std::vector<RayHit<Real, Dim>> hits;
+  if (nearest) hits = {hit_of(ray, *nearest, left.reach)};
   if (filter.walls)
     wall_hits(left, [&](const RayHit<Real, Dim>& hit) {
-      if (answer.value.empty() || hit.distance < answer.value[0].distance) answer.value = {hit};
+      if (hits.empty() || hit.distance < hits[0].distance) hits = {hit};
     });
-  return answer;
+  return hits;
 }
 
 template <class Real, int Dim>
-Answer<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::all_hits(const Ray<Real, Dim>& asked,
+Result<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::all_hits(const Ray<Real, Dim>& asked,
                                                                     const QueryFilter& filter) const {
   Ray<Real, Dim> ray = asked;
-  if (std::string fault = prepare(ray); !fault.empty()) return {{}, std::move(fault)};
+  if (Status fault = prepare(ray); !fault) return fault;
   std::vector<std::pair<Real, const Item*>> found;
   walk([&](const Box& box) { return entry(ray, box.lower, box.upper); },
        [&](const Item& item) {
@@ -232,10 +234,10 @@ Answer<std::vector<RayHit<Real, Dim>>> Queries<Real, Dim>::all_hits(const Ray<Re
   for (const auto& [distance, item] : found) bodies.push_back(hit_of(ray, *item, distance));
   if (filter.walls) wall_hits(ray, [&](const RayHit<Real, Dim>& hit) { walls.push_back(hit); });
   std::ranges::sort(walls, {}, [](const auto& hit) { return std::pair(hit.distance, hit.wall); });
-  Answer<std::vector<RayHit<Real, Dim>>> answer;
-  std::ranges::merge(bodies, walls, std::back_inserter(answer.value), {}, &RayHit<Real, Dim>::distance,
+  std::vector<RayHit<Real, Dim>> hits;
+  std::ranges::merge(bodies, walls, std::back_inserter(hits), {}, &RayHit<Real, Dim>::distance,
                      &RayHit<Real, Dim>::distance);
-  return answer;
+  return hits;
 }
 
 namespace {
@@ -251,9 +253,9 @@ std::vector<BodyHandle> in_order(Found& found) {
 }  // namespace
 
 template <class Real, int Dim>
-Answer<Overlap> Queries<Real, Dim>::in_sphere(const V& centre, const Real& radius, const QueryFilter& filter) const {
+Result<Overlap> Queries<Real, Dim>::in_sphere(const V& centre, const Real& radius, const QueryFilter& filter) const {
   if (!is_finite(centre) || !is_number(radius) || radius < Real(0))
-    return {{}, "centre and radius must be finite, the radius 0 or more"};
+    return invalid_input("centre and radius must be finite, the radius 0 or more");
   std::vector<const Item*> found;
   walk(
       [&](const Box& box) {
@@ -264,19 +266,19 @@ Answer<Overlap> Queries<Real, Dim>::in_sphere(const V& centre, const Real& radiu
       [&](const Item& item) {
         if (takes(filter, item.group) && length(item.x - centre) <= radius + item.radius) found.push_back(&item);
       });
-  Answer<Overlap> answer{{in_order(found), {}}, {}};
+  Overlap overlap{in_order(found), {}};
   for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w) {
     const Wall<Real, Dim> wall = facing(walls_[w], centre);
-    if (dot(wall.normal, centre) - wall.offset <= radius) answer.value.walls.push_back(w);
+    if (dot(wall.normal, centre) - wall.offset <= radius) overlap.walls.push_back(w);
   }
-  return answer;
+  return overlap;
 }
 
 template <class Real, int Dim>
-Answer<Overlap> Queries<Real, Dim>::in_box(const V& lower, const V& upper, const QueryFilter& filter) const {
-  if (!is_finite(lower) || !is_finite(upper)) return {{}, "the corners of a box must be finite"};
+Result<Overlap> Queries<Real, Dim>::in_box(const V& lower, const V& upper, const QueryFilter& filter) const {
+  if (!is_finite(lower) || !is_finite(upper)) return invalid_input("the corners of a box must be finite");
   for (std::size_t axis = 0; axis < V::size(); ++axis)
-    if (lower[axis] > upper[axis]) return {{}, "the lower corner of a box must not be above the upper one"};
+    if (lower[axis] > upper[axis]) return invalid_input("the lower corner of a box must not be above the upper one");
   std::vector<const Item*> found;
   walk(
       [&](const Box& box) {
@@ -288,21 +290,21 @@ Answer<Overlap> Queries<Real, Dim>::in_box(const V& lower, const V& upper, const
       [&](const Item& item) {
         if (takes(filter, item.group) && distance_to_box(item.x, lower, upper) <= item.radius) found.push_back(&item);
       });
-  Answer<Overlap> answer{{in_order(found), {}}, {}};
+  Overlap overlap{in_order(found), {}};
   for (std::uint32_t w = 0; filter.walls && w < walls_.size(); ++w) {
     const Wall<Real, Dim> wall = facing(walls_[w], V((lower + upper) * Real(0.5)));
     Real deepest(0);  // the corner that the wall's normal points away from
     for (std::size_t axis = 0; axis < V::size(); ++axis)
       deepest += wall.normal[axis] * (wall.normal[axis] > Real(0) ? lower[axis] : upper[axis]);
-    if (deepest <= wall.offset) answer.value.walls.push_back(w);
+    if (deepest <= wall.offset) overlap.walls.push_back(w);
   }
-  return answer;
+  return overlap;
 }
 
 template <class Real, int Dim>
-Answer<std::vector<Neighbour<Real>>> Queries<Real, Dim>::nearest(const V& point, std::size_t count,
+Result<std::vector<Neighbour<Real>>> Queries<Real, Dim>::nearest(const V& point, std::size_t count,
                                                                  const QueryFilter& filter) const {
-  if (!is_finite(point)) return {{}, "the point must be finite"};
+  if (!is_finite(point)) return invalid_input("the point must be finite");
   constexpr Real never = std::numeric_limits<Real>::infinity();
   using Found = std::tuple<Real, std::uint32_t, BodyHandle>;
   const auto nearer = [](const Found& a, const Found& b) {
@@ -332,9 +334,9 @@ Answer<std::vector<Neighbour<Real>>> Queries<Real, Dim>::nearest(const V& point,
           std::ranges::push_heap(found, nearer);
         });
   std::ranges::sort_heap(found, nearer);
-  Answer<std::vector<Neighbour<Real>>> answer;
-  for (const auto& [distance, number, body] : found) answer.value.push_back({body, distance});
-  return answer;
+  std::vector<Neighbour<Real>> neighbours;
+  for (const auto& [distance, number, body] : found) neighbours.push_back({body, distance});
+  return neighbours;
 }
 
 template class Queries<float, 2>;

@@ -4,7 +4,7 @@
 //
 //   const Queries queries(world);
 //   const auto hit = queries.first_hit({.origin = {{0, 0, 10}}, .direction = {{0, 0, -1}}});
-//   if (!hit.error.empty()) ...                 // the question made no sense
+//   if (!hit) std::cerr << describe(hit.status());  // the question made no sense
 //   else if (!hit.value.empty()) use(hit.value.front().body, hit.value.front().distance)
 //
 // Bodies lie in a tree of boxes, halved along the longest edge by the middle body; that bodies differ in size or some
@@ -13,10 +13,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include <continuo/bodies/world.hpp>
+#include <continuo/status/result.hpp>
 
 namespace continuo {
 
@@ -54,14 +54,6 @@ struct Overlap {
   std::vector<std::uint32_t> walls{};
 };
 
-/// The answer, or why there is none: what is asked must be finite, a direction not 0, no region inside out.
-template <class Value>
-struct Answer {
-  Value value{};
-  std::string error{};
-  explicit operator bool() const { return error.empty(); }
-};
-
 template <class Real, int Dim>
 class Queries {
  public:
@@ -69,15 +61,17 @@ class Queries {
 
   explicit Queries(const World<Real, Dim>& world);
 
+  // All fail where the question cannot be meant: it must be finite, a direction not 0, no region inside out.
+
   /// The nearest hit, if any: one element or none. Of equal distances bodies come before walls, lower numbers first.
-  Answer<std::vector<RayHit<Real, Dim>>> first_hit(const Ray<Real, Dim>& ray, const QueryFilter& filter = {}) const;
+  Result<std::vector<RayHit<Real, Dim>>> first_hit(const Ray<Real, Dim>& ray, const QueryFilter& filter = {}) const;
   /// All of them, the nearest first.
-  Answer<std::vector<RayHit<Real, Dim>>> all_hits(const Ray<Real, Dim>& ray, const QueryFilter& filter = {}) const;
+  Result<std::vector<RayHit<Real, Dim>>> all_hits(const Ray<Real, Dim>& ray, const QueryFilter& filter = {}) const;
   /// What a ball, or a box with its faces along the axes, touches. In the order of the world.
-  Answer<Overlap> in_sphere(const V& centre, const Real& radius, const QueryFilter& filter = {}) const;
-  Answer<Overlap> in_box(const V& lower, const V& upper, const QueryFilter& filter = {}) const;
+  Result<Overlap> in_sphere(const V& centre, const Real& radius, const QueryFilter& filter = {}) const;
+  Result<Overlap> in_box(const V& lower, const V& upper, const QueryFilter& filter = {}) const;
   /// The `count` bodies whose surfaces are nearest, or as many as there are; the nearest first.
-  Answer<std::vector<Neighbour<Real>>> nearest(const V& point, std::size_t count, const QueryFilter& filter = {}) const;
+  Result<std::vector<Neighbour<Real>>> nearest(const V& point, std::size_t count, const QueryFilter& filter = {}) const;
 
  private:
   struct Item {

@@ -149,8 +149,8 @@ struct Recording {
     ByteReader reader(block);
     if (kind == detail::RecordingBlock::scene) {
       found.scenes.push_back(begin);
-      if (const std::string why = restore(block, scenes.emplace_back()); !why.empty())
-        outer.fail("the block before, " + why);
+      if (const Status read = restore(block, scenes.emplace_back()); !read)
+        outer.fail("the block before, " + read.message);
     } else if (kind == detail::RecordingBlock::frame) {
       found.frames.push_back(begin);
       Frame<Real, Dim>& frame = frames.emplace_back();

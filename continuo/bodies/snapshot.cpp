@@ -27,7 +27,7 @@ bool is_inverse(const Real& value) {
 template <class Real>
 void transfer(ByteReader& archive, Material<Real>& material) {
   archive(material.restitution), archive(material.friction), archive(material.rolling_resistance);
-  archive.expect(fault_of(material).empty(), "a material with values that none can have");
+  archive.expect(static_cast<bool>(check(material)), "a material with values that none can have");
 }
 template <class Real>
 void transfer(ByteWriter& archive, const Material<Real>& material) {
@@ -177,10 +177,16 @@ Bytes written(const World<Real, Dim>& world, Of of, WriteMotion&& write_motion) 
   return writer.take();
 }
 
+/// Bytes that cannot be read; a success where there is no message.
+Status corrupt(std::string message) {
+  if (message.empty()) return {};
+  return {.ending = Ending::unreadable, .message = std::move(message)};
+}
+
 /// read_motion(reader, of, world) sees the rest; then the world is handed over.
 template <class Real, int Dim, class ReadMotion>
-std::string read(std::span<const std::byte> bytes, World<Real, Dim>& world, ReadMotion&& read_motion) {
-  if (bytes.size() < sizeof(std::uint64_t)) return "byte 0: too short for a snapshot";
+Status read(std::span<const std::byte> bytes, World<Real, Dim>& world, ReadMotion&& read_motion) {
+  if (bytes.size() < sizeof(std::uint64_t)) return corrupt("byte 0: too short for a snapshot");
   const std::span<const std::byte> body = bytes.first(bytes.size() - sizeof(std::uint64_t));
   ByteReader reader(body);
   std::array<char, 8> name{};
@@ -195,16 +201,17 @@ std::string read(std::span<const std::byte> bytes, World<Real, Dim>& world, Read
   reader.expect(size == sizeof(Real), "numbers of another size: float and double worlds do not mix");
   reader.expect(dim == Dim, "another number of dimensions");
   reader.expect(of <= Of::fast_motion, "a snapshot of nothing known");
-  if (!reader.ok()) return reader.error();
+  if (!reader.ok()) return corrupt(reader.error());
   std::uint64_t sum = 0;
   ByteReader(bytes.last(sizeof sum))(sum);
-  if (sum != checksum(body)) return "byte " + std::to_string(body.size()) + ": the checksum does not fit the bytes";
+  if (sum != checksum(body))
+    return corrupt("byte " + std::to_string(body.size()) + ": the checksum does not fit the bytes");
   World<Real, Dim> found;
   found.force_laws = world.force_laws;
   found.torque_laws = world.torque_laws;
   SnapshotAccess::transfer_world(reader, found);
   if (reader.ok()) read_motion(reader, of, found);
-  return reader.error();
+  return corrupt(reader.error());
 }
 
 }  // namespace
@@ -223,7 +230,7 @@ Bytes snapshot(const World<Real, Dim>& world, const FastMotion<Real, Dim>& motio
 }
 
 template <class Real, int Dim>
-std::string restore(std::span<const std::byte> bytes, World<Real, Dim>& world) {
+Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world) {
   return read(bytes, world, [&](ByteReader& reader, Of of, World<Real, Dim>& found) {
     if (of == Of::world) reader.expect_end();
     if (reader.ok()) world = std::move(found);
@@ -233,7 +240,7 @@ std::string restore(std::span<const std::byte> bytes, World<Real, Dim>& world) {
 namespace {
 
 template <class Real, int Dim, class Motion>
-std::string restore_both(std::span<const std::byte> bytes, World<Real, Dim>& world, Motion& motion, Of expected) {
+Status restore_both(std::span<const std::byte> bytes, World<Real, Dim>& world, Motion& motion, Of expected) {
   return read(bytes, world, [&](ByteReader& reader, Of of, World<Real, Dim>& found) {
     if (of != expected) return reader.fail("a snapshot without this motion");
     std::swap(world, found);
@@ -246,11 +253,11 @@ std::string restore_both(std::span<const std::byte> bytes, World<Real, Dim>& wor
 }  // namespace
 
 template <class Real, int Dim>
-std::string restore(std::span<const std::byte> bytes, World<Real, Dim>& world, ExactMotion<Real, Dim>& motion) {
+Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, ExactMotion<Real, Dim>& motion) {
   return restore_both(bytes, world, motion, Of::exact_motion);
 }
 template <class Real, int Dim>
-std::string restore(std::span<const std::byte> bytes, World<Real, Dim>& world, FastMotion<Real, Dim>& motion) {
+Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, FastMotion<Real, Dim>& motion) {
   return restore_both(bytes, world, motion, Of::fast_motion);
 }
 
@@ -266,17 +273,17 @@ template Bytes snapshot(const World<float, 2>&, const FastMotion<float, 2>&);
 template Bytes snapshot(const World<float, 3>&, const FastMotion<float, 3>&);
 template Bytes snapshot(const World<double, 2>&, const FastMotion<double, 2>&);
 template Bytes snapshot(const World<double, 3>&, const FastMotion<double, 3>&);
-template std::string restore(std::span<const std::byte>, World<float, 2>&);
-template std::string restore(std::span<const std::byte>, World<float, 3>&);
-template std::string restore(std::span<const std::byte>, World<double, 2>&);
-template std::string restore(std::span<const std::byte>, World<double, 3>&);
-template std::string restore(std::span<const std::byte>, World<float, 2>&, ExactMotion<float, 2>&);
-template std::string restore(std::span<const std::byte>, World<float, 3>&, ExactMotion<float, 3>&);
-template std::string restore(std::span<const std::byte>, World<double, 2>&, ExactMotion<double, 2>&);
-template std::string restore(std::span<const std::byte>, World<double, 3>&, ExactMotion<double, 3>&);
-template std::string restore(std::span<const std::byte>, World<float, 2>&, FastMotion<float, 2>&);
-template std::string restore(std::span<const std::byte>, World<float, 3>&, FastMotion<float, 3>&);
-template std::string restore(std::span<const std::byte>, World<double, 2>&, FastMotion<double, 2>&);
-template std::string restore(std::span<const std::byte>, World<double, 3>&, FastMotion<double, 3>&);
+template Status restore(std::span<const std::byte>, World<float, 2>&);
+template Status restore(std::span<const std::byte>, World<float, 3>&);
+template Status restore(std::span<const std::byte>, World<double, 2>&);
+template Status restore(std::span<const std::byte>, World<double, 3>&);
+template Status restore(std::span<const std::byte>, World<float, 2>&, ExactMotion<float, 2>&);
+template Status restore(std::span<const std::byte>, World<float, 3>&, ExactMotion<float, 3>&);
+template Status restore(std::span<const std::byte>, World<double, 2>&, ExactMotion<double, 2>&);
+template Status restore(std::span<const std::byte>, World<double, 3>&, ExactMotion<double, 3>&);
+template Status restore(std::span<const std::byte>, World<float, 2>&, FastMotion<float, 2>&);
+template Status restore(std::span<const std::byte>, World<float, 3>&, FastMotion<float, 3>&);
+template Status restore(std::span<const std::byte>, World<double, 2>&, FastMotion<double, 2>&);
+template Status restore(std::span<const std::byte>, World<double, 3>&, FastMotion<double, 3>&);
 
 }  // namespace continuo

@@ -4,7 +4,7 @@
 //   const Bytes bytes = snapshot(world, motion);
 //   ...
 //   World<double, 3> again;  ExactMotion motion_again(again);
-//   if (const std::string error = restore(bytes, again, motion_again); !error.empty()) ...
+//   if (const Status status = restore(bytes, again, motion_again); !status) std::cerr << describe(status);
 //
 // The bytes are the same on every machine. Not in them: options of motions and forces of the user's own, which are
 // code; the world and the motion that are restored must have been given the same. What is wrong with bytes is said with
@@ -12,12 +12,12 @@
 #pragma once
 #include <cstddef>
 #include <span>
-#include <string>
 
 #include <continuo/bodies/exact_motion.hpp>
 #include <continuo/bodies/fast_motion.hpp>
 #include <continuo/bodies/support/bytes.hpp>
 #include <continuo/bodies/world.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo {
 
@@ -33,11 +33,11 @@ Bytes snapshot(const World<Real, Dim>& world, const FastMotion<Real, Dim>& motio
 
 /// Of a snapshot with a motion or without.
 template <class Real, int Dim>
-std::string restore(std::span<const std::byte> bytes, World<Real, Dim>& world);
+Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world);
 /// The motion must be of this world, and the snapshot of such a motion.
 template <class Real, int Dim>
-std::string restore(std::span<const std::byte> bytes, World<Real, Dim>& world, ExactMotion<Real, Dim>& motion);
+Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, ExactMotion<Real, Dim>& motion);
 template <class Real, int Dim>
-std::string restore(std::span<const std::byte> bytes, World<Real, Dim>& world, FastMotion<Real, Dim>& motion);
+Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, FastMotion<Real, Dim>& motion);
 
 }  // namespace continuo

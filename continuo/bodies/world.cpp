@@ -23,40 +23,39 @@ bool is_part(const Real& value) {
 }
 
 template <class Real, int Dim>
-std::string fault_of(const BodyDefinition<Real, Dim>& definition) {
+Status check(const BodyDefinition<Real, Dim>& definition) {
   const auto* sphere = std::get_if<Sphere<Real>>(&definition.shape);
-  if (sphere && !is_positive(sphere->radius)) return "the radius must be greater than 0, and finite";
-  if (!is_finite(definition.position)) return "the position must be finite";
-  if (!is_finite(definition.velocity)) return "the velocity must be finite";
-  if (!is_finite(definition.spin)) return "the spin must be finite";
+  if (sphere && !is_positive(sphere->radius)) return invalid_input("the radius must be greater than 0, and finite");
+  if (!is_finite(definition.position)) return invalid_input("the position must be finite");
+  if (!is_finite(definition.velocity)) return invalid_input("the velocity must be finite");
+  if (!is_finite(definition.spin)) return invalid_input("the spin must be finite");
   if (!is_finite(definition.orientation) || (Dim == 3 && !is_positive(length(definition.orientation))))
-    return "the orientation must be finite, and in space a quaternion that is not 0";
+    return invalid_input("the orientation must be finite, and in space a quaternion that is not 0");
   if (definition.mass ? !is_positive(*definition.mass) : !is_positive(definition.density))
-    return "mass and density must be greater than 0, and finite; `fixed` is for bodies that never move";
-  if (definition.group >= 32) return "groups are numbered from 0 to 31";
-  return fault_of(definition.material);
+    return invalid_input("mass and density must be greater than 0, and finite; `fixed` is for bodies that never move");
+  if (definition.group >= 32) return invalid_input("groups are numbered from 0 to 31");
+  return check(definition.material);
 }
 
 }  // namespace
 
 template <class Real>
-std::string fault_of(const Material<Real>& material) {
+Status check(const Material<Real>& material) {
   if (!(material.restitution >= Real(0) && material.restitution <= Real(1)))
-    return "restitution must be between 0 (no bounce) and 1 (no loss)";
-  if (!is_part(material.friction)) return "friction must be 0 or more, and finite";
-  if (!is_part(material.rolling_resistance)) return "rolling_resistance must be 0 or more, and finite";
+    return invalid_input("restitution must be between 0 (no bounce) and 1 (no loss)");
+  if (!is_part(material.friction)) return invalid_input("friction must be 0 or more, and finite");
+  if (!is_part(material.rolling_resistance)) return invalid_input("rolling_resistance must be 0 or more, and finite");
   return {};
 }
 
 template <class Real, int Dim>
-typename World<Real, Dim>::Added World<Real, Dim>::add(const BodyDefinition<Real, Dim>& definition) {
-  if (std::string fault = fault_of(definition); !fault.empty()) return {.handle = {}, .error = std::move(fault)};
+Result<BodyHandle> World<Real, Dim>::add(const BodyDefinition<Real, Dim>& definition) {
+  if (Status fault = check(definition); !fault) return fault;
   const auto& sphere = std::get<Sphere<Real>>(definition.shape);
   const Real m = definition.mass ? *definition.mass : definition.density * volume<Real, Dim>(sphere);
   const Real j = inertia<Real, Dim>(sphere, m);
   if (!is_positive(m) || !is_positive(j) || !is_positive(1 / m) || !is_positive(1 / j))
-    return {.handle = {},
-            .error = "mass or moment of inertia is beyond the numbers: the body is too small or too large"};
+    return invalid_input("mass or moment of inertia is beyond the numbers: the body is too small or too large");
 
   std::uint32_t slot = static_cast<std::uint32_t>(slots_.size());
   if (free_slots_.empty()) {
@@ -80,7 +79,7 @@ typename World<Real, Dim>::Added World<Real, Dim>::add(const BodyDefinition<Real
   material.push_back(definition.material);
   group_.push_back(definition.group);
   slot_of_.push_back(slot);
-  return {.handle = {slot, slots_[slot].generation}, .error = {}};
+  return BodyHandle{slot, slots_[slot].generation};
 }
 
 template <class Real, int Dim>
@@ -115,23 +114,23 @@ World<Real, Dim> World<Real, Dim>::part(std::span<const std::uint32_t> bodies) c
 }
 
 template <class Real, int Dim>
-std::string World<Real, Dim>::add_wall(Wall<Real, Dim> wall) {
+Status World<Real, Dim>::add_wall(Wall<Real, Dim> wall) {
   const Real size_of_normal = length(wall.normal);
-  if (!is_positive(size_of_normal)) return "the normal of a wall must be finite and not 0";
-  if (!(wall.offset - wall.offset == Real(0))) return "the offset of a wall must be finite";
-  if (std::string fault = fault_of(wall.material); !fault.empty()) return fault;
+  if (!is_positive(size_of_normal)) return invalid_input("the normal of a wall must be finite and not 0");
+  if (!(wall.offset - wall.offset == Real(0))) return invalid_input("the offset of a wall must be finite");
+  if (Status fault = check(wall.material); !fault) return fault;
   wall.normal *= 1 / size_of_normal;
   walls_.push_back(wall);
   return {};
 }
 
 template <class Real, int Dim>
-std::string World<Real, Dim>::add_container(const V& lower, const V& upper, const Material<Real>& of_walls) {
+Status World<Real, Dim>::add_container(const V& lower, const V& upper, const Material<Real>& of_walls) {
   for (std::size_t axis = 0; axis < lower.size(); ++axis)
     if (!(lower[axis] < upper[axis]))
-      return "the lower corner of a container must be below the upper one on every axis";
-  if (!is_finite(lower) || !is_finite(upper)) return "the corners of a container must be finite";
-  if (std::string fault = fault_of(of_walls); !fault.empty()) return fault;
+      return invalid_input("the lower corner of a container must be below the upper one on every axis");
+  if (!is_finite(lower) || !is_finite(upper)) return invalid_input("the corners of a container must be finite");
+  if (Status fault = check(of_walls); !fault) return fault;
   for (std::size_t axis = 0; axis < lower.size(); ++axis) {
     V up, down;
     up[axis] = Real(1);
@@ -172,8 +171,8 @@ Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world) {
   return sum;
 }
 
-template std::string fault_of(const Material<float>&);
-template std::string fault_of(const Material<double>&);
+template Status check(const Material<float>&);
+template Status check(const Material<double>&);
 template <class Real, int Dim>
 std::uint64_t state_hash(const World<Real, Dim>& world) {
   std::uint64_t hash = 14695981039346656037u;

@@ -6,9 +6,9 @@
 //   world.gravity = {{0, 0, -9.81}};
 //   world.add_wall({.normal = {{0, 0, 1}}});                                       // the floor z = 0
 //   const auto ball = world.add({.position = {{0, 0, 10}}, .material = {.restitution = 1}});
-//   if (!ball) std::cerr << ball.error;
+//   if (!ball) std::cerr << describe(ball.status());
 //   ExactMotion motion(world);  motion.advance_to(100);
-//   world.position(ball.handle)
+//   world.position_of(*ball)
 #pragma once
 #include <array>
 #include <cstddef>
@@ -17,11 +17,11 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <string>
 #include <variant>
 #include <vector>
 
 #include <continuo/bodies/body.hpp>
+#include <continuo/status/result.hpp>
 
 namespace continuo {
 
@@ -77,9 +77,9 @@ template <class Real, int Dim>
 using ForceLaw = std::function<void(const World<Real, Dim>& world, Real t, std::span<const Vector<Real, Dim>> x,
                                     std::span<const Vector<Real, Dim>> v, std::span<Vector<Real, Dim>> force)>;
 
-/// What is wrong with it; empty where nothing is.
+/// Whether a surface can have these values.
 template <class Real>
-std::string fault_of(const Material<Real>& material);
+Status check(const Material<Real>& material);
 
 /// How bodies are moved: of body i, x[i], v[i] and so on.
 template <class Real, int Dim>
@@ -112,13 +112,8 @@ class World {
   CombineRule combine_rule{};  // of the materials of any two surfaces
   Real time = Real(0);
 
-  struct Added {
-    BodyHandle handle{};
-    std::string error{};  // what is wrong with the definition and how to mend it; empty where it was added
-    explicit operator bool() const { return error.empty(); }
-  };
-  /// Refuses what has no size or mass or is not finite. Amortised O(1).
-  Added add(const BodyDefinition<Real, Dim>& definition);
+  /// Refuses a body without size or mass, or that is not finite, and says how to mend it. Amortised O(1).
+  Result<BodyHandle> add(const BodyDefinition<Real, Dim>& definition);
   /// False where it was not there. O(1): the last body takes its place.
   bool remove(BodyHandle handle);
   bool contains(BodyHandle handle) const {
@@ -133,9 +128,9 @@ class World {
   World part(std::span<const std::uint32_t> bodies) const;
 
   /// Empty where it was added: the normal must be finite and not zero; it is made a unit.
-  std::string add_wall(Wall<Real, Dim> wall);
+  Status add_wall(Wall<Real, Dim> wall);
   /// The inside of a box with its faces along the axes.
-  std::string add_container(const V& lower, const V& upper, const Material<Real>& material = {});
+  Status add_container(const V& lower, const V& upper, const Material<Real>& material = {});
   std::span<const Wall<Real, Dim>> walls() const { return walls_; }
 
   /// Bodies of groups a and b pass through each other from here on.

@@ -21,6 +21,8 @@ std::string_view to_string(Ending ending) {
       return "nonlinear solve failed";
     case Ending::events_accumulate:
       return "events accumulate";
+    case Ending::cannot_continue:
+      return "cannot continue";
     case Ending::interrupted:
       return "interrupted";
     case Ending::invalid_input:

@@ -4,7 +4,6 @@
 //
 //   if (const continuo::Status status = motion.advance_to(10); !status) std::cerr << describe(status) << '\n';
 #pragma once
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,7 +11,7 @@
 namespace continuo {
 
 /// How a run or any other operation ended.
-enum class Ending : std::uint8_t {
+enum class Ending {        // recordings hold the number: new ones come last
   reached_end,             ///< All that was asked for was done.
   stopped_by_event,        ///< An event ended the run as the model says; a success.
   step_too_small,          ///< The step that the tolerance needs is below what rounding can resolve.
@@ -23,6 +22,7 @@ enum class Ending : std::uint8_t {
   events_accumulate,       ///< The times of events tend to a limit that is not passed.
   interrupted,             ///< Somebody asked for the end; what was computed so far is kept.
   invalid_input,           ///< What was given cannot be meant; nothing was done.
+  cannot_continue,         ///< Nothing further can be computed from here; the message names the reason.
   unreadable,              ///< A file could not be read, or its content is corrupt.
   unwritable,              ///< A file could not be written; an older one stays.
 };
@@ -51,6 +51,11 @@ struct [[nodiscard]] Status {
 inline Status invalid_input(std::string message, std::string place = {}) {
   if (message.empty()) return {};
   return {Ending::invalid_input, std::move(message), std::move(place)};
+}
+
+/// The first of two that failed; a success where both succeeded.
+inline Status first_failure(Status first, Status second) {
+  return first ? std::move(second) : std::move(first);
 }
 
 /// "PLACE: MESSAGE"; the ending's name where there is no message.

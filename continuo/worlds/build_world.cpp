@@ -105,7 +105,7 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
     for (std::size_t k = 0; k < definition.orientation.size(); ++k) definition.orientation[k] = *state++;
     for (std::size_t k = 0; k < definition.spin.size(); ++k) definition.spin[k] = *state++;
     const auto added = world.add(definition);
-    if (!added && built.error.empty()) built.error = "`" + body.name + "`: " + added.error;
+    if (!added && built.status) built.status = invalid_input("`" + body.name + "`: " + added.status().message);
     if (!added) return built;
   }
   for (const auto& wall : text.walls) {
@@ -116,8 +116,8 @@ BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> v
     made.thin = wall.thin;
     // A wall is written where normal . x = offset, of any length of the normal.
     made.offset /= length(made.normal);
-    if (std::string error = world.add_wall(made); !error.empty()) {
-      built.error = "`" + wall.name + "`: " + error;
+    if (const Status status = world.add_wall(made); !status) {
+      built.status = invalid_input("`" + wall.name + "`: " + status.message);
       return built;
     }
   }

@@ -13,7 +13,7 @@ namespace continuo::worlds {
 template <int Dim>
 struct BuiltWorld {
   World<double, Dim> world;
-  std::string error;  // what a body or wall cannot be
+  Status status{};  // fails where a body or wall cannot be
 };
 
 /// Where bodies are and how they move comes from the states in `variables`. Bodies stand in the description's order.

@@ -20,7 +20,7 @@ void WorldEvents::find_watched() {
 
 /// Back to just before the first contact of a body that conditions read, or to that contact from just before it: in
 /// between they are smooth. Where contacts are many this would take more time than it is worth.
-std::string WorldEvents::look_at_first_contact(WorldRun& world, const Snapshot& saved) {
+Status WorldEvents::look_at_first_contact(WorldRun& world, const Snapshot& saved) {
   constexpr std::size_t many = 16;
   const double just = 1e-9 * look_;
   double first = world.time();
@@ -31,13 +31,13 @@ std::string WorldEvents::look_at_first_contact(WorldRun& world, const Snapshot& 
     if (contact.time > saved.time) first = std::min(first, contact.time);
   }
   if (!(first < world.time()) || count > many) return {};
-  std::string error = world.restore(saved);
-  return error.empty() ? world.advance_to(first - just > saved.time ? first - just : first) : error;
+  Status status = world.restore(saved);
+  return status ? world.advance_to(first - just > saved.time ? first - just : first) : status;
 }
 
 /// A condition that comes towards 0 at the last look and goes away from it now has turned in between. Whether it came
 /// through is seen where it turned; if so, the world is left there.
-std::string WorldEvents::look_where_guards_turn(WorldRun& world, const Snapshot& saved, const X& before) {
+Status WorldEvents::look_where_guards_turn(WorldRun& world, const Snapshot& saved, const X& before) {
   const double from = saved.time, to = world.time();
   for (std::size_t i = 0; i < events_.size(); ++i) {
     if (!events_.is_guard(i) || !events_.active(system_, i) || !(before_[i] * values_[i] > 0)) continue;
@@ -46,14 +46,14 @@ std::string WorldEvents::look_where_guards_turn(WorldRun& world, const Snapshot&
         sign * slope(i, from, before, to - from) < 0 && sign * slope(i, to, world.state(), to - from) > 0;
     if (!turns) continue;
     const Snapshot end = world.snapshot();
-    std::string error;
+    Status status;
     const auto value_at = [&](double t) {
-      if (error.empty()) error = world.restore(saved);
-      if (error.empty()) error = world.advance_to(t);
+      if (status) status = world.restore(saved);
+      if (status) status = world.advance_to(t);
       read_guards(world, values_);
       return sign * values_[i];
     };
-    const auto is_through = [&] { return !error.empty() || any_passed() || !(sign * values_[i] > 0); };
+    const auto is_through = [&] { return !status || any_passed() || !(sign * values_[i] > 0); };
     // Its least value, by the golden section, to half of the digits: nearer by it changes no more.
     constexpr double part = 0.381966011250105;
     double low = from, high = to, a = low + part * (high - low), b = high - part * (high - low);
@@ -65,8 +65,8 @@ std::string WorldEvents::look_where_guards_turn(WorldRun& world, const Snapshot&
         low = a, a = b, at_a = at_b, b = high - part * (high - low), at_b = value_at(b);
       }
     }
-    if (is_through()) return error;
-    if (error = world.restore(end); !error.empty()) return error;
+    if (is_through()) return status;
+    if (status = world.restore(end); !status) return status;
     read_guards(world, values_);
   }
   return {};

@@ -35,10 +35,10 @@ PreparedWorld prepare_world(const std::shared_ptr<const model::ModelProgram>& pr
   WorldOptions options = options_of(*planned);
   options.most_contacts = contacts_of_one_look;
   options.interrupt = experiment.interrupt;
-  StartedWorld started = start_world(program, options, planned->variables);
-  if (!started.run)
-    problems.push_back(model::error("E324", model.world->span, "the world cannot begin", started.error));
-  return {std::move(planned), std::move(started.run)};
+  auto started = start_world(program, options, planned->variables);
+  if (!started)
+    problems.push_back(model::error("E324", model.world->span, "the world cannot begin", started.status().message));
+  return {std::move(planned), started ? *std::move(started) : nullptr};
 }
 
 }  // namespace continuo::worlds

@@ -63,24 +63,24 @@ class Simulation {
     for (; next_row() <= from; ++next_output_) {
     }
     while (next_sample_ < samples_.size() && samples_[next_sample_] <= from) ++next_sample_;
-    if (std::string error = events_.begin(*world_, sink()); !error.empty()) return fail(std::move(error));
+    if (Status status = events_.begin(*world_, sink()); !status) return fail(std::move(status));
     end_where_stopped();
     stand();
   }
 
-  /// Empty, or why that checkpoint is none of this model.
-  std::string resume(const RunRecording& recording, std::size_t checkpoint) {
+  /// Fails where that checkpoint is none of this model.
+  Status resume(const RunRecording& recording, std::size_t checkpoint) {
     const Checkpoint& at = recording.checkpoints[checkpoint];
     if (at.stops.size() != events_.stops().size() || at.next_sample > samples_.size() ||
         at.world.mode >= program_->model.modes.size())
-      return "it stands where this model cannot";
-    if (std::string fault = world_->fault_of(at.world); !fault.empty()) return fault;
+      return invalid_input("it stands where this model cannot");
+    if (Status fault = world_->check(at.world); !fault) return fault;
     for (std::size_t i = 0, k = 0; i < at.notes; ++i) {
       note(recording.notes[i]);
       for (; log_ && k <= checkpoint && recording.checkpoints[k].notes == i + 1; ++k)
         log_->add(recording.checkpoints[k]);
     }
-    if (std::string error = world_->restore(at.world); !error.empty()) return error;
+    if (Status status = world_->restore(at.world); !status) return status;
     next_output_ = static_cast<std::size_t>(at.next_output);
     next_sample_ = static_cast<std::size_t>(at.next_sample);
     contacts_ = static_cast<std::size_t>(at.contacts);
@@ -142,9 +142,9 @@ class Simulation {
 
   bool is_interrupted() const { return experiment_.interrupt != nullptr && experiment_.interrupt->load(); }
 
-  void fail(std::string error) {
-    error_ = std::move(error);
-    end(Ending::invalid_input);
+  void fail(Status status) {
+    error_ = std::move(status.message);
+    end(status.ending);
     run_.outcome.hint = error_;
   }
 
@@ -157,12 +157,12 @@ class Simulation {
     double to = std::min({end_time_, next_row(), events_.next(*world_)});
     if (next_sample_ < samples_.size()) to = std::min(to, samples_[next_sample_]);
     if (!program_->always.empty() && in_steps()) to = std::min(to, world_->time() + world_->step());
-    std::string error = events_.advance(*world_, to);
+    Status status = events_.advance(*world_, to);
     note_contacts();
     arrive();
-    if (!error.empty() && is_interrupted()) return end(Ending::interrupted);
-    if (error.empty()) error = events_.happen(*world_, sink());
-    if (!error.empty()) return fail(std::move(error));
+    if (!status && is_interrupted()) return end(Ending::interrupted);
+    if (status) status = events_.happen(*world_, sink());
+    if (!status) return fail(std::move(status));
     end_where_stopped();
     if (experiment_.progress) experiment_.progress(world_->time());
   }
@@ -279,8 +279,8 @@ model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& 
   }
   Simulation simulation(program, experiment, std::move(*prepared.plan), std::move(prepared.world),
                         look_of(*as_recorded), log);
-  if (const std::string error = simulation.resume(recording, checkpoint); !error.empty()) {
-    simulated.diagnostics.push_back(does_not_fit(program->model, error));
+  if (const Status status = simulation.resume(recording, checkpoint); !status) {
+    simulated.diagnostics.push_back(does_not_fit(program->model, status.message));
     return simulated;
   }
   return simulation.go();

@@ -109,9 +109,9 @@ class Follower {
         stretch_(program->model, plan_.variables) {}
 
   /// Empty, or what went wrong.
-  std::string follow() {
+  Status follow() {
     const auto nobody = [](const WorldHappening&) {};
-    if (std::string error = events_.begin(world_, nobody); !error.empty()) return error;
+    if (Status status = events_.begin(world_, nobody); !status) return status;
     stretch_.begin(world_.time(), world_.state());
     while (true) {
       const double wanted = next_time();
@@ -127,10 +127,10 @@ class Follower {
       }
       double to = std::min(wanted, events_.next(world_));
       if (world_.step() > 0) to = std::min(to, world_.time() + world_.step() / 2);  // one step, however t is rounded
-      if (std::string error = events_.advance(world_, to); !error.empty()) return error;
+      if (Status status = events_.advance(world_, to); !status) return status;
       stretch_.end(world_.time(), world_.state(), world_.contacts());
       keep_rows_of_stretch();
-      if (std::string error = events_.happen(world_, nobody); !error.empty()) return error;
+      if (Status status = events_.happen(world_, nobody); !status) return status;
       stretch_.begin(world_.time(), world_.state());
       if (request_.experiment.progress) request_.experiment.progress(world_.time());
     }
@@ -171,11 +171,11 @@ WorldAlong world_along(const std::shared_ptr<const model::ModelProgram>& program
   PreparedWorld prepared = prepare_world(program, request.experiment, made.diagnostics, request.initial);
   if (!prepared.world) return made;
   made.variables = prepared.plan->variables;
-  const std::string error = Follower(program, request, prepared, made).follow();
+  const Status status = Follower(program, request, prepared, made).follow();
   made.outcome.t = prepared.world->time();
-  if (!error.empty()) {
-    made.outcome.ending = Ending::invalid_input;
-    made.outcome.hint = error;
+  if (!status) {
+    made.outcome.ending = status.ending;
+    made.outcome.hint = status.message;
   }
   return made;
 }

@@ -46,11 +46,11 @@ WorldEvents::WorldEvents(const std::shared_ptr<const model::ModelProgram>& progr
   find_watched();
 }
 
-std::string WorldEvents::begin(WorldRun& world, const Sink& sink) {
+Status WorldEvents::begin(WorldRun& world, const Sink& sink) {
   place_guards(world);
-  std::string error = happen_rounds(world, take_due(world.time() + slack_of(world), true), sink);
+  Status status = happen_rounds(world, take_due(world.time() + slack_of(world), true), sink);
   if (any_guard_) read_guards(world, before_);
-  return error;
+  return status;
 }
 
 /// Guards without a past.
@@ -72,20 +72,20 @@ double WorldEvents::next(const WorldRun& world) const {
   return any_guard_ ? std::min(next_scheduled(), look) : next_scheduled();
 }
 
-std::string WorldEvents::advance(WorldRun& world, double to) {
+Status WorldEvents::advance(WorldRun& world, double to) {
   if (!any_guard_ || world.step() > 0) {
-    std::string error = world.advance_to(to);
-    if (error.empty() && any_guard_) read_guards(world, values_);
-    return error;
+    Status status = world.advance_to(to);
+    if (status && any_guard_) read_guards(world, values_);
+    return status;
   }
   const Snapshot saved = world.snapshot();
   const X state = world.state();
-  std::string error = world.advance_to(to);
-  if (error.empty()) error = look_at_first_contact(world, saved);
-  if (!error.empty()) return error;
+  Status status = world.advance_to(to);
+  if (status) status = look_at_first_contact(world, saved);
+  if (!status) return status;
   read_guards(world, values_);
-  if (!any_passed()) error = look_where_guards_turn(world, saved, state);
-  return error.empty() && any_passed() ? go_back_to_event(world, saved) : error;
+  if (!any_passed()) status = look_where_guards_turn(world, saved, state);
+  return status && any_passed() ? go_back_to_event(world, saved) : status;
 }
 
 void WorldEvents::read_guards(WorldRun& world, std::vector<double>& values) {
@@ -101,31 +101,31 @@ bool WorldEvents::any_passed() const {
 }
 
 /// The first instant at which a guard has passed, on its far side.
-std::string WorldEvents::go_back_to_event(WorldRun& world, const Snapshot& saved) {
+Status WorldEvents::go_back_to_event(WorldRun& world, const Snapshot& saved) {
   double low = saved.time, high = world.time();
   const auto move_to = [&](double t) {
-    std::string error = world.restore(saved);
-    if (error.empty()) error = world.advance_to(t);
-    if (error.empty()) read_guards(world, values_);
-    return error;
+    Status status = world.restore(saved);
+    if (status) status = world.advance_to(t);
+    if (status) read_guards(world, values_);
+    return status;
   };
   const double least = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
   while (high - low > least) {
     const double middle = low + (high - low) / 2;
-    if (std::string error = move_to(middle); !error.empty()) return error;
+    if (Status status = move_to(middle); !status) return status;
     (any_passed() ? high : low) = middle;
   }
   return move_to(high);
 }
 
-std::string WorldEvents::happen(WorldRun& world, const Sink& sink) {
+Status WorldEvents::happen(WorldRun& world, const Sink& sink) {
   const double until = world.time() + slack_of(world);
   std::vector<std::size_t> fired = take_passed();
   do {
     const std::vector<std::size_t> due = take_due(until, false);
     fired.insert(fired.end(), due.begin(), due.end());
     std::ranges::sort(fired);
-    if (std::string error = happen_rounds(world, std::move(fired), sink); !error.empty()) return error;
+    if (Status status = happen_rounds(world, std::move(fired), sink); !status) return status;
     fired.clear();
   } while (!stopped_ && next_scheduled() <= until);
   if (any_guard_) read_guards(world, before_);
@@ -160,19 +160,22 @@ std::vector<std::size_t> WorldEvents::take_due(double until, bool inclusive) {
   return due;
 }
 
-std::string WorldEvents::happen_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink) {
+Status WorldEvents::happen_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink) {
   for (std::size_t round = 0; !fired.empty() && !stopped_; ++round) {
     if (round == most_rounds)
-      return fmt::format("the events of t = {:.6g} set each other off without end: `{}` is among them", world.time(),
-                         events_.name(fired.front()));
-    fired = happen_round(world, fired, sink);
+      return {.ending = Ending::events_accumulate,
+              .message = fmt::format("the events of t = {:.6g} set each other off without end: `{}` is among them",
+                                     world.time(), events_.name(fired.front()))};
+    auto next = happen_round(world, fired, sink);
+    if (!next) return next.status();
+    fired = *std::move(next);
   }
   return {};
 }
 
 /// Those that fire in the next round.
-std::vector<std::size_t> WorldEvents::happen_round(WorldRun& world, const std::vector<std::size_t>& fired,
-                                                   const Sink& sink) {
+Result<std::vector<std::size_t>> WorldEvents::happen_round(WorldRun& world, const std::vector<std::size_t>& fired,
+                                                           const Sink& sink) {
   const X before = world.state();
   X after = before;
   const double t = world.time();
@@ -185,7 +188,8 @@ std::vector<std::size_t> WorldEvents::happen_round(WorldRun& world, const std::v
   }
   for (const model::TableInput& input : program_->step_inputs) {
     const double value = input.table.value(t);
-    if (world.variables()[input.variable] != value) world.set(input.variable, value);
+    if (world.variables()[input.variable] == value) continue;
+    if (Status status = world.set(input.variable, value); !status) return status;
   }
   if (system_.mode() != world.mode()) world.go(system_.mode());
   if (after != before) world.set_state(after);

@@ -5,7 +5,7 @@
 //
 //   WorldEvents events(program, plan.variables, plan.from, look);
 //   events.begin(world, sink);
-//   error = events.advance(world, std::min(to, events.next(world)));  ...  events.happen(world, sink);
+//   status = events.advance(world, std::min(to, events.next(world)));  ...  events.happen(world, sink);
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -44,14 +44,14 @@ class WorldEvents {
               double look);
 
   /// What happens at the very beginning. Empty, or why the run cannot go on; so with `happen`.
-  std::string begin(WorldRun& world, const Sink& sink);
+  Status begin(WorldRun& world, const Sink& sink);
   /// How far it may be advanced at once.
   double next(const WorldRun& world) const;
   /// To the first end of a step that is not before `to`; to the first instant of an event where one comes before.
-  std::string advance(WorldRun& world, double to);
+  Status advance(WorldRun& world, double to);
   /// What is due now, in the order of the text, each on what the one before has left; then, round by round, what these
   /// actions carry to its other side (docs/events.md).
-  std::string happen(WorldRun& world, const Sink& sink);
+  Status happen(WorldRun& world, const Sink& sink);
 
   /// A `stop` has been reached: by which event, and what it says.
   bool stopped() const { return stopped_; }
@@ -68,15 +68,16 @@ class WorldEvents {
   void place_guards(WorldRun& world);
   bool passed(std::size_t i) const;
   bool any_passed() const;
-  std::string look_at_first_contact(WorldRun& world, const Snapshot& saved);  // event_search.cpp
-  std::string look_where_guards_turn(WorldRun& world, const Snapshot& saved, const X& before);
+  Status look_at_first_contact(WorldRun& world, const Snapshot& saved);  // event_search.cpp
+  Status look_where_guards_turn(WorldRun& world, const Snapshot& saved, const X& before);
   double slope(std::size_t i, double t, const X& state, double length);
   void find_watched();
-  std::string go_back_to_event(WorldRun& world, const Snapshot& saved);
+  Status go_back_to_event(WorldRun& world, const Snapshot& saved);
   std::vector<std::size_t> take_passed();
   std::vector<std::size_t> take_due(double until, bool inclusive);
-  std::string happen_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink);
-  std::vector<std::size_t> happen_round(WorldRun& world, const std::vector<std::size_t>& fired, const Sink& sink);
+  Status happen_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink);
+  Result<std::vector<std::size_t>> happen_round(WorldRun& world, const std::vector<std::size_t>& fired,
+                                                const Sink& sink);
   void carry_over(double t, const X& state, std::vector<std::size_t>& next);
   void tell(double t, const std::vector<std::size_t>& fired, const X& before, bool changed, const Sink& sink);
 

@@ -56,9 +56,9 @@ class Moving final : public WorldRun {
   }
 
   /// Empty, or why the world cannot be as its parameters say. Bodies keep their places.
-  std::string build() {
+  Status build() {
     BuiltWorld<Dim> built = build_world<Dim>(model(), variables_);
-    if (!built.error.empty()) return built.error;
+    if (!built.status) return built.status;
     if (world_.size() > 0) {
       built.world.position = world_.position, built.world.velocity = world_.velocity;
       built.world.orientation = world_.orientation, built.world.spin = world_.spin;
@@ -74,14 +74,15 @@ class Moving final : public WorldRun {
   double time() const override { return world_.time; }
   double step() const override { return is_free() ? 0 : options_.step; }
 
-  std::string advance_to(double t) override {
+  Status advance_to(double t) override {
     contacts_.clear();
     lost_ = 0;
-    if (is_free()) return t > world_.time ? exact_advance(t) : std::string();
+    if (is_free()) return t > world_.time ? exact_advance(t) : Status{};
     // A step more only where it brings more than rounding.
     while (world_.time < t - 1e-9 * options_.step) {
-      if (options_.interrupt != nullptr && options_.interrupt->load()) return "interrupted";
-      if (std::string error = exact_ ? exact_step() : fast_step(); !error.empty()) return error;
+      if (options_.interrupt != nullptr && options_.interrupt->load())
+        return {.ending = Ending::interrupted, .message = "interrupted"};
+      if (Status status = exact_ ? exact_step() : fast_step(); !status) return status;
     }
     return {};
   }
@@ -154,7 +155,7 @@ class Moving final : public WorldRun {
     renew();
   }
 
-  std::string set(std::uint32_t variable, double value) override {
+  Status set(std::uint32_t variable, double value) override {
     const std::vector<double> before = variables_;
     const model::Layout& layout = model().layout;
     const bool is_parameter = variable >= layout.parameters && variable < layout.inputs;
@@ -171,14 +172,14 @@ class Moving final : public WorldRun {
       variables_[parameter.variable] = evaluate(model(), parameter.expression, variables_);
       coupled_.set(parameter.variable, variables_[parameter.variable]);
     }
-    std::string error = build();
-    if (!error.empty()) {
+    Status status = build();
+    if (!status) {
       variables_ = before;
       set_.pop_back();
       for (const model::Parameter& parameter : model().parameters)
         coupled_.set(parameter.variable, variables_[parameter.variable]);
     }
-    return error;
+    return status;
   }
 
   std::span<const double> variables() override {
@@ -204,26 +205,27 @@ class Moving final : public WorldRun {
             .method = options_.method,
             .step = options_.step};
   }
-  std::string fault_of(const Snapshot& saved) const override {
+  Status check(const Snapshot& saved) const override {
     World<double, Dim> found = world_;
-    if (std::string error = continuo::restore(saved.bodies, found); !error.empty()) return error;
+    if (Status status = continuo::restore(saved.bodies, found); !status) return status;
     if (found.size() != world_.size() || found.walls().size() != world_.walls().size() ||
         found.springs.size() != world_.springs.size())
-      return "it has other bodies, walls or springs";
-    if (found.time != saved.time) return "its bodies are at another time";
+      return invalid_input("it has other bodies, walls or springs");
+    if (found.time != saved.time) return invalid_input("its bodies are at another time");
     if (!std::ranges::all_of(saved.equations, [](double z) { return std::isfinite(z); }))
-      return "a state of its equations is not finite";
+      return invalid_input("a state of its equations is not finite");
     const double ahead = saved.start + static_cast<double>(saved.steps) * options_.step - saved.time;  // in its step
     const bool is_one = is_free() || std::abs(ahead - options_.step / 2) <= options_.step * 0.51;
-    return is_one ? "" : "its time is none of its steps";
+    return is_one ? Status{} : invalid_input("its time is none of its steps");
   }
-  std::string restore(const Snapshot& saved) override {
+  Status restore(const Snapshot& saved) override {
     if (saved.equations.size() != companions_.state.size() || saved.variables.size() != variables_.size())
-      return "a snapshot of another model";
-    if (saved.method != options_.method || saved.step != options_.step) return "a snapshot of another motion";
-    std::string error =
+      return invalid_input("a snapshot of another model");
+    if (saved.method != options_.method || saved.step != options_.step)
+      return invalid_input("a snapshot of another motion");
+    Status status =
         exact_ ? continuo::restore(saved.bodies, world_, *exact_) : continuo::restore(saved.bodies, world_, *fast_);
-    if (!error.empty()) return error;
+    if (!status) return status;
     companions_.state = saved.equations;
     start_ = saved.start;
     steps_ = saved.steps;
@@ -292,26 +294,26 @@ class Moving final : public WorldRun {
   /// No steps of its own: it can end anywhere.
   bool is_free() const { return options_.method == "exact" || options_.method == "dop853"; }
 
-  std::string exact_advance(double t) {
-    std::string error = exact_->advance_to(t);
+  Status exact_advance(double t) {
+    Status status = exact_->advance_to(t);
     note(*exact_);
-    return error;
+    return status;
   }
-  std::string exact_step() {
+  Status exact_step() {
     ++steps_;
     return exact_advance(start_ + static_cast<double>(steps_) * options_.step);
   }
-  std::string fast_step() {
+  Status fast_step() {
     const double from = world_.time;
-    if (std::string error = move_equations(from, from + options_.step / 2); !error.empty()) return error;
-    if (std::string error = fast_->advance(); !error.empty()) return error;
+    if (Status status = move_equations(from, from + options_.step / 2); !status) return status;
+    if (Status status = fast_->advance(); !status) return status;
     ++steps_;
     world_.time = start_ + static_cast<double>(steps_) * options_.step;  // a million steps do not drift
     note(*fast_);
     return move_equations(from + options_.step / 2, world_.time);
   }
   /// With the bodies where they are.
-  std::string move_equations(double from, double to) {
+  Status move_equations(double from, double to) {
     if (companions_.state.empty()) return {};
     using Others = std::vector<double>;
     const auto rates = [this](double t, const Others& z, Others& rate) {
@@ -323,7 +325,8 @@ class Moving final : public WorldRun {
     while (integrator.advance()) {
     }
     if (!succeeded(integrator.outcome().ending))
-      return "the equations beside the bodies: " + describe(integrator.outcome());
+      return {.ending = integrator.outcome().ending,
+              .message = "the equations beside the bodies: " + describe(integrator.outcome())};
     companions_.state = integrator.x();
     return {};
   }
@@ -371,12 +374,12 @@ class Moving final : public WorldRun {
 };
 
 template <int Dim>
-StartedWorld start(std::shared_ptr<const model::ModelProgram> program, const WorldOptions& options,
-                   std::span<const double> variables) {
+Result<std::unique_ptr<WorldRun>> start(std::shared_ptr<const model::ModelProgram> program, const WorldOptions& options,
+                                        std::span<const double> variables) {
   auto run = std::make_unique<Moving<Dim>>(std::move(program), options, variables);
-  std::string error = run->build();
-  if (!error.empty()) return {nullptr, std::move(error)};
-  return {std::move(run), {}};
+  Status status = run->build();
+  if (!status) return status;
+  return std::unique_ptr<WorldRun>(std::move(run));
 }
 
 }  // namespace
@@ -390,8 +393,8 @@ std::string WorldRun::name_of(const Contact& contact) const {
   return bodies()[contact.a].name + (contact.change == ContactChange::end ? " leaves " : " meets ") + other;
 }
 
-StartedWorld start_world(std::shared_ptr<const model::ModelProgram> program, const WorldOptions& options,
-                         std::span<const double> variables) {
+Result<std::unique_ptr<WorldRun>> start_world(std::shared_ptr<const model::ModelProgram> program,
+                                              const WorldOptions& options, std::span<const double> variables) {
   const int dimension = program->model.world->dimension;
   if (dimension == 2) return start<2>(std::move(program), options, variables);
   return start<3>(std::move(program), options, variables);

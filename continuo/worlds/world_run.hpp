@@ -3,9 +3,9 @@
 // all modes.
 //
 //   auto started = start_world(program, {.method = "exact"}, start_values(program->model));
-//   if (!started.run) std::cerr << started.error;
+//   if (!started) std::cerr << describe(started.status());
 //   WorldRun& run = *started.run;
-//   if (const std::string error = run.advance_to(1.5); !error.empty()) ...
+//   if (const Status status = run.advance_to(1.5); !status) ...
 //   for (std::size_t i = 0; i < run.bodies().size(); ++i) draw(run.position(i), run.bodies()[i].radius);
 //
 // Equations beside the bodies move with them. In the exact mode all is one system, integrated by one method. In the
@@ -28,6 +28,7 @@
 #include <continuo/language/world.hpp>
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/model_program.hpp>
+#include <continuo/status/result.hpp>
 
 namespace continuo::worlds {
 
@@ -96,9 +97,8 @@ class WorldRun {
 
   virtual int dimension() const = 0;
   virtual double time() const = 0;
-  /// Empty, or what went wrong; the world is then where it got to. With steps, to the first end of a step that is not
-  /// before t.
-  virtual std::string advance_to(double t) = 0;
+  /// Where it fails the world is where it got to. With steps, to the first end of a step that is not before t.
+  virtual Status advance_to(double t) = 0;
   /// 0 without steps.
   virtual double step() const = 0;
 
@@ -130,8 +130,8 @@ class WorldRun {
   /// Puts one body elsewhere: dragged by a hand.
   virtual void set_body(std::size_t body, const Point& position, const Point& velocity) = 0;
   /// A parameter or an input, by its place in the flat space (`Parameter::variable`); what follows from it follows.
-  /// Empty, or why the world cannot be so.
-  virtual std::string set(std::uint32_t variable, double value) = 0;
+  /// Fails where the world cannot be so; it is then as before.
+  virtual Status set(std::uint32_t variable, double value) = 0;
   /// The register file: t, states, parameters, inputs.
   virtual std::span<const double> variables() = 0;
   /// Of the equations.
@@ -139,18 +139,15 @@ class WorldRun {
   virtual void go(std::size_t mode) = 0;
 
   virtual Snapshot snapshot() const = 0;
-  /// Empty, or why this run cannot go on from it: of one that was read from a file, which may say anything.
-  virtual std::string fault_of(const Snapshot& snapshot) const = 0;
-  /// Of a run by the same method and step; empty, or what is wrong with it.
-  virtual std::string restore(const Snapshot& snapshot) = 0;
+  /// Whether this run can go on from a snapshot that was read from a file, which may say anything.
+  virtual Status check(const Snapshot& snapshot) const = 0;
+  /// Goes on from a snapshot of a run by the same method and step.
+  virtual Status restore(const Snapshot& snapshot) = 0;
 };
 
-struct StartedWorld {
-  std::unique_ptr<WorldRun> run;  // null where it cannot begin
-  std::string error;
-};
-/// `variables` is a register file as `start_values` gives it. The program must have a world.
-StartedWorld start_world(std::shared_ptr<const model::ModelProgram> program, const WorldOptions& options,
-                         std::span<const double> variables);
+/// `variables` is a register file as `start_values` gives it. The program must have a world. Fails
+/// where the world cannot begin as its values say.
+Result<std::unique_ptr<WorldRun>> start_world(std::shared_ptr<const model::ModelProgram> program,
+                                              const WorldOptions& options, std::span<const double> variables);
 
 }  // namespace continuo::worlds

@@ -19,11 +19,11 @@ TEST(ConstrainedMotion, TwoBallsOnASpringBounce) {
   World<double, 3> world;
   const auto a = world.add({.position = {{-1.5, 2, 0}}, .mass = 2, .material = elastic});
   const auto b = world.add({.position = {{1.5, 2, 0}}, .mass = 2, .material = elastic});
-  world.springs.push_back({.a = a.handle, .b = b.handle, .stiffness = 9});
+  world.springs.push_back({.a = *a, .b = *b, .stiffness = 9});
   const double bounce = std::acos(1.0 / 3) / 3;  // omega = sqrt(2 * 9 / 2)
   ExactMotion motion(world, {.contact_events = 100});
   for (int k = 1; k <= 10; ++k) {
-    ASSERT_EQ(motion.advance_to(2 * k * bounce), "");
+    ASSERT_TRUE(motion.advance_to(2 * k * bounce));
     ASSERT_EQ(motion.contact_events().size(), 1u);
     EXPECT_NEAR(motion.contact_events()[0].time, (2 * k - 1) * bounce, 1e-8);
     // Twice the reduced mass, 1, times the speed 3 sqrt(9 - 1).
@@ -37,10 +37,10 @@ TEST(ConstrainedMotion, AFallWithDragHitsWhenItShould) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
   world.drag.linear = 1;
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   ASSERT_TRUE(world.add({.position = {{0, 20.5}}, .mass = 2, .material = {.restitution = 0.5, .friction = 0}}));
   ExactMotion motion(world, {.contact_events = 1});
-  ASSERT_EQ(motion.advance_to(3), "");
+  ASSERT_TRUE(motion.advance_to(3));
   ASSERT_EQ(motion.contact_events().size(), 1u);
   const double k = 0.5, t = motion.contact_events()[0].time;
   const double fallen = 10 * t / k - 10 * (1 - std::exp(-k * t)) / (k * k), speed = 10 * (1 - std::exp(-k * t)) / k;
@@ -53,7 +53,7 @@ TEST(ConstrainedMotion, AFallWithDragHitsWhenItShould) {
 TEST(ConstrainedMotion, AgreesWithTheMotionOnParabolas) {
   World<double, 3> world;
   world.gravity = {{0, 0, -5}};
-  ASSERT_EQ(world.add_container({}, {{5, 5, 5}}, elastic), "");
+  ASSERT_TRUE(world.add_container({}, {{5, 5, 5}}, elastic));
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int i = 0; i < 27; ++i)
@@ -66,8 +66,8 @@ TEST(ConstrainedMotion, AgreesWithTheMotionOnParabolas) {
   World<double, 3> forced = world;
   forced.force_laws.emplace_back([](const auto&, double, auto, auto, auto) {});
   ExactMotion on_parabolas(world), by_steps(forced);
-  ASSERT_EQ(on_parabolas.advance_to(1), "");
-  ASSERT_EQ(by_steps.advance_to(1), "");
+  ASSERT_TRUE(on_parabolas.advance_to(1));
+  ASSERT_TRUE(by_steps.advance_to(1));
   EXPECT_GT(on_parabolas.statistics().collisions, 10u);
   EXPECT_EQ(on_parabolas.statistics().collisions, by_steps.statistics().collisions);
   EXPECT_EQ(on_parabolas.statistics().wall_collisions, by_steps.statistics().wall_collisions);
@@ -83,10 +83,10 @@ TEST(ConstrainedMotion, ABallComesToLieUnderDrag) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
   world.drag.quadratic = 0.1;
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   ASSERT_TRUE(world.add({.position = {{0, 2}}, .material = {.restitution = 0.5, .friction = 0}}));
   ExactMotion motion(world, {.contact_time = 1e-2});
-  ASSERT_EQ(motion.advance_to(4), "");
+  ASSERT_TRUE(motion.advance_to(4));
   EXPECT_GT(world.position[0][1], 0.5 - 1e-12);
   EXPECT_LT(world.position[0][1], 0.5 + 10 * 1e-4 / 2);  // the last bounce that was its own rises by g tc^2 / 2 at most
   EXPECT_LT(motion.statistics().wall_collisions, 500u);
@@ -96,14 +96,14 @@ TEST(ConstrainedMotion, GoesOnFromASnapshotToTheSameBits) {
   World<double, 2> world, again;
   world.gravity = {{0, -10}};
   world.attraction = {.constant = 5, .softening = 0.1};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   for (int i = 0; i < 6; ++i)
     ASSERT_TRUE(world.add({.position = {{1.2 * i, 1 + 0.3 * i}}, .material = {.restitution = 0.9, .friction = 0.1}}));
   ExactMotion motion(world), motion_again(again);
-  ASSERT_EQ(motion.advance_to(0.5), "");
-  ASSERT_EQ(restore(snapshot(world, motion), again, motion_again), "");
-  ASSERT_EQ(motion.advance_to(1), "");
-  ASSERT_EQ(motion_again.advance_to(1), "");
+  ASSERT_TRUE(motion.advance_to(0.5));
+  ASSERT_TRUE(restore(snapshot(world, motion), again, motion_again));
+  ASSERT_TRUE(motion.advance_to(1));
+  ASSERT_TRUE(motion_again.advance_to(1));
   EXPECT_EQ(snapshot(world, motion), snapshot(again, motion_again));
   EXPECT_GT(motion.statistics().collisions, 2u);
 }

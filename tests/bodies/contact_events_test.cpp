@@ -19,7 +19,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 TEST(ContactEvents, ImpulsesAreTheChangeOfMomentum) {
   World<double, 3> world;
   const Material<double> material{.restitution = 0.9, .friction = 0};
-  ASSERT_EQ(world.add_container({}, {{6, 6, 6}}, material), "");
+  ASSERT_TRUE(world.add_container({}, {{6, 6, 6}}, material));
   std::mt19937 engine(4);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 64; ++i)
@@ -29,7 +29,7 @@ TEST(ContactEvents, ImpulsesAreTheChangeOfMomentum) {
                            .material = material}));
   const World<double, 3> before = world;
   ExactMotion motion(world, {.contact_events = 100000});
-  ASSERT_EQ(motion.advance_to(5), "");
+  ASSERT_TRUE(motion.advance_to(5));
   EXPECT_EQ(motion.contact_events().size(), motion.statistics().collisions + motion.statistics().wall_collisions);
   EXPECT_EQ(motion.lost_contact_events(), 0u);
   EXPECT_GT(motion.statistics().collisions, 200u);
@@ -56,15 +56,15 @@ TEST(ContactEvents, ImpulsesAreTheChangeOfMomentum) {
 TEST(ContactEvents, RestBeginsAndEndsWithTheWeight) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   const auto low = world.add({.position = {{0, 0.5}}, .mass = 3, .material = {.restitution = 0, .friction = 0}});
   ASSERT_TRUE(
       world.add({.position = {{-5, 0.5}}, .velocity = {{1, 0}}, .material = {.restitution = 1, .friction = 0}}));
   ExactMotion motion(world, {.contact_events = 100});
-  ASSERT_EQ(motion.advance_to(6), "");
+  ASSERT_TRUE(motion.advance_to(6));
   double begun = -1, ended = -1, impulse = 0;
   for (const auto& event : motion.contact_events()) {
-    if (event.a != low.handle || !event.with_wall()) continue;
+    if (event.a != *low || !event.with_wall()) continue;
     if (event.change == ContactChange::begin && begun < 0) begun = event.time;
     if (event.change == ContactChange::end && ended < 0) ended = event.time, impulse = event.impulse;
   }
@@ -78,12 +78,12 @@ TEST(ContactEvents, RestBeginsAndEndsWithTheWeight) {
 TEST(ContactEvents, OfTheFastMotionTellOfImpacts) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   ASSERT_TRUE(world.add({.position = {{0, 5.5}}, .mass = 2, .material = {.restitution = 1, .friction = 0}}));
   FastMotion motion(world, {.contact_events = 10});
   std::vector<double> times;
   for (int step = 0; step < 600; ++step) {
-    ASSERT_EQ(motion.advance(), "");
+    ASSERT_TRUE(motion.advance());
     for (const auto& event : motion.contact_events()) {
       EXPECT_EQ(event.change, ContactChange::impact);
       EXPECT_NEAR(event.impulse, 2 * 2 * 10, 1e-9);
@@ -101,21 +101,21 @@ TEST(ContactEvents, OfTheFastMotionTellOfImpacts) {
 TEST(ContactEvents, OfTheFastMotionTellOfWeight) {
   World<double, 3> world;
   world.gravity = {{0, 0, -10}};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   const auto low = world.add({.position = {{0, 0, 0.5}}, .mass = 3, .material = {.friction = 0}});
   const auto high = world.add({.position = {{0, 0, 1.5}}, .mass = 2, .material = {.friction = 0}});
   FastMotion motion(world, {.contact_events = 10});
   int begun = 0;
   for (int step = 0; step < 120; ++step) {
-    ASSERT_EQ(motion.advance(), "");
+    ASSERT_TRUE(motion.advance());
     for (const auto& event : motion.contact_events()) begun += event.change == ContactChange::begin ? 1 : 0;
   }
   EXPECT_EQ(begun, 2);
-  world.velocity[world.index(low.handle)] = {{0, 100, 0}};  // pulled away from below, and both lifted
-  world.velocity[world.index(high.handle)] = {{0, 0, 100}};
-  world.position[world.index(low.handle)][2] += 0.1;
-  world.position[world.index(high.handle)][2] += 1;
-  ASSERT_EQ(motion.advance(), "");
+  world.velocity[world.index(*low)] = {{0, 100, 0}};  // pulled away from below, and both lifted
+  world.velocity[world.index(*high)] = {{0, 0, 100}};
+  world.position[world.index(*low)][2] += 0.1;
+  world.position[world.index(*high)][2] += 1;
+  ASSERT_TRUE(motion.advance());
   ASSERT_EQ(motion.contact_events().size(), 2u);
   for (const auto& event : motion.contact_events()) {
     EXPECT_EQ(event.change, ContactChange::end);
@@ -135,7 +135,7 @@ TEST(ContactEvents, OfAnIslandBeginAndEndOnce) {
     ExactMotion motion(world, {.contact_events = 100});
     std::vector<ContactEvent<double, 2>> all;
     for (int k = 1; k <= calls; ++k) {
-      ASSERT_EQ(motion.advance_to(3.0 * k / calls), "");
+      ASSERT_TRUE(motion.advance_to(3.0 * k / calls));
       for (const auto& event : motion.contact_events())
         if (event.change != ContactChange::impact) all.push_back(event);
     }
@@ -152,13 +152,13 @@ TEST(ContactEvents, OfAnIslandBeginAndEndOnce) {
 TEST(ContactEvents, AreBounded) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   ASSERT_TRUE(world.add({.position = {{0, 1}}, .material = {.restitution = 1}}));
   ExactMotion motion(world, {.contact_events = 3});
-  ASSERT_EQ(motion.advance_to(10), "");
+  ASSERT_TRUE(motion.advance_to(10));
   EXPECT_EQ(motion.contact_events().size(), 3u);
   EXPECT_EQ(motion.lost_contact_events() + 3, motion.statistics().wall_collisions);
-  ASSERT_EQ(motion.advance_to(10), "");  // of each call its own
+  ASSERT_TRUE(motion.advance_to(10));  // of each call its own
   EXPECT_TRUE(motion.contact_events().empty());
 }
 

@@ -24,7 +24,7 @@ World<double, Dim> gas(std::size_t count, double edge, const Material<double>& m
   World<double, Dim> world;
   Vector<double, Dim> upper;
   for (std::size_t axis = 0; axis < upper.size(); ++axis) upper[axis] = edge;
-  EXPECT_EQ(world.add_container({}, upper, material), "");
+  EXPECT_TRUE(world.add_container({}, upper, material));
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
   std::size_t side = 1;
@@ -49,7 +49,7 @@ void keeps_energy_and_room(std::size_t count, double edge, double duration) {
   World<double, Dim> world = gas<Dim>(count, edge, elastic);
   const double energy = kinetic_energy(world);
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(duration), "");
+  ASSERT_TRUE(motion.advance_to(duration));
   EXPECT_GT(motion.statistics().collisions, 20 * count);
   const double collisions_of_each = static_cast<double>(2 * motion.statistics().collisions / count);
   EXPECT_NEAR(kinetic_energy(world) / energy, 1, 2 * epsilon * collisions_of_each);
@@ -84,7 +84,7 @@ TEST(ExactMotion, KeepsMomentumAndAngularMomentum) {
   }
   const auto p = momentum(world), l = angular_momentum(world);
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(5), "");
+  ASSERT_TRUE(motion.advance_to(5));
   EXPECT_GT(motion.statistics().collisions, 200u);
   // Sums of 125 products of size 10, each rounded at every collision.
   const double rounding = 125 * 10 * epsilon * 10;
@@ -119,7 +119,7 @@ void follows_haff(std::size_t count, double edge) {
   const Material<double> material{.restitution = 0.9, .friction = 0};
   World<double, Dim> mixing = gas<Dim>(count, edge, elastic);
   ExactMotion first(mixing);  // let the speeds get their distribution
-  ASSERT_EQ(first.advance_to(3), "");
+  ASSERT_TRUE(first.advance_to(3));
   World<double, Dim> world = mixing;
   world.time = 0;
   for (auto& of_ball : world.material) of_ball = material;
@@ -132,7 +132,7 @@ void follows_haff(std::size_t count, double edge) {
   // The slope of log T over log(1 + t / tau), by least squares.
   double n = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;
   for (double t = 0.25 * tau; t <= 4 * tau; t *= 1.25) {
-    ASSERT_EQ(motion.advance_to(t), "");
+    ASSERT_TRUE(motion.advance_to(t));
     const double x = std::log(1 + t / tau), y = std::log(temperature() / start);
     EXPECT_NEAR(std::exp(y / 2) * (1 + t / tau), 1, 0.045) << t / tau;
     n += 1, sum_x += x, sum_y += y, sum_xx += x * x, sum_xy += x * y;
@@ -150,12 +150,12 @@ TEST(ExactMotion, CoolsAsHaffSaysInThePlane) {
 TEST(ExactMotion, AnElasticBallReachesItsHeightAgain) {
   World<double, 2> world;
   world.gravity = {{0, -9.81}};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   ASSERT_TRUE(world.add({.position = {{0, 10}}, .material = {.restitution = 1}}));
   ExactMotion motion(world);
   const double fall = std::sqrt(2 * 9.5 / 9.81);
   for (int bounce = 1; 2 * bounce * fall < 100; ++bounce) {
-    ASSERT_EQ(motion.advance_to(2 * bounce * fall), "");
+    ASSERT_TRUE(motion.advance_to(2 * bounce * fall));
     EXPECT_NEAR(world.position[0][1], 10, 1e-12) << bounce;
   }
 }
@@ -164,14 +164,14 @@ TEST(ExactMotion, AnElasticBallReachesItsHeightAgain) {
 TEST(ExactMotion, ADampedBallComesToRest) {
   World<double, 3> world;
   world.gravity = {{0, 0, -10}};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   ASSERT_TRUE(
       world.add({.position = {{0, 0, 5.5}}, .velocity = {{2, 0, 0}}, .material = {.restitution = 0.5, .friction = 0}}));
   ExactMotion motion(world);
   const double fall = 1;  // from 5 at g = 10
-  ASSERT_EQ(motion.advance_to(fall + 0.5 * fall), "");
+  ASSERT_TRUE(motion.advance_to(fall + 0.5 * fall));
   EXPECT_NEAR(world.position[0][2], 0.5 + 5 * 0.25, 1e-14);
-  ASSERT_EQ(motion.advance_to(100), "");
+  ASSERT_TRUE(motion.advance_to(100));
   EXPECT_EQ(world.velocity[0], (Vector<double, 3>{{2, 0, 0}}));
   EXPECT_NEAR(world.position[0][2], 0.5, 1e-9);  // half of g times the contact time squared
   EXPECT_LT(motion.statistics().wall_collisions, 40u);
@@ -182,16 +182,16 @@ TEST(ExactMotion, ADampedBallComesToRest) {
 TEST(ExactMotion, ABallSlidesDownASlopeAndRestsInTheCorner) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
-  ASSERT_EQ(world.add_wall({.normal = {{1, 1}}}), "");
-  ASSERT_EQ(world.add_wall({.normal = {{-1, 0}}, .offset = -10}), "");
+  ASSERT_TRUE(world.add_wall({.normal = {{1, 1}}}));
+  ASSERT_TRUE(world.add_wall({.normal = {{-1, 0}}, .offset = -10}));
   const double half = std::sqrt(0.5);
   ASSERT_TRUE(world.add({.position = {{half * 0.5, half * 0.5}}, .material = {.restitution = 0.5, .friction = 0}}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(1), "");
+  ASSERT_TRUE(motion.advance_to(1));
   EXPECT_NEAR(world.velocity[0][0], 10 * half * half, 1e-9);
   EXPECT_NEAR(world.velocity[0][1], -10 * half * half, 1e-9);
   EXPECT_NEAR(world.position[0][0] + world.position[0][1], 0.5 * 2 * half, 1e-9);
-  ASSERT_EQ(motion.advance_to(100), "");
+  ASSERT_TRUE(motion.advance_to(100));
   EXPECT_NEAR(world.position[0][0], 9.5, 1e-9);
   EXPECT_LT(length(world.velocity[0]), 1e-9);
   EXPECT_LT(motion.statistics().wall_collisions, 2000u);  // no collapse
@@ -209,7 +209,7 @@ TEST(ExactMotion, NewtonsCradleSendsOutAsManyAsCameIn) {
                                .material = elastic}));
       }
       ExactMotion motion(world);
-      ASSERT_EQ(motion.advance_to(2), "");
+      ASSERT_TRUE(motion.advance_to(2));
       for (int i = 0; i < 5; ++i)
         EXPECT_NEAR(world.velocity[static_cast<std::size_t>(i)][0], i >= 5 - in ? 1 : 0, 1e-12)
             << gap << ' ' << in << ' ' << i;
@@ -222,7 +222,7 @@ TEST(ExactMotion, NewtonsCradleSendsOutAsManyAsCameIn) {
 TEST(ExactMotion, FindsFixedSpheresOnCurvedPaths) {
   World<double, 3> world;
   world.gravity = {{0, 0, -9.81}};
-  ASSERT_EQ(world.add_container({{-3, -3, 0}}, {{3, 3, 50}}, elastic), "");
+  ASSERT_TRUE(world.add_container({{-3, -3, 0}}, {{3, 3, 50}}, elastic));
   ASSERT_TRUE(world.add({.shape = Sphere<double>{1.0}, .fixed = true, .material = elastic}));
   ASSERT_TRUE(world.add({.shape = Sphere<double>{0.3}, .position = {{1, 1, 1}}, .fixed = true, .material = elastic}));
   ASSERT_TRUE(world.add(
@@ -230,7 +230,7 @@ TEST(ExactMotion, FindsFixedSpheresOnCurvedPaths) {
   const double energy = kinetic_energy(world) + potential_energy(world);
   ExactMotion motion(world);
   for (int second = 1; second <= 60; ++second) {
-    ASSERT_EQ(motion.advance_to(second), "");
+    ASSERT_TRUE(motion.advance_to(second));
     EXPECT_NEAR((kinetic_energy(world) + potential_energy(world)) / energy, 1, 1e-12);
     EXPECT_LT(deepest_overlap_of_bodies(world), 1e-12);
   }
@@ -241,12 +241,12 @@ TEST(ExactMotion, FindsFixedSpheresOnCurvedPaths) {
 // long as no two events coincide.
 TEST(ExactMotion, TheOrderOfBodiesDoesNotMatter) {
   World<double, 3> a = gas<3>(200, 12, elastic), b;
-  ASSERT_EQ(b.add_container({}, {{12, 12, 12}}, elastic), "");
+  ASSERT_TRUE(b.add_container({}, {{12, 12, 12}}, elastic));
   for (std::size_t i = a.size(); i-- > 0;)
     ASSERT_TRUE(b.add({.position = a.position[i], .velocity = a.velocity[i], .material = elastic}));
   ExactMotion one(a), other(b);
-  ASSERT_EQ(one.advance_to(1), "");
-  ASSERT_EQ(other.advance_to(1), "");
+  ASSERT_TRUE(one.advance_to(1));
+  ASSERT_TRUE(other.advance_to(1));
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT(length(a.position[i] - b.position[a.size() - 1 - i]), 1e-6) << i;
 }
 
@@ -258,7 +258,7 @@ TEST(ExactMotion, ABallLiesOnAFixedSphere) {
   ASSERT_TRUE(world.add({.position = {{0, 1}}, .material = {.restitution = 0, .friction = 0}}));
   ExactMotion motion(world, {.contact_time = 1e-3});
   for (int k = 1; k <= 100; ++k) {
-    ASSERT_EQ(motion.advance_to(0.01 * k), "");
+    ASSERT_TRUE(motion.advance_to(0.01 * k));
     EXPECT_NEAR(world.position[1][1], 1, 10 * 1e-6);
   }
   EXPECT_LT(motion.statistics().collisions, 10u);
@@ -268,8 +268,8 @@ TEST(ExactMotion, ABallLiesOnAFixedSphere) {
 TEST(ExactMotion, LookingDoesNotDisturb) {
   World<double, 3> a = gas<3>(200, 12, elastic), b = a;
   ExactMotion once(a), often(b);
-  ASSERT_EQ(once.advance_to(3), "");
-  for (int i = 1; i <= 300; ++i) ASSERT_EQ(often.advance_to(i == 300 ? 3 : i * 0.01), "");
+  ASSERT_TRUE(once.advance_to(3));
+  for (int i = 1; i <= 300; ++i) ASSERT_TRUE(often.advance_to(i == 300 ? 3 : i * 0.01));
   EXPECT_EQ(a.position, b.position);
   EXPECT_EQ(a.velocity, b.velocity);
 }
@@ -280,7 +280,7 @@ TEST(ExactMotion, ABallDoesNotSinkIntoOneThatLies) {
   const Material<double> slack{.restitution = 0, .friction = 0};
   World<double, 3> world;
   world.gravity = {{0, 0, -9.81}};
-  ASSERT_EQ(world.add_container({}, {{3.45, 3.45, 100}}, slack), "");
+  ASSERT_TRUE(world.add_container({}, {{3.45, 3.45, 100}}, slack));
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> jitter(-0.04, 0.04);
   for (int i = 0; i < 20; ++i) {
@@ -291,7 +291,7 @@ TEST(ExactMotion, ABallDoesNotSinkIntoOneThatLies) {
   }
   ExactMotion motion(world);
   for (const double t : {0.1, 0.2, 0.3, 0.35, 0.4}) {
-    ASSERT_EQ(motion.advance_to(t), "");
+    ASSERT_TRUE(motion.advance_to(t));
     EXPECT_LT(deepest_overlap_of_bodies(world), 2e-10 * 0.5) << t;
   }
 }
@@ -302,8 +302,8 @@ TEST(ExactMotion, LooksAheadInAGasTooLargeForTheCache) {
   World<double, 3> world = gas<3>(count, 36, elastic), looked_at = world;
   const double energy = kinetic_energy(world);
   ExactMotion motion(world), seen(looked_at);
-  ASSERT_EQ(motion.advance_to(0.25), "");
-  for (const double t : {0.02, 0.1, 0.11, 0.25}) ASSERT_EQ(seen.advance_to(t), "");
+  ASSERT_TRUE(motion.advance_to(0.25));
+  for (const double t : {0.02, 0.1, 0.11, 0.25}) ASSERT_TRUE(seen.advance_to(t));
   EXPECT_GT(motion.statistics().collisions, count);
   EXPECT_EQ(state_hash(looked_at), state_hash(world));
   const double collisions_of_each = static_cast<double>(2 * motion.statistics().collisions / count);
@@ -317,7 +317,7 @@ TEST(ExactMotion, NothingPassesThrough) {
       {.shape = Sphere<double>{0.005}, .position = {{-1000, 0, 0}}, .velocity = {{1000, 0, 0}}, .material = elastic}));
   ASSERT_TRUE(world.add({.shape = Sphere<double>{0.005}, .mass = 1e12, .material = elastic}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(2), "");
+  ASSERT_TRUE(motion.advance_to(2));
   EXPECT_NEAR(world.velocity[0][0], -1000, 1e-8);  // 2 / 1e12 of it stays with the heavy one
   EXPECT_NEAR(world.position[0][0], -1000.02, 1e-6);
 }

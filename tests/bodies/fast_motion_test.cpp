@@ -22,7 +22,7 @@ template <class Real, int Dim>
 void run(World<Real, Dim>& world, Real duration, const FastOptions<Real>& options = {}) {
   FastMotion<Real, Dim> motion(world, options);
   const auto steps = static_cast<int>(std::lround(duration / options.step));
-  for (int i = 0; i < steps; ++i) ASSERT_EQ(motion.advance(), "");
+  for (int i = 0; i < steps; ++i) ASSERT_TRUE(motion.advance());
 }
 
 // Flight and impacts are exact but for rounding; the peak lies within half a step of an instant that is looked at:
@@ -30,14 +30,14 @@ void run(World<Real, Dim>& world, Real duration, const FastOptions<Real>& option
 TEST(FastMotion, AnElasticBallReachesItsHeightAgain) {
   World<double, 2> world;
   world.gravity = {{0, -9.81}};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   ASSERT_TRUE(world.add({.position = {{0, 10}}, .material = {.restitution = 1}}));
   FastMotion<double, 2> motion(world);
   double peak = 0;
   int peaks = 0;
   for (int step = 0; step < 6000; ++step) {
     const double before = world.velocity[0][1];
-    ASSERT_EQ(motion.advance(), "");
+    ASSERT_TRUE(motion.advance());
     peak = std::max(peak, world.position[0][1]);
     if (before < 0 && world.velocity[0][1] > 0) {
       if (peaks++ > 0) {
@@ -73,7 +73,7 @@ template <int Dim>
 World<double, Dim> on_the_floor(BodyDefinition<double, Dim> body) {
   World<double, Dim> world;
   world.gravity[static_cast<std::size_t>(Dim - 1)] = -9.81;
-  EXPECT_EQ(world.add_wall({}), "");
+  EXPECT_TRUE(world.add_wall({}));
   body.position[static_cast<std::size_t>(Dim - 1)] = 0.5;
   EXPECT_TRUE(world.add(body));
   return world;
@@ -128,7 +128,7 @@ TEST(FastMotion, NothingPassesThroughAWall) {
   for (int shot = 0; shot < 10000; ++shot) {
     World<double, 3> world;
     const Material<double> material{.restitution = shot % 2 ? 1.0 : 0.0, .friction = 0};
-    ASSERT_EQ(world.add_container({{-1, -1, -1}}, {{1, 1, 1}}, material), "");
+    ASSERT_TRUE(world.add_container({{-1, -1, -1}}, {{1, 1, 1}}, material));
     Vector<double, 3> v{{normal(engine), normal(engine), normal(engine)}};
     v *= 1000 / length(v);
     const Vector<double, 3> x{{uniform(engine), uniform(engine), uniform(engine)}};
@@ -165,7 +165,7 @@ TEST(FastMotion, AHeapComesToRest) {
   FastMotion<double, 3> motion(world);
   double deepest = 0;
   for (int step = 0; step < 600; ++step) {
-    ASSERT_EQ(motion.advance(), "");
+    ASSERT_TRUE(motion.advance());
     if (step > 15) deepest = std::max(deepest, motion.deepest_overlap());
   }
   EXPECT_LT(deepest, 0.005);
@@ -177,14 +177,14 @@ TEST(FastMotion, AHeapComesToRest) {
 TEST(FastMotion, AHitColumnDoesNotSpringUp) {
   World<double, 3> world;
   world.gravity = {{0, 0, -9.81}};
-  ASSERT_EQ(world.add_wall({}), "");
+  ASSERT_TRUE(world.add_wall({}));
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(world.add({.position = {{0, 0, 0.5 + i}}}));
   ASSERT_TRUE(world.add({.position = {{0, 0, 28}}, .mass = 5}));
   const FastOptions<double> options;
   FastMotion<double, 3> motion(world, options);
   double fastest = 0;
   for (int step = 0; step < 600; ++step) {
-    ASSERT_EQ(motion.advance(), "");
+    ASSERT_TRUE(motion.advance());
     for (const auto& v : world.velocity) fastest = std::max(fastest, v[2]);
   }
   EXPECT_LT(fastest, options.fastest_push);
@@ -202,12 +202,12 @@ TEST(FastMotion, WhatCanBounceDoesNotSink) {
       const Material<double> material{.restitution = restitution};
       World<double, 2> world;
       world.gravity = {{0, -10}};
-      ASSERT_EQ(world.add_container({{0, 0}}, {{6, 100}}, material), "");
+      ASSERT_TRUE(world.add_container({{0, 0}}, {{6, 100}}, material));
       for (int i = 0; i < 40; ++i)
         ASSERT_TRUE(world.add(
             {.position = {{0.7 + 1.15 * (i % 5) + 0.02 * (i * 7 % 11), 1 + 1.2 * (i / 5)}}, .material = material}));
       FastMotion<double, 2> motion(world, {.step = dt});
-      while (world.time < 4) ASSERT_EQ(motion.advance(), "");
+      while (world.time < 4) ASSERT_TRUE(motion.advance());
       EXPECT_LT(deepest_overlap_of_bodies(world), 0.005) << dt << ' ' << restitution;
       EXPECT_LT(kinetic_energy(world), 0.01 * 40) << dt << ' ' << restitution;
     }
@@ -238,21 +238,21 @@ TEST(FastMotion, IsTheSameInEveryBuild) {
   FastMotion<float, 3> fast_single(single);
   FastMotion<double, 3> fast_twice(twice);
   for (int step = 0; step < 120; ++step) {
-    ASSERT_EQ(fast_single.advance(), "");
-    ASSERT_EQ(fast_twice.advance(), "");
+    ASSERT_TRUE(fast_single.advance());
+    ASSERT_TRUE(fast_twice.advance());
   }
   EXPECT_EQ(hash_without_orientation(single), 0x94e0847a59355ae8u);
   EXPECT_EQ(hash_without_orientation(twice), 0x46cbe774bc5eb302u);
 
   World<double, 2> exact;
   exact.gravity = {{0, -9.81}};
-  ASSERT_EQ(exact.add_container({{0, 0}}, {{10, 10}}), "");
+  ASSERT_TRUE(exact.add_container({{0, 0}}, {{10, 10}}));
   for (int i = 0; i < 20; ++i)
     ASSERT_TRUE(exact.add({.position = {{1.1 + 1.2 * (i % 7), 2 + 1.3 * (i / 7)}},
                            .velocity = {{0.3 * i, 1.0 - 0.1 * i}},
                            .material = {.restitution = 0.9, .friction = 0.2}}));
   ExactMotion motion(exact);
-  ASSERT_EQ(motion.advance_to(3), "");
+  ASSERT_TRUE(motion.advance_to(3));
   EXPECT_EQ(hash_without_orientation(exact), 0xde9af8e8070e42d2u);
 }
 
@@ -267,8 +267,8 @@ TEST(FastMotion, NothingPassesThroughAThinWall) {
   for (int shot = 0; shot < 10000; ++shot) {
     World<double, 3> world;
     const Material<double> material{.restitution = shot % 2 ? 1.0 : 0.0, .friction = 0};
-    ASSERT_EQ(world.add_container({{-1, -1, -1}}, {{1, 1, 1}}, material), "");
-    ASSERT_EQ(world.add_wall({.normal = across, .offset = 0.1, .material = material, .thin = true}), "");
+    ASSERT_TRUE(world.add_container({{-1, -1, -1}}, {{1, 1, 1}}, material));
+    ASSERT_TRUE(world.add_wall({.normal = across, .offset = 0.1, .material = material, .thin = true}));
     Vector<double, 3> v{{normal(engine), normal(engine), normal(engine)}}, x{};
     v *= 1000 / length(v);
     do {
@@ -281,7 +281,7 @@ TEST(FastMotion, NothingPassesThroughAThinWall) {
     EXPECT_GE(side * (dot(world.position[0], across) - 0.1), shot % 2 ? 0.01 - 1e-9 : 0.0) << shot;
     if (shot % 10 != 0) continue;
     ExactMotion motion(exact);
-    ASSERT_EQ(motion.advance_to(0.05), "");
+    ASSERT_TRUE(motion.advance_to(0.05));
     EXPECT_GE(side * (dot(exact.position[0], across) - 0.1), 0.01 - 1e-14) << shot;
   }
 }
@@ -293,7 +293,7 @@ TEST(FastMotion, HoldsAtMost400BytesASphere) {
   FastMotion<float, 3> motion(world);
   std::size_t most = 0;
   for (int step = 0; step < 200; ++step) {
-    ASSERT_EQ(motion.advance(), "");
+    ASSERT_TRUE(motion.advance());
     most = std::max(most, motion.memory());
   }
   EXPECT_GT(motion.statistics().contacts, 2u * count);
@@ -335,7 +335,7 @@ TEST(FastMotion, ManyTouchOne) {
       for (std::size_t i = 1; i < w.size(); ++i) force[i] += w.mass[i] * ((x[0] - x[i]) * 3.0f + (v[0] - v[i]) * 0.5f);
     });
     FastMotion<float, 3> motion(world);
-    for (int step = 0; step < 600; ++step) ASSERT_EQ(motion.advance(), "");
+    for (int step = 0; step < 600; ++step) ASSERT_TRUE(motion.advance());
     EXPECT_LT(motion.deepest_overlap(), 0.003f);
     EXPECT_GT(motion.statistics().contacts, 100u);
     EXPECT_LT(length(world.position[0]), 1e-3f);
@@ -350,11 +350,11 @@ TEST(FastMotion, SaysWhatItCannotDo) {
        {FastOptions<double>{.step = 0}, FastOptions<double>{.step = std::numeric_limits<double>::quiet_NaN()},
         FastOptions<double>{.substeps = 0}}) {
     FastMotion<double, 2> motion(world, options);
-    EXPECT_NE(motion.advance(), "");
+    EXPECT_FALSE(motion.advance());
   }
   world.force_laws.push_back([](const auto&, double, auto, auto, auto force) { force[0][0] = 1e308 * 1e308; });
   FastMotion<double, 2> motion(world);
-  EXPECT_NE(motion.advance(), "");
+  EXPECT_FALSE(motion.advance());
   EXPECT_EQ(world.position[0], (Vector<double, 2>{}));
 }
 

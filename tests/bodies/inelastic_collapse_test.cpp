@@ -34,13 +34,13 @@ TEST(InelasticCollapse, ACradleThatLosesEnergySendsOutWhatOneAfterAnotherHandOn)
     for (const double gap : {0.0, 1e-12, 1e-9, 1e-6, 1e-3}) {
       auto world = cradle<2>(5, restitution, gap);
       ExactMotion motion(world);
-      ASSERT_EQ(motion.advance_to(2.0), "");
+      ASSERT_TRUE(motion.advance_to(2.0));
       EXPECT_NEAR(world.velocity[4][0], std::pow((1 + restitution) / 2, 4), 1e-13) << restitution << " " << gap;
       EXPECT_NEAR(momentum(world)[0], momentum(cradle<2>(5, restitution, gap))[0], 1e-14);
     }
   auto world = cradle<3>(12, 0.9, 0);
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(2.0), "");
+  ASSERT_TRUE(motion.advance_to(2.0));
   EXPECT_NEAR(world.velocity[11][0], std::pow(0.95, 11), 1e-13);
 }
 
@@ -49,7 +49,7 @@ TEST(InelasticCollapse, WhatDoesNotBounceGoesOnTogether) {
   for (const double gap : {0.0, 1e-9, 1e-3}) {
     auto world = cradle<2>(10, 0, gap);
     ExactMotion motion(world);
-    ASSERT_EQ(motion.advance_to(20.0), "");
+    ASSERT_TRUE(motion.advance_to(20.0));
     for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(world.velocity[i][0], 0.1, 1e-13) << gap << " " << i;
     EXPECT_LT(motion.statistics().collisions, 1000u);
   }
@@ -59,7 +59,7 @@ TEST(InelasticCollapse, WhatDoesNotBounceGoesOnTogether) {
 World<double, 2> row(std::size_t count, double restitution, double gap) {
   World<double, 2> world;
   Wall<double, 2> wall{.material = {.restitution = restitution}};
-  EXPECT_EQ(world.add_wall(wall), "");
+  EXPECT_TRUE(world.add_wall(wall));
   for (std::size_t i = 0; i < count; ++i) {
     BodyDefinition<double, 2> ball{.material = wall.material};
     ball.position[1] = 1 + static_cast<double>(i) * (1 + gap);
@@ -76,7 +76,7 @@ TEST(InelasticCollapse, WhatFliesIntoAWallTogetherWithoutRestitutionStopsThere) 
     for (const double gap : {0.0, 1e-7}) {
       auto world = row(count, 0, gap);
       ExactMotion motion(world);
-      ASSERT_EQ(motion.advance_to(10.0), "");
+      ASSERT_TRUE(motion.advance_to(10.0));
       for (std::size_t i = 0; i < count; ++i) {
         EXPECT_NEAR(world.velocity[i][1], 0, 1e-13) << count << " " << gap << " " << i;
         EXPECT_NEAR(world.position[i][1], 0.5 + static_cast<double>(i), static_cast<double>(i) * gap + 1e-12);
@@ -103,7 +103,7 @@ TEST(InelasticCollapse, ManyCollisionsAtOneInstantAreEachAsAnyOther) {
   }
   auto world = row(count, restitution, 0);
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(1.0), "");
+  ASSERT_TRUE(motion.advance_to(1.0));
   for (std::size_t i = 0; i < count; ++i) EXPECT_NEAR(world.velocity[i][1], v[i], 1e-12) << i;
 }
 
@@ -140,7 +140,7 @@ void collapses(std::size_t count, Material<double> material) {
   const double mass = std::accumulate(world.mass.begin(), world.mass.end(), 0.0), scale = std::sqrt(2 * energy * mass);
   double struck = 0;
   for (int k = 1; k <= 8; ++k) {
-    ASSERT_EQ(motion.advance_to(0.75 * k), "") << material.restitution;
+    ASSERT_TRUE(motion.advance_to(0.75 * k)) << material.restitution;
     EXPECT_LE(kinetic_energy(world), energy * (1 + 1e-12));
     energy = kinetic_energy(world);
     for (const auto& event : motion.contact_events()) struck += event.impulse;

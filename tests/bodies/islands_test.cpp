@@ -47,7 +47,7 @@ std::array<Group, 6> groups() {
 Flat world_of(const Group& group) {
   Flat world;
   world.gravity = {{0, -10}};
-  EXPECT_EQ(world.add_wall({.material = rough}), "");
+  EXPECT_TRUE(world.add_wall({.material = rough}));
   for (const auto& body : group) EXPECT_TRUE(world.add(body));
   return world;
 }
@@ -69,10 +69,10 @@ TEST(Islands, MoveAsAlone) {
   std::vector<ExactMotion<double, 2>> motions;
   for (Flat& world : alone) motions.emplace_back(world);
   for (int k = 1; k <= 20; ++k) {
-    ASSERT_EQ(motion.advance_to(0.1 * k), "");
+    ASSERT_TRUE(motion.advance_to(0.1 * k));
     std::size_t i = 0;
     for (std::size_t g = 0; g < alone.size(); ++g) {
-      ASSERT_EQ(motions[g].advance_to(0.1 * k), "") << g;
+      ASSERT_TRUE(motions[g].advance_to(0.1 * k)) << g;
       for (std::size_t j = 0; j < alone[g].size(); ++j, ++i) {
         EXPECT_LT(length(together.position[i] - alone[g].position[j]), 1e-7) << g << ' ' << k;
         EXPECT_LT(length(together.velocity[i] - alone[g].velocity[j]), 1e-6) << g << ' ' << k;
@@ -85,7 +85,7 @@ TEST(Islands, MoveAsAlone) {
 Flat shot(double speed) {
   Flat world;
   world.gravity = {{0, -10}};
-  EXPECT_EQ(world.add_wall({.material = smooth}), "");
+  EXPECT_TRUE(world.add_wall({.material = smooth}));
   for (const double x : {0.0, 30.0}) {
     EXPECT_TRUE(world.add({.shape = Sphere<double>{0.4}, .position = {{x, 0.4}}, .material = smooth}));
     EXPECT_TRUE(world.add({.position = {{x, 1.3}}, .mass = 1, .material = smooth}));
@@ -98,9 +98,9 @@ Flat shot(double speed) {
 TEST(Islands, AreWokenByWhatHitsThem) {
   Flat world = shot(10);
   ExactMotion motion(world, {.contact_events = 100});
-  ASSERT_EQ(motion.advance_to(0.4), "");
+  ASSERT_TRUE(motion.advance_to(0.4));
   const auto other = world.position[3];
-  ASSERT_EQ(motion.advance_to(0.8), "");
+  ASSERT_TRUE(motion.advance_to(0.8));
   EXPECT_NEAR(world.position[1][0], 10 * 0.3, 1e-6);
   EXPECT_NEAR(world.position[1][1], 1.3 - 5 * 0.09, 1e-6);
   EXPECT_NEAR(world.position[4][0], -1, 1e-6);
@@ -134,8 +134,8 @@ TEST(Islands, GoBackToWhenSomebodyComes) {
     Flat other = world;
     other.force_laws.emplace_back([](const auto&, double, auto, auto, auto) {});
     ExactMotion motion(world), of_other(other);
-    ASSERT_EQ(motion.advance_to(1), "");
-    ASSERT_EQ(of_other.advance_to(1), "");
+    ASSERT_TRUE(motion.advance_to(1));
+    ASSERT_TRUE(of_other.advance_to(1));
     for (std::size_t i = 1; i < 3; ++i) EXPECT_LT(length(world.position[i] - other.position[i]), 1e-6) << k;
     EXPECT_LT(kinetic_energy(world) + potential_energy(world), 10 * 1.5 + 10 + 22.5 - 1);  // the two have met
   }
@@ -146,7 +146,7 @@ TEST(Islands, GoBackToWhenSomebodyComes) {
 TEST(Islands, LeaveWhatFliesOnItsParabolas) {
   Space world;
   world.gravity = {{0, 0, -10}};
-  ASSERT_EQ(world.add_container({}, {{20, 20, 20}}, elastic), "");
+  ASSERT_TRUE(world.add_container({}, {{20, 20, 20}}, elastic));
   world.combine_rule.restitution = Combine::minimum;
   std::mt19937 engine(4);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -165,7 +165,7 @@ TEST(Islands, LeaveWhatFliesOnItsParabolas) {
   };
   const double before = energy_of_gas();
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(5), "");
+  ASSERT_TRUE(motion.advance_to(5));
   EXPECT_GT(motion.statistics().collisions, 50u);
   EXPECT_NEAR(energy_of_gas() / before, 1, 1e-12);
   EXPECT_NEAR(world.position[62][2], 2.5, 4e-6);
@@ -182,7 +182,7 @@ World<double, Dim> battle(unsigned seed) {
   world.gravity[top] = -9.81;
   Vector<double, Dim> upper;
   for (std::size_t axis = 0; axis < upper.size(); ++axis) upper[axis] = axis == 0 ? 14 : axis == top ? 100 : 3;
-  EXPECT_EQ(world.add_container({}, upper, rough), "");
+  EXPECT_TRUE(world.add_container({}, upper, rough));
   const auto add = [&](double x, double height, double speed) {
     const double r = 0.3 + 0.2 * uniform(engine);
     BodyDefinition<double, Dim> ball{.shape = Sphere<double>{r}, .material = {restitutions[seed % 3], 0.4}};
@@ -208,9 +208,9 @@ void fights(unsigned seed) {
   ExactMotion motion(world), of_other(other);
   double last = energy();
   for (int k = 1; k <= 12; ++k) {
-    ASSERT_EQ(restore(snapshot(world, motion), other, of_other), "");
-    ASSERT_EQ(motion.advance_to(0.1 * k), "") << Dim << ' ' << seed;
-    ASSERT_EQ(of_other.advance_to(0.1 * k), "");
+    ASSERT_TRUE(restore(snapshot(world, motion), other, of_other));
+    ASSERT_TRUE(motion.advance_to(0.1 * k)) << Dim << ' ' << seed;
+    ASSERT_TRUE(of_other.advance_to(0.1 * k));
     ASSERT_EQ(state_hash(world), state_hash(other)) << Dim << ' ' << seed << ' ' << k;
     EXPECT_LT(deepest_overlap(world), 1e-5) << Dim << ' ' << seed << ' ' << k;
     EXPECT_LT(energy() - last, 1e-5 * weight) << Dim << ' ' << seed << ' ' << k;

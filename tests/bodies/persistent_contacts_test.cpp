@@ -24,10 +24,10 @@ TEST(PersistentContacts, SlideWithDragWithoutLeavingTheFloor) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
   world.drag.linear = 0.5;
-  ASSERT_EQ(world.add_wall({.material = smooth}), "");
+  ASSERT_TRUE(world.add_wall({.material = smooth}));
   ASSERT_TRUE(world.add({.position = {{0, 0.5}}, .velocity = {{3, 0}}, .mass = 2, .material = smooth}));
   ExactMotion motion(world, {.contact_events = 10});
-  ASSERT_EQ(motion.advance_to(4), "");
+  ASSERT_TRUE(motion.advance_to(4));
   EXPECT_NEAR(world.position[0][0], 3 * 4 * (1 - std::exp(-1.0)), 1e-8);  // the tolerance, 1e-10, a step
   EXPECT_NEAR(world.position[0][1], 0.5, 1e-10);
   ASSERT_EQ(motion.contact_events().size(), 1u);
@@ -46,7 +46,7 @@ TEST(PersistentContacts, LetGoWhereABallLeavesAnother) {
   ExactMotion motion(world, {.contact_events = 10});
   double t = 0;
   while (motion.contact_events().empty() || motion.contact_events().back().change != ContactChange::end) {
-    ASSERT_EQ(motion.advance_to(t += 0.01), "");
+    ASSERT_TRUE(motion.advance_to(t += 0.01));
     ASSERT_LT(t, 2);
   }
   // From rest at `begin`: v^2 = 2 g R (cos begin - cos), and g cos = v^2/R where it leaves.
@@ -59,12 +59,12 @@ TEST(PersistentContacts, SlipUntilTheyRoll) {
   world.gravity = {{0, 0, -10}};
   disguise(world);
   const Material<double> rough{.restitution = 0, .friction = 0.25};
-  ASSERT_EQ(world.add_wall({.material = rough}), "");
+  ASSERT_TRUE(world.add_wall({.material = rough}));
   ASSERT_TRUE(world.add({.position = {{0, 0, 0.5}}, .velocity = {{7, 0, 0}}, .material = rough}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(0.4), "");
+  ASSERT_TRUE(motion.advance_to(0.4));
   EXPECT_NEAR(world.velocity[0][0], 7 - 0.25 * 10 * 0.4, 1e-9);
-  ASSERT_EQ(motion.advance_to(2), "");
+  ASSERT_TRUE(motion.advance_to(2));
   // Slip ends at 0.8 s, early by what moves 1e-5 of a fall's speed: errors of 1e-5 squared.
   EXPECT_NEAR(world.velocity[0][0], 5, 1e-8);
   EXPECT_NEAR(world.spin[0][1], 5 / 0.5, 1e-8);
@@ -78,10 +78,10 @@ TEST(PersistentContacts, RollDownASlopeOrSlip) {
     World<double, 2> world;
     disguise(world);
     world.gravity = {{std::sqrt(50.0), -std::sqrt(50.0)}};
-    ASSERT_EQ(world.add_wall({.material = {.friction = friction}}), "");
+    ASSERT_TRUE(world.add_wall({.material = {.friction = friction}}));
     ASSERT_TRUE(world.add({.position = {{0, 0.5}}, .material = {.friction = friction}}));
     ExactMotion motion(world);
-    ASSERT_EQ(motion.advance_to(2), "");
+    ASSERT_TRUE(motion.advance_to(2));
     const double along = std::sqrt(50.0), a = friction > 1.0 / 3 ? along * 2 / 3 : along * (1 - friction);
     EXPECT_NEAR(world.velocity[0][0], 2 * a, 1e-7) << friction;
     EXPECT_NEAR(world.position[0][0], 2 * a, 1e-7) << friction;
@@ -100,7 +100,7 @@ TEST(PersistentContacts, HoldAHeapThatForcesPressTogether) {
       const auto body = world.add({.position = {{i % 5 + 0.5 * (i / 5 % 2), std::sqrt(0.75) * (i / 5)}},
                                    .mass = 1,
                                    .material = {.restitution = 0.3, .friction = friction}});
-      world.springs.push_back({.a = body.handle, .b = Vector<double, 2>{{2.3, 1.2}}, .stiffness = 10});
+      world.springs.push_back({.a = *body, .b = Vector<double, 2>{{2.3, 1.2}}, .stiffness = 10});
     }
     const auto offset = [&] {
       Vector<double, 2> sum{{-2.3, -1.2}};
@@ -109,7 +109,7 @@ TEST(PersistentContacts, HoldAHeapThatForcesPressTogether) {
     };
     const Vector<double, 2> before = offset();
     ExactMotion motion(world);
-    ASSERT_EQ(motion.advance_to(3), "");
+    ASSERT_TRUE(motion.advance_to(3));
     const double w = std::sqrt(10 - 0.25), swing = std::exp(-1.5) * (std::cos(3 * w) + std::sin(3 * w) / (2 * w));
     EXPECT_LT(length(offset() - before * swing), 1e-8) << friction;  // a tolerance of 1e-10 a step, some hundred steps
     for (std::size_t i = 0; i < world.size(); ++i)
@@ -126,12 +126,12 @@ TEST(PersistentContacts, AreStruckTogetherWhereNothingBounces) {
   World<double, 2> world;
   disguise(world);
   world.gravity = {{0, -10}};
-  ASSERT_EQ(world.add_wall({.material = smooth}), "");
+  ASSERT_TRUE(world.add_wall({.material = smooth}));
   ASSERT_TRUE(world.add({.position = {{-0.5, 0.5}}, .material = smooth}));
   ASSERT_TRUE(world.add({.position = {{0.5, 0.5}}, .material = smooth}));
   ASSERT_TRUE(world.add({.position = {{0, 0.5 + std::sqrt(0.75)}}, .velocity = {{0, -7}}, .material = smooth}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(1e-6), "");
+  ASSERT_TRUE(motion.advance_to(1e-6));
   EXPECT_NEAR(world.velocity[2][1], -1, 5e-5);
   EXPECT_NEAR(world.velocity[2][0], 0, 5e-5);
   EXPECT_NEAR(world.velocity[0][0], -std::sqrt(3.0), 5e-5);
@@ -146,7 +146,7 @@ TEST(PersistentContacts, MoveOnAsOneWhereARowIsStruck) {
   for (int i = 0; i < 8; ++i)
     ASSERT_TRUE(world.add({.position = {{i + 0.0, 0, 0}}, .velocity = {{i == 0 ? 8.0 : 0, 0, 0}}, .material = smooth}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(1e-6), "");
+  ASSERT_TRUE(motion.advance_to(1e-6));
   // What drag of 1e-9 moves within the contact time counts as nothing, and far less than rounding of speeds of 8.
   for (const auto& v : world.velocity) EXPECT_NEAR(v[0], 1, 1e-8);
 }
@@ -156,19 +156,19 @@ TEST(PersistentContacts, TellTheImpulseThatCarried) {
   World<double, 2> world;
   disguise(world);
   world.gravity = {{0, -10}};
-  ASSERT_EQ(world.add_wall({.normal = {{1, 1}}, .material = smooth}), "");
-  ASSERT_EQ(world.add_wall({.normal = {{-1, 1}}, .material = smooth}), "");
+  ASSERT_TRUE(world.add_wall({.normal = {{1, 1}}, .material = smooth}));
+  ASSERT_TRUE(world.add_wall({.normal = {{-1, 1}}, .material = smooth}));
   const auto ball = world.add({.position = {{0, 0.5 * std::sqrt(2.0)}}, .mass = 3, .material = smooth});
   bool lifts = false;
   world.force_laws.emplace_back([&](const auto&, double, auto, auto, auto force) {
     if (lifts) force[0][1] += 100;
   });
   ExactMotion motion(world, {.contact_events = 10});
-  ASSERT_EQ(motion.advance_to(2), "");
+  ASSERT_TRUE(motion.advance_to(2));
   EXPECT_EQ(motion.contact_events().size(), 2u);
-  EXPECT_LT(length(world.velocity_of(ball.handle)), 1e-12);
+  EXPECT_LT(length(world.velocity_of(*ball)), 1e-12);
   lifts = true;
-  ASSERT_EQ(motion.advance_to(2.5), "");
+  ASSERT_TRUE(motion.advance_to(2.5));
   ASSERT_EQ(motion.contact_events().size(), 2u);
   for (const auto& event : motion.contact_events()) {
     EXPECT_EQ(event.change, ContactChange::end);
@@ -185,12 +185,12 @@ TEST(PersistentContacts, LieSideBySideInOneFlight) {
     world.gravity = {{0, -10}};
     world.force_laws.emplace_back([&](const auto&, double, auto, auto, auto) { ++evaluations; });
     const Material<double> material{.restitution = 0, .friction = friction};
-    ASSERT_EQ(world.add_container({}, {{8, 100}}, material), "");
+    ASSERT_TRUE(world.add_container({}, {{8, 100}}, material));
     for (int i = 0; i < 64; ++i)
       ASSERT_TRUE(world.add({.position = {{i % 8 + 0.5, i / 8 + 0.5}}, .material = material}));
     const auto before = world.position;
     ExactMotion motion(world);
-    ASSERT_EQ(motion.advance_to(0.2), "");
+    ASSERT_TRUE(motion.advance_to(0.2));
     EXPECT_LT(evaluations, 100u) << friction;
     for (std::size_t i = 0; i < 64; ++i) EXPECT_LT(length(world.position[i] - before[i]), 1e-9);  // 1e-10 a step
   }
@@ -201,18 +201,18 @@ TEST(PersistentContacts, GoOnFromASnapshot) {
   World<double, 2> world;
   world.drag.linear = 0.1;
   world.gravity = {{1, -10}};
-  ASSERT_EQ(world.add_wall({.material = {.friction = 0.3}}), "");
+  ASSERT_TRUE(world.add_wall({.material = {.friction = 0.3}}));
   for (int i = 0; i < 3; ++i)
     ASSERT_TRUE(
         world.add({.position = {{0.97 * i, 0.5 + 0.8 * (i % 2)}}, .material = {.restitution = 0.5, .friction = 0.3}}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(0.5), "");
+  ASSERT_TRUE(motion.advance_to(0.5));
   const Bytes saved = snapshot(world, motion);
   World<double, 2> other = world;
   ExactMotion of_other(other);
-  ASSERT_EQ(restore(saved, other, of_other), "");
-  ASSERT_EQ(motion.advance_to(1), "");
-  ASSERT_EQ(of_other.advance_to(1), "");
+  ASSERT_TRUE(restore(saved, other, of_other));
+  ASSERT_TRUE(motion.advance_to(1));
+  ASSERT_TRUE(of_other.advance_to(1));
   EXPECT_EQ(state_hash(world), state_hash(other));
 }
 

@@ -30,7 +30,7 @@ World<double, Dim> random_world(std::mt19937& engine, std::size_t count) {
   World<double, Dim> world;
   Vector<double, Dim> corner;
   for (std::size_t axis = 0; axis < corner.size(); ++axis) corner[axis] = 15;
-  EXPECT_EQ(world.add_container(-corner, corner), "");
+  EXPECT_TRUE(world.add_container(-corner, corner));
   for (std::size_t i = 0; i < count; ++i) {
     const double size = i % 17 == 0 ? 1e4 : 10;
     BodyDefinition<double, Dim> ball{.shape = Sphere<double>{std::exp(0.3 * random_point<Dim>(engine, 10)[0] - 2)},
@@ -74,10 +74,10 @@ void rays_hit_what_they_should(unsigned seed) {
     const auto all = queries.all_hits(ray, filter);
     const auto first = queries.first_hit(ray, filter);
     ASSERT_TRUE(all && first);
-    ASSERT_EQ(all.value.size(), expected.size());
-    ASSERT_EQ(first.value.empty(), expected.empty());
+    ASSERT_EQ(all->size(), expected.size());
+    ASSERT_EQ(first->empty(), expected.empty());
     for (std::size_t n = 0; n < expected.size(); ++n) {
-      const RayHit<double, Dim>& hit = all.value[n];
+      const RayHit<double, Dim>& hit = (*all)[n];
       EXPECT_NEAR(hit.distance, expected[n], 1e5 * epsilon * (1 + expected[n]));  // a root loses half the digits
       EXPECT_NEAR(length(hit.normal), 1, 4 * epsilon);
       EXPECT_LE(dot(hit.normal, unit), 1e-7);
@@ -85,9 +85,9 @@ void rays_hit_what_they_should(unsigned seed) {
       EXPECT_NEAR(length(hit.point - world.position_of(hit.body)) / world.radius[world.index(hit.body)], 1, 1e-6);
     }
     if (!expected.empty()) {
-      EXPECT_EQ(first.value[0].body, all.value[0].body);
-      EXPECT_EQ(first.value[0].wall, all.value[0].wall);
-      EXPECT_EQ(first.value[0].distance, all.value[0].distance);
+      EXPECT_EQ((*first)[0].body, (*all)[0].body);
+      EXPECT_EQ((*first)[0].wall, (*all)[0].wall);
+      EXPECT_EQ((*first)[0].distance, (*all)[0].distance);
     }
   }
 }
@@ -125,18 +125,18 @@ void regions_hold_what_they_should(unsigned seed) {
       if (dot(wall.normal, centre) - radius <= wall.offset) ball.walls.push_back(w);
       if (dot(wall.normal, wall.normal[w / 2] > 0 ? lower : upper) <= wall.offset) box.walls.push_back(w);
     }
-    EXPECT_EQ(queries.in_sphere(centre, radius).value.bodies, ball.bodies);
-    EXPECT_EQ(queries.in_sphere(centre, radius).value.walls, ball.walls);
-    EXPECT_EQ(queries.in_box(lower, upper).value.bodies, box.bodies);
-    EXPECT_EQ(queries.in_box(lower, upper).value.walls, box.walls);
+    EXPECT_EQ(queries.in_sphere(centre, radius)->bodies, ball.bodies);
+    EXPECT_EQ(queries.in_sphere(centre, radius)->walls, ball.walls);
+    EXPECT_EQ(queries.in_box(lower, upper)->bodies, box.bodies);
+    EXPECT_EQ(queries.in_box(lower, upper)->walls, box.walls);
     std::ranges::sort(by_distance);
     const std::size_t count = engine() % 12;
     const auto nearest = queries.nearest(centre, count);
     ASSERT_TRUE(nearest);
-    ASSERT_EQ(nearest.value.size(), std::min(count, world.size()));
-    for (std::size_t n = 0; n < nearest.value.size(); ++n) {
-      EXPECT_EQ(nearest.value[n].body, world.handle(by_distance[n].second));
-      EXPECT_EQ(nearest.value[n].distance, by_distance[n].first);
+    ASSERT_EQ(nearest->size(), std::min(count, world.size()));
+    for (std::size_t n = 0; n < nearest->size(); ++n) {
+      EXPECT_EQ((*nearest)[n].body, world.handle(by_distance[n].second));
+      EXPECT_EQ((*nearest)[n].distance, by_distance[n].first);
     }
   }
 }
@@ -153,10 +153,10 @@ TEST(Queries, FromInsideTheDistanceIsNothing) {
   const Queries queries(world);
   for (const double side : {1.0, -1.0}) {
     const auto hit = queries.first_hit({.origin = {{1, 0, 0}}, .direction = {{side * 3, 0, 0}}});
-    ASSERT_EQ(hit.value.size(), 1u);
-    EXPECT_EQ(hit.value[0].body, ball.handle);
-    EXPECT_EQ(hit.value[0].distance, 0);
-    EXPECT_EQ(hit.value[0].normal, (Vector<double, 3>{{-side, 0, 0}}));
+    ASSERT_EQ(hit->size(), 1u);
+    EXPECT_EQ((*hit)[0].body, *ball);
+    EXPECT_EQ((*hit)[0].distance, 0);
+    EXPECT_EQ((*hit)[0].normal, (Vector<double, 3>{{-side, 0, 0}}));
   }
 }
 
@@ -165,17 +165,17 @@ TEST(Queries, SeeFar) {
   World<double, 3> world;
   ASSERT_TRUE(world.add({.shape = Sphere<double>{0.001}, .position = {{1e6, 0, 0}}}));
   const Queries queries(world);
-  EXPECT_EQ(queries.first_hit({.direction = {{1, 0, 0}}}).value.size(), 1u);
-  EXPECT_EQ(queries.first_hit({.origin = {{0, 0.0009, 0}}, .direction = {{1, 0, 0}}}).value.size(), 1u);
-  EXPECT_EQ(queries.first_hit({.origin = {{0, 0.0016, 0}}, .direction = {{1, 0, 0}}}).value.size(), 0u);
+  EXPECT_EQ(queries.first_hit({.direction = {{1, 0, 0}}})->size(), 1u);
+  EXPECT_EQ(queries.first_hit({.origin = {{0, 0.0009, 0}}, .direction = {{1, 0, 0}}})->size(), 1u);
+  EXPECT_EQ(queries.first_hit({.origin = {{0, 0.0016, 0}}, .direction = {{1, 0, 0}}})->size(), 0u);
 }
 
 TEST(Queries, AnEmptyWorldAnswersWithNothing) {
   const Queries queries((World<float, 2>()));
-  EXPECT_TRUE(queries.first_hit({.direction = {{1, 0}}}).value.empty());
-  EXPECT_TRUE(queries.all_hits({.direction = {{1, 0}}}).value.empty());
-  EXPECT_TRUE(queries.nearest({}, 3).value.empty());
-  EXPECT_TRUE(queries.in_sphere({}, 3).value.bodies.empty());
+  EXPECT_TRUE(queries.first_hit({.direction = {{1, 0}}})->empty());
+  EXPECT_TRUE(queries.all_hits({.direction = {{1, 0}}})->empty());
+  EXPECT_TRUE(queries.nearest({}, 3)->empty());
+  EXPECT_TRUE(queries.in_sphere({}, 3)->bodies.empty());
 }
 
 TEST(Queries, RefuseWhatMakesNoSense) {
@@ -193,27 +193,27 @@ TEST(Queries, RefuseWhatMakesNoSense) {
   EXPECT_FALSE(queries.in_box({{0, 0}}, {{0, inf}}));
   EXPECT_FALSE(queries.nearest({{nan, 0}}, 1));
   // The smallest and the largest directions are as good as any.
-  EXPECT_EQ(queries.first_hit({.origin = {{-5, 0}}, .direction = {{5e-324, 0}}}).value.size(), 1u);
-  EXPECT_EQ(queries.first_hit({.origin = {{-5, 0}}, .direction = {{1e308, 0}}}).value.size(), 1u);
+  EXPECT_EQ(queries.first_hit({.origin = {{-5, 0}}, .direction = {{5e-324, 0}}})->size(), 1u);
+  EXPECT_EQ(queries.first_hit({.origin = {{-5, 0}}, .direction = {{1e308, 0}}})->size(), 1u);
 }
 
 // A thin wall is hit from either side, and touched only where it is.
 TEST(Queries, AThinWallHasTwoSides) {
   World<double, 2> world;
-  ASSERT_EQ(world.add_wall({.normal = {{1, 0}}, .offset = 2, .thin = true}), "");
+  ASSERT_TRUE(world.add_wall({.normal = {{1, 0}}, .offset = 2, .thin = true}));
   const Queries queries(world);
   for (const double from : {0.0, 5.0}) {
     const double towards = from < 2 ? 1 : -1;
     const auto hit = queries.first_hit({.origin = {{from, 1}}, .direction = {{towards, 0}}});
-    ASSERT_EQ(hit.value.size(), 1u);
-    EXPECT_DOUBLE_EQ(hit.value[0].distance, std::abs(from - 2));
-    EXPECT_EQ(hit.value[0].normal[0], -towards);
-    EXPECT_TRUE(queries.first_hit({.origin = {{from, 1}}, .direction = {{-towards, 0}}}).value.empty());
-    EXPECT_TRUE(queries.in_sphere({{from, 0}}, 1.5).value.walls.empty());
-    EXPECT_EQ(queries.in_sphere({{from, 0}}, 3.5).value.walls.size(), 1u);
-    EXPECT_TRUE(queries.in_box({{from, 0}}, {{from + 1, 1}}).value.walls.empty());
+    ASSERT_EQ(hit->size(), 1u);
+    EXPECT_DOUBLE_EQ((*hit)[0].distance, std::abs(from - 2));
+    EXPECT_EQ((*hit)[0].normal[0], -towards);
+    EXPECT_TRUE(queries.first_hit({.origin = {{from, 1}}, .direction = {{-towards, 0}}})->empty());
+    EXPECT_TRUE(queries.in_sphere({{from, 0}}, 1.5)->walls.empty());
+    EXPECT_EQ(queries.in_sphere({{from, 0}}, 3.5)->walls.size(), 1u);
+    EXPECT_TRUE(queries.in_box({{from, 0}}, {{from + 1, 1}})->walls.empty());
   }
-  EXPECT_EQ(queries.in_box({{1, 0}}, {{3, 1}}).value.walls.size(), 1u);
+  EXPECT_EQ(queries.in_box({{1, 0}}, {{3, 1}})->walls.size(), 1u);
 }
 
 }  // namespace

@@ -24,16 +24,16 @@ TEST(RestingHeaps, AColumnStands) {
       const Material<double> material{.restitution = restitution, .friction = friction};
       World<double, 3> world;
       world.gravity = {{0, 0, -10}};
-      ASSERT_EQ(world.add_wall({.material = material}), "");
+      ASSERT_TRUE(world.add_wall({.material = material}));
       for (int i = 0; i < 8; ++i) ASSERT_TRUE(world.add({.position = {{0, 0, 0.5 + 1.1 * i}}, .material = material}));
       ExactMotion motion(world);
-      ASSERT_EQ(motion.advance_to(10), "");
+      ASSERT_TRUE(motion.advance_to(10));
       // Each contact may sink by what a body falls in the contact time, 1e-10, or in steps in a stride, 1e-6.
       for (int i = 0; i < 8; ++i)
         EXPECT_NEAR(world.position[static_cast<std::size_t>(i)][2], 0.5 + i, 8e-6) << restitution << ' ' << friction;
       const std::size_t collisions = motion.statistics().collisions;
       ExactMotion on(world, {.most_events = 200});
-      ASSERT_EQ(on.advance_to(1000), "") << restitution << ' ' << friction;
+      ASSERT_TRUE(on.advance_to(1000)) << restitution << ' ' << friction;
       EXPECT_EQ(motion.statistics().collisions, collisions);
       EXPECT_LT(std::abs(world.position[7][2] - 7.5), 8e-6);
     }
@@ -48,11 +48,11 @@ TEST(RestingHeaps, APyramidStandsByFriction) {
     const Material<double> material{.restitution = 0, .friction = part * enough};
     World<double, 2> world;
     world.gravity = {{0, -10}};
-    ASSERT_EQ(world.add_wall({.material = material}), "");
+    ASSERT_TRUE(world.add_wall({.material = material}));
     for (const auto& x : {Vector<double, 2>{{-0.5, 0.5}}, {{0.5, 0.5}}, {{0, 0.5 + std::sqrt(0.75)}}})
       ASSERT_TRUE(world.add({.position = x, .material = material}));
     ExactMotion motion(world);
-    ASSERT_EQ(motion.advance_to(5), "");
+    ASSERT_TRUE(motion.advance_to(5));
     if (part > 1) {
       EXPECT_NEAR(world.position[2][1], 0.5 + std::sqrt(0.75), 1e-6) << part;
     } else {
@@ -66,14 +66,14 @@ TEST(RestingHeaps, APyramidStandsBetweenWalls) {
   const Material<double> material{.restitution = 0.5, .friction = 0};
   World<double, 2> world;
   world.gravity = {{0, -10}};
-  ASSERT_EQ(world.add_container({}, {{2, 9}}, material), "");
+  ASSERT_TRUE(world.add_container({}, {{2, 9}}, material));
   for (const auto& x : {Vector<double, 2>{{0.5, 0.6}}, {{1.5, 0.7}}, {{0.99, 2}}})
     ASSERT_TRUE(world.add({.position = x, .material = material}));
   World<double, 2> other = world;
   other.force_laws.emplace_back([](const auto&, double, auto, auto, auto) {});
   ExactMotion motion(world), of_other(other);
-  ASSERT_EQ(motion.advance_to(5), "");
-  ASSERT_EQ(of_other.advance_to(5), "");
+  ASSERT_TRUE(motion.advance_to(5));
+  ASSERT_TRUE(of_other.advance_to(5));
   EXPECT_NEAR(world.position[2][1], 0.5 + std::sqrt(0.75), 1e-6);
   EXPECT_NEAR(world.position[2][0], 1, 1e-6);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(length(world.position[i] - other.position[i]), 1e-6);
@@ -90,11 +90,11 @@ TEST(RestingHeaps, ABallLiesInAGroove) {
       ASSERT_TRUE(world.add({.position = {{x, 0}}, .fixed = true, .material = material}));
     ASSERT_TRUE(world.add({.position = {{0.01, 0.9}}, .material = material}));
     ExactMotion motion(world);
-    ASSERT_EQ(motion.advance_to(10), "");
+    ASSERT_TRUE(motion.advance_to(10));
     EXPECT_NEAR(world.position[2][0], 0, 1e-6) << friction;
     EXPECT_NEAR(world.position[2][1], 0.8, 1e-6) << friction;
     ExactMotion on(world, {.most_events = 100});
-    EXPECT_EQ(on.advance_to(1000), "") << friction;
+    EXPECT_TRUE(on.advance_to(1000)) << friction;
   }
 }
 
@@ -107,7 +107,7 @@ double cosine_of_leaving(double friction) {
   EXPECT_TRUE(world.add({.position = {{1.5 * std::sin(0.1), 0, 1.5 * std::cos(0.1)}}, .material = material}));
   ExactMotion motion(world, {.contact_events = 10});
   for (double t = 0.01; t < 3; t += 0.01) {
-    EXPECT_EQ(motion.advance_to(t), "");
+    EXPECT_TRUE(motion.advance_to(t));
     for (const auto& event : motion.contact_events())
       if (event.change == ContactChange::end) return std::abs(event.normal[2]);
   }
@@ -133,7 +133,7 @@ World<double, Dim> random_heap(unsigned seed) {
   world.gravity[top] = -9.81;
   Vector<double, Dim> upper;
   for (std::size_t axis = 0; axis < upper.size(); ++axis) upper[axis] = axis == top ? 100 : 2.6;
-  EXPECT_EQ(world.add_container({}, upper, material), "");
+  EXPECT_TRUE(world.add_container({}, upper, material));
   double height = 0;
   for (int i = 0; i < 8; ++i) {
     const double r = 0.3 + 0.1 * (i % 3);
@@ -157,7 +157,7 @@ void falls_together(unsigned seed) {
   ExactMotion motion(world, {.most_events = 100'000});
   double last = energy();
   for (int k = 1; k <= 20; ++k) {
-    ASSERT_EQ(motion.advance_to(0.2 * k), "") << Dim << ' ' << seed;
+    ASSERT_TRUE(motion.advance_to(0.2 * k)) << Dim << ' ' << seed;
     EXPECT_LT(deepest_overlap(world), 1e-5) << Dim << ' ' << seed;
     EXPECT_LT(energy() - last, 1e-5 * weight) << Dim << ' ' << seed;
     last = energy();
@@ -180,9 +180,9 @@ TEST(RestingHeaps, GoOnFromASnapshotAndTellWhoTouches) {
     const Bytes saved = snapshot(world, motion);
     World<double, 3> other;
     ExactMotion of_other(other);
-    ASSERT_EQ(restore(saved, other, of_other), "");
-    ASSERT_EQ(motion.advance_to(0.2 * k), "");
-    ASSERT_EQ(of_other.advance_to(0.2 * k), "");
+    ASSERT_TRUE(restore(saved, other, of_other));
+    ASSERT_TRUE(motion.advance_to(0.2 * k));
+    ASSERT_TRUE(of_other.advance_to(0.2 * k));
     EXPECT_EQ(state_hash(world), state_hash(other)) << k;
     for (const auto& event : motion.contact_events()) {
       if (event.change == ContactChange::impact) continue;

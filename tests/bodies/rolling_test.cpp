@@ -22,7 +22,7 @@ template <int Dim>
 World<double, Dim> table() {
   World<double, Dim> world;
   world.gravity[Dim - 1] = -g;
-  EXPECT_EQ(world.add_wall({.material = cloth}), "");
+  EXPECT_TRUE(world.add_wall({.material = cloth}));
   return world;
 }
 template <int Dim>
@@ -50,7 +50,7 @@ TYPED_TEST(Rolling, ResistanceBeyondFrictionStopsLikeFriction) {
                          .spin = spin,
                          .material = {.restitution = 0, .friction = mu, .rolling_resistance = 1}}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(stops + 1), "");
+  ASSERT_TRUE(motion.advance_to(stops + 1));
   EXPECT_NEAR(world.position[0][0], v0 * stops / 2, 1e-9);
   EXPECT_EQ(world.velocity[0][0], 0);
 }
@@ -64,10 +64,10 @@ TYPED_TEST(Rolling, FrictionTurnsSlidingIntoRolling) {
   velocity[0] = v0;
   ASSERT_TRUE(world.add({.position = at_height<dim>(r), .velocity = velocity, .material = cloth}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(begins / 2), "");
+  ASSERT_TRUE(motion.advance_to(begins / 2));
   EXPECT_NEAR(world.velocity[0][0], v0 - mu * g * begins / 2, 1e-12);
   EXPECT_NEAR(world.position[0][0], v0 * begins / 2 - mu * g * begins * begins / 8, 1e-12);
-  ASSERT_EQ(motion.advance_to(begins + 3), "");
+  ASSERT_TRUE(motion.advance_to(begins + 3));
   const double rolls = v0 / (1 + c);
   EXPECT_NEAR(world.velocity[0][0], rolls, 1e-12);
   EXPECT_NEAR(world.position[0][0], v0 * begins - mu * g * begins * begins / 2 + 3 * rolls, 1e-11);
@@ -90,9 +90,9 @@ TYPED_TEST(Rolling, RollingResistanceStopsIt) {
   material.rolling_resistance = rho;
   ASSERT_TRUE(world.add({.position = at_height<dim>(r), .velocity = velocity, .spin = spin, .material = material}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(1), "");
+  ASSERT_TRUE(motion.advance_to(1));
   EXPECT_NEAR(world.velocity[0][0], v0 - slows, 1e-12);
-  ASSERT_EQ(motion.advance_to(100), "");
+  ASSERT_TRUE(motion.advance_to(100));
   EXPECT_EQ(length(world.velocity[0]), 0);
   EXPECT_EQ(length(world.spin[0]), 0);
   EXPECT_NEAR(world.position[0][0], v0 * v0 / (2 * slows), 1e-11);
@@ -109,10 +109,10 @@ TYPED_TEST(Rolling, OnASlopeItRollsOrSlips) {
     World<double, dim> world;
     world.gravity[0] = g * std::sin(slope);
     world.gravity[dim - 1] = -g * std::cos(slope);
-    ASSERT_EQ(world.add_wall({.material = cloth}), "");
+    ASSERT_TRUE(world.add_wall({.material = cloth}));
     ASSERT_TRUE(world.add({.position = at_height<dim>(r), .material = cloth}));
     ExactMotion motion(world);
-    ASSERT_EQ(motion.advance_to(2), "");
+    ASSERT_TRUE(motion.advance_to(2));
     const double a = is_steep ? g * (std::sin(slope) - mu * std::cos(slope)) : g * std::sin(slope) / (1 + c);
     EXPECT_NEAR(world.velocity[0][0], 2 * a, 1e-12 * a) << is_steep;
     EXPECT_NEAR(world.position[0][0], 2 * a, 1e-12 * a) << is_steep;
@@ -129,12 +129,12 @@ TEST(RollingInSpace, ABallWithSideSpinFollowsAParabola) {
   ASSERT_TRUE(world.add({.position = {{0, 0, r}}, .velocity = v0, .spin = spin, .material = cloth}));
   ExactMotion motion(world);
   const double ends = length(slip) / (3.5 * mu * g);
-  ASSERT_EQ(motion.advance_to(ends / 2), "");
+  ASSERT_TRUE(motion.advance_to(ends / 2));
   const auto pull = slip * (-mu * g / length(slip));
   const auto there = v0 * (ends / 2) + pull * (ends * ends / 8);
   EXPECT_NEAR(world.position[0][0], there[0], 1e-12);
   EXPECT_NEAR(world.position[0][1], there[1], 1e-12);
-  ASSERT_EQ(motion.advance_to(ends + 1), "");
+  ASSERT_TRUE(motion.advance_to(ends + 1));
   const auto rolls = v0 - slip * (2.0 / 7);
   EXPECT_NEAR(world.velocity[0][0], rolls[0], 1e-12);
   EXPECT_NEAR(world.velocity[0][1], rolls[1], 1e-12);
@@ -148,7 +148,7 @@ TEST(RollingInSpace, ASlipThatTurnsIsFollowed) {
   constexpr double slope = 0.3;
   World<double, 3> world;
   world.gravity = {{g * std::sin(slope), 0, -g * std::cos(slope)}};
-  ASSERT_EQ(world.add_wall({.material = cloth}), "");
+  ASSERT_TRUE(world.add_wall({.material = cloth}));
   ASSERT_TRUE(world.add({.position = {{0, 0, r}}, .velocity = {{-1, 4, 0}}, .material = cloth}));
   const auto f = [](double, const std::array<double, 6>& x) {
     const double size = std::hypot(x[4], x[5]), n = g * std::cos(slope), pull = g * std::sin(slope);
@@ -163,7 +163,7 @@ TEST(RollingInSpace, ASlipThatTurnsIsFollowed) {
       solve(f, std::array<double, 6>{0, 0, -1, 4, -1, 4}, {0.0, 0.6}, Dop853{}, {.rtol = 1e-12, .atol = 1e-12});
   ASSERT_TRUE(right.outcome);
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(0.6), "");
+  ASSERT_TRUE(motion.advance_to(0.6));
   EXPECT_NEAR(world.position[0][0], right.final_state()[0], 1e-6);
   EXPECT_NEAR(world.position[0][1], right.final_state()[1], 1e-6);
   EXPECT_NEAR(world.velocity[0][0], right.final_state()[2], 1e-6);
@@ -177,12 +177,12 @@ TEST(RollingInSpace, TheFollowShotOfBilliards) {
   constexpr double polish = 1e-9;
   World<double, 3> world;
   world.gravity = {{0, 0, -g}};
-  ASSERT_EQ(world.add_wall({.material = {.restitution = 0, .friction = mu * mu / polish}}), "");
+  ASSERT_TRUE(world.add_wall({.material = {.restitution = 0, .friction = mu * mu / polish}}));
   const Material<double> ivory{.restitution = 1, .friction = polish};
   ASSERT_TRUE(world.add({.position = {{0, 0, r}}, .velocity = {{7, 0, 0}}, .spin = {{0, 14, 0}}, .material = ivory}));
   ASSERT_TRUE(world.add({.position = {{3, 0, r}}, .material = ivory}));
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(20), "");
+  ASSERT_TRUE(motion.advance_to(20));
   // What friction of 1e-9 can do to a ball of 7 m/s, some times over.
   EXPECT_NEAR(world.velocity[0][0], 2, 1e-7);
   EXPECT_NEAR(world.velocity[1][0], 5, 1e-7);
@@ -196,11 +196,11 @@ TEST(RollingInSpace, ASnapshotInTheMiddleOfASlideGoesOnToTheSameBits) {
                            .spin = {{1, -3, 2}},
                            .material = {.restitution = 0.7, .friction = 0.1, .rolling_resistance = 0.01}}));
   ExactMotion motion(world), motion_again(again);
-  ASSERT_EQ(motion.advance_to(0.3), "");
+  ASSERT_TRUE(motion.advance_to(0.3));
   const Bytes bytes = snapshot(world, motion);
-  ASSERT_EQ(motion.advance_to(5), "");
-  ASSERT_EQ(restore(bytes, again, motion_again), "");
-  ASSERT_EQ(motion_again.advance_to(5), "");
+  ASSERT_TRUE(motion.advance_to(5));
+  ASSERT_TRUE(restore(bytes, again, motion_again));
+  ASSERT_TRUE(motion_again.advance_to(5));
   EXPECT_EQ(state_hash(world), state_hash(again));
 }
 
@@ -213,8 +213,8 @@ TEST(RollingInSpace, PlacesDoNotDependOnHowOftenOneLooks) {
                             .spin = {{0, 0, 1}},
                             .material = {.friction = 0.1, .rolling_resistance = 0.01}}));
   ExactMotion once(seldom), steps(often);
-  ASSERT_EQ(once.advance_to(6), "");
-  for (int i = 1; i <= 60; ++i) ASSERT_EQ(steps.advance_to(0.1 * i), "");
+  ASSERT_TRUE(once.advance_to(6));
+  for (int i = 1; i <= 60; ++i) ASSERT_TRUE(steps.advance_to(0.1 * i));
   EXPECT_EQ(seldom.position, often.position);
   EXPECT_EQ(seldom.velocity, often.velocity);
   EXPECT_EQ(seldom.spin, often.spin);

@@ -13,14 +13,14 @@ constexpr double friction = 0.5, radius = 0.5, g = 9.81;
 constexpr double arm = 3 * std::numbers::pi / 16 * 0.05 * radius;  // the torque is this times friction times the force
 
 void run(FastMotion<double, 3>& motion, double duration) {
-  for (int i = 0; i < std::lround(60 * duration); ++i) ASSERT_EQ(motion.advance(), "");
+  for (int i = 0; i < std::lround(60 * duration); ++i) ASSERT_TRUE(motion.advance());
 }
 
 // friction m g arm slows what has the inertia 2/5 m r^2 by 0.7 a second each second, until it stands.
 TEST(SpinningFriction, SlowsABallOnTheFloorAtAConstantRate) {
   World<double, 3> world;
   world.gravity = {{0, 0, -g}};
-  ASSERT_EQ(world.add_wall({.material = {.friction = friction}}), "");
+  ASSERT_TRUE(world.add_wall({.material = {.friction = friction}}));
   ASSERT_TRUE(world.add({.position = {{0, 0, radius}}, .spin = {{0, 0, 2}}, .material = {.friction = friction}}));
   const double rate = friction * g * arm / (0.4 * radius * radius);
   FastMotion motion(world);

@@ -29,7 +29,7 @@ double error_after_3(const World<double, 2>& world) {
 TEST(Torque, SwingsATorsionPendulumExactly) {
   World<double, 2> world = torsion_pendulum();
   ExactMotion motion(world);
-  ASSERT_EQ(motion.advance_to(3), "");
+  ASSERT_TRUE(motion.advance_to(3));
   EXPECT_LT(error_after_3(world), 2e-9);
 }
 
@@ -38,7 +38,7 @@ TEST(Torque, KeepsTheOrderOfTheFastIntegrators) {
   const auto error_of = [](ForceIntegrator integrator, double h) {
     World<double, 2> world = torsion_pendulum();
     FastMotion<double, 2> motion(world, {.step = h, .substeps = 1, .integrator = integrator});
-    for (int i = 0; i < std::lround(3 / h); ++i) EXPECT_EQ(motion.advance(), "");
+    for (int i = 0; i < std::lround(3 / h); ++i) EXPECT_TRUE(motion.advance());
     return error_after_3(world);
   };
   for (const auto integrator : {ForceIntegrator::semi_implicit_euler, ForceIntegrator::explicit_euler,
@@ -61,7 +61,7 @@ TEST(Torque, MakesASpinPrecess) {
   World<double, 3> fast = world;
   ExactMotion motion(world);
   const double t = 2;
-  ASSERT_EQ(motion.advance_to(t), "");
+  ASSERT_TRUE(motion.advance_to(t));
   const Vector<double, 4> expected = turned(turned(upright<double, 3>(), Vector<double, 3>(spin - about), t), about, t);
   const double c = std::cos(1.5 * t), s = std::sin(1.5 * t);
   const Vector<double, 3> turned_spin{{2 * c - s, 2 * s + c, 0.5}};
@@ -69,7 +69,7 @@ TEST(Torque, MakesASpinPrecess) {
   EXPECT_LT(length(world.spin[0] - turned_spin), 2e-9);
   // Of order 2: (spin h)^2 a unit of time, times the time, over 24 and the like.
   FastMotion<double, 3> steps(fast, {.step = 1e-3, .substeps = 1, .integrator = ForceIntegrator::central_difference});
-  for (int i = 0; i < 2000; ++i) ASSERT_EQ(steps.advance(), "");
+  for (int i = 0; i < 2000; ++i) ASSERT_TRUE(steps.advance());
   EXPECT_LT(length(fast.orientation[0] - expected), 1e-5);
   EXPECT_LT(length(fast.spin[0] - turned_spin), 1e-5);
 }
@@ -78,12 +78,12 @@ TEST(Torque, MakesASpinPrecess) {
 TEST(Torque, DrivesABallAlongAFloor) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
-  ASSERT_EQ(world.add_wall({.material = {.friction = 0.25}}), "");
+  ASSERT_TRUE(world.add_wall({.material = {.friction = 0.25}}));
   ASSERT_TRUE(world.add({.shape = Sphere<double>{1}, .position = {{0, 1}}, .mass = 2, .material = {.friction = 0.25}}));
   world.torque_laws.emplace_back([](const auto&, double, const auto&, auto torque) { torque[0][0] -= 8.0; });
   FastMotion<double, 2> motion(world, {.step = 1e-3});
   const auto go_on = [&](int steps) {
-    for (int i = 0; i < steps; ++i) EXPECT_EQ(motion.advance(), "");
+    for (int i = 0; i < steps; ++i) EXPECT_TRUE(motion.advance());
     return std::pair(world.velocity[0][0], world.spin[0][0]);
   };
   const auto [v, spin] = go_on(1000);  // a soft contact, overdamped: sunk in to exp(-2 pi 120/20 t)

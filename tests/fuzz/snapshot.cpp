@@ -19,18 +19,18 @@ void check_refusal(const std::string& error) {
 template <class Real, int Dim>
 void restore_all(const Bytes& bytes) {
   World<Real, Dim> plain;
-  if (const std::string error = restore(bytes, plain); !error.empty()) return check_refusal(error);
+  if (const Status status = restore(bytes, plain); !status) return check_refusal(status.message);
   if (snapshot(plain) != snapshot(World<Real, Dim>(plain))) std::abort();
 
   World<Real, Dim> of_exact;
   ExactMotion<Real, Dim> exact(of_exact, {.most_events = 200, .contact_events = 10});
-  if (restore(bytes, of_exact, exact).empty()) {
+  if (restore(bytes, of_exact, exact)) {
     if (snapshot(of_exact, exact) != bytes) std::abort();
     (void)exact.advance_to(of_exact.time + Real(0.01));
   }
   World<Real, Dim> of_fast;
   FastMotion<Real, Dim> fast(of_fast, {.contact_events = 10});
-  if (restore(bytes, of_fast, fast).empty()) (void)fast.advance();
+  if (restore(bytes, of_fast, fast)) (void)fast.advance();
 }
 
 }  // namespace

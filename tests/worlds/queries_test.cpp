@@ -89,7 +89,7 @@ run 0..1
 )");
   std::vector<double> variables = start_values(program->model);
   const auto built = build_world<2>(program->model, variables);
-  ASSERT_EQ(built.error, "");
+  ASSERT_TRUE(built.status) << built.status.message;
   const Queries queries(built.world);
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -108,15 +108,15 @@ run 0..1
       return 0.0;
     };
     const auto hit = queries.first_hit({.origin = origin, .direction = direction, .reach = 40});
-    ASSERT_EQ(hit.error, "");
+    ASSERT_TRUE(hit) << hit.status().message;
     // Both solve the same quadratic, in other orders: to 1e-16 of its numbers, of up to 50^2, over twice a root that is
     // not small but where a ray grazes; to half of the digits there.
-    EXPECT_NEAR(asked("way"), hit.value.empty() ? 40 : hit.value.front().distance, 1e-6) << k;
-    hits += !hit.value.empty() && !hit.value.front().is_wall() ? 1 : 0;
-    EXPECT_NEAR(asked("gap"), queries.nearest(origin, 1).value.front().distance, 1e-13) << k;
+    EXPECT_NEAR(asked("way"), hit->empty() ? 40 : hit->front().distance, 1e-6) << k;
+    hits += !hit->empty() && !hit->front().is_wall() ? 1 : 0;
+    EXPECT_NEAR(asked("gap"), queries.nearest(origin, 1)->front().distance, 1e-13) << k;
     const auto touched = queries.in_sphere(origin, 2);
-    EXPECT_EQ(asked("near"), static_cast<double>(touched.value.bodies.size() + touched.value.walls.size())) << k;
-    crowded += touched.value.bodies.size() > 1 ? 1 : 0;
+    EXPECT_EQ(asked("near"), static_cast<double>(touched->bodies.size() + touched->walls.size())) << k;
+    crowded += touched->bodies.size() > 1 ? 1 : 0;
   }
   EXPECT_GT(hits, 300U);
   EXPECT_GT(crowded, 100U);

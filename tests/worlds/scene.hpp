@@ -23,9 +23,9 @@ inline std::shared_ptr<const model::ModelProgram> program_of(const std::string& 
 
 inline std::unique_ptr<WorldRun> started(const std::string& text, const WorldOptions& options = {}) {
   const auto program = program_of(text);
-  StartedWorld world = start_world(program, options, start_values(program->model));
-  EXPECT_TRUE(world.run) << world.error;
-  return std::move(world.run);
+  auto world = start_world(program, options, start_values(program->model));
+  EXPECT_TRUE(world) << world.status().message;
+  return world ? *std::move(world) : nullptr;
 }
 
 inline model::Run run_of(const std::string& text, const model::Experiment& experiment = {}) {

@@ -66,9 +66,9 @@ world {
   body ball at (0, 5.5) mass 2
 })",
                            {.most_contacts = 10});
-  ASSERT_EQ(run->advance_to(0.5), "");
+  ASSERT_TRUE(run->advance_to(0.5));
   EXPECT_THAT(run->contacts(), testing::IsEmpty());
-  ASSERT_EQ(run->advance_to(1.5), "");
+  ASSERT_TRUE(run->advance_to(1.5));
   ASSERT_THAT(run->contacts(), testing::SizeIs(1));
   const Contact& contact = run->contacts()[0];
   EXPECT_EQ(run->name_of(contact), "ball meets ground");
@@ -81,22 +81,22 @@ world {
 TEST(WorldRun, GoesOnToTheSameBitsFromASnapshot) {
   for (const char* method : {"exact", "fast"}) {
     const auto run = started(bouncing, {.method = method, .step = 0.01});
-    ASSERT_EQ(run->advance_to(1.23), "");
+    ASSERT_TRUE(run->advance_to(1.23));
     const Snapshot saved = run->snapshot();
-    ASSERT_EQ(run->advance_to(4), "");
+    ASSERT_TRUE(run->advance_to(4));
     const std::vector<double> once = run->state();
-    ASSERT_EQ(run->restore(saved), "");
+    ASSERT_TRUE(run->restore(saved));
     EXPECT_EQ(run->time(), saved.time);
-    ASSERT_EQ(run->advance_to(4), "");
+    ASSERT_TRUE(run->advance_to(4));
     EXPECT_EQ(run->state(), once) << method;
   }
 }
 
 TEST(WorldRun, CanBePushed) {
   const auto run = started(bouncing);
-  ASSERT_EQ(run->advance_to(0.25), "");
+  ASSERT_TRUE(run->advance_to(0.25));
   run->set_body(0, {1, 20, 0}, {3, 0, 0});
-  ASSERT_EQ(run->advance_to(1.25), "");
+  ASSERT_TRUE(run->advance_to(1.25));
   EXPECT_NEAR(run->position(0)[0], 4, 1e-10);
   EXPECT_NEAR(run->position(0)[1], 15, 1e-10);
 }
@@ -104,24 +104,25 @@ TEST(WorldRun, CanBePushed) {
 TEST(WorldRun, FollowsItsParameters) {
   const auto program = program_of(bouncing);
   auto world = start_world(program, {}, start_values(program->model));
-  WorldRun& run = *world.run;
+  ASSERT_TRUE(world);
+  WorldRun& run = **world;
   const auto parameter = [&](const char* name) {
     return program->model.parameters[find_parameter(program->model, name)].variable;
   };
-  ASSERT_EQ(run.set(parameter("g"), 0), "");
-  ASSERT_EQ(run.advance_to(3), "");
+  ASSERT_TRUE(run.set(parameter("g"), 0));
+  ASSERT_TRUE(run.advance_to(3));
   EXPECT_EQ(run.position(0)[1], 5.5);
-  EXPECT_THAT(run.set(parameter("e"), 2), testing::HasSubstr("restitution"));  // refused
-  ASSERT_EQ(run.set(parameter("g"), 10), "");
-  ASSERT_EQ(run.advance_to(5), "");
+  EXPECT_THAT(run.set(parameter("e"), 2).message, testing::HasSubstr("restitution"));  // refused
+  ASSERT_TRUE(run.set(parameter("g"), 10));
+  ASSERT_TRUE(run.advance_to(5));
   EXPECT_NEAR(run.position(0)[1], 5.5, 1e-9);  // down and up again in 2 s with e = 1
 }
 
 TEST(WorldRun, StopsAtTheEndOfAStepInTheFastMode) {
   const auto run = started(bouncing, {.method = "fast", .step = 1.0 / 60});
-  ASSERT_EQ(run->advance_to(1), "");
+  ASSERT_TRUE(run->advance_to(1));
   EXPECT_EQ(run->time(), 1);  // 60 steps, counted and not added up
-  ASSERT_EQ(run->advance_to(1.001), "");
+  ASSERT_TRUE(run->advance_to(1.001));
   EXPECT_EQ(run->time(), 61.0 / 60);
 }
 

@@ -87,8 +87,9 @@ std::vector<Touching> pairs_within(const World<Real, Dim>& world, const Real& re
   for (std::uint32_t i = 0; i < world.size(); ++i) {
     if (world.is_fixed(i)) continue;
     const auto near = queries.in_sphere(world.position[i], world.radius[i] + 2 * reach);
-    for (const std::uint32_t w : near.value.walls) pairs.push_back({.a = i, .b = i, .wall = w});
-    for (const BodyHandle& body : near.value.bodies) {
+    if (!near) continue;  // a body that is nowhere meets nobody; the motion ends for it
+    for (const std::uint32_t w : near->walls) pairs.push_back({.a = i, .b = i, .wall = w});
+    for (const BodyHandle& body : near->bodies) {
       const auto j = static_cast<std::uint32_t>(world.index(body));
       if ((j > i || world.is_fixed(j)) && j != i && world.collide(i, j)) pairs.push_back({.a = i, .b = j});
     }

@@ -18,7 +18,7 @@ FastMotion<Real, Dim>& FastMotion<Real, Dim>::operator=(FastMotion&&) noexcept =
 template <class Real, int Dim>
 FastMotion<Real, Dim>::~FastMotion() = default;
 template <class Real, int Dim>
-std::string FastMotion<Real, Dim>::advance() {
+Status FastMotion<Real, Dim>::advance() {
   return stepper_->advance();
 }
 template <class Real, int Dim>

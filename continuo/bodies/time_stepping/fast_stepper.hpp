@@ -41,10 +41,10 @@ class FastMotion<Real, Dim>::Stepper {
     make_list();
   }
 
-  std::string advance() {
-    std::string error;
-    team_.run([&] { error = step(); });
-    return error;
+  Status advance() {
+    Status status;
+    team_.run([&] { status = step(); });
+    return status;
   }
 
   Real deepest_overlap() const { return contacts_.deepest_overlap(bodies_, world_.walls()); }
@@ -114,14 +114,17 @@ class FastMotion<Real, Dim>::Stepper {
 
  private:
   /// The stages of a step.
-  std::string step() {
+  Status step() {
     if (std::string fault = fault_of_options(); !fault.empty()) return fault;
     load_changed();
     list_pairs();
     choose_contacts();
-    if (!integrate()) return "the equations of implicit Euler could not be solved: a smaller step may help";
+    if (!integrate())
+      return {.ending = Ending::nonlinear_solve_failed,
+              .message = "the equations of implicit Euler could not be solved: a smaller step may help"};
     if (!bodies_.all_finite())
-      return "a body's motion is no longer finite: a force or a mass is too large for the step";
+      return {.ending = Ending::not_finite,
+              .message = "a body's motion is no longer finite: a force or a mass is too large for the step"};
     store_bodies(team_, bodies_, list_.order(), torques_, options_.step, world_);
     world_.time += options_.step;
     note_contacts();
@@ -132,8 +135,8 @@ class FastMotion<Real, Dim>::Stepper {
 
   std::string fault_of_options() const {
     if (!(options_.step > Real(0)) || !(options_.step < std::numeric_limits<Real>::infinity()))
-      return "the step must be greater than 0, and finite";
-    if (options_.substeps < 1) return "a step has at least one substep";
+      return invalid_input("the step must be greater than 0, and finite");
+    if (options_.substeps < 1) return invalid_input("a step has at least one substep");
     return {};
   }
 

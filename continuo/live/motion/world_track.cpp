@@ -56,7 +56,7 @@ class WorldTrack final : public Track {
         events_(program, plan.variables, plan.from, length() / looks),
         layout_(program->model.layout),
         chunk_(length() / looks) {
-    error_ = events_.begin(*run_, sink());
+    error_ = events_.begin(*run_, sink()).message;
     remember();
     end_where_stopped();
   }
@@ -73,14 +73,14 @@ class WorldTrack final : public Track {
     const auto begin = std::chrono::steady_clock::now();
     const double step = run_->step();
     const double to = step > 0 ? before_t_ + step / 2 : std::min(std::max(wanted, before_t_), before_t_ + chunk_);
-    error_ = events_.advance(*run_, std::min(to, events_.next(*run_)));
+    error_ = events_.advance(*run_, std::min(to, events_.next(*run_))).message;
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     constexpr double moment = 4e-3;  // seconds
     chunk_ *= took.count() > moment ? 0.5 : 1.5;
     chunk_ = std::clamp(chunk_, 1e-9 * length(), length());
     put_held();
     note_contacts();
-    if (error_.empty()) error_ = events_.happen(*run_, sink());
+    if (error_.empty()) error_ = events_.happen(*run_, sink()).message;
     end_where_stopped();
     if (error_.empty() && run_->time() > before_t_) return !events_.stopped();
     if (events_.stopped()) return false;
@@ -118,12 +118,12 @@ class WorldTrack final : public Track {
     if (!is_of_this_motion(instant)) {
       place(instant);
     } else {
-      if (instant.world->time != run_->time()) error_ = run_->restore(*instant.world);
+      if (instant.world->time != run_->time()) error_ = run_->restore(*instant.world).message;
       if (instant.moved) run_->set_state(instant.x);
     }
     const std::vector<double> now(run_->variables().begin(), run_->variables().end());
     for (std::uint32_t i = layout_.parameters; i < layout_.samples && error_.empty(); ++i) {
-      if (now[i] != variables[i]) error_ = run_->set(i, variables[i]);
+      if (now[i] != variables[i]) error_ = run_->set(i, variables[i]).message;
     }
     events_.go_on(*run_, run_->variables(), instant.stops);
     remember();
@@ -224,9 +224,9 @@ MadeTrack make_world_track(const std::shared_ptr<const model::ModelProgram>& pro
   options.most_contacts = 200;
   std::vector<double> variables = plan.variables;
   for (const model::TableInput& input : program->step_inputs) variables[input.variable] = input.table.value(plan.from);
-  worlds::StartedWorld started = worlds::start_world(program, options, variables);
-  if (!started.run) return {nullptr, started.error};
-  return {std::make_unique<WorldTrack>(program, std::move(started.run), plan), {}};
+  auto started = worlds::start_world(program, options, variables);
+  if (!started) return {nullptr, started.status().message};
+  return {std::make_unique<WorldTrack>(program, *std::move(started), plan), {}};
 }
 
 }  // namespace continuo::live

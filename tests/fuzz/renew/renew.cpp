@@ -49,7 +49,7 @@ World<Real, Dim> few(bool has_spring) {
     ball.group = static_cast<std::uint32_t>(i % 2);
     const auto added = world.add(ball);
     if (i == 1) world.remove(last);
-    last = added.handle;
+    last = *added;
   }
   if (has_spring) world.springs.push_back({.a = last, .b = Vector<Real, Dim>{}, .rest_length = 1, .stiffness = 3});
   return world;
