@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include <continuo/status/status.hpp>
+
 namespace continuo::results {
 
 struct Curve {
@@ -50,7 +52,7 @@ std::string_view color_of(std::size_t number);
 
 /// The file's ending says the format: .svg or .png. Returns what went wrong, if anything: unknown ending, gnuplot not
 /// installed, folder not writable.
-std::optional<std::string> draw(const Figure& figure, const std::string& path);
+Status draw(const Figure& figure, const std::string& path);
 
 /// The program for gnuplot that `draw` runs.
 std::string gnuplot_script(const Figure& figure, const std::string& path);

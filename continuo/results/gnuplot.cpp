@@ -261,7 +261,11 @@ std::vector<std::string> environment_for_utf8() {
   return variables;
 }
 
-std::optional<std::string> run_gnuplot(const std::string& script_path) {
+Status cannot_draw(std::string message) {
+  return {.ending = Ending::unwritable, .message = std::move(message)};
+}
+
+Status run_gnuplot(const std::string& script_path) {
   std::string program = "gnuplot";
   std::string argument = script_path;
   char* arguments[] = {program.data(), argument.data(), nullptr};
@@ -275,16 +279,18 @@ std::optional<std::string> run_gnuplot(const std::string& script_path) {
   posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);  // standard output is for data
   const int problem = posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environment.data());
   posix_spawn_file_actions_destroy(&actions);
-  if (problem == ENOENT) return "gnuplot draws the plots and is not installed: apt-get install gnuplot-nox";
-  if (problem != 0) return fmt::format("gnuplot could not be started: {}", std::strerror(problem));
+  if (problem == ENOENT)
+    return cannot_draw("gnuplot draws the plots and is not installed: apt-get install gnuplot-nox");
+  if (problem != 0) return cannot_draw(fmt::format("gnuplot could not be started: {}", std::strerror(problem)));
   int status = 0;
   while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
-    return "gnuplot draws the plots and is not installed: apt-get install gnuplot-nox";
+    return cannot_draw("gnuplot draws the plots and is not installed: apt-get install gnuplot-nox");
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "gnuplot could not draw the plot; its message is above";
-  return std::nullopt;
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    return cannot_draw("gnuplot could not draw the plot; its message is above");
+  return {};
 }
 
 }  // namespace
@@ -365,22 +371,25 @@ std::string gnuplot_script(const Figure& figure, const std::string& path) {
   return script + "unset multiplot\nunset output\n";
 }
 
-std::optional<std::string> draw(const Figure& figure, const std::string& path) {
+Status draw(const Figure& figure, const std::string& path) {
   const std::string ending = ending_of(path);
   if (ending != ".svg" && ending != ".png") {
-    return fmt::format("cannot plot to {}: the file's name ends in .svg or .png", path);
+    return invalid_input(fmt::format("cannot plot to {}: the file's name ends in .svg or .png", path));
   }
-  if (auto failure = write_file(path, "")) return failure;  // a folder that is not there is our message, not gnuplot's
+  if (Status status = write_file(path, ""); !status)
+    return status;  // a folder that is not there is our message, not gnuplot's
 
   std::string name = (std::filesystem::temp_directory_path() / "continuo-plot-XXXXXX").string();
   const int descriptor = mkstemp(name.data());
-  if (descriptor < 0) return fmt::format("cannot write {}: {}", name, std::strerror(errno));
+  if (descriptor < 0)
+    return {.ending = Ending::unwritable, .message = fmt::format("cannot write {}: {}", name, std::strerror(errno))};
   ::close(descriptor);
   const TemporaryFile file{name};
-  if (auto failure = write_file(name, gnuplot_script(figure, path))) return failure;
-  if (auto failure = run_gnuplot(name)) return failure;
-  if (is_whole_picture(path)) return std::nullopt;
-  return fmt::format("cannot write {}: the picture is cut off, as where a disk is full", path);
+  if (Status status = write_file(name, gnuplot_script(figure, path)); !status) return status;
+  if (Status status = run_gnuplot(name); !status) return status;
+  if (is_whole_picture(path)) return {};
+  return {.ending = Ending::unwritable,
+          .message = fmt::format("cannot write {}: the picture is cut off, as where a disk is full", path)};
 }
 
 }  // namespace continuo::results

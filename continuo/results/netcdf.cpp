@@ -185,8 +185,8 @@ bool is_netcdf(std::string_view path) {
   return path.ends_with(".nc");
 }
 
-std::optional<std::string> write_netcdf(const model::Model& model, const model::Run& run, const std::string& path,
-                                        std::string_view manifest_hash) {
+Status write_netcdf(const model::Model& model, const model::Run& run, const std::string& path,
+                    std::string_view manifest_hash) {
   return write_netcdf_file(Contents(model, run).file(manifest_hash), path);
 }
 

@@ -15,6 +15,7 @@
 
 #include <continuo/language/model.hpp>
 #include <continuo/simulation/run.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo::results {
 
@@ -22,7 +23,7 @@ namespace continuo::results {
 bool is_netcdf(std::string_view path);
 
 /// What went wrong, if anything.
-std::optional<std::string> write_netcdf(const model::Model& model, const model::Run& run, const std::string& path,
-                                        std::string_view manifest_hash);
+Status write_netcdf(const model::Model& model, const model::Run& run, const std::string& path,
+                    std::string_view manifest_hash);
 
 }  // namespace continuo::results

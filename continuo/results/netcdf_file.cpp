@@ -73,10 +73,10 @@ class Writer {
 
 }  // namespace
 
-std::optional<std::string> write_netcdf_file(const NetcdfFile& file, const std::string& path) {
+Status write_netcdf_file(const NetcdfFile& file, const std::string& path) {
   const int status = Writer(path).write(file);
-  if (status == NC_NOERR) return std::nullopt;
-  return "cannot write " + path + ": " + nc_strerror(status);
+  if (status == NC_NOERR) return {};
+  return {.ending = Ending::unwritable, .message = "cannot write " + path + ": " + nc_strerror(status)};
 }
 
 }  // namespace continuo::results

@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include <continuo/status/status.hpp>
+
 namespace continuo::results {
 
 struct NetcdfAttribute {
@@ -50,6 +52,6 @@ struct NetcdfFile {
 };
 
 /// What went wrong, if anything.
-std::optional<std::string> write_netcdf_file(const NetcdfFile& file, const std::string& path);
+Status write_netcdf_file(const NetcdfFile& file, const std::string& path);
 
 }  // namespace continuo::results

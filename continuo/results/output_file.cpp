@@ -16,36 +16,38 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
 }
 
 OutputFile::~OutputFile() {
-  close();
+  (void)close();
 }
 
 void OutputFile::write(std::string_view bytes) {
-  if (failure_) return;
+  if (!status_) return;
   buffer_ += bytes;
   if (buffer_.size() >= buffer_bytes) flush();
 }
 
 void OutputFile::flush() {
   if (file_ == nullptr) return;
-  if (!failure_ && std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail();
+  if (status_ && std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail();
   buffer_.clear();
 }
 
 void OutputFile::fail() {
-  if (failure_) return;
-  failure_ = "cannot write " + (path_ == "-" ? std::string("to standard output") : path_) + ": " + std::strerror(errno);
+  if (!status_) return;
+  status_ = {.ending = Ending::unwritable,
+             .message = "cannot write " + (path_ == "-" ? std::string("to standard output") : path_) + ": " +
+                        std::strerror(errno)};
 }
 
-std::optional<std::string> OutputFile::close() {
+Status OutputFile::close() {
   flush();
   if (file_ != nullptr) {
     if ((file_ == stdout ? std::fflush(file_) : std::fclose(file_)) != 0) fail();
     file_ = nullptr;
   }
-  return failure_;
+  return status_;
 }
 
-std::optional<std::string> write_file(const std::string& path, std::string_view text) {
+Status write_file(const std::string& path, std::string_view text) {
   OutputFile file(path);
   file.write(text);
   return file.close();

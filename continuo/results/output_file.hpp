@@ -4,12 +4,13 @@
 //
 //   OutputFile out("ball.csv");
 //   out.write("t,h\n");
-//   if (auto failure = out.close()) fmt::print(stderr, "{}\n", *failure);
+//   if (const Status status = out.close(); !status) fmt::print(stderr, "{}\n", status.message);
 #pragma once
 #include <cstdio>
-#include <optional>
 #include <string>
 #include <string_view>
+
+#include <continuo/status/status.hpp>
 
 namespace continuo::results {
 
@@ -21,9 +22,9 @@ class OutputFile {
   ~OutputFile();
 
   void write(std::string_view bytes);
-  /// What went wrong since the file was opened, if anything: "cannot write ball.csv: Permission denied".
-  std::optional<std::string> close();
-  const std::optional<std::string>& failure() const { return failure_; }
+  /// Writes what is left. The first failure since the file was opened: "cannot write ball.csv: Permission denied".
+  Status close();
+  const Status& status() const { return status_; }
 
  private:
   void flush();
@@ -32,10 +33,10 @@ class OutputFile {
   std::string path_;
   std::string buffer_;
   std::FILE* file_;  // null after a failure to open
-  std::optional<std::string> failure_;
+  Status status_;
 };
 
 /// The whole text at once.
-std::optional<std::string> write_file(const std::string& path, std::string_view text);
+Status write_file(const std::string& path, std::string_view text);
 
 }  // namespace continuo::results

@@ -9,18 +9,16 @@
 
 namespace continuo::results {
 
-std::optional<std::string> write_motion(const model::Run& run, const std::string& path,
-                                        std::string_view manifest_hash) {
+Status write_motion(const model::Run& run, const std::string& path, std::string_view manifest_hash) {
   std::vector<std::string> names;
   for (const model::Column& column : run.motion.columns) names.push_back(column.name);
   OutputFile out(path);
   CsvWriter csv(out, manifest_hash, names);
-  for (std::size_t i = 0; i < run.motion.rows() && !out.failure(); ++i) csv.row(run.motion.row(i));
+  for (std::size_t i = 0; i < run.motion.rows() && out.status(); ++i) csv.row(run.motion.row(i));
   return out.close();
 }
 
-std::optional<std::string> write_events(const model::Run& run, const std::string& path,
-                                        std::string_view manifest_hash) {
+Status write_events(const model::Run& run, const std::string& path, std::string_view manifest_hash) {
   const bool contacts = std::ranges::any_of(run.events, &model::Happened::is_contact);
   // Of a contact the states are not kept: where nothing else happened, there are no columns for them.
   const bool states = run.events.empty() || !std::ranges::all_of(run.events, &model::Happened::is_contact);

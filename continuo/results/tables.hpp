@@ -6,14 +6,15 @@
 #include <string_view>
 
 #include <continuo/simulation/run.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo::results {
 
 /// `t`, states, outputs: an event stands as two rows of equal t, the state before it and after it.
 /// Each returns what went wrong, if anything; "-" is standard output.
-std::optional<std::string> write_motion(const model::Run& run, const std::string& path, std::string_view manifest_hash);
+Status write_motion(const model::Run& run, const std::string& path, std::string_view manifest_hash);
 
 /// `event,t`, where bodies met `impulse`, then `before h` for each state, then `after h`.
-std::optional<std::string> write_events(const model::Run& run, const std::string& path, std::string_view manifest_hash);
+Status write_events(const model::Run& run, const std::string& path, std::string_view manifest_hash);
 
 }  // namespace continuo::results

@@ -95,7 +95,7 @@ run 0..1 [s] output 0.25
 )");
   const model::Simulated simulated = simulate(model);
   const std::string path = scratch("spring.nc");
-  ASSERT_EQ(write_netcdf(model, *simulated.run, path, "a hash"), std::nullopt);
+  ASSERT_TRUE(write_netcdf(model, *simulated.run, path, "a hash"));
   const Reading file(path);
   EXPECT_THAT(file.values("time"), ElementsAre(0, 0.25, 0.5, 0.75, 1));
   EXPECT_EQ(file.attribute("time", "units"), "s");
@@ -138,7 +138,7 @@ TEST(NetCdf, HoldsBodiesByTimeBodyAndComponent) {
       run.motion.values.push_back(7);
     }
     const std::string path = scratch("bodies.nc");
-    ASSERT_EQ(write_netcdf(model, run, path, ""), std::nullopt);
+    ASSERT_TRUE(write_netcdf(model, run, path, ""));
     const Reading file(path);
     EXPECT_THAT(file.texts("body"), ElementsAre("a", "b[1]", "b[2]"));
     EXPECT_THAT(file.dimensions("position"), ElementsAre("time", "body", "component"));
@@ -176,7 +176,7 @@ TEST(NetCdf, MakesAnArrayOfAFamily) {
   const model::Simulated simulated = simulate(model);
   ASSERT_TRUE(simulated.run);
   const std::string path = scratch("families.nc");
-  ASSERT_EQ(write_netcdf(model, *simulated.run, path, ""), std::nullopt);
+  ASSERT_TRUE(write_netcdf(model, *simulated.run, path, ""));
   const Reading file(path);
   EXPECT_THAT(file.dimensions("u"), ElementsAre("time", "i"));
   EXPECT_THAT(file.dimensions("u'"), ElementsAre("time", "i"));
@@ -198,9 +198,10 @@ TEST(NetCdf, MakesAnArrayOfAFamily) {
 TEST(NetCdf, SaysWhyItCannotBeWritten) {
   const model::Model model = model_of("x' = 1\nx(0) = 0\nrun 0..1\n");
   const model::Simulated simulated = simulate(model);
-  const auto failure = write_netcdf(model, *simulated.run, "/nowhere/at/all.nc", "");
-  ASSERT_TRUE(failure);
-  EXPECT_THAT(*failure, testing::StartsWith("cannot write /nowhere/at/all.nc: "));
+  const Status status = write_netcdf(model, *simulated.run, "/nowhere/at/all.nc", "");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.ending, Ending::unwritable);
+  EXPECT_THAT(status.message, testing::StartsWith("cannot write /nowhere/at/all.nc: "));
 }
 
 }  // namespace

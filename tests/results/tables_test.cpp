@@ -43,7 +43,7 @@ TEST(Csv, FieldsWithCommasAndQuotesAreQuoted) {  // RFC 4180, 2.6 and 2.7
 
 TEST(Tables, TheMotionHasTheHashTheModelsNamesAndBothSidesOfAnEvent) {
   const Folder folder;
-  ASSERT_FALSE(write_motion(falling_ball().run, folder / "ball.csv", "abc"));
+  ASSERT_TRUE(write_motion(falling_ball().run, folder / "ball.csv", "abc"));
   EXPECT_EQ(content(folder / "ball.csv"),
             "# manifest abc\n"
             "t,h,h'\n"
@@ -55,7 +55,7 @@ TEST(Tables, TheMotionHasTheHashTheModelsNamesAndBothSidesOfAnEvent) {
 
 TEST(Tables, TheEventListHasTheStatesBeforeAndAfter) {
   const Folder folder;
-  ASSERT_FALSE(write_events(falling_ball().run, folder / "events.csv", "abc"));
+  ASSERT_TRUE(write_events(falling_ball().run, folder / "events.csv", "abc"));
   EXPECT_EQ(content(folder / "events.csv"),
             "# manifest abc\n"
             "event,t,before h,before h',after h,after h'\n"
@@ -68,10 +68,10 @@ TEST(Tables, ContactsHaveAnImpulseAndColumnsOfStatesOnlyBesideOtherEvents) {
   model::Run run = falling_ball().run;
   const model::Happened fall = run.events.at(0);
   run.events = {{.name = "a meets b", .mark = "", .t = 0.25, .before = {}, .after = {}, .impulse = 3}};
-  ASSERT_FALSE(write_events(run, folder / "contacts.csv", "abc"));
+  ASSERT_TRUE(write_events(run, folder / "contacts.csv", "abc"));
   EXPECT_EQ(content(folder / "contacts.csv"), "# manifest abc\nevent,t,impulse\na meets b,0.25,3\n");
   run.events.push_back(fall);
-  ASSERT_FALSE(write_events(run, folder / "both.csv", "abc"));
+  ASSERT_TRUE(write_events(run, folder / "both.csv", "abc"));
   EXPECT_EQ(content(folder / "both.csv"),
             "# manifest abc\n"
             "event,t,impulse,before h,before h',after h,after h'\n"
@@ -80,16 +80,18 @@ TEST(Tables, ContactsHaveAnImpulseAndColumnsOfStatesOnlyBesideOtherEvents) {
 }
 
 TEST(Tables, AFolderThatIsNotThereIsOneMessage) {
-  const auto failure = write_motion(falling_ball().run, "/no such folder/ball.csv", "abc");
-  ASSERT_TRUE(failure);
-  EXPECT_EQ(*failure, "cannot write /no such folder/ball.csv: No such file or directory");
+  const Status status = write_motion(falling_ball().run, "/no such folder/ball.csv", "abc");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.ending, Ending::unwritable);
+  EXPECT_EQ(status.message, "cannot write /no such folder/ball.csv: No such file or directory");
 }
 
 TEST(Tables, AFullDiskIsTold) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
-  const auto failure = write_motion(falling_ball().run, "/dev/full", "abc");
-  ASSERT_TRUE(failure);
-  EXPECT_EQ(*failure, "cannot write /dev/full: No space left on device");
+  const Status status = write_motion(falling_ball().run, "/dev/full", "abc");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.ending, Ending::unwritable);
+  EXPECT_EQ(status.message, "cannot write /dev/full: No space left on device");
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ class ScenePictures {
 
 std::string run_gnuplot(const ScratchFolder& scratch, const std::string& folder, const std::string& script) {
   const std::string program = scratch.file("pictures.gnuplot");
-  if (const auto failure = results::write_file(program, script)) return *failure;
+  if (const Status status = results::write_file(program, script); !status) return status.message;
   const int exit = run_program({"gnuplot", program});
   if (exit == -1) return "pictures are drawn by gnuplot, which is not installed";
   return exit == 0 ? "" : fmt::format("gnuplot could not draw into {}", folder);

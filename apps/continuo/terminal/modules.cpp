@@ -57,7 +57,7 @@ bool loadable(const char* module) {
 
 namespace continuo {
 
-std::optional<std::string> results::write_netcdf_file(const NetcdfFile& file, const std::string& path) {
+Status results::write_netcdf_file(const NetcdfFile& file, const std::string& path) {
   return app::entry_of<decltype(&write_netcdf_file)>(app::netcdf_module)(file, path);
 }
 

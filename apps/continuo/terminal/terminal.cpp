@@ -11,9 +11,9 @@ void say(std::string_view message) {
   fmt::print(stderr, "continuo: {}\n", message);
 }
 
-bool written(const std::optional<std::string>& failure) {
-  if (failure) say(*failure);
-  return !failure;
+bool written(const Status& status) {
+  if (!status) say(status.message);
+  return static_cast<bool>(status);
 }
 
 void print(std::string_view text) {

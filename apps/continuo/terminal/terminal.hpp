@@ -5,13 +5,15 @@
 #include <string>
 #include <string_view>
 
+#include <continuo/status/status.hpp>
+
 namespace continuo::app {
 
 /// "continuo: MESSAGE" on standard error.
 void say(std::string_view message);
 
 /// False, after saying why, where a file could not be written or a picture not be drawn.
-bool written(const std::optional<std::string>& failure);
+bool written(const Status& status);
 
 /// Text that is data: standard output.
 void print(std::string_view text);

@@ -69,8 +69,8 @@ ExitCode write_starter(const std::string& name) {
     return usage;
   }
   const std::string text = fmt::format(starter, path.string(), model_name(path.stem().string()));
-  if (const auto failure = results::write_file(path.string(), text)) {
-    say(*failure);
+  if (const Status status = results::write_file(path.string(), text); !status) {
+    say(status.message);
     return usage;
   }
   say(fmt::format("wrote {0}; next: continuo run {0}", path.string()));

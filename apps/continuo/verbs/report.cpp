@@ -1,4 +1,5 @@
 // continuo report FILE: a run and studies of a model on one page.
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,7 +41,7 @@ results::ReportSection section_of(std::string title, std::vector<std::string> wo
   section.text = printed.out;
   section.messages = printed.err;
   section.svg = contents_of(picture);
-  results::write_file(picture, "");
+  std::filesystem::remove(picture);
   exit = printed.exit;
   return section;
 }
@@ -78,11 +79,8 @@ ExitCode report(const ReportOptions& options) {
   }
   if (const std::string text = contents_of(manifest); !text.empty())
     sections.push_back({.title = "Manifest", .text = text, .folded = true});
-  if (const auto failure =
-          results::write_file(options.out, results::report_page(model.name, model.heading, sections))) {
-    say(*failure);
+  if (!written(results::write_file(options.out, results::report_page(model.name, model.heading, sections))))
     return usage;
-  }
   return worst;  // the page is there all the same, and says what failed
 }
 

@@ -82,8 +82,8 @@ std::string table_of(const model::Model& model, const SensitivityRun& run,
   return text + "\n";
 }
 
-std::optional<std::string> write(const model::Model& model, const SensitivityRun& run,
-                                 const std::vector<studies::Influence>& influences, const std::string& path) {
+Status write(const model::Model& model, const SensitivityRun& run, const std::vector<studies::Influence>& influences,
+             const std::string& path) {
   std::vector<std::string> names{results::label_of({"t", model.time_unit})};
   for (const model::State& state : model.states) names.push_back(results::label_of({state.column, state.unit}));
   for (const studies::Influence& influence : influences)
@@ -91,7 +91,7 @@ std::optional<std::string> write(const model::Model& model, const SensitivityRun
   results::OutputFile out(path);
   results::CsvWriter csv(out, "", names);
   std::vector<double> row;
-  for (std::size_t r = 0; r < run.rows() && !out.failure(); ++r) {
+  for (std::size_t r = 0; r < run.rows() && out.status(); ++r) {
     row.assign(1, run.times[r]);
     row.insert(row.end(), run.row(r).begin(), run.row(r).end());
     csv.row(row);

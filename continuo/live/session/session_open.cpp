@@ -203,8 +203,8 @@ void Session::open_gallery(const std::string& name) {
 
 void Session::save_text(const std::string& text) {
   if (path_ != place_.path) return say_note(fmt::format("only {} is ever written", place_.path));
-  if (const auto failure = write_atomically(path_, text)) {
-    return say(model::error("", {}, *failure));
+  if (const Status status = write_atomically(path_, text); !status) {
+    return say(model::error("", {}, status.message));
   }
   text_ = text;
   audience_.hear(Topic::message, saved_json(path_));

@@ -25,8 +25,11 @@ bool write_all(int file, std::string_view text) {
 
 }  // namespace
 
-std::optional<std::string> write_atomically(const std::string& path, std::string_view text) {
-  const auto failure = [&] { return fmt::format("cannot write {}: {}", path, std::strerror(errno)); };
+Status write_atomically(const std::string& path, std::string_view text) {
+  const auto failure = [&] {
+    return Status{.ending = Ending::unwritable,
+                  .message = fmt::format("cannot write {}: {}", path, std::strerror(errno))};
+  };
   std::error_code error;
   const std::filesystem::path real = std::filesystem::weakly_canonical(path, error);  // a link stays a link
   const std::string target = error ? path : real.string();
@@ -37,8 +40,8 @@ std::optional<std::string> write_atomically(const std::string& path, std::string
   if (file < 0) return failure();
   const bool written = write_all(file, text) && ::fchmod(file, mode) == 0;
   const bool closed = ::close(file) == 0;
-  if (written && closed && ::rename(beside.c_str(), target.c_str()) == 0) return std::nullopt;
-  const std::string what = failure();
+  if (written && closed && ::rename(beside.c_str(), target.c_str()) == 0) return {};
+  Status what = failure();
   ::unlink(beside.c_str());
   return what;
 }
