@@ -115,7 +115,7 @@ class FastMotion<Real, Dim>::Stepper {
  private:
   /// The stages of a step.
   Status step() {
-    if (std::string fault = fault_of_options(); !fault.empty()) return fault;
+    if (Status status = check_options(); !status) return status;
     load_changed();
     list_pairs();
     choose_contacts();
@@ -133,7 +133,7 @@ class FastMotion<Real, Dim>::Stepper {
     return {};
   }
 
-  std::string fault_of_options() const {
+  Status check_options() const {
     if (!(options_.step > Real(0)) || !(options_.step < std::numeric_limits<Real>::infinity()))
       return invalid_input("the step must be greater than 0, and finite");
     if (options_.substeps < 1) return invalid_input("a step has at least one substep");
