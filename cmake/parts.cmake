@@ -11,10 +11,10 @@ if(NOT TARGET xtl)
   add_library(xtl INTERFACE IMPORTED)
 endif()
 
-# continuo_part(NAME HEADER): a library that brings no description of itself.
+# continuo_part(NAME HEADER [FILE]): a library that brings no description of itself; FILE is looked for first.
 macro(continuo_part name header)
   if(NOT TARGET ${name})
-    find_library(CONTINUO_LIBRARY_${name} ${name} REQUIRED)
+    find_library(CONTINUO_LIBRARY_${name} NAMES ${ARGN} ${name} REQUIRED)
     find_path(CONTINUO_HEADERS_${name} ${header} REQUIRED)
     add_library(${name} INTERFACE IMPORTED)
     target_link_libraries(${name} INTERFACE ${CONTINUO_LIBRARY_${name}})
@@ -24,6 +24,7 @@ endmacro()
 continuo_part(udunits2 udunits2.h)
 continuo_part(klu suitesparse/klu.h)
 continuo_part(netcdf netcdf.h)
+continuo_part(z zlib.h libz.a)  # the static one, where there is one: no call of the command has to load it
 
 find_package(Threads REQUIRED)
 if(NOT TARGET boost_headers)

@@ -16,6 +16,7 @@ packages_to_build=(
   "libeigen3-dev          -            eigenvalues of matrices"
   "libceres-dev           -            least squares, and dual numbers"
   "libnetcdf-dev          -            motions of many bodies, for xarray"
+  "zlib1g-dev             -            the page of the live view, compressed"
   "libboost-dev           -            the live view's server"
   "nodejs                 node         builds the live view's page"
   "npm                    npm          builds the live view's page"

@@ -1,11 +1,9 @@
 // continuo/live/server/gzip.cpp
-// RFC 1952 round the deflate of Boost.Beast.
-#include <algorithm>
+// The gzip format (RFC 1952) by zlib.
 #include <array>
-#include <cstdint>
+#include <cstddef>
 
-#include <boost/beast/zlib/inflate_stream.hpp>
-#include <boost/crc.hpp>
+#include <zlib.h>
 
 #include <continuo/live/server/gzip.hpp>
 
@@ -13,65 +11,48 @@ namespace continuo::live {
 
 namespace {
 
-namespace zlib = boost::beast::zlib;
+// The longest window; the 16 asks for the header and the check of gzip (zlib.h, inflateInit2).
+constexpr int gzip_format = MAX_WBITS + 16;
 
-/// Where the deflated bytes begin; nothing where this is no gzip.
-std::size_t header_length(std::string_view bytes) {
-  enum : unsigned { has_check = 2, has_extra = 4, has_name = 8, has_comment = 16 };
-  const auto byte = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0U; };
-  if (bytes.size() < 18 || byte(0) != 0x1f || byte(1) != 0x8b || byte(2) != 8) return std::string_view::npos;
-  const unsigned flags = byte(3);
-  std::size_t at = 10;
-  if (flags & has_extra) at += 2 + byte(at) + 256 * byte(at + 1);
-  for (const unsigned text : {has_name, has_comment}) {
-    if (flags & text) at = bytes.find('\0', at) + 1;
-  }
-  if (flags & has_check) at += 2;
-  return at + 8 <= bytes.size() ? at : std::string_view::npos;
+z_stream stream_of(std::string_view bytes) {
+  z_stream stream{};
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // only read
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  return stream;
 }
 
-std::string number(std::uint32_t value) {
-  std::string bytes;
-  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift & 0xff);
-  return bytes;
+/// Appends what `convert`, which is inflate or deflate, makes of the stream. Returns Z_STREAM_END where that was all.
+int convert_all(z_stream& stream, int (*convert)(z_streamp, int), int flush, std::string& out) {
+  std::array<char, 65536> part{};
+  int result = Z_OK;
+  while (result == Z_OK) {
+    stream.next_out = reinterpret_cast<Bytef*>(part.data());
+    stream.avail_out = static_cast<uInt>(part.size());
+    result = convert(&stream, flush);
+    out.append(part.data(), part.size() - stream.avail_out);
+  }
+  return result;
 }
 
 }  // namespace
 
 std::string unzipped(std::string_view bytes) {
-  const std::size_t begin = header_length(bytes);
-  if (begin == std::string_view::npos) return {};
-  zlib::inflate_stream stream;
-  zlib::z_params state;
-  state.next_in = bytes.data() + begin;
-  state.avail_in = bytes.size() - begin - 8;
+  z_stream stream = stream_of(bytes);
+  if (inflateInit2(&stream, gzip_format) != Z_OK) return {};
   std::string out;
-  std::array<char, 65536> part{};
-  boost::system::error_code error;
-  do {
-    state.next_out = part.data();
-    state.avail_out = part.size();
-    stream.write(state, zlib::Flush::sync, error);
-    out.append(part.data(), part.size() - state.avail_out);
-  } while (!error && state.avail_out == 0);
-  const bool ended = !error || error == zlib::error::end_of_stream || error == zlib::error::need_buffers;
-  return ended ? out : std::string();
+  const int result = convert_all(stream, inflate, Z_NO_FLUSH, out);
+  inflateEnd(&stream);
+  return result == Z_STREAM_END ? out : std::string();
 }
 
 std::string stored(std::string_view bytes) {
-  std::string out("\x1f\x8b\x08\0\0\0\0\0\0\xff", 10);
-  std::string_view rest = bytes;
-  do {
-    const std::string_view part = rest.substr(0, 65535);
-    rest.remove_prefix(part.size());
-    const auto length = static_cast<std::uint32_t>(part.size());
-    out += rest.empty() ? '\1' : '\0';
-    out += number(length | (~length & 0xffff) << 16);
-    out += part;
-  } while (!rest.empty());
-  boost::crc_32_type check;
-  check.process_bytes(bytes.data(), bytes.size());
-  return out + number(check.checksum()) + number(static_cast<std::uint32_t>(bytes.size()));
+  constexpr int memory = 8;  // of 1 to 9, zlib's own choice
+  z_stream stream = stream_of(bytes);
+  if (deflateInit2(&stream, Z_NO_COMPRESSION, Z_DEFLATED, gzip_format, memory, Z_DEFAULT_STRATEGY) != Z_OK) return {};
+  std::string out;
+  convert_all(stream, deflate, Z_FINISH, out);
+  deflateEnd(&stream);
+  return out;
 }
 
 }  // namespace continuo::live
