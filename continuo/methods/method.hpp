@@ -86,13 +86,13 @@ struct EquationCosts {
 ///   M::derivative(work) -> x' at the start of the last step
 /// Methods that need more of the driver have, each found by its name and missing elsewhere:
 ///   M::unsupported_reason(system, x)  what the method has against this system, to be read after its name; empty where
-///   nothing. A
-///       run of what it refuses does not begin
-///   M::implicit       true where M x' = f(t, x) with a mass matrix (singular, of index 1) can be integrated
-///   M::automatic      true where it is an explicit and a stiff method that hand over to each other
+///       nothing. A run of what it refuses does not begin
+///   M::implicit       true where M x' = f(t, x) with a mass matrix (singular, of index 1) can be integrated. With the
+///       next three inherited from ImplicitMethod (implicit/implicit_method.hpp):
 ///   M::set_tolerance(work, tolerance)  before every step: how close the equations of the step must be solved
 ///   M::status(work)   -> StepStatus of the last step; what is not `done` is rejected and tried with a smaller h
 ///   M::costs(work)    -> EquationCosts
+///   M::automatic      true where it is an explicit and a stiff method that hand over to each other
 ///   M::error_order_of(work) -> error_order where the order varies (then M::order and M::error_order are the greatest)
 ///   M::starting_order order of the first step of a run and after a jump, where the order varies
 ///   M::order_of_fixed_steps where the order varies: the one that steps of a fixed size keep

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/numerics/state.hpp>
 
 namespace continuo {
@@ -46,14 +47,14 @@ class Gmres {
     basis_[0] = right_;
     for (;;) {
       Real length = length_of(basis_[0]);
-      if (!is_finite(length)) return give_up(b, result);
+      if (!detail::is_finite(length)) return give_up(b, result);
       if (length <= target) {
         result.converged = true;
         break;
       }
       if (result.products >= most_products) break;
       const std::size_t columns = cycle(apply, length, target, most_products, result);
-      if (!is_finite(length)) return give_up(b, result);
+      if (!detail::is_finite(length)) return give_up(b, result);
       add_to_solution(columns);
       if (length <= target) {
         result.converged = true;
@@ -83,7 +84,7 @@ class Gmres {
       if (!rotate(k, below)) break;
       length = abs_of(rest_[k + 1]);
       ++k;
-      if (!is_finite(length) || length <= target || below == Real(0)) break;
+      if (!detail::is_finite(length) || length <= target || below == Real(0)) break;
       scale(next, Real(1) / below);
     }
     return k;
@@ -147,7 +148,6 @@ class Gmres {
 
   Real& entry(std::size_t row, std::size_t column) { return triangle_[column * directions_ + row]; }
   static Real abs_of(const Real& value) { return value < Real(0) ? Real(-value) : value; }
-  static bool is_finite(const Real& value) { return value - value == Real(0); }
   static void fill(X& x, const Real& value) { std::fill(x.data(), x.data() + dimension(x), value); }
   static void scale(X& x, const Real& factor) {
     for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] *= factor;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/system/system.hpp>
 
 namespace continuo {
@@ -87,7 +88,6 @@ class Differences {
 
   const Real& high(int k, std::size_t i) const { return above_[static_cast<std::size_t>(k)].data()[i]; }
   const Real& low(int k, std::size_t i) const { return below_[static_cast<std::size_t>(k)].data()[i]; }
-  static bool is_finite(const Real& value) { return value - value == Real(0); }
 
   Real rounding(int k, const Real& terms) const {
     return std::numeric_limits<Real>::epsilon() * terms / increments_[k].both();
@@ -102,7 +102,7 @@ class Differences {
     int usable = 0;
     for (int k = 0; k < levels; ++k) {
       now[0] = (high(k, i) - low(k, i)) / increments_[k].both();
-      if (!is_finite(now[0])) {
+      if (!detail::is_finite(now[0])) {
         usable = 0;
         continue;
       }
@@ -135,7 +135,8 @@ class Differences {
     const Real greatest = max(abs(high(second_kink_level, i)), abs(low(second_kink_level, i)));
     const Real noise = Real(2 * safety) * rounding(second_kink_level, max(terms, max(abs(fx), greatest)));
     const bool beyond_rounding = gap > noise && gap > Real(least_gap) * max(abs(below), abs(above));
-    difference.kinked = is_finite(gap) && is_finite(far_gap) && gap > far_gap / Real(2) && beyond_rounding;
+    difference.kinked =
+        detail::is_finite(gap) && detail::is_finite(far_gap) && gap > far_gap / Real(2) && beyond_rounding;
   }
 
   X moved_;

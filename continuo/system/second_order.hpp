@@ -38,6 +38,17 @@ bool ignores_velocity(const F& f, const X& x) {
   }
 }
 
+/// body(position, velocity) for each pair of the system.
+template <class F, State X, class Body>
+void for_each_pair(const F& f, const X& x, Body&& body) {
+  static_assert(SecondOrder<F>, "the system must say which components are positions and which velocities");
+  const std::size_t size = dimension(x), count = f.pair_count(size);
+  for (std::size_t n = 0; n < count; ++n) {
+    const PositionVelocity pair = f.pair(n, size);
+    body(pair.position, pair.velocity);
+  }
+}
+
 template <class Acceleration>
 struct SecondOrderSystem {
   Acceleration acceleration;

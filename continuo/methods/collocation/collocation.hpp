@@ -17,19 +17,21 @@
 #include <continuo/methods/collocation/collocation_stages.hpp>
 #include <continuo/methods/collocation/collocation_table.hpp>
 #include <continuo/methods/collocation/collocation_workspace.hpp>
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 #include <continuo/methods/implicit/unknowns_at_end.hpp>
 #include <continuo/methods/support/hermite.hpp>
 #include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/numerics/finite.hpp>
 
 namespace continuo {
 
 /// A method with one or several numbers of stages, ascending; where several, the order is chosen by how fast Newton's
 /// iteration converges.
 template <collocation::Nodes nodes, std::size_t... Stages>
-struct CollocationMethod {
+struct CollocationMethod : ImplicitMethod<> {
   static constexpr std::array<std::size_t, sizeof...(Stages)> all_stages{Stages...};
   static constexpr std::size_t least = all_stages.front(), most = all_stages.back();
   static constexpr bool radau = nodes == collocation::Nodes::radau;
@@ -38,7 +40,7 @@ struct CollocationMethod {
   static constexpr int error_order = radau ? static_cast<int>(most) : 3;
   static constexpr int dense_order = radau ? static_cast<int>(most) : 3;
   static constexpr int dense_degree = radau ? static_cast<int>(most) : 3;
-  static constexpr bool second_order = false, implicit = true;
+  static constexpr bool second_order = false;
 
   template <State X>
   using Workspace = collocation::Workspace<X, most>;
@@ -64,14 +66,6 @@ struct CollocationMethod {
   static void expect_oscillation(Workspace<X>& work, bool oscillates) {
     if (work.oscillates != oscillates) work.rtol = Scalar<X>(-1);
     work.oscillates = oscillates;
-  }
-  template <State X>
-  static StepStatus status(const Workspace<X>& work) {
-    return work.status;
-  }
-  template <State X>
-  static EquationCosts costs(const Workspace<X>& work) {
-    return work.costs;
   }
   template <State X>
   static int error_order_of(const Workspace<X>& work) {
@@ -109,9 +103,7 @@ struct CollocationMethod {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    Scalar<X> not_finite(0);
-    for (std::size_t i = 0; i < dimension(x_new); ++i) not_finite += x_new.data()[i] - x_new.data()[i];
-    return norm_of_error(work, x, x_new, tolerance) + not_finite;
+    return norm_of_error(work, x, x_new, tolerance) + detail::zero_if_all_finite(x_new);
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
@@ -292,9 +284,7 @@ struct CollocationMethod {
       collocation::stage_slopes<nodes, s>(system, t, x, h, work);
       return collocation::correct<nodes, s>(h, work);
     });
-    work.status = converged            ? StepStatus::done
-                  : work.memory.finite ? StepStatus::newton_diverged
-                                       : StepStatus::not_finite;
+    work.status = work.memory.status(converged);
     return static_cast<int>(s) * work.memory.iterations;
   }
 

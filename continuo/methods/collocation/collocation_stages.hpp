@@ -30,7 +30,7 @@ bool decompose(const Scalar<X>& h, Workspace<X, most>& work) {
   work.costs.factorizations += reals + pairs;
   work.decomposed_for = done ? h : Real(0);
   work.decomposed_stages = s;
-  if (!done) work.status = work.linear.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
+  if (!done) work.status = work.linear.status_of_failure();
   return done;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 
@@ -21,7 +22,7 @@ std::array<T, Count> copies(const From& from) {
 }
 
 template <State X, std::size_t most>
-struct Workspace {
+struct Workspace : StepEquations<Scalar<X>> {
   using Real = Scalar<X>;
   static constexpr std::size_t pairs = most / 2;
   using ComplexRow = BlockOf<ComplexNumber<Real>, fixed_size<X>(), fixed_size<X>()>;
@@ -47,6 +48,8 @@ struct Workspace {
         pair_lu(copies<Factorization<X, ComplexNumber<Real>>, pairs>(x)),
         stages(stages_),
         next_stages(stages_) {
+    // Until a tolerance is set, the equations are solved down to rounding.
+    this->tolerance = {10 * std::numeric_limits<Real>::epsilon(), 10 * std::numeric_limits<Real>::epsilon()};
     if constexpr (fixed_size<X>() == run_time_size) pair_right.fill(ComplexRow(dimension(x)));
   }
 
@@ -61,14 +64,10 @@ struct Workspace {
   Factorization<X> lu;
   std::array<Factorization<X, ComplexNumber<Real>>, pairs> pair_lu;
   NewtonMemory<Real> memory{};
-  // Where nobody says how close, the equations are solved down to rounding.
-  Tolerance<Real> tolerance{10 * std::numeric_limits<Real>::epsilon(), 10 * std::numeric_limits<Real>::epsilon()};
   Real rtol = -1, looseness = 1, target = 1;  // derived from the tolerance; rtol < 0: to be derived again
-  EquationCosts costs{};
-  StepStatus status = StepStatus::done;
-  Real h{}, ahead_h{};          // of the last step; of `ahead`
-  Real decomposed_for{};        // the h of the factorizations, 0 for none
-  Real last_h{}, last_error{};  // of the last accepted step, last_h = 0 for none
+  Real h{}, ahead_h{};                        // of the last step; of `ahead`
+  Real decomposed_for{};                      // the h of the factorizations, 0 for none
+  Real last_h{}, last_error{};                // of the last accepted step, last_h = 0 for none
   std::size_t decomposed_stages = 0;
   std::size_t stages, next_stages;
   std::size_t ahead_degree = 0;  // 0: there is none

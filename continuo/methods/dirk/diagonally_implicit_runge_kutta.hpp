@@ -18,6 +18,7 @@
 #include <utility>
 
 #include <continuo/methods/dirk/diagonal_tableau.hpp>
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/stage_solver.hpp>
 #include <continuo/methods/implicit/stiff_part.hpp>
 #include <continuo/methods/implicit/unknowns_at_end.hpp>
@@ -27,14 +28,15 @@
 #include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/methods/support/weighted_norm.hpp>
 #include <continuo/methods/support/weighted_sum.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/system/mass.hpp>
 
 namespace continuo {
 
 template <class Derived>
-struct DiagonallyImplicitRungeKutta {
+struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
   static constexpr int error_order = 0;  // no estimate, unless Derived says so
-  static constexpr bool second_order = false, implicit = true;
+  static constexpr bool second_order = false;
 
   template <State X>
   struct Workspace {
@@ -56,11 +58,6 @@ struct DiagonallyImplicitRungeKutta {
       for (std::size_t i = 0; i < dimension(x); ++i) work.error.data()[i] = Scalar<X>(0);
       return work;
     }(std::make_index_sequence<Derived::tableau.stages>());
-  }
-
-  template <State X>
-  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
-    work.solver.tolerance = tolerance;
   }
 
   template <class System, State X>
@@ -91,7 +88,7 @@ struct DiagonallyImplicitRungeKutta {
     for (std::size_t i = 0; i < dimension(x); ++i) {
       const Scalar<X>& end = x_new.data()[i];
       const Scalar<X> part = work.error.data()[i] / weights.scale_of_step(i, x.data()[i], end);
-      sum += part * part + (end - end);  // which is 0, if it is finite
+      sum += part * part + detail::zero_if_finite(end);
     }
     return detail::greater(Scalar<X>(strict * strict * sum * detail::one_over_dimension(x)),
                            Scalar<X>(between * between));
@@ -132,14 +129,6 @@ struct DiagonallyImplicitRungeKutta {
   template <State X>
   static const X& derivative(const Workspace<X>& work) {
     return work.k[0];
-  }
-  template <State X>
-  static StepStatus status(const Workspace<X>& work) {
-    return work.solver.status;
-  }
-  template <State X>
-  static const EquationCosts& costs(const Workspace<X>& work) {
-    return work.solver.costs;
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <continuo/methods/explicit_rk/explicit_runge_kutta.hpp>
+#include <continuo/numerics/finite.hpp>
 
 namespace continuo {
 
@@ -140,7 +141,7 @@ struct Dop853 : ExplicitRungeKutta<Dop853> {
       const Unit end = detail::load<X>(x_new.data(), i), scale = detail::error_scale<X>(tolerance, i, x, x_new);
       const Unit ratio5 = detail::row_sum<Fifth, X>(fifth, i) / scale;
       const Unit ratio3 = detail::row_sum<Third, X>(third, i) / scale;
-      sum5 += ratio5 * ratio5 + (end - end);  // not a number where x_new is not finite
+      sum5 += ratio5 * ratio5 + detail::zero_if_finite(end);
       sum3 += ratio3 * ratio3;
     });
     // Both sums are zero at rest: the 1e-37 keeps 0 / 0 out, and is too small to be seen beside an error that matters.

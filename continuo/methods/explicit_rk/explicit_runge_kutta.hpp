@@ -16,6 +16,7 @@
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/support/hermite.hpp>
 #include <continuo/methods/support/weighted_sum.hpp>
+#include <continuo/numerics/finite.hpp>
 
 namespace continuo {
 
@@ -85,7 +86,7 @@ struct ExplicitRungeKutta {
     detail::Unit<X> sum{};
     detail::for_each_unit(x, [&](std::size_t i) __attribute__((always_inline)) {
       const detail::Unit<X> end = detail::load<X>(x_new.data(), i);
-      const detail::Unit<X> nothing = end - end;  // 0, if it is finite
+      const detail::Unit<X> nothing = detail::zero_if_finite(end);
       if constexpr (Derived::error_order > 0) {
         // The scale is known before the error where the last stage is not part of x_new: the division is done by then.
         const detail::Unit<X> weight = h / detail::error_scale<X>(tolerance, i, x, x_new);

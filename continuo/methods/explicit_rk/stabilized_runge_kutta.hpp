@@ -21,6 +21,7 @@
 #include <continuo/methods/support/spectral_radius.hpp>
 #include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/numerics/finite.hpp>
 
 namespace continuo {
 
@@ -37,10 +38,10 @@ struct StabilizedRungeKutta {
     X error;
     SpectralRadius<X> spectrum;
     Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
-    Real radius{}, t{}, next_h{};  // the spectral radius, where the last step began
-    std::size_t radius_age = 0;    // accepted steps since it was estimated
-    std::size_t stages = 0;        // of the last step
-    bool retry = false;            // the last step was rejected: f at its start is known
+    Real radius{}, t{};          // the spectral radius, where the last step began
+    std::size_t radius_age = 0;  // accepted steps since it was estimated
+    std::size_t stages = 0;      // of the last step
+    bool retry = false;          // the last step was rejected: f at its start is known
   };
 
   template <State X>
@@ -84,9 +85,8 @@ struct StabilizedRungeKutta {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    Scalar<X> not_finite(0);
-    for (std::size_t i = 0; i < dimension(x); ++i) not_finite += x_new.data()[i] - x_new.data()[i];
-    return strictness_of<Derived>(tolerance) * weighted_norm(work.error, x, x_new, tolerance) + not_finite;
+    return strictness_of<Derived>(tolerance) * weighted_norm(work.error, x, x_new, tolerance) +
+           detail::zero_if_all_finite(x_new);
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {

@@ -3,22 +3,24 @@
 //
 //   equations.prepare(system, x)                                   once; allocates
 //   equations.is_always_current(system)                            no old Jacobian is ever used: a retry is no use
-//   equations.linearize(system, t, x, h, tolerance, f) -> evaluations    J is that of (t, x) from here on; f is scratch
-//   equations.decompose(system, c) -> StepStatus                   the equations are those of c M - J from here on
-//   equations.solve(system, t, x, f, tolerance, target, b) -> evaluations    b becomes the solution of (c M - J) y = b,
-//       near an iterate (t, x) where f(t, x) = f, to `target` in the norm of the tolerance
+//   equations.linearize(system, t, x, h, f) -> evaluations         J is that of (t, x) from here on; f is scratch
+//   equations.decompose(system, c) -> whether that could be done   the equations are those of c M - J from here on
+//   equations.solve(system, t, x, f, target, b) -> evaluations     b becomes the solution of (c M - J) y = b, near an
+//       iterate (t, x) where f(t, x) = f, to `target` in the norm of the tolerance
 #pragma once
 #include <cstddef>
 
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 
 namespace continuo {
 
 template <State X>
-class DirectEquations {
+class DirectEquations : public StepEquations<Scalar<X>> {
  public:
   using Real = Scalar<X>;
+  using StepEquations<Real>::tolerance, StepEquations<Real>::costs, StepEquations<Real>::status;
 
   explicit DirectEquations(const X& x) : linear_(x), lu_(x) {}
 
@@ -34,31 +36,38 @@ class DirectEquations {
 
   bool has_mass() const { return linear_.has_mass(); }
   void multiply_mass(const X& v, X& product) const { linear_.multiply_mass(v, product); }
-  const EquationCosts& costs() const { return costs_; }
 
   template <class System>
-  int linearize(System& system, const Real& t, const X& x, const Real& h, const Tolerance<Real>& tolerance, X& f) {
+  int linearize(System& system, const Real& t, const X& x, const Real& h, X& f) {
     evaluate(system, t, x, f);
-    ++costs_.jacobians;
+    ++costs.jacobians;
     return 1 + linear_.evaluate(system, t, x, f, LeastIncrements(tolerance, h, x, f, has_mass()));
   }
   template <class System>
-  StepStatus decompose(System&, const Real& c) {
-    ++costs_.factorizations;
-    if (lu_.factor(linear_, c)) return StepStatus::done;
-    return linear_.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
+  bool decompose(System&, const Real& c) {
+    ++costs.factorizations;
+    const bool done = lu_.factor(linear_, c);
+    status = done ? StepStatus::done : linear_.status_of_failure();
+    return done;
   }
   template <class System>
-  int solve(System&, const Real&, const X&, const X&, const Tolerance<Real>&, const Real&, X& b) {
+  int solve(System&, const Real&, const X&, const X&, const Real&, X& b) {
     lu_.solve(b.data());
-    ++costs_.linear_solves;
+    ++costs.linear_solves;
     return 0;
   }
 
  private:
   Linearization<X> linear_;
   Factorization<X> lu_;
-  EquationCosts costs_;
+};
+
+/// Of a workspace that has `equations`: see ImplicitMethod.
+struct InEquations {
+  template <class Work>
+  auto& operator()(Work& work) const {
+    return work.equations;
+  }
 };
 
 }  // namespace continuo

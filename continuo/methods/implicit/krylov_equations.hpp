@@ -9,16 +9,19 @@
 #include <optional>
 
 #include <continuo/methods/implicit/constant_mass.hpp>
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/method.hpp>
+#include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/numerics/gmres.hpp>
 
 namespace continuo {
 
 /// As DirectEquations; J is always that of the iterate.
 template <State X>
-class KrylovEquations {
+class KrylovEquations : public StepEquations<Scalar<X>> {
  public:
   using Real = Scalar<X>;
+  using StepEquations<Real>::tolerance, StepEquations<Real>::costs, StepEquations<Real>::status;
 
   explicit KrylovEquations(const X& x) : point_(x), weights_(x), argument_(x), product_(x), moved_(x) {}
 
@@ -35,29 +38,28 @@ class KrylovEquations {
 
   bool has_mass() const { return !mass_.is_identity(); }
   void multiply_mass(const X& v, X& product) const { mass_.multiply(v, product); }
-  const EquationCosts& costs() const { return costs_; }
 
   template <class System>
-  int linearize(System&, const Real& t, const X& x, const Real&, const Tolerance<Real>&, X&) {
+  int linearize(System&, const Real& t, const X& x, const Real&, X&) {
     t_ = t;
     point_ = x;
     return 0;
   }
   template <class System>
-  StepStatus decompose(System& system, const Real& c) {
+  bool decompose(System& system, const Real& c) {
     c_ = c;
     if constexpr (HasPreconditioner<System, X>) {
-      ++costs_.factorizations;
+      ++costs.factorizations;
       system.set_up_preconditioner(t_, point_, c);
     }
-    return StepStatus::done;
+    status = StepStatus::done;
+    return true;
   }
 
   /// GMRES works in components measured by the tolerance, where lengths are comparable, on the equations multiplied
   /// from the left by the preconditioner, or by 1/(c M): the residual is then like the error of y itself.
   template <class System>
-  int solve(System& system, const Real& t, const X& x, const X& f, const Tolerance<Real>& tolerance, const Real& target,
-            X& b) {
+  int solve(System& system, const Real& t, const X& x, const X& f, const Real& target, X& b) {
     using std::sqrt;
     const std::size_t n = dimension(x);
     const Real root = sqrt(Real(static_cast<double>(n)));
@@ -68,7 +70,7 @@ class KrylovEquations {
     gmres_->solve(
         [&](const X& v, X& image) {
           for (std::size_t i = 0; i < n; ++i) argument_.data()[i] = v.data()[i] / weights_.data()[i];
-          evaluations += multiply_jacobian(system, t, x, f, relative(tolerance), root);
+          evaluations += multiply_jacobian(system, t, x, f, relative_as_number(tolerance), root);
           mass_.multiply(argument_, image);
           for (std::size_t i = 0; i < n; ++i) image.data()[i] = c_ * image.data()[i] - product_.data()[i];
           precondition(system, image);
@@ -76,7 +78,7 @@ class KrylovEquations {
         },
         b, Real(part_of_target) * target * root, most_products);
     for (std::size_t i = 0; i < n; ++i) b.data()[i] /= weights_.data()[i];
-    ++costs_.linear_solves;
+    ++costs.linear_solves;
     return evaluations;
   }
 
@@ -120,16 +122,11 @@ class KrylovEquations {
   void scale(X& v) const {
     for (std::size_t i = 0; i < dimension(v); ++i) v.data()[i] *= weights_.data()[i];
   }
-  static Real relative(const Tolerance<Real>& tolerance) {
-    using std::max;
-    return max(tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol, std::numeric_limits<Real>::epsilon());
-  }
 
   X point_, weights_, argument_, product_, moved_;
   Real t_{}, c_{1};
   ConstantMass<X> mass_;
   std::optional<Gmres<X>> gmres_;
-  EquationCosts costs_;
 };
 
 }  // namespace continuo

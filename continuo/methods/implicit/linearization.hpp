@@ -22,6 +22,7 @@
 #include <continuo/numerics/band_layout.hpp>
 #include <continuo/numerics/banded_lu.hpp>
 #include <continuo/numerics/dense_lu.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/numerics/sparse_lu.hpp>
 #include <continuo/system/jacobian.hpp>
 
@@ -90,10 +91,9 @@ class Linearization {
     return evaluate_jacobian(f, t, x, fx, moved_, slope_, least, std::span<Real>(rows_));
   }
 
-  bool is_finite() const {
-    Real sum(0);
-    for (const Real& entry : rows_) sum += Real(0) * entry;
-    return sum == Real(0);
+  /// Why c M - J could not be decomposed.
+  StepStatus status_of_failure() const {
+    return detail::all_finite(rows_) ? StepStatus::singular_matrix : StepStatus::not_finite;
   }
 
   bool has_mass() const { return !mass_.is_identity(); }

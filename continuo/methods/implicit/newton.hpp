@@ -30,6 +30,12 @@ struct NewtonMemory {
   bool measures_anew = false;
   Real rounding = 0;  // then: corrections that may be no more than it, in tolerances
 
+  /// How the equations of a step have ended, after the last call.
+  StepStatus status(bool converged) const {
+    if (converged) return StepStatus::done;
+    return finite ? StepStatus::newton_diverged : StepStatus::not_finite;
+  }
+
   /// Of equations that may be algebraic.
   void measure_anew(const Tolerance<Real>& tolerance) {
     measures_anew = true;

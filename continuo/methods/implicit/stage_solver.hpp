@@ -12,23 +12,23 @@
 #include <cstddef>
 #include <limits>
 
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 #include <continuo/methods/method.hpp>
+#include <continuo/methods/support/weighted_norm.hpp>
 
 namespace continuo {
 
 template <State X>
-struct StageSolver {
+struct StageSolver : StepEquations<Scalar<X>> {
   using Real = Scalar<X>;
+  using StepEquations<Real>::tolerance, StepEquations<Real>::costs, StepEquations<Real>::status;
 
   Linearization<X> linear;
   Factorization<X> lu;
   X argument, residual, product;
-  Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
   NewtonMemory<Real> memory{};
-  EquationCosts costs{};
-  StepStatus status = StepStatus::done;
   Real shift{};             // c of the decomposed c M - J; 0: there is none
   Real evaluated_for{};     // h of the step that J was evaluated for
   Real slowest{};           // rate of convergence of this step
@@ -83,7 +83,7 @@ struct StageSolver {
       return true;
     }
     shift = Real(0);
-    status = linear.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
+    status = linear.status_of_failure();
     return false;
   }
 
@@ -91,7 +91,7 @@ struct StageSolver {
   template <class System>
   bool solve(System& system, const Real& t, const X& base, const X& weights_of, X& z, const Real& target,
              int& evaluations) {
-    using std::max, std::sqrt;
+    using std::max;
     const std::size_t n = dimension(base);
     const auto correct = [&] {
       set_argument(base, z);
@@ -101,14 +101,11 @@ struct StageSolver {
       for (std::size_t i = 0; i < n; ++i) residual.data()[i] -= shift * product.data()[i];
       lu.solve(residual.data());
       ++costs.linear_solves;
-      Real sum(0);
-      for (std::size_t i = 0; i < n; ++i) {
-        z.data()[i] += residual.data()[i];
+      for (std::size_t i = 0; i < n; ++i) z.data()[i] += residual.data()[i];
+      return root_mean_square<Real>(n, [&](std::size_t i) {
         const Real& size = weights_of.data()[i];
-        const Real part = residual.data()[i] / tolerance.scale(i, size, size);
-        sum += part * part;
-      }
-      return Real(sqrt(sum / Real(static_cast<double>(max<std::size_t>(n, 1)))));
+        return Real(residual.data()[i] / tolerance.scale(i, size, size));
+      });
     };
     if (linear.has_mass()) memory.measure_anew(tolerance);
     bool arrived = newton(memory, target, most_iterations, correct);
@@ -117,7 +114,7 @@ struct StageSolver {
       arrived = solve_fully(system, t, base, z, target, correct, evaluations);
       if (status != StepStatus::done) return false;
     }
-    if (!arrived) status = memory.finite ? StepStatus::newton_diverged : StepStatus::not_finite;
+    if (!arrived) status = memory.status(arrived);
     return arrived;
   }
 
@@ -159,6 +156,14 @@ struct StageSolver {
       if (size <= target) return true;
     }
     return false;
+  }
+};
+
+/// Of a workspace that has a StageSolver: see ImplicitMethod.
+struct InStageSolver {
+  template <class Work>
+  auto& operator()(Work& work) const {
+    return work.solver;
   }
 };
 

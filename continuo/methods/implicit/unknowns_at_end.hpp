@@ -48,7 +48,7 @@ int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Linear
     for (std::size_t i = 0; i < dimension(f); ++i) x_new.data()[i] += f.data()[i];
     return weighted_norm(f, x, x, tolerance);
   });
-  if (!settled) status = memory.finite ? StepStatus::newton_diverged : StepStatus::not_finite;
+  if (!settled) status = memory.status(settled);
   return memory.iterations;
 }
 

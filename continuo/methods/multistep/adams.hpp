@@ -23,6 +23,8 @@
 #include <string_view>
 
 #include <continuo/methods/method.hpp>
+#include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/numerics/finite.hpp>
 
 namespace continuo {
 
@@ -100,9 +102,8 @@ struct Adams {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    Scalar<X> sum(0);
-    for (std::size_t i = 0; i < dimension(x_new); ++i) sum += x_new.data()[i] - x_new.data()[i];
-    return sum + Scalar<X>(strictness) * norm(x, x_new, tolerance, [&](std::size_t i) { return error_of(work, h, i); });
+    return detail::zero_if_all_finite(x_new) +
+           Scalar<X>(strictness) * norm(x, x_new, tolerance, [&](std::size_t i) { return error_of(work, h, i); });
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
@@ -282,13 +283,9 @@ struct Adams {
 
   template <State X, class Component>
   static Scalar<X> norm(const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance, const Component& component) {
-    using std::sqrt;
-    Scalar<X> sum(0);
-    for (std::size_t i = 0; i < dimension(x); ++i) {
-      const Scalar<X> part = component(i) / tolerance.scale(i, x.data()[i], x_new.data()[i]);
-      sum += part * part;
-    }
-    return dimension(x) == 0 ? sum : sqrt(sum / Scalar<X>(static_cast<double>(dimension(x))));
+    return root_mean_square<Scalar<X>>(dimension(x), [&](std::size_t i) {
+      return Scalar<X>(component(i) / tolerance.scale(i, x.data()[i], x_new.data()[i]));
+    });
   }
 };
 

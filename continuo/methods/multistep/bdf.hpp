@@ -18,10 +18,12 @@
 #include <string_view>
 
 #include <continuo/methods/implicit/direct_equations.hpp>
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 #include <continuo/methods/support/slope_in_time.hpp>
 #include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/system/mass.hpp>
 
 namespace continuo {
@@ -54,9 +56,9 @@ Real error_constant(std::size_t k) {
 
 /// The stepper. Equations<X> solves (c M - J) y = b: see direct_equations.hpp.
 template <template <State> class Equations>
-struct BackwardDifferentiation {
+struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   static constexpr int order = 5, error_order = 5, dense_order = 5, dense_degree = 5, order_of_fixed_steps = 2;
-  static constexpr bool second_order = false, implicit = true;
+  static constexpr bool second_order = false;
   static constexpr std::size_t greatest_order = 5;
 
   template <State X>
@@ -67,8 +69,6 @@ struct BackwardDifferentiation {
     X rounding;               // how far a step is off because t is rounded
     Equations<X> equations;
     NewtonMemory<Real> memory{};
-    Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
-    StepStatus status = StepStatus::done;
     Real h{}, decomposed_for{};                     // the spacing of D; the c of lu, 0 for none
     std::size_t order = 1;                          // k of this step
     std::size_t next_order = 0;                     // 0: nobody asked, the steps are fixed
@@ -85,18 +85,6 @@ struct BackwardDifferentiation {
     return work;
   }
 
-  template <State X>
-  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
-    work.tolerance = tolerance;
-  }
-  template <State X>
-  static StepStatus status(const Workspace<X>& work) {
-    return work.status;
-  }
-  template <State X>
-  static EquationCosts costs(const Workspace<X>& work) {
-    return work.equations.costs();
-  }
   template <State X>
   static int error_order_of(const Workspace<X>& work) {
     return static_cast<int>(work.order);
@@ -127,9 +115,7 @@ struct BackwardDifferentiation {
       }
       if (linearized && work.equations.has_mass()) evaluations += measure_rounding(system, t + h, h, x_new, work);
       const bool converged = solve(system, t + h, c, work, x_new, evaluations);
-      work.status = converged            ? StepStatus::done
-                    : work.memory.finite ? StepStatus::newton_diverged
-                                         : StepStatus::not_finite;
+      work.equations.status = work.memory.status(converged);
       if (converged || work.is_current) break;
       work.has_jacobian = false;  // once more, with the matrix of here
     }
@@ -141,7 +127,7 @@ struct BackwardDifferentiation {
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
     return ndf::error_constant<Scalar<X>>(work.order) * strict_norm(work, work.d, x, x_new, tolerance) +
-           not_finite(x_new);
+           detail::zero_if_all_finite(x_new);
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
@@ -277,20 +263,16 @@ struct BackwardDifferentiation {
   template <State X>
   static Scalar<X> strict_norm(const Workspace<X>& work, const X& v, const X& x, const X& x_new,
                                const Tolerance<Scalar<X>>& tolerance) {
-    using std::sqrt;
     using Real = Scalar<X>;
     const Real strict = strictness(tolerance, order, order + 1);
-    const std::size_t n = dimension(x);
     // Of steps of a few spacings of t alone: the error of a state adds up.
     const Real of_few = tolerance.rounding_of_time / Real(greatest_rounding_of_time);
     const Tolerance<Real> weights = tolerance.of_error_times(strict * of_few);
-    Real sum(0);
-    for (std::size_t i = 0; i < n; ++i) {
+    const auto part = [&](std::size_t i) {
       const Real scale = weights.scale_of_step(i, x.data()[i], x_new.data()[i]);
-      const Real part = v.data()[i] / (scale + strict * work.rounding.data()[i]);
-      sum += part * part;
-    }
-    return n == 0 ? sum : strict * sqrt(sum / Real(static_cast<double>(n)));
+      return Real(v.data()[i] / (scale + strict * work.rounding.data()[i]));
+    };
+    return strict * root_mean_square<Real>(dimension(x), part);
   }
 
   // Where t is rounded by dt, the solution of the step's equations is off by dt (c M - J)^-1 f_t: of 0 = g(t, x) by
@@ -306,7 +288,7 @@ struct BackwardDifferentiation {
     for (std::size_t i = 0; i < dimension(x); ++i) work.rounding.data()[i] = Real(0);
     if (!is_autonomous(system)) {
       evaluations += detail::slope_in_time(system, t, h, x, work.f, work.correction);
-      evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, Real(1e-2), work.correction);
+      evaluations += work.equations.solve(system, t, x, work.f, Real(1e-2), work.correction);
       const Real spacing = std::numeric_limits<Real>::epsilon() * abs(t);
       for (std::size_t i = 0; i < dimension(x); ++i)
         work.rounding.data()[i] = Real(times_rounded) * spacing * abs(work.correction.data()[i]);
@@ -320,14 +302,14 @@ struct BackwardDifferentiation {
     for (std::size_t pattern = 1; pattern <= 2; ++pattern) {
       for (std::size_t i = 0; i < dimension(x); ++i) {
         const Real& value = x.data()[i];
-        const Real part = is_algebraic<X>(system, i) ? Real(0) : left * work.tolerance.scale(i, value, value);
+        const Real part = is_algebraic<X>(system, i) ? Real(0) : left * work.equations.tolerance.scale(i, value, value);
         moved.data()[i] = i % pattern == 0 ? value + part : value - part;
       }
       evaluate(system, t, x, work.f);
       evaluate(system, t, moved, work.correction);
       for (std::size_t i = 0; i < dimension(x); ++i)
         work.correction.data()[i] = is_algebraic<X>(system, i) ? work.correction.data()[i] - work.f.data()[i] : Real(0);
-      evaluations += 2 + work.equations.solve(system, t, x, work.f, work.tolerance, Real(1e-2), work.correction);
+      evaluations += 2 + work.equations.solve(system, t, x, work.f, Real(1e-2), work.correction);
       for (std::size_t i = 0; i < dimension(x); ++i) {
         if (!is_algebraic<X>(system, i)) continue;
         Real& rounding = work.rounding.data()[i];
@@ -363,8 +345,8 @@ struct BackwardDifferentiation {
     const Real c = 1 / (h * detail::sqrt_of_epsilon<Real>());
     X& slope = work.correction;
     slope = work.f;
-    int evaluations = work.equations.linearize(system, t, x, h, work.tolerance, work.f);
-    if (work.equations.decompose(system, c) != StepStatus::done) return evaluations;
+    int evaluations = work.equations.linearize(system, t, x, h, work.f);
+    if (!work.equations.decompose(system, c)) return evaluations;
     work.equations.multiply_mass(slope, work.end);
     slope = work.end;
     for (std::size_t i = 0; i < dimension(x); ++i) slope.data()[i] *= c;
@@ -372,7 +354,7 @@ struct BackwardDifferentiation {
       evaluations += detail::slope_in_time(system, t, h, x, work.f, work.end);
       for (std::size_t i = 0; i < dimension(x); ++i) slope.data()[i] += work.end.data()[i];
     }
-    evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, Real(1e-2), slope);
+    evaluations += work.equations.solve(system, t, x, work.f, Real(1e-2), slope);
     for (std::size_t i = 0; i < dimension(x); ++i)
       if (is_algebraic<X>(system, i)) work.D[1].data()[i] = h * slope.data()[i];
     return evaluations;
@@ -417,7 +399,7 @@ struct BackwardDifferentiation {
 
   template <class System, State X>
   static int linearize(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
-    const int evaluations = work.equations.linearize(system, t, x, work.h, work.tolerance, work.f);
+    const int evaluations = work.equations.linearize(system, t, x, work.h, work.f);
     work.has_jacobian = work.is_current = true;
     work.jacobian_age = 0;
     work.decomposed_for = Scalar<X>(0);
@@ -426,8 +408,7 @@ struct BackwardDifferentiation {
 
   template <class System, State X>
   static bool decompose(System& system, Workspace<X>& work, const Scalar<X>& c) {
-    work.status = work.equations.decompose(system, c);
-    const bool done = work.status == StepStatus::done;
+    const bool done = work.equations.decompose(system, c);
     work.decomposed_for = done ? c : Scalar<X>(0);
     return done;
   }
@@ -437,7 +418,7 @@ struct BackwardDifferentiation {
   static Scalar<X> target_of(const Workspace<X>& work) {
     using Real = Scalar<X>;
     using std::max, std::min, std::sqrt;
-    const Real asked = tolerance_as_number(work.tolerance);
+    const Real asked = tolerance_as_number(work.equations.tolerance);
     return max(Real(10) * std::numeric_limits<Real>::epsilon() / asked, min(Real(0.03), sqrt(asked)));
   }
 
@@ -454,7 +435,7 @@ struct BackwardDifferentiation {
       const Real weight = ndf::gamma<Real>(j) * one_over_alpha;
       for (std::size_t i = 0; i < n; ++i) past.data()[i] += weight * work.D[j].data()[i];
     }
-    if (work.equations.has_mass()) work.memory.measure_anew(work.tolerance);
+    if (work.equations.has_mass()) work.memory.measure_anew(work.equations.tolerance);
     work.memory.matrix_is_known = work.is_current || !work.memory.measures_anew;
     const Real target = target_of(work);
     return newton(work.memory, target, most_iterations, [&] {
@@ -467,22 +448,16 @@ struct BackwardDifferentiation {
         work.end = work.correction;
       }
       for (std::size_t i = 0; i < n; ++i) work.correction.data()[i] = work.f.data()[i] - work.end.data()[i];
-      evaluations += work.equations.solve(system, t, x, work.f, work.tolerance, target, work.correction);
+      evaluations += work.equations.solve(system, t, x, work.f, target, work.correction);
       // Of where the step begins: a correction that leads to 1e20 and the one back would be small against what is
       // there.
-      const Real size = weighted_norm(work.correction, work.D[0], work.D[0], work.tolerance);
+      const Real size = weighted_norm(work.correction, work.D[0], work.D[0], work.equations.tolerance);
       for (std::size_t i = 0; i < n; ++i) {
         work.d.data()[i] += work.correction.data()[i];
         x.data()[i] += work.correction.data()[i];
       }
       return size;
     });
-  }
-  template <State X>
-  static Scalar<X> not_finite(const X& x) {
-    Scalar<X> sum(0);
-    for (std::size_t i = 0; i < dimension(x); ++i) sum += x.data()[i] - x.data()[i];
-    return sum;
   }
 };
 

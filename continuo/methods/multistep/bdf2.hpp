@@ -7,20 +7,30 @@
 #include <utility>
 
 #include <continuo/methods/dirk/tr_bdf2.hpp>
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/stage_solver.hpp>
 #include <continuo/methods/support/hermite.hpp>
+#include <continuo/numerics/finite.hpp>
 
 namespace continuo {
+
+/// Of the workspace of Bdf2: see ImplicitMethod.
+struct InFirstStep {
+  template <class Work>
+  auto& operator()(Work& work) const {
+    return work.start.solver;
+  }
+};
 
 /// Backward differentiation over two steps, L-stable, of order 2, with fixed steps; a step of another size (the last
 /// one) is taken by the formula for it. The first step is one of TR-BDF2.
 /// E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", III.5, eq. 5.8: with w = h /
 /// h_before,
 ///   x_new = x + w^2 / (1 + 2 w) (x - x_before) + (1 + w) / (1 + 2 w) h f(t + h, x_new).
-struct Bdf2 {
+struct Bdf2 : ImplicitMethod<InFirstStep> {
   static constexpr std::string_view name = "bdf2";
   static constexpr int order = 2, error_order = 0, dense_degree = 3, dense_order = 2;
-  static constexpr bool second_order = false, implicit = true;
+  static constexpr bool second_order = false;
 
   template <State X>
   struct Workspace {
@@ -35,10 +45,6 @@ struct Bdf2 {
     Workspace<X> work{TrBdf2::workspace(x), x, x, x, x};
     work.start.solver.insists = true;
     return work;
-  }
-  template <State X>
-  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
-    work.start.solver.tolerance = tolerance;
   }
 
   template <class System, State X>
@@ -57,9 +63,7 @@ struct Bdf2 {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>&, const Scalar<X>&, const X&, const X& x_new,
                               const Tolerance<Scalar<X>>&) {
-    Scalar<X> nothing(0);
-    for (std::size_t i = 0; i < dimension(x_new); ++i) nothing += x_new.data()[i] - x_new.data()[i];
-    return nothing;
+    return detail::zero_if_all_finite(x_new);
   }
   template <State X>
   static Scalar<X> error_of(const Workspace<X>&, const Scalar<X>&, std::size_t) {
@@ -89,14 +93,6 @@ struct Bdf2 {
   template <State X>
   static const X& derivative(const Workspace<X>& work) {
     return work.slope;
-  }
-  template <State X>
-  static StepStatus status(const Workspace<X>& work) {
-    return work.start.solver.status;
-  }
-  template <State X>
-  static const EquationCosts& costs(const Workspace<X>& work) {
-    return work.start.solver.costs;
   }
 
  private:

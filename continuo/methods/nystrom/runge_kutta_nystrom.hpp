@@ -23,6 +23,7 @@
 #include <continuo/methods/support/second_order_method.hpp>
 #include <continuo/methods/support/simd_state.hpp>
 #include <continuo/methods/support/weighted_sum.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/system/second_order.hpp>
 
 namespace continuo {
@@ -113,7 +114,7 @@ struct RungeKuttaNystrom {
     for (std::size_t i = 0; i < dimension(x); ++i) {
       const Real end = x_new.data()[i];
       const Real ratio = work.argument.data()[i] / tolerance.scale(i, x.data()[i], end);
-      sum += ratio * ratio + (end - end);
+      sum += ratio * ratio + detail::zero_if_finite(end);
     }
     return sum * detail::one_over_dimension(x);
   }

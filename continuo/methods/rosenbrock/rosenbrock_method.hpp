@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <utility>
 
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 #include <continuo/methods/implicit/unknowns_between.hpp>
@@ -19,15 +20,16 @@
 #include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/methods/support/weighted_norm.hpp>
 #include <continuo/methods/support/weighted_sum.hpp>
+#include <continuo/numerics/finite.hpp>
 
 namespace continuo {
 
 template <class Derived>
-struct RosenbrockMethod {
-  static constexpr bool second_order = false, implicit = true;
+struct RosenbrockMethod : ImplicitMethod<> {
+  static constexpr bool second_order = false;
 
   template <State X>
-  struct Workspace {
+  struct Workspace : StepEquations<Scalar<X>> {
     std::array<detail::Kept<X>, Derived::tableau.stages> u;
     X slope, end_slope;          // f at the start of the step, and at its end where a stage gives it
     X time_slope;                // df/dt at the start
@@ -35,10 +37,7 @@ struct RosenbrockMethod {
     X rest, rest_new;            // what the sums that made x, and x_new, have lost: see takes_many_steps
     Linearization<X> linear;
     Factorization<X> lu;
-    Tolerance<Scalar<X>> tolerance{Scalar<X>(1e-6), Scalar<X>(1e-9)};
     UnknownsBetween<Derived, X> unknowns{};
-    EquationCosts costs{};
-    StepStatus status = StepStatus::done;
     bool start_fresh = false;   // slope is f at the start of the next step
     bool linear_fresh = false;  // J and df/dt are those of the start of the next step: it was rejected
   };
@@ -47,13 +46,8 @@ struct RosenbrockMethod {
   static Workspace<X> workspace(const X& x) {
     return [&]<std::size_t... s>(std::index_sequence<s...>) {
       return Workspace<X>{
-          {((void)s, detail::keep(x))...}, x, x, x, x, x, x, x, x, Linearization<X>(x), Factorization<X>(x)};
+          {}, {((void)s, detail::keep(x))...}, x, x, x, x, x, x, x, x, Linearization<X>(x), Factorization<X>(x)};
     }(std::make_index_sequence<Derived::tableau.stages>());
-  }
-
-  template <State X>
-  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
-    work.tolerance = tolerance;
   }
 
   template <class System, State X>
@@ -62,7 +56,7 @@ struct RosenbrockMethod {
     int evaluations = linearize(system, t, x, h, discontinuity, work);
     ++work.costs.factorizations;
     if (!work.lu.factor(work.linear, 1 / (h * constant<GammaValue, Scalar<X>>()))) {
-      work.status = work.linear.is_finite() ? StepStatus::singular_matrix : StepStatus::not_finite;
+      work.status = work.linear.status_of_failure();
       return evaluations;
     }
     work.status = StepStatus::done;
@@ -98,7 +92,7 @@ struct RosenbrockMethod {
     detail::for_each_unit(x, [&](std::size_t i) __attribute__((always_inline)) {
       const detail::Unit<X> end = detail::load<X>(x_new.data(), i);
       const detail::Unit<X> ratio = detail::row_sum<Error, X>(u, i) / detail::step_scale<X>(weights, i, x, x_new);
-      sum += ratio * ratio + (end - end);  // which is 0, if it is finite
+      sum += ratio * ratio + detail::zero_if_finite(end);
     });
     const Scalar<X> between = work.unknowns.norm(x, x_new, tolerance);
     const Scalar<X> square = detail::greater(spare * spare * detail::total<X>(sum) * detail::one_over_dimension(x),
@@ -144,14 +138,6 @@ struct RosenbrockMethod {
   template <State X>
   static const X& derivative(const Workspace<X>& work) {
     return work.slope;
-  }
-  template <State X>
-  static StepStatus status(const Workspace<X>& work) {
-    return work.status;
-  }
-  template <State X>
-  static const EquationCosts& costs(const Workspace<X>& work) {
-    return work.costs;
   }
 
  private:

@@ -28,7 +28,7 @@ struct NewmarkWith : StructuralDynamics<NewmarkWith<Beta, Gamma>> {
   static void estimate(const System& system, Work& work) {
     using Real = typename Work::Real;
     const Real h = work.h, last = work.h_last;
-    NewmarkWith::for_each_pair(system, work.a, [&](std::size_t q, std::size_t v) {
+    for_each_pair(system, work.a, [&](std::size_t q, std::size_t v) {
       const Real change = work.a_new.data()[v] - work.a.data()[v];
       work.error.data()[q] = (Real(Beta) - Real(1) / Real(6)) * h * h * change;
       work.error.data()[v] = Real(0);

@@ -20,10 +20,14 @@
 #include <vector>
 
 #include <continuo/methods/implicit/effective_matrix.hpp>
+#include <continuo/methods/implicit/implicit_method.hpp>
 #include <continuo/methods/implicit/newton.hpp>
 #include <continuo/methods/support/hermite.hpp>
+#include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/system/mass.hpp>
+#include <continuo/system/second_order.hpp>
 
 namespace continuo {
 
@@ -35,23 +39,20 @@ struct StructuralNumbers {
 /// `Derived` has `numbers<Real>()` and, where its error_order is not 0, `estimate(system, work)`, which sets
 /// work.error.
 template <class Derived>
-struct StructuralDynamics {
-  static constexpr bool second_order = true, implicit = true;
+struct StructuralDynamics : ImplicitMethod<> {
+  static constexpr bool second_order = true;
   /// Between the ends: positions by the cubic that meets positions and velocities, velocities by the one that meets
   /// velocities and accelerations.
   static constexpr int dense_degree = 3, dense_order = 2;
 
   template <State X>
-  struct Workspace {
+  struct Workspace : StepEquations<Scalar<X>> {
     using Real = Scalar<X>;
     X a, a_new, a_last;  // accelerations at the places of the velocities: start, end, start of the step before
     X stage, f, correction, error;
     Linearization<X> linear;
     EffectiveMatrix<X> effective;
     NewtonMemory<Real> memory{};
-    Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
-    EquationCosts costs{};
-    StepStatus status = StepStatus::done;
     Real h{}, h_last{}, decomposed_for{};  // of this step, of the one before, of the matrix; 0 for none
     Real offset{}, offset_new{};           // a is the acceleration of the time t + offset, a_new of t + h + offset_new
     Real gamma{};                          // of this step
@@ -60,20 +61,7 @@ struct StructuralDynamics {
 
   template <State X>
   static Workspace<X> workspace(const X& x) {
-    return {x, x, x, x, x, x, x, Linearization<X>(x), EffectiveMatrix<X>(x)};
-  }
-
-  template <State X>
-  static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
-    work.tolerance = tolerance;
-  }
-  template <State X>
-  static StepStatus status(const Workspace<X>& work) {
-    return work.status;
-  }
-  template <State X>
-  static EquationCosts costs(const Workspace<X>& work) {
-    return work.costs;
+    return {{}, x, x, x, x, x, x, x, Linearization<X>(x), EffectiveMatrix<X>(x)};
   }
 
   template <class System, State X>
@@ -102,9 +90,7 @@ struct StructuralDynamics {
         continue;
       }
       const bool converged = solve(system, t, x, work, evaluations);
-      work.status = converged            ? StepStatus::done
-                    : work.memory.finite ? StepStatus::newton_diverged
-                                         : StepStatus::not_finite;
+      work.status = work.memory.status(converged);
       if (converged || work.is_current) break;
       work.has_jacobian = false;  // once more, with the matrix of here
     }
@@ -155,13 +141,13 @@ struct StructuralDynamics {
   template <State X>
   static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
                               const Tolerance<Scalar<X>>& tolerance) {
-    Scalar<X> sum(0);
-    for (std::size_t i = 0; i < dimension(x_new); ++i) sum += x_new.data()[i] - x_new.data()[i];
+    Scalar<X> sum = detail::zero_if_all_finite(x_new);
     if constexpr (Derived::error_order > 0) {
       // The number of steps grows like tolerance^(-1/3), and so does what their errors add up to: held below the
       // tolerance by that factor, the error at the end stays in proportion to the tolerance.
       using std::pow;
-      sum += weighted_norm(work.error, x, x_new, tolerance) * pow(relative(tolerance), Scalar<X>(-1) / Scalar<X>(3));
+      sum += weighted_norm(work.error, x, x_new, tolerance) *
+             pow(relative_as_number(tolerance), Scalar<X>(-1) / Scalar<X>(3));
     }
     return sum;
   }
@@ -173,15 +159,6 @@ struct StructuralDynamics {
  protected:
   static constexpr int most_iterations = 8;
   static constexpr double slow = 0.1;
-
-  template <class System, State X, class Body>
-  static void for_each_pair(const System& system, const X& x, Body&& body) {
-    const std::size_t size = dimension(x), count = system.pair_count(size);
-    for (std::size_t n = 0; n < count; ++n) {
-      const auto [position, velocity] = system.pair(n, size);
-      body(position, velocity);
-    }
-  }
 
  private:
   template <class System, State X>
@@ -238,9 +215,7 @@ struct StructuralDynamics {
     const bool done = work.effective.factor(
         system, work.linear, {Real(1) - m.alpha_m, Real(ahead * m.gamma * h), Real(ahead * m.beta * h * h)});
     work.decomposed_for = done ? h : Real(0);
-    work.status = done                      ? StepStatus::done
-                  : work.linear.is_finite() ? StepStatus::singular_matrix
-                                            : StepStatus::not_finite;
+    work.status = done ? StepStatus::done : work.linear.status_of_failure();
     return done;
   }
 
@@ -263,7 +238,7 @@ struct StructuralDynamics {
     using Real = Scalar<X>;
     using std::max, std::min, std::sqrt;
     const StructuralNumbers<Real> m = Derived::template numbers<Real>();
-    const Real rtol = relative(work.tolerance);
+    const Real rtol = relative_as_number(work.tolerance);
     const Real target = max(Real(10) * std::numeric_limits<Real>::epsilon() / rtol, min(Real(0.03), sqrt(rtol)));
     work.a_new = work.a;
     place_accelerations(work);
@@ -300,12 +275,6 @@ struct StructuralDynamics {
       to.data()[q] = x.data()[q] + part * h * (x.data()[v] + h * (Real(0.5) * a + m.beta * more));
       to.data()[v] = x.data()[v] + part * h * (a + work.gamma * more);
     });
-  }
-
-  template <class Real>
-  static Real relative(const Tolerance<Real>& tolerance) {
-    using std::max;
-    return max(tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol, std::numeric_limits<Real>::epsilon());
   }
 };
 

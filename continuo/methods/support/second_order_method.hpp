@@ -9,6 +9,7 @@
 
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/support/hermite.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/system/second_order.hpp>
 
 namespace continuo {
@@ -57,9 +58,7 @@ struct SecondOrderMethod {
   template <State X>
   static Scalar<X> error_norm(const EndDerivatives<X>&, const Scalar<X>&, const X&, const X& x_new,
                               const Tolerance<Scalar<X>>&) {
-    Scalar<X> sum(0);
-    for (std::size_t i = 0; i < dimension(x_new); ++i) sum += x_new.data()[i] - x_new.data()[i];
-    return sum;
+    return detail::zero_if_all_finite(x_new);
   }
   template <State X>
   static Scalar<X> error_of(const EndDerivatives<X>&, const Scalar<X>&, std::size_t) {
@@ -111,16 +110,6 @@ struct SecondOrderMethod {
   template <State X>
   static void euler(const X& x, const Scalar<X>& h, const X& slope, X& x_new) {
     for (std::size_t i = 0; i < dimension(x); ++i) x_new.data()[i] = x.data()[i] + h * slope.data()[i];
-  }
-  /// body(position, velocity) for each pair of the system.
-  template <class System, State X, class Body>
-  static void for_each_pair(const System& system, const X& x, Body&& body) {
-    static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
-    const std::size_t size = dimension(x), count = system.pair_count(size);
-    for (std::size_t n = 0; n < count; ++n) {
-      const PositionVelocity pair = system.pair(n, size);
-      body(pair.position, pair.velocity);
-    }
   }
   /// x_new was predicted with `start` for the whole step; `end` was found there. Puts the mean of both in its place at
   /// the velocities and the components in no pair: + h/2 (end - start). The positions stay: their slopes are made equal

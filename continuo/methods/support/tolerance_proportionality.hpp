@@ -27,6 +27,13 @@ Real tolerance_as_number(const Tolerance<Real>& tolerance) {
   return max(max(rtol, atol), std::numeric_limits<Real>::epsilon());
 }
 
+/// The relative tolerance as one number, that of the first component, but not below rounding.
+template <class Real>
+Real relative_as_number(const Tolerance<Real>& tolerance) {
+  using std::max;
+  return max(tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol, std::numeric_limits<Real>::epsilon());
+}
+
 /// By how much an error of order m of one step is held below the tolerance, in a method of order p. That many errors
 /// may add up as `spare` says before it is above 1. Not below rounding, though: no step, however short, gets there.
 template <class Real>

@@ -7,17 +7,24 @@
 
 namespace continuo {
 
+/// Root mean square of part(i) for each i below n; 0 where there is none.
+template <class Real, class Part>
+Real root_mean_square(std::size_t n, Part&& part) {
+  using std::sqrt;
+  Real sum(0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Real value = part(i);
+    sum += value * value;
+  }
+  return n == 0 ? sum : Real(sqrt(sum / Real(static_cast<double>(n))));
+}
+
 /// Root mean square of the components of v against the tolerance between x and x_new.
 template <State X>
 Scalar<X> weighted_norm(const X& v, const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
-  using std::sqrt;
-  Scalar<X> sum(0);
-  const std::size_t n = dimension(v);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Scalar<X> part = v.data()[i] / tolerance.scale_of_step(i, x.data()[i], x_new.data()[i]);
-    sum += part * part;
-  }
-  return n == 0 ? sum : sqrt(sum / Scalar<X>(static_cast<double>(n)));
+  return root_mean_square<Scalar<X>>(dimension(v), [&](std::size_t i) {
+    return Scalar<X>(v.data()[i] / tolerance.scale_of_step(i, x.data()[i], x_new.data()[i]));
+  });
 }
 
 namespace detail {

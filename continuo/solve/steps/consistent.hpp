@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <continuo/methods/method.hpp>
+#include <continuo/methods/support/weighted_norm.hpp>
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/system/jacobian.hpp>
 #include <continuo/system/mass.hpp>
@@ -74,9 +75,7 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
     }
   };
   const auto size_of = [&](std::span<const Real> step) {
-    Real sum(0);
-    for (std::size_t k = 0; k < m; ++k) sum += step[k] / scale[k] * (step[k] / scale[k]);
-    return Real(sqrt(sum / Real(static_cast<double>(m))));
+    return root_mean_square<Real>(m, [&](std::size_t k) { return Real(step[k] / scale[k]); });
   };
   const auto name_worst = [&] {
     Real worst(-1);

@@ -13,6 +13,7 @@
 
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/support/stiffness_watch.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/solve/options.hpp>
 #include <continuo/solve/outcome.hpp>
 #include <continuo/solve/steps/check_input.hpp>
@@ -173,15 +174,11 @@ class Steps {
     return ++standing_ >= most;
   }
 
-  bool finite_end() const {
-    Real sum = 0;  // one NaN or infinity makes 0 * sum NaN
-    for (std::size_t i = 0; i < dimension(x_end_); ++i) sum += Real(0) * x_end_.data()[i];
-    return sum == Real(0);
-  }
+  bool finite_end() const { return detail::all_finite(x_end_); }
 
   std::string first_not_finite(const X& x) const {
     for (std::size_t i = 0; i < dimension(x); ++i)
-      if (!(Real(0) * x.data()[i] == Real(0))) return component_name(system_, i);
+      if (!detail::is_finite(x.data()[i])) return component_name(system_, i);
     return {};
   }
 
