@@ -102,7 +102,6 @@ struct WorldDescription {
   /// In the plane x, x', y, y', angle, angle'; in space x, x', y, y', z, z', q_w, q_x, q_y, q_z, spin_x, spin_y,
   /// spin_z.
   static constexpr std::size_t states_of_body(int dimension) { return dimension == 2 ? 6 : 13; }
-  static constexpr std::size_t components_of_spin(int dimension) { return dimension == 2 ? 1 : 3; }
 };
 
 /// What a world tells of itself: `world.kinetic`, `world.potential`, `world.momentum_x`, ..., `world.collisions`.

@@ -76,7 +76,6 @@ class Moving final : public WorldRun {
 
   Status advance_to(double t) override {
     contacts_.clear();
-    lost_ = 0;
     if (is_free()) return t > world_.time ? exact_advance(t) : Status{};
     // A step more only where it brings more than rounding.
     while (world_.time < t - 1e-9 * options_.step) {
@@ -110,7 +109,6 @@ class Moving final : public WorldRun {
   double kinetic_energy() const override { return continuo::kinetic_energy(world_); }
   double potential_energy() const override { return continuo::potential_energy(world_); }
   const std::vector<Contact>& contacts() const override { return contacts_; }
-  std::size_t lost_contacts() const override { return lost_; }
 
   const std::vector<double>& state() override {
     const std::size_t per_body = model::WorldDescription::states_of_body(Dim);
@@ -333,12 +331,8 @@ class Moving final : public WorldRun {
 
   template <class Motion>
   void note(const Motion& motion) {
-    lost_ += motion.lost_contact_events();
     for (const ContactEvent<double, Dim>& event : motion.contact_events()) {
-      if (contacts_.size() >= options_.most_contacts) {
-        ++lost_;
-        continue;
-      }
+      if (contacts_.size() >= options_.most_contacts) return;
       contacts_.push_back({.change = event.change,
                            .a = world_.index(event.a),
                            .b = event.with_wall() ? model::no_body : world_.index(event.b),
@@ -369,7 +363,6 @@ class Moving final : public WorldRun {
   std::size_t collisions_apart_ = 0;  // to be added to what the motion has counted
   Shapes shapes_;
   std::vector<Contact> contacts_;
-  std::size_t lost_ = 0;
   std::vector<double> state_;
 };
 

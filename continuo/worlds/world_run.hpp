@@ -114,9 +114,8 @@ class WorldRun {
   virtual std::array<double, 4> orientation(std::size_t body) const = 0;
   virtual double kinetic_energy() const = 0;
   virtual double potential_energy() const = 0;
-  /// Of the last advance, and how many more there were than `most_contacts`.
+  /// Of the last advance, the first `most_contacts`.
   virtual const std::vector<Contact>& contacts() const = 0;
-  virtual std::size_t lost_contacts() const = 0;
   /// "ball meets floor", "ball leaves floor".
   std::string name_of(const Contact& contact) const;
 

@@ -68,7 +68,6 @@ class Lexer {
 
  private:
   Token scan();
-  Token scan_name();
   Token scan_number();
   Token scan_text();
   Token scan_unit();

@@ -27,9 +27,6 @@ std::span<const std::string_view> statement_words() {
 std::span<const std::string_view> action_words() {
   return actions;
 }
-std::span<const std::string_view> function_names() {
-  return functions;
-}
 
 bool is_reserved(std::string_view word) {
   return word == "sum" || std::find(statements.begin(), statements.end(), word) != statements.end() ||

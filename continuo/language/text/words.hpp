@@ -16,7 +16,6 @@ std::span<const std::string_view> action_words();
 bool is_reserved(std::string_view word);
 
 /// `sin`, `max`, `interp`, ...: `sin(0) = 1` is an equation, `h(0) = 1` an initial value.
-std::span<const std::string_view> function_names();
 bool is_function(std::string_view name);
 
 /// `combine restitution minimum`: how the numbers of two surfaces become those of their contact.

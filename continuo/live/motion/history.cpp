@@ -49,10 +49,6 @@ void History::forget_last() {
   samples_.pop_back();
 }
 
-void History::cut_after(std::size_t i) {
-  while (samples_.size() > i + 1) forget_last();
-}
-
 void History::cut_from(double t) {
   while (!samples_.empty() && samples_.back().main.t >= t) forget_last();
 }

@@ -25,8 +25,6 @@ class History {
 
   void add(Sample sample);
   void clear();
-  /// Forgets what comes after the i-th.
-  void cut_after(std::size_t i);
   /// Forgets what is at or after t.
   void cut_from(double t);
 

@@ -60,7 +60,6 @@ class ModelSystem {
   /// From now on the jumps of the equations are located: their switches are held until `pass` or `settle` says
   /// otherwise (SwitchedMotion). Before, every evaluation decides them anew.
   void hold_switches(double t, const X& x);
-  bool holds_switches() const { return switched_.has_value(); }
   void settle_switches(double t, const X& x, const X* before);
   Passage pass_switch(std::size_t k, double t, const X& x);
   void switch_guards(double t, const X& x, std::span<double> values) { switched_->guards(mode_, t, x, values); }

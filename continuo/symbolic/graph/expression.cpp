@@ -100,30 +100,18 @@ bool depends_on(const Graph& graph, NodeId node, std::uint32_t variable) {
                              [&](NodeId id) { return graph[id].op == Op::variable && graph[id].number == variable; });
 }
 
-namespace {
-
-std::vector<std::uint32_t> numbers_of(const Graph& graph, std::span<const NodeId> roots, auto&& wanted) {
+std::vector<std::uint32_t> variables_of(const Graph& graph, std::span<const NodeId> nodes) {
   std::vector<std::uint32_t> numbers;
-  for (const NodeId id : reachable(graph, roots)) {
-    if (wanted(graph[id].op)) numbers.push_back(graph[id].number);
+  for (const NodeId id : reachable(graph, nodes)) {
+    if (graph[id].op == Op::variable) numbers.push_back(graph[id].number);
   }
   std::ranges::sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> variables_of(const Graph& graph, std::span<const NodeId> nodes) {
-  return numbers_of(graph, nodes, [](Op op) { return op == Op::variable; });
-}
-
 std::vector<std::uint32_t> variables_of(const Graph& graph, NodeId node) {
   return variables_of(graph, {&node, 1});
-}
-
-std::vector<std::uint32_t> tables_of(const Graph& graph, NodeId node) {
-  return numbers_of(graph, {&node, 1}, [](Op op) { return op >= Op::interpolate; });
 }
 
 NodeId with_arguments(Graph& graph, NodeId node, const std::function<NodeId(NodeId)>& image) {

@@ -104,9 +104,6 @@ bool depends_on(const Graph& graph, NodeId node, std::uint32_t variable);
 std::vector<std::uint32_t> variables_of(const Graph& graph, NodeId node);
 std::vector<std::uint32_t> variables_of(const Graph& graph, std::span<const NodeId> nodes);
 
-/// The tables it reads, ascending.
-std::vector<std::uint32_t> tables_of(const Graph& graph, NodeId node);
-
 /// The expression with every variable replaced that `replacement` gives a node for.
 using Replacement = std::function<std::optional<NodeId>(std::uint32_t variable)>;
 NodeId substitute(Graph& graph, NodeId node, const Replacement& replacement);

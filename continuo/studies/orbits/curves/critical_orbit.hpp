@@ -60,7 +60,6 @@ class CriticalOrbit {
   bool solve_bordered(const CriticalVectors& borders);
   void differentiate();
   double width(std::size_t interval) const { return (*mesh_)[interval + 1] - (*mesh_)[interval]; }
-  double component_size(std::size_t row) const { return sizes_[row % n_]; }
   bool is_fold() const { return kind_ == OrbitBifurcation::fold; }
   std::size_t bordered_size() const { return states_ + (is_fold() ? 2 : 1); }
   /// Into p_.
