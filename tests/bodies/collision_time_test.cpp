@@ -25,7 +25,7 @@ TEST(CollisionTime, ComesBackFromAFlightOfAnyLength) {
       EXPECT_NEAR(wait, flight, std::min(flight, 8 * epsilon / v) + 8 * epsilon * flight) << v;
     }
 }
-// CoupledEquations a ball, at the height of its centre: whatever falls does not come back.
+// Beside a ball, at the height of its centre: whatever falls does not come back.
 TEST(CollisionTime, LeavesForGoodWherePathsPart) {
   const double wait =
       time_to_touch(Vector<double, 2>{{1, 0}}, Vector<double, 2>{{1e-9, 0}}, Vector<double, 2>{{0, -9.81}}, 1.0, 0.5);

@@ -228,7 +228,7 @@ TEST(MotionSeries, LeavesAKinkOnTheSideThatComes) {
   EXPECT_EQ(first_motion(guard("mod(x, 1) - 0.5"), 0, {3, 2}).c[0], -0.5);
   EXPECT_EQ(first_motion(guard("(if x > 1 then 5*x else x) - 1"), 0, {1, 1}).c[1], 5);
   EXPECT_EQ(first_motion(guard("(if x > 1 then 5*x else x) - 1"), 0, {1, -1}).c[1], -1);
-  // CoupledEquations the kink, within the rounding of x: nobody knows.
+  // Beside the kink, within the rounding of x: nobody knows.
   EXPECT_EQ(carried(first_motion(guard("abs(x - 1)"), 0, {std::nextafter(1.0, 2.0), 1})), 0);
   // But where both sides rise, it rises.
   EXPECT_EQ(carried(first_motion(guard("max(x - 1, 3*(x - 1))"), 0, {std::nextafter(1.0, 2.0), 1})), 1);

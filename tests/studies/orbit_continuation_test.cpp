@@ -331,7 +331,7 @@ TEST(OrbitContinuation, OrbitsOfTwiceThePeriodAreFollowed) {
   }
 }
 
-// CoupledEquations the unit circle u' = (p - u^2) u: at p = 0 two more circles branch off, u = +- sqrt(p).
+// Beside the unit circle u' = (p - u^2) u: at p = 0 two more circles branch off, u = +- sqrt(p).
 TEST(OrbitContinuation, TheOtherBranchAtACrossingIsFollowed) {
   const auto f = [](double, Values x, Values p, std::span<double> out) {
     const double grow = 1 - x[0] * x[0] - x[1] * x[1];

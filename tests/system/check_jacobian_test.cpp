@@ -166,7 +166,7 @@ TEST(CheckJacobian, WhereThereIsNoDerivativeAValueBetweenTheSlopesPassesAndIsSai
   }
   friction.slope = 1.5;
   EXPECT_FALSE(check_jacobian(friction, 0.0, Pair{1, 0}).agrees());
-  // CoupledEquations the kink there is one slope, and only it will do.
+  // Beside the kink there is one slope, and only it will do.
   friction.slope = -1;
   EXPECT_TRUE(check_jacobian(friction, 0.0, Pair{1, 1e-3}).agrees());
   friction.slope = 1;

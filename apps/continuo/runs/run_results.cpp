@@ -19,7 +19,7 @@
 namespace continuo::app {
 namespace {
 
-/// CoupledEquations a table stands the manifest that its first line points to.
+/// Beside a table stands the manifest that its first line points to.
 std::string manifest_file(const RunOutputs& outputs) {
   if (!outputs.manifest.empty()) return outputs.manifest;
   for (const std::string& table : {outputs.motion, outputs.events}) {

@@ -20,7 +20,7 @@ struct Module {
   std::string problem{};          // why there is none
 };
 
-/// CoupledEquations the command, where it was built, or in the folder of libraries that it was installed with. Links to
+/// Beside the command, where it was built, or in the folder of libraries that it was installed with. Links to
 /// the command are followed.
 Module load(const std::string& name) {
   std::error_code error;

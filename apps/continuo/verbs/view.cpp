@@ -39,7 +39,7 @@ struct ViewRequest {
   RecordingRequest recording;
 };
 
-/// CoupledEquations the model, in the tree that the command was built in, or where it is installed.
+/// Beside the model, in the tree that the command was built in, or where it is installed.
 std::vector<live::GalleryModel> gallery_for(const std::string& file) {
   std::error_code error;
   const fs::path folder = fs::absolute(file, error).parent_path();
