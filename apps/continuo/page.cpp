@@ -1,4 +1,5 @@
 // apps/continuo/page.cpp
+// The compressed page of the live view, included in the command by the assembler.
 #include <apps/continuo/page.hpp>
 
 #ifdef CONTINUO_PAGE_FILE

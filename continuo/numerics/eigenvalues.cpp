@@ -1,4 +1,5 @@
 // continuo/numerics/eigenvalues.cpp
+// Eigenvalues and eigenvectors of a real matrix, by Eigen.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,5 @@
 // continuo/numerics/sparse_lu.cpp
+// KLU behind SparseLU: analysis, factorization, refactorization with the same pivots, solution.
 #include <type_traits>
 #include <utility>
 

@@ -1,4 +1,5 @@
 // continuo/numerics/sparse_pattern.cpp
+// Patterns of sparse matrices: search, bandwidth, and columns grouped for differences.
 #include <algorithm>
 
 #include <continuo/numerics/sparse_pattern.hpp>

@@ -1,3 +1,4 @@
+// Draws the bodies of a world at the end of a run, in the plane or projected from space.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Formats numbers and fields for CSV, and writes the rows of a table.
 #include <cmath>
 #include <iterator>
 

@@ -1,3 +1,4 @@
+// The report on a model's derivatives, as lines of text and as JSON.
 #include <algorithm>
 #include <cstddef>
 #include <iterator>

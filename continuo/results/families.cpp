@@ -1,3 +1,4 @@
+// Sorts columns by the name and indices of their family, and finds the axes of each.
 #include <algorithm>
 #include <charconv>
 #include <map>

@@ -1,3 +1,4 @@
+// Writes a figure as a gnuplot script with its data, and runs gnuplot on it.
 #include <algorithm>
 #include <array>
 #include <cerrno>

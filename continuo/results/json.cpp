@@ -1,3 +1,4 @@
+// Builds the manifest of a run and the object of `--json`.
 #include <cmath>
 #include <string>
 

@@ -1,3 +1,4 @@
+// Collects the dimensions, variables and attributes of a netCDF file from a run.
 #include <algorithm>
 #include <array>
 #include <cstddef>

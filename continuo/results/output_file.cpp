@@ -1,3 +1,4 @@
+// A file or standard output, written through a buffer that keeps the first failure.
 #include <cerrno>
 #include <cstddef>
 #include <cstring>

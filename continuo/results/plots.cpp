@@ -1,3 +1,4 @@
+// Makes panels of a model's plots, with marks of events and the drift of the energy.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

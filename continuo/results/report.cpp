@@ -1,4 +1,5 @@
 // continuo/results/report.cpp
+// Assembles an HTML page with its style, texts and pictures.
 #include <cstddef>
 
 #include <continuo/results/report.hpp>

@@ -1,3 +1,4 @@
+// SHA-256 after FIPS 180-4.
 #include <array>
 #include <bit>
 #include <cstddef>

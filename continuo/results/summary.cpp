@@ -1,3 +1,4 @@
+// The lines of a run's summary: ending, states, events, energy, checks, error and cost.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,3 +1,4 @@
+// Writes the rows and the events of a run as CSV.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

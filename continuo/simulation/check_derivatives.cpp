@@ -1,4 +1,5 @@
 // continuo/simulation/check_derivatives.cpp
+// Compares the derivatives of a model with differences at points spread over a run.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,4 +1,5 @@
 // continuo/simulation/experiment.cpp
+// Makes a plan of a model's `run` statement and a caller's experiment, or names what does not fit.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,4 +1,5 @@
 // continuo/simulation/run_along.cpp
+// Records a motion that is known already, as an integration would be recorded.
 #include <utility>
 
 #include <continuo/simulation/drive/run_checks.hpp>

@@ -1,4 +1,5 @@
 // continuo/simulation/simulate.cpp
+// Plans and integrates a model, evaluates its checks and estimates its error.
 #include <algorithm>
 #include <utility>
 

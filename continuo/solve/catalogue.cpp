@@ -1,4 +1,5 @@
 // continuo/solve/catalogue.cpp
+// The list of methods with their properties, and the search in it by name and alias.
 #include <algorithm>
 
 #include <continuo/methods/all.hpp>

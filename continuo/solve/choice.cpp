@@ -1,4 +1,5 @@
 // continuo/solve/choice.cpp
+// Chooses the default method by the form and size of a system and the tolerance.
 #include <continuo/solve/choice.hpp>
 
 namespace continuo {

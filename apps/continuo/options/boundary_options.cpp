@@ -1,3 +1,4 @@
+// Adds and reads the options for boundary-value problems: solution, guess, --along, --family.
 #include <string_view>
 #include <utility>
 #include <vector>

@@ -1,3 +1,4 @@
+// Adds the options for the length of steps along a branch, and tests their order.
 #include <algorithm>
 
 #include <apps/continuo/options/branch_steps.hpp>

@@ -1,3 +1,4 @@
+// Help with the examples first, suggestions for mistyped names, and validators of numbers.
 #include <charconv>
 #include <cmath>
 #include <memory>

@@ -1,3 +1,4 @@
+// Adds the options that change an experiment, and reads them into one.
 #include <algorithm>
 #include <array>
 #include <cstdio>

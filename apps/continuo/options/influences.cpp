@@ -1,3 +1,4 @@
+// Finds parameters and states by their names on the command line, and refuses unsuitable options.
 #include <algorithm>
 
 #include <apps/continuo/options/influences.hpp>

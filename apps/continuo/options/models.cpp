@@ -1,3 +1,4 @@
+// Loads models, tests whether files can be read and written, and collects the models of folders.
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// Curves of degenerate homoclinic orbits in three parameters: followed, printed and drawn.
 #include <algorithm>
 #include <cmath>
 #include <string_view>

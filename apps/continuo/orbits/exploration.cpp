@@ -1,3 +1,4 @@
+// Explores a model: its run, equilibria, orbit, sliders and influences.
 #include <algorithm>
 #include <cmath>
 

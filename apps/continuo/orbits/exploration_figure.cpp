@@ -1,3 +1,4 @@
+// An exploration as a figure: the motion, the phase plane, and what the sliders do.
 #include <algorithm>
 #include <tuple>
 

@@ -1,3 +1,4 @@
+// An exploration as JSON.
 #include <vector>
 
 #include <apps/continuo/orbits/exploration.hpp>

@@ -1,3 +1,4 @@
+// An exploration as text.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Closed orbits through events, modes and jumps, or of a forced model: found, printed and drawn.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,3 +1,4 @@
+// Branches of closed orbits over a parameter: followed, printed and drawn.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Curves of bifurcations of closed orbits in two parameters: followed, printed and drawn.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Branches of equilibria over a parameter: followed, printed and drawn.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Curves of folds and Hopf points in two parameters: followed, printed and drawn.
 #include <algorithm>
 #include <cmath>
 

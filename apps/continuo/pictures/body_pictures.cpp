@@ -1,3 +1,4 @@
+// gnuplot commands for spheres, discs, walls and springs.
 #include <array>
 #include <cstdint>
 #include <numeric>

@@ -1,3 +1,4 @@
+// Runs gnuplot for all pictures of a view, and keeps those that were written in full.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

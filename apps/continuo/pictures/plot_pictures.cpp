@@ -1,3 +1,4 @@
+// gnuplot commands for the plots of a model, as far as the time shown.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,5 @@
 // apps/continuo/pictures/recorder.cpp
+// Keeps the slices and frames of a session, and writes them into the element of a page.
 #include <cstdint>
 #include <cstring>
 #include <utility>

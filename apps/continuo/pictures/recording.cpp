@@ -1,4 +1,5 @@
 // apps/continuo/pictures/recording.cpp
+// Plays a session from beginning to end and writes it as a page, pictures or a film.
 #include <algorithm>
 #include <array>
 #include <cmath>

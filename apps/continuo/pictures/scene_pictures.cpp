@@ -1,3 +1,4 @@
+// gnuplot commands for the scene of a model.
 #include <algorithm>
 #include <array>
 #include <optional>

@@ -1,3 +1,4 @@
+// Adds --record, and writes and reads the file of a recording.
 #include <array>
 #include <cerrno>
 #include <cstring>

@@ -1,3 +1,4 @@
+// Adds the options for results, writes the files of a run, prints its summary, chooses the exit code.
 #include <algorithm>
 #include <span>
 

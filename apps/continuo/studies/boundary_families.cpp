@@ -1,3 +1,4 @@
+// Families of solutions of a boundary-value problem over a parameter: printed and drawn.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,3 +1,4 @@
+// Adds branches and bifurcations to a panel, each kind of bifurcation with its colour.
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -1,3 +1,4 @@
+// A study of convergence as a table with remarks, and as a figure.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Difference schemes applied to an expression of x in several precisions.
 #include <cmath>
 #include <memory>
 #include <utility>

@@ -1,3 +1,4 @@
+// Reads the words of the command line of `continuo fit` into a request.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

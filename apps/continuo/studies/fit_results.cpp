@@ -1,3 +1,4 @@
+// A fit as text, as JSON and as a figure.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

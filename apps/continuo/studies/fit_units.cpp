@@ -1,3 +1,4 @@
+// Converts measurements and their deviations to the units of the model.
 #include <optional>
 
 #include <apps/continuo/studies/fit_units.hpp>

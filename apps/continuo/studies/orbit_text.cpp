@@ -1,3 +1,4 @@
+// Periods, multipliers and extents of orbits as text, and the exit code of a failed search.
 #include <cmath>
 #include <numbers>
 

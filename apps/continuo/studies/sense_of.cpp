@@ -1,3 +1,4 @@
+// Sensitivities of event times, periods and equilibria: computed and printed.
 #include <cmath>
 
 #include <apps/continuo/options/influences.hpp>

@@ -1,4 +1,5 @@
 // apps/continuo/studies/studied_model.cpp
+// Prepares a model for the study of its equations, and prints its conserved quantities and events.
 #include <algorithm>
 #include <charconv>
 #include <cmath>

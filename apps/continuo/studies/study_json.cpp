@@ -1,3 +1,4 @@
+// Comparisons, convergence and other studies as JSON.
 #include <utility>
 
 #include <apps/continuo/studies/study_json.hpp>

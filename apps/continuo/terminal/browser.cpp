@@ -1,4 +1,5 @@
 // apps/continuo/terminal/browser.cpp
+// Opens an address by xdg-open.
 #include <apps/continuo/terminal/browser.hpp>
 #include <apps/continuo/terminal/program.hpp>
 

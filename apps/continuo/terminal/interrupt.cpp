@@ -1,3 +1,4 @@
+// The handler of SIGINT and SIGTERM.
 #include <csignal>
 #include <cstdint>
 #include <ctime>

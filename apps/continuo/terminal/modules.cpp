@@ -1,3 +1,4 @@
+// Loads the shared libraries of rarely used parts and forwards calls to them.
 #include <filesystem>
 #include <stdexcept>
 #include <string>

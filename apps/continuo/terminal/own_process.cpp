@@ -1,4 +1,5 @@
 // apps/continuo/terminal/own_process.cpp
+// Calls the command itself in a process of its own, and reads what it prints.
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>

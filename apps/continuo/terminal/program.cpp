@@ -1,4 +1,5 @@
 // apps/continuo/terminal/program.cpp
+// Runs a program with its output discarded, and waits for it.
 #include <apps/continuo/terminal/program.hpp>
 #include <fcntl.h>
 #include <spawn.h>

@@ -1,3 +1,4 @@
+// The line of progress and its timing.
 #include <cstdio>
 
 #include <apps/continuo/terminal/progress.hpp>

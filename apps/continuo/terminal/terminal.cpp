@@ -1,3 +1,4 @@
+// Output to the terminal: messages, failures, colours.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,4 +1,5 @@
 // continuo/methods/collocation/collocation_table.cpp
+// Instantiates the tables of collocation methods for the usual scalars.
 #include <continuo/methods/collocation/collocation_table.hpp>
 
 namespace continuo::collocation {

@@ -1,4 +1,5 @@
 // continuo/simulation/drive/error_estimate.cpp
+// Estimates the error of a run from a second run with stricter tolerances.
 #include <algorithm>
 #include <cmath>
 

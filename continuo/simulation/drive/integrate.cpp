@@ -1,3 +1,4 @@
+// Runs the integration of a model by a method chosen by its name, watched by a recorder.
 #include <algorithm>
 #include <chrono>
 #include <memory>

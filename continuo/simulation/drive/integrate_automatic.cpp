@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_automatic.cpp
+// Instantiates the integration of models for the automatic methods of moderate tolerances.
 #include <continuo/methods/automatic.hpp>
 #include <continuo/simulation/drive/model_method_body.hpp>
 

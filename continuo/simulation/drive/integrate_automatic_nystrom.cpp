@@ -1,3 +1,4 @@
+// Instantiates the integration of models for the automatic Nystrom methods.
 #include <continuo/methods/automatic.hpp>
 #include <continuo/simulation/drive/model_method_body.hpp>
 

@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_collocation.cpp
+// Instantiates the integration of models for the collocation methods.
 #include <continuo/methods/collocation/gauss4.hpp>
 #include <continuo/methods/collocation/radau.hpp>
 #include <continuo/simulation/drive/model_method_body.hpp>

@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_diagonally_implicit.cpp
+// Instantiates the integration of models for the adaptive diagonally implicit methods.
 #include <continuo/methods/dirk/kencarp4.hpp>
 #include <continuo/methods/dirk/kvaerno5.hpp>
 #include <continuo/methods/dirk/tr_bdf2.hpp>

@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_high.cpp
+// Instantiates the integration of models for the explicit methods of high order.
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/methods/explicit_rk/verner7.hpp>
 #include <continuo/methods/explicit_rk/verner9.hpp>

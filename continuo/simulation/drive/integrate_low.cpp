@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_low.cpp
+// Instantiates the integration of models for the explicit methods with fixed steps.
 #include <continuo/methods/explicit_rk/explicit_euler.hpp>
 #include <continuo/methods/explicit_rk/heun.hpp>
 #include <continuo/methods/explicit_rk/midpoint.hpp>

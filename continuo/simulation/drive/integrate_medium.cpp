@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_medium.cpp
+// Instantiates the integration of models for the explicit methods of medium order.
 #include <continuo/methods/explicit_rk/bogacki_shampine3.hpp>
 #include <continuo/methods/explicit_rk/dormand_prince5.hpp>
 #include <continuo/methods/explicit_rk/tsitouras5.hpp>

@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_multistep.cpp
+// Instantiates the integration of models for the multistep and stabilized methods.
 #include <continuo/methods/explicit_rk/rkc2.hpp>
 #include <continuo/methods/multistep/adams.hpp>
 #include <continuo/methods/multistep/bdf.hpp>

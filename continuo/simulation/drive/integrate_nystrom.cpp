@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_nystrom.cpp
+// Instantiates the integration of models for the Nystrom methods.
 #include <continuo/methods/nystrom/dormand_prince_nystrom12.hpp>
 #include <continuo/methods/nystrom/dormand_prince_nystrom6.hpp>
 #include <continuo/methods/nystrom/dormand_prince_nystrom8.hpp>

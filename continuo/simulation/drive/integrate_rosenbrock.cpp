@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_rosenbrock.cpp
+// Instantiates the integration of models for the Rosenbrock methods.
 #include <continuo/methods/rosenbrock/rodas4.hpp>
 #include <continuo/methods/rosenbrock/rodas5p.hpp>
 #include <continuo/methods/rosenbrock/rosenbrock23.hpp>

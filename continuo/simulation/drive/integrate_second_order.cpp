@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_second_order.cpp
+// Instantiates the integration of models for the simple methods of second-order systems.
 #include <continuo/methods/structural/central_difference.hpp>
 #include <continuo/methods/symplectic/semi_implicit_euler.hpp>
 #include <continuo/methods/symplectic/velocity_verlet.hpp>

@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_simple_implicit.cpp
+// Instantiates the integration of models for the simple implicit methods of order 1 and 2.
 #include <continuo/methods/dirk/implicit_euler.hpp>
 #include <continuo/methods/dirk/implicit_midpoint.hpp>
 #include <continuo/methods/dirk/trapezoidal.hpp>

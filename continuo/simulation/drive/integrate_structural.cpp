@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_structural.cpp
+// Instantiates the integration of models for the methods of structural dynamics.
 #include <continuo/methods/structural/generalized_alpha.hpp>
 #include <continuo/methods/structural/newmark.hpp>
 #include <continuo/simulation/drive/model_method_body.hpp>

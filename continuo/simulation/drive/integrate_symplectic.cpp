@@ -1,4 +1,5 @@
 // continuo/simulation/drive/integrate_symplectic.cpp
+// Instantiates the integration of models for the symplectic compositions.
 #include <continuo/methods/symplectic/kahan_li8.hpp>
 #include <continuo/methods/symplectic/mclachlan_atela4.hpp>
 #include <continuo/methods/symplectic/yoshida6.hpp>

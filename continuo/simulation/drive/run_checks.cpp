@@ -1,4 +1,5 @@
 // continuo/simulation/drive/run_checks.cpp
+// Evaluates the checks of a model on a finished run, and lists the times that they need.
 #include <algorithm>
 #include <cmath>
 #include <utility>

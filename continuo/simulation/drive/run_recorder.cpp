@@ -1,4 +1,5 @@
 // continuo/simulation/drive/run_recorder.cpp
+// Records rows, events, energies and samples while a model is integrated.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,3 +1,4 @@
+// Chooses the guards that can be enclosed in each mode, and encloses them over a step.
 #include <algorithm>
 #include <utility>
 

@@ -1,4 +1,5 @@
 // continuo/simulation/program/model_derivatives.cpp
+// Compiles and evaluates df/dx and df/dt of a model, dense, banded or by pattern.
 #include <algorithm>
 #include <numeric>
 

@@ -1,4 +1,5 @@
 // continuo/simulation/program/model_events.cpp
+// Maps the events, schedules, inputs and jumps of a model to the events of solve/.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,5 @@
 // continuo/simulation/program/model_program.cpp
+// Compiles a checked model: equations, blocks of actions, watched quantities, tables.
 #include <algorithm>
 #include <map>
 #include <optional>

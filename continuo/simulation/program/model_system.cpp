@@ -1,4 +1,5 @@
 // continuo/simulation/program/model_system.cpp
+// Evaluates a model's right-hand sides, guards, blocks and Jacobian at its present mode and values.
 #include <algorithm>
 #include <cmath>
 #include <limits>

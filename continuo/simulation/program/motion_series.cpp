@@ -1,3 +1,4 @@
+// Taylor coefficients of a model's motion, with its unknowns, and of its guards along it.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,3 +1,4 @@
+// Tests the mass matrix of implicit equations for singularity at the start of a run.
 #include <algorithm>
 #include <cmath>
 #include <limits>

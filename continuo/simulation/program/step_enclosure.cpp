@@ -1,4 +1,5 @@
 // continuo/simulation/program/step_enclosure.cpp
+// Encloses a model's expressions over a part of a step from its dense output.
 #include <algorithm>
 
 #include <continuo/numerics/polynomial_enclosure.hpp>

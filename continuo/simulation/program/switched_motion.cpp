@@ -1,3 +1,4 @@
+// Sets switches, chooses between crossing and sliding, and computes the weights of a sliding motion.
 #include <algorithm>
 #include <cmath>
 #include <limits>

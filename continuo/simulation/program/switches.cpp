@@ -1,3 +1,4 @@
+// Rewrites the equations of a mode with a switch for each jump and corner.
 #include <algorithm>
 #include <numeric>
 #include <span>

@@ -1,3 +1,4 @@
+// Assigns an equation to each unknown, and finds the block of unknowns of an expression.
 #include <algorithm>
 
 #include <continuo/simulation/program/unknown_coupling.hpp>

@@ -1,4 +1,5 @@
 // continuo/simulation/program/unknown_enclosure.cpp
+// Encloses a block of unknowns over a part of a step by its equations.
 #include <algorithm>
 #include <utility>
 

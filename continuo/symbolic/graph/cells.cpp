@@ -1,3 +1,4 @@
+// Splits a line of a text file into cells and reads the numbers in them.
 #include <algorithm>
 #include <charconv>
 

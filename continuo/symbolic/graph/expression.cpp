@@ -1,4 +1,5 @@
 // continuo/symbolic/graph/expression.cpp
+// The hash table of a Graph, and walks over expressions: variables, substitution, arguments.
 #include <algorithm>
 #include <bit>
 #include <utility>

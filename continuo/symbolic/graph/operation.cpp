@@ -1,4 +1,5 @@
 // continuo/symbolic/graph/operation.cpp
+// The value of each operation for numbers.
 #include <algorithm>
 #include <limits>
 

@@ -1,4 +1,5 @@
 // continuo/symbolic/graph/table.cpp
+// Tables: the pieces of their interpolation, and the reader of CSV files with its messages.
 #include <algorithm>
 #include <cmath>
 #include <fstream>

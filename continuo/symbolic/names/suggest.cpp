@@ -1,3 +1,4 @@
+// The search for the nearest known word by edit distance.
 #include <algorithm>
 #include <cctype>
 #include <string>

@@ -1,3 +1,4 @@
+// Finds the regular copies, and those that take turns, in a list of places.
 #include <algorithm>
 #include <utility>
 

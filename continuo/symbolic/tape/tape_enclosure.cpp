@@ -1,4 +1,5 @@
 // continuo/symbolic/tape/tape_enclosure.cpp
+// Tapes evaluated with enclosures, and tables enclosed over intervals.
 #include <algorithm>
 #include <limits>
 #include <span>

@@ -1,3 +1,4 @@
+// Groups equal operations into batches by colours, and orders their members for contiguous operands.
 #include <algorithm>
 #include <array>
 #include <compare>

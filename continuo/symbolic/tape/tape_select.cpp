@@ -1,4 +1,5 @@
 // continuo/symbolic/tape/tape_select.cpp
+// Selects the operation of a tape for each node, with negations, products and sums fused.
 #include <algorithm>
 #include <utility>
 

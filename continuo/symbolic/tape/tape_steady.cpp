@@ -1,4 +1,5 @@
 // continuo/symbolic/tape/tape_steady.cpp
+// Gathers factors of steady variables, to be computed once instead of at each evaluation.
 #include <algorithm>
 
 #include <continuo/symbolic/tape/tape_steady.hpp>

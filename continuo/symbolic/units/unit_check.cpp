@@ -1,4 +1,5 @@
 // continuo/symbolic/units/unit_check.cpp
+// The unit of a product, a quotient and a sum, where one of the units may be unknown.
 #include <continuo/symbolic/units/unit_check.hpp>
 
 namespace continuo::model::detail {

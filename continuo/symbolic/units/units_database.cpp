@@ -1,4 +1,5 @@
 // continuo/symbolic/units/units_database.cpp
+// The table of usual units and prefixes, and the search in UDUNITS-2 for all others.
 #include <algorithm>
 #include <cmath>
 #include <memory>
