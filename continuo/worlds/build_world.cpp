@@ -1,4 +1,5 @@
 // continuo/worlds/build_world.cpp
+// Evaluates the description of a world with its parameters, and adds its bodies and walls.
 #include <algorithm>
 #include <array>
 #include <string>

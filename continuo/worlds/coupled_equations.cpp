@@ -1,4 +1,5 @@
 // continuo/worlds/coupled_equations.cpp
+// Evaluates the forces and the states that a model couples to its bodies.
 #include <algorithm>
 
 #include <continuo/worlds/coupled_equations.hpp>

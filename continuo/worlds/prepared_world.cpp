@@ -1,4 +1,5 @@
 // continuo/worlds/prepared_world.cpp
+// Checks, plans and builds a world for a run.
 #include <continuo/worlds/prepared_world.hpp>
 
 namespace continuo::worlds {

@@ -1,3 +1,4 @@
+// Writes and reads the notes and checkpoints of a run.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,5 @@
 // continuo/worlds/simulate_world.cpp
+// Drives a world through a run, with rows, events, contacts, checks and notes for a recording.
 #include <algorithm>
 #include <chrono>
 #include <optional>

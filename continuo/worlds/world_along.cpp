@@ -1,4 +1,5 @@
 // continuo/worlds/world_along.cpp
+// Advances a world and interpolates its states at the wanted instants.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Searches for the guards of a model between looks at its bodies, and fires events and schedules.
 #include <algorithm>
 #include <cmath>
 #include <limits>

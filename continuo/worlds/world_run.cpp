@@ -1,4 +1,5 @@
 // continuo/worlds/world_run.cpp
+// Implements WorldRun for both dimensions, by the exact or the fast motion.
 #include <algorithm>
 #include <cmath>
 #include <optional>
