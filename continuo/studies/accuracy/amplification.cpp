@@ -1,3 +1,4 @@
+// Fits linear recurrences to the states of a method, and finds their greatest root.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Runs the contenders and the reference, and compares their rows.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,3 +1,4 @@
+// Traces the zero lines of a function on a grid.
 #include <algorithm>
 #include <array>
 #include <cmath>

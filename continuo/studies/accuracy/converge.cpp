@@ -1,3 +1,4 @@
+// Runs a method with ever smaller steps against the true solution of a problem.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

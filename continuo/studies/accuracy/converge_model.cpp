@@ -1,3 +1,4 @@
+// Poses the study of convergence for a model: its equations, or whole runs of it.
 #include <algorithm>
 #include <cmath>
 #include <utility>

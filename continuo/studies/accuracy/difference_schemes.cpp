@@ -1,3 +1,4 @@
+// The list of difference schemes, and the prediction of their best step.
 #include <continuo/studies/difference_schemes.hpp>
 
 namespace continuo::studies {

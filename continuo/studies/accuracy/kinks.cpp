@@ -1,3 +1,4 @@
+// Finds the instants at which a run passes a jump or a bend of its equations.
 #include <algorithm>
 #include <cmath>
 #include <limits>

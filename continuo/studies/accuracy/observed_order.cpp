@@ -1,3 +1,4 @@
+// Fits the order to a list of errors, and finds where rounding takes over.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Computes regions of absolute stability and the largest stable step of a model.
 #include <algorithm>
 #include <array>
 #include <cmath>

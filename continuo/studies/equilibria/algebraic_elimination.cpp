@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/algebraic_elimination.cpp
+// Eliminates the unknowns of algebraic equations from a linear system.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/bifurcation_curve.cpp
+// Starts curves of folds and Hopf points, and names their special points.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/branch_diagram.cpp
+// Follows all branches that cross a branch of equilibria.
 #include <algorithm>
 #include <utility>
 

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/branch_point.cpp
+// Solves for the crossing of two branches and for their directions.
 #include <algorithm>
 #include <cmath>
 #include <limits>

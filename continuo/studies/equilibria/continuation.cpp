@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/continuation.cpp
+// Follows a branch of equilibria, and locates folds, Hopf points and crossings on it.
 #include <algorithm>
 #include <array>
 #include <cmath>

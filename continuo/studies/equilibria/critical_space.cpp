@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/critical_space.cpp
+// Finds the critical eigenvectors of a matrix, and follows them to a matrix nearby.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/curve_follower.cpp
+// Follows a curve of folds or Hopf points, and locates its special points.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/curve_steps.cpp
+// Predictor and corrector on a curve of folds or Hopf points.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/degenerate_points.cpp
+// Coefficients of the normal forms of degenerate folds.
 #include <cmath>
 #include <utility>
 

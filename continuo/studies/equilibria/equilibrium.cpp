@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/equilibrium.cpp
+// Finds equilibria by damped Newton iterations from many starts, and describes their stability.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/equilibrium_branch.cpp
+// Predictor and corrector on a branch of equilibria.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Finds the events of a model that fire, or must be met, at a point.
 #include <algorithm>
 #include <cmath>
 

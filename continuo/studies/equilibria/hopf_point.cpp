@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/hopf_point.cpp
+// Solves for the constant at which a pair of eigenvalues is imaginary.
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/linear_model.cpp
+// Differentiates a model at a point by its inputs, states and outputs.
 #include <numeric>
 #include <span>
 

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/normal_form.cpp
+// Coefficients of the normal forms of folds and Hopf points, by directional derivatives.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,5 @@
 // continuo/studies/equilibria/phase_portrait.cpp
+// Computes the field, nullclines, separatrices and motions of a phase plane.
 #include <algorithm>
 #include <cmath>
 #include <limits>

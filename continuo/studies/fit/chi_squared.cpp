@@ -1,3 +1,4 @@
+// The tail of the chi-squared distribution, by Boost.Math.
 #include <algorithm>
 
 #include <boost/math/special_functions/gamma.hpp>

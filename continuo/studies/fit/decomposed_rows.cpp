@@ -1,3 +1,4 @@
+// The singular value decomposition of the derivatives of residuals.
 #include <cmath>
 
 #include <continuo/studies/fit/decomposed_rows.hpp>

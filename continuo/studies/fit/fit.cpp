@@ -1,3 +1,4 @@
+// Fits the unknowns of a model: checks of the request, search, uncertainties, doubts.
 #include <algorithm>
 #include <cmath>
 #include <limits>

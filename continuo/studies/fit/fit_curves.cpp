@@ -1,3 +1,4 @@
+// Evaluates a fitted model between its measurements, with bands of confidence.
 #include <algorithm>
 #include <cmath>
 #include <limits>

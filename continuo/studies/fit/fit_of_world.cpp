@@ -1,3 +1,4 @@
+// Tests what jumps at impacts, and judges slopes of a world by increments as wide as intervals.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Runs a model along its measurements, and computes residuals and their derivatives.
 #include <algorithm>
 #include <cmath>
 #include <map>

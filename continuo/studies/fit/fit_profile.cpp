@@ -1,3 +1,4 @@
+// Profiles of the likelihood: fits with one unknown held, out to the limits of its interval.
 #include <algorithm>
 #include <cmath>
 #include <limits>

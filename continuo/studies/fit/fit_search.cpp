@@ -1,3 +1,4 @@
+// Repeats least squares until the deviations of the noise stay.
 #include <utility>
 #include <vector>
 

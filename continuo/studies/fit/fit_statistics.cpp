@@ -1,3 +1,4 @@
+// Statistics of the residuals of a fit, and the doubts that follow from them.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Student's t distribution, by Boost.Math.
 #include <boost/math/distributions/students_t.hpp>
 
 #include <continuo/studies/fit/student_t.hpp>

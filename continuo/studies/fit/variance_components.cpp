@@ -1,3 +1,4 @@
+// Estimates components of variance from residuals, and the uncertainty that they leave.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Averages over the ratio of two kinds of noise, and widens intervals accordingly.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

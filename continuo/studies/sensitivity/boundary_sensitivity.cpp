@@ -1,3 +1,4 @@
+// Poses and solves the linear boundary-value problem of sensitivities.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>

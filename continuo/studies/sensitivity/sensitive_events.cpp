@@ -1,3 +1,4 @@
+// Fires a model's events, and moves sensitivities through them and through jumps of the equations.
 #include <algorithm>
 #include <cmath>
 #include <limits>

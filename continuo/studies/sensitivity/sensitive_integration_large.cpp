@@ -1,3 +1,4 @@
+// Instantiates the integration of sensitivities for large systems.
 #include <continuo/methods/automatic.hpp>
 #include <continuo/studies/sensitivity/sensitive_integration.hpp>
 

@@ -1,3 +1,4 @@
+// Instantiates the integration of sensitivities for moderate tolerances.
 #include <continuo/methods/automatic.hpp>
 #include <continuo/studies/sensitivity/sensitive_integration.hpp>
 

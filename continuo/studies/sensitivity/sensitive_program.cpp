@@ -1,3 +1,4 @@
+// Differentiates a model by its parameters and initial values, and compiles the result.
 #include <algorithm>
 #include <numeric>
 #include <variant>

@@ -1,3 +1,4 @@
+// Evaluates the equations of a motion and its sensitivities, sliding included.
 #include <algorithm>
 #include <cmath>
 #include <limits>

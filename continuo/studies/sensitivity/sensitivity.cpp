@@ -1,3 +1,4 @@
+// Runs a model with its sensitivities, by the method that its size and tolerances ask for.
 #include <algorithm>
 #include <cmath>
 #include <limits>

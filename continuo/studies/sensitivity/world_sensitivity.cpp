@@ -1,3 +1,4 @@
+// Sensitivities of a world by central differences of runs.
 #include <algorithm>
 #include <array>
 #include <cmath>

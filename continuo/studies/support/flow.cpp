@@ -1,4 +1,5 @@
 // continuo/studies/support/flow.cpp
+// Integrates a parametric system, alone or with its variational equations.
 #include <algorithm>
 #include <span>
 #include <utility>

@@ -1,3 +1,4 @@
+// Derives the period of a model's explicit dependence on time from its text.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

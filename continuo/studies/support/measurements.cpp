@@ -1,3 +1,4 @@
+// Reads measurements from CSV, with a message for each fault.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// Instantiates the solution by a named method for extended precision.
 #include <utility>
 
 #include <continuo/studies/support/named_solve_body.hpp>

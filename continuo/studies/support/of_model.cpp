@@ -1,4 +1,5 @@
 // continuo/studies/support/of_model.cpp
+// Makes a parametric system of one mode of a model, by tapes.
 #include <algorithm>
 #include <optional>
 #include <utility>

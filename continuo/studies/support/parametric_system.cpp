@@ -1,4 +1,5 @@
 // continuo/studies/support/parametric_system.cpp
+// Names, and Jacobians by central differences where a system gives none.
 #include <algorithm>
 #include <cmath>
 #include <limits>

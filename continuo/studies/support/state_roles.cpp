@@ -1,3 +1,4 @@
+// Classifies the states of a model as directions, counters or unread sums, from its text.
 #include <algorithm>
 #include <variant>
 

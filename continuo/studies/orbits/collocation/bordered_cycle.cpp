@@ -1,4 +1,5 @@
 // continuo/studies/orbits/collocation/bordered_cycle.cpp
+// Eliminates the unknowns of a closed chain of equations link by link.
 #include <algorithm>
 #include <cmath>
 

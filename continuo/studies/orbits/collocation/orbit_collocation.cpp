@@ -1,4 +1,5 @@
 // continuo/studies/orbits/collocation/orbit_collocation.cpp
+// The equations of collocation for a closed orbit, and their derivatives.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,5 @@
 // continuo/studies/orbits/continuation/orbit_branch.cpp
+// Predictor and corrector on a branch of closed orbits.
 #include <algorithm>
 #include <cmath>
 #include <limits>

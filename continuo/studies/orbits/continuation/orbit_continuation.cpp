@@ -1,4 +1,5 @@
 // continuo/studies/orbits/continuation/orbit_continuation.cpp
+// Checks a request to follow closed orbits, and starts the follower.
 #include <array>
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 // continuo/studies/orbits/continuation/orbit_endings.cpp
+// How a branch of closed orbits ends: at a Hopf point, a homoclinic orbit, or lost.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,5 @@
 // continuo/studies/orbits/continuation/orbit_follower.cpp
+// Follows a branch of closed orbits in both directions, and marks its bifurcations.
 #include <algorithm>
 #include <cmath>
 #include <utility>

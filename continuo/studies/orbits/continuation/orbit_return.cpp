@@ -1,4 +1,5 @@
 // continuo/studies/orbits/continuation/orbit_return.cpp
+// Recognizes the return of a motion, also one that advances by whole turns.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,5 @@
 // continuo/studies/orbits/continuation/orbit_starts.cpp
+// Starts a branch of closed orbits from an orbit, a Hopf point or a mark.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,5 @@
 // continuo/studies/orbits/continuation/periodic_orbit.cpp
+// Finds a closed orbit from a motion, by collocation over one period.
 #include <algorithm>
 #include <cmath>
 #include <limits>

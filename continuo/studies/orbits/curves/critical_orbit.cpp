@@ -1,4 +1,5 @@
 // continuo/studies/orbits/curves/critical_orbit.cpp
+// The equations of an orbit with a multiplier on the unit circle, by bordering.
 #include <Eigen/Sparse>
 #include <Eigen/SparseLU>
 #include <algorithm>

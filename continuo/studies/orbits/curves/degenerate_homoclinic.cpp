@@ -1,3 +1,4 @@
+// Follows a curve of degenerate homoclinic orbits in three constants.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,4 @@
+// Predictor and corrector on a curve of degenerate homoclinic orbits.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,3 +1,4 @@
+// Follows curves of homoclinic orbits in two constants, and those that they lead to.
 #include <algorithm>
 #include <cmath>
 #include <complex>

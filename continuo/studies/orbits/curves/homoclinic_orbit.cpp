@@ -1,3 +1,4 @@
+// The equations of a homoclinic orbit, with projections at both ends.
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>

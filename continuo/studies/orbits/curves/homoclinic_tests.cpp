@@ -1,3 +1,4 @@
+// Test functions whose zeros mark degenerate homoclinic orbits.
 #include <algorithm>
 #include <cmath>
 #include <complex>

@@ -1,4 +1,5 @@
 // continuo/studies/orbits/curves/orbit_curve.cpp
+// Starts curves of bifurcations of orbits from marks, and names their special points.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

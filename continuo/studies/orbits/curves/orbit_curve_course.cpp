@@ -1,3 +1,4 @@
+// Leaves the ranges of two constants, reports progress, and closes curves.
 #include <algorithm>
 #include <cmath>
 #include <utility>

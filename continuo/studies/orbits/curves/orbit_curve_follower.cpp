@@ -1,4 +1,5 @@
 // continuo/studies/orbits/curves/orbit_curve_follower.cpp
+// Follows a curve of bifurcations of orbits, and locates its special points.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,5 @@
 // continuo/studies/orbits/curves/orbit_curve_steps.cpp
+// Predictor and corrector on a curve of bifurcations of orbits.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

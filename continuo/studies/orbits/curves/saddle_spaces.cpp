@@ -1,3 +1,4 @@
+// Eigenspaces of a saddle by ordered Schur decompositions.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Jacobi>
 #include <Eigen/LU>

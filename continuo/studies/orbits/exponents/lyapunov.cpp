@@ -1,4 +1,5 @@
 // continuo/studies/orbits/exponents/lyapunov.cpp
+// Integrates the variational equations and averages the growth of their columns.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

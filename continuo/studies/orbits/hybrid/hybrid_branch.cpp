@@ -1,3 +1,4 @@
+// Predictor and corrector on a branch of closed orbits through events.
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>

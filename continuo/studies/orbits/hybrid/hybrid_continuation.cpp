@@ -1,3 +1,4 @@
+// Starts a branch of closed orbits through events from an orbit or a mark.
 #include <algorithm>
 #include <cmath>
 #include <optional>

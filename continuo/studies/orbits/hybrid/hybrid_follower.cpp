@@ -1,3 +1,4 @@
+// Follows a branch of closed orbits through events, and marks its bifurcations.
 #include <algorithm>
 #include <cmath>
 #include <map>

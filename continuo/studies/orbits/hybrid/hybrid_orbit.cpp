@@ -1,3 +1,4 @@
+// Finds a closed orbit through events from a motion, by Newton's method on the return.
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Searches a motion of a model for returns from which to solve for an orbit.
 #include <algorithm>
 #include <cmath>
 #include <optional>

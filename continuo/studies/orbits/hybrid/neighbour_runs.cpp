@@ -1,3 +1,4 @@
+// Compares runs beside an orbit with the derivative of the return.
 #include <algorithm>
 #include <cmath>
 #include <optional>

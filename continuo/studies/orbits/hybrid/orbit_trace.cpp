@@ -1,3 +1,4 @@
+// Runs a closed orbit through its events and records its line and its extent.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -1,3 +1,4 @@
+// Runs a model with its sensitivities from an instant on, for the image of a state and its derivative.
 #include <utility>
 
 #include <fmt/format.h>

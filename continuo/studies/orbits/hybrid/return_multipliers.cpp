@@ -1,3 +1,4 @@
+// Eigenvalues of the derivative of a return, without those that are known to be 1.
 #include <Eigen/SVD>
 #include <algorithm>
 #include <complex>

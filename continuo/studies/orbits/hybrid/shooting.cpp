@@ -1,3 +1,4 @@
+// Newton's method on the return of a motion, with steps cut off in weak directions.
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
