@@ -1,11 +1,29 @@
 // continuo/numerics/finite.hpp
-// Tests for finite numbers that hold for every scalar, and need no branch where many numbers are tested at once.
+// Tests for finite numbers: neither infinite nor not a number.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <ranges>
 
 #include <continuo/numerics/state.hpp>
 
-namespace continuo::detail {
+namespace continuo {
+
+/// Whether all numbers of a range are finite; of complex ones, both parts.
+template <std::ranges::input_range Values>
+[[nodiscard]] bool all_finite(const Values& values) {
+  return std::ranges::all_of(values, [](const auto& value) {
+    if constexpr (requires { value.imag(); })
+      return std::isfinite(value.real()) && std::isfinite(value.imag());
+    else
+      return std::isfinite(value);
+  });
+}
+
+namespace detail {
+
+// The same for states of every scalar, registers and numbers with derivatives too, without a branch for each number.
 
 /// 0, or not a number where `number` is infinite or none; of a register, each of its numbers.
 template <class Number>
@@ -26,8 +44,10 @@ template <class Real>
   return zero_if_finite(number) == Real(0);
 }
 template <State X>
-[[nodiscard]] constexpr bool all_finite(const X& x) {
+[[nodiscard]] constexpr bool is_finite_state(const X& x) {
   return zero_if_all_finite(x) == Scalar<X>(0);
 }
 
-}  // namespace continuo::detail
+}  // namespace detail
+
+}  // namespace continuo

@@ -93,7 +93,7 @@ class Linearization {
 
   /// Why c M - J could not be decomposed.
   StepStatus status_of_failure() const {
-    return detail::all_finite(rows_) ? StepStatus::singular_matrix : StepStatus::not_finite;
+    return detail::is_finite_state(rows_) ? StepStatus::singular_matrix : StepStatus::not_finite;
   }
 
   bool has_mass() const { return !mass_.is_identity(); }

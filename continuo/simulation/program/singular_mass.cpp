@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/simulation/program/singular_mass.hpp>
 
 namespace continuo::model {
@@ -81,8 +82,7 @@ std::optional<Diagnostic> singular_mass(const Model& model, std::span<const doub
   for (const MassMatrix& mass : model.masses) {
     if (mass.mode != model.start_mode || !is_known_at_start(model, mass)) continue;
     const std::vector<double> a = evaluate(model, mass.coefficients, variables);
-    const bool finite = std::ranges::all_of(a, [](double entry) { return std::isfinite(entry); });
-    if (!finite || !is_singular(a, mass.names.size())) continue;
+    if (!all_finite(a) || !is_singular(a, mass.names.size())) continue;
     const bool alone = mass.names.size() == 1;
     return error("E335", mass.span,
                  fmt::format("{} {} not determined at the start", all_of(mass.names), alone ? "is" : "are"),

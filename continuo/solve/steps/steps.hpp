@@ -174,7 +174,7 @@ class Steps {
     return ++standing_ >= most;
   }
 
-  bool finite_end() const { return detail::all_finite(x_end_); }
+  bool finite_end() const { return detail::is_finite_state(x_end_); }
 
   std::string first_not_finite(const X& x) const {
     for (std::size_t i = 0; i < dimension(x); ++i)

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/boundary/boundary_family_steps.hpp>
 #include <continuo/studies/boundary/boundary_nature.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
@@ -165,7 +166,7 @@ bool FamilySteps::describe(FamilyPlace& place) {
   std::vector<double> z(system.unknowns().size());
   z.back() = 1;
   system.solve(z);
-  if (!std::ranges::all_of(z, [](double part) { return std::isfinite(part); })) return false;
+  if (!all_finite(z)) return false;
   place.tangent = direction_of(system, solution, z);
   scale(place.tangent);
   place.slope = place.tangent.constant / range_;

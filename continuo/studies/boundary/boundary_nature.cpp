@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/boundary/boundary_nature.hpp>
 
 namespace continuo::studies::detail {
@@ -68,7 +69,7 @@ OpenEnds open_ends(const BoundaryValueProblem& problem, const BoundaryValueGuess
   std::vector<double> x(n), f(n);
   const auto has_value = [&](double t) {
     problem.system.derivative(t, x, problem.system.constants, f);
-    return std::ranges::all_of(f, [](double value) { return std::isfinite(value); });
+    return all_finite(f);
   };
   const double from = problem.times.front(), to = problem.times.back();
   const auto is_open = [&](double t, double beside) {

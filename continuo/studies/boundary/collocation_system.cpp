@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/boundary/collocation_system.hpp>
 
 namespace continuo::studies::detail {
@@ -171,8 +172,7 @@ void CollocationSystem::evaluate_jacobians() {
     const auto block = std::span(jacobians_).subspan(q * entries, entries);
     if (problem_.system.jacobian) problem_.system.jacobian(t, x, constants, block);
     // y^1.5 has a derivative at 0 that its formula does not give.
-    const bool is_given = problem_.system.jacobian != nullptr &&
-                          std::ranges::all_of(block, [](double entry) { return std::isfinite(entry); });
+    const bool is_given = problem_.system.jacobian != nullptr && all_finite(block);
     if (!is_given) difference_jacobian(q, block);
     for (std::size_t p = 0; p < m_; ++p) {
       std::vector<double> moved(constants.begin(), constants.end());
@@ -316,8 +316,7 @@ NewtonEnding CollocationSystem::iterate(double target, const BoundaryValueOption
     evaluate_jacobians();
     evaluate_condition_jacobian();
     fill_matrix();
-    for (const double value : lu_->values())
-      if (!std::isfinite(value)) return NewtonEnding::not_finite;
+    if (!all_finite(lu_->values())) return NewtonEnding::not_finite;
     factored_ = lu_->factor();
     if (!factored_) return NewtonEnding::singular;
     std::ranges::copy(residuals_, correction_.begin());

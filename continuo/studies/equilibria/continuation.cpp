@@ -12,6 +12,7 @@
 #include <continuo/studies/equilibria/branch_point.hpp>
 #include <continuo/studies/equilibria/equilibrium_branch.hpp>
 #include <continuo/studies/equilibria/normal_form.hpp>
+#include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies {
 
@@ -65,11 +66,7 @@ class Follower {
   bool passes(const Branch& branch, const Vector& x, double constant) {
     constexpr double same = 1e-6;
     const Vector z = steps_.scaled(x, constant);
-    const auto apart = [&](const Vector& a) {
-      double sum = 0;
-      for (std::size_t i = 0; i <= n_; ++i) sum += (a[i] - z[i]) * (a[i] - z[i]);
-      return std::sqrt(sum);
-    };
+    const auto apart = [&](const Vector& a) { return detail::distance(a, z); };
     for (std::size_t k = 1; k < branch.points.size(); ++k) {
       const Vector a = steps_.scaled(branch.points[k - 1].x, branch.points[k - 1].constant),
                    b = steps_.scaled(branch.points[k].x, branch.points[k].constant);
@@ -199,16 +196,8 @@ class Follower {
     if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
   }
   /// By more than 25 degrees: the step was too long to be sure of the branch.
-  static bool turns(const Place& a, const Place& b) {
-    double cosine = 0;
-    for (std::size_t i = 0; i < a.tangent.size(); ++i) cosine += a.tangent[i] * b.tangent[i];
-    return cosine < 0.906;
-  }
-  static bool near(const Vector& a, const Vector& b, double step) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return std::sqrt(sum) < step / 2;
-  }
+  static bool turns(const Place& a, const Place& b) { return detail::product(a.tangent, b.tangent) < 0.906; }
+  static bool near(const Vector& a, const Vector& b, double step) { return detail::distance(a, b) < step / 2; }
 
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(Branch& branch, const Place& a, const Place& b, double step) {

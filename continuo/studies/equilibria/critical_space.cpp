@@ -36,17 +36,12 @@ Vector times(const Vector& a, std::span<const double> v) {
     for (std::size_t j = 0; j < n; ++j) result[i] += a[i * n + j] * v[j];
   return result;
 }
-double inner_of(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
 
 /// Two columns made orthonormal (Gram, Schmidt); false where they are parallel.
 bool make_orthonormal(Vector& columns, std::size_t n) {
   const std::span<double> first(columns.data(), n), second(columns.data() + n, n);
   const auto shorten = [](std::span<double> v) {
-    const double size = std::sqrt(inner_of(v, v));
+    const double size = std::sqrt(product(v, v));
     for (double& part : v) part /= size;
     return size;
   };
@@ -54,7 +49,7 @@ bool make_orthonormal(Vector& columns, std::size_t n) {
   shorten(second);
   double left = 1;
   for (int k = 0; k < 2; ++k) {
-    const double along = inner_of(first, second);
+    const double along = product(first, second);
     for (std::size_t i = 0; i < n; ++i) second[i] -= along * first[i];
     left *= shorten(second);
   }
@@ -69,7 +64,7 @@ Square within(const Vector& a, const Vector& columns) {
   Square t{};
   for (std::size_t j = 0; j < 2; ++j) {
     const Vector moved = times(a, std::span(columns).subspan(j * n, n));
-    for (std::size_t i = 0; i < 2; ++i) t[i * 2 + j] = inner_of(std::span(columns).subspan(i * n, n), moved);
+    for (std::size_t i = 0; i < 2; ++i) t[i * 2 + j] = product(std::span(columns).subspan(i * n, n), moved);
   }
   return t;
 }
@@ -142,13 +137,13 @@ std::optional<CriticalSpace> of_planes(const Vector& a, std::size_t n, Vector ri
   Square m{};
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j)
-      m[i * 2 + j] = inner_of(std::span(left).subspan(i * n, n), std::span(right).subspan(j * n, n));
+      m[i * 2 + j] = product(std::span(left).subspan(i * n, n), std::span(right).subspan(j * n, n));
   const double determinant = m[0] * m[3] - m[1] * m[2];
   if (!(std::abs(determinant) > 1e-13)) return std::nullopt;
   const Square inverse{m[3] / determinant, -m[1] / determinant, -m[2] / determinant, m[0] / determinant};
   CriticalSpace space{.dimension = 2, .test = t[0] + t[3], .weights = Vector(n * n)};
   space.margin = t[0] * t[3] - t[1] * t[2];
-  space.size = std::sqrt(inner_of(t, t));
+  space.size = std::sqrt(product(t, t));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t c = 0; c < 2; ++c)

@@ -22,17 +22,6 @@ constexpr double same_place = 1e-5;      // in sizes
 constexpr double same_frequency = 1e-4;  // in parts of it
 constexpr std::size_t least_turn = 10;   // points of a closed curve
 
-Vector between(const Vector& a, const Vector& b, double part) {
-  Vector z(a);
-  for (std::size_t i = 0; i < z.size(); ++i) z[i] += part * (b[i] - a[i]);
-  return z;
-}
-double distance(const Vector& a, const Vector& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum);
-}
-
 }  // namespace
 
 std::optional<CriticalSpace> CurveFollower::space_at(const Vector& z, Bifurcation kind, double frequency) {

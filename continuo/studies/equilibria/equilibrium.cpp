@@ -10,11 +10,15 @@
 
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/equilibrium.hpp>
+#include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies {
 
 namespace {
+
+using detail::length;
 
 constexpr std::size_t most_search_iterations = 200;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -25,11 +29,6 @@ double largest(Values values) {
   double size = 0;
   for (const double value : values) size = std::abs(value) > size || std::isnan(value) ? std::abs(value) : size;
   return size;
-}
-double length(Values values) {
-  double sum = 0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum);
 }
 
 /// (J^T J + mu I) step = -J^T f: toward the least squares where J is singular, Newton's step for mu = 0.
@@ -106,7 +105,7 @@ double size_nearby(const ParametricSystem& system, std::vector<double> x, Values
   constexpr double beside = 1e-6;
   for (double& value : x) value += beside * std::max(std::abs(value), 1.0);
   auto rows = jacobian_of(system, t, x, p);
-  if (!std::isfinite(largest(rows))) return 0;
+  if (!all_finite(rows)) return 0;
   const auto linear = reduced(system, std::move(rows), {});
   if (!linear.undetermined.equations.empty()) return 0;
   auto found = eigenvalues(linear.a, linear.states).values;
@@ -160,7 +159,7 @@ EquilibriumSearch find_equilibrium(const ParametricSystem& system, std::vector<d
   for (search.iterations = 0; search.iterations < most_search_iterations; ++search.iterations) {
     if (size == 0) return ended(EquilibriumEnding::found);
     const std::vector<double> rows = jacobian_of(system, t, x, p);
-    if (!std::isfinite(largest(rows))) return ended(EquilibriumEnding::not_finite);
+    if (!all_finite(rows)) return ended(EquilibriumEnding::not_finite);
     std::vector<double> step = mu == 0 ? newton_step(rows, f) : std::vector<double>();
     if (step.empty()) {
       if (mu == 0) mu = 1e-6 * std::pow(largest(rows), 2);

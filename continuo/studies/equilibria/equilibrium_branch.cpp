@@ -121,9 +121,7 @@ EquilibriumPlace EquilibriumSteps::described(Vector z, const Vector& along) {
       place.tangent = solved(rows, last, b);
     }
   }
-  double length = 0;
-  for (const double part : place.tangent) length += part * part;
-  for (double& part : place.tangent) part /= std::sqrt(length);
+  normalize(place.tangent);
   Vector square(rows);
   square.insert(square.end(), place.tangent.begin(), place.tangent.end());
   double sign = 1;

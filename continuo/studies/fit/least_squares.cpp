@@ -9,6 +9,7 @@
 
 #include <ceres/ceres.h>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/least_squares.hpp>
 
 namespace continuo::studies {
@@ -26,7 +27,7 @@ class Evaluations : public ceres::EvaluationCallback {
     good = problem_.evaluate(p_, r, derivatives ? std::span(rows) : std::span<double>());
     has_rows_ = derivatives;
     ++count;
-    good = good && std::ranges::all_of(r, [](double value) { return std::isfinite(value); });
+    good = good && all_finite(r);
   }
 
  private:

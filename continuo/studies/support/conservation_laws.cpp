@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/conservation_laws.hpp>
 
 namespace continuo::studies {
@@ -53,7 +54,7 @@ class Samples {
       for (double& value : p) value = (value == 0 ? 1 : value) * std::exp2(power(random_) / spread);
     f.assign(system_.size, 0.0);
     system_.derivative(time(random_), x, p, f);
-    return std::ranges::all_of(f, [](double value) { return std::isfinite(value); });
+    return all_finite(f);
   }
 
  private:

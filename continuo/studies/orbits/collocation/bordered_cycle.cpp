@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <continuo/numerics/dense_lu.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/orbits/collocation/bordered_cycle.hpp>
 
 namespace continuo::studies::detail {
@@ -70,7 +71,7 @@ bool BorderedCycle::solve(double first_border_value, double second_border_value,
   corner_[5] = second_border_value;
   if (!eliminate_interiors() || !eliminate_beginnings() || !solve_last(solution)) return false;
   substitute(solution);
-  return std::ranges::all_of(solution, [](double value) { return std::isfinite(value); });
+  return all_finite(solution);
 }
 
 bool BorderedCycle::eliminate_interiors() {

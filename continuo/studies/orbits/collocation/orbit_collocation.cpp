@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/orbits/collocation/orbit_collocation.hpp>
 
 namespace continuo::studies::detail {
@@ -121,9 +122,7 @@ bool OrbitCollocation::evaluate(std::span<const double> z, std::span<const doubl
       for (std::size_t i = 0; i < n_; ++i) residuals_[at * n_ + i] = slope[i] - h * period_ * f[i];
     }
   }
-  const auto finite = [](double value) { return std::isfinite(value); };
-  return std::ranges::all_of(residuals_, finite) && std::ranges::all_of(jacobians_, finite) &&
-         std::ranges::all_of(by_constant_, finite);
+  return all_finite(residuals_) && all_finite(jacobians_) && all_finite(by_constant_);
 }
 
 bool OrbitCollocation::solve(std::span<const double> scale, std::span<const double> sizes,

@@ -86,10 +86,7 @@ OrbitBranchEnd OrbitFollower::with_last(OrbitBranchEnd end, const Place& place) 
 
 /// Through the equilibrium, to the same orbits half a turn later.
 bool OrbitFollower::vanishes(const Place& a, const Place& b) {
-  const Vector from = steps_.deviations(a), to = steps_.deviations(b);
-  double sum = 0;
-  for (std::size_t j = 0; j < from.size(); ++j) sum += from[j] * to[j];
-  return sum < 0;
+  return product(steps_.deviations(a), steps_.deviations(b)) < 0;
 }
 
 // The difference a of the two turns goes through zero there and the equations are singular, but constant and period are

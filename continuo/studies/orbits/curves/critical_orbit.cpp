@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/orbits/curves/critical_orbit.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
@@ -20,10 +21,6 @@ using ComplexVector = Eigen::VectorXcd;
 constexpr std::size_t interval_degree = OrbitCollocation::degree;
 constexpr double step_of_slope = 1e-5;  // of a central difference of df/dx, in sizes
 constexpr int border_turns = 2;         // of the inverse iteration that finds borders
-
-bool all_finite(const Vector& values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
 
 }  // namespace
 
@@ -232,7 +229,7 @@ bool CriticalOrbit::evaluate(std::span<const double> z, std::span<const double> 
   if (!evaluate_points(z)) return false;
   if (!solve_bordered(borders)) return false;
   differentiate();
-  return std::ranges::all_of(gradient_, [](const Complex& value) { return std::isfinite(std::abs(value)); });
+  return all_finite(gradient_);
 }
 
 std::array<double, 2> CriticalOrbit::normal() const {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/numerics/finite.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_orbit.hpp>
 
 namespace continuo::studies::detail {
@@ -16,9 +17,6 @@ using Index = Eigen::Index;
 
 constexpr std::size_t points_of_interval = OrbitCollocation::degree;
 
-bool are_finite(const Vector& values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
 Index index(std::size_t k) {
   return static_cast<Index>(k);
 }
@@ -122,7 +120,7 @@ bool HomoclinicOrbit::evaluate_points(std::span<const double> z) {
       point.by_constant.resize(2 * n_);
       for (std::size_t i = 0; i < n_; ++i)
         for (std::size_t c = 0; c < 2; ++c) point.by_constant[i * 2 + c] = by_all[i * m + constants_[c]];
-      if (!are_finite(point.f) || !are_finite(point.a) || !are_finite(point.by_constant)) return false;
+      if (!all_finite(point.f) || !all_finite(point.a) || !all_finite(point.by_constant)) return false;
       for (std::size_t i = 0; i < n_; ++i) residuals_.push_back(point.residual[i] / sizes_[i]);
     }
   return true;
@@ -171,7 +169,7 @@ bool HomoclinicOrbit::evaluate_rest(std::span<const double> z) {
   for (std::size_t i = 0; i < n_; ++i)
     for (std::size_t c = 0; c < 2; ++c) rest_by_constant_[i * 2 + c] = by_all[i * system_.parameters() + constants_[c]];
   rate_ = matrix_at(x0, z.last(2)).norm();
-  if (!are_finite(f) || !are_finite(rest_matrix_) || !are_finite(rest_by_constant_) || !(rate_ > 0)) return false;
+  if (!all_finite(f) || !all_finite(rest_matrix_) || !all_finite(rest_by_constant_) || !(rate_ > 0)) return false;
   for (std::size_t i = 0; i < n_; ++i) residuals_.push_back(f[i] / (sizes_[i] * rate_));
   return true;
 }
@@ -180,7 +178,7 @@ bool HomoclinicOrbit::evaluate(std::span<const double> z) {
   residuals_.clear();
   if (!evaluate_points(z) || !evaluate_ends(z) || !evaluate_rest(z)) return false;
   residuals_.resize(unknowns());
-  return are_finite(residuals_);
+  return all_finite(residuals_);
 }
 
 bool HomoclinicOrbit::decompose(std::span<const double> shift, std::span<const double> last) {
