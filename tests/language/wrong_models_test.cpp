@@ -1,11 +1,12 @@
 // Wrong models and what is said about them: each NAME.sim of tests/language/wrong has its messages in NAME.txt beside
 // it, as they are shown, with line and column. See the README there.
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tests/language/model_folder.hpp>
 
 #include <continuo/language/check/check.hpp>
 #include <continuo/language/syntax/parser.hpp>
@@ -14,19 +15,6 @@ namespace continuo::model {
 namespace {
 
 const std::filesystem::path folder = CONTINUO_SOURCE_DIR "/tests/language/wrong";
-
-std::string contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::vector<std::string> names() {
-  std::vector<std::string> found;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".sim") found.push_back(entry.path().stem().string());
-  std::sort(found.begin(), found.end());
-  return found;
-}
 
 std::vector<Diagnostic> messages(const Source& source) {
   ParseResult parsed = parse(source);
@@ -43,11 +31,10 @@ TEST_P(WrongModels, GetTheMessagesInTheFileBesideThem) {
   EXPECT_EQ(render(found, source), contents(folder / (GetParam() + ".txt")));
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, WrongModels, testing::ValuesIn(names()),
-                         [](const testing::TestParamInfo<std::string>& model) { return model.param; });
+INSTANTIATE_TEST_SUITE_P(Each, WrongModels, testing::ValuesIn(models_in(folder)), name_of_test);
 
 TEST(WrongModelsTogether, AreFiftyAndMore) {
-  EXPECT_GE(names().size(), 50U);
+  EXPECT_GE(models_in(folder).size(), 50U);
 }
 
 TEST(WrongModelsTogether, EveryTextBelongsToAModel) {

@@ -1,13 +1,10 @@
 // Models in which a simulator goes wrong without a word: each NAME.sim of tests/simulation/faults runs and its checks
 // hold. See the README there.
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
+#include <tests/language/model_folder.hpp>
 
 #include <continuo/language/load.hpp>
 #include <continuo/simulation/simulate.hpp>
@@ -16,19 +13,6 @@ namespace continuo::model {
 namespace {
 
 const std::filesystem::path folder = CONTINUO_SOURCE_DIR "/tests/simulation/faults";
-
-std::string contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::vector<std::string> names() {
-  std::vector<std::string> found;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".sim") found.push_back(entry.path().stem().string());
-  std::sort(found.begin(), found.end());
-  return found;
-}
 
 class Faults : public testing::TestWithParam<std::string> {};
 
@@ -51,11 +35,10 @@ TEST_P(Faults, AreMended) {
     EXPECT_TRUE(check.passed) << check.text << ": " << check.value << " " << check.message;
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, Faults, testing::ValuesIn(names()),
-                         [](const testing::TestParamInfo<std::string>& model) { return model.param; });
+INSTANTIATE_TEST_SUITE_P(Each, Faults, testing::ValuesIn(models_in(folder)), name_of_test);
 
 TEST(FaultsTogether, AreThirtyAndMore) {
-  EXPECT_GE(names().size(), 30U);
+  EXPECT_GE(models_in(folder).size(), 30U);
 }
 
 }  // namespace
