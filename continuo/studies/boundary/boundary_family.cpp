@@ -10,6 +10,9 @@
 #include <continuo/studies/boundary/boundary_family.hpp>
 #include <continuo/studies/boundary/boundary_family_marks.hpp>
 #include <continuo/studies/boundary/boundary_family_steps.hpp>
+#include <continuo/studies/support/arclength.hpp>
+#include <continuo/studies/support/both_ways.hpp>
+#include <continuo/studies/support/ranges_of_constants.hpp>
 
 namespace continuo::studies {
 
@@ -19,7 +22,6 @@ using detail::FamilyDirection;
 using detail::FamilyPlace;
 using detail::FamilySteps;
 
-constexpr double least_cosine = 0.906;  // between neighbours: 25 degrees
 constexpr double close_tolerance = 1e-9;
 constexpr double beyond_measure = 1e6;
 constexpr double doubtful_part = 0.02;  // of the first step: shorter ones are not made to part leaps from crossings
@@ -33,7 +35,10 @@ FamilyDirection reversed(FamilyDirection direction) {
 class FamilyFollower {
  public:
   FamilyFollower(const BoundaryValueProblem& problem, const FamilyOptions& options)
-      : problem_(problem), options_(options), steps_(problem, options) {}
+      : problem_(problem),
+        options_(options),
+        steps_(problem, options),
+        covered_(options.low, options.high, options.progress) {}
 
   /// In both directions from a solution.
   Family from_solution(const BoundaryValueSolution& start) {
@@ -81,16 +86,11 @@ class FamilyFollower {
   static FamilyPoint point_of(const FamilyPlace& place) { return {place.constant(), place.solution}; }
 
   static Family joined(Family back, Family middle, Family ahead) {
-    std::ranges::reverse(back.points);
-    std::ranges::reverse(back.marks);
-    std::ranges::reverse(back.doubtful);
-    for (FamilyMark& mark : back.marks) mark.next = back.points.size() - mark.next;
-    const std::size_t before = back.points.size() + middle.points.size();
-    for (FamilyMark& mark : ahead.marks) mark.next += before;
     Family family = std::move(back);
+    detail::turn_round(family.points, family.marks);
+    std::ranges::reverse(family.doubtful);
     for (Family* part : {&middle, &ahead}) {
-      std::ranges::move(part->points, std::back_inserter(family.points));
-      std::ranges::move(part->marks, std::back_inserter(family.marks));
+      detail::append(family.points, family.marks, std::move(part->points), std::move(part->marks));
       std::ranges::copy(part->doubtful, std::back_inserter(family.doubtful));
     }
     family.complete = family.complete && ahead.complete;
@@ -125,22 +125,21 @@ class FamilyFollower {
   Family followed(FamilyPlace here) {
     Family family;
     const BoundaryValueSolution origin = here.solution;
-    double step = options_.first_step;
+    detail::StepLength step(options_);
     while (family.points.size() < options_.most_points) {
       if (options_.interrupt && options_.interrupt->load()) {
         family.message = "interrupted";
         return family;
       }
       auto next = steps_.stepped(here.solution, here.tangent, step);
-      if (!next || FamilySteps::cosine(steps_, here.tangent, next->tangent) < least_cosine) {
-        step /= 2;
-        if (step > options_.least_step) continue;
+      if (!next || FamilySteps::cosine(steps_, here.tangent, next->tangent) < detail::least_cosine_of_neighbours) {
+        if (step.shorten()) continue;
         family.message = "the family could not be followed further";
         return family;
       }
       // A leap next to a crossing hides it: in shorter steps they part.
       if (detail::is_ambiguous(here, *next) && step > doubtful_part * options_.first_step) {
-        step /= 2;
+        (void)step.shorten();
         continue;
       }
       mark(family, here, *next, step);
@@ -152,7 +151,7 @@ class FamilyFollower {
       const double moved = steps_.distance(here.solution, next->solution);
       here = std::move(*next);
       family.points.push_back(point_of(here));
-      report(here.constant());
+      covered_.report(here.constant());
       if (family.points.size() > 20 && steps_.distance(here.solution, origin) < moved / 2) {
         family.complete = true;
         return family;
@@ -163,7 +162,7 @@ class FamilyFollower {
       }
       steps_.measure(here.solution);
       steps_.scale(here.tangent);
-      step = std::min(1.3 * step, options_.largest_step);
+      step.lengthen();
     }
     family.message = "too many points";
     return family;
@@ -183,12 +182,6 @@ class FamilyFollower {
     return place ? std::optional(point_of(*place)) : std::nullopt;
   }
 
-  void report(double constant) {
-    low_ = std::min(low_, constant);
-    high_ = std::max(high_, constant);
-    if (options_.progress) options_.progress(std::min((high_ - low_) / steps_.range(), 1.0));
-  }
-
   void mark(Family& family, const FamilyPlace& a, const FamilyPlace& b, double step) {
     steps_.set_tolerance(std::min(options_.tolerance, close_tolerance));
     auto event = detail::what_lies_between(steps_, a, b, step);
@@ -204,7 +197,7 @@ class FamilyFollower {
   const FamilyOptions& options_;
   FamilySteps steps_;
   std::vector<FamilyPlace> crossings_;
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+  detail::CoveredRange covered_;
 };
 
 }  // namespace

@@ -12,6 +12,9 @@
 #include <continuo/studies/equilibria/branch_point.hpp>
 #include <continuo/studies/equilibria/equilibrium_branch.hpp>
 #include <continuo/studies/equilibria/normal_form.hpp>
+#include <continuo/studies/support/arclength.hpp>
+#include <continuo/studies/support/both_ways.hpp>
+#include <continuo/studies/support/ranges_of_constants.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies {
@@ -35,7 +38,8 @@ class Follower {
         options_(options),
         steps_(system, x, options),
         n_(system.size),
-        range_(options.high - options.low) {}
+        range_(options.high - options.low),
+        covered_(options.low, options.high, options.progress) {}
 
   Branch operator()(const Vector& x) {
     Branch branch;
@@ -87,29 +91,19 @@ class Follower {
 
  private:
   static Branch joined(Branch back, Branch middle, Branch ahead) {
-    std::ranges::reverse(back.points);
-    std::ranges::reverse(back.bifurcations);
-    for (BifurcationPoint& point : back.bifurcations) point.next = back.points.size() - point.next;
-    const std::size_t before = back.points.size() + middle.points.size();
-    for (BifurcationPoint& point : ahead.bifurcations) point.next += before;
     Branch branch = std::move(back);
-    for (Branch* part : {&middle, &ahead}) {
-      branch.points.insert(branch.points.end(), part->points.begin(), part->points.end());
-      branch.bifurcations.insert(branch.bifurcations.end(), part->bifurcations.begin(), part->bifurcations.end());
-    }
+    detail::turn_round(branch.points, branch.bifurcations);
+    for (Branch* part : {&middle, &ahead})
+      detail::append(branch.points, branch.bifurcations, std::move(part->points), std::move(part->bifurcations));
     branch.complete = branch.complete && ahead.complete;
     if (branch.message.empty()) branch.message = ahead.message;
     return branch;
   }
   Branch beside(const Vector& z, const Vector& along, double direction) {
     for (double step = options_.first_step; step > options_.least_step; step /= 2) {
-      Vector guess(z);
-      for (std::size_t i = 0; i <= n_; ++i) guess[i] += direction * step * along[i];
+      const Vector guess = detail::predicted(z, along, direction * step);
       const auto found = steps_.corrected(guess, guess, along, false);
-      if (!found) continue;
-      double moved = 0;
-      for (std::size_t i = 0; i <= n_; ++i) moved += std::pow((*found)[i] - guess[i], 2);
-      if (std::sqrt(moved) > step / 2) continue;  // it leapt to elsewhere
+      if (!found || detail::distance(*found, guess) > step / 2) continue;  // it leapt to elsewhere
       Branch branch;
       const Place place = steps_.described(*found, along);
       if (!inside(place.z)) {
@@ -136,7 +130,8 @@ class Follower {
     for (double& part : here.tangent) part *= direction;
     here.direction_sign *= direction;
     const Vector origin = here.z;
-    double step = options_.first_step, reached = 1, reached_at = origin[n_];
+    detail::StepLength step(options_);
+    double reached = 1, reached_at = origin[n_];
     while (branch.points.size() < options_.most_points) {
       if (options_.interrupt && options_.interrupt->load()) {
         branch.message = "interrupted";
@@ -156,9 +151,8 @@ class Follower {
         reached_at = here.z[n_];
       }
       auto next = steps_.stepped(here, step * reach);
-      if (!next || turns(here, *next)) {
-        step /= 2;
-        if (step > options_.least_step) continue;
+      if (!next || detail::product(here.tangent, next->tangent) < detail::least_cosine_of_neighbours) {
+        if (step.shorten()) continue;
         branch.message = "the branch could not be followed further";
         return branch;
       }
@@ -169,12 +163,12 @@ class Follower {
       } else if (auto last = at_bound(before.z, here.z)) {
         branch.points.push_back(std::move(last->point));
       }
-      report(here.point.constant);
+      covered_.report(here.point.constant);
       if (!inside(here.z) || (branch.points.size() > 20 && near(here.z, origin, step))) {
         branch.complete = true;
         return branch;
       }
-      step = std::min(1.3 * step, options_.largest_step);
+      step.lengthen();
     }
     branch.message = "too many points";
     return branch;
@@ -184,19 +178,11 @@ class Follower {
     const double bound = std::clamp(steps_.constant_of(b), options_.low, options_.high) / range_;
     if (a[n_] == b[n_] || a[n_] == bound) return std::nullopt;
     const double part = (bound - a[n_]) / (b[n_] - a[n_]);
-    Vector guess(a);
-    for (std::size_t i = 0; i < n_; ++i) guess[i] += part * (b[i] - a[i]);
+    Vector guess = detail::between(a, b, part);
     guess[n_] = bound;
     auto z = steps_.corrected(guess, guess, {}, true);
     return z ? std::optional(steps_.described(std::move(*z), {})) : std::nullopt;
   }
-  void report(double constant) {
-    low_ = std::min(low_, constant);
-    high_ = std::max(high_, constant);
-    if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
-  }
-  /// By more than 25 degrees: the step was too long to be sure of the branch.
-  static bool turns(const Place& a, const Place& b) { return detail::product(a.tangent, b.tangent) < 0.906; }
   static bool near(const Vector& a, const Vector& b, double step) { return detail::distance(a, b) < step / 2; }
 
   /// What lies between two neighbours, narrowed down to where its test is zero.
@@ -288,8 +274,7 @@ class Follower {
   /// value of the constant.
   bool bends(const Vector& z, const Vector& along) {
     for (const double step : {0.1, -0.1, 0.01, -0.01}) {
-      Vector guess(z);
-      for (std::size_t i = 0; i <= n_; ++i) guess[i] += step * along[i];
+      const Vector guess = detail::predicted(z, along, step);
       const auto there = steps_.corrected(guess, guess, along, false);
       if (there) return std::abs((*there)[n_] - z[n_]) > 1e-10;
     }
@@ -324,7 +309,7 @@ class Follower {
   detail::EquilibriumSteps steps_;
   std::size_t n_;
   double range_;
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // what has been covered
+  detail::CoveredRange covered_;
 };
 
 }  // namespace

@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 
 #include <continuo/studies/equilibria/curve_follower.hpp>
+#include <continuo/studies/support/arclength.hpp>
+#include <continuo/studies/support/both_ways.hpp>
+#include <continuo/studies/support/chord.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
@@ -17,7 +20,6 @@ namespace {
 using Vector = std::vector<double>;
 
 constexpr double far_off = 1e4;          // in sizes at the start
-constexpr double straight = 0.906;       // the cosine of 25 degrees: a step that turns by more was too long
 constexpr double same_place = 1e-5;      // in sizes
 constexpr double same_frequency = 1e-4;  // in parts of it
 constexpr std::size_t least_turn = 10;   // points of a closed curve
@@ -62,36 +64,17 @@ BifurcationCurve CurveFollower::from(const DegeneratePoint& start, Bifurcation k
 
 BifurcationCurve CurveFollower::both_ways(BifurcationCurve curve, const CurvePlace& first,
                                           const DegeneratePoint* origin) {
-  BifurcationCurve back{.kind = curve.kind}, ahead{.kind = curve.kind};
-  curve.ends[0] = followed(back, first, -1, origin);
-  std::ranges::reverse(back.points);
-  std::ranges::reverse(back.marks);
-  for (DegeneratePoint& point : back.marks) point.next = back.points.size() - point.next;
-  curve.points = std::move(back.points);
-  curve.marks = std::move(back.marks);
   if (origin) {
-    curve.marks.push_back(*origin);
-    curve.marks.back().next = curve.points.size();
+    curve.marks = {*origin};
+    curve.marks.back().next = 0;
   }
-  curve.points.push_back(first.point);
-  if (curve.ends[0].ending == CurveEnding::closed || curve.ends[0].ending == CurveEnding::interrupted) {
-    curve.ends[1] = curve.ends[0];
-    if (curve.ends[0].ending == CurveEnding::closed) curve.points.insert(curve.points.begin(), first.point);
-    if (curve.ends[0].ending == CurveEnding::closed)
-      for (DegeneratePoint& point : curve.marks) ++point.next;
-    return curve;
-  }
-  curve.ends[1] = followed(ahead, first, 1, origin);
-  for (DegeneratePoint& point : ahead.marks) point.next += curve.points.size();
-  curve.points.insert(curve.points.end(), ahead.points.begin(), ahead.points.end());
-  curve.marks.insert(curve.marks.end(), ahead.marks.begin(), ahead.marks.end());
-  return curve;
+  curve.points = {first.point};
+  return followed_both_ways(
+      curve, [&](BifurcationCurve& side, double direction) { return followed(side, first, direction, origin); });
 }
 
 bool CurveFollower::inside(const CurvePoint& point) const {
-  for (std::size_t k = 0; k < 2; ++k)
-    if (!(point.constants[k] >= options_.low[k] && point.constants[k] <= options_.high[k])) return false;
-  return true;
+  return is_within(point.constants, options_.low, options_.high);
 }
 
 CurveEnd CurveFollower::followed(BifurcationCurve& curve, const CurvePlace& from, double direction,
@@ -104,16 +87,15 @@ CurveEnd CurveFollower::followed(BifurcationCurve& curve, const CurvePlace& from
   if (begin) here.tests[static_cast<std::size_t>(begin->kind)] = std::nan("");
   const bool at_double_zero = curve.kind == Bifurcation::hopf && begin && begin->kind == Degeneracy::bogdanov_takens;
   const CurvePlace origin(here);
-  double step = options_.first_step;
+  StepLength step(options_);
   while (curve.points.size() < options_.most_points) {
     if (options_.interrupt && options_.interrupt->load()) return {CurveEnding::interrupted, "it was interrupted"};
     double reach = 1;
     for (std::size_t i = 0; i < steps_.size(); ++i) reach = std::max(reach, std::abs(here.z[i]));
     if (reach > far_off) return {CurveEnding::infinity, "it goes off to infinity"};
     auto next = steps_.stepped(here, step * reach);
-    if (!next || product(here.tangent, next->tangent) < straight) {
-      step /= 2;
-      if (step > options_.least_step) continue;
+    if (!next || product(here.tangent, next->tangent) < least_cosine_of_neighbours) {
+      if (step.shorten()) continue;
       return {CurveEnding::lost, "the curve could not be followed further"};
     }
     if (at_double_zero && curve.points.empty() && next->space.margin <= 0)
@@ -131,48 +113,32 @@ CurveEnd CurveFollower::followed(BifurcationCurve& curve, const CurvePlace& from
     if (!inside(next->point)) return at_bound(curve, here, *next);
     if (curve.points.size() > least_turn && comes_back(here, *next, origin))
       return {CurveEnding::closed, "it comes back to where it began"};
-    const CurvePlace before = std::exchange(here, std::move(*next));
+    here = std::move(*next);
     curve.points.push_back(here.point);
-    report(here.point.constants[1]);
-    step = std::min(1.3 * step, options_.largest_step);
+    covered_.report(here.point.constants[1]);
+    step.lengthen();
   }
   return {CurveEnding::too_many_points, fmt::format("it has {} points, as many as are allowed", curve.points.size())};
 }
 
 /// Between a place inside of the ranges and one outside.
 CurveEnd CurveFollower::at_bound(BifurcationCurve& curve, const CurvePlace& a, const CurvePlace& b) {
-  std::size_t first = 0;
-  double part = 2, bound = 0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const double to = b.point.constants[k], limit = std::clamp(to, options_.low[k], options_.high[k]);
-    if (to == limit) continue;
-    const double at = (limit - a.point.constants[k]) / (to - a.point.constants[k]);
-    if (at < part) part = at, first = k, bound = limit;
-  }
-  const std::size_t unknown = steps_.size() + first;
-  Vector guess = between(a.z, b.z, part), last(guess.size());
-  guess[unknown] = bound / steps_.unit(unknown);
+  const LeftRange left = left_range(a.point.constants, b.point.constants, options_.low, options_.high);
+  const std::size_t unknown = steps_.size() + left.constant;
+  Vector guess = between(a.z, b.z, left.part), last(guess.size());
+  guess[unknown] = left.bound / steps_.unit(unknown);
   last[unknown] = 1;
   if (auto found = steps_.corrected(guess, a.space, last))
     if (distance(found->z, guess) <= distance(a.z, b.z))
       if (const auto place = steps_.described(std::move(*found), a.tangent)) curve.points.push_back(place->point);
   return {CurveEnding::bound,
-          fmt::format("{} reaches the end of its range", system_.constant_name(options_.constants[first]))};
+          fmt::format("{} reaches the end of its range", system_.constant_name(options_.constants[left.constant]))};
 }
 
 bool CurveFollower::comes_back(const CurvePlace& a, const CurvePlace& b, const CurvePlace& origin) const {
-  const double whole = distance(a.z, b.z);
-  double part = 0;
-  for (std::size_t i = 0; i < a.z.size(); ++i) part += (b.z[i] - a.z[i]) * (origin.z[i] - a.z[i]) / (whole * whole);
-  if (!(part > 0 && part <= 1)) return false;
-  return distance(between(a.z, b.z, part), origin.z) < 0.2 * whole && product(a.tangent, origin.tangent) > straight;
-}
-
-void CurveFollower::report(double value) {
-  low_ = std::min(low_, value);
-  high_ = std::max(high_, value);
-  const double whole = options_.high[1] - options_.low[1];
-  if (options_.progress) options_.progress(std::min((high_ - low_) / whole, 1.0));
+  const Chord chord(a.z, b.z, origin.z);
+  return chord.passes() && chord.apart < 0.2 * chord.length &&
+         product(a.tangent, origin.tangent) > least_cosine_of_neighbours;
 }
 
 bool CurveFollower::passes(const BifurcationCurve& curve, const CurvePoint& place, double frequency) {

@@ -1,11 +1,10 @@
 // Along a curve of folds or Hopf points, from its start to where it ends. Internal to bifurcation_curve.
 #pragma once
-#include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include <continuo/studies/equilibria/curve_steps.hpp>
+#include <continuo/studies/support/ranges_of_constants.hpp>
 
 namespace continuo::studies::detail {
 
@@ -15,7 +14,10 @@ class CurveFollower {
 
  public:
   CurveFollower(const ParametricSystem& system, const CurveStart& start, const CurveOptions& options)
-      : system_(system), options_(options), steps_(system, start, options) {}
+      : system_(system),
+        options_(options),
+        steps_(system, start, options),
+        covered_(options.low[1], options.high[1], options.progress) {}
 
   BifurcationCurve from(const CurveStart& start);
   /// Another curve, of this kind, through a degenerate point.
@@ -33,7 +35,6 @@ class CurveFollower {
   CurveEnd at_bound(BifurcationCurve& curve, const Place& a, const Place& b);
   bool inside(const CurvePoint& point) const;
   bool comes_back(const Place& a, const Place& b, const Place& origin) const;
-  void report(double value);
 
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(BifurcationCurve& curve, const Place& a, const Place& b, double step);
@@ -48,8 +49,8 @@ class CurveFollower {
   const ParametricSystem& system_;
   const CurveOptions& options_;
   CurveSteps steps_;
-  double located_at_ = 0;                                                // how far from the place before
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // the part of the range that was covered
+  double located_at_ = 0;  // how far from the place before
+  CoveredRange covered_;
 };
 
 }  // namespace continuo::studies::detail

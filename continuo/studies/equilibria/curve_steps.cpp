@@ -10,6 +10,7 @@
 #include <continuo/studies/equilibria/algebraic_elimination.hpp>
 #include <continuo/studies/equilibria/curve_steps.hpp>
 #include <continuo/studies/equilibria/normal_form.hpp>
+#include <continuo/studies/support/arclength.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
@@ -238,14 +239,9 @@ std::optional<CurvePlace> CurveSteps::described(Found found, const Vector& along
 }
 
 std::optional<CurvePlace> CurveSteps::stepped(const CurvePlace& from, double step) {
-  Vector guess(from.z);
-  for (std::size_t i = 0; i < guess.size(); ++i) guess[i] += step * from.tangent[i];
-  auto found = corrected(guess, from.space, from.tangent);
-  if (!found) return std::nullopt;
-  double moved = 0;
-  for (std::size_t i = 0; i < guess.size(); ++i) moved += (found->z[i] - guess[i]) * (found->z[i] - guess[i]);
-  if (std::sqrt(moved) > step) return std::nullopt;  // it leapt to elsewhere
-  return described(std::move(*found), from.tangent);
+  auto found = arclength_step(from.z, from.tangent, step, {},
+                              [&](const Vector& guess) { return corrected(guess, from.space, from.tangent); });
+  return found ? described(std::move(*found), from.tangent) : std::nullopt;
 }
 
 // Any row that leaves the equations regular gives the tangent, and that is the best row to solve them with.

@@ -8,6 +8,7 @@
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/studies/equilibria/equilibrium_branch.hpp>
+#include <continuo/studies/support/arclength.hpp>
 
 namespace continuo::studies::detail {
 
@@ -151,14 +152,9 @@ void EquilibriumSteps::describe(EquilibriumPlace& place) {
 }
 
 std::optional<EquilibriumPlace> EquilibriumSteps::stepped(const EquilibriumPlace& from, double step) {
-  Vector guess(from.z);
-  for (std::size_t i = 0; i <= n_; ++i) guess[i] += step * from.tangent[i];
-  auto z = corrected(guess, guess, from.tangent, false);
-  if (!z) return std::nullopt;
-  double moved = 0;
-  for (std::size_t i = 0; i <= n_; ++i) moved += ((*z)[i] - guess[i]) * ((*z)[i] - guess[i]);
-  if (std::sqrt(moved) > std::abs(step)) return std::nullopt;  // it leapt to elsewhere
-  return described(std::move(*z), from.tangent);
+  auto z = arclength_step(from.z, from.tangent, step, {},
+                          [&](const Vector& guess) { return corrected(guess, guess, from.tangent, false); });
+  return z ? std::optional(described(std::move(*z), from.tangent)) : std::nullopt;
 }
 
 }  // namespace continuo::studies::detail

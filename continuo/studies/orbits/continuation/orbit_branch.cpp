@@ -9,6 +9,7 @@
 #include <continuo/studies/orbits/collocation/orbit_multipliers.hpp>
 #include <continuo/studies/orbits/continuation/multiplier_tests.hpp>
 #include <continuo/studies/orbits/continuation/orbit_branch.hpp>
+#include <continuo/studies/support/arclength.hpp>
 
 namespace continuo::studies::detail {
 
@@ -265,14 +266,9 @@ Vector OrbitBranchSteps::halves(const OrbitPlace& place) {
 std::optional<OrbitPlace> OrbitBranchSteps::stepped(const OrbitPlace& from, double step) {
   use(from.mesh);
   set_scales(from.z);
-  Vector guess(from.z);
-  for (std::size_t j = 0; j < unknowns_; ++j) guess[j] += step * from.tangent[j] * scale_[j];
-  auto z = corrected(guess, from.z, from.shift, from.tangent);
-  if (!z) return std::nullopt;
-  Vector moved(unknowns_);
-  for (std::size_t j = 0; j < unknowns_; ++j) moved[j] = ((*z)[j] - guess[j]) / scale_[j];
-  if (length(moved) > step) return std::nullopt;  // it leapt to elsewhere
-  return described(std::move(*z), from.tangent);
+  auto z = arclength_step(from.z, from.tangent, step, scale_,
+                          [&](const Vector& guess) { return corrected(guess, from.z, from.shift, from.tangent); });
+  return z ? described(std::move(*z), from.tangent) : std::nullopt;
 }
 
 void OrbitBranchSteps::complete(OrbitPlace& place) {

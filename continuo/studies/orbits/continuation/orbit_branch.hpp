@@ -75,7 +75,8 @@ class OrbitBranchSteps {
   std::vector<double> mean(const OrbitPlace& place);
   /// The cosine between tangents on the same mesh.
   static double alike(const OrbitPlace& a, const OrbitPlace& b);
-  /// z in sizes.
+  /// Of the unknowns.
+  const std::vector<double>& sizes() const { return scale_; }
   double size(std::size_t unknown) const { return scale_[unknown]; }
   /// Of a component.
   double size_of(std::size_t component) const { return component_sizes_[component]; }

@@ -9,6 +9,7 @@
 #include <continuo/studies/equilibrium.hpp>
 #include <continuo/studies/orbits/continuation/orbit_follower.hpp>
 #include <continuo/studies/orbits/continuation/orbit_marks.hpp>
+#include <continuo/studies/support/arclength.hpp>
 
 namespace continuo::studies::detail {
 
@@ -30,7 +31,7 @@ OrbitBranchEnd OrbitFollower::followed(OrbitBranch& branch, const Place& from, d
   here.fold *= direction;
   const Place origin = here;
   const std::size_t begin = branch.points.size();
-  double step = options_.first_step;
+  StepLength step(options_);
   std::size_t refinements = 0;
   while (branch.points.size() < options_.most_points) {
     auto next = is_interrupted() ? std::nullopt : steps_.stepped(here, step);
@@ -41,9 +42,8 @@ OrbitBranchEnd OrbitFollower::followed(OrbitBranch& branch, const Place& from, d
         branch.points.push_back(as_orbit(*hopf, here.point.stable));
         return ended(OrbitEnding::hopf, hopf->constant, "the orbit shrinks to an equilibrium, a Hopf point");
       }
-    if (!next || vanished || steps_.alike(here, *next) < 0.906) {  // by more than 25 degrees: too long a step
-      step /= 2;
-      if (step > options_.least_step) continue;
+    if (!next || vanished || steps_.alike(here, *next) < least_cosine_of_neighbours) {
+      if (step.shorten()) continue;
       return with_last(lost(here), here);
     }
     if (next && doubled_ && !vanished && product(steps_.halves(here), steps_.halves(*next)) < 0)
@@ -60,14 +60,14 @@ OrbitBranchEnd OrbitFollower::followed(OrbitBranch& branch, const Place& from, d
     branch.points.push_back(next->point);
     amplitude_ = std::max(amplitude_, amplitude(*next));
     here = std::move(*next);
-    report(here.point.constant);
+    covered_.report(here.point.constant);
     const std::span<const OrbitPoint> way(branch.points.begin() + static_cast<std::ptrdiff_t>(begin),
                                           branch.points.end());
     if (auto end = ending_of(way, here)) return with_last(std::move(*end), here);
     if (way.size() > 20 && comes_back(here, origin, step))
       return ended(OrbitEnding::closed, here.point.constant, "it comes back to where it began");
     steps_.measure(here);
-    if (iterations <= 4) step = std::min(1.3 * step, options_.largest_step);
+    if (iterations <= 4) step.lengthen();
   }
   return ended(OrbitEnding::too_many_points, here.point.constant,
                fmt::format("it has {} points, as many as are allowed", branch.points.size()));
@@ -120,13 +120,11 @@ std::optional<OrbitBranchEnd> OrbitFollower::turns_become_one(OrbitBranch& branc
 OrbitBranchEnd OrbitFollower::at_bound(OrbitBranch& branch, const Place& a, const Place& b) {
   const double bound = b.point.constant > options_.high ? options_.high : options_.low;
   const double part = (bound - a.point.constant) / (b.point.constant - a.point.constant);
-  Vector z(a.z);
-  for (std::size_t j = 0; j < z.size(); ++j) z[j] += part * (b.z[j] - a.z[j]);
-  if (auto last = steps_.at_constant(std::move(z), bound)) {
+  if (auto last = steps_.at_constant(between(a.z, b.z, part), bound)) {
     steps_.complete(*last);
     branch.points.push_back(std::move(last->point));
   }
-  report(bound);
+  covered_.report(bound);
   return ended(OrbitEnding::bound, bound, fmt::format("{} reaches the end of its range", name()));
 }
 
@@ -139,12 +137,6 @@ bool OrbitFollower::comes_back(const Place& here, const Place& origin, double st
     apart.push_back((here.point.high[i] - origin.point.high[i]) / steps_.size_of(i));
   }
   return length(apart) < step / 2;
-}
-
-void OrbitFollower::report(double constant) {
-  low_ = std::min(low_, constant);
-  high_ = std::max(high_, constant);
-  if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
 }
 
 void OrbitFollower::mark(OrbitBranch& branch, const Place& a, const Place& b, double step) {

@@ -2,7 +2,6 @@
 // orbit_starts.cpp, what says that a branch ends in orbit_endings.cpp.
 #pragma once
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,6 +10,7 @@
 
 #include <continuo/studies/orbit_continuation.hpp>
 #include <continuo/studies/orbits/continuation/orbit_branch.hpp>
+#include <continuo/studies/support/ranges_of_constants.hpp>
 
 namespace continuo::studies::detail {
 
@@ -20,7 +20,11 @@ class OrbitFollower {
 
  public:
   OrbitFollower(const ParametricSystem& system, const OrbitContinuationOptions& options)
-      : system_(system), options_(options), steps_(system, options), range_(options.high - options.low) {}
+      : system_(system),
+        options_(options),
+        steps_(system, options),
+        range_(options.high - options.low),
+        covered_(options.low, options.high, options.progress) {}
 
   /// `orbit`: its state at a part of the period; `mesh` says where that changes fast.
   OrbitBranch from_orbit(const std::function<Vector(double part)>& orbit, double period, const Vector& mesh);
@@ -50,7 +54,6 @@ class OrbitFollower {
                                                  double step);
   OrbitBranchEnd at_bound(OrbitBranch& branch, const Place& a, const Place& b);
   bool comes_back(const Place& here, const Place& origin, double step) const;
-  void report(double constant);
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(OrbitBranch& branch, const Place& a, const Place& b, double step);
   /// `before`: a place of the branch from which it was found, on the same mesh.
@@ -68,9 +71,9 @@ class OrbitFollower {
   const ParametricSystem& system_;
   const OrbitContinuationOptions& options_;
   OrbitBranchSteps steps_;
-  bool doubled_ = false;                                                 // from a period doubling: twice round
-  double range_, amplitude_ = 0;                                         // the largest so far
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // the part of the range that was covered
+  bool doubled_ = false;          // from a period doubling: twice round
+  double range_, amplitude_ = 0;  // the largest so far
+  CoveredRange covered_;
 };
 
 }  // namespace continuo::studies::detail

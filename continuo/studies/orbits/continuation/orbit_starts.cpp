@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <continuo/studies/orbits/continuation/orbit_follower.hpp>
+#include <continuo/studies/support/arclength.hpp>
+#include <continuo/studies/support/both_ways.hpp>
 
 namespace continuo::studies::detail {
 
@@ -59,10 +61,7 @@ OrbitBranch OrbitFollower::from_orbit(const std::function<Vector(double part)>& 
   amplitude_ = amplitude(*first);
   OrbitBranch back;
   back.ends[1] = followed(back, *first, -1);
-  std::ranges::reverse(back.points);
-  std::ranges::reverse(back.marks);
-  branch = std::move(back);
-  branch.ends[0] = std::exchange(branch.ends[1], {});
+  branch = turned_round(std::move(back));
   branch.points.push_back(first->point);
   if (branch.ends[0].ending == OrbitEnding::closed || branch.ends[0].ending == OrbitEnding::interrupted) {
     branch.ends[1] = branch.ends[0];
@@ -104,9 +103,7 @@ OrbitBranch OrbitFollower::from_hopf(const HopfPoint& start) {
   normalize(along);
   std::optional<Place> first;
   for (double small = 1e-2; small > 1e-7 && !first; small /= 10) {
-    Vector z(rest);
-    for (std::size_t j = 0; j < z.size(); ++j) z[j] += small * along[j] * steps_.size(j);
-    first = steps_.across(z, along);
+    first = steps_.across(predicted(rest, along, small, steps_.sizes()), along);
   }
   if (!first) {
     branch.message = "no orbit was found near the Hopf point";
@@ -169,14 +166,11 @@ OrbitBranch OrbitFollower::from_mark(const OrbitMark& start) {
     for (double small = 1e-2; small > 1e-5 && !place; small /= 3) {
       steps_.use(mesh);
       steps_.measure(z);
-      Vector guess(z);
-      for (std::size_t j = 0; j < guess.size(); ++j) guess[j] += direction * small * (*other)[j] * steps_.size(j);
+      const Vector guess = predicted(z, *other, direction * small, steps_.sizes());
       place = steps_.across(guess, *other);
       if (!place) continue;
       for (double& part : place->tangent) part *= direction * (product(place->tangent, *other) < 0 ? -1 : 1);
-      Vector moved(guess);
-      for (std::size_t j = 0; j < moved.size(); ++j) moved[j] = (place->z[j] - guess[j]) / steps_.size(j);
-      if (length(moved) > small) place.reset();  // it leapt to elsewhere
+      if (distance(place->z, guess, steps_.sizes()) > small) place.reset();  // it leapt to elsewhere
     }
     if (place) steps_.complete(*place);
     return place;
@@ -203,10 +197,7 @@ OrbitBranch OrbitFollower::from_mark(const OrbitMark& start) {
       behind = {};
       behind.ends[1] = {OrbitEnding::branching, start.at.constant, whence};
     }
-    std::ranges::reverse(behind.points);
-    std::ranges::reverse(behind.marks);
-    branch = std::move(behind);
-    branch.ends[0] = std::exchange(branch.ends[1], {});
+    branch = turned_round(std::move(behind));
     branch.points.push_back(start.at);
   } else {
     branch.points = {start.at};

@@ -1,7 +1,6 @@
 // Follows a curve of degenerate homoclinic orbits in three constants.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,61 +8,37 @@
 #include <continuo/studies/degenerate_homoclinic.hpp>
 #include <continuo/studies/orbits/curves/degenerate_homoclinic_steps.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_curve.hpp>
+#include <continuo/studies/orbits/curves/orbit_curve_course.hpp>
+#include <continuo/studies/support/arclength.hpp>
+#include <continuo/studies/support/both_ways.hpp>
+#include <continuo/studies/support/chord.hpp>
 #include <continuo/studies/support/false_position.hpp>
+#include <continuo/studies/support/ranges_of_constants.hpp>
 
 namespace continuo::studies {
 
 namespace detail {
 namespace {
 
-constexpr double bends_little = 0.906;    // the cosine of 25 degrees
-constexpr double bends_not_back = 0.5;    // of 60 degrees
-constexpr double truncated_well = 1e-6;   // of the ranges: by how much constants may be off
-constexpr double resolved_well = 1e-4;    // likewise of the orbit
-constexpr double shrunk_to_rest = 5e-4;   // of the greatest size on the curve
-constexpr double exactly_there = 1e-6;    // of a test that is of the size of 1
-constexpr double above_rounding = 1e-9;   // likewise
-constexpr std::size_t points_round = 12;  // of a closed curve
-constexpr double same_orbit = 2e-3;       // in sizes: chords of a curve are not nearer to it
-constexpr double near_axis = 0.02;        // of the largest eigenvalue
-constexpr double to_bend = 1e-3;          // of the orbit's size: a step to see how the centre manifold is run through
+constexpr double bends_not_back = 0.5;  // the cosine of 60 degrees
+constexpr double near_axis = 0.02;      // of the largest eigenvalue
+constexpr double to_bend = 1e-3;        // of the orbit's size: a step to see how the centre manifold is run through
 
-/// What a line between neighbours has to do with another point of the curve, in sizes.
-struct Chord {
-  Chord(const DegenerateHomoclinicPoint& a, const DegenerateHomoclinicPoint& b, const DegenerateHomoclinicPoint& of,
-        const DegenerateHomoclinicOptions& options) {
-    const auto u = coordinates(a, of, options), v = coordinates(b, of, options), o = coordinates(of, of, options);
-    double square = 0, along = 0, rest = 0;
-    for (std::size_t i = 0; i < o.size(); ++i) {
-      square += (v[i] - u[i]) * (v[i] - u[i]);
-      along += (v[i] - u[i]) * (o[i] - u[i]);
-    }
-    whole = std::sqrt(square);
-    part = along / square;
-    for (std::size_t i = 0; i < o.size(); ++i) rest += std::pow(u[i] + part * (v[i] - u[i]) - o[i], 2);
-    apart = std::sqrt(rest);
+/// What points of a curve have in common whatever their mesh, in the sizes of one of them.
+std::vector<double> seen_in_sizes(const DegenerateHomoclinicPoint& point, const DegenerateHomoclinicPoint& unit,
+                                  const DegenerateHomoclinicOptions& options) {
+  std::vector<double> v;
+  for (std::size_t k = 0; k < 3; ++k) v.push_back(point.constants[k] / (options.high[k] - options.low[k]));
+  for (std::size_t i = 0; i < point.orbit.low.size(); ++i) {
+    const double size = std::max({std::abs(unit.orbit.low[i]), std::abs(unit.orbit.high[i]), 1e-12});
+    v.push_back(point.orbit.low[i] / size);
+    v.push_back(point.orbit.high[i] / size);
   }
-  bool passes() const { return part >= 0 && part <= 1; }
-  double whole = 0, part = 0, apart = 0;
-
- private:
-  static std::vector<double> coordinates(const DegenerateHomoclinicPoint& point, const DegenerateHomoclinicPoint& unit,
-                                         const DegenerateHomoclinicOptions& options) {
-    std::vector<double> v;
-    for (std::size_t k = 0; k < 3; ++k) v.push_back(point.constants[k] / (options.high[k] - options.low[k]));
-    for (std::size_t i = 0; i < point.orbit.low.size(); ++i) {
-      const double size = std::max({std::abs(unit.orbit.low[i]), std::abs(unit.orbit.high[i]), 1e-12});
-      v.push_back(point.orbit.low[i] / size);
-      v.push_back(point.orbit.high[i] / size);
-    }
-    return v;
-  }
-};
-
-bool is_inside(const DegenerateHomoclinicPoint& point, const DegenerateHomoclinicOptions& options) {
-  for (std::size_t k = 0; k < 3; ++k)
-    if (!(point.constants[k] >= options.low[k] && point.constants[k] <= options.high[k])) return false;
-  return true;
+  return v;
+}
+Chord chord_between(const DegenerateHomoclinicPoint& a, const DegenerateHomoclinicPoint& b,
+                    const DegenerateHomoclinicPoint& of, const DegenerateHomoclinicOptions& options) {
+  return {seen_in_sizes(a, of, options), seen_in_sizes(b, of, options), seen_in_sizes(of, of, options)};
 }
 
 bool is_of_stable_side(HomoclinicTest test) {
@@ -97,7 +72,12 @@ class DegenerateHomoclinicFollower {
  public:
   DegenerateHomoclinicFollower(const ParametricSystem& system, const HomoclinicMark& start, OrbitDegeneracy kind,
                                const DegenerateHomoclinicOptions& options)
-      : system_(system), start_(start), test_(start.test), options_(options), steps_(system, start.test, options) {
+      : system_(system),
+        start_(start),
+        test_(start.test),
+        options_(options),
+        steps_(system, start.test, options),
+        covered_(options.low[2], options.high[2], options.progress) {
     curve_.kind = kind;
   }
   DegenerateHomoclinicCurve curve();
@@ -105,7 +85,7 @@ class DegenerateHomoclinicFollower {
  private:
   OrbitCurveEnd followed(DegenerateHomoclinicCurve& side, const DegeneratePlace& from, double direction);
   /// Where the curve goes on to: nothing, and why, where it does not.
-  std::optional<DegeneratePlace> next_from(DegeneratePlace& here, double& step, OrbitCurveEnd& end);
+  std::optional<DegeneratePlace> next_from(DegeneratePlace& here, StepLength& step, OrbitCurveEnd& end);
   struct Found {
     double at;
     OrbitDegeneracy kind;
@@ -124,8 +104,6 @@ class DegenerateHomoclinicFollower {
   OrbitCurveEnd out_of_range(DegenerateHomoclinicCurve& side, const DegeneratePlace& here, const DegeneratePlace& next);
   double towards_rest(const DegeneratePlace& place) const;
   bool is_near_another_zero(const DegeneratePlace& place) const;
-  double size_of(const OrbitCurvePoint& point);
-  void report(double value);
 
   const ParametricSystem& system_;
   const HomoclinicMark& start_;
@@ -133,8 +111,8 @@ class DegenerateHomoclinicFollower {
   const DegenerateHomoclinicOptions& options_;
   DegenerateHomoclinicSteps steps_;
   DegenerateHomoclinicCurve curve_;
-  std::vector<double> greatest_{};  // how far each component has gone from the saddle so far
-  double least_third_ = std::numeric_limits<double>::infinity(), greatest_third_ = -least_third_;
+  SizesOnCurve sizes_{};
+  CoveredRange covered_;
 };
 
 DegenerateHomoclinicCurve DegenerateHomoclinicFollower::curve() {
@@ -147,42 +125,10 @@ DegenerateHomoclinicCurve DegenerateHomoclinicFollower::curve() {
     curve_.message = "the orbit there is on the side of the saddle-node on which motions go the other way";
     return curve_;
   }
-  (void)size_of(first->orbit.point);
-  DegenerateHomoclinicCurve back, ahead;
-  curve_.ends[0] = followed(back, *first, -1);
-  const bool closed = curve_.ends[0].ending == OrbitCurveEnding::closed;
-  if (closed) back.points.push_back(first->point());
-  std::ranges::reverse(back.points);
-  std::ranges::reverse(back.marks);
-  for (MarkedHomoclinic& mark : back.marks) mark.next = back.points.size() - mark.next - (closed ? 1 : 0);
-  curve_.points = std::move(back.points);
-  curve_.marks = std::move(back.marks);
-  curve_.points.push_back(first->point());
-  curve_.ends[1] = curve_.ends[0];
-  if (closed || curve_.ends[0].ending == OrbitCurveEnding::interrupted) return curve_;
-  curve_.ends[1] = followed(ahead, *first, 1);
-  for (MarkedHomoclinic& mark : ahead.marks) mark.next += curve_.points.size();
-  curve_.points.insert(curve_.points.end(), ahead.points.begin(), ahead.points.end());
-  curve_.marks.insert(curve_.marks.end(), ahead.marks.begin(), ahead.marks.end());
-  return curve_;
-}
-
-double DegenerateHomoclinicFollower::size_of(const OrbitCurvePoint& point) {
-  greatest_.resize(point.x.size());
-  double part = 0;
-  for (std::size_t i = 0; i < point.x.size(); ++i) {
-    const double size = std::max(point.high[i] - point.x[i], point.x[i] - point.low[i]);
-    greatest_[i] = std::max(greatest_[i], size);
-    if (greatest_[i] > 0) part = std::max(part, size / greatest_[i]);
-  }
-  return part;
-}
-
-void DegenerateHomoclinicFollower::report(double value) {
-  least_third_ = std::min(least_third_, value);
-  greatest_third_ = std::max(greatest_third_, value);
-  const double whole = options_.high[2] - options_.low[2];
-  if (options_.progress) options_.progress(std::min((greatest_third_ - least_third_) / whole, 1.0));
+  (void)sizes_.part_of(first->orbit.point);
+  curve_.points = {first->point()};
+  return followed_both_ways(
+      curve_, [&](DegenerateHomoclinicCurve& side, double direction) { return followed(side, *first, direction); });
 }
 
 /// On the centre manifold of a saddle-node y' = c y^2: positive where the orbit's end has y on the side from which, or
@@ -231,7 +177,7 @@ bool DegenerateHomoclinicFollower::is_near_another_zero(const DegeneratePlace& p
   return near > (is_rest(test_) ? 1 : 0);
 }
 
-std::optional<DegeneratePlace> DegenerateHomoclinicFollower::next_from(DegeneratePlace& here, double& step,
+std::optional<DegeneratePlace> DegenerateHomoclinicFollower::next_from(DegeneratePlace& here, StepLength& step,
                                                                        OrbitCurveEnd& end) {
   while (true) {
     auto next = steps_.stepped(here, step);
@@ -241,11 +187,10 @@ std::optional<DegeneratePlace> DegenerateHomoclinicFollower::next_from(Degenerat
     }
     const bool is_coarse = next && next->orbit.error > resolved_well;
     const double cosine = next ? steps_.alike(here, *next) : 0;
-    if (next && !is_coarse && cosine > bends_little) return next;
+    if (next && !is_coarse && cosine > least_cosine_of_neighbours) return next;
     // A shorter secant is nearer to the tangent than that of the step before, which another mesh may have changed.
     if (next && !is_coarse && cosine > bends_not_back) DegenerateHomoclinicSteps::take_direction(here, *next);
-    step /= 2;
-    if (step > options_.least_step) continue;
+    if (step.shorten()) continue;
     end = {OrbitCurveEnding::lost, is_coarse ? "no mesh serves the orbits further on"
                                    : is_near_another_zero(here)
                                        ? "the curve could not be followed further: another eigenvalue of the place of "
@@ -261,7 +206,7 @@ OrbitCurveEnd DegenerateHomoclinicFollower::followed(DegenerateHomoclinicCurve& 
   for (double& part : here.orbit.carried[0]) part *= direction;
   for (double& part : here.direction) part *= direction;
   const DegenerateHomoclinicPoint origin = from.point();
-  double step = options_.first_step;
+  StepLength step(options_);
   while (side.points.size() < options_.most_points) {
     const auto turned = steps_.turned(here, steps_.fastest(here));
     if (turned) here = *turned;
@@ -271,13 +216,13 @@ OrbitCurveEnd DegenerateHomoclinicFollower::followed(DegenerateHomoclinicCurve& 
     if (auto at_mark = marked(side, here, *next)) return *at_mark;
     if (auto there = end_between(side, here, *next)) return *there;
     side.points.push_back(next->point());
-    report(next->constants[2]);
-    const Chord chord(here.point(), next->point(), origin, options_);
-    if (side.points.size() > points_round && chord.passes() && chord.apart < 0.1 * chord.whole)
+    covered_.report(next->constants[2]);
+    const Chord chord = chord_between(here.point(), next->point(), origin, options_);
+    if (side.points.size() > points_round && chord.passes() && chord.apart < 0.1 * chord.length)
       return {OrbitCurveEnding::closed, "it comes back to where it began"};
     here = std::move(*next);
     if (!steps_.renew(here)) return {OrbitCurveEnding::lost, "no mesh serves the orbits further on"};
-    step = std::min(1.3 * step, options_.largest_step);
+    step.lengthen();
   }
   return {OrbitCurveEnding::too_many_points,
           fmt::format("it has {} points, as many as are allowed", side.points.size())};
@@ -287,7 +232,7 @@ std::optional<OrbitCurveEnd> DegenerateHomoclinicFollower::marked(DegenerateHomo
                                                                   const DegeneratePlace& here,
                                                                   const DegeneratePlace& next) {
   for (Found& found : found_between(here, next)) {
-    if (!is_inside(found.point, options_)) return std::nullopt;
+    if (!is_within(found.point.constants, options_.low, options_.high)) return std::nullopt;
     side.marks.push_back({.kind = found.kind, .at = found.point, .next = side.points.size()});
     auto end = end_at(found);
     if (!end) continue;
@@ -318,27 +263,19 @@ std::optional<OrbitCurveEnd> DegenerateHomoclinicFollower::end_at(const Found& f
 
 OrbitCurveEnd DegenerateHomoclinicFollower::out_of_range(DegenerateHomoclinicCurve& side, const DegeneratePlace& here,
                                                          const DegeneratePlace& next) {
-  std::size_t constant = 0;
-  double first = 2, bound = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double to = next.constants[k], limit = std::clamp(to, options_.low[k], options_.high[k]);
-    if (to == limit) continue;
-    const double at = (limit - here.constants[k]) / (to - here.constants[k]);
-    if (at < first) first = at, constant = k, bound = limit;
-  }
+  const LeftRange left = left_range(here.constants, next.constants, options_.low, options_.high);
   // An orbit that lies on the bound already is that place.
-  if (const auto place = first > 0 ? steps_.at_bound(here, next, constant, bound) : std::nullopt)
+  if (const auto place = left.part > 0 ? steps_.at_bound(here, next, left.constant, left.bound) : std::nullopt)
     side.points.push_back(place->point());
-  return {OrbitCurveEnding::bound,
-          fmt::format("{} reaches the end of its range", system_.constant_name(options_.constants[constant]))};
+  return end_of_range(system_, options_, left);
 }
 
 std::optional<OrbitCurveEnd> DegenerateHomoclinicFollower::end_between(DegenerateHomoclinicCurve& side,
                                                                        const DegeneratePlace& here,
                                                                        const DegeneratePlace& next) {
   const DegenerateHomoclinicPoint point = next.point();
-  if (!is_inside(point, options_)) return out_of_range(side, here, next);
-  if (size_of(point.orbit) < shrunk_to_rest)
+  if (!is_within(point.constants, options_.low, options_.high)) return out_of_range(side, here, next);
+  if (sizes_.part_of(point.orbit) < shrunk_to_rest)
     return OrbitCurveEnd{OrbitCurveEnding::equilibrium, "the orbit shrinks to an equilibrium"};
   if (point.orbit.truncation > truncated_well)
     return OrbitCurveEnd{
@@ -411,8 +348,8 @@ std::vector<DegenerateHomoclinicCurve> degenerate_homoclinic_curves(const Parame
     return std::ranges::any_of(all, [&](const DegenerateHomoclinicCurve& curve) {
       if (curve.kind != mark.kind) return false;
       for (std::size_t k = 1; k < curve.points.size(); ++k) {
-        const detail::Chord chord(curve.points[k - 1], curve.points[k], at, options);
-        if (chord.passes() && chord.apart < detail::same_orbit) return true;
+        const detail::Chord chord = detail::chord_between(curve.points[k - 1], curve.points[k], at, options);
+        if (chord.passes() && chord.apart < detail::same_orbit_on_chord) return true;
       }
       return false;
     });

@@ -215,9 +215,8 @@ std::optional<DegeneratePlace> DegenerateHomoclinicSteps::stepped(const Degenera
 
 std::optional<DegeneratePlace> DegenerateHomoclinicSteps::between(const DegeneratePlace& a, const DegeneratePlace& b,
                                                                   double part) {
-  Vector guess(a.orbit.z);
-  for (std::size_t j = 0; j < guess.size(); ++j) guess[j] += part * (b.orbit.z[j] - a.orbit.z[j]);
-  return solved(a, a.constants[a.held] + part * (b.constants[a.held] - a.constants[a.held]), guess);
+  return solved(a, a.constants[a.held] + part * (b.constants[a.held] - a.constants[a.held]),
+                detail::between(a.orbit.z, b.orbit.z, part));
 }
 
 std::optional<DegeneratePlace> DegenerateHomoclinicSteps::at_bound(const DegeneratePlace& a, const DegeneratePlace& b,

@@ -12,6 +12,8 @@
 #include <continuo/studies/orbits/curves/homoclinic_curve.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_steps.hpp>
 #include <continuo/studies/orbits/curves/orbit_curve_course.hpp>
+#include <continuo/studies/support/arclength.hpp>
+#include <continuo/studies/support/both_ways.hpp>
 #include <continuo/studies/support/false_position.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
@@ -19,15 +21,8 @@ namespace continuo::studies::detail {
 
 namespace {
 
-constexpr double bends_little = 0.906;    // the cosine of 25 degrees
-constexpr double truncated_well = 1e-6;   // of the ranges: by how much constants may be off
-constexpr double resolved_well = 1e-4;    // likewise of the orbit
-constexpr double shrunk_to_rest = 5e-4;   // of the greatest size on the curve
-constexpr double exactly_there = 1e-6;    // of a test that is of the size of 1
-constexpr double above_rounding = 1e-9;   // likewise
-constexpr double ends_open = 0.02;        // of the orbit
-constexpr double same_end = 1e-3;         // of the ranges and of the orbit
-constexpr std::size_t points_round = 12;  // of a closed curve
+constexpr double ends_open = 0.02;  // of the orbit
+constexpr double same_end = 1e-3;   // of the ranges and of the orbit
 constexpr std::size_t points_at_rest = 24;
 constexpr double stands_still = 1e-5;  // of the ranges, within which so many points lie where a curve winds itself up
 constexpr double same_shape = 0.01;    // of the size of the orbit
@@ -40,7 +35,10 @@ double truncated_by_at_most(const HomoclinicPlace& place) {
 class HomoclinicFollower {
  public:
   HomoclinicFollower(const ParametricSystem& system, const OrbitCurveOptions& options)
-      : system_(system), options_(options), steps_(system, options), covered_(options) {}
+      : system_(system),
+        options_(options),
+        steps_(system, options),
+        covered_(options.low[1], options.high[1], options.progress) {}
 
   std::vector<OrbitCurve> from(const OrbitMark& start, std::size_t most);
   /// What a place where this test is zero is; nothing where it has no name, or the zero is none.
@@ -71,7 +69,6 @@ class HomoclinicFollower {
   /// From which a curve in three constants begins, where the orbit is one of a saddle. A central one is not, nor is its
   /// end; but where it is not central any more the other curve begins.
   std::shared_ptr<const HomoclinicMark> start_in_three(const HomoclinicPlace& place, HomoclinicTest test) const;
-  double size_of(const OrbitCurvePoint& point);
   /// Whether the last points differ by the length of the interval alone: the curve goes round a point where the orbit
   /// is one to another place of rest and back (a T-point, Glendinning and Sparrow, J. Stat. Phys. 43 (1986) 479-488).
   bool winds_up(const OrbitCurve& curve) const;
@@ -80,7 +77,7 @@ class HomoclinicFollower {
   const OrbitCurveOptions& options_;
   HomoclinicSteps steps_;
   CoveredRange covered_;
-  std::vector<double> greatest_{};  // how far each component has gone from the saddle so far
+  SizesOnCurve sizes_{};
   std::vector<NonCentral> ends_{};  // of all curves so far
 };
 
@@ -106,10 +103,11 @@ OrbitCurve HomoclinicFollower::first_curve(const OrbitMark& start) {
         first->rest.is_saddle_node ? "its size" : "their ranges");
     return curve;
   }
-  (void)size_of(first->point);
-  return followed_both_ways(
-      first->rest.is_saddle_node ? OrbitBifurcation::central_homoclinic : OrbitBifurcation::homoclinic, first->point,
-      [&](OrbitCurve& side, double direction) { return followed(side, *first, direction); });
+  (void)sizes_.part_of(first->point);
+  if (first->rest.is_saddle_node) curve.kind = OrbitBifurcation::central_homoclinic;
+  curve.points = {first->point};
+  return followed_both_ways(curve,
+                            [&](OrbitCurve& side, double direction) { return followed(side, *first, direction); });
 }
 
 HomoclinicRest HomoclinicFollower::other_rest(const NonCentral& end, std::size_t n) {
@@ -150,8 +148,8 @@ std::optional<OrbitCurve> HomoclinicFollower::other_curve(const NonCentral& end)
                            .next = 0,
                            .homoclinic = start_in_three(*begin, test)});
   begin->tests[static_cast<std::size_t>(test)] = 0;
-  greatest_.clear();
-  (void)size_of(begin->point);
+  sizes_.forget();
+  (void)sizes_.part_of(begin->point);
   curve.ends[1] = followed(curve, *begin, *direction);
   return curve;
 }
@@ -175,17 +173,6 @@ bool HomoclinicFollower::is_known(const HomoclinicPlace& place) const {
   });
 }
 
-double HomoclinicFollower::size_of(const OrbitCurvePoint& point) {
-  greatest_.resize(point.x.size());
-  double part = 0;
-  for (std::size_t i = 0; i < point.x.size(); ++i) {
-    const double size = std::max(point.high[i] - point.x[i], point.x[i] - point.low[i]);
-    greatest_[i] = std::max(greatest_[i], size);
-    if (greatest_[i] > 0) part = std::max(part, size / greatest_[i]);
-  }
-  return part;
-}
-
 bool HomoclinicFollower::winds_up(const OrbitCurve& curve) const {
   if (curve.points.size() < points_at_rest) return false;
   const OrbitCurvePoint& last = curve.points.back();
@@ -195,7 +182,8 @@ bool HomoclinicFollower::winds_up(const OrbitCurve& curve) const {
       if (std::abs(point.constants[c] - last.constants[c]) > stands_still * (options_.high[c] - options_.low[c]))
         return false;
     for (std::size_t i = 0; i < last.low.size(); ++i)
-      if (std::abs(point.low[i] - last.low[i]) + std::abs(point.high[i] - last.high[i]) > same_shape * greatest_[i])
+      if (std::abs(point.low[i] - last.low[i]) + std::abs(point.high[i] - last.high[i]) >
+          same_shape * sizes_.greatest(i))
         return false;
     return true;
   });
@@ -208,16 +196,15 @@ OrbitCurveEnd HomoclinicFollower::followed(OrbitCurve& curve, const HomoclinicPl
   for (const HomoclinicTest test : {HomoclinicTest::inclination_flip_stable, HomoclinicTest::inclination_flip_unstable})
     here.tests[static_cast<std::size_t>(test)] *= direction;
   const OrbitCurvePoint origin(here.point);
-  double step = options_.first_step;
+  StepLength step(options_);
   while (curve.points.size() < options_.most_points) {
     auto next = steps_.stepped(here, step);
     if (options_.interrupt && options_.interrupt->load()) return {OrbitCurveEnding::interrupted, "it was interrupted"};
     const bool is_coarse = next && next->error > resolved_well;
     // Along a centre the ends are brought nearer by a longer interval, which is found from ends that are near enough.
     const bool is_open = next && next->rest.is_saddle_node && std::max(next->apart_first, next->apart_last) > ends_open;
-    if (!next || is_coarse || is_open || product(here.tangent, next->tangent) < bends_little) {
-      step /= 2;
-      if (step > options_.least_step) continue;
+    if (!next || is_coarse || is_open || product(here.tangent, next->tangent) < least_cosine_of_neighbours) {
+      if (step.shorten()) continue;
       return {OrbitCurveEnding::lost,
               is_coarse ? "no mesh serves the orbits further on" : "the curve could not be followed further"};
     }
@@ -245,7 +232,7 @@ OrbitCurveEnd HomoclinicFollower::followed(OrbitCurve& curve, const HomoclinicPl
         curve.points.push_back(place->point);
       return end_of_range(system_, options_, left);
     }
-    if (size_of(next->point) < shrunk_to_rest)
+    if (sizes_.part_of(next->point) < shrunk_to_rest)
       return {OrbitCurveEnding::equilibrium, "the orbit shrinks to an equilibrium"};
     const bool is_served = steps_.renew(*next);
     if (next->point.truncation > truncated_by_at_most(*next))
@@ -263,7 +250,7 @@ OrbitCurveEnd HomoclinicFollower::followed(OrbitCurve& curve, const HomoclinicPl
               "nothing changes any more but how long the orbit takes: it comes ever nearer to another place of rest"};
     here = std::move(*next);
     if (!is_served) return {OrbitCurveEnding::lost, "no mesh serves the orbits further on"};
-    step = std::min(1.3 * step, options_.largest_step);
+    step.lengthen();
   }
   return {OrbitCurveEnding::too_many_points,
           fmt::format("it has {} points, as many as are allowed", curve.points.size())};

@@ -12,6 +12,13 @@
 
 namespace continuo::studies::detail {
 
+inline constexpr double truncated_well = 1e-6;   // of the ranges: by how much constants may be off
+inline constexpr double resolved_well = 1e-4;    // likewise of the orbit
+inline constexpr double shrunk_to_rest = 5e-4;   // of the greatest size on the curve
+inline constexpr double exactly_there = 1e-6;    // of a test that is of the size of 1
+inline constexpr double above_rounding = 1e-9;   // likewise
+inline constexpr std::size_t points_round = 12;  // of a closed curve
+
 /// What a place where this test is zero is; nothing where the zero is none.
 std::optional<OrbitDegeneracy> degeneracy_of(HomoclinicTest test, const HomoclinicPlace& place);
 

@@ -7,6 +7,7 @@
 
 #include <continuo/studies/orbits/collocation/closed_view.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_steps.hpp>
+#include <continuo/studies/support/arclength.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
@@ -184,14 +185,8 @@ HomoclinicSteps::Vector HomoclinicSteps::in_sizes(const HomoclinicPlace& at, Vec
 std::optional<HomoclinicPlace> HomoclinicSteps::stepped(const HomoclinicPlace& from, double step) {
   use(from.mesh, from.length);
   measure(from.z);
-  Vector guess(from.z);
-  for (std::size_t j = 0; j < guess.size(); ++j) guess[j] += step * from.tangent[j] * scale_[j];
-  auto place = corrected(guess, from.z, from.tangent, &from);
-  if (!place) return std::nullopt;
-  Vector moved(guess.size());
-  for (std::size_t j = 0; j < moved.size(); ++j) moved[j] = (place->z[j] - guess[j]) / scale_[j];
-  if (length(moved) > std::abs(step)) return std::nullopt;  // it leapt to elsewhere
-  return place;
+  return arclength_step(from.z, from.tangent, step, scale_,
+                        [&](const Vector& guess) { return corrected(guess, from.z, from.tangent, &from); });
 }
 
 std::optional<HomoclinicPlace> HomoclinicSteps::switched(const HomoclinicPlace& from, HomoclinicRest kind) {
@@ -228,8 +223,7 @@ std::optional<HomoclinicPlace> HomoclinicSteps::at_bound(const HomoclinicPlace& 
   measure(a.z);
   const std::size_t unknown = a.z.size() - 2 + constant;
   const double part = (value - a.z[unknown]) / (b.z[unknown] - a.z[unknown]);
-  Vector guess(a.z), last(a.z.size());
-  for (std::size_t j = 0; j < guess.size(); ++j) guess[j] += part * (b.z[j] - a.z[j]);
+  Vector guess = between(a.z, b.z, part), last(a.z.size());
   guess[unknown] = value;
   last[unknown] = 1;
   return corrected(guess, a.z, last, &a);

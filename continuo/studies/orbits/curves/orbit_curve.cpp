@@ -9,13 +9,12 @@
 
 #include <continuo/studies/orbit_curve.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_curve.hpp>
+#include <continuo/studies/orbits/curves/orbit_curve_course.hpp>
 #include <continuo/studies/orbits/curves/orbit_curve_follower.hpp>
 
 namespace continuo::studies {
 
 namespace {
-
-constexpr double same_orbit = 2e-3;  // in sizes: chords of a curve are not nearer to it
 
 /// Whether a curve passes through this orbit, by the chords between its points.
 bool passes_orbit(const OrbitCurve& curve, const OrbitMark& mark, double second, const OrbitCurveOptions& options) {
@@ -44,7 +43,7 @@ bool passes_orbit(const OrbitCurve& curve, const OrbitMark& mark, double second,
     }
     const double part = std::clamp(along / whole, 0.0, 1.0);
     for (std::size_t i = 0; i < a.size(); ++i) apart += std::pow(a[i] + part * (b[i] - a[i]) - wanted[i], 2);
-    if (std::sqrt(apart) < same_orbit) return true;
+    if (std::sqrt(apart) < detail::same_orbit_on_chord) return true;
   }
   return false;
 }

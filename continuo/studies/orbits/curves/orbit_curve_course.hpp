@@ -1,41 +1,46 @@
-// What following a curve in the plane of two constants takes, whatever is solved for at each place: both directions,
-// the ranges, where the curve closes. Internal to orbit_curve.
+// What following a curve in the plane of two constants takes, whatever is solved for at each place: the ranges, where
+// the curve closes, how large the orbits are. Internal to orbit_curve.
 #pragma once
-#include <functional>
-#include <limits>
-#include <optional>
+#include <cstddef>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include <continuo/studies/orbit_curve.hpp>
+#include <continuo/studies/support/ranges_of_constants.hpp>
 
 namespace continuo::studies::detail {
 
-/// `followed(curve, direction)` appends what lies on one side of the first point and says why it ends; -1 comes first.
-OrbitCurve followed_both_ways(OrbitBifurcation kind, const OrbitCurvePoint& first,
-                              const std::function<OrbitCurveEnd(OrbitCurve& curve, double direction)>& followed);
+inline constexpr double same_orbit_on_chord = 2e-3;  // in sizes: chords of a curve are not nearer to it
 
-bool is_inside(const OrbitCurvePoint& point, const OrbitCurveOptions& options);
-
-/// The range that is left first between a place inside and one outside.
-struct LeftRange {
-  std::size_t constant = 0;  // 0 or 1
-  double bound = 0;
-};
-LeftRange left_range(const OrbitCurvePoint& inside, const OrbitCurvePoint& outside, const OrbitCurveOptions& options);
-OrbitCurveEnd end_of_range(const ParametricSystem& system, const OrbitCurveOptions& options, const LeftRange& left);
+inline bool is_inside(const OrbitCurvePoint& point, const OrbitCurveOptions& options) {
+  return is_within(point.constants, options.low, options.high);
+}
+inline LeftRange left_range(const OrbitCurvePoint& inside, const OrbitCurvePoint& outside,
+                            const OrbitCurveOptions& options) {
+  return left_range(inside.constants, outside.constants, options.low, options.high);
+}
+/// `options.constants`: which of the system's are followed.
+template <class Options>
+OrbitCurveEnd end_of_range(const ParametricSystem& system, const Options& options, const LeftRange& left) {
+  return {OrbitCurveEnding::bound,
+          fmt::format("{} reaches the end of its range", system.constant_name(options.constants[left.constant]))};
+}
 
 /// Whether the curve passes its first point again between two neighbours. `origin` has a period or none is compared.
 bool comes_back(const OrbitCurvePoint& a, const OrbitCurvePoint& b, const OrbitCurvePoint& origin,
                 const OrbitCurveOptions& options);
 
-/// Tells the options' progress how much of the second range has been covered.
-class CoveredRange {
+/// The sizes of homoclinic orbits along a curve: how far each component goes from the saddle.
+class SizesOnCurve {
  public:
-  explicit CoveredRange(const OrbitCurveOptions& options) : options_(options) {}
-  void report(double value);
+  /// Of the component of which most is left, in parts of the greatest so far.
+  double part_of(const OrbitCurvePoint& point);
+  void forget() { greatest_.clear(); }
+  double greatest(std::size_t component) const { return greatest_[component]; }
 
  private:
-  const OrbitCurveOptions& options_;
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+  std::vector<double> greatest_{};
 };
 
 }  // namespace continuo::studies::detail

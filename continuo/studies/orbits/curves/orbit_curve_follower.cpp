@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <continuo/studies/orbits/curves/orbit_curve_follower.hpp>
+#include <continuo/studies/support/arclength.hpp>
+#include <continuo/studies/support/both_ways.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
@@ -17,7 +19,6 @@ namespace {
 using Vector = std::vector<double>;
 using Complex = std::complex<double>;
 
-constexpr double turns_little = 0.906;  // the cosine of 25 degrees
 constexpr double shrunk_away = 5e-3;    // of the largest amplitude
 constexpr double all_but_gone = 2e-2;   // likewise, where the equations can no longer be solved
 constexpr double about_there = 1e-3;    // of a multiplier from where it should be
@@ -35,7 +36,8 @@ OrbitCurve OrbitCurveFollower::from(const OrbitMark& start) {
   }
   first_period_ = first->point.period;
   (void)amplitude(*first);
-  return followed_both_ways(start.kind, first->point,
+  curve.points = {first->point};
+  return followed_both_ways(curve,
                             [&](OrbitCurve& side, double direction) { return followed(side, *first, direction); });
 }
 
@@ -44,15 +46,14 @@ OrbitCurveEnd OrbitCurveFollower::followed(OrbitCurve& curve, const OrbitCurvePl
   for (double& part : here.tangent) part *= direction;
   here.tests[static_cast<std::size_t>(OrbitDegeneracy::cusp)] *= direction;
   const OrbitCurvePlace origin(here);
-  double step = options_.first_step;
+  StepLength step(options_);
   while (curve.points.size() < options_.most_points) {
     auto next = steps_.stepped(here, step);
     if (options_.interrupt && options_.interrupt->load()) return {OrbitCurveEnding::interrupted, "it was interrupted"};
     if (next)
       if (auto end = shrinks_between(here, *next)) return *end;
-    if (!next || product(here.tangent, next->tangent) < turns_little) {
-      step /= 2;
-      if (step > options_.least_step) continue;
+    if (!next || product(here.tangent, next->tangent) < least_cosine_of_neighbours) {
+      if (step.shorten()) continue;
       if (amplitude(here) < all_but_gone) return {OrbitCurveEnding::equilibrium, "the orbit shrinks to an equilibrium"};
       return {OrbitCurveEnding::lost,
               fmt::format("the curve could not be followed further; the period is {:.6g} there", here.point.period)};
@@ -82,7 +83,7 @@ OrbitCurveEnd OrbitCurveFollower::followed(OrbitCurve& curve, const OrbitCurvePl
     if (!steps_.renew(here))
       return {OrbitCurveEnding::lost,
               fmt::format("no mesh serves the orbits further on; the period is {:.6g} there", here.point.period)};
-    step = std::min(1.3 * step, options_.largest_step);
+    step.lengthen();
   }
   return {OrbitCurveEnding::too_many_points,
           fmt::format("it has {} points, as many as are allowed", curve.points.size())};

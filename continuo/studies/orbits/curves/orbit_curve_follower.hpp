@@ -13,7 +13,10 @@ class OrbitCurveFollower {
 
  public:
   OrbitCurveFollower(const ParametricSystem& system, OrbitBifurcation kind, const OrbitCurveOptions& options)
-      : system_(system), options_(options), steps_(system, kind, options), covered_(options) {}
+      : system_(system),
+        options_(options),
+        steps_(system, kind, options),
+        covered_(options.low[1], options.high[1], options.progress) {}
 
   OrbitCurve from(const OrbitMark& start);
 

@@ -7,6 +7,7 @@
 
 #include <continuo/studies/orbits/collocation/orbit_multipliers.hpp>
 #include <continuo/studies/orbits/curves/orbit_curve_steps.hpp>
+#include <continuo/studies/support/arclength.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
@@ -225,14 +226,9 @@ std::optional<OrbitCurvePlace> OrbitCurveSteps::first(const OrbitMark& mark) {
 std::optional<OrbitCurvePlace> OrbitCurveSteps::stepped(const OrbitCurvePlace& from, double step) {
   use(from.mesh);
   measure(from.z);
-  Vector guess(from.z);
-  for (std::size_t j = 0; j < guess.size(); ++j) guess[j] += step * from.tangent[j] * scale_[j];
-  auto place = corrected(guess, from.z, from.tangent, from.vectors, from.normal);
-  if (!place) return std::nullopt;
-  Vector moved(guess.size());
-  for (std::size_t j = 0; j < moved.size(); ++j) moved[j] = (place->z[j] - guess[j]) / scale_[j];
-  if (length(moved) > step) return std::nullopt;  // it leapt to elsewhere
-  return place;
+  return arclength_step(from.z, from.tangent, step, scale_, [&](const Vector& guess) {
+    return corrected(guess, from.z, from.tangent, from.vectors, from.normal);
+  });
 }
 
 std::optional<OrbitCurvePlace> OrbitCurveSteps::at_bound(const OrbitCurvePlace& a, const OrbitCurvePlace& b,
@@ -241,8 +237,7 @@ std::optional<OrbitCurvePlace> OrbitCurveSteps::at_bound(const OrbitCurvePlace& 
   measure(a.z);
   const std::size_t unknown = a.z.size() - CriticalOrbit::behind + 1 + constant;
   const double part = (value - a.z[unknown]) / (b.z[unknown] - a.z[unknown]);
-  Vector guess(a.z), last(a.z.size());
-  for (std::size_t j = 0; j < guess.size(); ++j) guess[j] += part * (b.z[j] - a.z[j]);
+  Vector guess = between(a.z, b.z, part), last(a.z.size());
   guess[unknown] = value;
   last[unknown] = 1;
   auto place = corrected(guess, a.z, last, a.vectors, a.normal);

@@ -8,6 +8,8 @@
 
 #include <continuo/studies/orbits/continuation/orbit_marks.hpp>
 #include <continuo/studies/orbits/hybrid/hybrid_follower.hpp>
+#include <continuo/studies/support/arclength.hpp>
+#include <continuo/studies/support/both_ways.hpp>
 
 namespace continuo::studies::detail {
 
@@ -15,7 +17,6 @@ namespace {
 
 using Vec = Eigen::VectorXd;
 
-constexpr double least_cosine = 0.906;                // a step that turns by more than 25 degrees was too long
 constexpr double no_slope = 1e-6;                     // of a tangent: so little is no change of the parameter
 constexpr double beside_crossing = 0.1;               // of the first step
 constexpr double near_minus_one = 1e-2;               // of the multiplier where a period doubles
@@ -52,16 +53,15 @@ OrbitBranchEnd HybridFollower::followed(OrbitBranch& branch, const Place& from, 
   here.fold *= direction;
   const Place origin = here;
   const std::size_t begin = branch.points.size();
-  double step = options_.first_step;
+  StepLength step(options_);
   std::optional<Place> beyond;  // of other events
   while (branch.points.size() < options_.most_points) {
     if (is_interrupted()) return {OrbitEnding::interrupted, here.point.constant, "it was interrupted"};
     auto next = steps_.stepped(here, step);
     if (is_interrupted()) return {OrbitEnding::interrupted, here.point.constant, "it was interrupted"};
     const bool alike = next && same_events(here.events, next->events);
-    if (!next || here.tangent.dot(next->tangent) < least_cosine || !alike) {
-      step /= 2;
-      if (step > options_.least_step) continue;
+    if (!next || here.tangent.dot(next->tangent) < least_cosine_of_neighbours || !alike) {
+      if (step.shorten()) continue;
       if (!next || alike || !goes_on(here, *next)) return lost(here);
     }
     if (doubled_) {
@@ -78,14 +78,14 @@ OrbitBranchEnd HybridFollower::followed(OrbitBranch& branch, const Place& from, 
     if (!inside(*next)) return at_bound(branch, here, *next);
     steps_.complete(*next);
     branch.points.push_back(next->point);
-    if (!alike) step = options_.first_step;
+    if (!alike) step = StepLength(options_);
     here = std::move(*next);
-    report(here.point.constant);
+    covered_.report(here.point.constant);
     if (auto end = ending_of(std::span(branch.points).subspan(begin), here)) return *end;
     if (branch.points.size() - begin > 20 && comes_back(here, origin, step))
       return {OrbitEnding::closed, here.point.constant, "it comes back to where it began"};
     steps_.begin_anew(here);
-    step = std::min(1.3 * step, options_.largest_step);
+    step.lengthen();
   }
   return {OrbitEnding::too_many_points, here.point.constant,
           fmt::format("it has {} points, as many as are allowed", branch.points.size())};
@@ -132,7 +132,7 @@ OrbitBranchEnd HybridFollower::at_bound(OrbitBranch& branch, const Place& a, con
     last->point.constant = bound;
     branch.points.push_back(std::move(last->point));
   }
-  report(bound);
+  covered_.report(bound);
   return {OrbitEnding::bound, bound, fmt::format("{} reaches the end of its range", name_)};
 }
 
@@ -187,12 +187,6 @@ bool HybridFollower::comes_back(const Place& here, const Place& origin, double s
   return std::sqrt(square) < step / 2;
 }
 
-void HybridFollower::report(double constant) {
-  low_ = std::min(low_, constant);
-  high_ = std::max(high_, constant);
-  if (options_.progress) options_.progress(std::min((high_ - low_) / range_, 1.0));
-}
-
 void HybridFollower::mark(OrbitBranch& branch, const Place& a, const Place& b, double step) {
   mark_between(
       a, b, step, [&](double s) { return steps_.stepped(a, s); },
@@ -223,10 +217,7 @@ OrbitBranch HybridFollower::both_ways(Place first) {
   steps_.complete(first);
   OrbitBranch back;
   back.ends[1] = followed(back, first, -1);
-  std::ranges::reverse(back.points);
-  std::ranges::reverse(back.marks);
-  OrbitBranch branch = std::move(back);
-  branch.ends[0] = std::exchange(branch.ends[1], {});
+  OrbitBranch branch = turned_round(std::move(back));
   branch.points.push_back(first.point);
   if (branch.ends[0].ending == OrbitEnding::closed || branch.ends[0].ending == OrbitEnding::interrupted) {
     branch.ends[1] = branch.ends[0];
@@ -298,11 +289,8 @@ OrbitBranch HybridFollower::from_mark(const OrbitMark& start) {
     OrbitBranch behind;
     behind.points = {back->point};
     behind.ends[1] = followed(behind, *back, 1);
-    std::ranges::reverse(behind.points);
-    std::ranges::reverse(behind.marks);
-    behind.ends[0] = std::exchange(behind.ends[1], {});
-    behind.points.push_back(start.at);
-    branch = std::move(behind);
+    branch = turned_round(std::move(behind));
+    branch.points.push_back(start.at);
   }
   branch.points.push_back(ahead->point);
   branch.ends[1] = followed(branch, *ahead, 1);

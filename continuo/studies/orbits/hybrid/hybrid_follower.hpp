@@ -6,6 +6,7 @@
 #include <string>
 
 #include <continuo/studies/orbits/hybrid/hybrid_branch.hpp>
+#include <continuo/studies/support/ranges_of_constants.hpp>
 
 namespace continuo::studies::detail {
 
@@ -14,7 +15,11 @@ class HybridFollower {
 
  public:
   HybridFollower(const HybridContinuationOptions& options, std::string name, HybridBranchSteps& steps)
-      : options_(options), name_(std::move(name)), steps_(steps), range_(options.high - options.low) {}
+      : options_(options),
+        name_(std::move(name)),
+        steps_(steps),
+        range_(options.high - options.low),
+        covered_(options.low, options.high, options.progress) {}
 
   OrbitBranch from_orbit(const model::Instant& start, double period, double constant);
   OrbitBranch from_mark(const OrbitMark& start);
@@ -41,14 +46,13 @@ class HybridFollower {
   bool inside(const Place& place) const {
     return place.point.constant >= options_.low && place.point.constant <= options_.high;
   }
-  void report(double constant);
 
   const HybridContinuationOptions& options_;
   std::string name_;
   HybridBranchSteps& steps_;
   double range_;
-  bool doubled_ = false;                                                 // from a period doubling: twice round
-  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;  // the part of the range that was covered
+  bool doubled_ = false;  // from a period doubling: twice round
+  CoveredRange covered_;
 };
 
 }  // namespace continuo::studies::detail
