@@ -102,8 +102,4 @@ std::vector<double> constant_jacobian_of(const ParametricSystem& system, double 
 void leave_out_conserved(const ParametricSystem& system, std::complex<double> own,
                          std::vector<std::complex<double>>& eigenvalues);
 
-/// The increment of a central difference, of a number or of `scale`, whichever is larger: the third root of epsilon,
-/// where its error and that of rounding are alike.
-double central_increment(double x, double scale);
-
 }  // namespace continuo::studies

@@ -5,7 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/simulation/program/model_system.hpp>
+#include <continuo/system/jacobian.hpp>
 
 namespace continuo::model {
 
@@ -93,18 +95,9 @@ void ModelSystem::place_switches() {
 
 /// df/dx of a motion that slides, whose weights hang on x, too: by central differences.
 void ModelSystem::difference_rows(double t, const X& x, std::span<double> rows) {
-  const std::size_t n = x.size();
-  X moved = x, above(n), below(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    // The third root of the rounding balances it with the error of the difference.
-    const double h = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(std::abs(x[j]), 1e-3);
-    moved[j] = x[j] + h;
-    (*this)(t, moved, above);
-    moved[j] = x[j] - h;
-    (*this)(t, moved, below);
-    moved[j] = x[j];
-    for (std::size_t i = 0; i < n; ++i) rows[i * n + j] = (above[i] - below[i]) / (2 * h);
-  }
+  difference_jacobian(
+      x, [&](std::size_t j) { return central_increment(x[j], 1e-3); },
+      [&](const X& moved, X& dxdt) { (*this)(t, moved, dxdt); }, rows);
 }
 
 void ModelSystem::set_all(std::span<const double> variables) {
@@ -161,11 +154,11 @@ void ModelSystem::time_derivative(double t, const X& x, X& dfdt) {
     for (const std::size_t i : held_) dfdt[i] = 0;
     return;
   }
-  const double moved = t + std::sqrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(t));
+  const double increment = difference_increment(t, std::sqrt(std::numeric_limits<double>::epsilon()));
   X now(x.size());
   (*this)(t, x, now);
-  (*this)(moved, x, dfdt);
-  for (std::size_t i = 0; i < x.size(); ++i) dfdt[i] = (dfdt[i] - now[i]) / (moved - t);
+  (*this)(t + increment, x, dfdt);
+  for (std::size_t i = 0; i < x.size(); ++i) dfdt[i] = (dfdt[i] - now[i]) / increment;
 }
 
 }  // namespace continuo::model

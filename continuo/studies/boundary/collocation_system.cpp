@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/studies/boundary/collocation_system.hpp>
 
@@ -205,19 +206,18 @@ void CollocationSystem::difference_jacobian(std::size_t q, std::span<double> blo
 void CollocationSystem::evaluate_condition_jacobian() {
   std::vector<double> x(gather(z_).begin(), gather(z_).end()),
       constants(constants_of(z_).begin(), constants_of(z_).end());
-  std::vector<double> above(n_ + m_), below(n_ + m_);
+  std::vector<double> residuals(n_ + m_);
   const std::size_t columns = x.size() + m_;
   std::vector<std::vector<std::size_t>> of_column(columns);
   for (std::size_t e = 0; e < condition_places_.size(); ++e) of_column[condition_places_[e].column].push_back(e);
   for (std::size_t j = 0; j < columns; ++j) {
     if (of_column[j].empty()) continue;
     double& value = j < x.size() ? x[j] : constants[j - x.size()];
-    const double here = value, increment = central_increment(here, scales_[j < x.size() ? j % n_ : n_ + j - x.size()]);
-    value = here + increment;
-    problem_.conditions(x, constants, above);
-    value = here - increment;
-    problem_.conditions(x, constants, below);
-    value = here;
+    const double increment = central_increment(value, scales_[j < x.size() ? j % n_ : n_ + j - x.size()]);
+    const auto [above, below] = on_both_sides(value, increment, [&] {
+      problem_.conditions(x, constants, residuals);
+      return residuals;
+    });
     for (const std::size_t e : of_column[j]) {
       const std::size_t row = condition_places_[e].row;
       condition_values_[e] = (above[row] - below[row]) / (2 * increment);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/studies/equilibria/branch_point.hpp>
@@ -17,9 +18,8 @@ namespace {
 using Vector = std::vector<double>;
 
 constexpr int most_crossing_iterations = 15;
-constexpr double part_of_difference = 1e-5;  // of a central difference of df/dz
-constexpr double farthest = 0.1;             // from where it is looked for
-constexpr double parted = 1e-6;              // directions nearer to each other are one
+constexpr double farthest = 0.1;  // from where it is looked for
+constexpr double parted = 1e-6;   // directions nearer to each other are one
 
 /// The combination of rows that is least: the eigenvector of J J^T that belongs to the least eigenvalue.
 Vector least_combination(const Vector& rows, std::size_t n) {
@@ -48,12 +48,8 @@ Vector curvature(const CrossingEquations& equations, const Vector& z, const Vect
   const std::size_t size = z.size();
   Vector h(size * size), moved(z);
   for (std::size_t k = 0; k < size; ++k) {
-    const double step = part_of_difference * std::max(1.0, std::abs(z[k]));
-    moved[k] = z[k] + step;
-    const Vector above = combined(equations.jacobian(moved), psi);
-    moved[k] = z[k] - step;
-    const Vector below = combined(equations.jacobian(moved), psi);
-    moved[k] = z[k];
+    const double step = increment_for_jacobians * std::max(1.0, std::abs(z[k]));
+    const auto [above, below] = on_both_sides(moved[k], step, [&] { return combined(equations.jacobian(moved), psi); });
     for (std::size_t i = 0; i < size; ++i) h[i * size + k] = (above[i] - below[i]) / (2 * step);
   }
   return h;

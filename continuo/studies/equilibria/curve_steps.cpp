@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/studies/equilibria/algebraic_elimination.hpp>
 #include <continuo/studies/equilibria/curve_steps.hpp>
@@ -22,7 +23,6 @@ using Complex = std::complex<double>;
 
 constexpr int most_curve_iterations = 12;
 constexpr double no_frequency = 1e-3;  // in parts of |A| on the plane of the pair
-constexpr double step_of_test = 1e-5;  // of a central difference of df/dx, in units
 
 /// The product of the sums of all pairs, each in parts of the largest value.
 double product_of_sums(const std::vector<Complex>& values) {
@@ -114,12 +114,8 @@ Vector CurveSteps::matrix(const Vector& z) {
 std::optional<Vector> CurveSteps::rows_at(const Vector& z, const CriticalSpace& space) {
   Vector rows = jacobian(z), moved(z);
   for (std::size_t k = 0; k < n_ + 2; ++k) {
-    const double step = step_of_test * std::max(1.0, std::abs(z[k]));
-    moved[k] = z[k] + step;
-    const Vector above = matrix(moved);
-    moved[k] = z[k] - step;
-    const Vector below = matrix(moved);
-    moved[k] = z[k];
+    const double step = increment_for_jacobians * std::max(1.0, std::abs(z[k]));
+    const auto [above, below] = on_both_sides(moved[k], step, [&] { return matrix(moved); });
     if (above.size() != space.weights.size() || below.size() != above.size()) return std::nullopt;
     double sum = 0;
     for (std::size_t e = 0; e < above.size(); ++e) sum += space.weights[e] * (above[e] - below[e]);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/studies/fit/fit_of_world.hpp>
 #include <continuo/studies/fit/fit_statistics.hpp>
 #include <continuo/studies/parametric_system.hpp>
@@ -42,7 +43,7 @@ std::string judge_slopes(LeastSquares& least, const LeastSquaresOptions& options
   for (std::size_t u = 0; u < result.p.size(); ++u) {
     // Never as narrow as they were: where these were too wide already, in chaos, any other width shows it.
     const double size = std::abs(result.p[u]), deviation = deviations[u];
-    const double least_width = 3 * central_increment(result.p[u], size > 0 ? size : 1);
+    const double least_width = 3 * central_increment(result.p[u], size > 0 ? size : 1.0);
     const bool is_wide = std::isfinite(deviation) && deviation > least_width;
     increments.push_back(!is_wide ? least_width : size > 0 ? std::min(deviation, size / 4) : deviation);
   }

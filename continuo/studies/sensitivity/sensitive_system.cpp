@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/studies/sensitivity/sensitive_system.hpp>
 
@@ -126,18 +127,11 @@ bool SensitiveSystem::slides_in_full() const {
   return plain_.slides() && program_->jacobians().pattern.entries() == width * width;
 }
 
-/// As in ModelSystem: the third root of the rounding balances it with the error of the difference.
+/// As in ModelSystem.
 void SensitiveSystem::difference_rows(double t, const X& x, std::span<double> rows) {
-  X moved = x, above(x.size()), below(x.size());
-  for (std::size_t j = 0; j < x.size(); ++j) {
-    const double h = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(std::abs(x[j]), 1e-3);
-    moved[j] = x[j] + h;
-    slide(t, moved, above);
-    moved[j] = x[j] - h;
-    slide(t, moved, below);
-    moved[j] = x[j];
-    for (std::size_t i = 0; i < x.size(); ++i) rows[i * x.size() + j] = (above[i] - below[i]) / (2 * h);
-  }
+  difference_jacobian(
+      x, [&](std::size_t j) { return central_increment(x[j], 1e-3); },
+      [&](const X& moved, X& dxdt) { slide(t, moved, dxdt); }, rows);
 }
 
 void SensitiveSystem::set(std::uint32_t variable, double value) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <continuo/language/world.hpp>
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/studies/parametric_system.hpp>
 #include <continuo/studies/sensitivity/world_sensitivity.hpp>
 #include <continuo/worlds/world_along.hpp>
@@ -77,7 +78,7 @@ class Differences {
                                        : model.states[influence.index].variable;
     const double p = here_.variables[variable];
     const bool is_wide = k < request_.increments.size() && request_.increments[k] > 0;
-    const double increment = is_wide ? request_.increments[k] : central_increment(p, p == 0 ? 1 : std::abs(p));
+    const double increment = is_wide ? request_.increments[k] : central_increment(p, p == 0 ? 1.0 : std::abs(p));
     is_wide_.push_back(is_wide);
     sides_.push_back({at(influence, p - increment), at(influence, p + increment)});
     p_.push_back(p);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/studies/orbits/curves/critical_orbit.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
@@ -19,8 +20,7 @@ using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
 constexpr std::size_t interval_degree = OrbitCollocation::degree;
-constexpr double step_of_slope = 1e-5;  // of a central difference of df/dx, in sizes
-constexpr int border_turns = 2;         // of the inverse iteration that finds borders
+constexpr int border_turns = 2;  // of the inverse iteration that finds borders
 
 }  // namespace
 
@@ -177,12 +177,9 @@ void CriticalOrbit::differentiate() {
       set(values_[0], values_[1]);
       moved = point.x;
       for (std::size_t l = 0; l < n_; ++l) {
-        const double step = step_of_slope * sizes_[l];
-        moved[l] = point.x[l] + step;
-        const Complex above = seen(jacobian_of(system_, 0, moved, p_, sizes_));
-        moved[l] = point.x[l] - step;
-        const Complex below = seen(jacobian_of(system_, 0, moved, p_, sizes_));
-        moved[l] = point.x[l];
+        const double step = increment_for_jacobians * sizes_[l];
+        const auto [above, below] =
+            on_both_sides(moved[l], step, [&] { return seen(jacobian_of(system_, 0, moved, p_, sizes_)); });
         by_place[l] = h * period_ * (above - below) / (2 * step);
         for (std::size_t i = 0; i < n_; ++i) by_place[l] += h * stretch * w[i] * point.a[i * n_ + l];
       }
@@ -192,14 +189,10 @@ void CriticalOrbit::differentiate() {
       }
       gradient_[states_] += h * seen(point.a);
       for (std::size_t c = 0; c < 2; ++c) {
-        const double step = step_of_slope * 100 * sizes_of_constants_[constants_[c]];
-        auto near = values_;
-        near[c] = values_[c] + step;
-        set(near[0], near[1]);
-        const Complex above = seen(jacobian_of(system_, 0, point.x, p_, sizes_));
-        near[c] = values_[c] - step;
-        set(near[0], near[1]);
-        const Complex below = seen(jacobian_of(system_, 0, point.x, p_, sizes_));
+        const double step = increment_for_jacobians * 100 * sizes_of_constants_[constants_[c]];
+        set(values_[0], values_[1]);
+        const auto [above, below] =
+            on_both_sides(p_[constants_[c]], step, [&] { return seen(jacobian_of(system_, 0, point.x, p_, sizes_)); });
         Complex sum = h * period_ * (above - below) / (2 * step);
         for (std::size_t i = 0; i < n_; ++i) sum += h * stretch * w[i] * point.by_constant[i * 2 + c];
         gradient_[states_ + 1 + c] += sum;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_orbit.hpp>
 
@@ -129,7 +130,7 @@ bool HomoclinicOrbit::evaluate_points(std::span<const double> z) {
 // How the spaces turn with x0 and the constants is small beside the rest, being times the distance of an end from x0:
 // central differences know it well enough.
 bool HomoclinicOrbit::evaluate_ends(std::span<const double> z) {
-  const Vector here(z.begin() + static_cast<std::ptrdiff_t>(rest()), z.end());
+  Vector moved(z.begin() + static_cast<std::ptrdiff_t>(rest()), z.end());
   const auto spaces = spaces_at(matrix_at(z.subspan(rest(), n_), z.last(2)));
   if (!spaces) return false;
   const auto of_stable = basis_like(spaces->stable.left, like_stable_),
@@ -146,12 +147,8 @@ bool HomoclinicOrbit::evaluate_ends(std::span<const double> z) {
   ends_by_.resize(index(n_), index(n_ + 2));
   for (std::size_t j = 0; j < n_ + 2; ++j) {
     const double size = j < n_ ? sizes_[j] : sizes_of_constants_[constants_[j - n_]];
-    const double step = central_increment(0, size);
-    Vector moved(here);
-    moved[j] = here[j] + step;
-    const auto above = ends_at(z, moved);
-    moved[j] = here[j] - step;
-    const auto below = ends_at(z, moved);
+    const double step = central_increment(0.0, size);
+    const auto [above, below] = on_both_sides(moved[j], step, [&] { return ends_at(z, moved); });
     if (!above || !below) return false;
     ends_by_.col(index(j)) = (*above - *below) / (2 * step);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <continuo/numerics/central_difference.hpp>
 #include <continuo/studies/orbits/curves/saddle_node.hpp>
 #include <continuo/studies/orbits/curves/saddle_spaces.hpp>
 
@@ -92,12 +93,8 @@ std::optional<SaddleNode> saddle_node_near(const ParametricSystem& system, std::
     if (!at) return std::nullopt;
     Eigen::MatrixXd matrix(n + 1, n + 1);
     for (Index j = 0; j <= n; ++j) {
-      const double step = central_increment(0, 1);
-      Eigen::VectorXd moved(v);
-      moved(j) += step;
-      const auto above = equations.residuals(moved);
-      moved(j) -= 2 * step;
-      const auto below = equations.residuals(moved);
+      const double step = central_increment(0.0, 1.0);
+      const auto [above, below] = on_both_sides(v(j), step, [&] { return equations.residuals(v); });
       if (!above || !below) return std::nullopt;
       matrix.col(j) = (*above - *below) / (2 * step);
     }
