@@ -16,8 +16,6 @@ struct BoundaryCase {
 
 inline std::vector<BoundaryCase> boundary_cases() {
   using X = std::vector<double>;
-  using studies::parametric_system;
-  using studies::Values;
   const auto ends = [](double a, double b) {
     return [a, b](Values x, Values, std::span<double> g) {
       g[0] = x[0] - a;

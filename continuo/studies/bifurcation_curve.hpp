@@ -15,7 +15,7 @@
 #include <vector>
 
 #include <continuo/studies/continuation.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

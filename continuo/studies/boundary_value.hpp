@@ -16,7 +16,7 @@
 
 #include <continuo/numerics/sparse_pattern.hpp>
 #include <continuo/solve/outcome.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

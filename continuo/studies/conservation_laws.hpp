@@ -8,12 +8,13 @@
 // C. Reder, "Metabolic control theory: a structural approach", J. Theor. Biol. 135 (1988); H. M. Sauro, B. Ingalls,
 // "Conservation analysis in biochemical networks", Biophys. Chem. 109 (2004).
 #pragma once
+#include <complex>
 #include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 
@@ -35,5 +36,9 @@ std::string law_text(const ParametricSystem& system, const ConservationLaw& law)
 /// `conserved` in the system counts.
 ParametricSystem holding(const ParametricSystem& system, const std::vector<ConservationLaw>& laws,
                          std::function<std::vector<double>(Values p)> start);
+
+/// Takes out the eigenvalues that come from laws that are held: those nearest to `own`, which are so many.
+void leave_out_conserved(const ParametricSystem& system, std::complex<double> own,
+                         std::vector<std::complex<double>>& eigenvalues);
 
 }  // namespace continuo::studies

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <continuo/studies/equilibrium.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

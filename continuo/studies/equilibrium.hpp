@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <continuo/studies/equilibria/algebraic_elimination.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

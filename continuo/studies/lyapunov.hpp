@@ -11,7 +11,7 @@
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/solve/outcome.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

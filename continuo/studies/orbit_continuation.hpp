@@ -19,8 +19,8 @@
 
 #include <continuo/simulation/stepping.hpp>
 #include <continuo/studies/equilibria/hopf_point.hpp>
-#include <continuo/studies/parametric_system.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

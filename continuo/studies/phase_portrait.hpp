@@ -9,7 +9,7 @@
 
 #include <continuo/solve/outcome.hpp>
 #include <continuo/studies/equilibrium.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

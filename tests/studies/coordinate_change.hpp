@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

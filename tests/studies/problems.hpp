@@ -9,7 +9,7 @@
 
 #include <continuo/language/load.hpp>
 #include <continuo/simulation/program/model_program.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

@@ -165,7 +165,7 @@ void move_sliders(const Studied& studied, const ExplorationLimits& limits, Explo
       return;
     }
     Slider slider{parameter.name, parameter.range->low, parameter.range->high, {}};
-    const studies::ParametricSystem system = holding_laws(
+    const ParametricSystem system = holding_laws(
         studied, studies::of_model(studied.prepared.program,
                                    {.constants = {parameter.name}, .parameters = set, .mode = studied.mode}));
     const double here = set.contains(parameter.name) ? set.at(parameter.name) : parameter.value;

@@ -98,7 +98,7 @@ SteadyDiagram diagram_of(const Studied& studied, const std::vector<studies::Equi
   elsewhere.starts = std::min(box.starts, starts_elsewhere);
   elsewhere.progress = {};
   for (std::size_t k = 0; k < values_elsewhere && !interrupt_flag(); ++k) {
-    studies::ParametricSystem there(studied.system);
+    ParametricSystem there(studied.system);
     there.constants[0] = range.low + (range.high - range.low) * (static_cast<double>(k) + 0.5) / values_elsewhere;
     for (studies::Equilibrium& e : studies::find_equilibria(there, elsewhere).equilibria)
       if (e.isolated) diagram.starts.push_back({there.constants[0], std::move(e.x)});

@@ -104,7 +104,7 @@ ExitCode sense_rest(const ExperimentOptions& options, const std::vector<std::str
   if (!influences) return usage;
   if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
   hold_conserved(studied);
-  const studies::ParametricSystem& system = studied.system;
+  const ParametricSystem& system = studied.system;
   const auto search = studies::find_equilibrium(system, studied.start, system.constants);
   if (search.ending != studies::EquilibriumEnding::found) {
     say(fmt::format("no place of rest was found near the start ({})", to_string(search.ending)));

@@ -81,11 +81,11 @@ void hold_conserved(Studied& studied) {
   studied.system = holding_laws(studied, studied.system);
 }
 
-studies::ParametricSystem holding_laws(const Studied& studied, const studies::ParametricSystem& system) {
+ParametricSystem holding_laws(const Studied& studied, const ParametricSystem& system) {
   if (studied.laws.empty()) return system;
   return studies::holding(system, studied.laws,
                           [program = studied.prepared.program, names = system.constant_names,
-                           overrides = studied.prepared.experiment.parameters](studies::Values p) {
+                           overrides = studied.prepared.experiment.parameters](Values p) {
                             model::Overrides moved = overrides;
                             for (std::size_t i = 0; i < names.size(); ++i) moved[names[i]] = p[i];
                             return studies::start_of(program->model, moved);

@@ -11,7 +11,7 @@
 
 #include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/equilibrium.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::app {
 
@@ -23,7 +23,7 @@ enum class Equations { differential, algebraic_too };
 struct Studied {
   Prepared prepared;
   std::size_t mode = 0;
-  studies::ParametricSystem system{};
+  ParametricSystem system{};
   std::vector<double> start{};                   // the initial state
   std::vector<studies::ConservationLaw> laws{};  // that the system holds (hold_conserved)
 };
@@ -35,7 +35,7 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
 /// families, those that a motion from there may come to.
 void hold_conserved(Studied& studied);
 /// The same for the model with other constants that move.
-studies::ParametricSystem holding_laws(const Studied& studied, const studies::ParametricSystem& system);
+ParametricSystem holding_laws(const Studied& studied, const ParametricSystem& system);
 /// A line for each law that is held: "conserved: a + c = 1".
 std::string conserved_text(const Studied& studied, std::string_view head = "conserved: ");
 /// The same as a member "conserved"; "events_may_change_conserved" is true where there are events, as nobody looks at

@@ -8,6 +8,7 @@
 
 #include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
+#include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/equilibria/algebraic_elimination.hpp>
 #include <continuo/studies/equilibria/curve_steps.hpp>
 #include <continuo/studies/equilibria/normal_form.hpp>

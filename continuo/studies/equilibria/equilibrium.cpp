@@ -11,6 +11,7 @@
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/numerics/finite.hpp>
+#include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/equilibrium.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 

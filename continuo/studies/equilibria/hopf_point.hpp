@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

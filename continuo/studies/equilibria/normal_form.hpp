@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

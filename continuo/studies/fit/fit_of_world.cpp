@@ -7,8 +7,8 @@
 #include <continuo/numerics/central_difference.hpp>
 #include <continuo/studies/fit/fit_of_world.hpp>
 #include <continuo/studies/fit/fit_statistics.hpp>
-#include <continuo/studies/parametric_system.hpp>
 #include <continuo/studies/sensitivity/world_sensitivity.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies::detail {
 

@@ -9,8 +9,8 @@
 
 #include <continuo/language/world.hpp>
 #include <continuo/numerics/central_difference.hpp>
-#include <continuo/studies/parametric_system.hpp>
 #include <continuo/studies/sensitivity/world_sensitivity.hpp>
+#include <continuo/system/parametric_system.hpp>
 #include <continuo/worlds/world_along.hpp>
 
 namespace continuo::studies::detail {

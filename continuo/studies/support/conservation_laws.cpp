@@ -230,4 +230,11 @@ ParametricSystem holding(const ParametricSystem& system, const std::vector<Conse
   return result;
 }
 
+void leave_out_conserved(const ParametricSystem& system, std::complex<double> own,
+                         std::vector<std::complex<double>>& eigenvalues) {
+  for (std::size_t k = 0; k < system.conserved && !eigenvalues.empty(); ++k)
+    eigenvalues.erase(std::ranges::min_element(
+        eigenvalues, {}, [&](const std::complex<double>& value) { return std::abs(value - own); }));
+}
+
 }  // namespace continuo::studies

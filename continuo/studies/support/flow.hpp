@@ -6,7 +6,7 @@
 
 #include <continuo/solve/options.hpp>
 #include <continuo/solve/solution.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
 

@@ -16,7 +16,7 @@
 
 #include <continuo/studies/orbits/collocation/bordered_cycle.hpp>
 #include <continuo/studies/orbits/collocation/gauss_collocation.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies::detail {
 

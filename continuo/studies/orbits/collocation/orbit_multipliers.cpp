@@ -14,6 +14,7 @@
 
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
+#include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/orbits/collocation/orbit_multipliers.hpp>
 #include <continuo/studies/orbits/exponents/orthonormal_columns.hpp>
 

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include <continuo/studies/parametric_system.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies::detail {
 

@@ -11,6 +11,7 @@
 
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/studies/boundary/lobatto.hpp>
+#include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/orbits/continuation/orbit_return.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 #include <continuo/studies/support/flow.hpp>

@@ -25,7 +25,7 @@
 
 #include <continuo/studies/orbits/collocation/orbit_collocation.hpp>
 #include <continuo/studies/orbits/curves/saddle_spaces.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies::detail {
 

@@ -9,8 +9,8 @@
 
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/stepping.hpp>
-#include <continuo/studies/parametric_system.hpp>
 #include <continuo/studies/sensitivity.hpp>
+#include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies::detail {
 

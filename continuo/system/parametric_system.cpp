@@ -1,19 +1,18 @@
-// continuo/studies/support/parametric_system.cpp
-// Names, and Jacobians by central differences where a system gives none.
+// Names and derivatives of a system with constants; what it does not give is taken by central differences.
 #include <algorithm>
-
-#include <fmt/format.h>
+#include <string>
+#include <vector>
 
 #include <continuo/numerics/central_difference.hpp>
-#include <continuo/studies/parametric_system.hpp>
+#include <continuo/system/parametric_system.hpp>
 
-namespace continuo::studies {
+namespace continuo {
 
 std::string ParametricSystem::name(std::size_t i) const {
-  return i < names.size() ? names[i] : fmt::format("x[{}]", i);
+  return i < names.size() ? names[i] : "x[" + std::to_string(i) + "]";
 }
 std::string ParametricSystem::constant_name(std::size_t i) const {
-  return i < constant_names.size() ? constant_names[i] : fmt::format("p[{}]", i);
+  return i < constant_names.size() ? constant_names[i] : "p[" + std::to_string(i) + "]";
 }
 
 std::vector<double> jacobian_of(const ParametricSystem& system, double t, Values x, Values p, Values scale) {
@@ -52,11 +51,4 @@ std::vector<double> constant_jacobian_of(const ParametricSystem& system, double 
   return rows;
 }
 
-void leave_out_conserved(const ParametricSystem& system, std::complex<double> own,
-                         std::vector<std::complex<double>>& eigenvalues) {
-  for (std::size_t k = 0; k < system.conserved && !eigenvalues.empty(); ++k)
-    eigenvalues.erase(std::ranges::min_element(
-        eigenvalues, {}, [&](const std::complex<double>& value) { return std::abs(value - own); }));
-}
-
-}  // namespace continuo::studies
+}  // namespace continuo

@@ -1,9 +1,9 @@
-// What the studies study: x' = f(t, x, p), with constants p that a study may move. Made from a lambda, from any System,
-// or from a model (of_model.hpp); its type says nothing of where it came from, so that every study is compiled once.
+// A system with constants: x' = f(t, x, p), with p that studies and boundary-value problems may move. Made from a
+// lambda, from any System, or from a model; its type says nothing of where it came from, so that whatever takes it is
+// compiled once.
 //
 //   const auto decay = parametric_system(1, [](double, auto x, auto p, auto dxdt) { dxdt[0] = -p[0] * x[0]; }, {2.0});
 #pragma once
-#include <complex>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -16,7 +16,7 @@
 #include <continuo/system/jacobian.hpp>
 #include <continuo/system/system.hpp>
 
-namespace continuo::studies {
+namespace continuo {
 
 using Values = std::span<const double>;
 
@@ -98,8 +98,4 @@ std::vector<double> jacobian_of(const ParametricSystem& system, double t, Values
 std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p,
                                          Values scale = {});
 
-/// Takes out the eigenvalues that come from laws that are held: those nearest to `own`, which are so many.
-void leave_out_conserved(const ParametricSystem& system, std::complex<double> own,
-                         std::vector<std::complex<double>>& eigenvalues);
-
-}  // namespace continuo::studies
+}  // namespace continuo
