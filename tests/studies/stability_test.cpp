@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "problems.hpp"
+#include <continuo/simulation/of_model.hpp>
 #include <continuo/simulation/simulate.hpp>
 #include <continuo/solve/catalogue.hpp>
-#include <continuo/studies/of_model.hpp>
 #include <continuo/studies/stability.hpp>
 
 namespace continuo::studies::stability_test {

@@ -8,7 +8,7 @@
 #include <apps/continuo/terminal/progress.hpp>
 #include <fmt/format.h>
 
-#include <continuo/studies/of_model.hpp>
+#include <continuo/simulation/of_model.hpp>
 #include <continuo/studies/support/forcing_period.hpp>
 #include <continuo/studies/support/unseen.hpp>
 
@@ -139,8 +139,8 @@ void find_orbit(const Studied& studied, const ExplorationLimits& limits, bool al
                                            .interrupt = &interrupt_flag()};
   auto exponents =
       all_seen ? studies::lyapunov_exponents(
-                     studies::of_model(studied.prepared.program,
-                                       {.parameters = studied.prepared.experiment.parameters, .mode = studied.mode}),
+                     model::of_model(studied.prepared.program,
+                                     {.parameters = studied.prepared.experiment.parameters, .mode = studied.mode}),
                      studied.start, averaging)
                : studies::lyapunov_exponents(studied.prepared.program, studied.prepared.experiment, averaging);
   if (!exponents.exponents.empty()) {
@@ -166,8 +166,8 @@ void move_sliders(const Studied& studied, const ExplorationLimits& limits, Explo
     }
     Slider slider{parameter.name, parameter.range->low, parameter.range->high, {}};
     const ParametricSystem system = holding_laws(
-        studied, studies::of_model(studied.prepared.program,
-                                   {.constants = {parameter.name}, .parameters = set, .mode = studied.mode}));
+        studied, model::of_model(studied.prepared.program,
+                                 {.constants = {parameter.name}, .parameters = set, .mode = studied.mode}));
     const double here = set.contains(parameter.name) ? set.at(parameter.name) : parameter.value;
     std::vector<studies::BranchStart> starts;
     std::vector<std::size_t> numbers;

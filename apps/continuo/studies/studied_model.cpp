@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include <continuo/results/summary.hpp>
+#include <continuo/simulation/of_model.hpp>
 #include <continuo/simulation/simulate.hpp>
 #include <continuo/studies/equilibria/events_at.hpp>
-#include <continuo/studies/of_model.hpp>
 #include <continuo/studies/support/unseen.hpp>
 
 namespace continuo::app {
@@ -70,9 +70,9 @@ Studied study(const ExperimentOptions& options, const std::string& mode, const s
     return studied;
   }
   const model::Overrides& parameters = studied.prepared.experiment.parameters;
-  studied.system = studies::of_model(studied.prepared.program,
-                                     {.constants = constants, .parameters = parameters, .mode = studied.mode});
-  studied.start = studies::start_of(model, parameters);
+  studied.system = model::of_model(studied.prepared.program,
+                                   {.constants = constants, .parameters = parameters, .mode = studied.mode});
+  studied.start = model::start_of(model, parameters);
   return studied;
 }
 
@@ -88,7 +88,7 @@ ParametricSystem holding_laws(const Studied& studied, const ParametricSystem& sy
                            overrides = studied.prepared.experiment.parameters](Values p) {
                             model::Overrides moved = overrides;
                             for (std::size_t i = 0; i < names.size(); ++i) moved[names[i]] = p[i];
-                            return studies::start_of(program->model, moved);
+                            return model::start_of(program->model, moved);
                           });
 }
 

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include <continuo/language/world.hpp>
+#include <continuo/simulation/of_model.hpp>
 #include <continuo/simulation/program/evaluation.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/compare.hpp>
 #include <continuo/studies/converge.hpp>
-#include <continuo/studies/of_model.hpp>
 
 namespace continuo::studies {
 

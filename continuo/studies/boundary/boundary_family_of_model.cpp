@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <continuo/simulation/of_model.hpp>
 #include <continuo/studies/boundary/boundary_problem_of_model.hpp>
 #include <continuo/studies/boundary_family_of_model.hpp>
-#include <continuo/studies/of_model.hpp>
 
 namespace continuo::studies {
 

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <continuo/simulation/of_model.hpp>
 #include <continuo/studies/boundary/boundary_continuation.hpp>
 #include <continuo/studies/boundary/boundary_problem_of_model.hpp>
-#include <continuo/studies/of_model.hpp>
 #include <continuo/symbolic/graph/expression.hpp>
 
 namespace continuo::studies::detail {

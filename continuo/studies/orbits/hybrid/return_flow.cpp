@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <continuo/studies/of_model.hpp>
+#include <continuo/simulation/of_model.hpp>
 #include <continuo/studies/orbits/hybrid/return_flow.hpp>
 
 namespace continuo::studies::detail {
