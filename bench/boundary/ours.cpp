@@ -10,7 +10,7 @@ namespace {
 
 using namespace continuo;
 
-double residual_of(const studies::BoundaryValueProblem& problem, const studies::BoundaryValueSolution& solution) {
+double residual_of(const boundary::BoundaryValueProblem& problem, const boundary::BoundaryValueSolution& solution) {
   constexpr int samples = 40;
   const std::size_t n = problem.system.size;
   std::vector<double> x(n), slope(n), f(n);
@@ -35,11 +35,11 @@ int main() {
   using Clock = std::chrono::steady_clock;
   for (const auto& [name, problem, guess] : bench::boundary_cases()) {
     for (double tolerance = 1e-3; tolerance > 5e-11; tolerance /= 10) {
-      studies::BoundaryValueSolution solution;
+      boundary::BoundaryValueSolution solution;
       double seconds = 1e9;
       for (int run = 0; run < 20; ++run) {
         const auto begin = Clock::now();
-        solution = studies::solve_boundary_values(problem, guess, {.tolerance = tolerance});
+        solution = boundary::solve_boundary_values(problem, guess, {.tolerance = tolerance});
         seconds = std::min(seconds, std::chrono::duration<double>(Clock::now() - begin).count());
       }
       if (!solution.outcome) continue;

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include <continuo/studies/boundary_value.hpp>
+#include <continuo/boundary/boundary_value.hpp>
 
 namespace continuo::bench {
 
 struct BoundaryCase {
   std::string name;
-  studies::BoundaryValueProblem problem;
-  studies::BoundaryValueGuess guess;
+  boundary::BoundaryValueProblem problem;
+  boundary::BoundaryValueGuess guess;
 };
 
 inline std::vector<BoundaryCase> boundary_cases() {

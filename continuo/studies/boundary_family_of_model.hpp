@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
+#include <continuo/boundary/boundary_problem_of_model.hpp>
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/studies/boundary/boundary_family.hpp>
-#include <continuo/studies/support/measurements.hpp>
 
 namespace continuo::studies {
 
 struct FamilyRequest {
   std::string parameter;
   double low, high;
-  std::optional<Measurements> guess{};  // in place of the model's guesses
+  std::optional<boundary::GuessTable> guess{};  // in place of the model's guesses
   std::function<void(double part)> progress{};
 };
 

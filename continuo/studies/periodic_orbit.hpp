@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include <continuo/boundary/boundary_value.hpp>
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/model_program.hpp>
-#include <continuo/studies/boundary_value.hpp>
 #include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies {
@@ -29,7 +29,7 @@ struct PeriodicOrbitOptions {
 struct PeriodicOrbit {
   Outcome<double> outcome;  // its hint says why there is none
   double period = 0;
-  BoundaryValueSolution orbit;                    // over t / period from 0 to 1
+  boundary::BoundaryValueSolution orbit;          // over t / period from 0 to 1
   std::vector<std::complex<double>> multipliers;  // by descending size; one of them is 1
   bool stable = false;                            // all but that one inside the unit circle
   /// How far each component has gone on after a period, by whole turns of 2 pi after which f is the same again; empty

@@ -11,6 +11,10 @@
 namespace {
 
 using namespace continuo::studies;
+using continuo::parametric_system;
+using continuo::Values;
+using continuo::boundary::BoundaryValueGuess;
+using continuo::boundary::BoundaryValueProblem;
 
 constexpr double pi = std::numbers::pi;
 

@@ -13,14 +13,6 @@
 
 namespace continuo::studies {
 
-/// The conditions x(first) = a, x(last) = b of a boundary-value problem x'' = ...
-inline auto ends(double a, double b) {
-  return [a, b](Values x, Values, std::span<double> g) {
-    g[0] = x[0] - a;
-    g[1] = x[2] - b;
-  };
-}
-
 /// E. N. Lorenz, J. Atmos. Sci. 20 (1963), with the constants sigma, rho, beta.
 inline ParametricSystem lorenz(double rho) {
   const auto f = [](double, Values x, Values p, std::span<double> dxdt) {

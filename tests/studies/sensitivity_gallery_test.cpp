@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include <continuo/boundary/boundary_of_model.hpp>
 #include <continuo/language/load.hpp>
 #include <continuo/simulation/simulate.hpp>
-#include <continuo/studies/boundary_of_model.hpp>
 #include <continuo/studies/sensitivity.hpp>
 
 namespace continuo::studies::sensitivity_gallery_test {
@@ -65,7 +65,7 @@ struct Case {
     model::Experiment experiment = asked.experiment;
     if (!program->model.needs_boundary_solver())
       experiment.method = program->model.needs_dae_solver() ? "radau" : "dop853_radau";
-    const model::Simulated simulated = run_model(program, experiment);
+    const model::Simulated simulated = boundary::run_model(program, experiment);
     EXPECT_TRUE(simulated.run && succeeded(simulated.run->outcome.ending));
     const auto x = simulated.run->motion.state(row(simulated.run->motion.rows()));
     return {x.begin(), x.end()};

@@ -10,13 +10,14 @@
 #include <fmt/format.h>
 
 #include <continuo/simulation/simulate.hpp>
+#include <continuo/studies/support/measurements.hpp>
 
 namespace continuo::app {
 namespace {
 
 /// `eps=1..1e-3`, each end with a unit where the parameter has one.
-std::optional<studies::BoundaryRequest::Along> read_along(const std::string& option, const std::string& text,
-                                                          const model::Model& model) {
+std::optional<boundary::BoundaryRequest::Along> read_along(const std::string& option, const std::string& text,
+                                                           const model::Model& model) {
   const std::size_t equals = text.find('='), dots = text.find("..");
   if (equals == std::string::npos || dots == std::string::npos || dots < equals) {
     say(fmt::format("{0} {1}: a parameter and two values are wanted, {0} eps=1..1e-3", option, text));
@@ -39,7 +40,7 @@ std::optional<studies::BoundaryRequest::Along> read_along(const std::string& opt
     say(fmt::format("{} {}: `{}` decides how many states there are, so that none can be followed", option, text, name));
     return std::nullopt;
   }
-  return studies::BoundaryRequest::Along{from->name, from->value, to->value};
+  return boundary::BoundaryRequest::Along{from->name, from->value, to->value};
 }
 
 }  // namespace
@@ -62,8 +63,8 @@ void add_boundary(CLI::App& verb, BoundaryOptions& options) {
       ->needs(family);
 }
 
-std::optional<studies::BoundaryRequest> read_boundary(const BoundaryOptions& options, const Prepared& prepared) {
-  studies::BoundaryRequest request{.solution = options.solution};
+std::optional<boundary::BoundaryRequest> read_boundary(const BoundaryOptions& options, const Prepared& prepared) {
+  boundary::BoundaryRequest request{.solution = options.solution};
   const model::Model& model = prepared.program->model;
   if (options.as_written() && options.guess.empty() && options.family.empty()) return request;
   if (!model.needs_boundary_solver()) {
@@ -86,12 +87,16 @@ std::optional<studies::BoundaryRequest> read_boundary(const BoundaryOptions& opt
       say(read.problem);
       return std::nullopt;
     }
-    request.guess = std::move(read.measurements);
+    studies::Measurements& table = read.measurements;
+    request.guess = {.name = std::move(table.file),
+                     .columns = std::move(table.columns),
+                     .times = std::move(table.times),
+                     .values = std::move(table.values)};
   }
   return request;
 }
 
-std::optional<studies::BoundaryRequest::Along> read_family(const BoundaryOptions& options, const Prepared& prepared) {
+std::optional<boundary::BoundaryRequest::Along> read_family(const BoundaryOptions& options, const Prepared& prepared) {
   if (!options.along.empty() || options.solution != 1) {
     say("--family follows every solution that it finds: leave out --along and --solution");
     return std::nullopt;

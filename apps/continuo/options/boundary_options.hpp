@@ -8,7 +8,7 @@
 #include <CLI/App.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 
-#include <continuo/studies/boundary_of_model.hpp>
+#include <continuo/boundary/boundary_of_model.hpp>
 
 namespace continuo::app {
 
@@ -24,8 +24,8 @@ struct BoundaryOptions {
 /// --solution, --along, --guess, and --family with --of.
 void add_boundary(CLI::App& verb, BoundaryOptions& options);
 /// Nothing, and said, where they do not fit the model.
-std::optional<studies::BoundaryRequest> read_boundary(const BoundaryOptions& options, const Prepared& prepared);
+std::optional<boundary::BoundaryRequest> read_boundary(const BoundaryOptions& options, const Prepared& prepared);
 /// The range of --family, as `from` and `to`. Nothing, and said, where it is none.
-std::optional<studies::BoundaryRequest::Along> read_family(const BoundaryOptions& options, const Prepared& prepared);
+std::optional<boundary::BoundaryRequest::Along> read_family(const BoundaryOptions& options, const Prepared& prepared);
 
 }  // namespace continuo::app

@@ -42,7 +42,7 @@ struct Shown {
 struct Extent {
   double low, high, at_start, at_end;
 };
-Extent extent_of(const studies::BoundaryValueSolution& solution, std::size_t component) {
+Extent extent_of(const boundary::BoundaryValueSolution& solution, std::size_t component) {
   Extent extent{.low = solution.points[component],
                 .high = solution.points[component],
                 .at_start = solution.points[component],
@@ -84,7 +84,7 @@ std::string text_of(const ModelFamilies& found, const Shown& shown, std::size_t 
     for (const FamilyMark& mark : family.marks)
       text += fmt::format("   {} = {:.10g}: {}, {} reaches {}\n", shown.parameter, shown.constant(mark.at.constant),
                           to_string(mark.kind), state,
-                          results::short_number(farthest_from_zero(mark.at.solution, component)));
+                          results::short_number(studies::farthest_from_zero(mark.at.solution, component)));
   }
   return text;
 }
@@ -151,21 +151,22 @@ bool draw(const ModelFamilies& found, const Shown& shown, std::size_t component,
     results::Curve curve{.label = found.families.size() > 1 ? fmt::format("family {}", k + 1) : "", .x = {}, .y = {}};
     for (const auto& [point, mark] : all_points(found.families[k])) {
       curve.x.push_back(point->constant);
-      curve.y.push_back(farthest_from_zero(point->solution, component));
+      curve.y.push_back(studies::farthest_from_zero(point->solution, component));
     }
     panel.curves.push_back(std::move(curve));
   }
   for (const Family& family : found.families)
     for (const FamilyMark& mark : family.marks)
       add_bifurcation(panel, std::string(to_string(mark.kind)), mark.at.constant,
-                      farthest_from_zero(mark.at.solution, component));
+                      studies::farthest_from_zero(mark.at.solution, component));
   return written(results::draw({.title = shown.model.name, .panels = {std::move(panel)}}, file));
 }
 
 }  // namespace
 
-ExitCode show_families(const Prepared& prepared, const studies::BoundaryRequest& request,
-                       const studies::BoundaryRequest::Along& range, const std::string& of, const RunOutputs& outputs) {
+ExitCode show_families(const Prepared& prepared, const boundary::BoundaryRequest& request,
+                       const boundary::BoundaryRequest::Along& range, const std::string& of,
+                       const RunOutputs& outputs) {
   const model::Model& model = prepared.program->model;
   std::optional<std::size_t> component = 0;
   if (!of.empty()) component = state_named(model, of);

@@ -11,7 +11,7 @@
 namespace continuo::app {
 
 /// Prints, draws and writes what `outputs` asks for; `of` names the state to draw, the first where it is empty.
-ExitCode show_families(const Prepared& prepared, const studies::BoundaryRequest& request,
-                       const studies::BoundaryRequest::Along& range, const std::string& of, const RunOutputs& outputs);
+ExitCode show_families(const Prepared& prepared, const boundary::BoundaryRequest& request,
+                       const boundary::BoundaryRequest::Along& range, const std::string& of, const RunOutputs& outputs);
 
 }  // namespace continuo::app

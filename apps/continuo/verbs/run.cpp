@@ -16,7 +16,7 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
-#include <continuo/studies/boundary_of_model.hpp>
+#include <continuo/boundary/boundary_of_model.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 
 namespace continuo::app {
@@ -83,7 +83,7 @@ ExitCode run(const RunRequest& request) {
     prepared.experiment.estimate_error = request.estimate_error;
     prepared.experiment.doubts = true;
     if (file.is_wanted()) return simulate_recorded(request, prepared, file);
-    return studies::run_model(prepared.program, prepared.experiment, *boundary);
+    return boundary::run_model(prepared.program, prepared.experiment, *boundary);
   }();
   const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
                              request.experiment.as_written() && request.boundary.as_written());

@@ -13,9 +13,9 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
+#include <continuo/boundary/boundary_of_model.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/simulation/simulate.hpp>
-#include <continuo/studies/boundary_of_model.hpp>
 
 namespace continuo::app {
 namespace {
@@ -38,7 +38,7 @@ Verdict verify(const std::string& path) {
   const model::Loaded loaded = load_model(path);
   if (!loaded) return {.exit = wrong_model, .remark = "not a model", .failed = {}};
   const model::Simulated simulated =
-      studies::run_model(model::compile(*loaded.model), {.interrupt = &interrupt_flag()});
+      boundary::run_model(model::compile(*loaded.model), {.interrupt = &interrupt_flag()});
   if (!simulated.run) {
     show(simulated.diagnostics, loaded.source);
     return {.exit = numerical_failure, .remark = "cannot be run", .failed = {}};

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include <continuo/studies/boundary/boundary_continuation.hpp>
+#include <continuo/boundary/boundary_continuation.hpp>
 #include <continuo/studies/boundary/boundary_family.hpp>
 #include <continuo/studies/boundary/boundary_family_marks.hpp>
 #include <continuo/studies/boundary/boundary_family_steps.hpp>
@@ -15,6 +15,10 @@
 #include <continuo/studies/support/ranges_of_constants.hpp>
 
 namespace continuo::studies {
+
+using boundary::BoundaryValueGuess;
+using boundary::BoundaryValueProblem;
+using boundary::BoundaryValueSolution;
 
 namespace {
 

@@ -5,7 +5,7 @@
 // Bifurcation Chaos 1 (1991).
 //
 //   // x'' = -p exp(x), x(0) = x(1) = 0 (Bratu): two solutions for each p below the fold at 3.5138
-//   BoundaryValueProblem bratu{parametric_system(2, f, {1.0}), {0, 1}, ends};
+//   boundary::BoundaryValueProblem bratu{parametric_system(2, f, {1.0}), {0, 1}, ends};
 //   const auto families = follow_families(bratu, {}, {.low = 0.1, .high = 4});
 #pragma once
 #include <atomic>
@@ -16,13 +16,13 @@
 #include <string_view>
 #include <vector>
 
-#include <continuo/studies/boundary_value.hpp>
+#include <continuo/boundary/boundary_value.hpp>
 
 namespace continuo::studies {
 
 struct FamilyPoint {
   double constant;
-  BoundaryValueSolution solution;  // its one parameter is the constant
+  boundary::BoundaryValueSolution solution;  // its one parameter is the constant
 };
 
 /// `fold`: the family turns round in the constant. `branch_point`: another family crosses.
@@ -47,7 +47,7 @@ struct Family {
 
 struct FamilyOptions {
   double low = 0, high = 1;  // of the constant
-  double tolerance = 1e-6;   // as BoundaryValueOptions::tolerance
+  double tolerance = 1e-6;   // as boundary::BoundaryValueOptions::tolerance
   // In parts of high - low, and of the sizes of the components.
   double first_step = 0.01, least_step = 1e-6, largest_step = 0.05;
   std::size_t most_points = 500, most_families = 12;
@@ -58,11 +58,12 @@ struct FamilyOptions {
 /// The families through solutions near the guesses, where the constant, the problem's only one, has its present value,
 /// and those that cross them, each once. The conditions are as many as components; they may read the constant. A guess
 /// that leads to no solution gives a family without points that says so.
-std::vector<Family> follow_families(const BoundaryValueProblem& problem, const std::vector<BoundaryValueGuess>& guesses,
+std::vector<Family> follow_families(const boundary::BoundaryValueProblem& problem,
+                                    const std::vector<boundary::BoundaryValueGuess>& guesses,
                                     const FamilyOptions& options);
 
 /// The value of a component that is farthest from zero, the first of those that are alike: with its sign it tells the
 /// two halves of a pitchfork apart.
-double farthest_from_zero(const BoundaryValueSolution& solution, std::size_t component);
+double farthest_from_zero(const boundary::BoundaryValueSolution& solution, std::size_t component);
 
 }  // namespace continuo::studies

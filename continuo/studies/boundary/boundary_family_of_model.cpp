@@ -6,11 +6,14 @@
 
 #include <fmt/format.h>
 
+#include <continuo/boundary/boundary_problem_of_model.hpp>
 #include <continuo/simulation/of_model.hpp>
-#include <continuo/studies/boundary/boundary_problem_of_model.hpp>
 #include <continuo/studies/boundary_family_of_model.hpp>
 
 namespace continuo::studies {
+
+using boundary::BoundaryValueGuess;
+using boundary::BoundaryValueProblem;
 
 namespace {
 
@@ -25,21 +28,21 @@ class MovingConditions {
       : program_(std::move(program)), experiment_(std::move(experiment)), parameter_(std::move(parameter)) {}
 
   void operator()(Values x, Values p, std::span<double> residuals) {
-    detail::BoundaryConditions* conditions = at(p[0]);
+    boundary::BoundaryConditions* conditions = at(p[0]);
     if (conditions)
       (*conditions)(x, residuals);
     else
       std::ranges::fill(residuals, std::numeric_limits<double>::quiet_NaN());
   }
   /// Nothing where the model does not allow this value.
-  detail::BoundaryConditions* at(double value) {
+  boundary::BoundaryConditions* at(double value) {
     const auto known = std::ranges::find(kept_, value, &Kept::value);
     if (known != kept_.end()) return known->conditions.get();
     experiment_.parameters[parameter_] = value;
     std::vector<Diagnostic> ignored;
     const auto planned = model::plan(program_->model, experiment_, ignored);
     if (kept_.size() == most_kept) kept_.erase(kept_.begin());
-    kept_.push_back({value, planned ? std::make_shared<detail::BoundaryConditions>(*program_, *planned) : nullptr});
+    kept_.push_back({value, planned ? std::make_shared<boundary::BoundaryConditions>(*program_, *planned) : nullptr});
     return kept_.back().conditions.get();
   }
 
@@ -47,7 +50,7 @@ class MovingConditions {
   static constexpr std::size_t most_kept = 4;
   struct Kept {
     double value;
-    std::shared_ptr<detail::BoundaryConditions> conditions;
+    std::shared_ptr<boundary::BoundaryConditions> conditions;
   };
   std::shared_ptr<const model::ModelProgram> program_;
   model::Experiment experiment_;
@@ -62,16 +65,16 @@ ModelFamilies families_of_model(const std::shared_ptr<const model::ModelProgram>
   ModelFamilies result;
   const model::Model& model = program->model;
   model::Experiment experiment = asked;
-  auto posed = detail::pose_boundary(program, experiment, result.diagnostics);
+  auto posed = boundary::pose_boundary(program, experiment, result.diagnostics);
   if (!posed) return result;
   const std::size_t index = model::find_parameter(model, request.parameter);
   result.start = std::clamp(posed->plan.variables[model.parameters[index].variable], request.low, request.high);
   experiment.parameters[request.parameter] = result.start;
-  posed = detail::pose_boundary(program, experiment, result.diagnostics);
+  posed = boundary::pose_boundary(program, experiment, result.diagnostics);
   if (!posed) return result;
   const auto conditions = std::make_shared<MovingConditions>(program, experiment, request.parameter);
   for (const double end : {request.low, request.high}) {
-    const detail::BoundaryConditions* there = conditions->at(end);
+    const boundary::BoundaryConditions* there = conditions->at(end);
     if (there && there->times() == posed->conditions->times()) continue;
     result.diagnostics.push_back(model::error(
         "E321", model.boundary.front().span,
@@ -89,11 +92,11 @@ ModelFamilies families_of_model(const std::shared_ptr<const model::ModelProgram>
       posed->conditions->places()};
   std::vector<BoundaryValueGuess> guesses;
   if (request.guess) {
-    auto guess = detail::guess_from(*posed, *request.guess, result.diagnostics);
+    auto guess = boundary::guess_from(*posed, *request.guess, result.diagnostics);
     if (!guess) return result;
     guesses.push_back(std::move(*guess));
   } else {
-    for (std::size_t k = 0; k < detail::guess_count(model); ++k) guesses.push_back(detail::guess_of(*posed, k));
+    for (std::size_t k = 0; k < boundary::guess_count(model); ++k) guesses.push_back(boundary::guess_of(*posed, k));
   }
   result.families = follow_families(problem, guesses,
                                     {.low = request.low,

@@ -6,12 +6,19 @@
 #include <numeric>
 #include <utility>
 
+#include <continuo/boundary/boundary_nature.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/studies/boundary/boundary_family_steps.hpp>
-#include <continuo/studies/boundary/boundary_nature.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
+
+using boundary::BoundaryValueGuess;
+using boundary::BoundaryValueOptions;
+using boundary::BoundaryValueProblem;
+using boundary::BoundaryValueSolution;
+using boundary::CollocationSystem;
+using boundary::lobatto4;
 
 namespace {
 

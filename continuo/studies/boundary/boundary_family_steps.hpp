@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
+#include <continuo/boundary/collocation_system.hpp>
 #include <continuo/studies/boundary/boundary_family.hpp>
-#include <continuo/studies/boundary/collocation_system.hpp>
 
 namespace continuo::studies::detail {
 
@@ -27,7 +27,7 @@ struct FamilyDirection {
 };
 
 struct FamilyPlace {
-  BoundaryValueSolution solution;
+  boundary::BoundaryValueSolution solution;
   FamilyDirection tangent;  // of the family, of length 1 in sizes
   double slope = 0;         // the constant's part of it, in sizes: zero in a fold
   /// Zero where the equations hold in more than one direction, which is `other` then, across the tangent and of length
@@ -41,26 +41,27 @@ struct FamilyPlace {
 
 class FamilySteps {
  public:
-  FamilySteps(const BoundaryValueProblem& problem, const FamilyOptions& options);
+  FamilySteps(const boundary::BoundaryValueProblem& problem, const FamilyOptions& options);
   FamilySteps(const FamilySteps&) = delete;  // its problem's conditions read it
   FamilySteps& operator=(const FamilySteps&) = delete;
 
   /// The solution near the guess with this value of the constant, its tangent towards greater ones.
-  std::optional<FamilyPlace> at_constant(const BoundaryValueGuess& guess, const std::vector<double>& mesh,
+  std::optional<FamilyPlace> at_constant(const boundary::BoundaryValueGuess& guess, const std::vector<double>& mesh,
                                          double value);
   /// A step in this direction from a place. Nothing where none is found, or one that is farther off than `farthest`
   /// steps. The tangent is the one nearest to the direction.
-  std::optional<FamilyPlace> stepped(const BoundaryValueSolution& from, const FamilyDirection& direction, double step,
-                                     double farthest = 0.5);
+  std::optional<FamilyPlace> stepped(const boundary::BoundaryValueSolution& from, const FamilyDirection& direction,
+                                     double step, double farthest = 0.5);
   /// The same place, solved for with twice as many intervals.
   std::optional<FamilyPlace> on_halved_mesh(const FamilyPlace& place);
   /// The solution near `guess` whose difference from `through` has no part along the way from `guess` to `towards`.
-  std::optional<FamilyPlace> across(const BoundaryValueSolution& guess, const BoundaryValueSolution& towards,
-                                    const BoundaryValueSolution& through);
+  std::optional<FamilyPlace> across(const boundary::BoundaryValueSolution& guess,
+                                    const boundary::BoundaryValueSolution& towards,
+                                    const boundary::BoundaryValueSolution& through);
 
   /// Takes the sizes of the components from here where they have grown.
-  void measure(const BoundaryValueSolution& solution);
-  double distance(const BoundaryValueSolution& a, const BoundaryValueSolution& b) const;
+  void measure(const boundary::BoundaryValueSolution& solution);
+  double distance(const boundary::BoundaryValueSolution& a, const boundary::BoundaryValueSolution& b) const;
   /// To length 1.
   void scale(FamilyDirection& direction) const;
   static double cosine(const FamilySteps& steps, const FamilyDirection& a, const FamilyDirection& b);
@@ -70,18 +71,19 @@ class FamilySteps {
 
  private:
   /// x at the sample times, then the constant, each in its size and so that the sum of squares is a mean over time.
-  std::vector<double> sampled(const BoundaryValueSolution& solution) const;
+  std::vector<double> sampled(const boundary::BoundaryValueSolution& solution) const;
   std::vector<double> sampled(const FamilyDirection& direction) const;
   template <class At>
   std::vector<double> samples_of(const At& at, double constant) const;
-  std::optional<FamilyPlace> solved(const BoundaryValueGuess& guess, const std::vector<double>& mesh, double constant);
+  std::optional<FamilyPlace> solved(const boundary::BoundaryValueGuess& guess, const std::vector<double>& mesh,
+                                    double constant);
   bool describe(FamilyPlace& place);
-  std::vector<double> disturbance(const CollocationSystem& system, std::size_t test) const;
+  std::vector<double> disturbance(const boundary::CollocationSystem& system, std::size_t test) const;
   double seen(const FamilyDirection& direction, std::size_t test) const;
-  FamilyDirection direction_of(const CollocationSystem& system, const BoundaryValueSolution& solution,
-                               std::span<const double> z) const;
+  FamilyDirection direction_of(const boundary::CollocationSystem& system,
+                               const boundary::BoundaryValueSolution& solution, std::span<const double> z) const;
 
-  BoundaryValueProblem problem_;  // with the condition of the step
+  boundary::BoundaryValueProblem problem_;  // with the condition of the step
   std::size_t n_;
   const FamilyOptions& options_;
   double tolerance_, range_;

@@ -8,12 +8,17 @@
 
 #include <fmt/format.h>
 
+#include <continuo/boundary/boundary_problem_of_model.hpp>
 #include <continuo/simulation/run_along.hpp>
-#include <continuo/studies/boundary/boundary_problem_of_model.hpp>
 #include <continuo/studies/sensitivity/boundary_sensitivity.hpp>
 #include <continuo/studies/sensitivity/sensitive_system.hpp>
 
 namespace continuo::studies::detail {
+
+using boundary::BoundaryValueOptions;
+using boundary::BoundaryValueProblem;
+using boundary::BoundaryValueSolution;
+using boundary::PosedBoundary;
 
 namespace {
 
@@ -126,7 +131,7 @@ class VariedConditions {
 
 BoundaryValueSolution first_solution(const PosedBoundary& posed) {
   BoundaryValueSolution solution;
-  const std::size_t guesses = guess_count(posed.program->model);
+  const std::size_t guesses = boundary::guess_count(posed.program->model);
   for (std::size_t k = 0; k < guesses; ++k) {
     solution = solve_from_guess(posed, k);
     if (solution.outcome || solution.outcome.ending == Ending::interrupted) break;
@@ -177,7 +182,7 @@ SensitivityRun boundary_sensitivity(const std::shared_ptr<const SensitiveProgram
   model::Experiment experiment = request.experiment;
   experiment.method.reset();  // there is one for conditions at several times
   experiment.step.reset();
-  const auto posed = pose_boundary(program->shared_program(), experiment, run.diagnostics);
+  const auto posed = boundary::pose_boundary(program->shared_program(), experiment, run.diagnostics);
   if (!posed) return run;
   run.variables = posed->plan.variables;
   const BoundaryValueSolution plain = first_solution(*posed);

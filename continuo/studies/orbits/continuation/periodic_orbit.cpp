@@ -9,14 +9,19 @@
 
 #include <fmt/format.h>
 
+#include <continuo/boundary/lobatto.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
-#include <continuo/studies/boundary/lobatto.hpp>
 #include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/orbits/continuation/orbit_return.hpp>
 #include <continuo/studies/periodic_orbit.hpp>
 #include <continuo/studies/support/flow.hpp>
 
 namespace continuo::studies {
+
+using boundary::BoundaryValueOptions;
+using boundary::BoundaryValueProblem;
+using boundary::BoundaryValueSolution;
+using boundary::lobatto4;
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <functional>
 #include <optional>
 
-#include <continuo/studies/boundary_value.hpp>
+#include <continuo/boundary/boundary_value.hpp>
 
-namespace continuo::studies {
+namespace continuo::boundary {
 
 /// A problem for each value of a parameter, the easy one at `from`. Steps are factors where both have one sign.
 struct BoundaryPath {
@@ -34,4 +34,4 @@ bool may_be_followed(const BoundaryValueProblem& problem, const BoundaryValueSol
 BoundaryValueSolution solve_with_continuation(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess = {},
                                               const BoundaryValueOptions& options = {});
 
-}  // namespace continuo::studies
+}  // namespace continuo::boundary

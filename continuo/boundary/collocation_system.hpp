@@ -14,11 +14,11 @@
 #include <span>
 #include <vector>
 
+#include <continuo/boundary/boundary_value.hpp>
+#include <continuo/boundary/lobatto.hpp>
 #include <continuo/numerics/sparse_lu.hpp>
-#include <continuo/studies/boundary/lobatto.hpp>
-#include <continuo/studies/boundary_value.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 /// How Newton's iteration ended.
 enum class NewtonEnding { converged, no_descent, singular, not_finite, too_many, interrupted };
@@ -104,4 +104,4 @@ class CollocationSystem {
   bool factored_ = false;
 };
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

@@ -1,16 +1,16 @@
-// continuo/studies/boundary/boundary_problem_of_model.cpp
+// The conditions and guesses of a model as functions, and what does not go together with them.
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include <fmt/format.h>
 
+#include <continuo/boundary/boundary_continuation.hpp>
+#include <continuo/boundary/boundary_problem_of_model.hpp>
 #include <continuo/simulation/of_model.hpp>
-#include <continuo/studies/boundary/boundary_continuation.hpp>
-#include <continuo/studies/boundary/boundary_problem_of_model.hpp>
 #include <continuo/symbolic/graph/expression.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 using model::BoundaryCondition;
 using model::Diagnostic;
@@ -230,7 +230,7 @@ BoundaryValueGuess guess_of(const PosedBoundary& posed, std::size_t k) {
   return [guess](double t, std::span<double> x) { (*guess)(t, x); };
 }
 
-std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const Measurements& table,
+std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const GuessTable& table,
                                              std::vector<Diagnostic>& problems) {
   const Model& model = posed.program->model;
   const auto guess = std::make_shared<Guess>(*posed.program, posed.plan, *posed.conditions, 0);
@@ -253,13 +253,13 @@ std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const M
       !table.times.empty() && table.times.front() < posed.plan.to && table.times.back() > posed.plan.from;
   if (!any) {
     problems.push_back(model::error("E349", model.boundary.front().span,
-                                    fmt::format("{} has no column of a state to begin from", table.file), {},
+                                    fmt::format("{} has no column of a state to begin from", table.name), {},
                                     fmt::format("columns are read by name: {}", names)));
     return std::nullopt;
   }
   if (!overlaps) {
     problems.push_back(model::error("E349", model.boundary.front().span,
-                                    fmt::format("the times of {} are outside of the run", table.file),
+                                    fmt::format("the times of {} are outside of the run", table.name),
                                     fmt::format("the run goes from {:g} to {:g}", posed.plan.from, posed.plan.to)));
     return std::nullopt;
   }
@@ -293,4 +293,4 @@ Diagnostic boundary_failure(const Model& model, const BoundaryValueSolution& sol
   return model::error("E322", model.boundary.front().span, std::move(message), {}, outcome.hint);
 }
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

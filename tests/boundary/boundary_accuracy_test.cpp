@@ -10,10 +10,10 @@
 
 #include <gtest/gtest.h>
 
-#include "problems.hpp"
-#include <continuo/studies/boundary_value.hpp>
+#include "two_ends.hpp"
+#include <continuo/boundary/boundary_value.hpp>
 
-namespace continuo::studies::boundary_accuracy_test {
+namespace continuo::boundary::boundary_accuracy_test {
 namespace {
 
 using X = std::vector<double>;
@@ -243,4 +243,4 @@ TEST(BoundaryAccuracy, ADerivativeWithoutAValueIsTakenByDifferences) {
 }
 
 }  // namespace
-}  // namespace continuo::studies::boundary_accuracy_test
+}  // namespace continuo::boundary::boundary_accuracy_test

@@ -1,20 +1,21 @@
-// The boundary-value problem that a model's conditions at several times pose. Internal to the studies of such models.
+// The boundary-value problem that a model's conditions at several times pose, for whoever solves it otherwise than
+// boundary_of_model.hpp does.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include <continuo/boundary/boundary_value.hpp>
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/evaluation.hpp>
 #include <continuo/simulation/program/model_program.hpp>
-#include <continuo/studies/boundary_value.hpp>
-#include <continuo/studies/support/measurements.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 /// The conditions as one function of x at the times that they name.
 class BoundaryConditions {
@@ -56,6 +57,14 @@ class BoundaryConditions {
   std::vector<Condition> conditions_;
 };
 
+/// Columns over time to begin a search from, such as an earlier run.
+struct GuessTable {
+  std::string name;                         // what messages call it: its file
+  std::vector<std::string> columns;         // named like states, without the time's
+  std::vector<double> times;                // ascending
+  std::vector<std::vector<double>> values;  // by column, one per time; NaN where there is none
+};
+
 /// Ready to be solved.
 struct PosedBoundary {
   std::shared_ptr<const model::ModelProgram> program;
@@ -76,11 +85,11 @@ std::size_t guess_count(const model::Model& model);
 BoundaryValueGuess guess_of(const PosedBoundary& posed, std::size_t k);
 /// From the columns of a table; states that it does not have as in the first guess, derivatives as slopes. E349 where
 /// it has none of them, or is outside of the run.
-std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const Measurements& table,
+std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const GuessTable& table,
                                              std::vector<model::Diagnostic>& problems);
 /// The solution that it leads to.
 BoundaryValueSolution solve_from_guess(const PosedBoundary& posed, std::size_t k);
 /// Why there is none: E307, E322.
 model::Diagnostic boundary_failure(const model::Model& model, const BoundaryValueSolution& solution);
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

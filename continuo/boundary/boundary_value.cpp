@@ -1,4 +1,4 @@
-// continuo/studies/boundary/boundary_value.cpp
+// Newton's iteration on one mesh after the other, until residual and error are below the tolerance.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,19 +8,15 @@
 
 #include <fmt/format.h>
 
-#include <continuo/studies/boundary/boundary_accuracy.hpp>
-#include <continuo/studies/boundary/boundary_mesh.hpp>
-#include <continuo/studies/boundary/boundary_nature.hpp>
-#include <continuo/studies/boundary/collocation_system.hpp>
-#include <continuo/studies/boundary_value.hpp>
+#include <continuo/boundary/boundary_accuracy.hpp>
+#include <continuo/boundary/boundary_mesh.hpp>
+#include <continuo/boundary/boundary_nature.hpp>
+#include <continuo/boundary/boundary_value.hpp>
+#include <continuo/boundary/collocation_system.hpp>
 
-namespace continuo::studies {
+namespace continuo::boundary {
 
 namespace {
-
-using detail::CollocationSystem;
-using detail::ErrorBounds;
-using detail::NewtonEnding;
 
 constexpr std::size_t most_meshes = 60;
 constexpr std::size_t enough_intervals = 4000;  // then a small error will do, whatever the residual
@@ -49,8 +45,8 @@ class Search {
   BoundaryValueSolution operator()(const BoundaryValueGuess& guess) {
     solution_.size = problem_.system.size;
     solution_.parameters = problem_.system.constants;
-    std::vector<double> mesh = detail::first_mesh(problem_, options_);
-    const detail::OpenEnds open = detail::open_ends(problem_, guess);
+    std::vector<double> mesh = first_mesh(problem_, options_);
+    const OpenEnds open = open_ends(problem_, guess);
     std::size_t failures = 0;
     for (std::size_t count = 0; count < most_meshes && mesh.size() <= options_.most_intervals + 1; ++count) {
       CollocationSystem system(problem_, mesh, open);
@@ -67,18 +63,18 @@ class Search {
       if (ending != NewtonEnding::converged) {
         if (is_undetermined(ending, system)) return std::move(solution_);
         if (!may_refine(ending) || ++failures > options_.most_refinements) return failed(ending, system);
-        mesh = detail::remeshed(mesh, std::vector<double>(mesh.size() - 1, 2.0), problem_.times);
+        mesh = remeshed(mesh, std::vector<double>(mesh.size() - 1, 2.0), problem_.times);
         continue;
       }
       any_ = true;
       keep(system, mesh);
-      const detail::Residuals residuals = detail::residuals_of(problem_, solution_, system, options_.tolerance);
+      const Residuals residuals = residuals_of(problem_, solution_, system, options_.tolerance);
       solution_.residual = std::ranges::max(residuals.of_intervals);
       if (options_.progress) options_.progress(residuals.of_intervals.size(), solution_.residual);
       if (!(solution_.residual < std::numeric_limits<double>::infinity()))
         return failed(NewtonEnding::not_finite, system);
       if (is_done(system, residuals)) return std::move(solution_);
-      mesh = detail::remeshed(mesh, wanted(residuals), fixed_times(mesh, residuals));
+      mesh = remeshed(mesh, wanted(residuals), fixed_times(mesh, residuals));
     }
     return too_fine(mesh.size() - 1);
   }
@@ -118,7 +114,7 @@ class Search {
   }
 
   /// The times of conditions, and the ends of intervals in which f has been found to jump.
-  std::vector<double> fixed_times(const std::vector<double>& mesh, const detail::Residuals& residuals) const {
+  std::vector<double> fixed_times(const std::vector<double>& mesh, const Residuals& residuals) const {
     std::vector<double> fixed(problem_.times);
     for (const std::size_t k : residuals.jumps) fixed.insert(fixed.end(), {mesh[k], mesh[k + 1]});
     std::ranges::sort(fixed);
@@ -126,9 +122,9 @@ class Search {
     return fixed;
   }
 
-  std::vector<double> wanted(const detail::Residuals& residuals) const {
-    if (error_factor_ > 0) return detail::wanted_for_error(residuals.shares, error_factor_);
-    std::vector<double> counts = detail::wanted_intervals(residuals.of_intervals, options_.tolerance);
+  std::vector<double> wanted(const Residuals& residuals) const {
+    if (error_factor_ > 0) return wanted_for_error(residuals.shares, error_factor_);
+    std::vector<double> counts = wanted_intervals(residuals.of_intervals, options_.tolerance);
     for (double& count : counts) count *= std::pow(more_each_time, static_cast<double>(stuck_));
     return counts;
   }
@@ -143,11 +139,11 @@ class Search {
   }
 
   /// The solution is there, or it is known why there is none; else `error_factor_` says what the next mesh aims at.
-  bool is_done(CollocationSystem& system, const detail::Residuals& residuals) {
+  bool is_done(CollocationSystem& system, const Residuals& residuals) {
     error_factor_ = 0;
     if (!is_resolved(residuals.of_intervals.size())) return false;
     if (!options_.check_error) return true;
-    ErrorBounds bounds = detail::error_bounds(system, residuals);
+    ErrorBounds bounds = error_bounds(system, residuals);
     for (std::size_t i = 0; i < bounds.of_mesh.size(); ++i) bounds.of_mesh[i] += system.held_at() * bounds.sizes[i];
     note(bounds);
     const auto [of_mesh, worst] = bounds.worst(bounds.of_mesh);
@@ -194,8 +190,8 @@ class Search {
 
   /// A linear problem of which Newton's iteration does not converge in one step is held by rounding.
   bool is_undetermined(NewtonEnding ending, CollocationSystem& system) {
-    if (ending == NewtonEnding::interrupted || !system.is_factored() || !detail::is_linear(problem_)) return false;
-    const ErrorBounds bounds = detail::rounding_bounds(system);
+    if (ending == NewtonEnding::interrupted || !system.is_factored() || !is_linear(problem_)) return false;
+    const ErrorBounds bounds = rounding_bounds(system);
     if (!(bounds.worst(bounds.undetermined).part > undetermined_part)) return false;
     note(bounds);
     undetermined(bounds);
@@ -204,7 +200,7 @@ class Search {
 
   /// Where all is zero, so may another motion be a solution; of a linear problem that is determined there is none.
   void doubt_zero() {
-    if (std::ranges::any_of(solution_.points, [](double x) { return x != 0; }) || detail::is_linear(problem_)) return;
+    if (std::ranges::any_of(solution_.points, [](double x) { return x != 0; }) || is_linear(problem_)) return;
     solution_.outcome.hint = "all is zero, which these conditions allow; another `guess` may lead to other motions";
   }
 
@@ -310,4 +306,4 @@ BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem,
   return Search(problem, options)(guess);
 }
 
-}  // namespace continuo::studies
+}  // namespace continuo::boundary

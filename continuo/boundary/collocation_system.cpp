@@ -1,14 +1,14 @@
-// continuo/studies/boundary/collocation_system.cpp
+// The equations of collocation, their matrix, and Newton's iteration with it.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include <continuo/boundary/collocation_system.hpp>
 #include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/finite.hpp>
-#include <continuo/studies/boundary/collocation_system.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 namespace {
 
@@ -358,4 +358,4 @@ NewtonEnding CollocationSystem::iterate(double target, const BoundaryValueOption
   return NewtonEnding::converged;
 }
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

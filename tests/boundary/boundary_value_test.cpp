@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "problems.hpp"
-#include <continuo/studies/boundary_value.hpp>
+#include "two_ends.hpp"
+#include <continuo/boundary/boundary_value.hpp>
 
-namespace continuo::studies::boundary_value_test {
+namespace continuo::boundary::boundary_value_test {
 namespace {
 
 using X = std::vector<double>;
@@ -193,4 +193,4 @@ TEST(BoundaryValue, TooFineAMeshKeepsTheLastSolution) {
 }
 
 }  // namespace
-}  // namespace continuo::studies::boundary_value_test
+}  // namespace continuo::boundary::boundary_value_test

@@ -1,13 +1,13 @@
-// continuo/studies/boundary/boundary_accuracy.cpp
+// What one mesh leaves of the equations, and how far that and rounding move the solution.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
-#include <continuo/studies/boundary/boundary_accuracy.hpp>
+#include <continuo/boundary/boundary_accuracy.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 namespace {
 
@@ -236,4 +236,4 @@ ErrorBounds error_bounds(CollocationSystem& system, const Residuals& residuals) 
   return bounds;
 }
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

@@ -1,12 +1,12 @@
-// continuo/studies/boundary/boundary_continuation.cpp
+// Solutions followed from an easier problem to the one that is asked for.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <continuo/studies/boundary/boundary_continuation.hpp>
-#include <continuo/studies/boundary/boundary_nature.hpp>
+#include <continuo/boundary/boundary_continuation.hpp>
+#include <continuo/boundary/boundary_nature.hpp>
 
-namespace continuo::studies {
+namespace continuo::boundary {
 
 namespace {
 
@@ -112,7 +112,7 @@ bool may_be_followed(const BoundaryValueProblem& problem, const BoundaryValueSol
   using enum BoundaryValueFailure;
   const bool may_be_elsewhere = solution.failure == not_found || solution.failure == not_finite ||
                                 solution.failure == too_fine || solution.failure == undetermined;
-  return !solution.outcome && may_be_elsewhere && !detail::is_linear(problem);
+  return !solution.outcome && may_be_elsewhere && !is_linear(problem);
 }
 
 BoundaryValueSolution solve_with_continuation(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess,
@@ -144,4 +144,4 @@ BoundaryValueSolution solve_with_continuation(const BoundaryValueProblem& proble
   return plain;
 }
 
-}  // namespace continuo::studies
+}  // namespace continuo::boundary

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include <continuo/studies/boundary_value.hpp>
+#include <continuo/boundary/boundary_value.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 /// The mesh to begin with, every time of a condition in it.
 std::vector<double> first_mesh(const BoundaryValueProblem& problem, const BoundaryValueOptions& options);
@@ -24,4 +24,4 @@ std::vector<double> wanted_intervals(std::span<const double> residuals, double g
 /// which fall with the fifth power of the interval, are to be alike.
 std::vector<double> wanted_for_error(std::span<const double> shares, double factor);
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

@@ -1,14 +1,14 @@
-// continuo/studies/boundary/boundary_mesh.cpp
+// Where the mesh begins, and where it is made finer or coarser.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <utility>
 
-#include <continuo/studies/boundary/boundary_mesh.hpp>
-#include <continuo/studies/boundary/lobatto.hpp>
+#include <continuo/boundary/boundary_mesh.hpp>
+#include <continuo/boundary/lobatto.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 namespace {
 
@@ -88,4 +88,4 @@ std::vector<double> wanted_for_error(std::span<const double> shares, double fact
   return within_growth(std::move(wanted));
 }
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

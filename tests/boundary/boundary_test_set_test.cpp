@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "problems.hpp"
-#include <continuo/studies/boundary_of_model.hpp>
+#include "two_ends.hpp"
+#include <continuo/boundary/boundary_of_model.hpp>
 
-namespace continuo::studies::boundary_test_set_test {
+namespace continuo::boundary::boundary_test_set_test {
 namespace {
 
 model::Simulated solved(const std::string& text, double tolerance, const BoundaryRequest& request = {}) {
@@ -58,8 +58,7 @@ TEST(BoundaryTestSet, AlongAParameterAndFromATableItIsTheSame) {
   const auto followed = solved(text, 1e-8, along);
   ASSERT_TRUE(plain.run && followed.run) << said(plain) << said(followed);
   BoundaryRequest from_table;
-  from_table.guess =
-      Measurements{.file = "t.csv", .columns = {"y", "y'"}, .times = {}, .lines = {}, .values = {{}, {}}};
+  from_table.guess = GuessTable{.name = "t.csv", .columns = {"y", "y'"}, .times = {}, .values = {{}, {}}};
   for (std::size_t row = 0; row < plain.run->motion.rows(); ++row) {
     for (const std::size_t i : {0u, 1u}) {
       const double a = plain.run->motion.state(row)[i], b = followed.run->motion.state(row)[i];
@@ -76,7 +75,7 @@ TEST(BoundaryTestSet, AlongAParameterAndFromATableItIsTheSame) {
 TEST(BoundaryTestSet, WhatDoesNotFitIsSaid) {
   const std::string text = "param eps = 1e-2\n" + burgers + "y(0) = 1; y(1) = -1/3\nrun 0..1\n";
   BoundaryRequest request;
-  request.guess = Measurements{.file = "t.csv", .columns = {"z"}, .times = {0, 1}, .lines = {2, 3}, .values = {{0, 1}}};
+  request.guess = GuessTable{.name = "t.csv", .columns = {"z"}, .times = {0, 1}, .values = {{0, 1}}};
   const auto no_column = solved(text, 1e-6, request);
   ASSERT_FALSE(no_column.run);
   EXPECT_EQ(no_column.diagnostics.front().code, "E349");
@@ -86,4 +85,4 @@ TEST(BoundaryTestSet, WhatDoesNotFitIsSaid) {
 }
 
 }  // namespace
-}  // namespace continuo::studies::boundary_test_set_test
+}  // namespace continuo::boundary::boundary_test_set_test

@@ -1,4 +1,4 @@
-// continuo/studies/boundary/boundary_nature.cpp
+// Whether a problem is linear, and at which ends f has no value, from f and g at a few places.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <functional>
 #include <vector>
 
+#include <continuo/boundary/boundary_nature.hpp>
 #include <continuo/numerics/finite.hpp>
-#include <continuo/studies/boundary/boundary_nature.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 namespace {
 
@@ -88,4 +88,4 @@ OpenEnds open_ends(const BoundaryValueProblem& problem, const BoundaryValueGuess
   return {is_open(from, from + little * (to - from)), is_open(to, to - little * (to - from))};
 }
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

@@ -1,13 +1,13 @@
-// continuo/studies/boundary/boundary_solution.cpp
+// The values of a solution between the points of its mesh.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
-#include <continuo/studies/boundary/lobatto.hpp>
-#include <continuo/studies/boundary_value.hpp>
+#include <continuo/boundary/boundary_value.hpp>
+#include <continuo/boundary/lobatto.hpp>
 
-namespace continuo::studies {
+namespace continuo::boundary {
 
 namespace {
 
@@ -64,4 +64,4 @@ std::vector<double> BoundaryValueSolution::operator()(double t) const {
   return x;
 }
 
-}  // namespace continuo::studies
+}  // namespace continuo::boundary

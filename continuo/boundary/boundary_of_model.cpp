@@ -1,4 +1,4 @@
-// continuo/studies/boundary/boundary_of_model.cpp
+// All solutions that the guesses of a model lead to, as runs, and their errors.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,14 +10,14 @@
 
 #include <fmt/format.h>
 
+#include <continuo/boundary/boundary_continuation.hpp>
+#include <continuo/boundary/boundary_of_model.hpp>
+#include <continuo/boundary/boundary_problem_of_model.hpp>
+#include <continuo/boundary/boundary_value.hpp>
 #include <continuo/simulation/run_along.hpp>
-#include <continuo/studies/boundary/boundary_continuation.hpp>
-#include <continuo/studies/boundary/boundary_problem_of_model.hpp>
-#include <continuo/studies/boundary_of_model.hpp>
-#include <continuo/studies/boundary_value.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 
-namespace continuo::studies {
+namespace continuo::boundary {
 
 namespace {
 
@@ -87,9 +87,9 @@ class PosedAlong {
   PosedAlong(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment, std::string parameter)
       : program_(program), experiment_(experiment), parameter_(std::move(parameter)) {}
 
-  std::optional<detail::PosedBoundary> operator()(double value, std::vector<model::Diagnostic>& problems) {
+  std::optional<PosedBoundary> operator()(double value, std::vector<model::Diagnostic>& problems) {
     experiment_.parameters[parameter_] = value;
-    return detail::pose_boundary(program_, experiment_, problems);
+    return pose_boundary(program_, experiment_, problems);
   }
 
  private:
@@ -108,10 +108,10 @@ constexpr std::size_t most_parameters = 6;      // that are tried to come to a s
 constexpr std::size_t most_steps_in_vain = 10;  // along one of them
 constexpr std::size_t most_rows = 20'000;       // of a table of which the times make a mesh
 
-std::optional<Beginning> beginning_of(const detail::PosedBoundary& posed, const BoundaryRequest& request, std::size_t k,
+std::optional<Beginning> beginning_of(const PosedBoundary& posed, const BoundaryRequest& request, std::size_t k,
                                       std::vector<model::Diagnostic>& problems) {
-  if (!request.guess) return Beginning{detail::guess_of(posed, k), {}};
-  auto guess = detail::guess_from(posed, *request.guess, problems);
+  if (!request.guess) return Beginning{guess_of(posed, k), {}};
+  auto guess = guess_from(posed, *request.guess, problems);
   if (!guess) return std::nullopt;
   Beginning beginning{std::move(*guess), {}};
   if (request.guess->times.size() <= most_rows) beginning.mesh = request.guess->times;
@@ -121,8 +121,7 @@ std::optional<Beginning> beginning_of(const detail::PosedBoundary& posed, const 
 /// Where the search from a guess has failed, and slower motion has not led there: from other values of each parameter
 /// that is a number of its own, by factors of ten, along to the one that is asked for. The first that gets there.
 std::optional<BoundaryValueSolution> along_some_parameter(const std::shared_ptr<const ModelProgram>& program,
-                                                          const Experiment& experiment,
-                                                          const detail::PosedBoundary& posed,
+                                                          const Experiment& experiment, const PosedBoundary& posed,
                                                           const BoundaryRequest& request, std::size_t k) {
   const Model& model = program->model;
   std::vector<model::Diagnostic> ignored;
@@ -157,7 +156,7 @@ std::optional<BoundaryValueSolution> along_some_parameter(const std::shared_ptr<
 /// The solution that the k-th guess leads to; nothing where the request does not fit, for which `problems` has the
 /// reason.
 std::optional<BoundaryValueSolution> solution_of(const std::shared_ptr<const ModelProgram>& program,
-                                                 const Experiment& experiment, const detail::PosedBoundary& posed,
+                                                 const Experiment& experiment, const PosedBoundary& posed,
                                                  const BoundaryRequest& request, std::size_t k,
                                                  std::vector<model::Diagnostic>& problems) {
   BoundaryValueOptions options = posed.options;
@@ -204,12 +203,12 @@ BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, 
   const Model& model = program->model;
   Experiment experiment = asked;
   if (request.along) experiment.parameters[request.along->parameter] = request.along->to;
-  auto posed = detail::pose_boundary(program, experiment, result.diagnostics);
+  auto posed = pose_boundary(program, experiment, result.diagnostics);
   if (!posed) return result;
   const Plan& plan = posed->plan;
   std::vector<BoundaryValueSolution> found;
   std::optional<BoundaryValueSolution> failure;
-  result.guesses = request.guess ? 1 : detail::guess_count(model);
+  result.guesses = request.guess ? 1 : guess_count(model);
   for (std::size_t k = 0; k < result.guesses; ++k) {
     const auto begin = std::chrono::steady_clock::now();
     // A residual that falls as a power of the mesh goes its way in logarithms.
@@ -238,7 +237,7 @@ BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, 
     found.push_back(std::move(solution));
     result.runs.push_back(std::move(run));
   }
-  if (result.runs.empty() && failure) result.diagnostics.push_back(detail::boundary_failure(model, *failure));
+  if (result.runs.empty() && failure) result.diagnostics.push_back(boundary_failure(model, *failure));
   if (result.guesses > 1) {
     for (model::Run& run : result.runs)
       run.outcome.hint += fmt::format("{}{} guesses led to {} different solution{}",
@@ -267,4 +266,4 @@ model::Simulated run_model(const std::shared_ptr<const ModelProgram>& program, c
   return simulated;
 }
 
-}  // namespace continuo::studies
+}  // namespace continuo::boundary

@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-namespace continuo::studies {
+namespace continuo::boundary {
 
 template <std::size_t s>
 struct LobattoTable {
@@ -64,4 +64,4 @@ constexpr LobattoTable<s> make_lobatto(const std::array<double, s>& nodes) {
 inline constexpr LobattoTable<4> lobatto4 =
     make_lobatto<4>({0, 0.27639320225002103035908263312687, 0.72360679774997896964091736687313, 1});
 
-}  // namespace continuo::studies
+}  // namespace continuo::boundary

@@ -10,10 +10,10 @@
 #include <cstddef>
 #include <vector>
 
-#include <continuo/studies/boundary/collocation_system.hpp>
-#include <continuo/studies/boundary_value.hpp>
+#include <continuo/boundary/boundary_value.hpp>
+#include <continuo/boundary/collocation_system.hpp>
 
-namespace continuo::studies::detail {
+namespace continuo::boundary {
 
 /// What is left of x' = f over each interval: root mean squares of (x' - f) / (1 + |f|), and the integrals of x' - f
 /// from the interval's start to each of its points but the first, for all components. Where it is far above the
@@ -46,4 +46,4 @@ ErrorBounds error_bounds(CollocationSystem& system, const Residuals& residuals);
 /// Of rounding alone.
 ErrorBounds rounding_bounds(CollocationSystem& system);
 
-}  // namespace continuo::studies::detail
+}  // namespace continuo::boundary

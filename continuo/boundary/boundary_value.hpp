@@ -18,7 +18,7 @@
 #include <continuo/solve/outcome.hpp>
 #include <continuo/system/parametric_system.hpp>
 
-namespace continuo::studies {
+namespace continuo::boundary {
 
 struct BoundaryValueProblem {
   ParametricSystem system{};    // its constants p, of which there are m, are unknown
@@ -75,4 +75,4 @@ struct BoundaryValueSolution {
 BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess = {},
                                             const BoundaryValueOptions& options = {});
 
-}  // namespace continuo::studies
+}  // namespace continuo::boundary

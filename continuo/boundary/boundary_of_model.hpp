@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <continuo/boundary/boundary_problem_of_model.hpp>
 #include <continuo/simulation/simulate.hpp>
-#include <continuo/studies/support/measurements.hpp>
 
-namespace continuo::studies {
+namespace continuo::boundary {
 
 /// What is asked beside the experiment of a model whose conditions stand at several times.
 struct BoundaryRequest {
@@ -21,12 +21,8 @@ struct BoundaryRequest {
   };
   std::optional<Along> along{};
   /// Where to begin, in place of the model's guesses: columns named like states, as a run writes them.
-  std::optional<Measurements> guess{};
+  std::optional<GuessTable> guess{};
 };
-
-/// Runs any model: by integration from the start, or, where its conditions stand at several times, by collocation.
-model::Simulated run_model(const std::shared_ptr<const model::ModelProgram>& program,
-                           const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
 
 /// All solutions of a boundary-value problem that the model's guesses lead to, each once, in the order of the guesses.
 /// The k-th guess is the k-th `guess` statement of every state (the last where there are fewer). Without a solution no
@@ -39,4 +35,8 @@ struct BoundaryRuns {
 BoundaryRuns solve_boundary(const std::shared_ptr<const model::ModelProgram>& program,
                             const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
 
-}  // namespace continuo::studies
+/// Runs any model: by integration from the start, or, where its conditions stand at several times, by collocation.
+model::Simulated run_model(const std::shared_ptr<const model::ModelProgram>& program,
+                           const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
+
+}  // namespace continuo::boundary
