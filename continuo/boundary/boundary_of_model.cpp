@@ -15,7 +15,6 @@
 #include <continuo/boundary/boundary_problem_of_model.hpp>
 #include <continuo/boundary/boundary_value.hpp>
 #include <continuo/simulation/run_along.hpp>
-#include <continuo/worlds/simulate_world.hpp>
 
 namespace continuo::boundary {
 
@@ -247,10 +246,8 @@ BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, 
   return result;
 }
 
-model::Simulated run_model(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                           const BoundaryRequest& request) {
-  if (program->model.has_world()) return worlds::simulate_world(program, experiment);
-  if (!program->model.needs_boundary_solver()) return model::simulate(program, experiment);
+model::Simulated simulate_boundary(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                                   const BoundaryRequest& request) {
   BoundaryRuns solved = solve_boundary(program, experiment, request);
   const std::size_t solution = request.solution;
   model::Simulated simulated{std::nullopt, std::move(solved.diagnostics)};

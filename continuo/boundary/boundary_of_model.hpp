@@ -35,8 +35,8 @@ struct BoundaryRuns {
 BoundaryRuns solve_boundary(const std::shared_ptr<const model::ModelProgram>& program,
                             const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
 
-/// Runs any model: by integration from the start, or, where its conditions stand at several times, by collocation.
-model::Simulated run_model(const std::shared_ptr<const model::ModelProgram>& program,
-                           const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
+/// The one of them that is asked for, as a run.
+model::Simulated simulate_boundary(const std::shared_ptr<const model::ModelProgram>& program,
+                                   const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
 
 }  // namespace continuo::boundary

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include <continuo/language/world.hpp>
 #include <continuo/results/csv.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/runs/kind.hpp>
 
 namespace continuo::results {
 namespace {
@@ -194,12 +194,11 @@ std::string range_of(std::span<const double> each, double one) {
 void append_cost_of_world(const model::Model& model, const model::Run& run, std::string& text) {
   const std::string control = run.plan.step > 0 ? fmt::format(", step {}", short_number(run.plan.step)) : "";
   fmt::format_to(std::back_inserter(text), "cost    {} collisions, {} by {}{}\n",
-                 short_number(collisions_of(*model.world, run.final_state())), duration(run.statistics.seconds),
-                 run.plan.method, control);
+                 short_number(runs::cost_of(model, run)), duration(run.statistics.seconds), run.plan.method, control);
 }
 
 void append_cost(const model::Model& model, const model::Run& run, std::string& text) {
-  if (model.has_world()) return append_cost_of_world(model, run, text);
+  if (runs::kind_of(model).solver == runs::Solver::world) return append_cost_of_world(model, run, text);
   const Statistics& s = run.statistics;
   const std::string control = run.plan.step > 0 ? fmt::format("step {}", short_number(run.plan.step))
                                                 : fmt::format("tol {}", range_of(run.plan.rtol_each, run.plan.rtol));

@@ -321,9 +321,4 @@ model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& 
   return simulated;
 }
 
-model::Simulated simulate_any(const std::shared_ptr<const model::ModelProgram>& program,
-                              const model::Experiment& experiment) {
-  return program->model.has_world() ? simulate_world(program, experiment) : model::simulate(program, experiment);
-}
-
 }  // namespace continuo::worlds

@@ -37,8 +37,4 @@ struct GoOn {
 model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording,
                               std::size_t checkpoint, const GoOn& how = {}, RunLog* log = nullptr);
 
-/// By simulate_world where the model has a world, else by model::simulate.
-model::Simulated simulate_any(const std::shared_ptr<const model::ModelProgram>& program,
-                              const model::Experiment& experiment = {});
-
 }  // namespace continuo::worlds

@@ -13,7 +13,7 @@ namespace continuo::boundary::boundary_test_set_test {
 namespace {
 
 model::Simulated solved(const std::string& text, double tolerance, const BoundaryRequest& request = {}) {
-  return run_model(program_of(text), {.rtol = tolerance}, request);
+  return simulate_boundary(program_of(text), {.rtol = tolerance}, request);
 }
 std::string said(const model::Simulated& simulated) {
   return simulated.diagnostics.empty() ? "" : simulated.diagnostics.front().message;

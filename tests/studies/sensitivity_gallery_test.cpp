@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/boundary/boundary_of_model.hpp>
 #include <continuo/language/load.hpp>
+#include <continuo/runs/run.hpp>
 #include <continuo/simulation/simulate.hpp>
 #include <continuo/studies/sensitivity.hpp>
 
@@ -65,7 +65,7 @@ struct Case {
     model::Experiment experiment = asked.experiment;
     if (!program->model.needs_boundary_solver())
       experiment.method = program->model.needs_dae_solver() ? "radau" : "dop853_radau";
-    const model::Simulated simulated = boundary::run_model(program, experiment);
+    const model::Simulated simulated = runs::run(program, experiment);
     EXPECT_TRUE(simulated.run && succeeded(simulated.run->outcome.ending));
     const auto x = simulated.run->motion.state(row(simulated.run->motion.rows()));
     return {x.begin(), x.end()};

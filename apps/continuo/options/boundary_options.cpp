@@ -9,6 +9,7 @@
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
+#include <continuo/runs/kind.hpp>
 #include <continuo/simulation/simulate.hpp>
 #include <continuo/studies/support/measurements.hpp>
 
@@ -67,7 +68,7 @@ std::optional<boundary::BoundaryRequest> read_boundary(const BoundaryOptions& op
   boundary::BoundaryRequest request{.solution = options.solution};
   const model::Model& model = prepared.program->model;
   if (options.as_written() && options.guess.empty() && options.family.empty()) return request;
-  if (!model.needs_boundary_solver()) {
+  if (runs::kind_of(model).has_start) {
     say(fmt::format(
         "{} is for models whose conditions stand at several times; this one's motion follows from its start",
         !options.along.empty()    ? "--along"

@@ -1,7 +1,7 @@
 // Adds the options that change an experiment, and reads them into one.
 #include <algorithm>
-#include <array>
 #include <cstdio>
+#include <span>
 #include <utility>
 
 #include <apps/continuo/options/command_line.hpp>
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <continuo/language/text/diagnostic.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::app {
@@ -133,7 +134,7 @@ std::string place_text(const Prepared& prepared, const model::Span& span) {
 
 bool has_no_start(const Prepared& prepared) {
   const model::Model& model = prepared.program->model;
-  if (!model.needs_boundary_solver()) return false;
+  if (runs::kind_of(model).has_start) return false;
   say(
       fmt::format("{}: the model's conditions stand at several times; `continuo run` solves it, this verb studies "
                   "motions from a start",
@@ -143,7 +144,7 @@ bool has_no_start(const Prepared& prepared) {
 
 std::function<void(double)> watcher_of(const Prepared& prepared, Progress& progress) {
   const model::Model& model = prepared.program->model;
-  if (model.needs_boundary_solver()) return progress.parts();
+  if (!runs::kind_of(model).has_start) return progress.parts();
   std::vector<model::Diagnostic> problems;  // the run itself will tell of them
   const auto plan = model::plan(model, prepared.experiment, problems);
   return plan ? progress.over(plan->from, plan->to) : progress.number("t");
@@ -161,10 +162,12 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
     prepared.exit = wrong_model;
     return prepared;
   }
-  if (worlds == Worlds::refused && prepared.loaded.model->has_world()) {
-    show(std::array{model::no_study_of_worlds(*prepared.loaded.model)}, prepared.loaded.source);
-    prepared.exit = wrong_model;
-    return prepared;
+  if (worlds == Worlds::refused) {
+    if (const auto refused = runs::no_study_of_equations(*prepared.loaded.model)) {
+      show(std::span(&*refused, 1), prepared.loaded.source);
+      prepared.exit = wrong_model;
+      return prepared;
+    }
   }
   auto values = read_settings(*prepared.loaded.model, options.settings);
   if (!values) {

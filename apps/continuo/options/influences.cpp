@@ -5,6 +5,7 @@
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
+#include <continuo/runs/kind.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::app {
@@ -19,7 +20,7 @@ void refuse_methods(CLI::App& verb) {
 
 void say_step_has_no_part(const Prepared& prepared) {
   const model::RunSettings& run = prepared.program->model.run;
-  if (run.step && !prepared.program->model.has_world())
+  if (run.step && runs::kind_of(prepared.program->model).has_exact_derivatives)
     say(
         fmt::format("{}: the fixed step has no part here: derivatives are integrated along with the motion, in steps "
                     "chosen for both",

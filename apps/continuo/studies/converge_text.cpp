@@ -6,8 +6,8 @@
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
-#include <continuo/language/world.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/runs/methods.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
@@ -106,11 +106,9 @@ void end_line(std::string& text) {
   text += '\n';
 }
 
-bool known_methods(const std::vector<std::string>& names, bool of_world) {
-  std::vector<std::string> known;
-  if (of_world) known = model::world_methods();
-  for (const MethodInfo& method : method_catalogue())
-    if (!of_world) known.emplace_back(method.name);
+bool known_methods(const std::vector<std::string>& names, const runs::Kind& kind) {
+  const bool of_world = kind.solver == runs::Solver::world;
+  const std::vector<std::string> known = runs::method_names(kind);
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) != known.end() || (!of_world && find_method(name) != nullptr)) continue;
     const std::string near = model::did_you_mean(name, known);

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include <continuo/results/figure.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/studies/converge.hpp>
 
 namespace continuo::app {
 
-/// False, and said which, where a name is no method.
-bool known_methods(const std::vector<std::string>& names, bool of_world = false);
+/// False, and said which, where a name is no method for models of this kind.
+bool known_methods(const std::vector<std::string>& names, const runs::Kind& kind = {});
 
 /// Ends a line of a table, without blanks at its end.
 void end_line(std::string& text);

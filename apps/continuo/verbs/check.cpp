@@ -14,6 +14,7 @@
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/language/world.hpp>
 #include <continuo/results/derivatives.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/simulation/check_derivatives.hpp>
 #include <continuo/simulation/simulate.hpp>
 
@@ -48,9 +49,8 @@ void print_verdict(const std::string& path, const model::Model& model) {
 /// What --jacobian adds to the verdict.
 ExitCode compare_derivatives(const CheckRequest& request, const model::Loaded& loaded) {
   std::vector<model::Diagnostic> problems;
-  if (loaded.model->has_world()) {
-    fmt::print(stderr, "{}",
-               model::render(model::no_study_of_worlds(*loaded.model), loaded.source, {.color = colors_wanted()}));
+  if (const auto refused = runs::no_study_of_equations(*loaded.model)) {
+    fmt::print(stderr, "{}", model::render(*refused, loaded.source, {.color = colors_wanted()}));
     return wrong_model;
   }
   const auto report =

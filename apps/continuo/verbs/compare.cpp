@@ -13,10 +13,10 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
-#include <continuo/language/world.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/studies/compare.hpp>
 
 namespace continuo::app {
@@ -48,19 +48,18 @@ std::string line_of(const model::Model& model, const Contender& contender) {
   const std::string drift = run.energy ? fmt::format("{:.2e}", run.energy->drift) : "-";
   return fmt::format(
       "{} {:>12.2e} {:>12.2e} {:>12} {:>12} {:>10}{}\n", head, contender.final_error, contender.largest_error, drift,
-      model.has_world() ? collisions_of(*model.world, run.final_state())
-                        : static_cast<double>(run.statistics.evaluations),
-      results::duration(run.statistics.seconds),
+      runs::cost_of(model, run), results::duration(run.statistics.seconds),
       succeeded(run.outcome.ending)
           ? ""
           : fmt::format("  {} at t = {}", to_string(run.outcome.ending), results::short_number(run.final_time())));
 }
 
 std::string table_of(const model::Model& model, const Comparison& comparison) {
+  const runs::Kind kind = runs::kind_of(model);
   std::string text = fmt::format("{:<20} {:<14} {:>12} {:>12} {:>12} {:>12} {:>10}\n", "method", "", "final error",
-                                 "largest", "energy drift", model.has_world() ? "collisions" : "evaluations", "time");
+                                 "largest", "energy drift", kind.cost, "time");
   for (const Contender& contender : comparison.contenders) text += line_of(model, contender);
-  if (model.has_world())
+  if (kind.solver == runs::Solver::world)
     return text +
            fmt::format("errors against exact at tol {}: of places by the farthest, of velocities by the fastest\n",
                        studies::reference_rtol);

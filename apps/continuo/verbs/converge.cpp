@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 
 #include <continuo/results/figure.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/converge.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
@@ -67,8 +68,9 @@ ExitCode converge(const ConvergeOptions& options) {
   }
   Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
-  if (!known_methods(options.methods, prepared.program->model.has_world())) return usage;
-  if (prepared.program->model.has_world() && !fits_a_world(options)) return usage;
+  const runs::Kind kind = runs::kind_of(prepared.program->model);
+  if (!known_methods(options.methods, kind)) return usage;
+  if (kind.solver == runs::Solver::world && !fits_a_world(options)) return usage;
   if (has_no_start(prepared)) return wrong_model;
   Progress progress;
   const auto study = studies::converge(prepared.program, prepared.experiment,

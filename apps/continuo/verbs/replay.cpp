@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <continuo/language/load.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 
 namespace continuo::app {
@@ -47,7 +48,7 @@ Opened open(const ReplayRequest& request) {
   model::CheckOptions options;
   if (head.decides_size) options.overrides = head.experiment.parameters;
   opened.loaded = model::load(model::Source(head.file, head.text), options);
-  if (!opened.loaded || !opened.loaded.model->has_world()) {
+  if (!opened.loaded || !runs::kind_of(*opened.loaded.model).can_be_recorded) {
     show(opened.loaded.diagnostics, opened.loaded.source);
     say(fmt::format("{}: the model in the recording is not in order", request.file));
     opened.exit = wrong_model;

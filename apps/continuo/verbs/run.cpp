@@ -16,8 +16,9 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
-#include <continuo/boundary/boundary_of_model.hpp>
-#include <continuo/worlds/simulate_world.hpp>
+#include <continuo/runs/kind.hpp>
+#include <continuo/runs/run.hpp>
+#include <continuo/worlds/run_log.hpp>
 
 namespace continuo::app {
 namespace {
@@ -30,14 +31,14 @@ struct RunRequest {
   RecordTo record;
 };
 
-/// A world, written to a file as it goes.
-model::Simulated simulate_recorded(const RunRequest& request, const Prepared& prepared, RunFile& file) {
-  const worlds::RunHead head{.file = prepared.loaded.source.name(),
-                             .text = prepared.loaded.source.text(),
-                             .decides_size = prepared.decides_size,
-                             .as_written = request.experiment.as_written(),
-                             .experiment = prepared.experiment};
-  return worlds::simulate_world(prepared.program, prepared.experiment, file.begin(head));
+/// Where the run is recorded as it goes; null where nobody wants that.
+worlds::RunLog* log_of(const RunRequest& request, const Prepared& prepared, RunFile& file) {
+  if (!file.is_wanted()) return nullptr;
+  return file.begin({.file = prepared.loaded.source.name(),
+                     .text = prepared.loaded.source.text(),
+                     .decides_size = prepared.decides_size,
+                     .as_written = request.experiment.as_written(),
+                     .experiment = prepared.experiment});
 }
 
 /// Families are no run: nothing of it can be written, which is said and not passed over.
@@ -60,7 +61,8 @@ ExitCode run(const RunRequest& request) {
     return usage;
   Prepared prepared = prepare(request.experiment, Worlds::welcome);
   const model::Source& source = prepared.loaded.source;
-  if (prepared.exit == done && !request.record.path.empty() && !prepared.program->model.has_world()) {
+  if (prepared.exit == done && !request.record.path.empty() &&
+      !runs::kind_of(prepared.program->model).can_be_recorded) {
     say("--record keeps the run of a world of bodies; that of equations is kept by -o");
     return usage;
   }
@@ -82,8 +84,8 @@ ExitCode run(const RunRequest& request) {
     prepared.experiment.progress = watcher_of(prepared, progress);
     prepared.experiment.estimate_error = request.estimate_error;
     prepared.experiment.doubts = true;
-    if (file.is_wanted()) return simulate_recorded(request, prepared, file);
-    return boundary::run_model(prepared.program, prepared.experiment, *boundary);
+    return runs::run(prepared.program, prepared.experiment,
+                     {.boundary = *boundary, .log = log_of(request, prepared, file)});
   }();
   const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
                              request.experiment.as_written() && request.boundary.as_written());

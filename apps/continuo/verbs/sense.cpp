@@ -20,6 +20,7 @@
 #include <continuo/results/figure.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/studies/sensitivity.hpp>
 
 namespace continuo::app {
@@ -72,7 +73,8 @@ std::string table_of(const model::Model& model, const SensitivityRun& run,
                           relative(run.value(last, i)), relative(sizes[i]));
     }
   }
-  if (model.has_world()) text += "by differences of runs to both sides of each; nan: bodies meet just then\n";
+  if (!runs::kind_of(model).has_exact_derivatives)
+    text += "by differences of runs to both sides of each; nan: bodies meet just then\n";
   if (run.events.empty()) return text;
   const studies::SensitivityEvent& event = run.events.back();
   text += fmt::format("{} events; the last, `{}`, at t = {}", run.events.size(), event.name,

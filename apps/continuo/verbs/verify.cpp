@@ -13,8 +13,8 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
-#include <continuo/boundary/boundary_of_model.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/runs/run.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::app {
@@ -37,8 +37,7 @@ std::string failed_line(const model::CheckResult& check) {
 Verdict verify(const std::string& path) {
   const model::Loaded loaded = load_model(path);
   if (!loaded) return {.exit = wrong_model, .remark = "not a model", .failed = {}};
-  const model::Simulated simulated =
-      boundary::run_model(model::compile(*loaded.model), {.interrupt = &interrupt_flag()});
+  const model::Simulated simulated = runs::run(model::compile(*loaded.model), {.interrupt = &interrupt_flag()});
   if (!simulated.run) {
     show(simulated.diagnostics, loaded.source);
     return {.exit = numerical_failure, .remark = "cannot be run", .failed = {}};

@@ -23,6 +23,7 @@
 #include <continuo/live/loop.hpp>
 #include <continuo/live/server.hpp>
 #include <continuo/live/server/gzip.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::app {
@@ -127,7 +128,7 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
   if (!are_apart(files_of(*loaded.model, request.experiment.file), request.recording.files())) return usage;
   if (!session.is_open()) {
     fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
-    if (loaded.model->needs_boundary_solver())
+    if (!runs::kind_of(*loaded.model).has_start)
       say(fmt::format(
           "the view shows what moves; this solution is found for all times at once, and `continuo report {}` "
           "draws it",

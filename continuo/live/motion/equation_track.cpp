@@ -5,6 +5,7 @@
 
 #include <continuo/live/motion/track.hpp>
 #include <continuo/live/motion/world_track.hpp>
+#include <continuo/runs/kind.hpp>
 
 namespace continuo::live {
 
@@ -107,7 +108,7 @@ class EquationTrack final : public Track, model::StepWatcher {
 }  // namespace
 
 MadeTrack make_track(const std::shared_ptr<const model::ModelProgram>& program, const model::Plan& plan) {
-  if (program->model.has_world()) return make_world_track(program, plan);
+  if (runs::kind_of(program->model).solver == runs::Solver::world) return make_world_track(program, plan);
   return {std::make_unique<EquationTrack>(program, plan), {}};
 }
 

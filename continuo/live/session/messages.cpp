@@ -5,9 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <continuo/language/world.hpp>
 #include <continuo/live/session/messages.hpp>
-#include <continuo/solve/catalogue.hpp>
+#include <continuo/runs/methods.hpp>
 
 namespace continuo::live {
 
@@ -145,27 +144,14 @@ json bodies_of(const worlds::WorldRun* world) {
           {"springs", springs}};
 }
 
-/// Those that fit the model.
 json methods_of(const model::Model& model) {
   json methods = json::array();
-  if (model.has_world()) {
-    for (const std::string& name : model::world_methods()) {
-      const bool chooses = name == "exact" || name == "dop853";
-      methods.push_back({{"name", name}, {"title", name}, {"order", 0}, {"implicit", false}, {"fixed", !chooses}});
-    }
-    return methods;
-  }
-  for (const MethodInfo& info : method_catalogue()) {
-    if (info.second_order && !model.all_paired) continue;
-    if (!info.implicit && model.needs_dae_solver()) continue;
-    std::string title(info.name);
-    for (char& c : title) c = c == '_' ? ' ' : c;
-    methods.push_back({{"name", info.name},
-                       {"title", title},
-                       {"order", info.order},
-                       {"implicit", info.implicit},
-                       {"fixed", info.error_order == 0}});
-  }
+  for (const runs::Method& method : runs::methods_for(model))
+    methods.push_back({{"name", method.name},
+                       {"title", method.title},
+                       {"order", method.order},
+                       {"implicit", method.implicit},
+                       {"fixed", !method.chooses_steps}});
   return methods;
 }
 

@@ -16,6 +16,8 @@
 #include <continuo/live/session.hpp>
 #include <continuo/live/session/messages.hpp>
 #include <continuo/live/session/write_file.hpp>
+#include <continuo/runs/kind.hpp>
+#include <continuo/runs/run.hpp>
 #include <continuo/simulation/simulate.hpp>
 #include <continuo/solve/catalogue.hpp>
 
@@ -33,12 +35,12 @@ void collect_times(const std::vector<model::ast::Statement>& statements, std::se
 
 /// Whether conditions stand at several times, so that nothing moves before all is known. Only where they are written in
 /// several ways has the text to be checked; what has errors is no such model, and can be mended here.
-bool needs_boundary_solver(const model::Source& source) {
+bool has_no_start(const model::Source& source) {
   std::set<std::string> times;
   collect_times(model::parse(source).model.statements, times);
   if (times.size() < 2) return false;
   const model::Loaded loaded = model::load(source);
-  return loaded.model && loaded.model->needs_boundary_solver();
+  return loaded.model && !runs::kind_of(*loaded.model).has_start;
 }
 
 }  // namespace
@@ -49,7 +51,7 @@ std::vector<GalleryModel> gallery_in(const std::string& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     if (entry.path().extension() != ".sim") continue;
     const auto source = model::read_source(entry.path());
-    if (!source || needs_boundary_solver(*source)) continue;
+    if (!source || has_no_start(*source)) continue;
     const std::string line = source->text().substr(0, source->text().find('\n'));
     const std::size_t begin = line.find_first_not_of("# \t");
     const bool heading = line.starts_with('#') && begin != std::string::npos;
@@ -119,8 +121,7 @@ std::optional<model::Plan> Session::plan_by(const MethodChoice& choice) {
   // Who names an adaptive method means it to choose its steps, though the text gives one for another method.
   if (info && info->error_order > 0 && !choice.step && !choice.rtol)
     experiment.rtol = shown_->model().run.rtol.value_or(1e-6);
-  auto plan = shown_->model().has_world() ? model::plan(shown_->model(), experiment, problems)
-                                          : plan_run(*shown_->program, experiment, problems);
+  auto plan = runs::plan_from_start(*shown_->program, experiment, problems);
   for (const model::Diagnostic& problem : problems) say(problem);
   if (!plan) {
     problems_ = std::move(problems);

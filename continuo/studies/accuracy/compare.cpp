@@ -9,9 +9,11 @@
 #include <fmt/format.h>
 
 #include <continuo/language/world.hpp>
+#include <continuo/runs/kind.hpp>
+#include <continuo/runs/methods.hpp>
+#include <continuo/runs/run.hpp>
 #include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/compare.hpp>
-#include <continuo/worlds/simulate_world.hpp>
 
 namespace continuo::studies {
 namespace {
@@ -23,7 +25,7 @@ constexpr double grid_intervals = 500;  // rows where the model asks for steps: 
 model::Experiment with_common_rows(const model::ModelProgram& program, const CompareRequest& request) {
   std::vector<model::Diagnostic> problems;
   model::Experiment experiment = request.experiment;
-  if (program.model.has_world()) {
+  if (!runs::kind_of(program.model).has_rows_at_any_time) {
     std::vector<double> steps = request.steps;
     if (steps.empty()) {
       experiment.method = "fast";
@@ -49,19 +51,16 @@ std::string_view reference_method(const model::ModelProgram& program, const Comp
     const MethodInfo* info = find_method(name);
     return info != nullptr && info->implicit;
   };
-  if (program.model.has_world()) return "exact";
-  const bool stiff = program.model.needs_dae_solver() || std::ranges::any_of(request.methods, is_implicit);
-  if (!stiff) return "verner9";
-  return find_method("radau") != nullptr ? "radau" : "bdf";
+  return runs::reference_method(program.model, std::ranges::any_of(request.methods, is_implicit));
 }
 
 /// Absolute tolerances as small against each state as the relative one; a model's own are kept where tighter.
-model::Experiment for_reference(model::Experiment experiment, std::string_view method) {
+model::Experiment for_reference(const runs::Kind& kind, model::Experiment experiment, std::string_view method) {
   experiment.method = method;
   experiment.rtol = reference_rtol;
   experiment.step.reset();
   experiment.atol.clear();
-  if (method != "exact") experiment.atol = {reference_rtol};  // bodies have a relative one only
+  if (kind.has_absolute_tolerances) experiment.atol = {reference_rtol};
   experiment.rtol_of.clear();
   experiment.atol_of.clear();
   return experiment;
@@ -109,9 +108,10 @@ double error_between(std::span<const double> x, std::span<const double> exact, s
 /// an event.
 void judge(const model::Model& model, const model::Motion& reference, Contender& contender) {
   auto sizes = sizes_of(reference);
-  if (model.has_world()) share_sizes(model, sizes);
+  const runs::Kind kind = runs::kind_of(model);
+  if (kind.solver == runs::Solver::world) share_sizes(model, sizes);
   const double last = reference.time(reference.rows() - 1);
-  const double slack = model.has_world() ? 1e-12 * std::max(std::abs(last), std::abs(reference.time(0))) : 0;
+  const double slack = kind.has_rows_at_any_time ? 0 : 1e-12 * std::max(std::abs(last), std::abs(reference.time(0)));
   const model::Motion& motion = contender.simulated.run->motion;
   for (std::size_t i = 0, j = 0; i < motion.rows(); ++i) {
     const double t = motion.time(i);
@@ -131,7 +131,7 @@ Contender contend(const std::shared_ptr<const model::ModelProgram>& program, con
   Contender contender{.method = *experiment.method,
                       .step = experiment.step,
                       .tolerance = experiment.rtol,
-                      .simulated = worlds::simulate_any(program, experiment),
+                      .simulated = runs::run(program, experiment, {.from_start = true}),
                       .final_error = std::nan(""),
                       .largest_error = std::nan(""),
                       .times = {},
@@ -149,8 +149,10 @@ std::string Contender::label() const {
 
 Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, const CompareRequest& request) {
   const model::Experiment common = with_common_rows(*program, request);
+  const runs::Kind kind = runs::kind_of(program->model);
   Comparison comparison{
-      .reference = worlds::simulate_any(program, for_reference(common, reference_method(*program, request))),
+      .reference =
+          runs::run(program, for_reference(kind, common, reference_method(*program, request)), {.from_start = true}),
       .contenders = {}};
   if (!comparison.reference.run || !succeeded(comparison.reference.run->outcome.ending)) return comparison;
 
@@ -158,7 +160,7 @@ Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, co
   for (const std::string& method : request.methods) {
     model::Experiment experiment = common;
     experiment.method = method;
-    const bool stepless = program->model.has_world() && (method == "exact" || method == "dop853");
+    const bool stepless = runs::has_no_step(kind, method);
     if (stepless || (request.steps.empty() && request.tolerances.empty())) {
       comparison.contenders.push_back(contend(program, motion, experiment));
     }

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include <continuo/language/world.hpp>
+#include <continuo/runs/kind.hpp>
+#include <continuo/runs/methods.hpp>
 #include <continuo/simulation/of_model.hpp>
 #include <continuo/simulation/program/evaluation.hpp>
-#include <continuo/solve/catalogue.hpp>
 #include <continuo/studies/compare.hpp>
 #include <continuo/studies/converge.hpp>
 
@@ -42,18 +42,11 @@ NamedSystem<Real> equations(const model::ModelProgram& program, const Parametric
   return system;
 }
 
-/// Of a world's methods `fast` is the integrator that the world names.
-int order_of(const model::Model& model, const std::string& method) {
-  const bool is_fast = model.has_world() && method == "fast";
-  const MethodInfo* info = find_method(is_fast ? model.world->mode.integrator : method);
-  return info == nullptr ? 0 : info->order_of_fixed_steps;
-}
-
 /// Points of a model that is more than equations: by the comparison of whole runs.
 MethodConvergence by_comparison(const model::Model& model, const std::string& method,
                                 std::span<const Contender> contenders, bool by_tolerance) {
   MethodConvergence result{.method = method};
-  if (!by_tolerance) result.nominal = order_of(model, method);
+  if (!by_tolerance) result.nominal = runs::order_of_fixed_steps(model, method);
   std::vector<double> steps, global, energy;
   for (const Contender& contender : contenders) {
     if (contender.method != method) continue;
@@ -88,8 +81,9 @@ MethodConvergence by_comparison(const model::Model& model, const std::string& me
 
 Convergence compare_runs(const std::shared_ptr<const model::ModelProgram>& program, model::Experiment experiment,
                          Interval<double> interval, const ConvergeRequest& request) {
-  Convergence result{.by_tolerance = !request.tolerances.empty(),
-                     .reference = program->model.has_world() ? "the exact motion" : "a strict run"};
+  Convergence result{
+      .by_tolerance = !request.tolerances.empty(),
+      .reference = runs::kind_of(program->model).solver == runs::Solver::world ? "the exact motion" : "a strict run"};
   experiment.interrupt = request.interrupt;
   CompareRequest compared{.methods = {}, .tolerances = request.tolerances, .experiment = std::move(experiment)};
   if (request.tolerances.empty())
@@ -144,7 +138,7 @@ std::optional<SpoiledOrder> spoiled_order(const std::shared_ptr<const model::Mod
 std::optional<ConvergenceProblem> convergence_problem(const std::shared_ptr<const model::ModelProgram>& program,
                                                       const model::Overrides& parameters, Interval<double> interval) {
   const model::Model& model = program->model;
-  if (model.has_world() || model.needs_boundary_solver() || model.needs_dae_solver() || !model.events.empty() ||
+  if (runs::kind_of(model).solver != runs::Solver::integration || model.needs_dae_solver() || !model.events.empty() ||
       !model.schedule.empty() || !program->step_inputs.empty() || model.modes.size() > 1)
     return std::nullopt;
   const std::vector<double> variables = model::start_values(model, parameters, interval.from);
@@ -164,9 +158,10 @@ std::optional<ConvergenceProblem> convergence_problem(const std::shared_ptr<cons
 
 Convergence converge(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
                      const ConvergeRequest& request) {
+  const runs::Kind kind = runs::kind_of(program->model);
   std::vector<model::Diagnostic> problems;
   const auto plan = model::plan(program->model, experiment, problems);
-  if (!plan || program->model.needs_boundary_solver()) {
+  if (!plan || !kind.has_start) {
     Convergence result;
     result.problem = problems.empty() ? "the model's conditions stand at several times: it has no run from the start"
                                       : problems.front().message;
@@ -176,7 +171,7 @@ Convergence converge(const std::shared_ptr<const model::ModelProgram>& program, 
   const auto problem = interval.to > interval.from ? convergence_problem(program, experiment.parameters, interval)
                                                    : std::optional<ConvergenceProblem>();
   Convergence study = problem ? converge(*problem, request) : compare_runs(program, experiment, interval, request);
-  if (!program->model.has_world() && study.problem.empty())
+  if (kind.solver == runs::Solver::integration && study.problem.empty())
     study.spoiled = spoiled_order(program, experiment, interval, study);
   return study;
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <continuo/language/world.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/studies/fit.hpp>
 #include <continuo/studies/fit/fit_of_world.hpp>
 #include <continuo/studies/fit/fit_problem.hpp>
@@ -72,8 +73,8 @@ std::string outside(const FitRequest& request, double start) {
   const model::Model& model = request.program->model;
   for (const FitData& data : request.data) {
     const Measurements& measured = data.measurements;
-    const double end = model.needs_boundary_solver() ? request.experiment.to.value_or(model.run.to->value)
-                                                     : std::numeric_limits<double>::infinity();
+    const double end = runs::kind_of(model).has_start ? std::numeric_limits<double>::infinity()
+                                                      : request.experiment.to.value_or(model.run.to->value);
     for (std::size_t i = 0; i < measured.times.size(); ++i) {
       const double t = measured.times[i];
       if (t < start)
@@ -163,7 +164,7 @@ std::string impossible_value(const FitRequest& request) {
 
 /// What of derivatives is to be believed: the runs' tolerance, with some air.
 double accuracy_of(const FitRequest& request) {
-  return request.program->model.has_world() ? 1e-6 : 10 * greatest_rtol_of_fit;
+  return runs::kind_of(request.program->model).has_exact_derivatives ? 10 * greatest_rtol_of_fit : 1e-6;
 }
 
 std::vector<FitEstimate> estimates_of(const FitRequest& request, const FitProblem& problem, const Fit& fit) {
@@ -213,8 +214,9 @@ class Fitting {
     search_from(start, request_.options.starts, problem_, result);
     if (!result.found() || result.least.interrupted || request_.options.starts > 1 || request_.starts_in_doubt == 0)
       return;
-    // Of worlds every end is judged by its slopes, and where meetings change with the start, chance would be searched.
-    if (result.doubts.empty() || request_.program->model.has_world()) return;
+    // Where there are no derivatives every end is judged by its slopes, and where meetings change with the start,
+    // chance would be searched.
+    if (result.doubts.empty() || !runs::kind_of(request_.program->model).has_exact_derivatives) return;
     FitProblem problem(request_);
     Fit other;
     search_from(start, 1 + request_.starts_in_doubt, problem, other);
@@ -301,7 +303,8 @@ Fit fit(const FitRequest& request) {
                                  request.data.front().measurements.file, problem.size(), start.size());
     return result;
   }
-  if (model.has_world()) result.problem = jump_of(problem, model, start);
+  const bool by_differences = !runs::kind_of(model).has_exact_derivatives;
+  if (by_differences) result.problem = jump_of(problem, model, start);
   if (!result.problem.empty()) return result;
   Fitting(request, problem).fit_from(start, result);
   result.runs = result.least.evaluations * request.data.size();
@@ -309,7 +312,7 @@ Fit fit(const FitRequest& request) {
     if (!result.least.interrupted) result.problem = unsupported_reason(request, problem, start, result.diagnostics);
     return result;
   }
-  if (!model.has_world() || result.least.interrupted) return result;
+  if (!by_differences || result.least.interrupted) return result;
   std::vector<std::string> names;
   for (const Influence& influence : influences) names.push_back(name_of(model, influence));
   LeastSquares least = problem.least_squares(result.least.p);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/runs/kind.hpp>
 #include <continuo/studies/fit/fit_of_world.hpp>
 #include <continuo/studies/fit/fit_problem.hpp>
 
@@ -55,8 +56,9 @@ FitPart::Values FitPart::at(std::span<const double> unknowns, const std::vector<
   SensitivityRequest request{.experiment = request_.experiment, .times = times};
   request.experiment.parameters = parameters_of(request_, data_);
   // Conditions at several times need the whole interval.
-  if (!model.needs_boundary_solver()) request.experiment.to = times.back();
-  if (!model.has_world())  // whose own tolerance is strict enough
+  const runs::Kind kind = runs::kind_of(model);
+  if (kind.has_start) request.experiment.to = times.back();
+  if (kind.has_exact_derivatives)  // the own tolerance of bodies is strict enough
     request.experiment.rtol = std::min(request_.experiment.rtol.value_or(model.run.rtol.value_or(greatest_rtol_of_fit)),
                                        greatest_rtol_of_fit);
   request.increments = increments;

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <variant>
 
+#include <continuo/runs/kind.hpp>
 #include <continuo/studies/sensitivity/sensitive_program.hpp>
 
 namespace continuo::studies::detail {
@@ -35,7 +36,7 @@ SensitiveProgram::SensitiveProgram(std::shared_ptr<const model::ModelProgram> pr
     const bool moves = model.run.from && !start_is_given;
     start_time_.push_back(moves ? by_parameters(graph, model.run.from->node, k) : graph.constant(0));
   }
-  if (model.has_world()) return;  // whose motion nobody differentiates
+  if (!runs::kind_of(model).has_exact_derivatives) return;
   add_equations();
   add_start();
   add_events();
@@ -93,7 +94,7 @@ void SensitiveProgram::add_equations() {
   const model::SwitchedEquations none{};
   for (std::size_t mode = 0; mode < model.modes.size(); ++mode) {
     // Collocation takes the equations as they stand.
-    const model::SwitchedEquations& held = model.needs_boundary_solver() ? none : program_->switches[mode];
+    const model::SwitchedEquations& held = runs::kind_of(model).has_start ? program_->switches[mode] : none;
     std::vector<NodeId>& nodes = rate_nodes_.emplace_back();
     for (const NodeId node : held.empty() ? model.modes[mode].derivatives : held.derivatives)
       nodes.push_back(program_->with_inputs(graph, node));
@@ -128,7 +129,7 @@ SensitiveSurfaces SensitiveProgram::surfaces_of(const model::SwitchedEquations& 
 void SensitiveProgram::add_start() {
   Graph& graph = own_.model.graph;
   const model::Model& model = program_->model;
-  if (model.needs_boundary_solver()) return;  // there are no initial values
+  if (!runs::kind_of(model).has_start) return;  // there are no initial values
   for (std::size_t k = 0; k < count(); ++k) {
     for (std::size_t i = 0; i < n_; ++i) {
       const Influence& influence = influences_[k];

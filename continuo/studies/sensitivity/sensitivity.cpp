@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <continuo/methods/automatic.hpp>
+#include <continuo/runs/kind.hpp>
 #include <continuo/simulation/program/jumps.hpp>
 #include <continuo/simulation/program/switches.hpp>
 #include <continuo/solve/choice.hpp>
@@ -97,7 +98,8 @@ std::optional<model::Jump> jump_not_located(const model::Model& model, std::size
 }  // namespace
 
 std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::span<const Influence> influences) {
-  if (model.needs_boundary_solver())
+  const runs::Kind kind = runs::kind_of(model);
+  if (!kind.has_start)
     if (auto refused = detail::no_boundary_sensitivity(model, influences)) return refused;
   for (const Influence& influence : influences) {
     if (influence.kind == Influence::Kind::initial) {
@@ -111,7 +113,7 @@ std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::
       return model::error("E361", parameter.span, fmt::format("nothing can be differentiated by `{}`", parameter.name),
                           {}, "it decides how many equations there are");
   }
-  const bool by_events = !model.needs_boundary_solver() && !model.has_world();
+  const bool by_events = kind.solver == runs::Solver::integration;
   for (std::size_t mode = 0; by_events && mode < model.modes.size(); ++mode) {
     const std::optional<model::Jump> jump = jump_not_located(model, mode);
     if (!jump) continue;
@@ -159,9 +161,9 @@ const std::vector<Influence>& SensitivityStudy::influences() const {
 
 SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   const model::Model& model = program().model;
-  if (model.needs_boundary_solver() && !no_sensitivity(model, influences()))
-    return detail::boundary_sensitivity(program_, request);
-  if (model.has_world()) return detail::world_sensitivity(program_, request);
+  const runs::Kind kind = runs::kind_of(model);
+  if (!kind.has_start && !no_sensitivity(model, influences())) return detail::boundary_sensitivity(program_, request);
+  if (!kind.has_exact_derivatives) return detail::world_sensitivity(program_, request);
   SensitivityRun run;
   run.states = model.states.size();
   run.influences = influences().size();
