@@ -63,6 +63,10 @@ struct LiveModel {
   std::size_t distance() const { return columns.size() - 1; }
 };
 
+/// The values of the model's variables as they are at some instant: parameters and inputs. Shared by all that was
+/// computed with them.
+using Variables = std::shared_ptr<const std::vector<double>>;
+
 /// Inputs that somebody moves (those with a key, and `taken`) do not follow their files.
 using Taken = std::set<std::string, std::less<>>;
 LiveModel prepare(model::Model model, const Taken& taken = {});

@@ -9,9 +9,13 @@
 // motion slows down evenly instead of hurrying after a target that runs away.
 #pragma once
 #include <deque>
+#include <functional>
 #include <limits>
 
 namespace continuo::live {
+
+/// The time on the wall: seconds, never backwards.
+using WallClock = std::function<double()>;
 
 class PacedClock {
  public:

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include <continuo/live/live_model.hpp>
 #include <continuo/live/motion/track.hpp>
 
 namespace continuo::live {
@@ -14,8 +15,8 @@ namespace continuo::live {
 struct Sample {
   Instant main;
   std::optional<Instant> ghost;
-  std::shared_ptr<const std::vector<double>> variables;  // parameters and inputs as they were
-  double first_energy = 0;                               // what the drift is measured from
+  Variables variables;      // as they were
+  double first_energy = 0;  // what the drift is measured from
 };
 
 class History {

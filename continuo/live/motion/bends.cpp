@@ -3,7 +3,7 @@
 #include <limits>
 #include <set>
 
-#include <continuo/live/motion/rows.hpp>
+#include <continuo/live/motion/bends.hpp>
 
 namespace continuo::live {
 

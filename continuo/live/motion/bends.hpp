@@ -1,4 +1,4 @@
-// continuo/live/motion/rows.hpp
+// continuo/live/motion/bends.hpp
 // The plotted values of one instant, and whether a curve would miss one that is left out.
 #pragma once
 #include <cstddef>

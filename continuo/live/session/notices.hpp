@@ -1,0 +1,37 @@
+// continuo/live/session/notices.hpp
+// Diagnostics and notes to the audience, with their place in the text that is open.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <continuo/language/text/diagnostic.hpp>
+#include <continuo/live/audience.hpp>
+
+namespace continuo::live {
+
+/// The model's text that is open, and its file.
+struct ModelText {
+  std::string path, text;
+};
+
+class Notices {
+ public:
+  /// Both stay; the text may become another.
+  Notices(Audience& audience, const ModelText& text) : audience_(audience), text_(text) {}
+
+  /// `source`: the text that the diagnostic is about, where it is not the open one.
+  void say(const model::Diagnostic& problem, const model::Source* source = nullptr);
+  void note(std::string text, std::string hint = {});
+
+  /// Why the last run that was asked for cannot be.
+  const std::vector<model::Diagnostic>& problems() const { return problems_; }
+  void set_problems(std::vector<model::Diagnostic> problems) { problems_ = std::move(problems); }
+
+ private:
+  Audience& audience_;
+  const ModelText& text_;
+  std::vector<model::Diagnostic> problems_;
+};
+
+}  // namespace continuo::live
