@@ -15,7 +15,6 @@
 // whole.
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <ostream>
@@ -46,17 +45,9 @@ namespace detail {
 
 enum class RecordingBlock : std::uint8_t { scene, frame, index };
 
-struct RecordingHeader {
-  static constexpr std::array<char, 8> expected{'c', 'o', 'n', 't', 'i', 'r', 'e', 'c'};
-  std::array<char, 8> name = expected;
-  std::uint32_t version = 1;
-  std::uint8_t real = 0, dim = 0;
+inline constexpr FileFormat recording_format{
+    {'c', 'o', 'n', 't', 'i', 'r', 'e', 'c'}, 1, "this is no recording", "a recording of another version"};
 
-  template <class Archive>
-  void transfer(Archive& archive) {
-    archive(name), archive(version), archive(real), archive(dim);
-  }
-};
 struct RecordingIndex {
   std::vector<std::uint64_t> scenes{}, frames{};  // where their blocks begin
 
@@ -73,12 +64,10 @@ class Recorder {
  public:
   /// The stream must be binary and stay; whether writing went well is for the caller to ask of it.
   explicit Recorder(std::ostream& out) : out_(out) {
-    detail::RecordingHeader header;
-    header.real = sizeof(Real);
-    header.dim = Dim;
-    ByteWriter writer;
-    writer(header);
-    out_.write(writer.bytes());
+    ByteWriter head;
+    detail::recording_format.write(head);
+    head(static_cast<std::uint8_t>(sizeof(Real))), head(static_cast<std::uint8_t>(Dim));
+    out_.write(head.bytes());
   }
 
   void add(const World<Real, Dim>& world) {
@@ -123,51 +112,49 @@ struct Recording {
 
   static Recording read(std::span<const std::byte> bytes) {
     Recording recording;
-    ByteReader reader(bytes);
-    detail::RecordingHeader header;
-    reader(header);
-    reader.expect(header.name == detail::RecordingHeader::expected, "this is no recording");
-    reader.expect(header.version == 1, "a recording of another version");
-    reader.expect(header.real == sizeof(Real) && header.dim == Dim, "numbers or dimensions of another kind");
+    ByteReader file(bytes);
+    detail::recording_format.expect(file);
+    std::uint8_t real = 0, dim = 0;
+    file(real), file(dim);
+    file.expect(real == sizeof(Real) && dim == Dim, "numbers or dimensions of another kind");
     detail::RecordingIndex found;
     while (!recording.is_whole) {
-      const std::uint64_t begin = reader.position();
-      const auto block = next_block<detail::RecordingBlock>(reader);
-      if (block) reader.expect(block->kind <= detail::RecordingBlock::index, "a block of no known kind");
-      if (block && reader.ok()) recording.take(reader, block->kind, block->bytes, begin, found);
-      if (!reader.ok()) return {.error = reader.error()};
+      const std::uint64_t begin = file.position();
+      const auto block = next_block(file, detail::RecordingBlock::index);
+      if (block) recording.take(file, block->kind, block->bytes, begin, found);
+      if (!file.ok()) return {.error = file.error()};
       if (!block) break;
     }
-    if (recording.frames.empty())
-      return {.error = reader.ok() ? "byte " + std::to_string(bytes.size()) + ": not one frame" : reader.error()};
+    if (recording.frames.empty()) return {.error = "byte " + std::to_string(bytes.size()) + ": not one frame"};
     return recording;
   }
 
  private:
-  void take(ByteReader& outer, detail::RecordingBlock kind, std::span<const std::byte> block, std::uint64_t begin,
+  void take(ByteReader& file, detail::RecordingBlock kind, std::span<const std::byte> block, std::uint64_t begin,
             detail::RecordingIndex& found) {
-    ByteReader reader(block);
     if (kind == detail::RecordingBlock::scene) {
       found.scenes.push_back(begin);
-      if (const Status read = restore(block, scenes.emplace_back()); !read)
-        outer.fail("the block before, " + read.message);
+      if (const Status read = restore(block, scenes.emplace_back()); !read) fail_in_block(file, read.message);
     } else if (kind == detail::RecordingBlock::frame) {
       found.frames.push_back(begin);
-      Frame<Real, Dim>& frame = frames.emplace_back();
-      reader(frame);
-      reader.expect(reader.left() == 0, "a frame that goes on after its end");
-      reader.expect(!scenes.empty() && frame.scene == scenes.size() - 1, "a frame of no scene before it");
-      reader.expect(scenes.empty() || (frame.position.size() == scenes.back().size() &&
-                                       frame.orientation.size() == frame.position.size()),
-                    "a frame of other bodies");
-      reader.expect(frames.size() == 1 || frame.time >= frames[frames.size() - 2].time, "a frame before the last");
+      read_block(file, block, [&](ByteReader& reader) { take_frame(reader); });
     } else {
-      detail::RecordingIndex index;
-      reader(index);
-      reader.expect(index.scenes == found.scenes && index.frames == found.frames, "an index of other blocks");
+      read_block(file, block, [&](ByteReader& reader) {
+        detail::RecordingIndex index;
+        reader(index);
+        reader.expect(index.scenes == found.scenes && index.frames == found.frames, "an index of other blocks");
+      });
       is_whole = true;
     }
-    if (!reader.ok()) outer.fail("the block before, " + reader.error());
+  }
+  void take_frame(ByteReader& reader) {
+    Frame<Real, Dim>& frame = frames.emplace_back();
+    reader(frame);
+    reader.expect(!scenes.empty() && frame.scene == scenes.size() - 1, "a frame of no scene before it");
+    reader.expect(scenes.empty() || (frame.position.size() == scenes.back().size() &&
+                                     frame.orientation.size() == frame.position.size()),
+                  "a frame of other bodies");
+    reader.expect(frames.size() == 1 || frame.time >= frames[frames.size() - 2].time, "a frame before the last");
   }
 };
 

@@ -1,6 +1,5 @@
-// Writes and reads the notes and checkpoints of a run.
+// Runs of worlds as files of blocks: what each part is made of, and in which order they come.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -11,8 +10,8 @@ namespace continuo::worlds {
 
 namespace {
 
-constexpr std::array<char, 8> magic{'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'};
-constexpr std::uint32_t version = 1;
+constexpr FileFormat run_format{
+    {'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'}, 1, "this is no recording of a run", "a recording of another version"};
 enum class Part : std::uint8_t { head, note, checkpoint, end };
 
 // What each part is made of, once for both ways.
@@ -116,11 +115,8 @@ Bytes bytes_of(const T& part) {
   return writer.take();
 }
 template <class T>
-void read_part(ByteReader& outer, std::span<const std::byte> bytes, T& part) {
-  ByteReader reader(bytes);
-  transfer(reader, part);
-  if (reader.ok()) reader.expect_end();
-  if (!reader.ok()) outer.fail("the block before, " + reader.error());
+void read_part(ByteReader& file, std::span<const std::byte> block, T& part) {
+  read_block(file, block, [&](ByteReader& reader) { transfer(reader, part); });
 }
 
 }  // namespace
@@ -147,7 +143,7 @@ void tell(model::RunRecorder& recorder, const Note& note) {
 
 RunLog::RunLog(std::ostream& out, const RunHead& head, std::size_t checkpoints) : out_(out), checkpoints_(checkpoints) {
   ByteWriter writer;
-  writer(magic), writer(version);
+  run_format.write(writer);
   out_.write(writer.bytes());
   out_.write(Part::head, bytes_of(head));
 }
@@ -167,17 +163,11 @@ void RunLog::add(const RunEnd& end) {
 RunRecording RunRecording::read(std::span<const std::byte> bytes) {
   RunRecording recording;
   ByteReader reader(bytes);
-  std::array<char, 8> name{};
-  std::uint32_t of_version = 0;
-  reader(name);
-  reader.expect(name == magic, "this is no recording of a run");
-  reader(of_version);
-  reader.expect(of_version == version, "a recording of another version");
+  run_format.expect(reader);
   bool has_head = false;
   while (!recording.end) {
-    const auto block = next_block<Part>(reader);
+    const auto block = next_block(reader, Part::end);
     if (!block) break;
-    reader.expect(block->kind <= Part::end, "a block of no known kind");
     reader.expect(has_head == (block->kind != Part::head), "blocks in another order");
     if (!reader.ok()) break;
     if (block->kind == Part::head) {

@@ -1,15 +1,48 @@
-// Files that grow while a run goes on: blocks, each its kind, its size, its bytes and their checksum. A file that ends
-// within a block was cut off there, and holds what came before.
+// continuo/bodies/support/blocks.hpp
+// Files that grow while a run goes on: a head that names the format and its version, then blocks, each its kind, its
+// size, its bytes and their checksum. A file that ends within a block was cut off there, and holds what came before.
+//
+//   BlockWriter out(stream);
+//   ByteWriter head;
+//   format.write(head);
+//   out.write(head.bytes());
+//   out.write(Kind::frame, bytes_of_a_frame);
+//
+//   ByteReader file(bytes_of_the_file);
+//   format.expect(file);
+//   while (const auto block = next_block(file, Kind::last))
+//     read_block(file, block->bytes, [&](ByteReader& reader) { reader(frame); });
+//   if (!file.ok()) return file.error();
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <ostream>
 #include <span>
+#include <string>
 
 #include <continuo/bodies/support/bytes.hpp>
 
 namespace continuo {
+
+/// What a file begins with.
+struct FileFormat {
+  std::array<char, 8> name;
+  std::uint32_t version;
+  const char* no_such_file;   // what is wrong with a file of another name,
+  const char* other_version;  // of another version
+
+  void write(ByteWriter& head) const { head(name), head(version); }
+  void expect(ByteReader& file) const {
+    std::array<char, 8> found{};
+    std::uint32_t found_version = 0;
+    file(found);
+    file.expect(found == name, no_such_file);
+    file(found_version);
+    file.expect(found_version == version, other_version);
+  }
+};
 
 class BlockWriter {
  public:
@@ -44,23 +77,38 @@ struct Block {
   Kind kind{};
   std::span<const std::byte> bytes;
 };
-/// None at the end, or where the file was cut off; where the block is another than was written the reader says so.
+/// None at the end, or where the file was cut off; where the block is another than was written, or of a kind after
+/// `last`, the reader says so.
 template <class Kind>
-std::optional<Block<Kind>> next_block(ByteReader& reader) {
-  if (!reader.ok() || reader.left() == 0) return std::nullopt;
-  const ByteReader before = reader;
+std::optional<Block<Kind>> next_block(ByteReader& file, Kind last) {
+  if (!file.ok() || file.left() == 0) return std::nullopt;
+  const ByteReader before = file;
   Block<Kind> block;
   std::uint64_t size = 0, sum = 0;
-  reader(block.kind), reader(size);
-  block.bytes = reader.take(size);
-  reader(sum);
-  if (!reader.ok()) {
-    reader = before;
+  file(block.kind), file(size);
+  block.bytes = file.take(size);
+  file(sum);
+  if (!file.ok()) {
+    file = before;
     return std::nullopt;
   }
-  reader.expect(sum == checksum(block.bytes), "the checksum does not fit the block before");
-  if (!reader.ok()) return std::nullopt;
+  file.expect(sum == checksum(block.bytes), "the checksum does not fit the block before");
+  file.expect(block.kind <= last, "a block of no known kind");
+  if (!file.ok()) return std::nullopt;
   return block;
+}
+
+/// Something is wrong in the block that has just been taken from the file.
+inline void fail_in_block(ByteReader& file, const std::string& why) {
+  file.fail("the block before, " + why);
+}
+/// `read(reader)` takes all that is in the block.
+template <class Read>
+void read_block(ByteReader& file, std::span<const std::byte> block, Read&& read) {
+  ByteReader reader(block);
+  read(reader);
+  if (reader.ok()) reader.expect_end();
+  if (!reader.ok()) fail_in_block(file, reader.error());
 }
 
 }  // namespace continuo

@@ -7,9 +7,9 @@
 //   playback.play();
 //   for (;;) playback.play_on(now());             // 60 times a second
 //
-// Everything that is changed takes effect at the instant that is shown, t(): the tracks are put back to it. Once around
-// play_on and step: the track makes a step; the instants of it that are wanted, and its events, are shown in order,
-// each with a row of the curves and a moment of the history; at its end the track is asked for the next.
+// A track makes one step after another. The instants of a step that are wanted, and its events, are shown in order,
+// each with a row of the curves and a moment of the history. Changes take effect at the instant that is shown, t(): the
+// tracks are put back to it.
 #pragma once
 #include <cstddef>
 #include <memory>
