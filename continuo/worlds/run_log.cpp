@@ -28,7 +28,7 @@ void transfer(Archive& archive, std::string& text) {
   if constexpr (Archive::reads) text.assign(letters.begin(), letters.end());
 }
 template <class Archive>
-void transfer(Archive& archive, model::RunRecorder::Name& name) {
+void transfer(Archive& archive, model::EventName& name) {
   transfer(archive, name.event), transfer(archive, name.mark);
 }
 template <class Archive>

@@ -40,12 +40,12 @@ struct Note {
   enum class Kind : std::uint8_t { begin, arrival, contact, happening, finish };
   Kind kind{};
   double t = 0;
-  std::vector<double> x{}, before{};              // before: of a happening
-  bool is_row = false, is_sampled = false;        // of an arrival,
-  double until = 0;                               // samples up to here
-  std::string name{};                             // of a contact
-  double impulse = 0;                             //
-  std::vector<model::RunRecorder::Name> names{};  // of a happening
+  std::vector<double> x{}, before{};        // before: of a happening
+  bool is_row = false, is_sampled = false;  // of an arrival,
+  double until = 0;                         // samples up to here
+  std::string name{};                       // of a contact
+  double impulse = 0;                       //
+  std::vector<model::EventName> names{};    // of a happening
 };
 void tell(model::RunRecorder& recorder, const Note& note);
 

@@ -194,8 +194,9 @@ Result<std::vector<std::size_t>> WorldEvents::happen_round(WorldRun& world, cons
   }
   if (system_.mode() != world.mode()) world.go(system_.mode());
   if (after != before) world.set_state(after);
-  tell(t, fired, before, after != before, sink);
-  if (stops) stopped_by_ = names_.empty() ? std::string() : names_.front().event;
+  const std::vector<model::EventName> names = names_.of(events_, fired);
+  if (!names.empty() || after != before) sink({t, names, before});
+  if (stops) stopped_by_ = names.empty() ? std::string() : names.front().event;
   stopped_ = stopped_ || stops;
   std::ranges::sort(next);
   return next;
@@ -215,26 +216,13 @@ void WorldEvents::carry_over(double t, const X& state, std::vector<std::size_t>&
   }
 }
 
-void WorldEvents::tell(double t, const std::vector<std::size_t>& fired, const X& before, bool changed,
-                       const Sink& sink) {
-  names_.clear();
-  const auto marks = events_.marks().subspan(marks_seen_);
-  for (const std::size_t i : fired) {
-    if (!events_.is_declared(i)) continue;
-    const auto mark = std::ranges::find(marks, i, &model::Marked::event);
-    names_.push_back({std::string(events_.name(i)), mark == marks.end() ? std::string() : mark->text});
-  }
-  marks_seen_ = events_.marks().size();
-  if (!names_.empty() || changed) sink({t, names_, before});
-}
-
 void WorldEvents::go_on(WorldRun& world, std::span<const double> variables, std::span<const std::size_t> stops) {
   const std::vector<std::size_t> counts(stops.begin(), stops.end());  // before what they may be part of is made anew
   system_.set_all(variables);
   system_.go(world.mode());
   events_ = model::ModelEvents(*program_, variables, events_.begin());
   events_.resume(world.time(), counts);
-  marks_seen_ = 0;
+  names_.restart();
   scheduled_after_ = world.time() + slack_of(world);  // up to there it has happened
   stopped_ = false;
   stopped_by_.clear();

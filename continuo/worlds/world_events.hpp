@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include <continuo/simulation/drive/run_recorder.hpp>
+#include <continuo/simulation/program/event_names.hpp>
 #include <continuo/simulation/program/model_events.hpp>
 #include <continuo/worlds/world_run.hpp>
 
@@ -30,7 +30,7 @@ double slack_of(const WorldRun& world);
 /// Events of one instant; the world is as they left it.
 struct WorldHappening {
   double t;
-  const std::vector<model::RunRecorder::Name>& names;  // empty: the step of an input, which is nobody's event
+  const std::vector<model::EventName>& names;  // empty: the step of an input, which is nobody's event
   const std::vector<double>& before;
 };
 
@@ -79,7 +79,6 @@ class WorldEvents {
   Result<std::vector<std::size_t>> happen_round(WorldRun& world, const std::vector<std::size_t>& fired,
                                                 const Sink& sink);
   void carry_over(double t, const X& state, std::vector<std::size_t>& next);
-  void tell(double t, const std::vector<std::size_t>& fired, const X& before, bool changed, const Sink& sink);
 
   std::shared_ptr<const model::ModelProgram> program_;
   model::ModelSystem system_;  // its guards, actions and modes
@@ -87,8 +86,7 @@ class WorldEvents {
   std::vector<double> values_, before_;  // of guards: now, and at the last look
   std::vector<int> sides_;         // of guards, at the last look and after each action; 0: at zero since the start
   std::set<std::size_t> watched_;  // bodies that they read
-  std::vector<model::RunRecorder::Name> names_;
-  std::size_t marks_seen_ = 0;
+  model::EventNames names_;
   double scheduled_after_, look_;
   bool any_guard_ = false, stopped_ = false;
   std::string stopped_by_;

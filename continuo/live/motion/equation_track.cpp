@@ -1,5 +1,4 @@
 // continuo/live/motion/equation_track.cpp
-#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -28,7 +27,7 @@ class EquationTrack final : public Track, model::StepWatcher {
 
   bool advance(double) override {
     remember();
-    if (marks_seen_ > most_marks) go_on(instant_at(t(), true), variables_, held_);  // which forgets them
+    if (names_.marks_seen() > most_marks) go_on(instant_at(t(), true), variables_, held_);  // which forgets them
     if (run_->advance(*this)) return true;
     if (run_->outcome().ending != Ending::reached_end) return false;
     run_->extend_to(t() + lengths_ahead * length());
@@ -57,7 +56,7 @@ class EquationTrack final : public Track, model::StepWatcher {
     variables_.assign(variables.begin(), variables.end());
     held_.assign(held.begin(), held.end());
     run_->go_on(instant, variables_, held_);
-    marks_seen_ = 0;
+    names_.restart();
     remember();
     return {};
   }
@@ -85,22 +84,19 @@ class EquationTrack final : public Track, model::StepWatcher {
   void on_segment(model::Stepping&, double) override {}
   void on_event(model::Stepping& run, const Happening<X>& now) override {
     const model::ModelEvents& events = run.events();
-    const auto marks = events.marks().subspan(marks_seen_);
     const auto stops = events.stops();
-    Passed passed{now.t, {}, now.before, now.after, run.system().mode(), {stops.begin(), stops.end()}};
-    for (const std::size_t i : now.events) {
-      if (!events.is_declared(i)) continue;
-      const auto mark = std::ranges::find(marks, i, &model::Marked::event);
-      passed.names.push_back({std::string(events.name(i)), mark == marks.end() ? std::string() : mark->text});
-    }
-    marks_seen_ = events.marks().size();
-    passed_.push_back(std::move(passed));
+    passed_.push_back({now.t,
+                       names_.of(events, now.events),
+                       now.before,
+                       now.after,
+                       run.system().mode(),
+                       {stops.begin(), stops.end()}});
   }
 
   std::unique_ptr<model::Stepping> run_;
   std::size_t mode_ = 0;            // before the last step, like
   std::vector<std::size_t> stops_;  //
-  std::size_t marks_seen_ = 0;
+  model::EventNames names_;
   std::vector<std::size_t> held_;
   std::vector<double> variables_;
 };

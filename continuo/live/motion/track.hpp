@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <continuo/simulation/program/event_names.hpp>
 #include <continuo/simulation/stepping.hpp>
 #include <continuo/worlds/world_run.hpp>
 
@@ -23,11 +24,8 @@ struct Instant : model::Instant {
 
 /// Events of one instant as they happened.
 struct Passed {
-  struct Name {
-    std::string event, mark;
-  };
   double t;
-  std::vector<Name> names;  // empty: the step of an input, which is nobody's event
+  std::vector<model::EventName> names;  // empty: the step of an input, which is nobody's event
   std::vector<double> before, after;
   std::size_t mode;  // afterwards, like
   std::vector<std::size_t> stops;

@@ -149,10 +149,9 @@ class WorldTrack final : public Track {
  private:
   worlds::WorldEvents::Sink sink() {
     return [this](const worlds::WorldHappening& now) {
-      Passed passed{now.t, {}, now.before, run_->state(), run_->mode(), {}};
+      Passed passed{now.t, now.names, now.before, run_->state(), run_->mode(), {}};
       const auto stops = events_.stops();
       passed.stops.assign(stops.begin(), stops.end());
-      for (const auto& name : now.names) passed.names.push_back({name.event, name.mark});
       statistics_.events += passed.names.size();
       passed_.push_back(std::move(passed));
     };

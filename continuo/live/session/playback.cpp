@@ -154,7 +154,7 @@ Playback::Halt Playback::go(double target, double deadline, bool to_event) {
 
 /// True where it left a row: contacts of bodies do not.
 bool Playback::pass(const Passed& passed) {
-  for (const Passed::Name& name : passed.names) pending_.add(LiveEvent{passed.t, name.event, name.mark});
+  for (const model::EventName& name : passed.names) pending_.add(LiveEvent{passed.t, name.event, name.mark});
   pending_.mark_changed();
   if (passed.after.empty()) return false;
   Instant after;

@@ -1,15 +1,13 @@
 // Runs the integration of a model by a method chosen by its name, watched by a recorder.
-#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <continuo/simulation/drive/integrate.hpp>
 #include <continuo/simulation/drive/model_method.hpp>
+#include <continuo/simulation/program/event_names.hpp>
 #include <continuo/solve/integrator.hpp>
 #include <continuo/solve/with_method.hpp>
 
@@ -27,26 +25,12 @@ class Recording final : public StepWatcher {
   }
 
   void on_event(Stepping& run, const Happening<ModelSystem::X>& now) override {
-    names_.clear();
-    const ModelEvents& events = run.events();
-    const auto marks = events.marks().subspan(marks_seen_);
-    for (const std::size_t i : now.events) {
-      const auto mark = std::ranges::find(marks, i, &Marked::event);
-      if (!events.is_declared(i) && !(events.is_jump(i) && mark != marks.end())) continue;
-      if (events.is_jump(i)) {
-        names_.push_back({mark->text + " " + std::string(events.name(i)), {}});
-      } else {
-        names_.push_back({std::string(events.name(i)), mark == marks.end() ? std::string() : mark->text});
-      }
-    }
-    marks_seen_ = events.marks().size();
-    recorder_.on_event(now.t, names_, now.before, now.after);
+    recorder_.on_event(now.t, names_.of(run.events(), now.events, true), now.before, now.after);
   }
 
  private:
   RunRecorder& recorder_;
-  std::size_t marks_seen_ = 0;
-  std::vector<RunRecorder::Name> names_;
+  EventNames names_;
 };
 
 class SteppingByName final : public Stepping {

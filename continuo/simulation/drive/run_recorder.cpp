@@ -120,8 +120,8 @@ void RunRecorder::on_segment(double to, const At& at) {
   if (every_step_ && keep_rows_) add_row(to, x_);
 }
 
-void RunRecorder::on_event(double t, std::span<const Name> names, const X& before, const X& after) {
-  for (const Name& name : names) events_.push_back({name.event, name.mark, t, before, after});
+void RunRecorder::on_event(double t, std::span<const EventName> names, const X& before, const X& after) {
+  for (const EventName& name : names) events_.push_back({name.event, name.mark, t, before, after});
   watch(t, after);
   for (std::size_t k = next_sample_; k-- > 0 && samples_[k].t == t;) samples_[k].x = after;
   if (!keep_rows_ || (names.empty() && before == after)) return;

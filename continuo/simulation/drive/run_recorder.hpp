@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <continuo/simulation/program/evaluation.hpp>
+#include <continuo/simulation/program/event_names.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/simulation/run.hpp>
 
@@ -41,10 +42,7 @@ class RunRecorder {
 
   void begin(double t, const X& x);
   void on_segment(double to, const At& at);
-  struct Name {
-    std::string event, mark;
-  };
-  void on_event(double t, std::span<const Name> names, const X& before, const X& after);
+  void on_event(double t, std::span<const EventName> names, const X& before, const X& after);
   /// Where nothing is interpolated: extremes at t, and samples up to t.
   void look(double t, const X& x) { watch(t, x); }
   void sample_until(double t, const X& x);
