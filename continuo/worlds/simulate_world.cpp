@@ -49,8 +49,8 @@ class Simulation {
         log_(log),
         events_(program, plan.variables, plan.from, look),
         times_(plan),
-        samples_(sample_times(program->model, plan)),
-        recorder_(*program, as_the_recorder_sees(plan), experiment.keep_rows, samples_, program->always) {
+        recorder_(*program, as_the_recorder_sees(plan), experiment.keep_rows, sample_times(program->model, plan),
+                  program->always) {
     run_.plan = std::move(plan);
     end_time_ = run_.plan.to;
     if (log_ && log_->checkpoints() > 0)
@@ -63,7 +63,6 @@ class Simulation {
     note({.kind = Note::Kind::begin, .t = from, .x = world_->state()});
     for (; next_row() <= from; ++next_output_) {
     }
-    while (next_sample_ < samples_.size() && samples_[next_sample_] <= from) ++next_sample_;
     if (Status status = events_.begin(*world_, sink()); !status) return fail(std::move(status));
     end_where_stopped();
     stand();
@@ -72,7 +71,7 @@ class Simulation {
   /// Fails where that checkpoint is none of this model.
   Status resume(const RunRecording& recording, std::size_t checkpoint) {
     const Checkpoint& at = recording.checkpoints[checkpoint];
-    if (at.stops.size() != events_.stops().size() || at.next_sample > samples_.size() ||
+    if (at.stops.size() != events_.stops().size() || at.next_sample > recorder_.samples().size() ||
         at.world.mode >= program_->model.modes.size())
       return invalid_input("it stands where this model cannot");
     if (Status fault = world_->check(at.world); !fault) return fault;
@@ -83,7 +82,6 @@ class Simulation {
     }
     if (Status status = world_->restore(at.world); !status) return status;
     next_output_ = static_cast<std::size_t>(at.next_output);
-    next_sample_ = static_cast<std::size_t>(at.next_sample);
     contacts_ = static_cast<std::size_t>(at.contacts);
     const std::vector<std::size_t> stops(at.stops.begin(), at.stops.end());
     events_.go_on(*world_, world_->variables(), stops);
@@ -126,7 +124,7 @@ class Simulation {
     stood_ = now;
     log_->add({.world = world_->snapshot(),
                .next_output = next_output_,
-               .next_sample = next_sample_,
+               .next_sample = recorder_.samples_taken(),
                .contacts = contacts_,
                .stops = {events_.stops().begin(), events_.stops().end()}});
     next_checkpoint_ = t + stand_every_;
@@ -155,8 +153,7 @@ class Simulation {
       stand(true);
       return end(Ending::interrupted);
     }
-    double to = std::min({end_time_, next_row(), events_.next(*world_)});
-    if (next_sample_ < samples_.size()) to = std::min(to, samples_[next_sample_]);
+    double to = std::min({end_time_, next_row(), events_.next(*world_), recorder_.next_sample()});
     if (!program_->always.empty() && in_steps()) to = std::min(to, world_->time() + world_->step());
     Status status = events_.advance(*world_, to);
     note_contacts();
@@ -177,13 +174,11 @@ class Simulation {
     } else {
       for (; next_row() <= t; ++next_output_) row = true;
     }
-    bool sampled = false;
-    for (; next_sample_ < samples_.size() && samples_[next_sample_] <= t; ++next_sample_) sampled = true;
     note({.kind = Note::Kind::arrival,
           .t = world_->time(),
           .x = world_->state(),
           .is_row = row,
-          .is_sampled = sampled,
+          .is_sampled = recorder_.next_sample() <= t,
           .until = t});
   }
 
@@ -220,10 +215,9 @@ class Simulation {
   RunLog* log_;
   WorldEvents events_;
   model::OutputTimes times_;
-  std::vector<double> samples_;
   model::RunRecorder recorder_;
   model::Run run_{};
-  std::size_t next_output_ = 0, next_sample_ = 0, contacts_ = 0;
+  std::size_t next_output_ = 0, contacts_ = 0;
   double end_time_ = 0, stand_every_ = 0, next_checkpoint_ = 0;
   std::chrono::steady_clock::time_point stood_ = std::chrono::steady_clock::now();
   bool ended_ = false;

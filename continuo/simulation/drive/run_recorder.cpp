@@ -2,6 +2,7 @@
 // Records rows, events, energies and samples while a model is integrated.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <continuo/language/world.hpp>
@@ -94,13 +95,12 @@ void RunRecorder::begin(double t, const X& x) {
   add_row(t, x);
   watch(t, x);
   while (times_[next_output_] <= t) ++next_output_;
-  for (; next_sample_ < samples_.size() && samples_[next_sample_].t <= t; ++next_sample_) {
-    if (samples_[next_sample_].t == t) samples_[next_sample_].x = x;
-  }
+  take_samples(t, [&](SampledState& sample) {
+    if (sample.t == t) sample.x = x;
+  });
 }
 
 void RunRecorder::on_segment(double to, const At& at) {
-  const bool sampled = next_sample_ < samples_.size() && samples_[next_sample_].t <= to;
   if (keep_rows_ && !every_step_) {
     for (; times_[next_output_] <= to; ++next_output_) {
       at(times_[next_output_], x_);
@@ -108,12 +108,10 @@ void RunRecorder::on_segment(double to, const At& at) {
       watch(times_[next_output_], x_);
     }
   }
-  if (sampled) {
-    for (; next_sample_ < samples_.size() && samples_[next_sample_].t <= to; ++next_sample_) {
-      samples_[next_sample_].x.resize(x_.size());
-      at(samples_[next_sample_].t, samples_[next_sample_].x);
-    }
-  }
+  take_samples(to, [&](SampledState& sample) {
+    sample.x.resize(x_.size());
+    at(sample.t, sample.x);
+  });
   if (watched_values_.empty() && !every_step_) return;
   at(to, x_);
   watch(to, x_);
@@ -130,7 +128,7 @@ void RunRecorder::on_event(double t, std::span<const EventName> names, const X& 
 }
 
 void RunRecorder::sample_until(double t, const X& x) {
-  for (; next_sample_ < samples_.size() && samples_[next_sample_].t <= t; ++next_sample_) samples_[next_sample_].x = x;
+  take_samples(t, [&](SampledState& sample) { sample.x = x; });
 }
 
 void RunRecorder::contact(double t, std::string name, double impulse) {
@@ -139,6 +137,10 @@ void RunRecorder::contact(double t, std::string name, double impulse) {
 
 void RunRecorder::finish(double t, const X& x) {
   if (last_row_ != t) add_row(t, x);
+}
+
+double RunRecorder::next_sample() const {
+  return next_sample_ < samples_.size() ? samples_[next_sample_].t : std::numeric_limits<double>::infinity();
 }
 
 const SampledState* RunRecorder::sample(double t) const {

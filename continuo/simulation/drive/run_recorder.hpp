@@ -51,6 +51,9 @@ class RunRecorder {
   void finish(double t, const X& x);
 
   std::span<const SampledState> samples() const { return samples_; }
+  /// When the next sample is wanted, infinity after the last; how many came before.
+  double next_sample() const;
+  std::size_t samples_taken() const { return next_sample_; }
   const SampledState* sample(double t) const;
   std::span<const Extremes> extremes() const { return extremes_; }
   /// Moves what was kept into the run.
@@ -59,6 +62,12 @@ class RunRecorder {
  private:
   void add_row(double t, const X& x);
   void watch(double t, const X& x);
+  /// `take(sample)` for each that is wanted up to `to`, once.
+  template <class Take>
+  void take_samples(double to, Take&& take) {
+    for (; next_sample_ < samples_.size() && samples_[next_sample_].t <= to; ++next_sample_)
+      take(samples_[next_sample_]);
+  }
   void set_inputs(Evaluation& evaluation, double t) const;
 
   const ModelProgram& program_;
