@@ -100,8 +100,7 @@ std::string number(double value) {
 }
 
 void write_head_of_ratios(std::ostream& page) {
-  page
-      << "| Problem | Error | Our best | The peer's best | Time, ours : theirs | Wanted |\n|---|---|---|---|---|---|\n";
+  page << "| Problem | Error | Our best | Best peer | Time, ours : theirs | Target |\n|---|---|---|---|---|---|\n";
 }
 
 void write_ratios(std::ostream& page, const Measured& measured, std::span<const Wanted> ratios) {

@@ -5,23 +5,24 @@
 namespace continuo::bench {
 namespace {
 
-constexpr const char* introduction = R"(# Methods for what is not stiff, ours and the peers'
+constexpr const char* introduction = R"(# Nonstiff methods, ours and the peers'
 
-`bench/nonstiff/run.sh` measures again and writes this page. Each solver is run over a range of tolerances, rtol = atol,
-ours as a plain `solve`. An error is that of the end of the run against values computed in binary128, relative where a
-component is greater than one; the largest counts. Time is the least of many runs, all solvers in turn in one process,
-compiled with the same flags (`-O3 -march=native`, no `-ffast-math`). The time at an error is read from straight lines
-through the logarithms of error and time over the tolerances around it. "-": that error is not reached (rounding adds up
-over a long run), or no run that reaches it ends within a fifth of a second.
+`bench/nonstiff/run.sh` repeats the measurements and writes this page. Each solver is run over a range of tolerances
+with rtol = atol; our methods are called through `solve`. The error is the largest error of a component at the end of
+the run, compared with values computed in binary128, and relative for components greater than one. The time is the
+minimum of many runs. All solvers run in turn in one process, compiled with the same flags (`-O3 -march=native`, no
+`-ffast-math`). The time at a given error is interpolated linearly between the neighbouring tolerances, in the
+logarithms of error and time. "-" means that the error is not reached (rounding accumulates over a long run), or only by
+runs longer than a fifth of a second.
 
-The symplectic methods mclachlan_atela4, yoshida6 and kahan_li8 run with fixed steps, shorter and shorter ones, for up to
-six tenths of a second; their sums are compensated, and what ends their curves is the rounding of the accelerations. On
-Pleiades, where stars pass each other closely, that is not what they are for. The last three problems are of the form
-x'' = a(t, x), which the Runge-Kutta-Nystrom methods (dprkn) and the symplectic ones need.
+The symplectic methods mclachlan_atela4, yoshida6 and kahan_li8 run with fixed steps of decreasing size, for up to six
+tenths of a second. Their sums are compensated, so the rounding of the accelerations limits their accuracy. On Pleiades,
+with its close encounters, fixed steps are not suitable. The last three problems have the form x'' = a(t, x), which the
+Runge-Kutta-Nystrom methods (dprkn) and the symplectic methods require.
 
-The peers: four steppers of Boost.odeint with its own step control, first step given; `rk8pd` and `msadams` of the GNU
-Scientific Library by its driver; Adams' methods of CVODE (SUNDIALS). The last two libraries as the distribution ships
-them, without tuning for the machine.
+The peers are four steppers of Boost.odeint with its own step size control and a given first step; `rk8pd` and `msadams`
+of the GNU Scientific Library with its driver; and Adams' methods of CVODE (SUNDIALS). The last two libraries are the
+packages of the distribution, not tuned for the machine.
 
 )";
 
@@ -29,11 +30,13 @@ constexpr std::array<Wanted, 4> wanted{
     {{1e-6, 0.6, of_peers}, {1e-8, 0.6, of_peers}, {1e-10, 0.6, of_peers}, {1e-12, 0.6, of_peers}}};
 
 void write_drifts(std::ostream& page, const std::vector<Drift>& drifts) {
-  page << "\n## Energy over a hundred thousand orbits\n\nKepler, e = 0.5, with fixed steps and about as many "
-          "evaluations an orbit for every method: the largest relative error\nof the energy in the first and in the "
-          "last tenth of the run. That of the symplectic methods does not grow; what rounding\nadds shows where it is "
-          "smallest.\n\n| Method | Symplectic | Evaluations an orbit | First tenth | Last tenth | Last : first |\n"
-          "|---|---|---|---|---|---|\n";
+  page
+      << "\n## Energy over a hundred thousand orbits\n\nKepler, e = 0.5, with fixed steps and about "
+         "the same number of evaluations per orbit for each method. The table\nshows the largest relative error of the "
+         "energy in the first and in the last tenth of the run. The error of the symplectic\nmethods does not grow, "
+         "except by rounding, which is visible only where the error is smallest.\n\n| Method | Symplectic | "
+         "Evaluations per orbit | First tenth | Last tenth | Last : first |\n"
+         "|---|---|---|---|---|---|\n";
   for (const Drift& drift : drifts) {
     page << text("| %s | %s | %.0f | %.1e | %.1e | %.3f |\n", std::string(drift.method).c_str(),
                  drift.symplectic ? "yes" : "no", drift.evaluations_per_orbit, drift.in_first_tenth(),
@@ -49,12 +52,12 @@ void write_nonstiff_page(const std::string& file, const std::vector<Measured>& a
   page << introduction << "## Time at equal true error\n\n";
   write_head_of_ratios(page);
   for (const Measured& measured : all) write_ratios(page, measured, wanted);
-  page << "\n## No method named\n\n`solve` without a method, here `default`: its time in units of that of our best "
-          "named method, which stands behind it.\n\n";
+  page << "\n## The default method\n\n`default` is `solve` without a method. The table shows its time relative to "
+          "that of our best named method (in brackets).\n\n";
   write_head_of_defaults(page, nonstiff_errors);
   for (const Measured& measured : all) write_default(page, measured, nonstiff_errors);
   for (const Measured& measured : all) {
-    page << "\n## " << measured.title << "\n\nTime at the error of the column, in units of our best.\n\n";
+    page << "\n## " << measured.title << "\n\nTime at the error of the column, relative to our best method.\n\n";
     write_times(page, measured, nonstiff_errors);
     page << "\n![Time against error](pictures/work_precision_" << measured.name << ".svg)\n";
   }

@@ -11,32 +11,28 @@ namespace {
 
 constexpr std::array<double, 4> errors_shown{1e-4, 1e-6, 1e-8, 1e-10};
 
-constexpr const char* introduction =
-    "# Stiff methods, ours and the peers'\n\n"
-    "`bench/stiff/run.sh` measures again and writes this page. Each solver is run over a range of tolerances with the "
-    "same\n"
-    "right-hand side and the same exact Jacobian, ours as a plain `solve`; rtol and atol go together, see "
-    "`absolute_part` in\n"
-    "`bench/stiff/measure.hpp`. An error is that of the end of the run against values computed in binary128, relative "
-    "to\n"
-    "each component; the largest counts. Time is the least of many runs, all solvers in turn in one process, compiled "
-    "with\n"
-    "the same flags (`-O3 -march=native`, no `-ffast-math`). The time at an error is read from straight lines through "
-    "the\n"
-    "logarithms of error and time over the tolerances around it. \"-\": that error is not reached, or no run that "
-    "reaches it\n"
-    "ends within a fifth of a second.\n\n"
-    "The peers: `rosenbrock4` of Boost.odeint, whose matrices are dense (therefore not on the Brusselator), with its "
-    "step\n"
-    "control as `controlled` and as `dense` stepper, first step given. CVODE of SUNDIALS as the distribution ships it, "
-    "without\n"
-    "tuning for the machine, its Newton iteration with dense matrices or with KLU. `msbdf` and `bsimp` of the GNU "
-    "Scientific\n"
-    "Library by its driver, first step given, dense matrices too.\n\n"
-    "`model METHOD` runs the equations as they stand in `models/brusselator_line.sim`, on the tape, with the Jacobian "
-    "of "
-    "their\n"
-    "graph; the others have them compiled.\n\n";
+constexpr const char* introduction = R"(# Stiff methods, ours and the peers'
+
+`bench/stiff/run.sh` repeats the measurements and writes this page. Each solver is run over a range of tolerances with
+the same right-hand side and the same exact Jacobian; our methods are called through `solve`. rtol and atol are varied
+together, see `absolute_part` in `bench/stiff/measure.hpp`. The error is the largest relative error of a component at
+the end of the run, compared with values computed in binary128. The time is the minimum of many runs. All solvers run in
+turn in one process, compiled with the same flags (`-O3 -march=native`, no `-ffast-math`). The time at a given error is
+interpolated linearly between the neighbouring tolerances, in the logarithms of error and time. "-" means that the error
+is not reached, or only by runs longer than a fifth of a second.
+
+The peers are:
+
+- `rosenbrock4` of Boost.odeint, as `controlled` and as `dense` stepper, with a given first step; its matrices are
+  dense, therefore it is not run on the Brusselator;
+- CVODE of SUNDIALS, the package of the distribution, not tuned for the machine; its Newton iteration uses dense
+  matrices or KLU;
+- `msbdf` and `bsimp` of the GNU Scientific Library with its driver, a given first step, and dense matrices.
+
+`model METHOD` evaluates the equations of `models/brusselator_line.sim` on the tape, with the Jacobian derived from
+their expression graph; all other solvers use compiled equations.
+
+)";
 
 void write_kept(std::ofstream& page, const StiffResult& result) {
   page << "| Method |";
@@ -75,22 +71,20 @@ void write_page(const std::string& file, const std::vector<StiffResult>& all) {
   page << introduction << "## Time at equal true error\n\n";
   write_head_of_ratios(page);
   for (const StiffResult& result : all) write_ratios(page, result.measured, result.wanted);
-  page << "\n## No method named\n\n`solve` without a method, here `default`: its time in units of that of our best "
-          "named method, which stands behind it.\n\n";
+  page << "\n## The default method\n\n`default` is `solve` without a method. The table shows its time relative to "
+          "that of our best named method (in brackets).\n\n";
   write_head_of_defaults(page, errors_shown);
   for (const StiffResult& result : all) write_default(page, result.measured, errors_shown);
   for (const StiffResult& result : all) {
-    page << "\n## " << result.measured.title << "\n\nTime at the error of the column, in units of our best.\n\n";
+    page << "\n## " << result.measured.title << "\n\nTime at the error of the column, relative to our best method.\n\n";
     write_times(page, result.measured, errors_shown);
     page << "\n![Time against error](pictures/work_precision_" << result.measured.name << ".svg)\n";
   }
-  page
-      << "\n## Error in units of the tolerance\n\nThe largest error of a component at the end, in units of atol + rtol "
-         "times the component, for each rtol. Above "
-      << number(most_tolerances)
-      << " in bold; \"-\": at the rtol before a run took\nlonger than twelve seconds, for a method of order p needs "
-         "steps in "
-         "proportion to rtol^(-1/p).\n";
+  page << "\n## Error in units of the tolerance\n\nThe largest error of a component at the end, divided by atol + rtol "
+          "times the component, for each rtol. Values above "
+       << number(most_tolerances)
+       << "\nare in bold. \"-\": not run, because at the previous rtol the run took longer than twelve seconds; the "
+          "number of steps of\na method of order p grows like rtol^(-1/p).\n";
   for (const StiffResult& result : all) {
     page << "\n### " << result.measured.title << "\n\n";
     write_kept(page, result);
