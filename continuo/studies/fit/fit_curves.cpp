@@ -11,7 +11,6 @@ namespace continuo::studies {
 namespace {
 
 using detail::FitProblem;
-using detail::ShiftedT;
 
 /// How far new measurements of one column are from the curve.
 class Band {
@@ -27,15 +26,20 @@ class Band {
     const double plain =
         interval_factor(degrees_) * deviation(number, problem_.noise_variances(), fit_.sure.determined_covariance);
     if (fit_.sure.ratios.empty() || !(plain > 0) || !std::isfinite(plain)) return plain;
-    // As the unknowns' intervals: what is not known of the ratio of two variances is not known of the band either.
-    mixture_.clear();
-    for (const GivenRatios& given : fit_.sure.ratios) {
-      double shift = 0;
-      for (std::size_t i = 0; i < given.shift.size(); ++i) shift += slope(number) * number[1 + i] * given.shift[i];
-      mixture_.push_back({given.weight, shift, deviation(number, given.variances_of_components, given.covariance),
-                          degrees_of(given.degrees, given.group_degrees[group_])});
+    // As the unknowns' intervals: what is not known of the ratios of variances is not known of the band either.
+    const MixedRatios& ratios = fit_.sure.ratios;
+    const std::size_t source = ratios.source_of[group_];
+    if (source == no_source && !fit_.columns[group_].given) return plain;
+    std::vector<double> slopes;
+    for (const double derivative : number.subspan(1)) slopes.push_back(slope(number) * derivative);
+    seen_.clear();
+    for (const GivenRatios& given : ratios.given) {
+      seen_.push_back(detail::seen_along(given, slopes));
+      const double own = std::pow(problem_.deviation_at(group_, number[0], given.variances_of_components), 2);
+      seen_.back().variance += own;
+      if (source != no_source) seen_.back().parts[source] += own;
     }
-    const double half = detail::half_width_of(mixture_, plain);
+    const double half = detail::half_width_of(detail::mixture_of(ratios, seen_), plain);
     return std::isnan(half) ? plain : half;
   }
 
@@ -63,7 +67,7 @@ class Band {
   std::size_t group_;
   bool lognormal_;
   double degrees_;
-  std::vector<ShiftedT> mixture_;
+  std::vector<detail::Seen> seen_;
 };
 
 std::vector<double> times_between(double from, double to, std::size_t points) {

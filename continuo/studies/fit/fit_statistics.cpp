@@ -47,17 +47,20 @@ std::size_t count_free(const Fit& fit) {
 }
 
 /// With zeros for the unknowns that are not free.
+std::vector<double> among_all(const std::vector<double>& of_free, const std::vector<std::size_t>& free,
+                              std::size_t all) {
+  std::vector<double> result(all * all, 0);
+  for (std::size_t a = 0; a < free.size(); ++a)
+    for (std::size_t b = 0; b < free.size(); ++b) result[free[a] * all + free[b]] = of_free[a * free.size() + b];
+  return result;
+}
+
 GivenRatios among_all(const GivenRatios& of_free, const std::vector<std::size_t>& free, std::size_t all) {
   GivenRatios result = of_free;
   result.shift.assign(all, 0);
-  result.degrees.assign(all, std::numeric_limits<double>::infinity());
-  result.covariance.assign(all * all, 0);
-  for (std::size_t a = 0; a < free.size(); ++a) {
-    result.shift[free[a]] = of_free.shift[a];
-    result.degrees[free[a]] = of_free.degrees[a];
-    for (std::size_t b = 0; b < free.size(); ++b)
-      result.covariance[free[a] * all + free[b]] = of_free.covariance[a * free.size() + b];
-  }
+  for (std::size_t a = 0; a < free.size(); ++a) result.shift[free[a]] = of_free.shift[a];
+  result.covariance = among_all(of_free.covariance, free, all);
+  for (std::vector<double>& part : result.parts) part = among_all(part, free, all);
   return result;
 }
 
@@ -83,7 +86,7 @@ Uncertainty uncertainty_of(const VarianceComponents& noise, std::span<const doub
   result.factors.assign(m, interval_factor(std::numeric_limits<double>::infinity()));
   result.undetermined.assign(m, 0);
   for (std::vector<double>& direction : result.directions) direction.assign(m, 0);
-  for (GivenRatios& given : result.ratios) given = among_all(given, free, m);
+  for (GivenRatios& given : result.ratios.given) given = among_all(given, free, m);
   for (std::size_t a = 0; a < free.size(); ++a) {
     result.degrees[free[a]] = of_free.degrees[a];
     result.factors[free[a]] = of_free.factors[a];

@@ -63,12 +63,24 @@ inline constexpr double interval_confidence = 0.95;
 /// Half an interval of that confidence over a deviation with so many degrees of freedom; infinite without any.
 double interval_factor(double degrees);
 
-/// What is known where the ratios of columns with two variances are given, and how likely these ratios are.
+/// What is known where the ratios of the unknown variances are given, and how likely these ratios are. Covariance and
+/// variances are those of the overall size that is estimated with them, where all noise has one.
 struct GivenRatios {
-  double weight = 0;                               // of all that were looked at
-  std::vector<double> shift, covariance, degrees;  // of the unknowns, from the estimate
-  std::vector<double> group_degrees, variances_of_components;
+  double weight = 0;                       // of all that were looked at
+  std::vector<double> shift, covariance;   // of the unknowns, from the estimate
+  std::vector<std::vector<double>> parts;  // of the covariance, by the source of noise that it comes from
+  std::vector<double> variances_of_components;
 };
+
+/// The distribution of the ratios of the variances, as variance_ratios.hpp integrates over it.
+struct MixedRatios {
+  std::vector<GivenRatios> given;
+  double degrees = std::numeric_limits<double>::infinity();  // of the overall size; infinite where there is none
+  std::vector<double> powers;                                // of each source of noise, in the prior
+  std::vector<std::size_t> source_of;                        // of each column; no_source where its noise is known
+  bool empty() const { return given.empty(); }
+};
+inline constexpr std::size_t no_source = std::numeric_limits<std::size_t>::max();
 
 struct Uncertainty {
   std::vector<double> covariance;  // row by row; of what the data do not determine: infinite on the diagonal, else 0
@@ -83,7 +95,7 @@ struct Uncertainty {
   std::vector<std::vector<double>> directions;
   std::vector<double> group_degrees;  // n - leverage of each column
   std::vector<double> group_ratio;    // of each column: the deviation that is seen over the one that the noise has
-  std::vector<GivenRatios> ratios;    // that factors were integrated over; empty: no such column, or it is long
+  MixedRatios ratios;                 // that factors were integrated over; empty: none is to be, or columns are long
   bool ratios_failed = false;         // they had to be, and could not: factors take the estimated ratios for known
   /// What a robust loss makes of variances that were those of squares; 2 (cost - least cost) over `rise` is chi
   /// squared.
