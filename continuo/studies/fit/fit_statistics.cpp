@@ -243,8 +243,8 @@ std::vector<FitDoubt> doubts_of(const FitRequest& request, const Fit& fit) {
     if (asked.error == ErrorModel::both && !column.given && fit.sure.ratios_failed)
       doubts.push_back(
           {Kind::weights, fmt::format("{}: intervals take the ratio of its constant error to the one in proportion for "
-                                      "known, as no ratio was found likely, and are too narrow; give one of the two "
-                                      "(--sigma) or ask for one kind (--error)",
+                                      "known, as too few likely ratios were found to integrate over, and are too "
+                                      "narrow; give one of the two (--sigma) or ask for one kind (--error)",
                                       name)});
     if (column.signs_p < by_chance)
       doubts.push_back({Kind::signs, fmt::format("{} is above and below the model for longer than noise would be "
