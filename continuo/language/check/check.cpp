@@ -7,18 +7,18 @@
 #include <fmt/format.h>
 
 #include <continuo/language/check/check.hpp>
-#include <continuo/language/check/check_context.hpp>
+#include <continuo/language/check/names/checker.hpp>
 
 namespace continuo::model {
 
 Checked check(const ast::Model& tree, const Source& source, const CheckOptions& options) {
-  return detail::Checker(tree, source, options).run();
+  return detail::Checker(tree, source, options.overrides).run();
 }
 
 namespace detail {
 
-Checker::Checker(const ast::Model& tree, const Source& source, const CheckOptions& options)
-    : tree_(tree), source_(source), options_(options) {
+Checker::Checker(const ast::Model& tree, const Source& source, const Overrides& overrides)
+    : tree_(tree), source_(source), overrides_(overrides) {
   model_.name = tree.name ? tree.name->text : std::filesystem::path(source.name()).stem().string();
   model_.heading = tree.heading;
   model_.text = {source.name(), source.text()};

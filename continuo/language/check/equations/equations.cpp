@@ -1,0 +1,240 @@
+// continuo/language/check/equations/equations.cpp
+// Equations solved for their highest derivatives: each alone where it holds one, else together where they hang
+// together (accelerations coupled through a mass matrix). What has no such derivative determines an unknown.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <continuo/language/check/names/checker.hpp>
+#include <continuo/language/check/names/equations_at_work.hpp>
+
+namespace continuo::model::detail {
+
+namespace {
+/// Symbolic elimination of more equations than this grows beyond all use.
+constexpr std::size_t most_coupled = 24;
+}  // namespace
+
+void Checker::make_equations() {
+  for (std::size_t mode = 0; mode < model_.modes.size(); ++mode) solve_mode(mode);
+}
+
+/// Both sides brought to one unit: left - right = 0, and what it holds.
+EquationAtWork Checker::read_equation(const Placed<ast::Equation>& equation) {
+  Scope scope = equation.scope;
+  highest_.clear();
+  Term left{equation.text->left, elaborate(equation.text->left, scope)};
+  const std::vector<std::uint32_t> on_left = std::exchange(highest_, {});
+  Term right{equation.text->right, elaborate(equation.text->right, scope)};
+  std::vector<std::uint32_t> held = std::exchange(highest_, {});
+  EquationAtWork work;
+  work.span = equation.span;
+  const auto* name = std::get_if<ast::Name>(&equation.text->left.node);
+  const bool explicit_one = name && on_left.size() == 1 && held.empty();
+  held.insert(held.end(), on_left.begin(), on_left.end());
+  std::ranges::sort(held);
+  held.erase(std::unique(held.begin(), held.end()), held.end());
+  work.holds = std::move(held);
+  if (!want_numbers(left, right) || !align(left, right, equation.span, scope)) {
+    work.bad = true;
+    return work;
+  }
+  if (explicit_one) work.solution = right.value.node;
+  work.residual = model_.graph.subtract(left.value.node, right.value.node);
+  return work;
+}
+
+void Checker::solve_mode(std::size_t mode) {
+  ModeAtWork work;
+  work.mode = mode;
+  work.solved.assign(bases_.size(), NodeId{});
+  work.by.assign(bases_.size(), npos);
+  work.equations.reserve(equations_.size());
+  for (const Placed<ast::Equation>& equation : equations_) {
+    if (equation.scope.mode != Scope::no_mode && equation.scope.mode != static_cast<int>(mode)) continue;
+    work.equations.push_back(read_equation(equation));
+  }
+  for (std::size_t i = 0; i < bases_.size(); ++i) {
+    if (bases_[i].in_world) work.by[i] = 0;  // moved by forces
+  }
+  sort_out_algebraic(work);
+  solve_one_by_one(work);
+  solve_coupled(work);
+  report_missing(work);
+  for (std::size_t i = 0; i < bases_.size(); ++i) {
+    if (!work.solved[i].valid()) work.solved[i] = model_.graph.constant(0);
+  }
+  store_derivatives(work);
+}
+
+/// An equation without a highest derivative: of an unknown, or one that says nothing.
+void Checker::sort_out_algebraic(ModeAtWork& work) {
+  std::size_t algebraic = 0;
+  const Layout& layout = model_.layout;
+  for (std::size_t e = 0; e < work.equations.size(); ++e) {
+    EquationAtWork& equation = work.equations[e];
+    if (!equation.holds.empty()) continue;
+    equation.used = true;
+    if (equation.bad) continue;
+    const auto variables = variables_of(model_.graph, equation.residual);
+    const bool has_unknown =
+        std::ranges::any_of(variables, [&](std::uint32_t v) { return v >= layout.unknowns && v < layout.parameters; });
+    if (has_unknown || !unknowns_.empty()) {
+      ++algebraic;
+      model_.algebraic.push_back({equation.residual, work.mode, equation.span});
+      continue;
+    }
+    report_empty_equation(work, e, variables);
+  }
+  if (algebraic == unknowns_.size() || errors_ > 0) return;
+  if (algebraic == 0 && model_.needs_boundary_solver()) return;  // constants that the conditions determine
+  std::vector<std::string> names;
+  names.reserve(unknowns_.size());
+  for (const UnknownText& unknown : unknowns_) names.push_back(unknown.name);
+  const Span span = unknowns_.front().span;
+  fail("E235", span, "as many algebraic equations as unknowns are needed",
+       fmt::format("{} {} for {}", algebraic, algebraic == 1 ? "equation" : "equations", listed(names)),
+       algebraic < unknowns_.size() ? "add equations of the form 0 = ..." : "drop equations, or declare more unknowns");
+}
+
+/// While some equation holds one derivative that is still open, that equation gives it.
+void Checker::solve_one_by_one(ModeAtWork& work) {
+  std::vector<std::vector<std::size_t>> users(bases_.size());
+  std::vector<std::size_t> ready;
+  for (std::size_t e = 0; e < work.equations.size(); ++e) {
+    EquationAtWork& equation = work.equations[e];
+    for (const std::uint32_t base : equation.holds) users[base].push_back(e);
+    equation.open = equation.holds.size();
+    if (equation.open == 1) ready.push_back(e);
+  }
+  for (std::size_t next = 0; next < ready.size(); ++next) {
+    EquationAtWork& equation = work.equations[ready[next]];
+    if (equation.used) continue;
+    const auto open = std::ranges::find_if(equation.holds, [&](std::uint32_t b) { return work.by[b] == npos; });
+    if (open == equation.holds.end()) continue;  // another equation was quicker: one too many, reported below
+    equation.used = true;
+    work.by[*open] = ready[next];
+    solve_for(work, equation, *open);
+    for (const std::size_t user : users[*open]) {
+      if (--work.equations[user].open == 1) ready.push_back(user);
+    }
+  }
+}
+
+NodeId Checker::with_solved(const ModeAtWork& work, NodeId node) {
+  return substitute(model_.graph, node, [&](std::uint32_t variable) -> std::optional<NodeId> {
+    if (variable < highest_begin || !work.solved[variable - highest_begin].valid()) return std::nullopt;
+    return work.solved[variable - highest_begin];
+  });
+}
+
+void Checker::solve_for(ModeAtWork& work, const EquationAtWork& equation, std::uint32_t base) {
+  if (equation.bad) return;
+  if (equation.solution.valid()) {
+    work.solved[base] = equation.solution;
+    return;
+  }
+  Graph& g = model_.graph;
+  const NodeId residual = equation.holds.size() > 1 ? with_solved(work, equation.residual) : equation.residual;
+  const auto linear = linear_in(g, residual, highest_begin + base);
+  const std::string name = with_primes(bases_[base].name, bases_[base].order);
+  if (!linear) {
+    fail("E232", equation.span, fmt::format("`{}` cannot be solved for", name), "it stands here in a nonlinear way",
+         fmt::format("solve for it by hand and write {} = ...", name));
+  } else if (g.is(linear->coefficient, 0)) {
+    fail("E233", equation.span, "this equation determines nothing", fmt::format("`{}` cancels", name));
+  } else {
+    work.solved[base] = g.divide(g.negate(linear->remainder), linear->coefficient);
+    if (!g.value(linear->coefficient))
+      model_.masses.push_back({{linear->coefficient}, {name}, work.mode, equation.span});
+  }
+}
+
+/// What is too small for a pivot, at the start, beside the largest of the rows: rounding may be all of it. Before the
+/// start is known nothing is.
+Vanishes Checker::vanishing_beside(const LinearRows& rows) {
+  const bool known = std::ranges::all_of(model_.states, [](const State& state) { return state.initial.valid(); });
+  if (errors_ > 0 || !known || model_.needs_boundary_solver()) return {};
+  if (start_values_.empty()) start_values_ = start_values(model_);
+  std::vector<NodeId> entries;
+  for (const auto& row : rows) entries.insert(entries.end(), row.begin(), row.end() - 1);
+  double largest = 0;
+  for (const double entry : evaluate(model_, entries, start_values_)) largest = std::max(largest, std::abs(entry));
+  constexpr double smallest = 1e-10;
+  return [this, largest](NodeId node) { return std::abs(evaluate(model_, node, start_values_)) <= smallest * largest; };
+}
+
+/// What is left hangs together: groups of equations that share open derivatives.
+void Checker::solve_coupled(ModeAtWork& work) {
+  std::vector<std::size_t> group(work.equations.size(), npos);
+  for (std::size_t first = 0; first < work.equations.size(); ++first) {
+    if (work.equations[first].used || group[first] != npos) continue;
+    std::vector<std::size_t> members{first};
+    std::vector<std::uint32_t> open;
+    group[first] = first;
+    for (std::size_t at = 0; at < members.size(); ++at) {
+      for (const std::uint32_t base : work.equations[members[at]].holds) {
+        if (work.by[base] != npos || std::ranges::find(open, base) != open.end()) continue;
+        open.push_back(base);
+        for (std::size_t e = 0; e < work.equations.size(); ++e) {
+          const EquationAtWork& other = work.equations[e];
+          if (other.used || group[e] != npos || !std::ranges::binary_search(other.holds, base)) continue;
+          group[e] = first;
+          members.push_back(e);
+        }
+      }
+    }
+    std::ranges::sort(members);
+    solve_group(work, members, open);
+  }
+}
+
+void Checker::solve_group(ModeAtWork& work, const std::vector<std::size_t>& members, std::vector<std::uint32_t> open) {
+  if (members.size() > open.size()) {
+    report_surplus(work, members, open);
+    return;
+  }
+  if (members.size() < open.size()) {
+    work.undetermined.push_back({members, open});
+    for (const std::uint32_t base : open) work.by[base] = members.front();
+    return;
+  }
+  for (const std::uint32_t base : open) work.by[base] = members.front();
+  std::ranges::sort(open);
+  std::vector<NodeId> residuals;
+  std::vector<std::uint32_t> unknowns;
+  const std::vector<std::string> names = highest_names(open);
+  for (const std::size_t e : members) {
+    if (work.equations[e].bad) return;
+    residuals.push_back(with_solved(work, work.equations[e].residual));
+  }
+  unknowns.reserve(open.size());
+  for (const std::uint32_t base : open) unknowns.push_back(highest_begin + base);
+  const Span span = work.equations[members.front()].span;
+  if (open.size() > most_coupled) {
+    fail("E232", span, fmt::format("{} equations hang together", open.size()),
+         fmt::format("their highest derivatives are {}", listed(names)), "solve some of them by hand");
+    return;
+  }
+  const auto rows = linear_rows(model_.graph, residuals, unknowns);
+  const auto solution = rows ? solve_linear(model_.graph, *rows, vanishing_beside(*rows)) : std::nullopt;
+  if (!solution) {
+    auto* said = rows ? fail("E237", span, fmt::format("{} are not determined", listed(names)),
+                             "the matrix before them is singular",
+                             "one of these equations repeats the others, or one of the variables is an `unknown`")
+                      : fail("E232", span, fmt::format("{} cannot be solved for", listed(names)),
+                             "these equations are not linear in them",
+                             "solve for the highest derivatives by hand, one equation each");
+    for (std::size_t i = 1; said && i < members.size(); ++i) {
+      said->related.push_back({work.equations[members[i]].span, "together with this"});
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < open.size(); ++i) work.solved[open[i]] = (*solution)[i];
+  MassMatrix mass{{}, names, work.mode, span};
+  for (const auto& row : *rows) mass.coefficients.insert(mass.coefficients.end(), row.begin(), row.end() - 1);
+  model_.masses.push_back(std::move(mass));
+}
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,133 @@
+// continuo/language/check/world/overlaps.cpp
+// What of a world is in order and yet seldom meant: groups without bodies, bodies that begin within each other.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include <continuo/language/check/expressions/indices.hpp>
+#include <continuo/symbolic/names/suggest.hpp>
+
+namespace continuo::model::detail {
+
+namespace {
+
+constexpr double least_depth = 1e-9;  // of a radius: less is round-off of bodies that touch
+
+/// Where bodies begin.
+struct Places {
+  std::size_t axes;
+  std::vector<std::array<double, 3>> centre;
+  std::vector<double> radius;
+
+  double depth(std::size_t i, std::size_t j) const {
+    double square = 0;
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      const double between = centre[i][axis] - centre[j][axis];
+      square += between * between;
+    }
+    return radius[i] + radius[j] - std::sqrt(square);
+  }
+  std::size_t longest_axis() const {
+    std::array<double, 3> size{};
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      const auto [low, high] = std::ranges::minmax(centre, {}, [&](const auto& x) { return x[axis]; });
+      size[axis] = high[axis] - low[axis];
+    }
+    return static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
+  }
+  /// visit(i, j) for all pairs whose shadows on that axis overlap.
+  template <class Visit>
+  void for_near_pairs(Visit&& visit) const {
+    const std::size_t axis = longest_axis();
+    const auto low = [&](std::size_t i) { return centre[i][axis] - radius[i]; };
+    std::vector<std::size_t> order(centre.size()), open;
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, low);
+    for (const std::size_t i : order) {
+      std::erase_if(open, [&](std::size_t j) { return centre[j][axis] + radius[j] <= low(i); });
+      for (const std::size_t j : open) visit(j, i);
+      open.push_back(i);
+    }
+  }
+};
+
+}  // namespace
+
+void Checker::look_at_groups() {
+  std::vector<std::string> filled;
+  for (const BodyDescription& body : world_.made.bodies)
+    if (std::ranges::find(filled, world_.groups[body.group]) == filled.end())
+      filled.push_back(world_.groups[body.group]);
+  for (const auto& item : world_.items) {
+    const auto* ignore = std::get_if<ast::WorldIgnore>(&item.text->node);
+    if (!ignore) continue;
+    for (const ast::Identifier* name : {&ignore->a, &ignore->b})
+      if (std::ranges::find(filled, name->text) == filled.end())
+        warn("E293", name->span, fmt::format("no body is in the group `{}`", name->text), {},
+             did_you_mean(name->text, filled));
+  }
+}
+
+/// With the parameters as the text has them.
+void Checker::look_at_start() {
+  const WorldDescription& made = world_.made;
+  const std::vector<double> variables = start_values(model_);
+  std::vector<NodeId> nodes;
+  for (const BodyDescription& body : made.bodies) nodes.push_back(body.radius);
+  Places places{.axes = world_.axes(), .centre = {}, .radius = evaluate(model_, nodes, variables)};
+  for (const BodyDescription& body : made.bodies) {
+    std::array<double, 3> centre{};
+    for (std::size_t axis = 0; axis < places.axes; ++axis)
+      centre[axis] = variables[model_.layout.states + body.first_state + 2 * axis];
+    places.centre.push_back(centre);
+  }
+  struct Overlap {
+    std::size_t a, b;
+    double depth;
+  };
+  std::vector<Overlap> found;
+  const auto meet = [&](const BodyDescription& a, const BodyDescription& b) {
+    if (a.fixed && b.fixed) return false;
+    return std::ranges::none_of(made.ignored, [&](const auto& pair) {
+      return (pair.first == a.group && pair.second == b.group) || (pair.first == b.group && pair.second == a.group);
+    });
+  };
+  places.for_near_pairs([&](std::size_t i, std::size_t j) {
+    const double depth = places.depth(i, j);
+    if (depth > least_depth * std::min(places.radius[i], places.radius[j]) && meet(made.bodies[i], made.bodies[j]))
+      found.push_back({std::min(i, j), std::max(i, j), depth});
+  });
+  const auto others = [](std::size_t count) {
+    return count == 1 ? std::string() : fmt::format(", {} such in all", count);
+  };
+  if (!found.empty()) {
+    const Overlap& first = *std::ranges::min_element(found, {}, [](const Overlap& o) { return std::pair(o.b, o.a); });
+    warn("E295", made.bodies[first.b].span,
+         fmt::format("`{}` begins within `{}`", made.bodies[first.b].name, made.bodies[first.a].name),
+         fmt::format("by {:.3g}{}", first.depth, others(found.size())),
+         "leave room between them, or let their groups ignore each other");
+  }
+  for (const WallDescription& wall : made.walls) {
+    std::vector<NodeId> parts(wall.normal.begin(), wall.normal.begin() + static_cast<std::ptrdiff_t>(places.axes));
+    parts.push_back(wall.offset);
+    const std::vector<double> numbers = evaluate(model_, parts, variables);
+    double length = 0;
+    for (std::size_t axis = 0; axis < places.axes; ++axis) length = std::hypot(length, numbers[axis]);
+    found.clear();
+    for (std::size_t i = 0; i < made.bodies.size(); ++i) {
+      double above = -numbers.back();
+      for (std::size_t axis = 0; axis < places.axes; ++axis) above += numbers[axis] * places.centre[i][axis];
+      above /= length;
+      const double depth = places.radius[i] - (wall.thin ? std::abs(above) : above);
+      if (depth > least_depth * places.radius[i] && !made.bodies[i].fixed) found.push_back({i, i, depth});
+    }
+    if (found.empty()) continue;
+    const BodyDescription& body = made.bodies[found.front().a];
+    warn("E295", body.span, fmt::format("`{}` begins within the wall `{}`", body.name, wall.name),
+         fmt::format("by {:.3g}{}", found.front().depth, others(found.size())), "leave room in front of it");
+  }
+}
+
+}  // namespace continuo::model::detail
