@@ -59,7 +59,7 @@ void Checker::fill() {
   name_states();
   make_world();
   make_unknowns();
-  for (std::size_t i = 0; i < definitions_.size(); ++i) defined(i, definitions_[i].text->name);
+  for (std::size_t i = 0; i < definitions_.size(); ++i) defined(i, definitions_[i].text->name, {});
   make_run();
   make_conditions();
   make_equations();

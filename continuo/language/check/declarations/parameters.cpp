@@ -64,7 +64,7 @@ std::optional<Range> Checker::slider(const Definition& definition, double value)
 }
 
 void Checker::make_parameters() {
-  for (const std::size_t i : parameter_order_) defined(i, definitions_[i].text->name);
+  for (const std::size_t i : parameter_order_) defined(i, definitions_[i].text->name, {});
   const auto place = [&](std::size_t i) { return definitions_[i].variable - model_.layout.parameters; };
   for (const std::size_t i : evaluation_order_) {
     const Definition& definition = definitions_[i];
@@ -109,7 +109,7 @@ void Checker::check_overrides() {
 void Checker::make_inputs() {
   for (std::size_t i = 0; i < definitions_.size(); ++i) {
     if (definitions_[i].kind != Definition::Kind::input) continue;
-    defined(i, definitions_[i].text->name);
+    defined(i, definitions_[i].text->name, {});
     const Definition& d = definitions_[i];
     double& value = registers_[d.variable];
     value = evaluate(model_.graph, d.result.node, registers_);
@@ -139,22 +139,26 @@ void Checker::make_quantities() {
   for (std::size_t i = 0; i < definitions_.size(); ++i) {
     const Definition::Kind kind = definitions_[i].kind;
     if (kind == Definition::Kind::parameter || kind == Definition::Kind::input) continue;
-    highest_.clear();
-    Value value = defined(i, definitions_[i].text->name);
+    std::vector<std::uint32_t> highest;
+    Scope scope;
+    scope.highest = &highest;
+    Value value = defined(i, definitions_[i].text->name, scope);
     const Definition& d = definitions_[i];
     const bool let = kind == Definition::Kind::let;
     if (let && (value.condition || d.scope.mode != Scope::no_mode)) continue;
-    if (let && !highest_.empty() && model_.modes.size() > 1) continue;
-    value = settle(std::move(value), d.value->span);
+    if (let && !highest.empty() && model_.modes.size() > 1) continue;
+    value = settle(std::move(value), d.value->span, highest);
     if (value.bad) continue;
     auto& list = let ? model_.lets : kind == Definition::Kind::output ? model_.outputs : model_.energies;
     list.push_back({d.name, value.node, value.measured.is_known() ? to_text(value.measured.unit) : std::string(),
                     d.text->name.span});
   }
+  std::vector<std::uint32_t> highest;
   Scope scope;
-  highest_.clear();
+  scope.highest = &highest;
   const Span span = model_.energies.empty() ? Span{} : model_.energies.front().span;
-  model_.total_energy = settle(total_energy(span, scope), span).node;
+  Value total = total_energy(span, scope);
+  model_.total_energy = settle(std::move(total), span, highest).node;
 }
 
 std::string Checker::file_of(const std::string& name, Span span) {

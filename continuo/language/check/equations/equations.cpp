@@ -23,11 +23,11 @@ void Checker::make_equations() {
 /// Both sides brought to one unit: left - right = 0, and what it holds.
 EquationAtWork Checker::read_equation(const Placed<ast::Equation>& equation) {
   Scope scope = equation.scope;
-  highest_.clear();
+  std::vector<std::uint32_t> on_left, held;
+  scope.highest = &on_left;
   Term left{equation.text->left, elaborate(equation.text->left, scope)};
-  const std::vector<std::uint32_t> on_left = std::exchange(highest_, {});
+  scope.highest = &held;
   Term right{equation.text->right, elaborate(equation.text->right, scope)};
-  std::vector<std::uint32_t> held = std::exchange(highest_, {});
   EquationAtWork work;
   work.span = equation.span;
   const auto* name = std::get_if<ast::Name>(&equation.text->left.node);

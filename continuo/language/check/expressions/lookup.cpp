@@ -58,16 +58,16 @@ Value Checker::lookup(const ast::Name& name, Scope& scope) {
            fmt::format("it is a {}", word(definition.kind)), "only what has an equation of its own has primes");
       return bad();
     }
-    return scope.constant ? constant_defined(symbol->index, name) : defined(symbol->index, name);
+    return scope.is_constant() ? constant_defined(symbol->index, name, scope) : defined(symbol->index, name, scope);
   }
   if (symbol->kind == Symbol::Kind::table) {
     fail("E271", name.span, fmt::format("`{}` is a table", name.text), {},
          fmt::format("read it: interp({}, x)", name.text));
     return bad();
   }
-  if (scope.constant) return not_constant(name.span, *key);
+  if (scope.is_constant()) return not_constant(name.span, *key, scope);
   if (scope.moment) return without_time(name, scope);
-  if (symbol->kind == Symbol::Kind::base) return derivative(name, symbol->index);
+  if (symbol->kind == Symbol::Kind::base) return derivative(name, symbol->index, scope);
   if (name.primes > 0) {
     fail("E218", name.span, fmt::format("`{}` has no derivative", *key), "it is an unknown of an algebraic equation",
          fmt::format("give it an equation with {}' and an initial value instead of `unknown`", *key));
@@ -77,8 +77,8 @@ Value Checker::lookup(const ast::Name& name, Scope& scope) {
   return {model_.graph.variable(unknown.variable), unknown.measured};
 }
 
-Value Checker::not_constant(Span span, const std::string& name) {
-  fail("E222", span, fmt::format("{} must be constant", constant_what_), fmt::format("`{}` changes with time", name),
+Value Checker::not_constant(Span span, const std::string& name, const Scope& scope) {
+  fail("E222", span, fmt::format("{} must be constant", scope.constant), fmt::format("`{}` changes with time", name),
        "use numbers and parameters only");
   return bad();
 }
@@ -95,10 +95,10 @@ Value Checker::without_time(const ast::Name& name, const Scope& scope) {
 Value Checker::builtin(const ast::Name& name, const std::string& key, Scope& scope) {
   if (name.primes == 0 && name.text == "pi" && name.indices.empty()) return of_number(3.14159265358979323846);
   if (name.primes == 0 && name.text == "t" && name.indices.empty()) {
-    if (scope.constant) return not_constant(name.span, "t");
+    if (scope.is_constant()) return not_constant(name.span, "t", scope);
     return {model_.graph.variable(Layout::time), time_measure()};
   }
-  if (key == "energy" && name.primes == 0 && !scope.constant) {
+  if (key == "energy" && name.primes == 0 && !scope.is_constant()) {
     const Value total = total_energy(name.span, scope);
     if (total.node.valid()) return total;
   }
@@ -116,7 +116,7 @@ Value Checker::total_energy(Span span, Scope& scope) {
   for (std::size_t i = 0; i < definitions_.size(); ++i) {
     if (definitions_[i].kind != Definition::Kind::energy) continue;
     const ast::Name& name = definitions_[i].text->name;
-    Term term{*definitions_[i].value, defined(i, name)};
+    Term term{*definitions_[i].value, defined(i, name, scope)};
     if (term.value.bad) return bad();
     if (!total.node.valid()) {
       total = term.value;
@@ -178,21 +178,21 @@ Value Checker::unknown_name(const ast::Name& name, const std::string& key, std::
   return bad();
 }
 
-Value Checker::derivative(const ast::Name& name, std::size_t index) {
+Value Checker::derivative(const ast::Name& name, std::size_t index, Scope& scope) {
   const Base& base = bases_[index];
   if (name.primes < base.order) {
     const std::size_t state = base.first + static_cast<std::size_t>(name.primes);
     return {model_.graph.variable(model_.layout.states + static_cast<std::uint32_t>(state)),
-            state_measure(index, name.primes)};
+            state_measure(index, name.primes, scope.depth)};
   }
   if (base.in_world) {
     refuse_equation_of_body(name);
     return bad();
   }
   if (name.primes == base.order) {
-    highest_.push_back(static_cast<std::uint32_t>(index));
+    if (scope.highest) scope.highest->push_back(static_cast<std::uint32_t>(index));
     return {model_.graph.variable(highest_begin + static_cast<std::uint32_t>(index)),
-            per_time(state_measure(index, base.order - 1))};
+            per_time(state_measure(index, base.order - 1, scope.depth))};
   }
   fail("E218", name.span, fmt::format("`{}` is not to be had", with_primes(base.name, name.primes)),
        fmt::format("the highest derivative in the equations is `{}`", with_primes(base.name, base.order)));
@@ -208,22 +208,24 @@ Value Checker::circular(std::size_t index, Span span) {
   return bad();
 }
 
-Value Checker::defined(std::size_t index, const ast::Name& name) {
+Value Checker::defined(std::size_t index, const ast::Name& name, const Scope& outer) {
   Definition& definition = definitions_[index];
   if (definition.progress == Progress::busy) return circular(index, name.span);
   if (definition.progress == Progress::untouched) {
     definition.progress = Progress::busy;
     busy_.push_back(index);
-    const auto outer = std::exchange(highest_, {});
+    std::vector<std::uint32_t> highest;
     Scope scope = definition.scope;
+    scope.highest = &highest;
+    scope.depth = outer.depth;
     Value value = elaborate(*definition.value, scope);
     if (definition.kind != Definition::Kind::let) want_number(*definition.value, value);
     finish_definition(index, std::move(value));
-    definition.highest = std::exchange(highest_, outer);
+    definition.highest = std::move(highest);
     busy_.pop_back();
     definition.progress = Progress::done;
   }
-  highest_.insert(highest_.end(), definition.highest.begin(), definition.highest.end());
+  if (outer.highest) outer.highest->insert(outer.highest->end(), definition.highest.begin(), definition.highest.end());
   Value value = definition.result;
   const bool variable = definition.kind == Definition::Kind::parameter || definition.kind == Definition::Kind::input;
   if (variable && !value.bad) value.node = model_.graph.variable(definition.variable);
@@ -248,10 +250,10 @@ void Checker::finish_definition(std::size_t index, Value value) {
   definition.result = std::move(value);
 }
 
-Value Checker::constant_defined(std::size_t index, const ast::Name& name) {
+Value Checker::constant_defined(std::size_t index, const ast::Name& name, const Scope& outer) {
   Definition& definition = definitions_[index];
   if (definition.kind != Definition::Kind::parameter && definition.kind != Definition::Kind::let) {
-    return not_constant(name.span, definition.name);
+    return not_constant(name.span, definition.name, outer);
   }
   definition.structural = true;
   if (definition.constant_progress == Progress::busy) return circular(index, name.span);
@@ -259,7 +261,8 @@ Value Checker::constant_defined(std::size_t index, const ast::Name& name) {
     definition.constant_progress = Progress::busy;
     busy_.push_back(index);
     Scope scope = definition.scope;
-    scope.constant = true;
+    scope.constant = outer.constant;
+    scope.depth = outer.depth;
     Value value = elaborate(*definition.value, scope);
     const auto set = overrides_.find(definition.name);
     if (definition.kind == Definition::Kind::parameter && !value.bad) {

@@ -98,13 +98,13 @@ bool Checker::want_condition(const ast::Expression& text, Value& value) {
 }
 
 Value Checker::elaborate(const ast::Expression& expression, Scope& scope) {
-  if (depth_ >= deepest) {
+  if (scope.depth >= deepest) {
     fail("E221", expression.span, "definitions lean on each other too deeply", {}, "define names above their use");
     return bad();
   }
-  ++depth_;
+  ++scope.depth;
   Value value = elaborate_node(expression, scope);
-  --depth_;
+  --scope.depth;
   return value;
 }
 

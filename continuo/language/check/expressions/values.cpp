@@ -11,10 +11,10 @@
 namespace continuo::model::detail {
 
 /// What the expression at hand holds of highest derivatives is replaced; before the equations are solved it stays.
-Value Checker::settle(Value value, Span span) {
-  if (highest_.empty() || value.bad || !value.node.valid()) return value;
+Value Checker::settle(Value value, Span span, const std::vector<std::uint32_t>& highest) {
+  if (highest.empty() || value.bad || !value.node.valid()) return value;
   if (model_.modes.size() > 1) {
-    const Base& base = bases_[highest_.front()];
+    const Base& base = bases_[highest.front()];
     fail("E218", span, fmt::format("`{}` is another one in each mode", with_primes(base.name, base.order)), {},
          "write out what you want of it");
     return bad();
@@ -28,8 +28,11 @@ Value Checker::settle(Value value, Span span) {
 }
 
 Value Checker::settled(const ast::Expression& expression, Scope& scope) {
-  highest_.clear();
-  return settle(elaborate(expression, scope), expression.span);
+  std::vector<std::uint32_t> highest;
+  Scope inner = scope;
+  inner.highest = &highest;
+  Value value = elaborate(expression, inner);
+  return settle(std::move(value), expression.span, highest);
 }
 
 Value Checker::number_of(const ast::Expression& expression, Scope& scope) {
@@ -58,12 +61,10 @@ NodeId Checker::in_unit(const ast::Expression& expression, const Value& value, c
 /// A number that does not follow a parameter that changes later.
 std::optional<double> Checker::constant(const ast::Expression& expression, Scope& scope, const Measured& wanted,
                                         std::string_view what) {
-  const auto outer = std::exchange(constant_what_, what);
   Scope inner = scope;
-  inner.constant = true;
+  inner.constant = what;
   inner.samples = nullptr;
   const Value value = elaborate(expression, inner);
-  constant_what_ = outer;
   if (value.bad) return std::nullopt;
   const auto number = model_.graph.value(in_unit(expression, value, wanted, what));
   if (!number) fail("E222", expression.span, fmt::format("{} must be constant", what));
@@ -156,9 +157,10 @@ void collect_names(ast::Expression& expression, std::vector<ast::Name*>& names) 
 /// The term with one prime more or less somewhere, if that has the unit that is wanted.
 std::string Checker::repair(const Term& term, const Measured& wanted, Scope& scope) {
   constexpr std::size_t most_tried = 12;
-  if (silent_ || scope.constant) return {};
+  if (silent_ || scope.is_constant()) return {};
   silent_ = true;
-  const auto highest = highest_;
+  Scope trial = scope;
+  trial.highest = nullptr;
   std::string help;
   ast::Expression copy = term.text;
   std::vector<ast::Name*> names;
@@ -171,7 +173,7 @@ std::string Checker::repair(const Term& term, const Measured& wanted, Scope& sco
     for (const int primes : {written + 1, written - 1}) {
       if (primes < 0 || primes > bases_[symbol->index].order) continue;
       names[i]->primes = primes;
-      const Value value = elaborate(copy, scope);
+      const Value value = elaborate(copy, trial);
       if (value.bad || !value.measured.is_known() || !factor_between(value.measured, wanted)) continue;
       help = fmt::format("did you mean {} ?", to_text(copy));
       break;
@@ -179,7 +181,6 @@ std::string Checker::repair(const Term& term, const Measured& wanted, Scope& sco
     names[i]->primes = written;
   }
   silent_ = false;
-  highest_ = highest;
   return help;
 }
 

@@ -93,9 +93,9 @@ class Checker {
   void see_condition(const ast::Condition& condition, Scope& scope, Span span);
   void lay_out();
   void name_states();
-  Measured state_measure(std::size_t base, int primes);
+  Measured state_measure(std::size_t base, int primes, std::size_t depth = 0);
   void hold_to_chain(std::size_t base, int primes);
-  Measured own_measure(std::size_t base, int primes);
+  Measured own_measure(std::size_t base, int primes, std::size_t depth);
   Measured time_measure() const;
   Measured per_time(const Measured& measured, int times = 1) const;
   std::size_t base_of_state(std::size_t state) const;
@@ -106,7 +106,8 @@ class Checker {
   // ---- expressions (translator.cpp, calls.cpp, lookup.cpp, values.cpp) ----
   Value elaborate(const ast::Expression& expression, Scope& scope);
   Value elaborate_node(const ast::Expression& expression, Scope& scope);
-  Value settle(Value value, Span span);  // highest derivatives replaced by what they equal
+  /// The highest derivatives in it replaced by what they equal.
+  Value settle(Value value, Span span, const std::vector<std::uint32_t>& highest);
   Value settled(const ast::Expression& expression, Scope& scope);
   Value number_of(const ast::Expression& expression, Scope& scope);     // settled, and no condition
   Value condition_of(const ast::Expression& expression, Scope& scope);  // settled, and one
@@ -132,14 +133,14 @@ class Checker {
   Value sample(const ast::Call& node, Span span, Scope& scope);
   Value lookup(const ast::Name& name, Scope& scope);
   Value builtin(const ast::Name& name, const std::string& key, Scope& scope);
-  Value not_constant(Span span, const std::string& name);
+  Value not_constant(Span span, const std::string& name, const Scope& scope);
   Value without_time(const ast::Name& name, const Scope& scope);
   Value unknown_name(const ast::Name& name, const std::string& key, std::string undeclared = {});
   Value not_a_value(const ast::Name& name);
-  Value derivative(const ast::Name& name, std::size_t base);
-  Value defined(std::size_t index, const ast::Name& name);
+  Value derivative(const ast::Name& name, std::size_t base, Scope& scope);
+  Value defined(std::size_t index, const ast::Name& name, const Scope& outer);
   void finish_definition(std::size_t index, Value value);
-  Value constant_defined(std::size_t index, const ast::Name& name);
+  Value constant_defined(std::size_t index, const ast::Name& name, const Scope& outer);
   Value circular(std::size_t index, Span span);
   Value total_energy(Span span, Scope& scope);
   std::optional<Unit> unit_of(const ast::Unit& unit);
@@ -171,7 +172,7 @@ class Checker {
   std::optional<Table> points_of(const std::string& file, Span span, Table::Between between, std::string_view column);
 
   void make_conditions();  // initial_values.cpp
-  const Value& condition_value(std::size_t index);
+  const Value& condition_value(std::size_t index, std::size_t depth = 0);
   void count_conditions();
   void place_condition(std::size_t index, bool initial);
   void missing_conditions();
@@ -339,11 +340,10 @@ class Checker {
   Span run_span_{};
   const ast::Start* start_ = nullptr;
 
-  std::optional<Unit> time_unit_;       // none: the model has no units that reach t
-  std::size_t written_out_ = 0;         // members of families and terms of sums so far
-  std::vector<std::uint32_t> highest_;  // bases whose highest derivative the expression at hand contains
-  std::vector<NodeId> solved_;          // highest derivative of each base where the model has one mode
-  std::vector<std::size_t> busy_;       // definitions being elaborated, for the cycle's names
+  std::optional<Unit> time_unit_;  // none: the model has no units that reach t
+  std::size_t written_out_ = 0;    // members of families and terms of sums so far
+  std::vector<NodeId> solved_;     // highest derivative of each base where the model has one mode
+  std::vector<std::size_t> busy_;  // definitions being elaborated, for the cycle's names
   std::vector<Progress> measure_progress_;
   std::vector<Measured> measures_;
   std::vector<std::size_t> parameter_order_;   // definitions that are parameters, in the order of the text
@@ -352,8 +352,6 @@ class Checker {
   std::vector<double> start_values_;           // of all variables, once the states have theirs; empty until asked for
   std::set<std::size_t> without_equation_;     // bases that have an initial value only
   std::map<std::pair<std::size_t, double>, Span> condition_seen_;  // by state and time
-  std::string_view constant_what_;
-  std::size_t depth_ = 0;  // of elaborate
   double start_time_ = 0;
   std::set<std::string, std::less<>> lost_;  // families that could not be written out: nobody misses their members
   bool t_is_known_ = false;

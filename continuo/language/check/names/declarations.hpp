@@ -27,9 +27,13 @@ struct Scope {
   static constexpr int no_mode = -1;
   std::vector<Index> indices = {};
   int mode = no_mode;
-  bool constant = false;                    // states and inputs are no constants; parameters are their values
+  std::string_view constant = {};           // what must be constant here: "an index"; empty: everything may stand here
   std::vector<Sample>* samples = nullptr;   // where h(1) may stand: in checks and conditions
   const ast::Expression* moment = nullptr;  // of a condition: what changes is named with its time, x(0)
+  std::vector<std::uint32_t>* highest = nullptr;  // notes the bases whose highest derivatives stand in the expression
+  std::size_t depth = 0;                          // of expressions and definitions inside each other
+
+  bool is_constant() const { return !constant.empty(); }
 };
 
 /// A node with what it measures. `bad`: an error was reported, nothing more is said about it.

@@ -10,17 +10,16 @@
 
 namespace continuo::model::detail {
 
-const Value& Checker::condition_value(std::size_t index) {
+const Value& Checker::condition_value(std::size_t index, std::size_t depth) {
   ConditionText& condition = conditions_[index];
   if (condition.progress == Progress::untouched) {
     condition.progress = Progress::busy;
-    const auto outer = std::exchange(highest_, {});
     Scope scope = condition.scope;
     scope.samples = &condition.samples;
     scope.moment = &condition.text->time;
+    scope.depth = depth;
     condition.value = elaborate(condition.text->value, scope);
     want_number(condition.text->value, condition.value);
-    highest_ = outer;
     condition.progress = Progress::done;
   }
   return condition.value;

@@ -231,28 +231,28 @@ Measured Checker::per_time(const Measured& measured, int times) const {
 }
 
 /// What the author wrote beside the initial value of this very component.
-Measured Checker::own_measure(std::size_t base, int primes) {
+Measured Checker::own_measure(std::size_t base, int primes, std::size_t depth) {
   for (const std::size_t i : bases_[base].conditions) {
     ConditionText& condition = conditions_[i];
     if (condition.text->name.primes != primes) continue;
-    const Value& value = condition_value(i);
+    const Value& value = condition_value(i, depth);
     if (value.measured.is_known()) return value.measured;
   }
   return Measured::unknown();
 }
 
 /// Its own initial value's unit, else the nearest one's of its chain times the unit of time.
-Measured Checker::state_measure(std::size_t base, int primes) {
+Measured Checker::state_measure(std::size_t base, int primes, std::size_t depth) {
   const std::size_t state = bases_[base].first + static_cast<std::size_t>(primes);
   if (measure_progress_[state] == Progress::done) return measures_[state];
   if (measure_progress_[state] == Progress::busy) return Measured::unknown();
   measure_progress_[state] = Progress::busy;
-  Measured found = own_measure(base, primes);
+  Measured found = own_measure(base, primes, depth);
   const int order = bases_[base].order;
   for (int distance = 1; distance < order && !found.is_known(); ++distance) {
     for (const int other : {primes - distance, primes + distance}) {
       if (other < 0 || other >= order || found.is_known()) continue;
-      found = per_time(own_measure(base, other), primes - other);
+      found = per_time(own_measure(base, other, depth), primes - other);
     }
   }
   measure_progress_[state] = Progress::done;

@@ -210,7 +210,7 @@ void Checker::place_random(PatternText& pattern, const NodePoint& velocity, cons
   const ast::WorldAttributes& attributes = pattern.text->attributes;
   Graph& g = model_.graph;
   Scope constant_scope = pattern.scope;
-  constant_scope.constant = true;
+  constant_scope.constant = "a box of bodies at random";
   RandomPlacement wanted{.dimension = world_.axes(), .count = pattern.count};
   const auto corner = [&](const ast::Expression& text, std::array<double, 3>& to) {
     const NodePoint point = world_point(text, constant_scope, world_.length, "the corner of a box");
@@ -221,9 +221,7 @@ void Checker::place_random(PatternText& pattern, const NodePoint& velocity, cons
     }
     return true;
   };
-  const auto outer = std::exchange(constant_what_, "a box of bodies at random");
   const bool boxed = corner(*pattern.text->lower, wanted.lower) && corner(*pattern.text->upper, wanted.upper);
-  constant_what_ = outer;
   const auto number = [&](std::string_view name, const Measured& measured, double otherwise) {
     const ast::Expression* text = attribute(attributes, name);
     if (!text) return std::optional(otherwise);

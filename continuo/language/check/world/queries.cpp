@@ -37,7 +37,7 @@ bool Checker::asks_the_world(const ast::Name& callee, const Scope& scope) const 
 
 Value Checker::query(const ast::Call& node, Span span, Scope& scope) {
   const Query& query = *std::ranges::find(queries, node.callee.text, &Query::name);
-  if (scope.constant) return not_constant(span, node.callee.text);
+  if (scope.is_constant()) return not_constant(span, node.callee.text, scope);
   if (!world_.is_made) {
     fail("E224", span, fmt::format("`{}` asks where bodies are", query.name),
          world_.text ? "they are not known here yet" : "the model has no world",
@@ -49,14 +49,11 @@ Value Checker::query(const ast::Call& node, Span span, Scope& scope) {
     fail("E216", span, fmt::format("`{}` needs more to go by", query.name), {}, fmt::format("as in {}", query.example));
     return bad();
   }
-  const auto outer = highest_;  // what stands beside the call may have named some
   const auto pairs = pairs_of(node, query.first, span, scope);
-  Value value = !pairs                   ? bad()
-                : query.name == "ray"    ? cast_ray(*pairs, node, scope)
-                : query.name == "within" ? count_within(*pairs, node, scope)
-                                         : least_gap(*pairs);
-  highest_ = outer;
-  return value;
+  return !pairs                   ? bad()
+         : query.name == "ray"    ? cast_ray(*pairs, node, scope)
+         : query.name == "within" ? count_within(*pairs, node, scope)
+                                  : least_gap(*pairs);
 }
 
 std::optional<Pairs> Checker::pairs_of(const ast::Call& node, std::size_t first, Span span, Scope& scope) {

@@ -176,7 +176,6 @@ Measured Checker::stated_length() {
     if (pattern.text->lower) look(*pattern.text->lower, pattern.scope);
   }
   silent_ = outer;
-  highest_.clear();
   return found;
 }
 
@@ -223,8 +222,8 @@ Value Checker::member(const ast::Name& name, Scope& scope) {
   const auto key = key_of(name, scope);
   if (!key) return bad();
   if (const Symbol* symbol = find(*key, Scope::no_mode)) {
-    if (scope.constant) return not_constant(name.span, *key);
-    return derivative(name, symbol->index);
+    if (scope.is_constant()) return not_constant(name.span, *key, scope);
+    return derivative(name, symbol->index, scope);
   }
   ast::Name owner = name;
   owner.member.clear();
