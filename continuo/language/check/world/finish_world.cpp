@@ -1,4 +1,4 @@
-// continuo/language/check/world/overlaps.cpp
+// continuo/language/check/world/finish_world.cpp
 // What of a world is in order and yet seldom meant: groups without bodies, bodies that begin within each other.
 #include <algorithm>
 #include <cmath>

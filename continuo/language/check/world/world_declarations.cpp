@@ -1,4 +1,4 @@
-// continuo/language/check/world/world_names.cpp
+// continuo/language/check/world/world_declarations.cpp
 // The bodies of a world by name: what they are called, the states they make, `ball.x` and `world.kinetic`.
 #include <algorithm>
 #include <array>

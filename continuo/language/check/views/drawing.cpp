@@ -1,4 +1,4 @@
-// continuo/language/check/views/views.cpp
+// continuo/language/check/views/drawing.cpp
 // Plots and drawings: expressions kept for those who show them.
 #include <algorithm>
 

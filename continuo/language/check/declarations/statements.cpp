@@ -1,4 +1,4 @@
-// continuo/language/check/declarations/declare.cpp
+// continuo/language/check/declarations/statements.cpp
 // Every declared name, once: families are written out, what is declared twice or under a taken name is reported.
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// continuo/language/check/world/world_items.cpp
+// continuo/language/check/world/world_settings.cpp
 // What a world holds beside its bodies: gravity, walls, the mode; and `force on`. Springs are in
 // springs.cpp.
 #include <algorithm>
