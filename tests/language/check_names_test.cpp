@@ -116,6 +116,12 @@ std::string places(const std::string& in_world) {
   return told;
 }
 
+/// Where bodies stand is looked at silently first, for the unit of length.
+TEST(CheckNames, AMistakeInADefinitionIsSaidWhoeverNeedsItFirst) {
+  EXPECT_EQ(place(said("let a = 1 + foo\nworld { body ball at (a, 0) }\nrun 0..1\n", "E210")), "1:13");
+  EXPECT_EQ(place(said("let a = ball.radius\nworld { body ball at (a, 0) }\nrun 0..1\n", "E224")), "1:9");
+}
+
 TEST(CheckNames, BodiesThatBeginWithinEachOtherAreTold) {
   const std::string two = "body a at (0, 1); body b at (0.6, 1.8)";  // 1 apart, of radius 0.5: they touch
   EXPECT_EQ(places(two), "");

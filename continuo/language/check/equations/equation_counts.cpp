@@ -1,53 +1,56 @@
 // continuo/language/check/equations/equation_counts.cpp
-// As many equations as there are highest derivatives, each with something to say: the messages where that fails.
+// E230, E231, E233 and E234: too few equations, too many, or some that determine nothing.
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/names/checker.hpp>
+#include <continuo/language/check/equations/equation_counts.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
 
-std::vector<std::string> Checker::highest_names(const std::vector<std::uint32_t>& bases) const {
+std::vector<std::string> EquationCounts::highest_names(const std::vector<std::uint32_t>& bases) const {
   std::vector<std::string> names;
-  for (const std::uint32_t base : bases) names.push_back(with_primes(bases_[base].name, bases_[base].order));
+  for (const std::uint32_t base : bases)
+    names.push_back(with_primes(declared_.bases[base].name, declared_.bases[base].order));
   return names;
 }
 
-void Checker::report_empty_equation(ModeAtWork& work, std::size_t index, const std::vector<std::uint32_t>& variables) {
+void EquationCounts::report_empty_equation(ModeAtWork& work, std::size_t index,
+                                           const std::vector<std::uint32_t>& variables) const {
   const EquationAtWork& equation = work.equations[index];
   const std::size_t mode = work.mode;
   for (const std::uint32_t variable : variables) {
-    const std::size_t state = variable - model_.layout.states;
-    if (variable < model_.layout.states || state >= model_.states.size()) continue;
-    const std::size_t of = base_of_state(state);
-    const Base& base = bases_[of];
-    if (model_.modes.size() > 1 && model_.states[state].primes > 0) {
+    const std::size_t state = variable - layout_.states;
+    if (variable < layout_.states || variable >= layout_.unknowns) continue;
+    const std::size_t of = declared_.base_index_of_state(state);
+    const Base& base = declared_.bases[of];
+    if (declared_.has_modes() && state > base.first) {
       work.by[of] = index;  // said here: the mode lacks it
-      fail("E234", equation.span,
-           fmt::format("mode `{}` must define `{}` as the other modes do", model_.modes[mode].name,
-                       with_primes(base.name, base.order)),
-           fmt::format("this holds no `{}`", with_primes(base.name, base.order)),
-           fmt::format("write {} = ... here, and set {} in the event that leads into this mode",
-                       with_primes(base.name, base.order), model_.states[state].column));
+      report_.fail("E234", equation.span,
+                   fmt::format("mode `{}` must define `{}` as the other modes do", declared_.modes[mode].name,
+                               with_primes(base.name, base.order)),
+                   fmt::format("this holds no `{}`", with_primes(base.name, base.order)),
+                   fmt::format("write {} = ... here, and set {} in the event that leads into this mode",
+                               with_primes(base.name, base.order),
+                               with_primes(base.name, static_cast<int>(state - base.first))));
       return;
     }
   }
-  fail("E233", equation.span, "this equation determines nothing",
-       "it holds neither a highest derivative nor an unknown",
-       "to name an expression write let NAME = ...; for an algebraic variable declare unknown NAME = guess");
+  report_.fail("E233", equation.span, "this equation determines nothing",
+               "it holds neither a highest derivative nor an unknown",
+               "to name an expression write let NAME = ...; for an algebraic variable declare unknown NAME = guess");
 }
 
-void Checker::report_surplus(const ModeAtWork& work, const std::vector<std::size_t>& members,
-                             const std::vector<std::uint32_t>& open) {
+void EquationCounts::report_surplus(const ModeAtWork& work, const std::vector<std::size_t>& members,
+                                    const std::vector<std::uint32_t>& open) const {
   const EquationAtWork& surplus = work.equations[members.back()];
   const std::vector<std::string> names = highest_names(surplus.holds);
-  const std::string where = model_.modes.size() > 1 ? fmt::format(" in mode `{}`", model_.modes[work.mode].name) : "";
-  auto* said =
-      fail("E231", surplus.span,
-           fmt::format("{} {} one equation too many{}", listed(names), names.size() == 1 ? "has" : "have", where),
-           "this one");
+  const std::string where = declared_.has_modes() ? fmt::format(" in mode `{}`", declared_.modes[work.mode].name) : "";
+  auto* said = report_.fail(
+      "E231", surplus.span,
+      fmt::format("{} {} one equation too many{}", listed(names), names.size() == 1 ? "has" : "have", where),
+      "this one");
   if (!said) return;
   for (const std::uint32_t base : surplus.holds) {
     if (work.by[base] != npos) said->related.push_back({work.equations[work.by[base]].span, "determined here already"});
@@ -57,22 +60,22 @@ void Checker::report_surplus(const ModeAtWork& work, const std::vector<std::size
   }
 }
 
-void Checker::report_missing(const ModeAtWork& work) {
-  const bool modes = model_.modes.size() > 1;
-  const std::string& mode = model_.modes[work.mode].name;
+void EquationCounts::report_missing(const ModeAtWork& work) const {
+  const bool modes = declared_.has_modes();
+  const std::string& mode = declared_.modes[work.mode].name;
   for (const auto& group : work.undetermined) {
     const std::vector<std::string> names = highest_names(group.open);
-    fail("E230", work.equations[group.members.front()].span,
-         fmt::format("{} need {} equations", listed(names), names.size()),
-         fmt::format("here {} {}", group.members.size() == 1 ? "is" : "are", group.members.size()));
+    report_.fail("E230", work.equations[group.members.front()].span,
+                 fmt::format("{} need {} equations", listed(names), names.size()),
+                 fmt::format("here {} {}", group.members.size() == 1 ? "is" : "are", group.members.size()));
   }
-  for (std::uint32_t b = 0; b < bases_.size(); ++b) {
+  for (std::uint32_t b = 0; b < declared_.bases.size(); ++b) {
     if (work.by[b] != npos) continue;
-    const std::string name = with_primes(bases_[b].name, bases_[b].order);
+    const std::string name = with_primes(declared_.bases[b].name, declared_.bases[b].order);
     if (modes) {
-      fail(without_equation_.contains(b) ? "E230" : "E234", model_.modes[work.mode].span,
-           fmt::format("mode `{}` says nothing about `{}`", mode, name), "every mode defines the same states",
-           fmt::format("add {} = ... to this mode", name));
+      report_.fail(!declared_.bases[b].has_equation ? "E230" : "E234", declared_.modes[work.mode].span,
+                   fmt::format("mode `{}` says nothing about `{}`", mode, name), "every mode defines the same states",
+                   fmt::format("add {} = ... to this mode", name));
     } else {
       report_without_equation(b);
     }
@@ -80,21 +83,22 @@ void Checker::report_missing(const ModeAtWork& work) {
 }
 
 /// A name with an initial value only: often a slip of the pen.
-void Checker::report_without_equation(std::uint32_t index) {
-  const Base& base = bases_[index];
-  if (lost_.contains(base.family)) return;
+void EquationCounts::report_without_equation(std::uint32_t index) const {
+  const Base& base = declared_.bases[index];
+  if (declared_.symbols.is_lost(base.family)) return;
   const std::string name = with_primes(base.name, base.order);
-  if (!without_equation_.contains(index)) {
-    fail("E230", base.span, fmt::format("there is no equation for `{}`", name), {}, fmt::format("add {} = ...", name));
+  if (declared_.bases[index].has_equation) {
+    report_.fail("E230", base.span, fmt::format("there is no equation for `{}`", name), {},
+                 fmt::format("add {} = ...", name));
     return;
   }
   std::vector<std::string> others;
-  for (std::uint32_t i = 0; i < bases_.size(); ++i) {
-    if (!without_equation_.contains(i)) others.push_back(bases_[i].name);
+  for (std::uint32_t i = 0; i < declared_.bases.size(); ++i) {
+    if (declared_.bases[i].has_equation) others.push_back(declared_.bases[i].name);
   }
   const std::string near = did_you_mean(base.name, others);
-  fail("E230", base.span, fmt::format("`{}` has an initial value but no equation", base.name), {},
-       near.empty() ? fmt::format("add {} = ...", name) : near);
+  report_.fail("E230", base.span, fmt::format("`{}` has an initial value but no equation", base.name), {},
+               near.empty() ? fmt::format("add {} = ...", name) : near);
 }
 
 }  // namespace continuo::model::detail

@@ -1,13 +1,12 @@
 // continuo/language/check/equations/equations.cpp
-// Equations solved for their highest derivatives: each alone where it holds one, else together where they hang
-// together (accelerations coupled through a mass matrix). What has no such derivative determines an unknown.
+// One equation after the other, then what hangs together, mode by mode.
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/names/checker.hpp>
-#include <continuo/language/check/names/equations_at_work.hpp>
+#include <continuo/language/check/equations/equations.hpp>
+#include <continuo/language/check/equations/reduction.hpp>
 
 namespace continuo::model::detail {
 
@@ -16,18 +15,19 @@ namespace {
 constexpr std::size_t most_coupled = 24;
 }  // namespace
 
-void Checker::make_equations() {
-  for (std::size_t mode = 0; mode < model_.modes.size(); ++mode) solve_mode(mode);
+SolvedEquations Equations::solve() {
+  for (std::size_t mode = 0; mode < declared_.modes.size(); ++mode) solve_mode(mode);
+  return std::move(made_);
 }
 
 /// Both sides brought to one unit: left - right = 0, and what it holds.
-EquationAtWork Checker::read_equation(const Placed<ast::Equation>& equation) {
+EquationAtWork Equations::read_equation(const Placed<ast::Equation>& equation) const {
   Scope scope = equation.scope;
   std::vector<std::uint32_t> on_left, held;
   scope.highest = &on_left;
-  Term left{equation.text->left, elaborate(equation.text->left, scope)};
+  Term left{equation.text->left, expressions_.translator.translate(equation.text->left, scope)};
   scope.highest = &held;
-  Term right{equation.text->right, elaborate(equation.text->right, scope)};
+  Term right{equation.text->right, expressions_.translator.translate(equation.text->right, scope)};
   EquationAtWork work;
   work.span = equation.span;
   const auto* name = std::get_if<ast::Name>(&equation.text->left.node);
@@ -36,40 +36,42 @@ EquationAtWork Checker::read_equation(const Placed<ast::Equation>& equation) {
   std::ranges::sort(held);
   held.erase(std::unique(held.begin(), held.end()), held.end());
   work.holds = std::move(held);
-  if (!want_numbers(left, right) || !align(left, right, equation.span, scope)) {
+  if (!expressions_.operations.want_numbers(left, right) ||
+      !expressions_.translator.align(left, right, equation.span, scope)) {
     work.bad = true;
     return work;
   }
   if (explicit_one) work.solution = right.value.node;
-  work.residual = model_.graph.subtract(left.value.node, right.value.node);
+  work.residual = graph_.subtract(left.value.node, right.value.node);
   return work;
 }
 
-void Checker::solve_mode(std::size_t mode) {
+void Equations::solve_mode(std::size_t mode) {
   ModeAtWork work;
   work.mode = mode;
-  work.solved.assign(bases_.size(), NodeId{});
-  work.by.assign(bases_.size(), npos);
-  work.equations.reserve(equations_.size());
-  for (const Placed<ast::Equation>& equation : equations_) {
+  work.solved.assign(declared_.bases.size(), NodeId{});
+  work.by.assign(declared_.bases.size(), npos);
+  work.equations.reserve(declared_.equations.size());
+  for (const Placed<ast::Equation>& equation : declared_.equations) {
     if (equation.scope.mode != Scope::no_mode && equation.scope.mode != static_cast<int>(mode)) continue;
     work.equations.push_back(read_equation(equation));
   }
-  for (std::size_t i = 0; i < bases_.size(); ++i) {
-    if (bases_[i].in_world) work.by[i] = 0;  // moved by forces
+  for (std::size_t i = 0; i < declared_.bases.size(); ++i) {
+    if (declared_.bases[i].in_world) work.by[i] = 0;  // moved by forces
   }
   sort_out_algebraic(work);
   solve_one_by_one(work);
   solve_coupled(work);
-  report_missing(work);
-  for (std::size_t i = 0; i < bases_.size(); ++i) {
-    if (!work.solved[i].valid()) work.solved[i] = model_.graph.constant(0);
+  counts_.report_missing(work);
+  for (std::size_t i = 0; i < declared_.bases.size(); ++i) {
+    if (!work.solved[i].valid()) work.solved[i] = graph_.constant(0);
   }
-  store_derivatives(work);
+  made_.derivatives.push_back(reduce(work.solved, expressions_.workspace));
+  if (!declared_.has_modes()) made_.highest = std::move(work.solved);
 }
 
 /// An equation without a highest derivative: of an unknown, or one that says nothing.
-void Checker::sort_out_algebraic(ModeAtWork& work) {
+void Equations::sort_out_algebraic(ModeAtWork& work) {
   std::size_t algebraic = 0;
   const Layout& layout = model_.layout;
   for (std::size_t e = 0; e < work.equations.size(); ++e) {
@@ -77,30 +79,35 @@ void Checker::sort_out_algebraic(ModeAtWork& work) {
     if (!equation.holds.empty()) continue;
     equation.used = true;
     if (equation.bad) continue;
-    const auto variables = variables_of(model_.graph, equation.residual);
+    const auto variables = variables_of(graph_, equation.residual);
     const bool has_unknown =
         std::ranges::any_of(variables, [&](std::uint32_t v) { return v >= layout.unknowns && v < layout.parameters; });
-    if (has_unknown || !unknowns_.empty()) {
+    if (has_unknown || !declared_.unknowns.empty()) {
       ++algebraic;
-      model_.algebraic.push_back({equation.residual, work.mode, equation.span});
+      made_.algebraic.push_back({equation.residual, work.mode, equation.span});
       continue;
     }
-    report_empty_equation(work, e, variables);
+    counts_.report_empty_equation(work, e, variables);
   }
-  if (algebraic == unknowns_.size() || errors_ > 0) return;
+  count_algebraic(algebraic);
+}
+
+void Equations::count_algebraic(std::size_t algebraic) const {
+  if (algebraic == declared_.unknowns.size() || report_.errors() > 0) return;
   if (algebraic == 0 && model_.needs_boundary_solver()) return;  // constants that the conditions determine
   std::vector<std::string> names;
-  names.reserve(unknowns_.size());
-  for (const UnknownText& unknown : unknowns_) names.push_back(unknown.name);
-  const Span span = unknowns_.front().span;
-  fail("E235", span, "as many algebraic equations as unknowns are needed",
-       fmt::format("{} {} for {}", algebraic, algebraic == 1 ? "equation" : "equations", listed(names)),
-       algebraic < unknowns_.size() ? "add equations of the form 0 = ..." : "drop equations, or declare more unknowns");
+  names.reserve(declared_.unknowns.size());
+  for (const UnknownText& unknown : declared_.unknowns) names.push_back(unknown.name);
+  const Span span = declared_.unknowns.front().span;
+  report_.fail("E235", span, "as many algebraic equations as unknowns are needed",
+               fmt::format("{} {} for {}", algebraic, algebraic == 1 ? "equation" : "equations", listed(names)),
+               algebraic < declared_.unknowns.size() ? "add equations of the form 0 = ..."
+                                                     : "drop equations, or declare more unknowns");
 }
 
 /// While some equation holds one derivative that is still open, that equation gives it.
-void Checker::solve_one_by_one(ModeAtWork& work) {
-  std::vector<std::vector<std::size_t>> users(bases_.size());
+void Equations::solve_one_by_one(ModeAtWork& work) {
+  std::vector<std::vector<std::size_t>> users(declared_.bases.size());
   std::vector<std::size_t> ready;
   for (std::size_t e = 0; e < work.equations.size(); ++e) {
     EquationAtWork& equation = work.equations[e];
@@ -122,40 +129,40 @@ void Checker::solve_one_by_one(ModeAtWork& work) {
   }
 }
 
-NodeId Checker::with_solved(const ModeAtWork& work, NodeId node) {
-  return substitute(model_.graph, node, [&](std::uint32_t variable) -> std::optional<NodeId> {
+NodeId Equations::with_solved(const ModeAtWork& work, NodeId node) const {
+  return substitute(graph_, node, [&](std::uint32_t variable) -> std::optional<NodeId> {
     if (variable < highest_begin || !work.solved[variable - highest_begin].valid()) return std::nullopt;
     return work.solved[variable - highest_begin];
   });
 }
 
-void Checker::solve_for(ModeAtWork& work, const EquationAtWork& equation, std::uint32_t base) {
+void Equations::solve_for(ModeAtWork& work, const EquationAtWork& equation, std::uint32_t base) {
   if (equation.bad) return;
   if (equation.solution.valid()) {
     work.solved[base] = equation.solution;
     return;
   }
-  Graph& g = model_.graph;
+  Graph& g = graph_;
   const NodeId residual = equation.holds.size() > 1 ? with_solved(work, equation.residual) : equation.residual;
   const auto linear = linear_in(g, residual, highest_begin + base);
-  const std::string name = with_primes(bases_[base].name, bases_[base].order);
+  const std::string name = with_primes(declared_.bases[base].name, declared_.bases[base].order);
   if (!linear) {
-    fail("E232", equation.span, fmt::format("`{}` cannot be solved for", name), "it stands here in a nonlinear way",
-         fmt::format("solve for it by hand and write {} = ...", name));
+    report_.fail("E232", equation.span, fmt::format("`{}` cannot be solved for", name),
+                 "it stands here in a nonlinear way", fmt::format("solve for it by hand and write {} = ...", name));
   } else if (g.is(linear->coefficient, 0)) {
-    fail("E233", equation.span, "this equation determines nothing", fmt::format("`{}` cancels", name));
+    report_.fail("E233", equation.span, "this equation determines nothing", fmt::format("`{}` cancels", name));
   } else {
     work.solved[base] = g.divide(g.negate(linear->remainder), linear->coefficient);
     if (!g.value(linear->coefficient))
-      model_.masses.push_back({{linear->coefficient}, {name}, work.mode, equation.span});
+      made_.masses.push_back({{linear->coefficient}, {name}, work.mode, equation.span});
   }
 }
 
 /// What is too small for a pivot, at the start, beside the largest of the rows: rounding may be all of it. Before the
 /// start is known nothing is.
-Vanishes Checker::vanishing_beside(const LinearRows& rows) {
+Vanishes Equations::vanishing_beside(const LinearRows& rows) {
   const bool known = std::ranges::all_of(model_.states, [](const State& state) { return state.initial.valid(); });
-  if (errors_ > 0 || !known || model_.needs_boundary_solver()) return {};
+  if (report_.errors() > 0 || !known || model_.needs_boundary_solver()) return {};
   if (start_values_.empty()) start_values_ = start_values(model_);
   std::vector<NodeId> entries;
   for (const auto& row : rows) entries.insert(entries.end(), row.begin(), row.end() - 1);
@@ -166,7 +173,7 @@ Vanishes Checker::vanishing_beside(const LinearRows& rows) {
 }
 
 /// What is left hangs together: groups of equations that share open derivatives.
-void Checker::solve_coupled(ModeAtWork& work) {
+void Equations::solve_coupled(ModeAtWork& work) {
   std::vector<std::size_t> group(work.equations.size(), npos);
   for (std::size_t first = 0; first < work.equations.size(); ++first) {
     if (work.equations[first].used || group[first] != npos) continue;
@@ -190,9 +197,10 @@ void Checker::solve_coupled(ModeAtWork& work) {
   }
 }
 
-void Checker::solve_group(ModeAtWork& work, const std::vector<std::size_t>& members, std::vector<std::uint32_t> open) {
+void Equations::solve_group(ModeAtWork& work, const std::vector<std::size_t>& members,
+                            std::vector<std::uint32_t> open) {
   if (members.size() > open.size()) {
-    report_surplus(work, members, open);
+    counts_.report_surplus(work, members, open);
     return;
   }
   if (members.size() < open.size()) {
@@ -202,9 +210,14 @@ void Checker::solve_group(ModeAtWork& work, const std::vector<std::size_t>& memb
   }
   for (const std::uint32_t base : open) work.by[base] = members.front();
   std::ranges::sort(open);
+  solve_rows(work, members, open);
+}
+
+void Equations::solve_rows(ModeAtWork& work, const std::vector<std::size_t>& members,
+                           const std::vector<std::uint32_t>& open) {
   std::vector<NodeId> residuals;
   std::vector<std::uint32_t> unknowns;
-  const std::vector<std::string> names = highest_names(open);
+  const std::vector<std::string> names = counts_.highest_names(open);
   for (const std::size_t e : members) {
     if (work.equations[e].bad) return;
     residuals.push_back(with_solved(work, work.equations[e].residual));
@@ -213,19 +226,20 @@ void Checker::solve_group(ModeAtWork& work, const std::vector<std::size_t>& memb
   for (const std::uint32_t base : open) unknowns.push_back(highest_begin + base);
   const Span span = work.equations[members.front()].span;
   if (open.size() > most_coupled) {
-    fail("E232", span, fmt::format("{} equations hang together", open.size()),
-         fmt::format("their highest derivatives are {}", listed(names)), "solve some of them by hand");
+    report_.fail("E232", span, fmt::format("{} equations hang together", open.size()),
+                 fmt::format("their highest derivatives are {}", listed(names)), "solve some of them by hand");
     return;
   }
-  const auto rows = linear_rows(model_.graph, residuals, unknowns);
-  const auto solution = rows ? solve_linear(model_.graph, *rows, vanishing_beside(*rows)) : std::nullopt;
+  const auto rows = linear_rows(graph_, residuals, unknowns);
+  const auto solution = rows ? solve_linear(graph_, *rows, vanishing_beside(*rows)) : std::nullopt;
   if (!solution) {
-    auto* said = rows ? fail("E237", span, fmt::format("{} are not determined", listed(names)),
-                             "the matrix before them is singular",
-                             "one of these equations repeats the others, or one of the variables is an `unknown`")
-                      : fail("E232", span, fmt::format("{} cannot be solved for", listed(names)),
-                             "these equations are not linear in them",
-                             "solve for the highest derivatives by hand, one equation each");
+    auto* said =
+        rows ? report_.fail("E237", span, fmt::format("{} are not determined", listed(names)),
+                            "the matrix before them is singular",
+                            "one of these equations repeats the others, or one of the variables is an `unknown`")
+             : report_.fail("E232", span, fmt::format("{} cannot be solved for", listed(names)),
+                            "these equations are not linear in them",
+                            "solve for the highest derivatives by hand, one equation each");
     for (std::size_t i = 1; said && i < members.size(); ++i) {
       said->related.push_back({work.equations[members[i]].span, "together with this"});
     }
@@ -234,7 +248,7 @@ void Checker::solve_group(ModeAtWork& work, const std::vector<std::size_t>& memb
   for (std::size_t i = 0; i < open.size(); ++i) work.solved[open[i]] = (*solution)[i];
   MassMatrix mass{{}, names, work.mode, span};
   for (const auto& row : *rows) mass.coefficients.insert(mass.coefficients.end(), row.begin(), row.end() - 1);
-  model_.masses.push_back(std::move(mass));
+  made_.masses.push_back(std::move(mass));
 }
 
 }  // namespace continuo::model::detail

@@ -1,10 +1,10 @@
 // continuo/language/check/expressions/indices.cpp
-// Indices: `for i in 1..N` written out, and the numbers in `u[i-1]`.
+// Nearly every index is `3`, `i` or `i-1` and found without a detour through the graph.
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/expressions/indices.hpp>
+#include <continuo/language/check/expressions/expressions.hpp>
 
 namespace continuo::model::detail {
 
@@ -36,26 +36,31 @@ std::optional<long> quick_index(const ast::Expression& expression, const Scope& 
 
 }  // namespace
 
-std::optional<long> Checker::whole_number(const ast::Expression& expression, Scope& scope, std::string_view what) {
+Indices::Indices(Expressions& expressions)
+    : expressions_(expressions), workspace_(expressions.workspace), report_(expressions.report) {}
+
+std::optional<long> Indices::whole_number(const ast::Expression& expression, Scope& scope,
+                                          std::string_view what) const {
   if (const auto quick = quick_index(expression, scope)) return quick;
-  const auto value = constant(expression, scope, Measured::unknown(), what);
+  const auto value = expressions_.values.constant(expression, scope, Measured::unknown(), what);
   if (!value) return std::nullopt;
   const double rounded = std::round(*value);
   if (!(std::abs(*value - rounded) < 1e-9) || std::abs(rounded) > 1e9) {
-    fail("E219", expression.span, fmt::format("{} is a whole number", what), fmt::format("this is {:g}", *value));
+    report_.fail("E219", expression.span, fmt::format("{} is a whole number", what),
+                 fmt::format("this is {:g}", *value));
     return std::nullopt;
   }
   return static_cast<long>(rounded);
 }
 
-std::optional<std::pair<long, long>> Checker::bounds(const ast::Range& range, Scope& scope) {
+std::optional<std::pair<long, long>> Indices::bounds(const ast::Range& range, Scope& scope) const {
   constexpr std::string_view what = "the end of a range";
   const auto first = whole_number(*range.first, scope, what), last = whole_number(*range.last, scope, what);
   if (!first || !last) return std::nullopt;
   return std::pair{*first, *last};
 }
 
-std::optional<std::vector<long>> Checker::indices_of(const ast::Name& name, Scope& scope) {
+std::optional<std::vector<long>> Indices::indices_of(const ast::Name& name, Scope& scope) const {
   std::vector<long> indices;
   for (const ast::Expression& index : name.indices) {
     const auto value = whole_number(index, scope, "an index");
@@ -65,17 +70,7 @@ std::optional<std::vector<long>> Checker::indices_of(const ast::Name& name, Scop
   return indices;
 }
 
-std::string indexed(std::string_view name, const std::vector<long>& indices) {
-  std::string text(name);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    text += i == 0 ? '[' : ',';
-    text += std::to_string(indices[i]);
-  }
-  if (!indices.empty()) text += ']';
-  return text;
-}
-
-std::optional<std::string> Checker::key_of(const ast::Name& name, Scope& scope) {
+std::optional<std::string> Indices::key_of(const ast::Name& name, Scope& scope) const {
   const std::string member = name.member.empty() ? std::string() : "." + name.member;
   if (name.indices.empty()) return name.text + member;
   const auto indices = indices_of(name, scope);
@@ -83,12 +78,20 @@ std::optional<std::string> Checker::key_of(const ast::Name& name, Scope& scope) 
   return indexed(name.text, *indices) + member;
 }
 
-bool Checker::count_written_out(Span span) {
-  if (++written_out_ <= most_written_out) return true;
-  if (written_out_ > most_written_out + 1) return false;  // said already
-  fail("E221", span, "the model is too large",
-       fmt::format("more than {} members of families and terms of sums", most_written_out),
-       "take fewer points, or write this system in C++");
+bool Indices::is_wanted(const ast::Sum& sum, Scope& scope) const {
+  if (!sum.condition) return true;
+  const auto holds =
+      expressions_.values.constant(**sum.condition, scope, Measured::unknown(), "the condition of a sum");
+  return holds && *holds != 0;
+}
+
+bool Indices::count_written_out(Span span) const {
+  std::size_t& count = workspace_.written_out;
+  if (++count <= most_written_out) return true;
+  if (count > most_written_out + 1) return false;  // said already
+  report_.fail("E221", span, "the model is too large",
+               fmt::format("more than {} members of families and terms of sums", most_written_out),
+               "take fewer points, or write this system in C++");
   return false;
 }
 

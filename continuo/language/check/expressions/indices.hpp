@@ -1,47 +1,65 @@
 // continuo/language/check/expressions/indices.hpp
-// `for i in 1..N` and the terms of a sum, one after the other.
+// Indices: the numbers in `u[i-1]`, `for i in 1..N` and the terms of a sum written out.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include <continuo/language/check/names/checker.hpp>
+#include <continuo/language/check/names/scope.hpp>
 
 namespace continuo::model::detail {
 
-/// "u[3]", "a[1,2]".
-std::string indexed(std::string_view name, const std::vector<long>& indices);
+class Expressions;
+class Report;
+struct Workspace;
 
-/// "this is time" of t, "3.14159..." of pi, else nothing.
-std::string_view meaning_of_its_own(std::string_view name);
+/// More members of families and terms of sums than this are a mistake, or a job for C++.
+inline constexpr std::size_t most_written_out = 500'000;
 
-/// Calls body() with the index in the scope, for each of its values; stops where the model becomes too large.
-/// False where the ends of the range are wrong.
-template <class Body>
-bool Checker::for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) {
-  const auto ends = bounds(range, scope);
-  if (!ends) return false;
-  scope.indices.push_back({index.text, 0});
-  const std::size_t place = scope.indices.size() - 1;
-  for (long i = ends->first; i <= ends->second && count_written_out(range.span); ++i) {
-    scope.indices[place].value = i;
-    body();
-  }
-  scope.indices.pop_back();
-  return true;
-}
+class Indices {
+ public:
+  explicit Indices(Expressions& expressions);
 
-/// The terms of a sum that its condition lets through.
-template <class Body>
-void Checker::for_each_term(const ast::Sum& sum, Scope& scope, Body&& body) {
-  for_each_index(sum.index, sum.range, scope, [&] {
-    if (sum.condition) {
-      const auto holds = constant(**sum.condition, scope, Measured::unknown(), "the condition of a sum");
-      if (!holds || *holds == 0) return;
+  std::optional<long> whole_number(const ast::Expression& expression, Scope& scope, std::string_view what) const;
+  std::optional<std::pair<long, long>> bounds(const ast::Range& range, Scope& scope) const;
+  std::optional<std::vector<long>> indices_of(const ast::Name& name, Scope& scope) const;
+  /// The name as symbols have it: "u[3]", "ball.x".
+  std::optional<std::string> key_of(const ast::Name& name, Scope& scope) const;
+  /// One more member or term; false after saying that there are too many.
+  bool count_written_out(Span span) const;
+
+  /// Calls body() with the index in the scope, for each of its values; stops where the model becomes too large.
+  /// False where the ends of the range are wrong.
+  template <class Body>
+  bool for_each_index(const ast::Identifier& index, const ast::Range& range, Scope& scope, Body&& body) const {
+    const auto ends = bounds(range, scope);
+    if (!ends) return false;
+    scope.indices.push_back({index.text, 0});
+    const std::size_t place = scope.indices.size() - 1;
+    for (long i = ends->first; i <= ends->second && count_written_out(range.span); ++i) {
+      scope.indices[place].value = i;
+      body();
     }
-    body();
-  });
-}
+    scope.indices.pop_back();
+    return true;
+  }
+
+  /// The terms of a sum that its condition lets through.
+  template <class Body>
+  void for_each_term(const ast::Sum& sum, Scope& scope, Body&& body) const {
+    for_each_index(sum.index, sum.range, scope, [&] {
+      if (is_wanted(sum, scope)) body();
+    });
+  }
+
+ private:
+  bool is_wanted(const ast::Sum& sum, Scope& scope) const;
+
+  Expressions& expressions_;
+  Workspace& workspace_;
+  Report& report_;
+};
 
 }  // namespace continuo::model::detail

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace continuo::model::detail {
 
@@ -25,6 +26,8 @@ struct Function {
 /// Null where there is none of this name; `interp` is none of these.
 const Function* find_function(std::string_view name);
 bool is_function(std::string_view name);
+/// All of them, for suggestions.
+std::vector<std::string> function_names();
 /// "one argument", "at least 2 arguments".
 std::string arguments_of(const Function& function);
 /// What is written here instead of a function, or of a number, that other languages have by this name; else nothing.

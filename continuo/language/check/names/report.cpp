@@ -1,11 +1,11 @@
 // continuo/language/check/names/report.cpp
-// How the checks speak.
+// Messages are kept once per place and code, and sorted by place.
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/names/checker.hpp>
+#include <continuo/language/check/names/report.hpp>
 
 namespace continuo::model::detail {
 
@@ -34,8 +34,23 @@ std::string not_finite(double value) {
   return std::isnan(value) ? "this is not a number" : fmt::format("this is {}", value);
 }
 
-/// One message per place and code: the members of a family share their text. Null where it was said already.
-Diagnostic* Checker::fail(const char* code, Span span, std::string message, std::string label, std::string help) {
+std::string unit_text(const Measured& measured) {
+  if (!measured.is_known()) return "without unit";
+  const std::string text = to_text(measured.unit);
+  return text == "1" ? "a pure number" : text;
+}
+
+std::string unit_or_nothing(const Measured& measured) {
+  return measured.is_known() ? to_text(measured.unit) : std::string();
+}
+
+Report Report::silent() const {
+  Report other(source_);
+  other.silent_ = true;
+  return other;
+}
+
+Diagnostic* Report::fail(const char* code, Span span, std::string message, std::string label, std::string help) {
   if (silent_) return nullptr;
   ++errors_;
   if (diagnostics_.size() >= most_reported || !reported_.insert({code, span.begin, span.end}).second) return nullptr;
@@ -43,16 +58,17 @@ Diagnostic* Checker::fail(const char* code, Span span, std::string message, std:
   return &diagnostics_.back();
 }
 
-bool Checker::was_reported(const char* code, Span span) const {
-  return reported_.contains({code, span.begin, span.end});
-}
-
-void Checker::warn(const char* code, Span span, std::string message, std::string label, std::string help) {
-  if (!reported_.insert({code, span.begin, span.end}).second) return;
+void Report::warn(const char* code, Span span, std::string message, std::string label, std::string help) {
+  if (silent_ || !reported_.insert({code, span.begin, span.end}).second) return;
   diagnostics_.push_back(warning(code, span, std::move(message), std::move(label), std::move(help)));
 }
 
-std::string Checker::quote(Span span) const {
+std::vector<Diagnostic> Report::take() {
+  std::ranges::sort(diagnostics_, {}, [](const Diagnostic& d) { return std::tie(d.span.begin, d.span.end, d.code); });
+  return std::move(diagnostics_);
+}
+
+std::string Report::quote(Span span) const {
   std::string text;
   for (const char c : source_.slice(span)) {
     const bool space = c == ' ' || c == '\n' || c == '\t' || c == '\r';
@@ -61,23 +77,6 @@ std::string Checker::quote(Span span) const {
   }
   if (text.size() > longest_quote) text = text.substr(0, longest_quote - 3) + "...";
   return "`" + text + "`";
-}
-
-std::string Checker::unit_text(const Measured& measured) const {
-  if (!measured.is_known()) return "without unit";
-  const std::string text = to_text(measured.unit);
-  return text == "1" ? "a pure number" : text;
-}
-
-std::vector<std::string> Checker::all_names() const {
-  std::vector<std::string> names;
-  for (const auto& [key, symbol] : symbols_) {
-    const std::size_t colon = key.find(':');  // names in a mode are `mode:name`
-    names.push_back(colon == std::string::npos ? key : key.substr(colon + 1));
-  }
-  std::ranges::sort(names);
-  for (const char* builtin : {"t", "pi"}) names.emplace_back(builtin);
-  return names;
 }
 
 }  // namespace continuo::model::detail

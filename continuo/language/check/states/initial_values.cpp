@@ -1,144 +1,148 @@
 // continuo/language/check/states/initial_values.cpp
-// x(0) = ...: initial values, or boundary values where they stand at several times.
+// Conditions at the start are initial values; once one stands elsewhere all are boundary values.
 #include <algorithm>
-#include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/expressions/indices.hpp>
-#include <continuo/language/check/names/checker.hpp>
+#include <continuo/language/check/states/initial_values.hpp>
+#include <continuo/language/check/states/starts.hpp>
 
 namespace continuo::model::detail {
 
-const Value& Checker::condition_value(std::size_t index, std::size_t depth) {
-  ConditionText& condition = conditions_[index];
-  if (condition.progress == Progress::untouched) {
-    condition.progress = Progress::busy;
-    Scope scope = condition.scope;
-    scope.samples = &condition.samples;
-    scope.moment = &condition.text->time;
-    scope.depth = depth;
-    condition.value = elaborate(condition.text->value, scope);
-    want_number(condition.text->value, condition.value);
-    condition.progress = Progress::done;
-  }
-  return condition.value;
-}
+InitialValues::InitialValues(Expressions& expressions, std::vector<State>& states)
+    : expressions_(expressions),
+      report_(expressions.report),
+      declared_(expressions.workspace.declared),
+      run_(expressions.workspace.run),
+      states_(states),
+      start_time_(run_.from ? run_.from->value : 0) {}
 
-void Checker::make_conditions() {
-  start_time_ = model_.run.from ? model_.run.from->value : 0;
+BoundaryProblem InitialValues::make() {
   bool all_at_start = true;
-  for (std::size_t i = 0; i < conditions_.size(); ++i) {
-    ConditionText& condition = conditions_[i];
-    condition.time = time_setting(condition.text->time, condition.scope, "the time of a condition");
-    const auto is_elsewhere = [&](const Setting& time) { return time.value != start_time_; };
-    if (condition.time && is_elsewhere(*condition.time)) all_at_start = false;
-    if (std::ranges::any_of(condition.samples, is_elsewhere, &Sample::when)) all_at_start = false;
+  const auto is_elsewhere = [&](const Setting& time) { return time.value != start_time_; };
+  for (std::size_t i = 0; i < declared_.conditions.size(); ++i) {
+    const ConditionText& condition = declared_.conditions[i];
+    Scope scope = condition.scope;
+    const auto& time =
+        times_.emplace_back(expressions_.values.time_setting(condition.text->time, scope, "the time of a condition"));
+    if (time && is_elsewhere(*time)) all_at_start = false;
+    if (std::ranges::any_of(expressions_.workspace.conditions.of(i).samples, is_elsewhere, &Sample::when))
+      all_at_start = false;
   }
-  for (std::size_t i = 0; i < conditions_.size(); ++i) place_condition(i, all_at_start);
+  for (std::size_t i = 0; i < declared_.conditions.size(); ++i) place_condition(i, all_at_start);
   if (all_at_start) {
     missing_conditions();
-    solve_starts();
+    solve_starts(expressions_, states_, start_time_);
   } else {
     count_conditions();
   }
   make_guesses();
+  return std::move(made_);
 }
 
 /// Of a boundary-value problem: as many as there are numbers to find.
-void Checker::count_conditions() {
-  const std::size_t needed = model_.states.size() + unknowns_.size();
-  if (errors_ > 0 || model_.boundary.size() == needed) return;
-  fail("E244", conditions_.back().span,
-       fmt::format("{} boundary conditions are needed, one per state{}", needed,
-                   unknowns_.empty() ? "" : " and unknown"),
-       fmt::format("here are {}", model_.boundary.size()));
+void InitialValues::count_conditions() const {
+  const std::size_t needed = states_.size() + declared_.unknowns.size();
+  if (report_.errors() > 0 || made_.conditions.size() == needed) return;
+  report_.fail("E244", declared_.conditions.back().span,
+               fmt::format("{} boundary conditions are needed, one per state{}", needed,
+                           declared_.unknowns.empty() ? "" : " and unknown"),
+               fmt::format("here are {}", made_.conditions.size()));
 }
 
-void Checker::place_condition(std::size_t index, bool initial) {
-  ConditionText& condition = conditions_[index];
-  const Base& base = bases_[condition.base];
+void InitialValues::place_condition(std::size_t index, bool initial) {
+  const ConditionText& condition = declared_.conditions[index];
+  const std::optional<Setting>& time = times_[index];
+  const ConditionValues::Entry& entry = expressions_.workspace.conditions.of(index);
+  const Base& base = declared_.bases[condition.base];
   const int primes = condition.text->name.primes;
   if (primes >= base.order) {
-    fail("E242", condition.text->name.span, fmt::format("`{}` needs no initial value", with_primes(base.name, primes)),
-         primes == base.order
-             ? "it follows from its equation"
-             : fmt::format("the highest derivative in the equations is `{}`", with_primes(base.name, base.order)));
+    report_.fail(
+        "E242", condition.text->name.span, fmt::format("`{}` needs no initial value", with_primes(base.name, primes)),
+        primes == base.order
+            ? "it follows from its equation"
+            : fmt::format("the highest derivative in the equations is `{}`", with_primes(base.name, base.order)));
     return;
   }
   const std::size_t state = base.first + static_cast<std::size_t>(primes);
-  const Value& value = condition_value(index);
+  const Value& value = entry.value;
   const auto stands_alone = [&] {
-    return only_parameters(value.node, condition.text->value.span, "a condition at several times",
-                           "name what changes with a time, as in x(0)");
+    return expressions_.values.only_parameters(value.node, condition.text->value.span, "a condition at several times",
+                                               "name what changes with a time, as in x(0)");
   };
-  if (value.bad || !condition.time || (!initial && !stands_alone())) {
-    condition_seen_.try_emplace({state, 0.0}, condition.span);
+  if (value.bad || !time || (!initial && !stands_alone())) {
+    seen_.try_emplace({state, 0.0}, condition.span);
     return;
   }
-  const auto [first, is_new] = condition_seen_.try_emplace({state, condition.time->value}, condition.span);
+  const auto [first, is_new] = seen_.try_emplace({state, time->value}, condition.span);
   if (!is_new) {
-    auto* said = fail("E241", condition.span,
-                      fmt::format("`{}({:g})` is given twice", with_primes(base.name, primes), condition.time->value));
+    auto* said = report_.fail("E241", condition.span,
+                              fmt::format("`{}({:g})` is given twice", with_primes(base.name, primes), time->value));
     if (said && first->second != condition.span) said->related.push_back({first->second, "first here"});
     return;
   }
   const NodeId node =
-      in_unit(condition.text->value, value, measures_[state], "`" + with_primes(base.name, primes) + "`");
-  if (condition.time->value == start_time_ && (initial || condition.samples.empty())) {
-    model_.states[state].initial = node;
-    model_.states[state].span = condition.span;
+      expressions_.operations.in_unit(condition.text->value, value, expressions_.workspace.units.of_state(state),
+                                      "`" + with_primes(base.name, primes) + "`");
+  if (time->value == start_time_ && (initial || entry.samples.empty())) {
+    states_[state].initial = node;
+    states_[state].span = condition.span;
   }
   if (initial) return;
-  if (!is_in_run(*condition.time)) {
-    fail("E245", condition.span, "this condition stands outside of the run",
-         fmt::format("the run goes from {:g} to {:g}", start_time_, model_.run.to->value),
-         "let the run reach it, or move it");
+  if (!is_in_run(*time, run_)) {
+    report_.fail("E245", condition.span, "this condition stands outside of the run",
+                 fmt::format("the run goes from {:g} to {:g}", start_time_, run_.to->value),
+                 "let the run reach it, or move it");
   }
-  model_.boundary.push_back({state, *condition.time, node, condition.samples, condition.span});
+  made_.conditions.push_back({state, *time, node, entry.samples, condition.span});
 }
 
 /// One message per family, about its first member without a value.
-void Checker::missing_conditions() {
+void InitialValues::missing_conditions() const {
   std::set<std::string> said;
-  for (std::size_t b = 0; b < bases_.size(); ++b) {
-    const Base& base = bases_[b];
-    if (base.in_world || without_equation_.contains(b) || lost_.contains(base.family)) continue;
+  for (std::size_t b = 0; b < declared_.bases.size(); ++b) {
+    const Base& base = declared_.bases[b];
+    if (base.in_world || !base.has_equation || declared_.symbols.is_lost(base.family)) continue;
     std::vector<std::string> missing, needed;
     for (int k = 0; k < base.order; ++k) {
       const std::size_t state = base.first + static_cast<std::size_t>(k);
       const std::string text = fmt::format("{}({:g})", with_primes(base.name, k), start_time_);
       needed.push_back(text);
-      const bool wrong = condition_seen_.contains({state, 0.0});
-      if (!model_.states[state].initial.valid() && !wrong) missing.push_back(text);
+      const bool wrong = seen_.contains({state, 0.0});
+      if (!states_[state].initial.valid() && !wrong) missing.push_back(text);
     }
     if (missing.empty() || !said.insert(base.family).second) continue;
     std::string statement;
     for (const std::string& text : missing) statement += (statement.empty() ? "" : ";  ") + text + " = ...";
-    fail("E240", base.span, fmt::format("{} {} missing", listed(missing), missing.size() == 1 ? "is" : "are"),
-         fmt::format("`{}` needs {}", with_primes(base.name, base.order), listed(needed)), "add " + statement);
+    report_.fail("E240", base.span, fmt::format("{} {} missing", listed(missing), missing.size() == 1 ? "is" : "are"),
+                 fmt::format("`{}` needs {}", with_primes(base.name, base.order), listed(needed)), "add " + statement);
   }
 }
 
-void Checker::make_guesses() {
-  for (Placed<ast::Guess>& guess : guesses_) {
-    const auto key = key_of(guess.text->name, guess.scope);
-    const Symbol* symbol = key ? find(*key, Scope::no_mode) : nullptr;
+void InitialValues::make_guesses() {
+  for (const Placed<ast::Guess>& guess : declared_.guesses) {
+    Scope scope = guess.scope;
+    const auto key = expressions_.indices.key_of(guess.text->name, scope);
+    const Symbol* symbol = key ? declared_.symbols.find(*key, Scope::no_mode) : nullptr;
     if (!key) continue;
     const ast::Name& name = guess.text->name;
-    if (!symbol || symbol->kind != Symbol::Kind::base || name.primes >= bases_[symbol->index].order) {
-      fail("E242", name.span,
-           fmt::format("`{}` is no state, so there is nothing to guess", with_primes(*key, name.primes)));
+    if (!symbol || symbol->kind != Symbol::Kind::base || name.primes >= declared_.bases[symbol->index].order) {
+      report_.fail("E242", name.span,
+                   fmt::format("`{}` is no state, so there is nothing to guess", with_primes(*key, name.primes)));
       continue;
     }
-    const std::size_t state = bases_[symbol->index].first + static_cast<std::size_t>(name.primes);
-    const Value value = number_of(guess.text->value, guess.scope);
+    const std::size_t state = declared_.bases[symbol->index].first + static_cast<std::size_t>(name.primes);
+    const Value value = expressions_.values.number_of(guess.text->value, scope);
     if (value.bad) continue;
-    model_.guesses.push_back(
-        {state, in_unit(guess.text->value, value, measures_[state], quote(name.span)), guess.span});
+    made_.guesses.push_back(
+        {state,
+         expressions_.operations.in_unit(guess.text->value, value, expressions_.workspace.units.of_state(state),
+                                         report_.quote(name.span)),
+         guess.span});
   }
-  for (State& state : model_.states) {  // of a boundary-value problem: where the search begins
-    if (!state.initial.valid()) state.initial = model_.graph.constant(0);
+  for (State& state : states_) {  // of a boundary-value problem: where the search begins
+    if (!state.initial.valid()) state.initial = expressions_.workspace.graph.constant(0);
   }
 }
 

@@ -1,6 +1,5 @@
 // continuo/language/check/states/starts.cpp
-// Starts by other starts: S(0) = 1 - I(0) - R(0), m(0) = am/(am + bm) with lets of states. Each state in an initial
-// value is replaced by what it starts from, so that what remains are parameters, inputs and t.
+// Follows starts that are made of other starts; E222 and E246 where they lead nowhere.
 #include <algorithm>
 #include <functional>
 #include <unordered_map>
@@ -8,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/names/checker.hpp>
+#include <continuo/language/check/states/starts.hpp>
 
 namespace continuo::model::detail {
 
@@ -92,60 +91,65 @@ class StartSolver {
   std::unordered_map<NodeId, NodeId, Hash> image_;
 };
 
+void refuse_in_start(Expressions& expressions, std::uint32_t variable, std::string_view why, Span span) {
+  expressions.report.fail(
+      "E222", span, fmt::format("this start cannot depend on `{}`", name_of_variable(expressions.workspace, variable)),
+      std::string(why), "starts are made of parameters, inputs, t and other starts");
+}
+
+/// Of the circle's variables samples have no name: they stand for the states they are of.
+void report_circle(Expressions& expressions, const std::vector<State>& all, double start_time,
+                   const std::vector<std::uint32_t>& variables) {
+  std::vector<std::uint32_t> states;
+  for (const std::uint32_t variable : variables) {
+    if (variable < expressions.workspace.layout.parameters) states.push_back(variable);
+  }
+  const auto start_of = [&](std::uint32_t variable) {
+    return fmt::format("{}({:g})", name_of_variable(expressions.workspace, variable), start_time);
+  };
+  std::string circle;
+  for (const std::uint32_t state : states) circle += start_of(state) + " -> ";
+  expressions.report.fail("E246", all[states.front() - expressions.workspace.layout.states].span,
+                          fmt::format("`{}` is given by itself", start_of(states.front())),
+                          circle + start_of(states.front()), "give one of them a start of its own");
+}
+
 }  // namespace
 
-/// Of conditions that all stand at the start. Samples of them are no numbers of the run: they are released.
-void Checker::solve_starts() {
-  const Layout& layout = model_.layout;
+void solve_starts(Expressions& expressions, std::vector<State>& states, double start_time) {
+  const Layout& layout = expressions.workspace.layout;
   std::unordered_map<std::uint32_t, NodeId> samples;
-  for (const ConditionText& condition : conditions_) {
+  for (const ConditionValues::Entry& condition : expressions.workspace.conditions.all()) {
     for (const Sample& sample : condition.samples) samples.emplace(sample.variable, sample.of);
   }
   Span span{};  // of the start at hand
   const auto expression_of = [&](std::uint32_t variable) -> NodeId {
     if (const auto sample = samples.find(variable); sample != samples.end()) return sample->second;
     if (variable < layout.states || variable >= layout.parameters) {
-      if (variable >= highest_begin) refuse_in_start(variable, "it follows from its equation", span);
+      if (variable >= highest_begin) refuse_in_start(expressions, variable, "it follows from its equation", span);
       return {};
     }
     if (variable >= layout.unknowns) {
-      refuse_in_start(variable, "an equation `0 = ...` determines it, when the states are known", span);
+      refuse_in_start(expressions, variable, "an equation `0 = ...` determines it, when the states are known", span);
       return {};
     }
-    const State& state = model_.states[variable - layout.states];
+    const State& state = states[variable - layout.states];
     if (!state.in_world) return state.initial;
-    refuse_in_start(variable, "it is of a body or of the world", span);
+    refuse_in_start(expressions, variable, "it is of a body or of the world", span);
     return {};
   };
-  const auto circle = [&](const std::vector<std::uint32_t>& variables) { report_circle(variables); };
-  StartSolver solver(model_.graph, expression_of, circle);
+  const auto circle = [&](const std::vector<std::uint32_t>& variables) {
+    report_circle(expressions, states, start_time, variables);
+  };
+  StartSolver solver(expressions.workspace.graph, expression_of, circle);
   std::vector<std::pair<State*, NodeId>> solved;  // put in their places when nobody looks for what was written there
-  for (State& state : model_.states) {
+  for (State& state : states) {
     if (state.in_world || !state.initial.valid()) continue;
     span = state.span;
-    solved.emplace_back(&state, solver.solve(model_.graph.variable(state.variable)));
+    solved.emplace_back(&state, solver.solve(expressions.workspace.graph.variable(state.variable)));
   }
   for (const auto& [state, start] : solved) state->initial = start;
-  model_.layout.size = model_.layout.samples;
-}
-
-void Checker::refuse_in_start(std::uint32_t variable, std::string_view why, Span span) {
-  fail("E222", span, fmt::format("this start cannot depend on `{}`", name_of(variable)), std::string(why),
-       "starts are made of parameters, inputs, t and other starts");
-}
-
-/// Of the circle's variables samples have no name: they stand for the states they are of.
-void Checker::report_circle(const std::vector<std::uint32_t>& variables) {
-  std::vector<std::uint32_t> states;
-  for (const std::uint32_t variable : variables) {
-    if (variable < model_.layout.parameters) states.push_back(variable);
-  }
-  const auto start_of = [&](std::uint32_t variable) { return fmt::format("{}({:g})", name_of(variable), start_time_); };
-  std::string circle;
-  for (const std::uint32_t state : states) circle += start_of(state) + " -> ";
-  fail("E246", model_.states[states.front() - model_.layout.states].span,
-       fmt::format("`{}` is given by itself", start_of(states.front())), circle + start_of(states.front()),
-       "give one of them a start of its own");
+  expressions.workspace.layout.size = expressions.workspace.layout.samples;
 }
 
 }  // namespace continuo::model::detail

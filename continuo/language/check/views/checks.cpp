@@ -1,12 +1,11 @@
 // continuo/language/check/views/checks.cpp
-// `check ...`: what the model says about itself.
+// The left side says what is measured and in which unit, the right side what it should be.
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/expressions/indices.hpp>
-#include <continuo/language/check/names/checker.hpp>
 #include <continuo/language/check/names/functions.hpp>
+#include <continuo/language/check/views/checks.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -31,7 +30,7 @@ Relation relation_of(ast::Relation relation) {
 
 }  // namespace
 
-void Checker::check_event_name(const std::string& begin, Span span) {
+void Checks::check_event_name(const std::string& begin, Span span) {
   if (begin.empty()) return;
   std::vector<std::string> names;
   for (const When& event : model_.events) names.push_back(event.name);
@@ -39,38 +38,26 @@ void Checker::check_event_name(const std::string& begin, Span span) {
   const auto fits = [&](const std::string& name) { return name.starts_with(begin); };
   if (std::ranges::any_of(names, fits)) return;
   // Contacts are named as they happen.
-  if (world_.text && (begin.find(" meets") != std::string::npos || begin.find(" leaves") != std::string::npos)) return;
+  if (expressions_.workspace.declared.world.text &&
+      (begin.find(" meets") != std::string::npos || begin.find(" leaves") != std::string::npos))
+    return;
   const std::string near = did_you_mean(begin, names);
-  fail("E281", span, fmt::format("no event begins with \"{}\"", begin), {},
-       !near.empty()   ? near
-       : names.empty() ? "the model has no events"
-                       : "the events are " + listed(names));
+  report_.fail("E281", span, fmt::format("no event begins with \"{}\"", begin), {},
+               !near.empty()   ? near
+               : names.empty() ? "the model has no events"
+                               : "the events are " + listed(names));
 }
 
-bool Checker::is_in_run(const Setting& time) const {
-  if (!model_.run.from || !model_.run.to) return true;
-  const double from = model_.run.from->value, to = model_.run.to->value, slack = 1e-12 * (to - from);
-  if (!(from < to)) return true;  // said elsewhere
-  return time.value >= from - slack && time.value <= to + slack;
-}
-
-/// A time in the run; the end of the run decides, where it is known.
-void Checker::check_time_in_run(const Setting& time, Span span) {
-  if (is_in_run(time)) return;
-  const double from = model_.run.from->value, to = model_.run.to->value;
-  fail("E281", span, "this time is not in the run", fmt::format("the run goes from {:g} to {:g}", from, to));
-}
-
-Moment Checker::moment(const ast::Moment& text, Scope& scope, Span span) {
+Moment Checks::moment(const ast::Moment& text, Scope& scope, Span span) {
   Moment result;
   if (const auto* at = std::get_if<ast::AtTime>(&text)) {
     result.kind = Moment::Kind::time;
-    result.time = time_setting(at->time, scope, "the time of a check");
-    if (result.time) check_time_in_run(*result.time, at->time.span);
+    result.time = expressions_.values.time_setting(at->time, scope, "the time of a check");
+    if (result.time) expressions_.values.check_time_in_run(*result.time, at->time.span);
   } else if (const auto* event = std::get_if<ast::AtEvent>(&text)) {
     result.kind = Moment::Kind::event;
-    const auto number = whole_number(event->number, scope, "the number of an event");
-    if (number && *number < 1) fail("E281", event->number.span, "events count from 1");
+    const auto number = expressions_.indices.whole_number(event->number, scope, "the number of an event");
+    if (number && *number < 1) report_.fail("E281", event->number.span, "events count from 1");
     result.number = static_cast<std::size_t>(std::max(number.value_or(1), 1L));
     result.event = event->event;
     result.after = event->after;
@@ -79,39 +66,37 @@ Moment Checker::moment(const ast::Moment& text, Scope& scope, Span span) {
   return result;
 }
 
-void Checker::make_checks() {
-  for (Placed<ast::Check>& check : checks_) make_check(*check.text, check.scope, check.span);
-}
-
 /// `h(1)` alone is h at 1.
-Value Checker::value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check) {
+Value Checks::value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check) {
   check.measure = Measure::value;
+  const WorldExpressions* world = expressions_.workspace.world;
   const auto* call = std::get_if<ast::Call>(&text.expression.node);
   const bool plain = call && call->arguments.size() == 1 && !is_function(call->callee.text) &&
-                     !asks_the_world(call->callee, scope) && std::holds_alternative<ast::AtEnd>(text.moment);
+                     !(world && world->is_query(call->callee, scope)) &&
+                     std::holds_alternative<ast::AtEnd>(text.moment);
   Value value;
   if (plain) {
     ast::Expression name{call->callee, call->callee.span};
     check.moment = moment(ast::AtTime{call->arguments[0]}, scope, span);
-    value = number_of(name, scope);
+    value = expressions_.values.number_of(name, scope);
   } else {
     check.moment = moment(text.moment, scope, span);
-    value = number_of(text.expression, scope);
+    value = expressions_.values.number_of(text.expression, scope);
   }
   check.node = value.node;
   return value;
 }
 
 /// The left side: what is measured, and in which unit.
-Value Checker::measure(const ast::Check& text, Scope& scope, Check& check) {
+Value Checks::measure(const ast::Check& text, Scope& scope, Check& check) {
   const Span span = text.measure_span;
   const auto value = [&](const ast::Expression& expression) {
-    const Value v = number_of(expression, scope);
+    const Value v = expressions_.values.number_of(expression, scope);
     check.node = v.node;
     return v;
   };
-  const Value time{.node = model_.graph.constant(0), .measured = time_measure()};
-  const Value pure{.node = model_.graph.constant(0), .measured = Measured::known(Unit())};
+  const Value time{.node = graph_.constant(0), .measured = expressions_.workspace.time.in_expressions()};
+  const Value pure{.node = graph_.constant(0), .measured = Measured::known(Unit())};
   if (const auto* of = std::get_if<ast::ValueOf>(&text.measure)) return value_at(*of, scope, span, check);
   if (const auto* always = std::get_if<ast::AlwaysValueOf>(&text.measure)) {
     check.measure = Measure::always;
@@ -120,7 +105,8 @@ Value Checker::measure(const ast::Check& text, Scope& scope, Check& check) {
   if (std::holds_alternative<ast::EnergyDrift>(text.measure)) {
     check.measure = Measure::energy_drift;
     if (!model_.total_energy.valid()) {
-      fail("E281", span, "there is no energy to drift", {}, "declare it: energy kinetic = ..., potential = ...");
+      report_.fail("E281", span, "there is no energy to drift", {},
+                   "declare it: energy kinetic = ..., potential = ...");
     }
     return pure;
   }
@@ -140,33 +126,40 @@ Value Checker::measure(const ast::Check& text, Scope& scope, Check& check) {
   return time;
 }
 
-void Checker::make_check(const ast::Check& text, Scope& outer, Span span) {
+void Checks::add(const ast::Check& text, const Scope& outer, Span span) {
   std::vector<Sample> samples;
   Scope scope = outer;
   scope.samples = &samples;
   Check check{};
   check.span = span;
   check.relation = relation_of(text.relation);
-  std::string quoted = quote(span);
+  std::string quoted = report_.quote(span);
   check.text = quoted.substr(1, quoted.size() - 2);
   Term left{text.value, measure(text, scope, check)};
-  Term right{text.value, number_of(text.value, scope)};
+  Term right{text.value, expressions_.values.number_of(text.value, scope)};
   if (left.value.bad || right.value.bad) return;
   if (!factor_between(right.value.measured, left.value.measured)) {
-    fail("E201", cover(text.measure_span, text.value.span), "units do not match",
-         fmt::format("{} is {}, {} is {}", quote(text.measure_span), unit_text(left.value.measured),
-                     quote(text.value.span), unit_text(right.value.measured)));
+    report_.fail("E201", cover(text.measure_span, text.value.span), "units do not match",
+                 fmt::format("{} is {}, {} is {}", report_.quote(text.measure_span), unit_text(left.value.measured),
+                             report_.quote(text.value.span), unit_text(right.value.measured)));
     return;
   }
-  check.value = in_unit(text.value, right.value, left.value.measured, "the measured value");
+  check.value = expressions_.operations.in_unit(text.value, right.value, left.value.measured, "the measured value");
   const Measured both = left.value.measured.is_known() ? left.value.measured : right.value.measured;
   check.unit = both.is_known() && !(both.unit == Unit()) ? to_text(both.unit) : std::string();
   if (text.tolerance) {
-    const Value tolerance = number_of(*text.tolerance, scope);
-    if (!tolerance.bad) check.tolerance = in_unit(*text.tolerance, tolerance, both, "the check");
+    const Value tolerance = expressions_.values.number_of(*text.tolerance, scope);
+    if (!tolerance.bad)
+      check.tolerance = expressions_.operations.in_unit(*text.tolerance, tolerance, both, "the check");
   }
   check.samples = std::move(samples);
-  model_.checks.push_back(std::move(check));
+  made_.push_back(std::move(check));
+}
+
+std::vector<Check> Checks::make() {
+  for (const Placed<ast::Check>& check : expressions_.workspace.declared.checks)
+    add(*check.text, check.scope, check.span);
+  return std::move(made_);
 }
 
 }  // namespace continuo::model::detail

@@ -1,12 +1,13 @@
 // continuo/language/check/world/finish_world.cpp
-// What of a world is in order and yet seldom meant: groups without bodies, bodies that begin within each other.
+// Bodies are sorted along one axis, so that only near ones are compared.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/expressions/indices.hpp>
+#include <continuo/language/check/world/finish_world.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -53,40 +54,17 @@ struct Places {
   }
 };
 
-}  // namespace
+/// How deep two bodies, or a body and a wall, begin within each other.
+struct Overlap {
+  std::size_t a, b;
+  double depth;
+};
 
-void Checker::look_at_groups() {
-  std::vector<std::string> filled;
-  for (const BodyDescription& body : world_.made.bodies)
-    if (std::ranges::find(filled, world_.groups[body.group]) == filled.end())
-      filled.push_back(world_.groups[body.group]);
-  for (const auto& item : world_.items) {
-    const auto* ignore = std::get_if<ast::WorldIgnore>(&item.text->node);
-    if (!ignore) continue;
-    for (const ast::Identifier* name : {&ignore->a, &ignore->b})
-      if (std::ranges::find(filled, name->text) == filled.end())
-        warn("E293", name->span, fmt::format("no body is in the group `{}`", name->text), {},
-             did_you_mean(name->text, filled));
-  }
+std::string others(std::size_t count) {
+  return count == 1 ? std::string() : fmt::format(", {} such in all", count);
 }
 
-/// With the parameters as the text has them.
-void Checker::look_at_start() {
-  const WorldDescription& made = world_.made;
-  const std::vector<double> variables = start_values(model_);
-  std::vector<NodeId> nodes;
-  for (const BodyDescription& body : made.bodies) nodes.push_back(body.radius);
-  Places places{.axes = world_.axes(), .centre = {}, .radius = evaluate(model_, nodes, variables)};
-  for (const BodyDescription& body : made.bodies) {
-    std::array<double, 3> centre{};
-    for (std::size_t axis = 0; axis < places.axes; ++axis)
-      centre[axis] = variables[model_.layout.states + body.first_state + 2 * axis];
-    places.centre.push_back(centre);
-  }
-  struct Overlap {
-    std::size_t a, b;
-    double depth;
-  };
+void look_at_bodies(const WorldDescription& made, const Places& places, Report& report) {
   std::vector<Overlap> found;
   const auto meet = [&](const BodyDescription& a, const BodyDescription& b) {
     if (a.fixed && b.fixed) return false;
@@ -99,20 +77,22 @@ void Checker::look_at_start() {
     if (depth > least_depth * std::min(places.radius[i], places.radius[j]) && meet(made.bodies[i], made.bodies[j]))
       found.push_back({std::min(i, j), std::max(i, j), depth});
   });
-  const auto others = [](std::size_t count) {
-    return count == 1 ? std::string() : fmt::format(", {} such in all", count);
-  };
   if (!found.empty()) {
     const Overlap& first = *std::ranges::min_element(found, {}, [](const Overlap& o) { return std::pair(o.b, o.a); });
-    warn("E295", made.bodies[first.b].span,
-         fmt::format("`{}` begins within `{}`", made.bodies[first.b].name, made.bodies[first.a].name),
-         fmt::format("by {:.3g}{}", first.depth, others(found.size())),
-         "leave room between them, or let their groups ignore each other");
+    report.warn("E295", made.bodies[first.b].span,
+                fmt::format("`{}` begins within `{}`", made.bodies[first.b].name, made.bodies[first.a].name),
+                fmt::format("by {:.3g}{}", first.depth, others(found.size())),
+                "leave room between them, or let their groups ignore each other");
   }
+}
+
+void look_at_walls(const Model& model, const WorldDescription& made, const Places& places,
+                   std::span<const double> variables, Report& report) {
+  std::vector<Overlap> found;
   for (const WallDescription& wall : made.walls) {
     std::vector<NodeId> parts(wall.normal.begin(), wall.normal.begin() + static_cast<std::ptrdiff_t>(places.axes));
     parts.push_back(wall.offset);
-    const std::vector<double> numbers = evaluate(model_, parts, variables);
+    const std::vector<double> numbers = evaluate(model, parts, variables);
     double length = 0;
     for (std::size_t axis = 0; axis < places.axes; ++axis) length = std::hypot(length, numbers[axis]);
     found.clear();
@@ -125,9 +105,51 @@ void Checker::look_at_start() {
     }
     if (found.empty()) continue;
     const BodyDescription& body = made.bodies[found.front().a];
-    warn("E295", body.span, fmt::format("`{}` begins within the wall `{}`", body.name, wall.name),
-         fmt::format("by {:.3g}{}", found.front().depth, others(found.size())), "leave room in front of it");
+    report.warn("E295", body.span, fmt::format("`{}` begins within the wall `{}`", body.name, wall.name),
+                fmt::format("by {:.3g}{}", found.front().depth, others(found.size())), "leave room in front of it");
   }
+}
+
+/// E293: groups that no body is in.
+void look_at_groups(const WorldText& text, const WorldAtWork& work, Report& report) {
+  std::vector<std::string> filled;
+  for (const BodyDescription& body : work.made.bodies)
+    if (std::ranges::find(filled, work.groups[body.group]) == filled.end()) filled.push_back(work.groups[body.group]);
+  for (const auto& item : text.items) {
+    const auto* ignore = std::get_if<ast::WorldIgnore>(&item.text->node);
+    if (!ignore) continue;
+    for (const ast::Identifier* name : {&ignore->a, &ignore->b})
+      if (std::ranges::find(filled, name->text) == filled.end())
+        report.warn("E293", name->span, fmt::format("no body is in the group `{}`", name->text), {},
+                    did_you_mean(name->text, filled));
+  }
+}
+
+/// E295, with the parameters as the text has them.
+void look_at_start(const Model& model, const WorldDescription& made, Report& report) {
+  const std::vector<double> variables = start_values(model);
+  std::vector<NodeId> nodes;
+  for (const BodyDescription& body : made.bodies) nodes.push_back(body.radius);
+  Places places{
+      .axes = static_cast<std::size_t>(made.dimension), .centre = {}, .radius = evaluate(model, nodes, variables)};
+  for (const BodyDescription& body : made.bodies) {
+    std::array<double, 3> centre{};
+    for (std::size_t axis = 0; axis < places.axes; ++axis)
+      centre[axis] = variables[model.layout.states + body.first_state + 2 * axis];
+    places.centre.push_back(centre);
+  }
+  look_at_bodies(made, places, report);
+  look_at_walls(model, made, places, variables, report);
+}
+
+}  // namespace
+
+std::shared_ptr<const WorldDescription> finish_world(const WorldText& text, WorldAtWork world, const Model& model,
+                                                     Report& report) {
+  look_at_groups(text, world, report);
+  if (!text.text) return nullptr;
+  if (report.errors() == 0) look_at_start(model, world.made, report);
+  return std::make_shared<const WorldDescription>(std::move(world.made));
 }
 
 }  // namespace continuo::model::detail

@@ -1,14 +1,14 @@
 // continuo/language/check/world/springs.cpp
-// Springs between bodies by name, and between the neighbours of a pattern.
+// A spring has its stiffness, and a length of its own or that at the start.
 #include <algorithm>
 #include <array>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <continuo/language/check/expressions/indices.hpp>
 #include <continuo/language/check/world/attributes.hpp>
-#include <continuo/language/syntax/format.hpp>
+#include <continuo/language/check/world/body_names.hpp>
+#include <continuo/language/check/world/springs.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -41,71 +41,57 @@ std::vector<std::pair<std::size_t, std::size_t>> neighbours(const PatternText& p
 
 }  // namespace
 
-std::optional<std::size_t> Checker::body_named(const ast::Name& name, Scope& scope) {
-  const auto key = key_of(name, scope);
-  if (!key) return std::nullopt;
-  const Symbol* symbol = name.primes == 0 && name.member.empty() ? find(*key, Scope::no_mode) : nullptr;
-  if (symbol && symbol->kind == Symbol::Kind::body) return symbol->index;
-  const auto family = families_.find(name.text);
-  if (family != families_.end() && family->second.kind == Symbol::Kind::body && !symbol && name.member.empty()) {
-    unknown_name(name, *key);  // the index is wrong, or missing
-    return std::nullopt;
-  }
-  if (lost_.contains(name.text)) return std::nullopt;
-  std::vector<std::string> names;
-  for (const BodyText& body : world_.bodies) names.push_back(body.name);
-  const std::string near = did_you_mean(*key, names);
-  fail("E223", name.span, fmt::format("there is no body `{}`", to_text(name)), {},
-       !near.empty()   ? near
-       : names.empty() ? fmt::format("the model has no world: world {{ body {} at (0, 0) }}", name.text)
-                       : "the bodies are " + listed(names));
-  return std::nullopt;
-}
-
-void Checker::add_spring(SpringDescription spring, const ast::WorldAttributes& attributes, Scope& scope) {
-  Graph& g = model_.graph;
-  const Measured stiffness = per_time(world_.mass, 2);
+void Springs::add_spring(SpringDescription spring, const ast::WorldAttributes& attributes, Scope& scope) {
+  Graph& g = graph_;
+  const Measured stiffness = expressions_.workspace.time.per_time(work_.mass, 2);
   const auto *k = attribute(attributes, "stiffness"), *length = attribute(attributes, "length"),
              *damping = attribute(attributes, "damping");
   if (!k) {
-    fail("E225", spring.span, "a spring needs its stiffness", {}, "add stiffness 40");
+    report_.fail("E225", spring.span, "a spring needs its stiffness", {}, "add stiffness 40");
     return;
   }
-  spring.stiffness = world_number(*k, scope, stiffness, "the stiffness", Sort::not_negative);
-  spring.damping =
-      damping ? world_number(*damping, scope, per_time(world_.mass), "the damping", Sort::not_negative) : g.constant(0);
+  spring.stiffness = numbers_.number(*k, scope, stiffness, "the stiffness", Sort::not_negative);
+  spring.damping = damping ? numbers_.number(*damping, scope, expressions_.workspace.time.per_time(work_.mass),
+                                             "the damping", Sort::not_negative)
+                           : g.constant(0);
   if (length) {
-    spring.length = world_number(*length, scope, world_.length, "the length of a spring", Sort::not_negative);
+    spring.length = numbers_.number(*length, scope, work_.length, "the length of a spring", Sort::not_negative);
   } else {  // as long as it is at the start
-    const std::size_t a = world_.made.bodies[spring.a].first_state;
-    for (std::size_t axis = 0; axis < world_.axes(); ++axis) {
-      const NodeId from = model_.states[a + 2 * axis].initial;
-      const NodeId to = spring.b == no_body
-                            ? spring.point[axis]
-                            : model_.states[world_.made.bodies[spring.b].first_state + 2 * axis].initial;
-      if (!from.valid() || !to.valid()) return;
-      const NodeId apart = g.subtract(to, from);
-      spring.length =
-          spring.length.valid() ? g.apply(Op::hypotenuse, spring.length, apart) : g.apply(Op::absolute, apart);
-    }
+    spring.length = length_at_start(spring);
+    if (!spring.length.valid()) return;
   }
-  world_.made.springs.push_back(spring);
+  work_.made.springs.push_back(spring);
 }
 
-void Checker::read_spring(const ast::WorldSpring& text, Scope& scope, Span span) {
+NodeId Springs::length_at_start(const SpringDescription& spring) const {
+  Graph& g = graph_;
+  NodeId length;
+  const std::size_t a = work_.made.bodies[spring.a].first_state;
+  for (std::size_t axis = 0; axis < text_.axes(); ++axis) {
+    const NodeId from = states_[a + 2 * axis].initial;
+    const NodeId to =
+        spring.b == no_body ? spring.point[axis] : states_[work_.made.bodies[spring.b].first_state + 2 * axis].initial;
+    if (!from.valid() || !to.valid()) return {};
+    const NodeId apart = g.subtract(to, from);
+    length = length.valid() ? g.apply(Op::hypotenuse, length, apart) : g.apply(Op::absolute, apart);
+  }
+  return length;
+}
+
+void Springs::add(const ast::WorldSpring& text, Scope& scope, Span span) {
   SpringDescription spring{
       .a = no_body, .b = no_body, .point = {}, .stiffness = {}, .length = {}, .damping = {}, .span = span};
-  const auto a = body_named(text.a, scope);
+  const auto a = body_named(text.a, scope, expressions_);
   if (const auto* name = std::get_if<ast::Name>(&text.b)) {
-    const auto b = body_named(*name, scope);
+    const auto b = body_named(*name, scope, expressions_);
     if (!a || !b) return;
     spring.b = *b;
     if (*a == *b) {
-      fail("E225", span, "a spring has two ends", "both are the same body");
+      report_.fail("E225", span, "a spring has two ends", "both are the same body");
       return;
     }
   } else {
-    spring.point = world_point(std::get<ast::Expression>(text.b), scope, world_.length, "the end of a spring");
+    spring.point = numbers_.point(std::get<ast::Expression>(text.b), scope, work_.length, "the end of a spring");
     if (!a || !spring.point[0].valid()) return;
   }
   spring.a = *a;
@@ -113,28 +99,28 @@ void Checker::read_spring(const ast::WorldSpring& text, Scope& scope, Span span)
 }
 
 /// Between neighbours along each axis of a grid, or one and the next of a stack.
-void Checker::read_springs(const ast::WorldSprings& text, Scope& scope, Span span) {
+void Springs::add(const ast::WorldSprings& text, Scope& scope, Span span) {
   const auto pattern =
-      std::ranges::find(world_.patterns, text.pattern.text, [](const PatternText& p) { return p.text->name.text; });
-  if (pattern == world_.patterns.end()) {
-    if (lost_.contains(text.pattern.text)) return;
+      std::ranges::find(text_.patterns, text.pattern.text, [](const PatternText& p) { return p.text->name.text; });
+  if (pattern == text_.patterns.end()) {
+    if (expressions_.workspace.declared.symbols.is_lost(text.pattern.text)) return;
     std::vector<std::string> names;
-    for (const PatternText& known : world_.patterns) names.push_back(known.text->name.text);
+    for (const PatternText& known : text_.patterns) names.push_back(known.text->name.text);
     const std::string near = did_you_mean(text.pattern.text, names);
-    fail("E223", text.pattern.span, fmt::format("there are no bodies `{}` of a pattern", text.pattern.text), {},
-         near.empty() ? "between single bodies write spring a to b" : near);
+    report_.fail("E223", text.pattern.span, fmt::format("there are no bodies `{}` of a pattern", text.pattern.text), {},
+                 near.empty() ? "between single bodies write spring a to b" : near);
     return;
   }
   if (pattern->text->pattern == ast::Pattern::random) {
-    fail("E225", text.pattern.span, "bodies at random have no neighbours", {},
-         "write each spring: spring a[1] to a[2]");
+    report_.fail("E225", text.pattern.span, "bodies at random have no neighbours", {},
+                 "write each spring: spring a[1] to a[2]");
     return;
   }
   const bool diagonal = attribute(text.attributes, "diagonal") != nullptr;
   const ast::Expression* length = attribute(text.attributes, "length");
   if (diagonal && length) {
-    fail("E225", length->span, "diagonal springs are longer than the others", {},
-         "leave `length` out: each is as long as the distance at the start");
+    report_.fail("E225", length->span, "diagonal springs are longer than the others", {},
+                 "leave `length` out: each is as long as the distance at the start");
     return;
   }
   for (const auto& [a, b] : neighbours(*pattern, diagonal)) {

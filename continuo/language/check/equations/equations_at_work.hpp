@@ -1,4 +1,4 @@
-// continuo/language/check/names/equations_at_work.hpp
+// continuo/language/check/equations/equations_at_work.hpp
 // The equations of one mode while they are solved for the highest derivatives. Only equations/ reads this.
 #pragma once
 #include <cstdint>

@@ -1,0 +1,55 @@
+// continuo/language/check/equations/equations.hpp
+// Equations solved for their highest derivatives: each alone where it holds one, else together where they hang
+// together (accelerations coupled through a mass matrix). What has no such derivative determines an unknown.
+#pragma once
+#include <vector>
+
+#include <continuo/language/check/equations/equation_counts.hpp>
+#include <continuo/language/check/equations/equations_at_work.hpp>
+#include <continuo/language/check/expressions/expressions.hpp>
+
+namespace continuo::model::detail {
+
+struct SolvedEquations {
+  std::vector<std::vector<NodeId>> derivatives;  // of each mode: of each state
+  std::vector<NodeId> highest;                   // of the only mode: the highest derivative of each base
+  std::vector<AlgebraicEquation> algebraic;
+  std::vector<MassMatrix> masses;
+};
+
+class Equations {
+ public:
+  /// `model`: its parameters, states and their starts, at which pivots are looked at.
+  Equations(Expressions& expressions, const Model& model)
+      : expressions_(expressions),
+        report_(expressions.report),
+        declared_(expressions.workspace.declared),
+        graph_(expressions.workspace.graph),
+        model_(model),
+        counts_(expressions.workspace) {}
+  SolvedEquations solve();
+
+ private:
+  EquationAtWork read_equation(const Placed<ast::Equation>& equation) const;
+  void solve_mode(std::size_t mode);
+  void sort_out_algebraic(ModeAtWork& work);
+  void count_algebraic(std::size_t count) const;
+  void solve_one_by_one(ModeAtWork& work);
+  void solve_for(ModeAtWork& work, const EquationAtWork& equation, std::uint32_t base);
+  Vanishes vanishing_beside(const LinearRows& rows);
+  void solve_coupled(ModeAtWork& work);
+  void solve_group(ModeAtWork& work, const std::vector<std::size_t>& members, std::vector<std::uint32_t> open);
+  void solve_rows(ModeAtWork& work, const std::vector<std::size_t>& members, const std::vector<std::uint32_t>& open);
+  NodeId with_solved(const ModeAtWork& work, NodeId node) const;
+
+  Expressions& expressions_;
+  Report& report_;
+  const Declarations& declared_;
+  Graph& graph_;
+  const Model& model_;
+  EquationCounts counts_;
+  std::vector<double> start_values_;  // of all variables, once the states have theirs; empty until asked for
+  SolvedEquations made_;
+};
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,41 @@
+// continuo/language/check/expressions/lookup.hpp
+// What a name stands for.
+#pragma once
+#include <string>
+
+#include <continuo/language/check/names/scope.hpp>
+
+namespace continuo::model::detail {
+
+class Expressions;
+class Operations;
+class Report;
+struct Workspace;
+
+class Lookup {
+ public:
+  explicit Lookup(Expressions& expressions);
+
+  Value lookup(const ast::Name& name, Scope& scope) const;
+  /// Of the variable of this index; its highest derivative is noted in the scope.
+  Value derivative(const ast::Name& name, std::size_t base, Scope& scope) const;
+  /// Of `energy` and of the world; its node is not valid where there is none.
+  Value total_energy(Span span, Scope& scope) const;
+  /// E222: what stands in a constant changes with time.
+  Value not_constant(Span span, const std::string& name, const Scope& scope) const;
+  /// `undeclared`: what to do about it where the name is not like any other.
+  Value unknown_name(const ast::Name& name, const std::string& key, std::string undeclared = {}) const;
+
+ private:
+  Value of_symbol(const ast::Name& name, const std::string& key, Scope& scope) const;
+  Value builtin(const ast::Name& name, const std::string& key, Scope& scope) const;
+  Value without_time(const ast::Name& name, const Scope& scope) const;
+  Value not_a_value(const ast::Name& name) const;
+
+  Expressions& expressions_;
+  Workspace& workspace_;
+  Report& report_;
+  const Operations& operations_;
+};
+
+}  // namespace continuo::model::detail

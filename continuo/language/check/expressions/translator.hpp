@@ -1,0 +1,35 @@
+// continuo/language/check/expressions/translator.hpp
+// From an expression of the text to a node, with its unit checked on the way.
+#pragma once
+#include <continuo/language/check/names/scope.hpp>
+
+namespace continuo::model::detail {
+
+class Expressions;
+class Operations;
+class Report;
+struct Workspace;
+
+class Translator {
+ public:
+  explicit Translator(Expressions& expressions);
+
+  Value translate(const ast::Expression& expression, Scope& scope) const;
+  /// Brings b to the unit of a; false after saying that they do not fit, and what may have been meant.
+  bool align(const Term& a, Term& b, Span span, Scope& scope) const;
+
+ private:
+  Value translate_node(const ast::Expression& expression, Scope& scope) const;
+  Value unary(const ast::Unary& node, Scope& scope) const;
+  Value binary(const ast::Binary& node, Scope& scope) const;
+  Value conditional(const ast::Conditional& node, Span span, Scope& scope) const;
+  Value quantity(const ast::Quantity& node, Scope& scope) const;
+  Value sum(const ast::Sum& node, Scope& scope) const;
+
+  Expressions& expressions_;
+  Workspace& workspace_;
+  Report& report_;
+  const Operations& operations_;
+};
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,57 @@
+// continuo/language/check/names/report.hpp
+// Where all passes put their messages, and the words that these share.
+#pragma once
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include <continuo/language/text/diagnostic.hpp>
+#include <continuo/language/text/source.hpp>
+#include <continuo/symbolic/units/unit_check.hpp>
+
+namespace continuo::model::detail {
+
+/// Keeps one message per place and code: the members of a family share their text.
+class Report {
+ public:
+  explicit Report(const Source& source) : source_(source) {}
+  /// Drops every message: for trying what may have been meant.
+  Report silent() const;
+  bool is_silent() const { return silent_; }
+
+  /// Null where it was said already.
+  Diagnostic* fail(const char* code, Span span, std::string message, std::string label = {}, std::string help = {});
+  void warn(const char* code, Span span, std::string message, std::string label = {}, std::string help = {});
+  bool was_reported(const char* code, Span span) const { return reported_.contains({code, span.begin, span.end}); }
+  /// How often something was wrong, repetitions included.
+  std::size_t errors() const { return errors_; }
+  /// In order of place; empties the report.
+  std::vector<Diagnostic> take();
+
+  std::string_view slice(Span span) const { return source_.slice(span); }
+  std::string quote(Span span) const;  // `text`, cut off where it is long
+  const Source& source() const { return source_; }
+
+ private:
+  const Source& source_;
+  bool silent_ = false;
+  std::vector<Diagnostic> diagnostics_{};
+  std::set<std::tuple<std::string, std::uint32_t, std::uint32_t>> reported_{};
+  std::size_t errors_ = 0;
+};
+
+/// "x''".
+std::string with_primes(std::string_view name, int primes);
+/// `a`, `b` and `c`; after five: and 7 more.
+std::string listed(const std::vector<std::string>& names);
+/// "this is inf".
+std::string not_finite(double value);
+/// "m/s", "a pure number", "without unit".
+std::string unit_text(const Measured& measured);
+/// "m/s", empty where no unit is known: as a model keeps it.
+std::string unit_or_nothing(const Measured& measured);
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,42 @@
+// continuo/language/check/states/initial_values.hpp
+// x(0) = ...: initial values, or boundary values where they stand at several times.
+#pragma once
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <continuo/language/check/expressions/expressions.hpp>
+
+namespace continuo::model::detail {
+
+/// What the search of a boundary-value problem is given.
+struct BoundaryProblem {
+  std::vector<BoundaryCondition> conditions;
+  std::vector<Guess> guesses;
+};
+
+/// Gives the states their initial values; what stands at several times is returned.
+class InitialValues {
+ public:
+  InitialValues(Expressions& expressions, std::vector<State>& states);
+  BoundaryProblem make();
+
+ private:
+  void count_conditions() const;
+  void place_condition(std::size_t index, bool initial);
+  void missing_conditions() const;
+  void make_guesses();
+
+  Expressions& expressions_;
+  Report& report_;
+  const Declarations& declared_;
+  const RunSettings& run_;
+  std::vector<State>& states_;
+  double start_time_;
+  std::vector<std::optional<Setting>> times_;            // of the conditions
+  std::map<std::pair<std::size_t, double>, Span> seen_;  // by state and time
+  BoundaryProblem made_;
+};
+
+}  // namespace continuo::model::detail

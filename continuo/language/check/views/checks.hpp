@@ -1,0 +1,32 @@
+// continuo/language/check/views/checks.hpp
+// `check ...`: what the model says about itself.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <continuo/language/check/expressions/expressions.hpp>
+
+namespace continuo::model::detail {
+
+class Checks {
+ public:
+  /// `model`: its events by name, and whether it has energies.
+  Checks(Expressions& expressions, const Model& model)
+      : expressions_(expressions), report_(expressions.report), graph_(expressions.workspace.graph), model_(model) {}
+  std::vector<Check> make();
+
+ private:
+  void add(const ast::Check& text, const Scope& outer, Span span);
+  Value measure(const ast::Check& text, Scope& scope, Check& check);
+  Value value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check);
+  Moment moment(const ast::Moment& text, Scope& scope, Span span);
+  void check_event_name(const std::string& begin, Span span);
+
+  Expressions& expressions_;
+  Report& report_;
+  Graph& graph_;
+  const Model& model_;
+  std::vector<Check> made_;
+};
+
+}  // namespace continuo::model::detail

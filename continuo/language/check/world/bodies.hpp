@@ -1,0 +1,53 @@
+// continuo/language/check/world/bodies.hpp
+// Bodies one by one and by pattern: what they are and where they begin.
+#pragma once
+#include <array>
+#include <vector>
+
+#include <continuo/language/check/expressions/expressions.hpp>
+#include <continuo/language/check/world/world_numbers.hpp>
+
+namespace continuo::model::detail {
+
+/// Adds them to the world and gives their states initial values.
+class Bodies {
+ public:
+  Bodies(Expressions& expressions, WorldAtWork& work, std::vector<State>& states)
+      : expressions_(expressions),
+        report_(expressions.report),
+        graph_(expressions.workspace.graph),
+        text_(expressions.workspace.declared.world),
+        work_(work),
+        states_(states),
+        numbers_(expressions, work) {}
+
+  void make();
+
+ private:
+  /// How a body stands and turns at the start: an angle and one spin in the plane, in space a quaternion and three.
+  struct Turn {
+    std::array<NodeId, 4> orientation;
+    NodePoint spin;
+  };
+
+  void make_body(const BodyText& body);
+  void make_pattern(const PatternText& pattern);
+  BodyDescription description_of(const ast::WorldAttributes& attributes, Scope& scope);
+  std::uint32_t group_of(const ast::WorldAttributes& attributes);
+  NodePoint velocity_of(const ast::WorldAttributes& attributes, Scope& scope);
+  Turn turn_of(const ast::WorldAttributes& attributes, Scope& scope);
+  void set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, const Turn& turn);
+  void place_grid(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
+  void place_random(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
+  void place_stack(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
+
+  Expressions& expressions_;
+  Report& report_;
+  Graph& graph_;
+  const WorldText& text_;
+  WorldAtWork& work_;
+  std::vector<State>& states_;
+  WorldNumbers numbers_;
+};
+
+}  // namespace continuo::model::detail

@@ -1,0 +1,12 @@
+// continuo/language/check/world/materials.hpp
+// What surfaces are made of.
+#pragma once
+#include <continuo/language/check/world/world_numbers.hpp>
+
+namespace continuo::model::detail {
+
+/// That of the world, but for what the attributes say.
+MaterialDescription material_of(const ast::WorldAttributes& attributes, Scope& scope, const WorldAtWork& work,
+                                const WorldNumbers& numbers);
+
+}  // namespace continuo::model::detail

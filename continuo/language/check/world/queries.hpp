@@ -1,0 +1,56 @@
+// continuo/language/check/world/queries.hpp
+// What is where in a world, as expressions of the places of its bodies: `distance(ball, wall)`, `within(ball, 0.5)`,
+// `ray(car, (1, 0), 5)`. They are written out body by body, and so stand wherever expressions do: in outputs,
+// conditions of events, forces, checks.
+#pragma once
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <continuo/language/check/expressions/expressions.hpp>
+#include <continuo/language/check/world/sight_lines.hpp>
+#include <continuo/language/check/world/world_at_work.hpp>
+#include <continuo/language/check/world/world_numbers.hpp>
+
+namespace continuo::model::detail {
+
+bool is_query(std::string_view name);
+
+class Queries {
+ public:
+  Queries(Expressions& expressions, WorldAtWork& work)
+      : expressions_(expressions),
+        report_(expressions.report),
+        graph_(expressions.workspace.graph),
+        text_(expressions.workspace.declared.world),
+        work_(work),
+        numbers_(expressions, work),
+        lines_(expressions.workspace.graph, work.made, text_.dimension) {}
+
+  Value query(const ast::Call& node, Span span, Scope& scope) const;
+
+ private:
+  /// Who asks, and about what.
+  using ThingPairs = std::vector<std::pair<Thing, Thing>>;
+
+  std::optional<ThingPairs> pairs_of(const ast::Call& node, std::size_t first, Span span, Scope& scope) const;
+  std::optional<std::vector<Thing>> things(const ast::Expression& text, Scope& scope) const;
+  std::optional<std::vector<Thing>> things_named(const ast::Name& name, Scope& scope) const;
+  Thing thing_of(std::size_t body) const;
+  Value least_gap(const ThingPairs& pairs) const;
+  Value count_within(const ThingPairs& pairs, const ast::Call& node, Scope& scope) const;
+  Value cast_ray(const ThingPairs& pairs, const ast::Call& node, Scope& scope) const;
+  Measured measure_of_direction(const ast::Expression& text, const Scope& scope) const;
+  NodeId length_in(const ast::Expression& text, Scope& scope, std::string_view what) const;
+
+  Expressions& expressions_;
+  Report& report_;
+  Graph& graph_;
+  const WorldText& text_;
+  WorldAtWork& work_;
+  WorldNumbers numbers_;
+  SightLines lines_;
+};
+
+}  // namespace continuo::model::detail
