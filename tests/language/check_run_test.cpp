@@ -75,6 +75,19 @@ TEST(CheckRun, ChecksReadTheMotion) {
   EXPECT_EQ(model.checks[3].measure, Measure::end_time);
 }
 
+/// x'' = -x begins at -1, wherever it stands beside a value at a time, and as such a value.
+TEST(CheckRun, ChecksReadHighestDerivatives) {
+  const std::string oscillator = "x'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..2\n";
+  for (const char* check : {"check x'' + x(1) = 1 within 9\n", "check x(1) + x'' = 1 within 9\n"}) {
+    const Model model = good(oscillator + check);
+    ASSERT_EQ(model.checks.size(), 1U);
+    EXPECT_EQ(evaluate(model, model.checks[0].node, start_values(model)), -1) << check;
+  }
+  const Model model = good(oscillator + "check 2*x''(1) = 1 within 9\n");
+  ASSERT_EQ(model.checks[0].samples.size(), 1U);
+  EXPECT_EQ(evaluate(model, model.checks[0].samples[0].of, start_values(model)), -1);
+}
+
 TEST(CheckRun, ChecksOfWhatIsNotThereAreRefused) {
   EXPECT_EQ(place(said(decaying + "run 0..3\ncheck x(4) = 1 within 1\n", "E281")), "5:9");
   EXPECT_EQ(place(said(decaying + "run 0..3\ncheck energy drift < 1\n", "E281")), "5:7");

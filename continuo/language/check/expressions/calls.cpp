@@ -114,10 +114,13 @@ Value Calls::sample(const ast::Call& node, Span span, Scope& scope) const {
                  fmt::format("to multiply, write {}*(...)", report_.slice(node.callee.span)));
     return operations_.bad();
   }
+  std::vector<std::uint32_t> highest;
   Scope inner = scope;
   inner.samples = nullptr;
   inner.moment = nullptr;
+  inner.highest = &highest;
   Value value = expressions_.lookup.lookup(node.callee, inner);
+  if (!scope.moment) value = expressions_.values.settle(std::move(value), span, highest);  // in a check
   const auto when = expressions_.values.time_setting(node.arguments[0], inner, "a time");
   if (value.bad || !when) return operations_.bad();
   expressions_.values.check_time_in_run(*when, node.arguments[0].span);
