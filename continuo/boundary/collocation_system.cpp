@@ -306,11 +306,12 @@ std::vector<double> CollocationSystem::magnitudes(std::span<const double> z) {
 /// Newton's iteration, damped so that the correction that the same matrix gives at the new place is smaller than the
 /// one before: P. Deuflhard, "Newton Methods for Nonlinear Problems" (2004), 3.3, the natural monotonicity test.
 NewtonEnding CollocationSystem::iterate(double target, const BoundaryValueOptions& options) {
-  constexpr double least_damping = 1e-4, held_by_rounding = 1e-7;
-  double damping = 1, last = 0;
+  constexpr double held_by_rounding = 1e-7;
+  double last = 0;
+  bool is_first = true;
   measure();
   evaluate_residuals(z_, residuals_);
-  for (std::size_t k = 0; k < options.most_iterations; ++k) {
+  const auto correct = [&]() -> NewtonCorrection {
     if (options.interrupt && options.interrupt->load()) return NewtonEnding::interrupted;
     ++iterations_;
     evaluate_jacobians();
@@ -321,39 +322,40 @@ NewtonEnding CollocationSystem::iterate(double target, const BoundaryValueOption
     if (!factored_) return NewtonEnding::singular;
     std::ranges::copy(residuals_, correction_.begin());
     lu_->solve(correction_.data());
-    const double size = last = size_of(correction_);
-    if (!std::isfinite(size)) return k == 0 ? NewtonEnding::not_finite : NewtonEnding::singular;
-    for (;;) {
-      for (std::size_t i = 0; i < z_.size(); ++i) trial_[i] = z_[i] - damping * correction_[i];
-      evaluate_residuals(trial_, residuals_);
-      if (size <= target && damping == 1) break;
+    last = size_of(correction_);
+    if (!std::isfinite(last)) return is_first ? NewtonEnding::not_finite : NewtonEnding::singular;
+    is_first = false;
+    return last;
+  };
+  const auto attempt = [&](double part, double size) {
+    for (std::size_t i = 0; i < z_.size(); ++i) trial_[i] = z_[i] - part * correction_[i];
+    evaluate_residuals(trial_, residuals_);
+    const bool is_small = size <= target && part == 1;
+    if (!is_small) {
       std::ranges::copy(residuals_, simplified_.begin());
       lu_->solve(simplified_.data());
       const double next = size_of(simplified_);
-      if (next <= (1 - damping / 4) * size) {
-        if (next <= target && damping == 1) {  // the better of the two, as it is there
-          for (std::size_t i = 0; i < z_.size(); ++i) trial_[i] -= simplified_[i];
-          evaluate_residuals(trial_, residuals_);
-          z_.swap(trial_);
-          return NewtonEnding::converged;
-        }
-        break;
-      }
-      damping /= 2;
-      if (damping < least_damping) {
-        evaluate_slopes(z_);
-        // Close to a solution corrections fall with their square; here rounding holds them, which the error tells.
-        if (size > held_by_rounding || !options.check_error) return NewtonEnding::no_descent;
-        held_at_ = size;
-        return NewtonEnding::converged;
+      if (!(next <= (1 - part / 4) * size)) return NewtonAttempt::refused;
+      if (next <= target && part == 1) {  // the better of the two, as it is there
+        for (std::size_t i = 0; i < z_.size(); ++i) trial_[i] -= simplified_[i];
+        evaluate_residuals(trial_, residuals_);
+        z_.swap(trial_);
+        return NewtonAttempt::solved;
       }
     }
     z_.swap(trial_);
-    if (size <= target && damping == 1) return NewtonEnding::converged;
-    damping = std::min(1.0, 4 * damping);
+    if (is_small) return NewtonAttempt::solved;
     measure();
-  }
-  if (last > held_by_rounding || !options.check_error) return NewtonEnding::too_many;
+    return NewtonAttempt::taken;
+  };
+  const NewtonEnding ending =
+      damped_newton({.most_iterations = options.most_iterations, .least_damping = 1e-4, .recovery = 4}, correct,
+                    attempt)
+          .ending;
+  if (ending == NewtonEnding::no_descent) evaluate_slopes(z_);
+  if (ending != NewtonEnding::no_descent && ending != NewtonEnding::too_many) return ending;
+  // Close to a solution corrections fall with their square; here rounding holds them, which the error tells.
+  if (last > held_by_rounding || !options.check_error) return ending;
   held_at_ = last;
   return NewtonEnding::converged;
 }

@@ -16,12 +16,10 @@
 
 #include <continuo/boundary/boundary_value.hpp>
 #include <continuo/boundary/lobatto.hpp>
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/numerics/sparse_lu.hpp>
 
 namespace continuo::boundary {
-
-/// How Newton's iteration ended.
-enum class NewtonEnding { converged, no_descent, singular, not_finite, too_many, interrupted };
 
 /// Ends of the whole interval at which f has no value.
 struct OpenEnds {

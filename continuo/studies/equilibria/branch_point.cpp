@@ -8,6 +8,7 @@
 #include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/equilibria/branch_point.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
@@ -17,7 +18,6 @@ namespace {
 
 using Vector = std::vector<double>;
 
-constexpr int most_crossing_iterations = 15;
 constexpr double farthest = 0.1;  // from where it is looked for
 constexpr double parted = 1e-6;   // directions nearer to each other are one
 
@@ -91,9 +91,8 @@ std::optional<Crossing> find_crossing(const CrossingEquations& equations, Vector
   const std::size_t n = equations.n, size = 2 * n + 2;
   const Vector begin(z);
   Vector psi = least_combination(equations.jacobian(z), n);
-  double beta = 0, before = std::numeric_limits<double>::infinity();
-  bool converged = false;
-  for (int iteration = 0; iteration < most_crossing_iterations && !converged; ++iteration) {
+  double beta = 0;
+  const auto correct = [&]() -> NewtonCorrection {
     const Vector f = equations.f(z), rows = equations.jacobian(z), h = curvature(equations, z, psi),
                  gone = combined(rows, psi);
     Vector matrix(size * size), step(size);
@@ -110,18 +109,17 @@ std::optional<Crossing> find_crossing(const CrossingEquations& equations, Vector
     }
     step[size - 1] = (product(psi, psi) - 1) / 2;
     for (std::size_t i = 0; i < n; ++i) matrix[(size - 1) * size + n + 2 + i] = psi[i];
-    if (!solve(std::move(matrix), step)) return std::nullopt;
+    if (!solve(std::move(matrix), step)) return NewtonEnding::singular;
     for (std::size_t k = 0; k <= n; ++k) z[k] -= step[k];
     beta -= step[n + 1];
     for (std::size_t i = 0; i < n; ++i) psi[i] -= step[n + 2 + i];
-    const double moved = length(step);
-    converged = moved < 1e-12 || (moved < 1e-8 && moved > before / 4);
-    before = moved;
     double apart = 0;
     for (std::size_t k = 0; k <= n; ++k) apart = std::max(apart, std::abs(z[k] - begin[k]));
-    if (!(apart < farthest)) return std::nullopt;
-  }
-  if (!converged || std::abs(beta) > 1e-9) return std::nullopt;
+    if (!(apart < farthest)) return NewtonEnding::diverged;
+    return length(step);
+  };
+  constexpr NewtonLimits limits{.most_iterations = 15, .solved_to = 1e-12, .rounding = 1e-8};
+  if (!newton_iteration(limits, correct) || std::abs(beta) > 1e-9) return std::nullopt;
   const Vector rows = equations.jacobian(z), other = second_direction(rows, psi, along);
   if (other.empty()) return std::nullopt;
   // a^2 d1 H d1 + 2 a b d1 H d2 + b^2 d2 H d2 = 0 in the plane of both.

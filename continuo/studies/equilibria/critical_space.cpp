@@ -8,6 +8,7 @@
 
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/equilibria/critical_space.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
@@ -17,9 +18,6 @@ namespace {
 
 using Vector = std::vector<double>;
 using Complex = std::complex<double>;
-
-constexpr int most_plane_iterations = 12;
-constexpr double plane_is_found = 1e-14, rounding_of_plane = 1e-9;  // a correction, of orthonormal columns
 
 Vector transposed(const Vector& a, std::size_t n) {
   Vector result(n * n);
@@ -74,8 +72,7 @@ std::optional<Vector> invariant_plane(const Vector& a, std::size_t n, const Vect
   Vector v(begin);
   Square t = within(a, begin);
   const std::size_t size = 2 * n + 4;
-  double before = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; iteration < most_plane_iterations; ++iteration) {
+  const auto correct = [&]() -> NewtonCorrection {
     Vector matrix(size * size), b(size);
     for (std::size_t c = 0; c < 2; ++c) {
       const Vector moved = times(a, std::span(v).subspan(c * n, n));
@@ -92,18 +89,15 @@ std::optional<Vector> invariant_plane(const Vector& a, std::size_t n, const Vect
         for (std::size_t j = 0; j < n; ++j) matrix[(2 * n + k * 2 + c) * size + c * n + j] = begin[k * n + j];
     }
     const Vector step = solution_of(matrix, std::move(b));
-    if (step.empty()) return std::nullopt;
+    if (step.empty()) return NewtonEnding::singular;
     double moved = 0;
     for (std::size_t j = 0; j < 2 * n; ++j) v[j] -= step[j], moved = std::max(moved, std::abs(step[j]));
     for (std::size_t j = 0; j < 4; ++j) t[j] -= step[2 * n + j];
-    if (!(moved < 1)) return std::nullopt;  // the planes have nothing to do with each other
-    if (moved < plane_is_found || (moved < rounding_of_plane && moved > before / 4)) {
-      if (!make_orthonormal(v, n)) return std::nullopt;
-      return v;
-    }
-    before = moved;
-  }
-  return std::nullopt;
+    return moved;
+  };
+  // A correction of 1: the planes have nothing to do with each other.
+  constexpr NewtonLimits limits{.most_iterations = 12, .solved_to = 1e-14, .rounding = 1e-9, .farthest = 1};
+  return newton_iteration(limits, correct) && make_orthonormal(v, n) ? std::optional(v) : std::nullopt;
 }
 
 std::optional<CriticalSpace> continued_fold(const Vector& a, std::size_t n, const CriticalSpace& near) {

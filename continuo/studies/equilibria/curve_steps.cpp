@@ -8,6 +8,7 @@
 
 #include <continuo/numerics/central_difference.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/equilibria/algebraic_elimination.hpp>
 #include <continuo/studies/equilibria/curve_steps.hpp>
@@ -22,7 +23,6 @@ namespace {
 using Vector = std::vector<double>;
 using Complex = std::complex<double>;
 
-constexpr int most_curve_iterations = 12;
 constexpr double no_frequency = 1e-3;  // in parts of |A| on the plane of the pair
 
 /// The product of the sums of all pairs, each in parts of the largest value.
@@ -128,39 +128,37 @@ std::optional<Vector> CurveSteps::rows_at(const Vector& z, const CriticalSpace& 
 std::optional<CurveSteps::Found> CurveSteps::corrected(const Vector& guess, const CriticalSpace& near,
                                                        const Vector& last) {
   Vector z(guess);
-  CriticalSpace reference(near);
-  double before = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < most_curve_iterations; ++k) {
+  CriticalSpace reference(near), latest;
+  const auto space_at = [&]() -> std::optional<CriticalSpace> {
     const Vector a = matrix(z);
-    if (a.empty()) return std::nullopt;
-    auto space = continued_space(a, matrix_size(), reference);
-    if (!space) return std::nullopt;
-    auto rows = rows_at(z, *space);
-    if (!rows) return std::nullopt;
+    return a.empty() ? std::nullopt : continued_space(a, matrix_size(), reference);
+  };
+  const auto correct = [&]() -> NewtonCorrection {
+    auto space = space_at();
+    auto rows = space ? rows_at(z, *space) : std::nullopt;
+    if (!rows) return NewtonEnding::singular;
     Vector b = f(z);
     b.push_back(space->test);
     b.push_back(0);
     for (std::size_t i = 0; i < z.size(); ++i) b.back() += (z[i] - guess[i]) * last[i];
     rows->insert(rows->end(), last.begin(), last.end());
     const Vector step = solution_of(*rows, std::move(b));
-    if (step.empty()) return std::nullopt;
+    if (step.empty()) return NewtonEnding::singular;
     double size = 0;
     for (std::size_t i = 0; i < z.size(); ++i) {
       z[i] -= step[i];
       size = std::max(size, std::abs(step[i]) / std::max(1.0, std::abs(z[i])));
     }
-    if (!(size < 1e3)) return std::nullopt;
-    if (size < 1e-13 || (size < 1e-8 && size > before / 4)) {
-      const Vector there = matrix(z);
-      auto last_space = there.empty() ? std::nullopt : continued_space(there, matrix_size(), *space);
-      if (!last_space) return std::nullopt;
-      return Found{std::move(z), std::move(*last_space)};
-    }
-    before = size;
     // A fold's test hangs on its border, which stays; the plane of a pair is looked for from the last one.
-    if (near.dimension == 2) reference = std::move(*space);
-  }
-  return std::nullopt;
+    latest = std::move(*space);
+    if (near.dimension == 2) reference = latest;
+    return size;
+  };
+  constexpr NewtonLimits limits{.most_iterations = 12, .solved_to = 1e-13, .rounding = 1e-8, .farthest = 1e3};
+  if (!newton_iteration(limits, correct)) return std::nullopt;
+  reference = std::move(latest);
+  auto space = space_at();
+  return space ? std::optional(Found{std::move(z), std::move(*space)}) : std::nullopt;
 }
 
 // On the curve w . (f_p p' + f_q q') = 0 with w the left null vector of df/dx: the direction is s (-w . f_q, w . f_p),

@@ -11,6 +11,7 @@
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
 #include <continuo/numerics/finite.hpp>
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/conservation_laws.hpp>
 #include <continuo/studies/equilibrium.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
@@ -156,44 +157,51 @@ EquilibriumSearch find_equilibrium(const ParametricSystem& system, std::vector<d
     return std::move(search);
   };
   if (!std::isfinite(size)) return ended(EquilibriumEnding::not_finite);
-  double mu = 0;
-  for (search.iterations = 0; search.iterations < most_search_iterations; ++search.iterations) {
-    if (size == 0) return ended(EquilibriumEnding::found);
-    const std::vector<double> rows = jacobian_of(system, t, x, p);
-    if (!all_finite(rows)) return ended(EquilibriumEnding::not_finite);
-    std::vector<double> step = mu == 0 ? newton_step(rows, f) : std::vector<double>();
+  double mu = 0, moved = 0;
+  bool gone = false;
+  std::vector<double> rows, step;
+  const auto correct = [&]() -> NewtonCorrection {
+    if (size == 0) return NewtonEnding::converged;
+    rows = jacobian_of(system, t, x, p);
+    if (!all_finite(rows)) return NewtonEnding::not_finite;
+    step = mu == 0 ? newton_step(rows, f) : std::vector<double>();
     if (step.empty()) {
       if (mu == 0) mu = 1e-6 * std::pow(largest(rows), 2);
       step = least_squares_step(rows, f, mu);
-      if (step.empty()) return ended(EquilibriumEnding::no_descent);
+      if (step.empty()) return NewtonEnding::singular;
     }
-    double damping = 1;
-    bool falls = false;
-    for (; damping > 1e-8; damping /= 2) {
-      for (std::size_t i = 0; i < n; ++i) trial[i] = x[i] + damping * step[i];
-      system.derivative(t, trial, p, f_trial);
-      falls = length(f_trial) <= (1 - 1e-4 * damping) * size;
-      if (falls) break;
-    }
-    // What rounding leaves of f: no step makes it smaller.
-    double moved = 0;
+    moved = 0;
     for (std::size_t i = 0; i < n; ++i) moved = std::max(moved, std::abs(step[i]) / std::max(std::abs(x[i]), 1e-8));
-    const bool at_rest = moved <= 1e4 * epsilon;
     // Where df/dx is singular a short step says nothing: f itself must be gone.
-    const bool gone = mu == 0 || size <= singular_part * first_size;
-    if (!falls) {
-      if ((at_rest || moved <= 1e-10) && gone) return ended(EquilibriumEnding::found);
-      if (mu > 0) return ended(EquilibriumEnding::no_descent);
-      mu = 1e-6 * std::pow(largest(rows), 2);
-      continue;
-    }
-    mu = damping == 1 ? 0 : mu;
+    gone = mu == 0 || size <= singular_part * first_size;
+    return moved;
+  };
+  const auto attempt = [&](double part, double) {
+    for (std::size_t i = 0; i < n; ++i) trial[i] = x[i] + part * step[i];
+    system.derivative(t, trial, p, f_trial);
+    if (!(length(f_trial) <= (1 - 1e-4 * part) * size)) return NewtonAttempt::refused;
+    if (part == 1) mu = 0;
     x.swap(trial);
     f.swap(f_trial);
     size = length(f);
-    if (at_rest && gone) return ended(EquilibriumEnding::found);
+    return moved <= 1e4 * epsilon && gone ? NewtonAttempt::solved : NewtonAttempt::taken;
+  };
+  for (;;) {
+    const NewtonOutcome outcome = damped_newton(
+        {.most_iterations = most_search_iterations - search.iterations, .least_damping = 1e-8}, correct, attempt);
+    search.iterations += outcome.iterations;
+    if (outcome.ending == NewtonEnding::too_many) return ended(EquilibriumEnding::too_many);
+    if (outcome.ending == NewtonEnding::no_descent && !(moved <= 1e-10 && gone) && mu == 0) {
+      mu = 1e-6 * std::pow(largest(rows), 2);  // toward the least squares from here
+      continue;
+    }
+    --search.iterations;  // those before the one in which it ended
+    // What rounding leaves of f: no step makes it smaller.
+    const bool at_rest = outcome.ending == NewtonEnding::no_descent && moved <= 1e-10 && gone;
+    return ended(outcome || at_rest                           ? EquilibriumEnding::found
+                 : outcome.ending == NewtonEnding::not_finite ? EquilibriumEnding::not_finite
+                                                              : EquilibriumEnding::no_descent);
   }
-  return ended(EquilibriumEnding::too_many);
 }
 
 EquilibriumSearch find_unknowns(const ParametricSystem& system, const std::vector<double>& x, Values p, double t) {

@@ -2,11 +2,11 @@
 // Predictor and corrector on a branch of equilibria.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/numerics/eigenvalues.hpp>
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/equilibria/equilibrium_branch.hpp>
 #include <continuo/studies/support/arclength.hpp>
 
@@ -84,24 +84,22 @@ std::optional<Vector> EquilibriumSteps::corrected(const Vector& guess, Vector z,
     last.assign(n_ + 1, 0.0);
     last[n_] = 1;
   }
-  double before = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 12; ++k) {
+  const auto correct = [&]() -> NewtonCorrection {
     Vector b(n_ + 1);
     p_[options_.constant] = constant_of(z);
     system_.derivative(options_.t, state_of(z), p_, std::span(b).first(n_));
     for (std::size_t i = 0; i <= n_; ++i) b[n_] += (z[i] - guess[i]) * last[i];
     const Vector step = solved(jacobian(z), last, b);
-    if (step.empty()) return std::nullopt;
+    if (step.empty()) return NewtonEnding::singular;
     double size = 0;
     for (std::size_t i = 0; i <= n_; ++i) {
       z[i] -= step[i];
       size = std::max(size, std::abs(step[i]) / std::max(1.0, std::abs(z[i])));
     }
-    if (!(size < 1e6)) return std::nullopt;
-    if (size < 1e-13 || (size < 1e-9 && size > before / 4)) return z;
-    before = size;
-  }
-  return std::nullopt;
+    return size;
+  };
+  constexpr NewtonLimits limits{.most_iterations = 12, .solved_to = 1e-13, .rounding = 1e-9, .farthest = 1e6};
+  return newton_iteration(limits, correct) ? std::optional(z) : std::nullopt;
 }
 
 /// The tangent nearest to `along`, eigenvalues and tests.

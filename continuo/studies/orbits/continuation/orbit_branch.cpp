@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/orbits/collocation/orbit_multipliers.hpp>
 #include <continuo/studies/orbits/continuation/multiplier_tests.hpp>
 #include <continuo/studies/orbits/continuation/orbit_branch.hpp>
@@ -17,8 +18,9 @@ namespace {
 
 using Vector = std::vector<double>;
 
-constexpr std::size_t most_branch_iterations = 12, most_intervals = 1500;
-constexpr double solved_for = 1e-9, rounding_leaves = 1e-6;  // a correction, in sizes
+constexpr std::size_t most_intervals = 1500;
+constexpr NewtonLimits limits_of_branch{
+    .most_iterations = 12, .solved_to = 1e-9, .rounding = 1e-6, .farthest = 10, .each_is_smaller = true};  // in sizes
 constexpr double error_for_tolerance = 100;  // inside of an interval; at its ends and of the period far less is left
 constexpr double no_size = 1e-12;            // of the largest component: what rounding leaves of a zero
 
@@ -166,10 +168,9 @@ std::optional<Vector> OrbitBranchSteps::solved(const Vector& shift, const Vector
 std::optional<Vector> OrbitBranchSteps::corrected(const Vector& guess, const Vector& reference, const Vector& shift,
                                                   const Vector& last) {
   Vector z(guess);
-  double before = 0;
-  for (iterations_ = 1; iterations_ <= most_branch_iterations; ++iterations_) {
-    if (options_.interrupt && options_.interrupt->load()) return std::nullopt;
-    if (!equations_->evaluate(z, component_sizes_)) return std::nullopt;
+  const auto correct = [&]() -> NewtonCorrection {
+    if (options_.interrupt && options_.interrupt->load()) return NewtonEnding::interrupted;
+    if (!equations_->evaluate(z, component_sizes_)) return NewtonEnding::not_finite;
     Vector b(equations_->residuals().begin(), equations_->residuals().end());
     b.resize(unknowns_);
     for (std::size_t j = 0; j + 2 < unknowns_; ++j) b[j] /= component_sizes_[j % n_];
@@ -178,16 +179,17 @@ std::optional<Vector> OrbitBranchSteps::corrected(const Vector& guess, const Vec
       b[unknowns_ - 1] += last[j] * (z[j] - guess[j]) / scale_[j];
     }
     const auto step = solved(shift, last, std::move(b));
-    if (!step) return std::nullopt;
+    if (!step) return NewtonEnding::singular;
     for (std::size_t j = 0; j < unknowns_; ++j) z[j] -= (*step)[j] * scale_[j];
-    const double size = length(*step);
-    // The next correction would be of the size of this one's square, or rounding leaves nothing smaller.
-    if (size <= solved_for || (iterations_ > 1 && size > before / 4 && size < rounding_leaves)) return z;
+    return length(*step);
+  };
+  const auto is_near = [&] {
     const double period = equations_->period(z) / equations_->period(guess);
-    if (!(period > 0.5 && period < 2) || size > 10 || (iterations_ > 2 && size > before)) return std::nullopt;
-    before = size;
-  }
-  return std::nullopt;
+    return period > 0.5 && period < 2;
+  };
+  const NewtonOutcome outcome = newton_iteration(limits_of_branch, correct, is_near);
+  iterations_ = outcome.iterations;
+  return outcome ? std::optional(z) : std::nullopt;
 }
 
 std::optional<OrbitPlace> OrbitBranchSteps::described(Vector z, const Vector& along) {

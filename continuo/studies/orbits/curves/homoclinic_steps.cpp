@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/orbits/collocation/closed_view.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_steps.hpp>
 #include <continuo/studies/support/arclength.hpp>
@@ -14,8 +15,8 @@ namespace continuo::studies::detail {
 
 namespace {
 
-constexpr int most_homoclinic_iterations = 10;
-constexpr double homoclinic_solved_to = 1e-9, rounding_of_homoclinic = 1e-6;  // a correction, in sizes
+constexpr NewtonLimits limits_of_homoclinic{
+    .most_iterations = 10, .solved_to = 1e-9, .rounding = 1e-6, .farthest = 10, .each_is_smaller = true};  // in sizes
 constexpr double unfolds = 1e-6;       // of the rates, over the ranges of the constants
 constexpr double error_of_rtol = 100;  // as in orbit_branch
 
@@ -75,10 +76,9 @@ std::optional<HomoclinicPlace> HomoclinicSteps::corrected(const Vector& guess, c
   if (!equations_->refer_to(reference)) return std::nullopt;
   Vector z(guess);
   const Vector shift = shift_at(reference);
-  double size_before = 0;
-  for (int k = 1; k <= most_homoclinic_iterations; ++k) {
-    if (options_.interrupt && options_.interrupt->load()) return std::nullopt;
-    if (!equations_->evaluate(z) || !equations_->decompose(shift, last)) return std::nullopt;
+  const auto correct = [&]() -> NewtonCorrection {
+    if (options_.interrupt && options_.interrupt->load()) return NewtonEnding::interrupted;
+    if (!equations_->evaluate(z) || !equations_->decompose(shift, last)) return NewtonEnding::singular;
     Vector b = equations_->residuals();
     for (std::size_t j = 0; j < z.size(); ++j) {
       b[z.size() - 2] += shift[j] * (z[j] - reference[j]) / scale_[j];
@@ -86,14 +86,10 @@ std::optional<HomoclinicPlace> HomoclinicSteps::corrected(const Vector& guess, c
     }
     b = equations_->solve(b);
     for (std::size_t j = 0; j < z.size(); ++j) z[j] -= b[j] * scale_[j];
-    const double size = length(b);
-    if (!std::isfinite(size)) return std::nullopt;
-    if (size <= homoclinic_solved_to || (k > 1 && size > size_before / 4 && size < rounding_of_homoclinic))
-      return described(std::move(z), last, before);
-    if (size > 10 || (k > 2 && size > size_before)) return std::nullopt;
-    size_before = size;
-  }
-  return std::nullopt;
+    return length(b);
+  };
+  if (!newton_iteration(limits_of_homoclinic, correct)) return std::nullopt;
+  return described(std::move(z), last, before);
 }
 
 std::optional<HomoclinicSteps::Vector> HomoclinicSteps::tangent_of(const Vector& along) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/orbits/collocation/orbit_multipliers.hpp>
 #include <continuo/studies/orbits/curves/orbit_curve_steps.hpp>
 #include <continuo/studies/support/arclength.hpp>
@@ -18,9 +19,9 @@ using Vector = std::vector<double>;
 using Complex = std::complex<double>;
 
 constexpr std::size_t most_curve_intervals = 300;
-constexpr int most_orbit_iterations = 10;
-constexpr double solved_to = 1e-9, rounding_of_orbit = 1e-6;  // a correction, in sizes
-constexpr double error_of_tolerance = 100;                    // as in orbit_branch
+constexpr NewtonLimits limits_of_curve{
+    .most_iterations = 10, .solved_to = 1e-9, .rounding = 1e-6, .farthest = 10, .each_is_smaller = true};  // in sizes
+constexpr double error_of_tolerance = 100;  // as in orbit_branch
 
 /// Products over multipliers, each factor of size 1 at most.
 double product_with(const std::vector<Complex>& values, double sign) {
@@ -115,24 +116,21 @@ std::optional<OrbitCurvePlace> OrbitCurveSteps::corrected(const Vector& guess, c
   Vector z(guess);
   const Vector shift = shift_at(reference);
   CriticalVectors held(borders);
-  double before = 0;
-  for (int k = 1; k <= most_orbit_iterations; ++k) {
-    if (options_.interrupt && options_.interrupt->load()) return std::nullopt;
-    if (!equations_->evaluate(z, sizes_, scale_, shift, held)) return std::nullopt;
+  const auto correct = [&]() -> NewtonCorrection {
+    if (options_.interrupt && options_.interrupt->load()) return NewtonEnding::interrupted;
+    if (!equations_->evaluate(z, sizes_, scale_, shift, held)) return NewtonEnding::not_finite;
     if (held.right.empty()) held = equations_->vectors();
     Vector b = equations_->residuals(z, reference, shift);
     for (std::size_t j = 0; j < z.size(); ++j) b.back() += last[j] * (z[j] - guess[j]) / scale_[j];
-    if (!equations_->solve(last, b)) return std::nullopt;
+    if (!equations_->solve(last, b)) return NewtonEnding::singular;
     for (std::size_t j = 0; j < z.size(); ++j) z[j] -= b[j] * scale_[j];
-    const double size = length(b);
-    if (size <= solved_to || (k > 1 && size > before / 4 && size < rounding_of_orbit))
-      return described(std::move(z), last, normal);
-    const std::size_t period = z.size() - CriticalOrbit::behind;
-    if (!(z[period] > guess[period] / 2 && z[period] < 2 * guess[period]) || size > 10 || (k > 2 && size > before))
-      return std::nullopt;
-    before = size;
-  }
-  return std::nullopt;
+    return length(b);
+  };
+  const auto is_near = [&, period = z.size() - CriticalOrbit::behind] {
+    return z[period] > guess[period] / 2 && z[period] < 2 * guess[period];
+  };
+  if (!newton_iteration(limits_of_curve, correct, is_near)) return std::nullopt;
+  return described(std::move(z), last, normal);
 }
 
 std::optional<OrbitCurvePlace> OrbitCurveSteps::described(Vector z, const Vector& along,

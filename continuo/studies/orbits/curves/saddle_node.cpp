@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <continuo/numerics/central_difference.hpp>
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/orbits/curves/saddle_node.hpp>
 #include <continuo/studies/orbits/curves/saddle_spaces.hpp>
 
@@ -15,8 +16,7 @@ namespace {
 using Vector = std::vector<double>;
 using Index = Eigen::Index;
 
-constexpr int most_fold_iterations = 20;
-constexpr double fold_solved_to = 1e-10, rounding_of_fold = 1e-6, leaves_by_at_most = 0.1;  // in sizes
+constexpr double leaves_by_at_most = 0.1;  // in sizes
 
 class FoldEquations {
  public:
@@ -87,26 +87,24 @@ std::optional<SaddleNode> saddle_node_near(const ParametricSystem& system, std::
   for (Index i = 0; i < n; ++i) v(i) = x[static_cast<std::size_t>(i)] / sizes[static_cast<std::size_t>(i)];
   v(n) = p[constant] / size_of_constant;
   const Eigen::VectorXd begin(v);
-  double before = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < most_fold_iterations; ++k) {
+  const auto correct = [&]() -> NewtonCorrection {
     const auto at = equations.residuals(v);
-    if (!at) return std::nullopt;
+    if (!at) return NewtonEnding::not_finite;
     Eigen::MatrixXd matrix(n + 1, n + 1);
     for (Index j = 0; j <= n; ++j) {
       const double step = central_increment(0.0, 1.0);
       const auto [above, below] = on_both_sides(v(j), step, [&] { return equations.residuals(v); });
-      if (!above || !below) return std::nullopt;
+      if (!above || !below) return NewtonEnding::not_finite;
       matrix.col(j) = (*above - *below) / (2 * step);
     }
     const Eigen::VectorXd change = matrix.fullPivLu().solve(*at);
     v -= change;
-    const double size = change.norm();
-    if (!std::isfinite(size) || (v - begin).cwiseAbs().maxCoeff() > leaves_by_at_most) return std::nullopt;
-    if (size <= fold_solved_to || (size > before / 4 && size < rounding_of_fold))
-      return SaddleNode{equations.state(v), equations.constants(v), FoldEquations::stable_of(equations.matrix_at(v))};
-    before = size;
-  }
-  return std::nullopt;
+    if ((v - begin).cwiseAbs().maxCoeff() > leaves_by_at_most) return NewtonEnding::diverged;
+    return change.norm();
+  };
+  constexpr NewtonLimits limits{.most_iterations = 20, .solved_to = 1e-10, .rounding = 1e-6};
+  if (!newton_iteration(limits, correct)) return std::nullopt;
+  return SaddleNode{equations.state(v), equations.constants(v), FoldEquations::stable_of(equations.matrix_at(v))};
 }
 
 }  // namespace continuo::studies::detail

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/orbits/hybrid/hybrid_branch.hpp>
 #include <continuo/studies/orbits/hybrid/orbit_trace.hpp>
 #include <continuo/studies/orbits/hybrid/return_multipliers.hpp>
@@ -22,8 +23,8 @@ namespace {
 using Vec = Eigen::VectorXd;
 
 constexpr double rtol_of_returns = 1e-12;
-constexpr std::size_t most_return_iterations = 12;
-constexpr double solved_for_returns = 1e-9, noise_of_returns = 1e-7;  // a correction, in sizes
+constexpr NewtonLimits limits_of_returns{
+    .most_iterations = 12, .solved_to = 1e-9, .rounding = 1e-7, .farthest = 10, .each_is_smaller = true};  // in sizes
 constexpr double near_an_event = 0.02, well_away = 2;  // of the period; so many times as far away is worth a new start
 
 std::vector<double> sizes_between(const std::vector<double>& low, const std::vector<double>& high) {
@@ -207,23 +208,23 @@ std::optional<Vec> HybridBranchSteps::corrected(const model::Instant& start, con
   Vec z = guess;
   const Vec shift = shift_at(start, reference);
   const Eigen::Index size = unknowns();
-  double before = 0;
-  for (std::size_t iteration = 1; iteration <= most_return_iterations; ++iteration) {
+  const auto correct = [&]() -> NewtonCorrection {
     const auto equations = evaluate(start, z, reference, shift);
-    if (!equations) return std::nullopt;
+    if (!equations) return NewtonEnding::not_finite;
     Eigen::MatrixXd matrix(size, size);
     matrix << equations->rows, last.transpose();
     Vec b(size);
     b << equations->residual, last.dot(z - guess);
     const Vec step = matrix.fullPivLu().solve(b);
-    const double length = step.norm();
-    if (!(length < 10) || (iteration > 2 && length > before && length > noise_of_returns)) break;
     z -= step;
-    if (length <= solved_for_returns || (iteration > 1 && length > before / 4 && length < noise_of_returns)) return z;
-    if (!is_forced() && !(z[size - 2] > 0.5 * guess[size - 2] && z[size - 2] < 2 * guess[size - 2])) break;
-    before = length;
-  }
-  problem_ = "Newton's method does not converge";
+    return step.norm();
+  };
+  const auto is_near = [&] {
+    return is_forced() || (z[size - 2] > 0.5 * guess[size - 2] && z[size - 2] < 2 * guess[size - 2]);
+  };
+  const NewtonOutcome outcome = newton_iteration(limits_of_returns, correct, is_near);
+  if (outcome) return z;
+  if (outcome.ending != NewtonEnding::not_finite) problem_ = "Newton's method does not converge";
   return std::nullopt;
 }
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include <continuo/numerics/newton_iteration.hpp>
 #include <continuo/studies/orbits/hybrid/shooting.hpp>
 
 namespace continuo::studies::detail {
 
 namespace {
 
-constexpr int most_iterations = 40, most_halvings = 8;
 constexpr double longest_step = 1;  // in sizes of the motion
 constexpr double relative_noise = 1e-10;
 
@@ -94,29 +94,34 @@ double Shooting::distance(const ShootingPoint& a, const ShootingPoint& b) const 
 
 std::optional<ShootingPoint> Shooting::solve(ShootingPoint point, double cut, double tolerance) {
   std::optional<Shot> shot = shoot(point);
-  for (int iteration = 0; shot && iteration < most_iterations; ++iteration) {
-    Eigen::VectorXd step = smallest_step(*shot, cut);
+  Eigen::VectorXd step;
+  double now = 0;
+  bool last = false;
+  const auto correct = [&]() -> NewtonCorrection {
+    step = smallest_step(*shot, cut);
     const double length = step.lpNorm<Eigen::Infinity>();
-    if (!(length <= 1 / cut)) break;
+    if (!(length <= 1 / cut)) return NewtonEnding::diverged;
     if (length > longest_step) step *= longest_step / length;
-    const double now = shot->residual.norm();
+    now = shot->residual.norm();
     // The flow is off by a few times its tolerance, which neighbours that part make larger.
-    const bool last = length <= tolerance && now <= 10 * tolerance + relative_noise * shot->matrix.norm();
-    std::optional<Shot> next;
-    ShootingPoint there = point;
-    double part = 1;
-    for (int halving = 0; halving < most_halvings && !interrupted_; ++halving, part /= 2) {
-      there = moved(point, part * step);
-      if (!(there.period > 0.2 * from_.period && there.period < 5 * from_.period)) continue;
-      next = shoot(there);
-      if (next && (last || next->residual.norm() < now)) break;
-      next.reset();
-    }
+    last = length <= tolerance && now <= 10 * tolerance + relative_noise * shot->matrix.norm();
+    return length;
+  };
+  const auto attempt = [&](double part, double) {
+    ShootingPoint there = moved(point, part * step);
+    if (interrupted_ || !(there.period > 0.2 * from_.period && there.period < 5 * from_.period))
+      return NewtonAttempt::refused;
+    std::optional<Shot> next = shoot(there);
+    const bool is_better = next && next->residual.norm() < now;
+    if (!next || !(last || is_better)) return NewtonAttempt::refused;
+    if (is_better) point = std::move(there), shot = std::move(next);
+    return last ? NewtonAttempt::solved : NewtonAttempt::taken;
+  };
+  if (shot) {
+    constexpr DampedNewtonLimits limits{.most_iterations = 40, .least_damping = 0x1p-7};
+    const NewtonOutcome outcome = damped_newton(limits, correct, attempt);
     // Where rounding keeps the residual from falling, the point is as good as it can be.
-    if (last) return next && next->residual.norm() < now ? there : point;
-    if (!next || interrupted_) break;
-    point = std::move(there);
-    shot = std::move(next);
+    if (outcome || (last && outcome.ending == NewtonEnding::no_descent)) return point;
   }
   if (problem_.empty()) problem_ = "Newton's method does not converge";
   return std::nullopt;
