@@ -9,14 +9,14 @@ namespace {
 
 constexpr std::array syntax_entries = {
     Code{"E101", "this file is not UTF-8 text",
-         R"(A model is a text in UTF-8. This file holds a byte that UTF-8 does not allow; the message gives its offset
-from the start of the file, counted from 0. Often the file was saved in an older encoding (Latin-1,
+         R"(A model is a text in UTF-8. This file contains a byte that UTF-8 does not allow; the message gives its
+offset from the start of the file, counted from 0. Often the file was saved in an older encoding (Latin-1,
 Windows-1252), where a letter such as é is one byte, or in UTF-16; or it is no text at all.
 
 Fix: save the file as UTF-8 in the editor, or convert it:  iconv -f latin1 -t utf-8 old.sim > new.sim)"},
     Code{"E102", "a character has no meaning here",
          R"(The language uses letters, digits, and the signs + - * / ^ ( ) [ ] { } , ; : = < > ' " . and #.
-Letters of other alphabets may stand in names (ω, φ₀), and anything in comments and texts.
+Names may contain letters of other alphabets (ω, φ₀); comments and texts may contain any character.
 
 Fix: remove the character, or put it into a comment (# ...) or a text ("...").)"},
     Code{"E103", "a text has no end",
@@ -33,21 +33,20 @@ Inside a text write \" for a quote and \\ for a backslash.)"},
 
 A square bracket directly after a name, without a space, is an index instead: u[i].)"},
     Code{"E105", "a number does not fit",
-         R"(Numbers are kept in double precision, from about 1e-308 to 1e308, with 16 digits.
+         R"(Numbers are stored in double precision, from about 1e-308 to 1e308, with 16 digits.
 
-Fix: choose units in which your numbers are nearer to 1; the equations are solved more exactly, too.)"},
+Fix: choose units in which your numbers are nearer to 1; this also improves the accuracy of the solution.)"},
     Code{"E106", "there is no model in the file",
-         R"(The file is empty or holds only comments. The least model is
+         R"(The file is empty or holds only comments. The smallest model is
 
   x' = -x
   x(0) = 1
   run 0..5
 
-`continuo new NAME` writes one to begin with.)"},
-    Code{
-        "E107", "an expression or block is nested too deeply",
-        R"(Brackets and blocks may be nested 200 deep (an operator before a bracket counts as one more), and an expression
-may be 500 operations tall; a sum of 500 terms is that tall, since a + b + c is (a + b) + c.
+`continuo new NAME` writes a model to start from.)"},
+    Code{"E107", "an expression or block is nested too deeply",
+         R"(Brackets and blocks may be nested 200 deep (an operator before a bracket counts as one more), and an
+expression may be 500 operations tall; a sum of 500 terms is that tall, since a + b + c is (a + b) + c.
 
 Fix: give parts a name with `let`, or write a sum of alike terms as
 
@@ -61,11 +60,11 @@ and repeated equations into a family,
 
   for i in 1..1000 { u[i]' = D*(u[i-1] - 2*u[i] + u[i+1])/dx^2 })"},
     Code{"E110", "something else was expected",
-         R"(The statement begins as one Continuo knows, but then something is missing or in the wrong place. The message
-says what was expected there and what was found.
+         R"(The statement begins correctly, but then something is missing or in the wrong place. The message shows
+what was expected there and what was found.
 
-A statement ends with its line or with `;`. A line goes on after an operator, a comma or an open bracket,
-so a line that ends with `+` takes the next line in:
+A statement ends at the end of its line or at `;`. It continues on the next line after an operator, a comma or an open
+bracket:
 
   x'' = -k/m*x -
         c/m*x')"},
@@ -76,7 +75,7 @@ so a line that ends with `+` takes the next line in:
   when at every initially for run plot draw check
   world { ... }   force on BODY = (..., ...)   torque on BODY = ...
 
-States need no declaration: x'' = -k*x introduces x. In an event stand actions: x := value, if, go, mark, stop, for.)"},
+States need no declaration: x'' = -k*x introduces x. An event contains actions: x := value, if, go, mark, stop, for.)"},
     Code{"E112", "a word of the language cannot be a name",
          R"(Words that begin statements (param, run, when, at, check, ...), the words of actions (go, mark, stop) and
 if then else and or not in from for sum cannot name a state, a parameter or a mode.
@@ -86,18 +85,17 @@ Fix: choose another name: `run_`, `runs`, `t_run`.)"},
          R"(Every ( needs its ) and every index bracket its ]. Inside round brackets a line may end after an operator, a
 comma or the open bracket, and before an operator or the closing bracket.)"},
     Code{"E114", "a block has no end",
-         R"(A block opened with { was not closed before the file ended, or before a line that begins in its first column
-with a word that stands in no block (run, when, mode, ...).
+         R"(A block opened with { was not closed before the end of the file, or before a line that begins in its first
+column with a statement that is not allowed in a block (run, when, mode, ...).
 
 Fix: write the missing }; a } may stand on the line of the last statement.)"},
     Code{"E115", "a brace closes nothing",
          R"(There is a } without a { before it. Either it is one too many, or the { was forgotten further up:
 
   when h falls through 0 { h' := -e*h' })"},
-    Code{
-        "E116", "an operator is missing",
-        R"(A product needs its sign: 2*x, not 2x or 2 x, and k*(x - l), not k(x - l), which is a call of the function k.
-A unit stands in brackets: 3 [m], not 3 m.)"},
+    Code{"E116", "an operator is missing",
+         R"(A product needs its sign: 2*x, not 2x or 2 x, and k*(x - l), not k(x - l), which is a call of the
+function k. A unit stands in brackets: 3 [m], not 3 m.)"},
     Code{"E117", "comparisons cannot be chained",
          R"(a < b < c means nothing here. Write
 
@@ -107,14 +105,13 @@ A unit stands in brackets: 3 [m], not 3 m.)"},
 :=  assigns, at the moment of an event: h' := -e*h'
 ==  compares, in conditions: if n == 3 then 1 else 0)"},
     Code{"E119", "an action assigns with `:=` to a name",
-         R"(In an event stand actions, and an assignment is written
+         R"(An event contains actions, and an assignment is written
 
   h' := -e*h'
 
-with the state to change alone on the left side. All right sides are taken from before the event.)"},
-    Code{
-        "E120", "`=` cannot compare",
-        R"(In a condition, is equal to is written ==. But a quantity that changes with time is equal to a value only for an
+with a state alone on the left side. All right sides are evaluated with the state before the event.)"},
+    Code{"E120", "`=` cannot compare",
+         R"(Equality in a condition is written ==. But a quantity that changes with time equals a value only for an
 instant, so an event is written as a crossing:
 
   when h falls through 0 { ... }
@@ -128,12 +125,12 @@ tolerances of several states, or a point of a drawing:
   draw { ball (0, h) radius 0.1 }
 
 If a decimal number was meant: its sign is a point, 9.8.)"},
-    Code{
-        "E122", "a text cannot be calculated with",
-        R"(Texts in quotes name files, keys, marks, colours and labels. A state or a parameter is written without quotes.)"},
-    Code{
-        "E123", "this cannot stand here",
-        R"(Some statements stand only outside of braces (model, run, plot, draw, check, mode, ...), some words only inside:
+    Code{"E122", "a text cannot be calculated with",
+         R"(Texts in quotes are names of files, keys, marks, colours and labels. A state or a parameter is written
+without quotes.)"},
+    Code{"E123", "this is not allowed here",
+         R"(Some statements are allowed only outside of braces (model, run, plot, draw, check, mode, ...), some words
+only inside:
 
   mode flight { equations, let, for }
   for i in 1..N { param, let, output, energy, unknown, guess, for, when, at, equations, initial values }
@@ -142,17 +139,16 @@ If a decimal number was meant: its sign is a point, 9.8.)"},
         "E124", "something is given twice",
         R"(A file holds one model with one name, a run one method, one step, one output; a shape one radius. Keep one.)"},
     Code{"E125", "a word is not known here",
-         R"(The word stands where one of a few is possible; the message names the nearest.
+         R"(Only certain words are allowed here; the message suggests the most similar one.
 
   when EXPR falls|rises|crosses [through] VALUE [in MODE] { actions }
   when CONDITION [in MODE] { actions }
   run A..B [unit] output DT | steps | log N per decade from T, method NAME, step H, tol R, abs A, realtime
   draw { floor, ball, spring, rod, rope, arrow, trail, box, text }
   check EXPR [at TIME | at end | before event N | after event N [of "name"]] = VALUE within TOLERANCE)"},
-    Code{
-        "E126", "a check and its tolerance do not fit",
-        R"(Calculated numbers are equal only within a tolerance, so a check with = states it; one with < needs none, and a
-count is exact:
+    Code{"E126", "a check and its tolerance do not fit",
+         R"(Computed numbers are equal only within a tolerance, so a check with = must state one; a check with < needs
+none, and a count is exact:
 
   check h(1) = 5.1 [m] within 1e-9
   check energy drift < 1e-8
@@ -166,21 +162,20 @@ single quote ', and an assignment of an event is x := x + 1.)"},
          R"(A unit follows a number, a name or a bracket, after a space:  3 [m],  sqrt(2) [m].
 An index follows its name without a space:  u[i],  u[i-1]'.
 
-A value of numbers only with one unit at its end has it as a whole: 1/2 [m] is half a metre, and 2*pi^2 [m] is
-2*pi^2 metres. Where there are names, the unit belongs to what it follows: v*2 [s] is v*(2 [s]).)"},
-    Code{"E129", "a prime in a wrong place",
+In an expression of numbers only, a unit at the end belongs to the whole expression: 1/2 [m] is half a metre, and
+2*pi^2 [m] is 2*pi^2 metres. In an expression with names it belongs to the item before it: v*2 [s] is v*(2 [s]).)"},
+    Code{"E129", "a prime in the wrong place",
          R"(Each ' directly after a name is one derivative with respect to time: x' and x''. The index comes before the
 primes: u[i]'. Two primes are two single quotes, not a double quote. A derivative is not declared; its equation
-stands without a word before it:
+has no keyword:
 
   x'' = -k/m*x)"},
-    Code{"E131", "an expression alone says nothing",
-         R"(A statement says something about its expression: an equation (x' = ...), an initial value (x(0) = 1), a
-definition (let y = ...), or in an event an assignment (x := ...).)"},
-    Code{
-        "E132", "a wrong number of values in brackets",
-        R"(An initial value has one time: x(0) = 1; its derivative's is x'(0) = 0, and for an indexed state u[i](0) = 0.
-A point of a drawing has two or three coordinates: (0, h).)"},
+    Code{"E131", "an expression alone is not a statement",
+         R"(A statement is an equation (x' = ...), an initial value (x(0) = 1), a definition (let y = ...), or in
+an event an assignment (x := ...).)"},
+    Code{"E132", "a wrong number of values in brackets",
+         R"(An initial value has one time: x(0) = 1; its derivative's is x'(0) = 0, and for an indexed state
+u[i](0) = 0. A point of a drawing has two or three coordinates: (0, h).)"},
     Code{
         "E133", "an unknown backslash in a text",
         R"(In a text a backslash goes with one of " \ n t. In names of files write / between folders, on every system.)"},
@@ -188,8 +183,7 @@ A point of a drawing has two or three coordinates: (0, h).)"},
          R"(dx/dt, der(x) and diff(x, t) are written x', the second derivative x'':
 
   x'' = -k/m*x)"},
-    Code{"E136", "a name is too long",
-         R"(Names have at most 200 bytes; they are the columns of the result and stand in messages.)"},
+    Code{"E136", "a name is too long", R"(Names have at most 200 bytes, because they are column names of the result.)"},
 };
 
 }  // namespace
