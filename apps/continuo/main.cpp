@@ -14,15 +14,18 @@ namespace {
 
 constexpr std::string_view command_examples =
     "  continuo run models/bouncing_ball.sim                     the motion in a few lines\n"
-    "  continuo view models/spring_pendulum.sim                  the motion live in the browser, to be touched\n"
+    "  continuo view models/spring_pendulum.sim                  the motion live in the browser: drag the mass, slide "
+    "k\n"
     "  continuo run models/kepler.sim -o orbit.csv --plot orbit.svg\n"
     "  continuo compare models/mass_spring.sim --methods euler,rk4 --step 0.1,0.05\n"
     "  continuo new spring                                       a commented model to start from\n"
-    "  continuo verify models/                                   every check of every model\n"
-    "  continuo explain E201                                     more about a message\n";
+    "  continuo verify models/                                   tests every check of every model\n"
+    "  continuo explain E201                                     the explanation of a message\n";
 
 int command(int argc, char** argv) {
-  CLI::App app("Simulates continuous systems: the equations in, a motion out that can be trusted.", "continuo");
+  CLI::App app(
+      "Simulates continuous systems from their differential equations, with located events and error estimates.",
+      "continuo");
   examples_first(app, command_examples);
   app.set_version_flag("--version", "continuo " CONTINUO_VERSION);
   app.require_subcommand(1);

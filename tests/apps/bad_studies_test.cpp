@@ -167,7 +167,7 @@ TEST(BadStudies, MethodsAndStepsThatWouldHaveNoPart) {
   for (const std::string& study : {studies[8], studies[9]}) {
     const Result result = folder.run(asked(study, "steps.sim"));
     EXPECT_EQ(result.exit, 0);
-    EXPECT_THAT(result.err, HasSubstr("steps.sim:4: the fixed step has no part here")) << study;
+    EXPECT_THAT(result.err, HasSubstr("steps.sim:4: a fixed step is not possible here")) << study;
   }
 }
 
@@ -235,8 +235,8 @@ TEST(BadStudies, StepsAlongABranchLieWithinItsRange) {
   folder.write("fold.sim", "param r = 1 in -1..2\nx' = r - x^2\nx(0) = 0.5\nrun 0..10\n");
   for (const std::string& verb : {std::string("steady"), std::string("orbit")}) {
     const std::string along = verb + " fold.sim --along r=-1..2 ";
-    expect_refused(folder, {{along + "--ds 2", "--ds is 2: a step is a part of the range, at most 1"},
-                            {along + "--ds-max 5", "--ds-max is 5: a step is a part of the range, at most 1"},
+    expect_refused(folder, {{along + "--ds 2", "--ds is 2: a step is a fraction of the range, at most 1"},
+                            {along + "--ds-max 5", "--ds-max is 5: a step is a fraction of the range, at most 1"},
                             {along + "--ds 1e-9", "--ds-min is 1e-07, and --ds is less, 1e-09"},
                             {along + "--ds-max 1e-12", "--ds-min is 1e-07, and --ds-max is less, 1e-12"},
                             {along + "--ds-min 0.5", "--ds-min is 0.5, and --ds-max is less, 0.05"}});

@@ -34,7 +34,7 @@ TEST(OrbitPlane, FoldsOfOrbitsAsTableAndJson) {
   EXPECT_THAT(shell.read("c.svg"), HasSubstr("fold"));
   EXPECT_THAT(shell.run("orbit bautin.sim --along mu=-1..1 --and nu=2..3").err, HasSubstr("nu is 1, outside of 2..3"));
   EXPECT_THAT(shell.run("orbit bautin.sim --along mu=-1..1 --and mu=2..3").err,
-              HasSubstr("a plane has two parameters"));
+              HasSubstr("two different parameters are needed"));
 }
 
 // y'' = m0 + m1 y + y^2 + y y': of the homoclinic orbits m0 = -6/25 m1^2 in leading order, whose relative error is of
@@ -81,12 +81,12 @@ TEST(OrbitSpace, SaddleNodesAndNeutralSaddles) {
   }
   EXPECT_THAT(shell.read("c.csv"), StartsWith("curve,kind,nu,a,b,x min,x max,y min,y max"));
   EXPECT_THAT(shell.read("c.svg"), HasSubstr("saddle-node"));
-  EXPECT_THAT(shell.run(plane + "--and nu=0..1").err, HasSubstr("nu moves already"));
+  EXPECT_THAT(shell.run(plane + "--and nu=0..1").err, HasSubstr("nu is already used"));
   EXPECT_THAT(shell.run(plane + "--and b=2..3").err, HasSubstr("b is 1, outside of 2..3"));
   EXPECT_THAT(shell.run(plane + "--and c=2..3").err, HasSubstr("there is no parameter `c`"));
-  EXPECT_THAT(shell.run(plane + "--and b=0..2 --and c=2..3").err, HasSubstr("three parameters at most"));
+  EXPECT_THAT(shell.run(plane + "--and b=0..2 --and c=2..3").err, HasSubstr("at most three parameters"));
   EXPECT_THAT(shell.run("steady loop.sim --along nu=0..1 --and a=-1..1 --and b=0..2").err,
-              HasSubstr("--and is there twice"));
+              HasSubstr("--and is given twice"));
 }
 
 }  // namespace

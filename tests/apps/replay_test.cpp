@@ -86,8 +86,8 @@ TEST(Replay, SaysWhatIsWrong) {
   for (const Case& each : {Case{"replay nothing.run", "cannot read nothing.run"},
                            Case{"replay bounce.sim", "this is no recording of a run"},
                            Case{"replay empty.run", "byte 0"}, Case{"replay short.run", "cut off before it began"},
-                           Case{"replay wrong.run", "byte "}, Case{"resume bounce.run", "no place to go on from"},
-                           Case{"run decay.sim --record x.run", "--record keeps the run of a world"},
+                           Case{"replay wrong.run", "byte "}, Case{"resume bounce.run", "no snapshot to resume from"},
+                           Case{"run decay.sim --record x.run", "--record is for worlds of bodies"},
                            Case{"run bounce.sim --record -", "--record takes the name of a file"},
                            Case{"run bounce.sim --record no/where.run", "cannot write no/where.run"},
                            Case{"run bounce.sim --snapshots 3", "--snapshots requires --record"}}) {
@@ -97,8 +97,8 @@ TEST(Replay, SaysWhatIsWrong) {
     EXPECT_EQ(result.out, "") << each.line;
   }
   ASSERT_EQ(shell.run("run bounce.sim --record places.run --snapshots 3").exit, 0);
-  EXPECT_THAT(shell.run("resume places.run --at 2 --until 1").err, HasSubstr("goes on from t = 2 at the earliest"));
-  EXPECT_THAT(shell.run("resume places.run --at -1").err, HasSubstr("goes on from t = 0 at the earliest"));
+  EXPECT_THAT(shell.run("resume places.run --at 2 --until 1").err, HasSubstr("resume from is at t = 2"));
+  EXPECT_THAT(shell.run("resume places.run --at -1").err, HasSubstr("resume from is at t = 0"));
   EXPECT_THAT(shell.run("resume places.run --record places.run").err, HasSubstr("it is read"));
 }
 

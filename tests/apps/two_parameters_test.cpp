@@ -52,7 +52,8 @@ TEST(SteadyPlane, BadQuestionsAreRefused) {
   const Shell shell;
   const std::string lorenz = "steady " + gallery("lorenz");
   EXPECT_THAT(shell.run(lorenz + " --and rho=0..30").err, HasSubstr("--along"));
-  EXPECT_THAT(shell.run(lorenz + " --along rho=0..30 --and rho=0..3").err, HasSubstr("a plane has two parameters"));
+  EXPECT_THAT(shell.run(lorenz + " --along rho=0..30 --and rho=0..3").err,
+              HasSubstr("two different parameters are needed"));
   EXPECT_THAT(shell.run(lorenz + " --along rho=0..30 --and sigm=0..3").err, HasSubstr("did you mean `sigma`?"));
   EXPECT_THAT(shell.run(lorenz + " --along rho=0..30 --and sigma=0..3").err,
               AllOf(HasSubstr("sigma is 10, outside of 0..3"), HasSubstr("--set sigma=VALUE")));

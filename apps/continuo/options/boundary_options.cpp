@@ -38,7 +38,8 @@ std::optional<boundary::BoundaryRequest::Along> read_along(const std::string& op
   if (!to) return std::nullopt;
   const std::size_t i = model::find_parameter(model, from->name);
   if (i != model::npos && model.parameters[i].structural) {
-    say(fmt::format("{} {}: `{}` decides how many states there are, so that none can be followed", option, text, name));
+    say(fmt::format("{} {}: `{}` determines the number of states, so no solution can be followed along it", option,
+                    text, name));
     return std::nullopt;
   }
   return boundary::BoundaryRequest::Along{from->name, from->value, to->value};
@@ -47,19 +48,22 @@ std::optional<boundary::BoundaryRequest::Along> read_along(const std::string& op
 }  // namespace
 
 void add_boundary(CLI::App& verb, BoundaryOptions& options) {
-  verb.add_option("--solution", options.solution, "Of a boundary-value problem with several: which one")
+  verb.add_option("--solution", options.solution,
+                  "Boundary-value problems with several solutions: the number of the one to show")
       ->type_name("N")
       ->check(count_from(1));
   verb.add_option("--along", options.along,
-                  "Of a hard one: solved where a parameter makes it easy, and followed from there: --along eps=1..1e-4")
+                  "Boundary-value problems: continuation from a parameter value for which the problem is easy: --along "
+                  "eps=1..1e-4")
       ->type_name("NAME=A..B");
-  verb.add_option("--guess", options.guess, "Of a hard one: where to begin, the CSV file of an earlier run (-o)")
+  verb.add_option("--guess", options.guess,
+                  "Boundary-value problems: initial guess, the CSV file of an earlier run (-o)")
       ->type_name("FILE");
   auto* family = verb.add_option("--family", options.family,
-                                 "How the solutions of a boundary-value problem move with a parameter, round folds and "
-                                 "into families that cross; -o, --plot and --json then show these")
+                                 "Boundary-value problems: follows all solutions along a parameter, around folds and "
+                                 "into crossing families; -o, --plot and --json then show these")
                      ->type_name("NAME=LOW..HIGH");
-  verb.add_option("--of", options.of, "The state to draw over the parameter of --family")
+  verb.add_option("--of", options.of, "The state to plot over the parameter of --family")
       ->type_name("STATE")
       ->needs(family);
 }
@@ -69,12 +73,11 @@ std::optional<boundary::BoundaryRequest> read_boundary(const BoundaryOptions& op
   const model::Model& model = prepared.program->model;
   if (options.as_written() && options.guess.empty() && options.family.empty()) return request;
   if (runs::kind_of(model).has_start) {
-    say(fmt::format(
-        "{} is for models whose conditions stand at several times; this one's motion follows from its start",
-        !options.along.empty()    ? "--along"
-        : !options.family.empty() ? "--family"
-        : !options.guess.empty()  ? "--guess"
-                                  : "--solution"));
+    say(fmt::format("{} is for boundary-value problems; this model is an initial-value problem",
+                    !options.along.empty()    ? "--along"
+                    : !options.family.empty() ? "--family"
+                    : !options.guess.empty()  ? "--guess"
+                                              : "--solution"));
     return std::nullopt;
   }
   if (!options.along.empty()) {
@@ -99,7 +102,7 @@ std::optional<boundary::BoundaryRequest> read_boundary(const BoundaryOptions& op
 
 std::optional<boundary::BoundaryRequest::Along> read_family(const BoundaryOptions& options, const Prepared& prepared) {
   if (!options.along.empty() || options.solution != 1) {
-    say("--family follows every solution that it finds: leave out --along and --solution");
+    say("--family follows all solutions: leave out --along and --solution");
     return std::nullopt;
   }
   return read_along("--family", options.family, prepared.program->model);

@@ -8,20 +8,20 @@
 namespace continuo::app {
 
 void add_branch_steps(CLI::App& verb, BranchSteps& steps, CLI::Option* along) {
-  verb.add_option("--ds", steps.first, "First step along a branch, as a part of the range; else 0.01")
+  verb.add_option("--ds", steps.first, "First step along a branch, as a fraction of the range (0.01)")
       ->type_name("STEP")
       ->needs(along);
-  verb.add_option("--ds-min", steps.least, "The least step, below which a branch is given up; else 1e-7")
+  verb.add_option("--ds-min", steps.least, "Smallest step, below which a branch ends (1e-7)")
       ->type_name("STEP")
       ->needs(along);
-  verb.add_option("--ds-max", steps.largest, "The greatest step; else 0.05")->type_name("STEP")->needs(along);
+  verb.add_option("--ds-max", steps.largest, "Largest step (0.05)")->type_name("STEP")->needs(along);
 }
 
 bool are_in_order(const BranchSteps& steps) {
   const auto is_wrong = [](const char* name, const std::optional<double>& step) {
     if (!step || (*step > 0 && *step <= 1)) return false;
     if (*step > 1) {
-      say(fmt::format("{} is {}: a step is a part of the range, at most 1", name, *step));
+      say(fmt::format("{} is {}: a step is a fraction of the range, at most 1", name, *step));
       return true;
     }
     say(fmt::format("{} must be greater than zero, and is {}", name, *step));

@@ -78,7 +78,7 @@ bool decides_a_size(const model::Model& model, const model::Overrides& values) {
 
 void add_model(CLI::App& verb, ExperimentOptions& options) {
   verb.add_option("file", options.file, "The model")->required()->type_name("");
-  verb.add_option("--set", options.settings, "Another value of a parameter: --set k=5 --set \"c=0.2 [N*s/m]\"")
+  verb.add_option("--set", options.settings, "Sets a parameter: --set k=5 --set \"c=0.2 [N*s/m]\"")
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -86,8 +86,8 @@ void add_model(CLI::App& verb, ExperimentOptions& options) {
 
 void add_experiment(CLI::App& verb, ExperimentOptions& options) {
   add_model(verb, options);
-  verb.add_option("--until", options.until, "The time at which the run ends")->type_name("T");
-  verb.add_option("--output", options.output, "A row every DT")->type_name("DT")->transform(quotients());
+  verb.add_option("--until", options.until, "End time of the run")->type_name("T");
+  verb.add_option("--output", options.output, "Output interval")->type_name("DT")->transform(quotients());
 }
 
 void add_tolerances(CLI::App& verb, ExperimentOptions& options) {
@@ -104,7 +104,7 @@ void add_tolerances(CLI::App& verb, ExperimentOptions& options) {
 void add_method(CLI::App& verb, ExperimentOptions& options) {
   verb.add_option("--method", options.method, "The integration method (continuo methods)")->type_name("NAME");
   add_tolerances(verb, options);
-  verb.add_option("--step", options.step, "A fixed step")
+  verb.add_option("--step", options.step, "Fixed step size")
       ->type_name("H")
       ->transform(quotients())
       ->excludes(verb.get_option("--tol"))
@@ -112,11 +112,11 @@ void add_method(CLI::App& verb, ExperimentOptions& options) {
 }
 
 void add_limits(CLI::App& verb, ExperimentOptions& options) {
-  verb.add_option("--max-step", options.max_step, "The longest step a method may choose")
+  verb.add_option("--max-step", options.max_step, "Largest step size of an adaptive method")
       ->type_name("H")
       ->transform(quotients())
       ->excludes(verb.get_option("--step"));
-  verb.add_option("--max-steps", options.max_steps, "How many steps there may be")
+  verb.add_option("--max-steps", options.max_steps, "Largest number of steps")
       ->check(count_from(1, 1'000'000'000'000))
       ->type_name("N");
 }
@@ -135,10 +135,9 @@ std::string place_text(const Prepared& prepared, const model::Span& span) {
 bool has_no_start(const Prepared& prepared) {
   const model::Model& model = prepared.program->model;
   if (runs::kind_of(model).has_start) return false;
-  say(
-      fmt::format("{}: the model's conditions stand at several times; `continuo run` solves it, this verb studies "
-                  "motions from a start",
-                  place_text(prepared, model.boundary.front().span)));
+  say(fmt::format(
+      "{}: the model is a boundary-value problem; `continuo run` solves it, this verb studies initial-value problems",
+      place_text(prepared, model.boundary.front().span)));
   return true;
 }
 

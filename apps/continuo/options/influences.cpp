@@ -22,8 +22,8 @@ void say_step_has_no_part(const Prepared& prepared) {
   const model::RunSettings& run = prepared.program->model.run;
   if (run.step && runs::kind_of(prepared.program->model).has_exact_derivatives)
     say(
-        fmt::format("{}: the fixed step has no part here: derivatives are integrated along with the motion, in steps "
-                    "chosen for both",
+        fmt::format("{}: a fixed step is not possible here: derivatives are integrated together with the motion, in "
+                    "steps chosen for both",
                     place_text(prepared, run.span)));
 }
 

@@ -78,7 +78,7 @@ bool drawable(const std::string& path) {
 bool are_apart(const std::vector<std::string>& read, const std::vector<std::string>& written) {
   for (auto output = written.begin(); output != written.end(); ++output) {
     if (std::ranges::any_of(read, [&](const std::string& input) { return are_names_of_one_file(input, *output); })) {
-      say(fmt::format("cannot write {}: it is read, and would be lost; give another name", *output));
+      say(fmt::format("cannot write {}: it is read as input; give another name", *output));
       return false;
     }
     if (std::any_of(written.begin(), output,

@@ -83,7 +83,7 @@ results::Panel panel_of(const SpaceCurves& curves, const NamedSpace& space, std:
 std::optional<NamedRange> parse_third(const std::string& text, const NamedPlane& plane) {
   auto third = parse_range(text);
   if (!third || (third->name != plane.first.name && third->name != plane.second.name)) return third;
-  say(fmt::format("{} moves already: three parameters have three names", third->name));
+  say(fmt::format("{} is already used: three different parameters are needed", third->name));
   return std::nullopt;
 }
 

@@ -69,7 +69,7 @@ std::string orbit_text(const model::Model& model, const Exploration& found) {
                        : orbit.neighbours == Neighbours::go_away   ? "not stable"
                        : orbit.family ? "one of a family: something is conserved, and each value of it has an orbit"
                                       : "undecided at first order");
-    if (orbit.found_nearby) text += "         the motion itself does not come to it: it passes near by\n";
+    if (orbit.found_nearby) text += "         the motion does not converge to it, but passes near it\n";
   }
   if (!found.exponents) return text;
   text += "motion   Lyapunov exponents";
@@ -77,9 +77,9 @@ std::string orbit_text(const model::Model& model, const Exploration& found) {
     text += fmt::format("{} {} +- {:.1g}", i == 0 ? "" : ",", short_number(found.exponents->exponents[i]),
                         found.exponents->spread[i]);
   const double first = found.exponents->exponents[0], doubt = 3 * found.exponents->spread[0];
-  return text + (first > doubt    ? ": neighbours part, the motion is chaotic\n"
-                 : first < -doubt ? ": neighbours come together\n"
-                                  : ": neighbours keep their distance, as far as can be told\n");
+  return text + (first > doubt    ? ": the motion is chaotic\n"
+                 : first < -doubt ? ": neighbouring motions converge\n"
+                                  : ": neighbouring motions neither converge nor diverge measurably\n");
 }
 
 /// What rounding leaves of a zero is one.

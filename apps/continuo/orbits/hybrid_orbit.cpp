@@ -35,23 +35,23 @@ bool set_forcing(const Studied& studied, const HybridOrbitRequest& request, stud
   if (request.forcing) {
     const double ratio = forcing.period ? *request.forcing / *forcing.period : 1;
     if (std::abs(ratio - std::round(ratio)) > 1e-9 * ratio || std::round(ratio) < 1) {
-      say(fmt::format("--period {:.10g} is no multiple of {:.10g}, after which the text says that the model repeats",
+      say(fmt::format("--period {:.10g} is not a multiple of {:.10g}, the period of the model according to its text",
                       *request.forcing, *forcing.period));
       return false;
     }
     if (*request.forcing > longest_forcing * (request.settle + request.duration)) {
-      say(fmt::format("--period {:.10g} is far longer than what is run to find the orbit (--settle, --duration)",
+      say(fmt::format("--period {:.10g} is far longer than the run that searches for the orbit (--settle, --duration)",
                       *request.forcing));
       return false;
     }
     std::vector<double> low, high;
     for (const double x : studied.start) low.push_back(x - 1 - std::abs(x)), high.push_back(x + 1 + std::abs(x));
     if (!studies::repeats_after(program, *request.forcing, low, high, parameters)) {
-      say(fmt::format("the model is not the same a time of {:.10g} (--period) later", *request.forcing));
+      say(fmt::format("the model is not periodic with the period {:.10g} (--period)", *request.forcing));
       return false;
     }
     if (!forcing.period && forcing.problem.empty()) {
-      say("--period: nothing in the model hangs on the time, so that its period is found");
+      say("--period: the model does not depend on time, so the period is computed");
       return false;
     }
     search.forcing = request.forcing;
@@ -60,7 +60,7 @@ bool set_forcing(const Studied& studied, const HybridOrbitRequest& request, stud
     return false;
   }
   if (search.forcing || request.turns == 0) return true;
-  say("--turns counts periods of what hangs on the time, and nothing in the model does");
+  say("--turns counts periods of a forcing, but the model does not depend on time");
   return false;
 }
 
@@ -72,9 +72,9 @@ results::Figure figure_of(const model::Model& model, const studies::HybridOrbit&
 
 const char* neighbours_text(const studies::HybridOrbit& found) {
   using Neighbours = studies::HybridOrbit::Neighbours;
-  if (found.neighbours == Neighbours::go_away) return "some neighbours go away";
-  if (found.neighbours == Neighbours::come_nearer) return "neighbours come nearer";
-  return "neighbours neither come nearer nor go away at first order";
+  if (found.neighbours == Neighbours::go_away) return "unstable";
+  if (found.neighbours == Neighbours::come_nearer) return "stable";
+  return "neutral at first order";
 }
 
 std::string text_of(const model::Model& model, const studies::HybridOrbit& found,
@@ -97,7 +97,7 @@ std::string text_of(const model::Model& model, const studies::HybridOrbit& found
     text += fmt::format("  `{}` {} a period\n", name, count == 1 ? "once" : fmt::format("{} times", count));
   for (const std::size_t i : found.aside)
     text += fmt::format("  {} goes on and does not come back; nothing hangs on it\n", model.states[i].column);
-  if (found.found_nearby) text += "  the motion itself does not come to it: it passes near by\n";
+  if (found.found_nearby) text += "  the motion does not converge to it, but passes near it\n";
   return text;
 }
 

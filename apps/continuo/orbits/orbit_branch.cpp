@@ -209,7 +209,7 @@ void follow_main(const Studied& studied, const OrbitBranchOptions& options,
       return;
     }
     if (interrupt_flag()) return;
-    say(fmt::format("no orbit was found from the start: {}; looking where places of rest begin to oscillate",
+    say(fmt::format("no orbit was found from the initial state: {}; trying the Hopf points of equilibria",
                     start.outcome.hint.empty() ? describe(start.outcome) : start.outcome.hint));
   }
   const auto points = hopf_points(studied, options.range);

@@ -100,7 +100,7 @@ void add_curve(const BifurcationCurve& curve, results::Panel& panel) {
 std::optional<NamedRange> parse_second(const std::string& text, const NamedRange& first) {
   auto second = parse_range(text);
   if (second && second->name == first.name) {
-    say(fmt::format("--along and --and are both of `{}`; a plane has two parameters", first.name));
+    say(fmt::format("--along and --and both name `{}`; two different parameters are needed", first.name));
     return std::nullopt;
   }
   return second;

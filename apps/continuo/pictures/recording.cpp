@@ -81,13 +81,13 @@ bool is_one_file(const std::string& path) {
 ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std::string& page) {
   const bool film = std::filesystem::path(request.pictures).extension() == ".mp4";
   if (!film && is_one_file(request.pictures)) {
-    say(fmt::format("cannot record {}: pictures go into a folder, and the name of a film ends in .mp4",
+    say(fmt::format("cannot record {}: pictures need a folder, and the name of a video ends in .mp4",
                     request.pictures));
     return usage;
   }
   if (!writable(request.page) || (film && !writable(request.pictures))) return usage;
   if (film && run_program({"ffmpeg", "-version"}) != 0) {
-    say("a film is made by ffmpeg, which is not installed; --record FOLDER writes pictures");
+    say("a video needs ffmpeg, which is not installed; --record FOLDER writes pictures");
     return usage;
   }
   double wall = 0;

@@ -13,8 +13,9 @@ namespace continuo::app {
 
 void add_record(CLI::App& verb, RecordTo& record) {
   auto* path =
-      verb.add_option("--record", record.path, "Of a world: a file to replay, or to go on from")->type_name("FILE");
-  verb.add_option("--snapshots", record.checkpoints, "In the recording: so many places to go on from (20)")
+      verb.add_option("--record", record.path, "Worlds: records the run, for replay and resume")->type_name("FILE");
+  verb.add_option("--snapshots", record.checkpoints,
+                  "Number of snapshots in the recording, from which resume can start (20)")
       ->type_name("N")
       ->check(count_from(0, 100'000))
       ->needs(path);

@@ -76,13 +76,15 @@ ExitCode exit_without_run(std::span<const model::Diagnostic> diagnostics) {
 }  // namespace
 
 void add_outputs(CLI::App& verb, RunOutputs& outputs) {
-  verb.add_option("-o,--out", outputs.motion, "Every row, as CSV (- for standard output) or .nc (netCDF)")
+  verb.add_option("-o,--out", outputs.motion, "Writes all rows, as CSV (- for standard output) or .nc (netCDF)")
       ->type_name("FILE");
   verb.add_option("--events", outputs.events,
-                  "Every event as CSV, with the states before and after; contacts of bodies with their impulse")
+                  "Writes all events as CSV, with the states before and after; contacts of bodies with their impulse")
       ->type_name("FILE");
-  verb.add_option("--plot", outputs.plot, "A picture, .svg or .png")->type_name("FILE");
-  verb.add_option("--manifest", outputs.manifest, "What was run and how (else beside the CSV)")->type_name("FILE");
+  verb.add_option("--plot", outputs.plot, "Writes a plot, .svg or .png")->type_name("FILE");
+  verb.add_option("--manifest", outputs.manifest,
+                  "Writes the manifest: model, options, versions (default: beside the CSV)")
+      ->type_name("FILE");
   verb.add_flag("--json", outputs.json, "The result as one JSON object on standard output");
 }
 

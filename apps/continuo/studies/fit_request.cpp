@@ -94,7 +94,7 @@ class FitRequestReader {
       std::error_code error;
       for (const studies::FitData& other : request_.data)
         if (other.measurements.file == file || std::filesystem::equivalent(other.measurements.file, file, error)) {
-          say(fmt::format("{} is given twice: as two files, its values would seem surer than they are", file));
+          say(fmt::format("{} is given twice: its values would count twice", file));
           return false;
         }
       request_.data.push_back({.measurements = std::move(read.measurements), .columns = {}});
@@ -155,7 +155,7 @@ class FitRequestReader {
       const auto setting = split_setting(text, "COLUMN=DEVIATION");
       if (!setting || !has_column(setting->first)) return false;
       if (setting->first == setting->second) {
-        say(fmt::format("--sigma {}: a column does not hold its own deviations", text));
+        say(fmt::format("--sigma {}: a column cannot contain its own deviations", text));
         return false;
       }
       if (place_in(with_deviation, setting->first)) return given_twice("--sigma", *setting);

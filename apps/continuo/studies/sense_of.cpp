@@ -67,7 +67,7 @@ ExitCode sense_period(const ExperimentOptions& options, const std::vector<std::s
   const model::Overrides& set = studied.prepared.experiment.parameters;
   const studies::Forcing forcing = studies::forcing_of(*studied.prepared.program, set);
   if (forcing.period || !forcing.problem.empty()) {
-    say("--of period: something hangs on the time, so that the period is a multiple of what that has");
+    say("--of period: the model depends on time, so its period is a multiple of that of the forcing");
     return wrong_model;
   }
   const double to = studied.prepared.experiment.to.value_or(model.run.to ? model.run.to->value : 100);
@@ -77,7 +77,7 @@ ExitCode sense_period(const ExperimentOptions& options, const std::vector<std::s
   const auto found = studies::find_hybrid_orbit(studied.prepared.program, studied.prepared.experiment, search);
   if (!found.outcome) return failed_exit(found.outcome);
   if (found.period_by.empty()) {
-    say("the orbit is one of a family, each with a period of its own: no parameter alone moves it");
+    say("the orbit is one of a family with different periods, so its period is not a function of the parameters alone");
     return numerical_failure;
   }
   if (json) {
@@ -102,7 +102,7 @@ ExitCode sense_rest(const ExperimentOptions& options, const std::vector<std::str
   const model::Model& model = studied.prepared.program->model;
   const auto influences = influences_named(model, parameters, {});
   if (!influences) return usage;
-  if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
+  if (!stands_still_in_time(studied, "equilibria are searched for")) return wrong_model;
   hold_conserved(studied);
   const ParametricSystem& system = studied.system;
   const auto search = studies::find_equilibrium(system, studied.start, system.constants);
@@ -115,7 +115,7 @@ ExitCode sense_rest(const ExperimentOptions& options, const std::vector<std::str
   DenseLU<double> lu(n);
   for (std::size_t i = 0; i < n * n; ++i) lu.matrix()[i] = linear.a[i];
   if (!studies::describe_equilibrium(system, search.x, system.constants).isolated || !lu.factor()) {
-    say("the place of rest does not stand by itself: no parameter alone says where it goes");
+    say("the equilibrium is not isolated, so it is not a function of the parameters alone");
     return numerical_failure;
   }
   std::vector<std::vector<double>> by(m, std::vector<double>(n));  // by parameter

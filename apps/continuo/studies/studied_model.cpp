@@ -118,13 +118,13 @@ bool stands_still_in_time(const Studied& studied, std::string_view what) {
   const auto follow = "`continuo orbit --section` and `--lyapunov` follow the motion as it is";
   if (const auto i = studies::hangs_on_time(program, studied.mode)) {
     const model::State& state = program.model.states[*i];
-    say(fmt::format("{}: {} where no equation hangs on the time, and that of `{}` does; {}",
+    say(fmt::format("{}: {} only if no equation depends on time, and that of `{}` does; {}",
                     place_text(studied.prepared, state.span), what, state.algebraic ? state.column : state.column + "'",
                     follow));
     return false;
   }
   if (const auto span = studies::changes_at_set_times(program.model)) {
-    say(fmt::format("{}: {} where nothing happens at set times, and this does; {}", place_text(studied.prepared, *span),
+    say(fmt::format("{}: {} only without scheduled events, but this is one; {}", place_text(studied.prepared, *span),
                     what, follow));
     return false;
   }

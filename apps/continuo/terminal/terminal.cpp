@@ -24,7 +24,7 @@ void print(std::string_view text) {
 
 bool all_printed() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
-  say("standard output could not be written to its end");
+  say("standard output could not be written completely");
   return false;
 }
 

@@ -99,9 +99,10 @@ void add_check(CLI::App& app, ExitCode& exit) {
   CLI::App* verb = add_verb(app, "check", "Checks text, names and units of models, and their derivatives", examples);
   auto request = std::make_shared<CheckRequest>();
   verb->add_option("files", request->files, "Models, or folders of models")->required()->type_name("");
-  verb->add_flag("--json", request->json, "What is wrong as JSON, one array per file");
-  verb->add_flag("--jacobian", request->jacobian,
-                 "The exact derivatives against differences along a short run, and where there are none");
+  verb->add_flag("--json", request->json, "Prints the messages as JSON, one array per file");
+  verb->add_flag(
+      "--jacobian", request->jacobian,
+      "Compares the exact derivatives with finite differences along a short run, and shows points without derivative");
   verb->callback([&exit, request] { exit = check(*request); });
 }
 

@@ -126,23 +126,24 @@ void add_compare(CLI::App& app, ExitCode& exit) {
       "  continuo compare models/mass_spring.sim --methods euler,semi_implicit_euler,rk4 --step 0.1,0.05\n"
       "  continuo compare models/kepler.sim --methods dop853,tsitouras5 --tol 1e-6,1e-9 --plot methods.svg\n"
       "  continuo compare models/chain.sim --methods exact,central_difference,explicit_euler --step 0.005\n";
-  CLI::App* verb = add_verb(app, "compare", "Runs a model by several methods and steps: errors and cost", examples);
+  CLI::App* verb =
+      add_verb(app, "compare", "Compares errors and cost of several methods and steps on a model", examples);
   auto options = std::make_shared<CompareOptions>();
   add_experiment(*verb, options->experiment);
-  verb->add_option("--methods", options->methods, "The methods, with commas")
+  verb->add_option("--methods", options->methods, "Methods, separated by commas")
       ->required()
       ->delimiter(',')
       ->type_name("NAMES");
-  auto* steps = verb->add_option("--step", options->steps, "Fixed steps, with commas")
+  auto* steps = verb->add_option("--step", options->steps, "Fixed step sizes, separated by commas")
                     ->delimiter(',')
                     ->type_name("H,...")
                     ->transform(quotients());
-  verb->add_option("--tol", options->tolerances, "Tolerances, with commas")
+  verb->add_option("--tol", options->tolerances, "Tolerances, separated by commas")
       ->delimiter(',')
       ->type_name("RTOL,...")
       ->excludes(steps);
   verb->add_flag("--json", options->json, "Every run and its errors over time as one JSON object");
-  verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
+  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = compare(*options); });
 }
 

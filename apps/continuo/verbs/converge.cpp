@@ -104,28 +104,31 @@ void add_converge(CLI::App& app, ExitCode& exit) {
       "  continuo converge models/kepler.sim --methods adams --tol 1e-3,1e-5,1e-7\n"
       "  continuo converge models/chain.sim --methods fast,rk4 --until 2         bodies, against their exact motion\n"
       "  continuo converge --derivative \"sin(x)\" --at 1            difference schemes for f' and f''\n";
-  CLI::App* verb = add_verb(app, "converge", "Error against step: observed orders and the floor of rounding", examples);
+  CLI::App* verb = add_verb(app, "converge", "Measures the order of methods, and the limit set by rounding", examples);
   auto options = std::make_shared<ConvergeOptions>();
   add_experiment(*verb, options->experiment);
   verb->get_option("file")->required(false);
-  verb->add_option("--methods", options->methods, "The methods, with commas")->delimiter(',')->type_name("NAMES");
-  verb->add_option("--most-steps", options->most_steps, "Of the run with the shortest step (65536)")
+  verb->add_option("--methods", options->methods, "Methods, separated by commas")->delimiter(',')->type_name("NAMES");
+  verb->add_option("--most-steps", options->most_steps, "Number of steps of the finest run (65536)")
       ->check(count_from(64, 100'000'000))
       ->type_name("N");
-  auto* tolerances = verb->add_option("--tol", options->tolerances, "Error against tolerance instead, with commas")
-                         ->delimiter(',')
-                         ->check(number_above(0))
-                         ->type_name("RTOL,...");
-  verb->add_flag("--float", options->in_float, "Also with numbers of 24 bits, side by side")->excludes(tolerances);
-  verb->add_flag("--long", options->in_long_double, "Also with numbers of 64 bits")->excludes(tolerances);
-  verb->add_flag("--points", options->all_points, "Every step and its errors");
+  auto* tolerances =
+      verb->add_option("--tol", options->tolerances,
+                       "Measures the error against these tolerances instead of steps, separated by commas")
+          ->delimiter(',')
+          ->check(number_above(0))
+          ->type_name("RTOL,...");
+  verb->add_flag("--float", options->in_float, "Also in single precision (24 bits), side by side")
+      ->excludes(tolerances);
+  verb->add_flag("--long", options->in_long_double, "Also in extended precision (64 bits)")->excludes(tolerances);
+  verb->add_flag("--points", options->all_points, "Prints every step size and its errors");
   auto* json = verb->add_flag("--json", options->json, "Every step, its errors and the orders as one JSON object");
   auto* derivative = verb->add_option("--derivative", options->derivative,
-                                      "No model: differences for the derivative of this function of x")
+                                      "Without a model: difference quotients of this function of x")
                          ->type_name("EXPRESSION")
                          ->excludes(json);
-  verb->add_option("--at", options->at, "The x of --derivative (0)")->needs(derivative)->type_name("X");
-  verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
+  verb->add_option("--at", options->at, "The value of x for --derivative (0)")->needs(derivative)->type_name("X");
+  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = converge(*options); });
 }
 

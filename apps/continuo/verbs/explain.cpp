@@ -42,9 +42,9 @@ ExitCode explain(const std::string& wanted) {
 
 void add_explain(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
-      "  continuo explain E201     what it means, an example, how to mend it\n"
+      "  continuo explain E201     its meaning, an example, a remedy\n"
       "  continuo explain          all codes\n";
-  CLI::App* verb = add_verb(app, "explain", "Says more about a message", examples);
+  CLI::App* verb = add_verb(app, "explain", "Explains the code of a message", examples);
   auto code = std::make_shared<std::string>();
   verb->add_option("code", *code, "The code of the message, E201")->type_name("");
   verb->callback([&exit, code] { exit = code->empty() ? list() : explain(*code); });

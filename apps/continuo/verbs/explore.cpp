@@ -24,7 +24,7 @@ ExitCode explore_model(const ExploreOptions& options) {
   Studied studied = study(options.experiment, options.mode, {}, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   if (studied.prepared.program->model.states.empty()) {
-    say("nothing moves in this model: there is no state");
+    say("this model has no states");
     return wrong_model;
   }
   hold_conserved(studied);
@@ -39,24 +39,28 @@ ExitCode explore_model(const ExploreOptions& options) {
 
 void add_explore(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
-      "  continuo explore models/lorenz.sim                    rests, orbit, sliders, what matters; and what is open\n"
-      "  continuo explore models/van_der_pol.sim --plot page.svg\n"
+      "  continuo explore models/lorenz.sim                    equilibria, orbit, bifurcations, important parameters, "
+      "and open questions\n"
+      "  continuo explore models/van_der_pol_stiff.sim --plot page.svg\n"
       "  continuo explore models/mass_spring_damper.sim --json\n";
-  CLI::App* verb = add_verb(app, "explore", "What a model does, on one page", examples);
+  CLI::App* verb =
+      add_verb(app, "explore", "Gives an overview of a model: run, equilibria, orbits, parameters", examples);
   auto options = std::make_shared<ExploreOptions>();
   add_model(*verb, options->experiment);
-  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
-  verb->add_option("--starts", options->limits.starts, "Of the search for places of rest (200)")
+  verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");
+  verb->add_option("--starts", options->limits.starts, "Number of starting points of the search for equilibria (200)")
       ->check(count_from(0))
       ->type_name("N");
-  verb->add_option("--settle", options->limits.settle, "Time for the motion to come to its orbit; else that of the run")
+  verb->add_option("--settle", options->limits.settle,
+                   "Time for transients to decay (default: the duration of the run)")
       ->check(number_from(0))
       ->type_name("T");
-  verb->add_option("--duration", options->limits.duration, "Within which an orbit must come back; else that of the run")
+  verb->add_option("--duration", options->limits.duration,
+                   "Longest period to search for (default: the duration of the run)")
       ->check(number_above(0))
       ->type_name("T");
   verb->add_flag("--json", options->json, "All of it as one JSON object");
-  verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
+  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = explore_model(*options); });
 }
 

@@ -107,8 +107,8 @@ void add_fit(CLI::App& app, ExitCode& exit) {
   const auto list = [&](const char* name, std::vector<std::string>& target, const char* text, const char* type) {
     verb->add_option(name, target, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
   };
-  list("--param", options->parameters, "Parameters to find, within the ranges the model gives them", "NAMES");
-  list("--initial", options->initial, "States whose initial values are to be found", "STATES");
+  list("--param", options->parameters, "Unknown parameters, within the ranges declared in the model", "NAMES");
+  list("--initial", options->initial, "States with unknown initial values", "STATES");
   list("--bounds", options->bounds, "Other ranges: k=1..20, x(0)=0..", "NAME=LOW..HIGH");
   list("--column", options->columns, "Which quantity a column is; - for none", "COLUMN=QUANTITY");
   list("--sigma", options->deviations,
@@ -116,23 +116,26 @@ void add_fit(CLI::App& app, ExitCode& exit) {
        "COLUMN=DEVIATION");
   list("--error", options->errors, "How deviations go: constant, proportional, both, poisson or lognormal",
        "COLUMN=MODEL");
-  verb->add_flag("--one-deviation", options->one_deviation, "Columns of one quantity share theirs in all files");
-  list("--log", options->logarithmic, "Unknowns that are looked for in their logarithm", "NAMES");
-  verb->add_option("--prior", options->priors, "What was known before: k=normal(4, 0.5), k=lognormal(4, 0.2)")
+  verb->add_flag("--one-deviation", options->one_deviation,
+                 "Columns of one quantity share their deviation in all files");
+  list("--log", options->logarithmic, "Unknowns to be searched in their logarithm", "NAMES");
+  verb->add_option("--prior", options->priors, "Prior knowledge: k=normal(4, 0.5), k=lognormal(4, 0.2)")
       ->allow_extra_args(false)
       ->type_name("NAME=PRIOR");
   list("--in", options->settings, "A parameter's value in one data file", "FILE:NAME=VALUE");
-  verb->add_option("--loss", options->loss, "squares, or for outliers huber, soft_l1, cauchy, tukey")
+  verb->add_option("--loss", options->loss, "Loss function: squares, or against outliers huber, soft_l1, cauchy, tukey")
       ->type_name("NAME");
-  verb->add_option("--likelihood", options->likelihood, "Of unknown deviations: restricted, or plain, which is biased")
+  verb->add_option("--likelihood", options->likelihood,
+                   "Likelihood for unknown deviations: restricted, or plain, which is biased")
       ->type_name("NAME");
-  verb->add_option("--starts", options->starts, "Search from this many places; else from ten others in doubt")
+  verb->add_option("--starts", options->starts,
+                   "Number of starting points of the search (default: one, and ten others in case of doubt)")
       ->check(count_from(1))
       ->type_name("N");
   verb->add_option("--iterations", options->iterations, "The limit of each search (500)")
       ->check(count_from(1))
       ->type_name("N");
-  verb->add_flag("--profile", options->profile, "Intervals from the profile of the likelihood, too");
+  verb->add_flag("--profile", options->profile, "Also computes intervals from the profile likelihood");
   verb->add_flag("--json", options->json, "The result with its residuals as one JSON object");
   add_tolerances(*verb, options->experiment);
   verb->add_option("--plot", options->plot, "Measurements, fit, prediction band and residuals, .svg or .png")

@@ -103,8 +103,8 @@ ExitCode linearize(const LinearizeOptions& options) {
   const double time = options.time.value_or(0);
   if (!set_states(model, options.at, x)) return usage;
   if (options.at.empty() && !options.start) {
-    if (!options.time && !stands_still_in_time(studied, "a place of rest is looked for")) {
-      say("--time T holds the equations as they are then; --start and --at NAME=VALUE linearize elsewhere");
+    if (!options.time && !stands_still_in_time(studied, "equilibria are searched for")) {
+      say("--time T fixes the time in the equations; --start and --at NAME=VALUE linearize elsewhere");
       return wrong_model;
     }
     auto search = studies::find_equilibrium(studied.system, x, studied.system.constants, time);
@@ -128,7 +128,7 @@ ExitCode linearize(const LinearizeOptions& options) {
   }
   if (const auto jump =
           studies::jump_at(*studied.prepared.program, studied.mode, x, studied.prepared.experiment.parameters)) {
-    say(fmt::format("the equations jump at this point, with `{}`: nothing there is linear", *jump));
+    say(fmt::format("the equations are discontinuous at this point, by `{}`, and cannot be linearized", *jump));
     return numerical_failure;
   }
   const auto linear =
@@ -165,20 +165,21 @@ ExitCode linearize(const LinearizeOptions& options) {
 
 void add_linearize(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
-      "  continuo linearize models/mass_spring_damper.sim         where it rests: A, B, C, D, frequency and damping\n"
-      "  continuo linearize models/pendulum.sim --at a=3.14159    elsewhere\n"
+      "  continuo linearize models/mass_spring_damper.sim         at its equilibrium: A, B, C, D, frequency and "
+      "damping\n"
+      "  continuo linearize models/pendulum.sim --at theta=3.14159  at another point\n"
       "  continuo linearize models/lorenz.sim --start --json\n";
-  CLI::App* verb = add_verb(app, "linearize", "A model near one point as a linear system, and its modes", examples);
+  CLI::App* verb = add_verb(app, "linearize", "Linearizes a model at a point, and prints its modes", examples);
   auto options = std::make_shared<LinearizeOptions>();
   add_model(*verb, options->experiment);
-  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
-  verb->add_option("--at", options->at, "The point, of single states; the others as at the start")
+  verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");
+  verb->add_option("--at", options->at, "The point, as values of single states; the others have their initial values")
       ->delimiter(',')
       ->type_name("NAME=VALUE");
-  verb->add_option("--time", options->time, "At this time, where the equations depend on it")
+  verb->add_option("--time", options->time, "The time, if the equations depend on it")
       ->check(finite_number())
       ->type_name("T");
-  verb->add_flag("--start", options->start, "At the start, instead of where the model rests");
+  verb->add_flag("--start", options->start, "At the initial state instead of an equilibrium");
   verb->add_flag("--json", options->json, "Matrices and modes as one JSON object");
   verb->callback([&exit, options] { exit = linearize(*options); });
 }

@@ -114,7 +114,7 @@ void add_methods(CLI::App& app, ExitCode& exit) {
       "dop853\n";
   CLI::App* verb = add_verb(app, "methods", "Lists the integration methods", examples);
   auto file = std::make_shared<std::string>();
-  verb->add_option("--why", *file, "The method that a run of this model takes, and why")->type_name("FILE");
+  verb->add_option("--why", *file, "Shows the method chosen for this model, and the reason")->type_name("FILE");
   verb->callback([&exit, file] { exit = file->empty() ? methods() : why(*file); });
 }
 

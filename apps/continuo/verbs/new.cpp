@@ -65,7 +65,7 @@ ExitCode write_starter(const std::string& name) {
   std::filesystem::path path(name);
   if (path.extension() != ".sim") path += ".sim";
   if (std::filesystem::exists(path)) {
-    say(fmt::format("{} is there already and stays as it is", path.string()));
+    say(fmt::format("{} already exists, and was not changed", path.string()));
     return usage;
   }
   const std::string text = fmt::format(starter, path.string(), model_name(path.stem().string()));
@@ -83,7 +83,7 @@ void add_new(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples = "  continuo new spring       writes spring.sim\n";
   CLI::App* verb = add_verb(app, "new", "Writes a commented model to start from", examples);
   auto name = std::make_shared<std::string>();
-  verb->add_option("name", *name, "Its file, with or without .sim")->required()->type_name("");
+  verb->add_option("name", *name, "Name of the file, with or without .sim")->required()->type_name("");
   verb->callback([&exit, name] { exit = write_starter(*name); });
 }
 

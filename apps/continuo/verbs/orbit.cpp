@@ -110,10 +110,10 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
     add_conserved(json, studied);
     print(json.dump(2) + "\n");
   }
-  const std::string text =
-      fmt::format("period {}{}, {}\n", with_time_unit(found.period, model), advance_text(model, found.advance),
-                  found.stable ? "neighbours come nearer" : "some neighbours go away") +
-      multipliers_text(found.multipliers) + extents_text(model, extents.low, extents.high) + conserved_text(studied);
+  const std::string text = fmt::format("period {}{}, {}\n", with_time_unit(found.period, model),
+                                       advance_text(model, found.advance), found.stable ? "stable" : "unstable") +
+                           multipliers_text(found.multipliers) + extents_text(model, extents.low, extents.high) +
+                           conserved_text(studied);
   if (!options.json) print(text);
   if (options.plot.empty()) return done;
   if (!written(results::draw(figure_of(model, found), options.plot))) return usage;
@@ -124,7 +124,7 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
 bool has_its_outputs(const OrbitOptions& options) {
   const bool section = !options.section.empty();
   if (!options.plot.empty() && options.lyapunov) {
-    say("--plot draws the orbit, --along or --section; of --lyapunov there is no picture");
+    say("--plot draws the orbit, --along or --section; there is no plot of --lyapunov");
     return false;
   }
   if (options.out.empty() || section || !options.along.empty()) return true;
@@ -141,7 +141,7 @@ struct OrbitRanges {
 std::optional<OrbitRanges> ranges_of(const OrbitOptions& options) {
   OrbitRanges ranges;
   if (options.and_along.size() > 2) {
-    say(fmt::format("--and is there {} times, and curves go through three parameters at most: that of --along and two",
+    say(fmt::format("--and is given {} times, but curves have at most three parameters: that of --along and two",
                     options.and_along.size()));
     return std::nullopt;
   }
@@ -178,8 +178,9 @@ ExitCode orbit(OrbitOptions options) {
   if (closed && !hybrid) hold_conserved(studied);
   if (hybrid && !range) return show_hybrid_orbit(studied, shooting_of(options));
   if (hybrid && (options.from_hopf || second)) {
-    say(fmt::format("{} follows orbits of the equations alone, and here events or the time have a part in the motion",
-                    second ? "--and" : "--from-hopf"));
+    say(fmt::format(
+        "{} follows orbits of autonomous equations without events, and this model has events or depends on time",
+        second ? "--and" : "--from-hopf"));
     return wrong_model;
   }
   if (closed && !hybrid &&
@@ -216,54 +217,59 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo orbit models/van_der_pol_stiff.sim --set mu=10                  period, multipliers, extent\n"
       "  continuo orbit models/van_der_pol_stiff.sim --set mu=1 --along mu=0.1..10 --plot mu.svg  how it changes\n"
-      "  continuo orbit models/lorenz.sim --along rho=10..30 --from-hopf          orbits that a place of rest gives "
-      "birth to\n"
-      "  continuo orbit models/thermostat.sim                                     through events, modes, forces over "
-      "time\n"
-      "  continuo orbit models/lorenz.sim --lyapunov --duration 5000              how fast neighbours part\n"
-      "  continuo orbit models/lorenz.sim --section z=27 --duration 500 -o s.csv  passes through a plane\n";
-  CLI::App* verb = add_verb(app, "orbit", "Finds a closed orbit, a section, or Lyapunov exponents", examples);
+      "  continuo orbit models/lorenz.sim --along rho=10..30 --from-hopf          orbits born at a Hopf point\n"
+      "  continuo orbit models/thermostat.sim                                     with events, modes, time-dependent "
+      "forces\n"
+      "  continuo orbit models/lorenz.sim --lyapunov --duration 5000              Lyapunov exponents\n"
+      "  continuo orbit models/lorenz.sim --section z=27 --duration 500 -o s.csv  a Poincare section\n";
+  CLI::App* verb = add_verb(app, "orbit", "Finds periodic orbits, Poincare sections, or Lyapunov exponents", examples);
   auto options = std::make_shared<OrbitOptions>();
   add_model(*verb, options->experiment);
-  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
-  verb->add_option("--settle", options->settle, "Time to come to the orbit first; else that of the model's run")
+  verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");
+  verb->add_option("--settle", options->settle,
+                   "Time for transients to decay (default: the duration of the model's run)")
       ->check(number_from(0))
       ->type_name("T");
-  verb->add_option("--duration", options->duration, "Time to look for it; else that of the model's run")
+  verb->add_option("--duration", options->duration, "Time for the search (default: the duration of the model's run)")
       ->check(number_above(0))
       ->type_name("T");
-  verb->add_option("--tol", options->tolerance, "How exact")->check(number_between(1e-14, 1))->type_name("TOL");
-  verb->add_option("--period", options->forcing, "Of what hangs on the time, where the text does not show it")
+  verb->add_option("--tol", options->tolerance, "Tolerance of the orbit")
+      ->check(number_between(1e-14, 1))
+      ->type_name("TOL");
+  verb->add_option("--period", options->forcing, "Period of the forcing, if it cannot be determined from the text")
       ->transform(quotients())
       ->check(number_above(0))
       ->type_name("T");
-  verb->add_option("--turns", options->turns, "So many of these periods are one of the orbit; else as it comes back")
+  verb->add_option("--turns", options->turns,
+                   "Period of the orbit as a multiple of that of the forcing (default: detected)")
       ->check(count_from(1))
       ->type_name("N");
-  auto* section = verb->add_option("--section", options->section, "States as a plane is passed upwards, as CSV")
+  auto* section = verb->add_option("--section", options->section,
+                                   "Poincare section: the states at upward crossings of a plane, as CSV")
                       ->type_name("NAME=VALUE");
   auto* lyapunov = verb->add_flag("--lyapunov", options->lyapunov, "Lyapunov exponents")->excludes(section);
-  auto* along = verb->add_option("--along", options->along, "Follow the orbit while a parameter moves")
+  auto* along = verb->add_option("--along", options->along, "Follows the orbit along a parameter")
                     ->type_name("NAME=LOW..HIGH")
                     ->excludes(section)
                     ->excludes(lyapunov);
-  verb->add_option("--and", options->and_along,
-                   "Follow what is found on the way while this moves too; once more: degenerate homoclinic orbits")
+  verb->add_option(
+          "--and", options->and_along,
+          "Follows the bifurcations found while this parameter varies too; a second time: degenerate homoclinic orbits")
       ->type_name("NAME=LOW..HIGH")
       ->allow_extra_args(false)
       ->needs(along);
-  verb->add_flag("--from-hopf", options->from_hopf, "Begin where places of rest begin to oscillate")->needs(along);
-  verb->add_option("--branches", options->others, "How many branches to follow that begin on others; else 3")
+  verb->add_flag("--from-hopf", options->from_hopf, "Starts from the Hopf points of equilibria")->needs(along);
+  verb->add_option("--branches", options->others, "Number of bifurcating branches to follow (3)")
       ->check(count_from(0, 1000))
       ->type_name("N")
       ->needs(along);
   add_branch_steps(*verb, options->steps, along);
   verb->add_flag("--json", options->json, "All of it as one JSON object");
-  verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);
+  verb->add_option("--of", options->of, "The state to plot over the parameter")->type_name("STATE")->needs(along);
   verb->add_option("-o,--out", options->out,
-                   "The section's file (else standard output), or the table of --along or --and")
+                   "Writes the section (default: standard output), or the table of --along or --and")
       ->type_name("FILE");
-  verb->add_option("--plot", options->plot, "The orbit, --along, --and or --section as a picture, .svg or .png")
+  verb->add_option("--plot", options->plot, "Plots the orbit, --along, --and or --section, .svg or .png")
       ->type_name("FILE");
   verb->callback([&exit, options] { exit = orbit(*options); });
 }

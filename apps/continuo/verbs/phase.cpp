@@ -166,12 +166,12 @@ ExitCode phase(const PhaseOptions& options) {
   if (studied.prepared.exit != done) return studied.prepared.exit;
   const model::Model& model = studied.prepared.program->model;
   if (model.states.size() != 2) {
-    say(fmt::format("a plane has two states, this model has {}; `continuo steady` finds where it rests",
+    say(fmt::format("a phase plane needs two states, this model has {}; `continuo steady` finds its equilibria",
                     model.states.size()));
     return wrong_model;
   }
   if (!options.time && !stands_still_in_time(studied, "a portrait is drawn")) {
-    say("--time T draws the equations as they are then");
+    say("--time T fixes the time in the equations");
     return wrong_model;
   }
   const auto event = studies::changes_by_event(model, studied.mode);
@@ -208,23 +208,23 @@ ExitCode phase(const PhaseOptions& options) {
 void add_phase(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo phase models/pendulum.sim --plot pendulum.svg\n"
-      "  continuo phase models/predator_prey.sim --box prey=0..4,predators=0..3 --plot plane.svg\n"
+      "  continuo phase models/predator_prey.sim --box hares=0..4,lynxes=0..3 --plot plane.svg\n"
       "  continuo phase models/pendulum.sim --start \"theta=1;theta'=0\" --plot one.svg\n";
-  CLI::App* verb = add_verb(app, "phase", "Draws the plane of a model with two states", examples);
+  CLI::App* verb = add_verb(app, "phase", "Draws the phase plane of a model with two states", examples);
   auto options = std::make_shared<PhaseOptions>();
   add_model(*verb, options->experiment);
-  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
-  verb->add_option("--box", options->box, "The part of the plane")->delimiter(',')->type_name("NAME=LOW..HIGH");
-  verb->add_option("--start", options->starts, "Where a motion begins; may be given again")
+  verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");
+  verb->add_option("--box", options->box, "The region of the plane")->delimiter(',')->type_name("NAME=LOW..HIGH");
+  verb->add_option("--start", options->starts, "Initial state of a trajectory; may be repeated")
       ->type_name("NAME=VALUE;...")
       ->allow_extra_args(false);
-  verb->add_option("--spread", options->spread, "Without --start: how many motions")
+  verb->add_option("--spread", options->spread, "Without --start: number of trajectories")
       ->check(count_from(0, 10'000))
       ->type_name("N");
-  verb->add_option("--time", options->time, "At this time, where the equations depend on it")
+  verb->add_option("--time", options->time, "The time, if the equations depend on it")
       ->check(finite_number())
       ->type_name("T");
-  verb->add_flag("--json", options->json, "Rests, nullclines and motions as one JSON object");
+  verb->add_flag("--json", options->json, "Prints equilibria, nullclines and trajectories as one JSON object");
   verb->add_option("--plot", options->plot, "The picture, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = phase(*options); });
 }

@@ -85,16 +85,16 @@ ExitCode resume(const ReplayRequest& request) {
   if (opened.exit != done) return opened.exit;
   const auto& recording = opened.recording;
   if (recording.checkpoints.empty()) {
-    say(fmt::format("{} has no place to go on from: it was recorded with --snapshots 0", request.file));
+    say(fmt::format("{} contains no snapshot to resume from: it was recorded with --snapshots 0", request.file));
     return usage;
   }
   const std::size_t checkpoint = request.at ? recording.checkpoint_at(*request.at) : recording.checkpoints.size() - 1;
   const double from = recording.checkpoints[checkpoint].world.time;
   if ((request.at && *request.at < from) || (request.until && *request.until < from)) {
-    say(fmt::format("the run goes on from t = {:g} at the earliest here", from));
+    say(fmt::format("the snapshot to resume from is at t = {:g}; --at and --until cannot be earlier", from));
     return usage;
   }
-  say(fmt::format("goes on from t = {:g}", from));
+  say(fmt::format("resumes from t = {:g}", from));
   RunFile file(request.record);
   worlds::RunHead head = recording.head;
   if (request.until) head.experiment.to = request.until;
@@ -118,28 +118,28 @@ ExitCode resume(const ReplayRequest& request) {
 
 void add_replay(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
-      "  continuo run gas.sim --record gas.run                      a world is moved, and recorded\n"
-      "  continuo replay gas.run                                    what came of it, at once\n"
-      "  continuo replay gas.run -o gas.nc --plot gas.svg           rows and a picture of it\n";
+      "  continuo run gas.sim --record gas.run                      runs a world and records it\n"
+      "  continuo replay gas.run                                    its results, without simulating\n"
+      "  continuo replay gas.run -o gas.nc --plot gas.svg           its rows and a plot\n";
   CLI::App* verb = add_verb(app, "replay", "Shows, plots or writes a recorded run, without simulating", examples);
   auto request = std::make_shared<ReplayRequest>();
-  verb->add_option("file", request->file, "What --record has written")->required()->type_name("");
+  verb->add_option("file", request->file, "A recording, written by --record")->required()->type_name("");
   add_outputs(*verb, request->outputs);
   verb->callback([&exit, request] { exit = replay(*request); });
 }
 
 void add_resume(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
-      "  continuo resume gas.run                                    a run that was interrupted, to its end\n"
-      "  continuo resume gas.run --until 100 --record longer.run    on beyond its end\n"
-      "  continuo resume gas.run --at 20 -o gas.csv                 again from the last place before t = 20\n";
-  CLI::App* verb =
-      add_verb(app, "resume", "Goes on with a recorded run, to the same bits as without a break", examples);
+      "  continuo resume gas.run                                    continues an interrupted run to its end\n"
+      "  continuo resume gas.run --until 100 --record longer.run    continues beyond its end\n"
+      "  continuo resume gas.run --at 20 -o gas.csv                 restarts from the last snapshot before t = 20\n";
+  CLI::App* verb = add_verb(
+      app, "resume", "Continues a recorded run, with bitwise the same results as without interruption", examples);
   auto request = std::make_shared<ReplayRequest>();
-  verb->add_option("file", request->file, "What --record has written")->required()->type_name("");
-  verb->add_option("--at", request->at, "From the last place that is not after this time (else from the last)")
+  verb->add_option("file", request->file, "A recording, written by --record")->required()->type_name("");
+  verb->add_option("--at", request->at, "Starts from the last snapshot at or before this time (default: the last one)")
       ->type_name("T");
-  verb->add_option("--until", request->until, "The time at which the run ends")->type_name("T");
+  verb->add_option("--until", request->until, "End time of the run")->type_name("T");
   add_outputs(*verb, request->outputs);
   add_record(*verb, request->record);
   verb->callback([&exit, request] { exit = resume(*request); });

@@ -91,10 +91,11 @@ void add_report(CLI::App& app, ExitCode& exit) {
       "  continuo report models/bouncing_ball.sim -o ball.html\n"
       "  continuo report models/lorenz.sim --with steady --with \"steady --along rho=0..30\" -o lorenz.html\n"
       "  continuo report models/pendulum.sim --with \"phase --box theta=-7..7\" --with linearize -o pendulum.html\n";
-  CLI::App* verb = add_verb(app, "report", "Puts a model, its run and studies of it on one page", examples);
+  CLI::App* verb = add_verb(app, "report", "Writes a page with a model, its run and studies of it", examples);
   auto options = std::make_shared<ReportOptions>();
   verb->add_option("file", options->file, "The model")->required()->type_name("");
-  verb->add_option("--with", options->studies, "Another verb with its options, without the file; may be given again")
+  verb->add_option("--with", options->studies,
+                   "A study: another verb with its options, without the file; may be repeated")
       ->type_name("\"VERB ...\"")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

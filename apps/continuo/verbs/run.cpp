@@ -63,7 +63,7 @@ ExitCode run(const RunRequest& request) {
   const model::Source& source = prepared.loaded.source;
   if (prepared.exit == done && !request.record.path.empty() &&
       !runs::kind_of(prepared.program->model).can_be_recorded) {
-    say("--record keeps the run of a world of bodies; that of equations is kept by -o");
+    say("--record is for worlds of bodies; -o saves the run of equations");
     return usage;
   }
   if (prepared.exit != done) {
@@ -97,16 +97,17 @@ ExitCode run(const RunRequest& request) {
 void add_run(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo run models/bouncing_ball.sim                      the motion in a few lines\n"
-      "  continuo run ball.sim -o ball.csv --plot ball.svg          every row, and a picture\n"
+      "  continuo run ball.sim -o ball.csv --plot ball.svg          all rows, and a plot\n"
       "  continuo run gas.sim -o gas.nc                             the same for xarray, bodies as arrays\n"
       "  continuo run ball.sim --set g=1.62 --until 20              on the Moon, for longer\n"
       "  continuo run orbit.sim --method rk4 --step 0.01 --events apsides.csv\n"
-      "  continuo run scene.sim --method fast --step 0.01           a world of bodies, in steps\n"
-      "  continuo run gas.sim --record gas.run                      to be replayed, or to go on from (continuo "
-      "replay)\n"
-      "  continuo run ball.sim -o - | head                          rows to another program\n"
-      "  continuo run layer.sim --along eps=1..1e-4                 conditions at both ends, from an easy case on\n"
-      "  continuo run bratu.sim --family p=0.1..4 --plot bratu.svg  every solution, round folds and across branches\n"
+      "  continuo run scene.sim --method fast --step 0.01           a world of bodies, in fixed steps\n"
+      "  continuo run gas.sim --record gas.run                      a recording, for replay and resume\n"
+      "  continuo run ball.sim -o - | head                          rows for another program\n"
+      "  continuo run layer.sim --along eps=1..1e-4                 boundary-value problem, continued from an easy "
+      "case\n"
+      "  continuo run bratu.sim --family p=0.1..4 --plot bratu.svg  all solutions along p, around folds and at branch "
+      "points\n"
       "  continuo run ball.sim --json                               outcome, state, events, cost\n";
   CLI::App* verb = add_verb(app, "run", "Runs a model and shows, plots or writes its motion", examples);
   auto request = std::make_shared<RunRequest>();
@@ -116,7 +117,7 @@ void add_run(CLI::App& app, ExitCode& exit) {
   add_outputs(*verb, request->outputs);
   add_record(*verb, request->record);
   verb->add_flag("--estimate-error", request->estimate_error,
-                 "The true error, by a second run a hundred times as strict");
+                 "Estimates the global error by a second run with a tolerance a hundred times smaller");
   add_boundary(*verb, request->boundary);
   verb->callback([&exit, request] { exit = run(*request); });
 }

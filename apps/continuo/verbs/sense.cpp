@@ -191,14 +191,18 @@ void add_sense(CLI::App& app, ExitCode& exit) {
       "  continuo sense models/bouncing_ball.sim --param e,g --until 8 --plot ball.svg\n"
       "  continuo sense models/lorenz.sim --initial x --until 5 -o growth.csv\n"
       "  continuo sense models/thermostat.sim --param tau,high --of period      and --of events, --of rest\n";
-  CLI::App* verb = add_verb(app, "sense", "How a motion depends on parameters and initial values", examples);
+  CLI::App* verb = add_verb(
+      app, "sense", "Computes sensitivities: derivatives of a motion by parameters and initial values", examples);
   auto options = std::make_shared<SenseOptions>();
   add_experiment(*verb, options->experiment);
-  verb->add_option("--param", options->parameters, "The parameters, with commas")->delimiter(',')->type_name("NAMES");
-  verb->add_option("--initial", options->initial, "States whose initial values count, with commas")
+  verb->add_option("--param", options->parameters, "Parameters, separated by commas")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  verb->add_option("--initial", options->initial, "States whose initial values are varied, separated by commas")
       ->delimiter(',')
       ->type_name("STATES");
-  verb->add_option("--of", options->of, "What: the motion, the times of its events, its period, where it rests")
+  verb->add_option("--of", options->of,
+                   "The quantity to differentiate: the motion, the times of its events, its period, its equilibrium")
       ->check(CLI::IsMember({"motion", "events", "period", "rest"}))
       ->type_name("WHAT");
   refuse_methods(*verb);
@@ -206,7 +210,7 @@ void add_sense(CLI::App& app, ExitCode& exit) {
   verb->add_option("-o", options->output, "A CSV file of states and sensitivities; - is standard output")
       ->type_name("FILE");
   verb->add_flag("--json", options->json, "Every row and event as one JSON object");
-  verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
+  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = sense(*options); });
 }
 

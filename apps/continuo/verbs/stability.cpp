@@ -264,21 +264,23 @@ ExitCode stability(const StabilityOptions& options) {
 
 void add_stability(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
-      "  continuo stability euler,heun,rk4 --plot regions.svg         z = lambda h for which x' = lambda x does not "
-      "grow\n"
+      "  continuo stability euler,heun,rk4 --plot regions.svg         regions of absolute stability\n"
       "  continuo stability euler,rk4,bdf2 --model models/heat_equation.sim     the largest stable step\n"
       "  continuo stability central_difference --model models/mass_spring_damper.sim --set c=0\n";
-  CLI::App* verb =
-      add_verb(app, "stability", "How long a step may be: regions of stability, the largest stable step", examples);
+  CLI::App* verb = add_verb(app, "stability", "Computes regions of stability and the largest stable step", examples);
   auto options = std::make_shared<StabilityOptions>();
-  verb->add_option("methods", options->methods, "The methods, with commas")->required()->delimiter(',')->type_name("");
-  auto* model = verb->add_option("--model", options->experiment.file, "Whose eigenvalues are laid into the regions")
-                    ->type_name("FILE");
-  verb->add_option("--set", options->experiment.settings, "A parameter of the model")
+  verb->add_option("methods", options->methods, "Methods, separated by commas")
+      ->required()
+      ->delimiter(',')
+      ->type_name("");
+  auto* model =
+      verb->add_option("--model", options->experiment.file, "A model whose eigenvalues are drawn into the regions")
+          ->type_name("FILE");
+  verb->add_option("--set", options->experiment.settings, "Sets a parameter of the model")
       ->needs(model)
       ->type_name("NAME=VALUE");
   verb->add_flag("--json", options->json, "The limits as one JSON object");
-  verb->add_option("--plot", options->plot, "A picture, .svg or .png")->type_name("FILE");
+  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = stability(*options); });
 }
 

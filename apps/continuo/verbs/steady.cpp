@@ -140,7 +140,7 @@ ExitCode steady(const SteadyOptions& options) {
       !are_apart({options.experiment.file}, {options.out}))
     return usage;
   if (!options.plot.empty() && options.along.empty()) {
-    say("--plot draws how the places of rest move with a parameter: give --along NAME=LOW..HIGH");
+    say("--plot draws the equilibria over a parameter: give --along NAME=LOW..HIGH");
     return usage;
   }
   std::optional<NamedRange> range, second;
@@ -151,8 +151,8 @@ ExitCode steady(const SteadyOptions& options) {
     constants.push_back(range->name);
   }
   if (options.and_along.size() > 1) {
-    say("--and is there twice: folds and Hopf points are followed in two parameters (curves in three are those of "
-        "homoclinic orbits: continuo orbit)");
+    say("--and is given twice: folds and Hopf points are followed in two parameters (three are for homoclinic orbits: "
+        "continuo orbit)");
     return usage;
   }
   if (!options.and_along.empty()) {
@@ -163,7 +163,7 @@ ExitCode steady(const SteadyOptions& options) {
   Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
-  if (!stands_still_in_time(studied, "a place of rest is looked for")) return wrong_model;
+  if (!stands_still_in_time(studied, "equilibria are searched for")) return wrong_model;
   hold_conserved(studied);
   if (second && !is_plane(studied, {*range, *second})) return usage;
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = options.starts, .interrupt = &interrupt_flag()};
@@ -195,33 +195,35 @@ ExitCode steady(const SteadyOptions& options) {
 
 void add_steady(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
-      "  continuo steady models/lorenz.sim                              every place of rest, and whether it is stable\n"
-      "  continuo steady models/lorenz.sim --along rho=0..30            how they move, where their stability changes\n"
+      "  continuo steady models/lorenz.sim                              all equilibria and their stability\n"
+      "  continuo steady models/lorenz.sim --along rho=0..30            their dependence on rho, with bifurcations\n"
       "  continuo steady models/lorenz.sim --along rho=0..30 --plot branches.svg -o branches.csv\n"
-      "  continuo steady models/lorenz.sim --along rho=0..30 --and sigma=5..20   where that happens, in both\n"
-      "  continuo steady models/pendulum.sim --box a=-7..7              where to look\n";
-  CLI::App* verb = add_verb(app, "steady", "Finds where a model comes to rest, and whether it stays there", examples);
+      "  continuo steady models/lorenz.sim --along rho=0..30 --and sigma=5..20   bifurcation curves in two parameters\n"
+      "  continuo steady models/pendulum.sim --box theta=-7..7          restricts the search\n";
+  CLI::App* verb = add_verb(app, "steady", "Finds the equilibria of a model and their stability", examples);
   auto options = std::make_shared<SteadyOptions>();
   add_model(*verb, options->experiment);
-  verb->add_option("--mode", options->mode, "The mode whose equations are meant")->type_name("NAME");
-  verb->add_option("--box", options->box, "Where to look, of single states")
+  verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");
+  verb->add_option("--box", options->box, "Region of the search, for single states")
       ->delimiter(',')
       ->type_name("NAME=LOW..HIGH");
-  verb->add_option("--starts", options->starts, "How many places to begin from")->check(count_from(0))->type_name("N");
+  verb->add_option("--starts", options->starts, "Number of starting points of the search (200)")
+      ->check(count_from(0))
+      ->type_name("N");
   auto* along =
-      verb->add_option("--along", options->along, "Follow each place while a parameter moves, and what crosses")
+      verb->add_option("--along", options->along, "Follows each equilibrium along a parameter, with crossing branches")
           ->type_name("NAME=LOW..HIGH");
-  verb->add_option("--and", options->and_along, "Follow the folds and Hopf points while this moves too")
+  verb->add_option("--and", options->and_along, "Follows the folds and Hopf points while this parameter varies too")
       ->type_name("NAME=LOW..HIGH")
       ->allow_extra_args(false)
       ->needs(along);
   add_branch_steps(*verb, options->steps, along);
-  verb->add_option("--of", options->of, "The state to draw over the parameter")->type_name("STATE")->needs(along);
-  verb->add_flag("--json", options->json, "All of it for other programs");
-  verb->add_option("-o,--out", options->out, "The table of --along, or of --and, as CSV")
+  verb->add_option("--of", options->of, "The state to plot over the parameter")->type_name("STATE")->needs(along);
+  verb->add_flag("--json", options->json, "Prints all results as one JSON object");
+  verb->add_option("-o,--out", options->out, "Writes the table of --along, or of --and, as CSV")
       ->type_name("FILE")
       ->needs(along);
-  verb->add_option("--plot", options->plot, "A picture of --along, or of --and, .svg or .png")->type_name("FILE");
+  verb->add_option("--plot", options->plot, "Plots --along, or --and, .svg or .png")->type_name("FILE");
   verb->callback([&exit, options] { exit = steady(*options); });
 }
 

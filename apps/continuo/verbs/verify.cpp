@@ -97,7 +97,7 @@ void add_verify(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo verify models/            every model of a folder\n"
       "  continuo verify ball.sim spring.sim\n";
-  CLI::App* verb = add_verb(app, "verify", "Runs models and judges every check they carry", examples);
+  CLI::App* verb = add_verb(app, "verify", "Runs models and tests all of their checks", examples);
   auto places = std::make_shared<std::vector<std::string>>();
   verb->add_option("files", *places, "Models, or folders of models")->required()->type_name("");
   verb->callback([&exit, places] { exit = verify_all(*places); });

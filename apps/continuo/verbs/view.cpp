@@ -129,10 +129,10 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
   if (!session.is_open()) {
     fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
     if (!runs::kind_of(*loaded.model).has_start)
-      say(fmt::format(
-          "the view shows what moves; this solution is found for all times at once, and `continuo report {}` "
-          "draws it",
-          request.experiment.file));
+      say(
+          fmt::format("the live view needs an initial-value problem; this model is a boundary-value problem: `continuo "
+                      "report {}` draws its solution",
+                      request.experiment.file));
     return usage;
   }
   if (!apply_options(request.experiment, session)) return usage;
@@ -155,8 +155,8 @@ ExitCode view(ViewRequest& request) {
     return record(request.recording, set_up, *page);
   }
   if (page->empty())
-    say("this build has no page: build with -DCONTINUO_PAGE=ON (needs npm), or give --page FILE; the address serves "
-        "docs/protocol.md all the same");
+    say("this build has no page: build with -DCONTINUO_PAGE=ON (needs npm), or give --page FILE; other clients can use "
+        "the address (docs/protocol.md)");
   live::Server server(request.server, [](const std::string& text) { say(text); });
   live::Session session(live::steady_seconds, server,
                         {.path = request.experiment.file, .gallery = gallery_for(request.experiment.file)});
@@ -184,7 +184,7 @@ std::string port_fault(const std::string& text) {
 void add_view(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo view models/spring_pendulum.sim                   live in the browser: drag the mass, slide k\n"
-      "  continuo view ball.sim --method euler --step 0.1           as Euler sees it\n"
+      "  continuo view ball.sim --method euler --step 0.1           by Euler's method\n"
       "  continuo view ball.sim --export ball.html                  one page that replays the run, for a lecture\n"
       "  continuo view ball.sim --record frames/                    pictures, without a browser\n"
       "  continuo view ball.sim --listen 0.0.0.0 --port 8000        for others in this network too\n";
@@ -192,24 +192,25 @@ void add_view(CLI::App& app, ExitCode& exit) {
   auto request = std::make_shared<ViewRequest>();
   add_model(*verb, request->experiment);
   add_method(*verb, request->experiment);
-  verb->add_option("--until", request->experiment.until, "Of --export and --record: how long the run takes")
+  verb->add_option("--until", request->experiment.until, "End time of the run, for --export and --record")
       ->type_name("T");
-  verb->add_option("--speed", request->speed, "Times real time; 0: as fast as can be")
+  verb->add_option("--speed", request->speed, "Speed as a multiple of real time; 0: as fast as possible")
       ->type_name("K")
       ->check(CLI::Validator(speed_fault, ""));
-  verb->add_flag("--paused", request->paused, "Waits for somebody to press play");
+  verb->add_flag("--paused", request->paused, "Starts in pause");
   verb->add_flag("--no-open", request->no_open, "Prints the address and opens no browser");
-  verb->add_option("--listen", request->server.address, "Where to listen: 127.0.0.1 is for this computer alone")
+  verb->add_option("--listen", request->server.address,
+                   "Address of the server: 127.0.0.1 is reachable from this computer only")
       ->type_name("ADDRESS");
-  verb->add_option("--port", request->server.port, "The port; any free one where it is not given")
+  verb->add_option("--port", request->server.port, "Port of the server (default: any free port)")
       ->type_name("N")
       ->check(CLI::Validator(port_fault, ""));
   verb->add_option("--page", request->page_file, "Serves this page in place of the built-in one")->type_name("FILE");
   verb->add_option("--export", request->recording.page, "Writes one page that replays the run, and ends")
       ->type_name("FILE");
-  verb->add_option("--record", request->recording.pictures, "Writes pictures to a folder, or a film (.mp4, by ffmpeg)")
+  verb->add_option("--record", request->recording.pictures, "Writes pictures to a folder, or a video (.mp4, by ffmpeg)")
       ->type_name("PATH");
-  verb->add_option("--fps", request->recording.rate, "Pictures a second, of --export and --record")
+  verb->add_option("--fps", request->recording.rate, "Pictures per second, for --export and --record")
       ->type_name("N")
       ->check(CLI::Range(1, 120));
   verb->callback([&exit, request] { exit = view(*request); });

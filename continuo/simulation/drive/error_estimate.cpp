@@ -137,8 +137,8 @@ std::string doubt_of(const std::shared_ptr<const ModelProgram>& program, const E
   }
   if (most <= most_tolerances) return {};
   return fmt::format(
-      "`{}` is off by some {:.1g} at the end, {:.1g} times its tolerance, as a second run shows that is {}: errors of "
-      "steps have added up, or the motion multiplies them; see --estimate-error",
+      "the error of `{}` at the end is about {:.1g}, {:.1g} times its tolerance, compared with a run {}: errors of "
+      "steps have accumulated, or the motion amplifies them; see --estimate-error",
       program->model.states[worst].column, error, most, how);
 }
 
