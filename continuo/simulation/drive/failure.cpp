@@ -117,6 +117,9 @@ Diagnostic failure(const Model& model, const Outcome<double>& outcome) {
                   span_of_event(model, outcome.event));
     case Ending::reached_end:
     case Ending::stopped_by_event:
+    case Ending::cannot_continue:
+    case Ending::unreadable:
+    case Ending::unwritable:
       break;
   }
   return make("E300", "the run ended at " + at, model.run.span);
