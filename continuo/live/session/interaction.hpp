@@ -23,7 +23,8 @@ enum class Change { made, needs_check };
 
 class Interaction {
  public:
-  /// All of them stay; `on_new_program` is called when the program of the run that is shown has been made anew.
+  /// The arguments outlive the interaction. `on_new_program` is called when the program of the run that is shown has
+  /// been made anew.
   Interaction(const WallClock& now, const ModelText& text, Playback& playback, Notices& notices,
               std::function<void()> on_new_program)
       : now_(now), text_(text), playback_(playback), notices_(notices), on_new_program_(std::move(on_new_program)) {}
@@ -31,18 +32,18 @@ class Interaction {
   const Settings& settings() const { return settings_; }
   std::size_t undo_count() const { return undo_.size(); }
   void set_settings(Settings settings) { settings_ = std::move(settings); }
-  /// Another model: nothing is chosen, and nothing can be undone.
+  /// For another model: nothing is chosen, and nothing can be undone.
   void forget_all() { settings_ = {}, undo_.clear(); }
-  /// Another text of the same model may lack some parameters.
+  /// For another text of the same model, which may lack some parameters.
   void forget_unknown_parameters(const model::Model& model);
-  /// It could not begin, or has come to its end.
+  /// For a ghost that could not begin or has come to its end.
   void forget_ghost() { settings_.ghost.reset(); }
 
   [[nodiscard]] Change set_parameter(const std::string& name, double value);
   [[nodiscard]] Change restore_parameters();
   [[nodiscard]] Change undo();
   void move_input(const std::string& name, double value);
-  /// False where the model cannot be run so: the notices keep why.
+  /// False where the model cannot be run by this method: the notices keep the reason.
   bool take_method(MethodChoice choice);
   void take_ghost(std::optional<MethodChoice> choice);
 

@@ -21,7 +21,7 @@ namespace continuo::live {
 
 class MouseDrag {
  public:
-  /// All of them stay.
+  /// The arguments outlive it.
   MouseDrag(const WallClock& now, Playback& playback, Notices& notices)
       : now_(now), playback_(playback), notices_(notices) {}
 

@@ -17,14 +17,14 @@ struct ModelText {
 
 class Notices {
  public:
-  /// Both stay; the text may become another.
+  /// The arguments outlive it; the text may change.
   Notices(Audience& audience, const ModelText& text) : audience_(audience), text_(text) {}
 
   /// `source`: the text that the diagnostic is about, where it is not the open one.
   void say(const model::Diagnostic& problem, const model::Source* source = nullptr);
   void note(std::string text, std::string hint = {});
 
-  /// Why the last run that was asked for cannot be.
+  /// Why the last run that was asked for could not begin.
   const std::vector<model::Diagnostic>& problems() const { return problems_; }
   void set_problems(std::vector<model::Diagnostic> problems) { problems_ = std::move(problems); }
 

@@ -14,15 +14,15 @@ class PendingSlice {
   /// A run begins: nothing of the one before.
   void clear() { slice_ = std::make_shared<Slice>(); }
   void add(const Row& row);
-  /// At most a few hundred of them at once.
+  /// Keeps the first few hundred events of a slice.
   void add(LiveEvent event);
   /// Rows at t or later, and events after t, are void. A row has `columns` values, and `paths` numbers of trails.
   void rewind_to(double t, std::size_t columns, std::size_t paths);
 
-  /// The picture differs from the last one.
+  /// Whether the next picture differs from the last one.
   bool has_changed() const { return changed_; }
   void mark_changed() { changed_ = true; }
-  /// What is known when it is published only.
+  /// The slice itself, for the values that are known only when it is published.
   Slice& slice() { return *slice_; }
   std::shared_ptr<const Slice> take();
 

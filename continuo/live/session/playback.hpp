@@ -31,7 +31,7 @@ namespace continuo::live {
 
 class Playback {
  public:
-  /// All of them stay.
+  /// The arguments outlive the playback.
   Playback(const WallClock& now, Notices& notices, PendingSlice& pending, Rows& rows)
       : now_(now), notices_(notices), pending_(pending), rows_(rows) {}
 
@@ -54,25 +54,25 @@ class Playback {
   /// The moment that is looked at becomes the present: what came later is forgotten.
   void leave_look();
 
-  // Changes of what is shown. None of them while the past is looked at.
-  /// Parameters and inputs from here on; go_on makes them count.
+  // Changes of what is shown; leave_look comes first.
+  /// Sets parameters and inputs, which take effect with go_on.
   void use(Variables variables);
-  /// These states stand still from here on; go_on makes it count.
+  /// Sets the states that stand still, which they do from go_on on.
   void hold_states(std::vector<std::size_t> held) { held_states_ = std::move(held); }
-  /// The run goes on from the instant that is shown,
+  /// The run goes on from the instant that is shown.
   void go_on();
-  /// or from `changed`; the ghost in its mode and with its values of these states.
+  /// The run goes on from `changed`. The ghost gets the mode of `changed`, and its values of the states `of_ghost_too`.
   void go_on_from(const Instant& changed, std::span<const std::size_t> of_ghost_too = {});
-  /// The same motion by another method.
+  /// The motion goes on by another method.
   void change_main(std::unique_ptr<Track> main);
-  /// Another ghost, which begins where the motion is; null: none.
+  /// Another ghost begins where the motion is; null takes the ghost away.
   void change_ghost(std::unique_ptr<Track> ghost);
-  /// The same motion, its program made anew.
+  /// The motion goes on with its program made anew.
   void change_program(std::shared_ptr<const LiveModel> shown, Variables variables, std::unique_ptr<Track> main,
                       std::unique_ptr<Track> ghost);
-  /// A body stays where a hand is; none does.
+  /// A body stays where the mouse is; empty: none is held.
   void hold_body(std::optional<HeldBody> held);
-  /// It is no longer held, and goes on with this velocity.
+  /// A body that was held goes on with this velocity.
   void let_go(std::size_t body, const worlds::Point& velocity);
 
   /// Null before the first run.
@@ -80,13 +80,13 @@ class Playback {
   const Variables& variables() const { return variables_; }
   std::span<const std::size_t> held_states() const { return held_states_; }
   const Track& main() const { return *main_; }
-  /// Null without one.
+  /// Null without a ghost.
   const Track* ghost() const { return ghost_.get(); }
   /// The time that the motion has been shown to.
   double t() const { return cursor_; }
-  /// Of the moment that is looked at; else the same.
+  /// The time of the moment that is looked at; t() where none is.
   double shown_time() const { return looking_ ? history_[*looking_].main.t : cursor_; }
-  /// What it takes to go on from t(); with `whole` false only to look at it.
+  /// Everything that is needed to go on from t(); with `whole` false only to look at it.
   Instant instant(bool whole = true) const { return main_->instant_at(cursor_, whole); }
   bool playing() const { return playing_; }
   /// Why the run is over; empty while it is not.
@@ -103,7 +103,7 @@ class Playback {
     if (looking_) return &history_[*looking_];
     return history_.empty() ? nullptr : &history_.back();
   }
-  /// What the audience should be told of: whether it plays, how it ended, who moves.
+  /// Whether the audience should be told anew whether it plays, how it ended and what moves.
   bool state_has_changed() const { return state_changed_; }
   void forget_state_change() { state_changed_ = false; }
 

@@ -24,14 +24,14 @@ class Rows {
 
   explicit Rows(PendingSlice& pending) : pending_(pending) {}
 
-  /// Of another run, or of the same one with its program made anew.
+  /// For another run, or for the same one with its program made anew.
   void show(std::shared_ptr<const LiveModel> shown, const Variables& variables);
   /// Rows from here on are computed with these parameters and inputs.
   void use(const Variables& variables);
 
-  /// A row. `ghost` is the state of the ghost, null without one; so below.
+  /// Puts a row. `ghost` is the state of the ghost, null without one, here and below.
   void add(double t, const X& x, const X* ghost);
-  /// A row that is put only where a line past it would be seen to miss it. There is one before it.
+  /// Puts a row only where a line past it would be seen to miss it. There must be a row before: has_last().
   void consider(double t, const X& x, const X* ghost);
   /// Whether there is a row that others may follow.
   bool has_last() const { return last_.has_value(); }
@@ -41,9 +41,9 @@ class Rows {
   /// Rows at t and later are void.
   void rewind_to(double t);
 
-  /// The drift of the energy is measured from its value here,
+  /// The drift of the energy is measured from its value in the state x at t.
   void measure_drift_from(double t, const X& x);
-  /// or from this one.
+  /// The drift of the energy is measured from this value.
   void set_first_energy(double energy) { first_energy_ = energy; }
   double first_energy() const { return first_energy_; }
 
