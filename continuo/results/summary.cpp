@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <continuo/results/csv.hpp>
+#include <continuo/results/csv_writer.hpp>
 #include <continuo/results/summary.hpp>
 #include <continuo/runs/kind.hpp>
 

@@ -94,7 +94,7 @@ struct EventResponse {
 ///   can_assign(i) [can_restart(i)]: firing may change a state
 ///   carried(system, i, t, x, forward) [by differences]: the side to which the motion takes guard i from zero, if known
 ///   take_step(system, begin, size, coefficients), is_enclosed(i), enclose_all(a, b), whole(i), enclosure(i, a, b),
-///     value_enclosure(i, a) [by samples]: guards enclosed over parts a..b of 0..1 of a step, see guard_watch.hpp
+///     value_enclosure(i, a) [by samples]: guards enclosed over parts a..b of 0..1 of a step, see event_location.hpp
 ///   is_condition(i) [false]: the guard is positive where a condition holds, and never zero
 ///   renews_guard(i) [false]: only the motion crosses the guard, and firing gives it another meaning
 ///   has_limit_action(i) [false], at_limit(system, i, t, before, x) -> EventResponse: where the firings accumulate

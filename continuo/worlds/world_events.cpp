@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <continuo/solve/events/guard_watch.hpp>
+#include <continuo/solve/events/event_location.hpp>
 #include <continuo/worlds/world_events.hpp>
 
 namespace continuo::worlds {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "example.hpp"
-#include <continuo/results/csv.hpp>
+#include <continuo/results/csv_writer.hpp>
 #include <continuo/results/summary.hpp>
 
 namespace continuo::results {

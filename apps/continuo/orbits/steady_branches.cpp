@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <continuo/results/csv.hpp>
+#include <continuo/results/csv_writer.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/summary.hpp>

@@ -14,8 +14,8 @@
 #include <continuo/results/netcdf.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/plots.hpp>
+#include <continuo/results/run_tables.hpp>
 #include <continuo/results/summary.hpp>
-#include <continuo/results/tables.hpp>
 
 namespace continuo::app {
 namespace {

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <continuo/results/csv.hpp>
+#include <continuo/results/csv_writer.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/netcdf.hpp>
 #include <continuo/results/output_file.hpp>

@@ -16,7 +16,7 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
-#include <continuo/results/csv.hpp>
+#include <continuo/results/csv_writer.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>

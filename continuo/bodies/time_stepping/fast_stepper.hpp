@@ -278,7 +278,7 @@ class FastMotion<Real, Dim>::Stepper {
   FastOptions<Real> options_;
   ThreadTeam team_;
   SolverBodies<Real, Dim> bodies_;
-  PairList<Real, Dim> list_;
+  BroadPhase<Real, Dim> list_;
   ContactList<Real, Dim> contacts_;
   Impacts<Real, Dim> impacts_;
   ForceIntegration<Real, Dim> forces_;

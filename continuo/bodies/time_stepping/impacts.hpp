@@ -14,7 +14,7 @@
 #include <continuo/bodies/contact_solver/contact_step.hpp>
 #include <continuo/bodies/contacts/collision_time.hpp>
 #include <continuo/bodies/contacts/impulse.hpp>
-#include <continuo/bodies/time_stepping/pair_list.hpp>
+#include <continuo/bodies/time_stepping/broad_phase.hpp>
 
 namespace continuo {
 
@@ -42,7 +42,7 @@ class Impacts {
 
   /// Of a substep from `begin` on, which it tells the greatest acceleration; paths of a step of `step` are looked at
   /// beyond the list. Gives how many there were.
-  std::size_t make(const World<Real, Dim>& world, const PairList<Real, Dim>& list,
+  std::size_t make(const World<Real, Dim>& world, const BroadPhase<Real, Dim>& list,
                    const ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies, ContactStep<Real>& substep,
                    const Real& step, const Real& begin, ContactLog<Real, Dim>& log) {
     using std::sqrt;
@@ -75,7 +75,7 @@ class Impacts {
  private:
   struct Making {
     const World<Real, Dim>& world;
-    const PairList<Real, Dim>& list;
+    const BroadPhase<Real, Dim>& list;
     SolverBodies<Real, Dim>& bodies;
     const ContactStep<Real>& substep;
     Real step, begin;  // begin: of the substep

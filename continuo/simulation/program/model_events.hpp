@@ -49,7 +49,7 @@ class ModelEvents {
   /// motion slides.
   std::optional<Carried> carried(const ModelSystem& system, std::size_t i, double t, const X& x, double forward);
 
-  // The guards over a step, enclosed (solve/events/guard_watch.hpp).
+  // The guards over a step, enclosed (solve/events/event_location.hpp).
   void take_step(const ModelSystem& system, double begin, double size, std::span<const X> coefficients) {
     enclosures_.take(system, {begin, size, coefficients});
   }

@@ -12,8 +12,8 @@
 
 #include <continuo/solve/event.hpp>
 #include <continuo/solve/events/accumulation.hpp>
+#include <continuo/solve/events/event_location.hpp>
 #include <continuo/solve/events/guard_motion.hpp>
-#include <continuo/solve/events/guard_watch.hpp>
 #include <continuo/solve/steps/consistent.hpp>
 #include <continuo/solve/steps/steps.hpp>
 
@@ -593,7 +593,7 @@ class EventLogic {
   }
 
   Events events_;
-  GuardWatch<Real> watch_;
+  EventLocator<Real> watch_;
   AccumulationWatch<Real> accumulation_;
   std::vector<Real> g_, rounding_, wide_, scratch_;
   std::vector<Real> slack_;  // of the last instant that a step was taken to

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include <continuo/numerics/state.hpp>
-#include <continuo/solve/events/guard_watch.hpp>
+#include <continuo/solve/events/event_location.hpp>
 
 namespace continuo {
 

@@ -5,7 +5,7 @@
 
 #include <continuo/bodies/fast_motion.hpp>
 
-namespace continuo::pair_list_test {
+namespace continuo::broad_phase_test {
 namespace {
 
 // One that is fast among many at rest looks for the others itself: all pairs are not listed anew for it alone, which at
@@ -32,4 +32,4 @@ TEST(FastMotion, ListsPairsAnewForFewThatAreFastNoOftenerThanTheyReach) {
 }
 
 }  // namespace
-}  // namespace continuo::pair_list_test
+}  // namespace continuo::broad_phase_test

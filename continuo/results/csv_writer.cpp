@@ -5,7 +5,7 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
-#include <continuo/results/csv.hpp>
+#include <continuo/results/csv_writer.hpp>
 
 namespace continuo::results {
 

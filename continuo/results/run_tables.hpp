@@ -1,4 +1,4 @@
-// continuo/results/tables.hpp
+// continuo/results/run_tables.hpp
 // The two tables of a run as CSV files.
 #pragma once
 #include <optional>

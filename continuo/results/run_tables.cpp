@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <continuo/results/csv.hpp>
+#include <continuo/results/csv_writer.hpp>
 #include <continuo/results/output_file.hpp>
-#include <continuo/results/tables.hpp>
+#include <continuo/results/run_tables.hpp>
 
 namespace continuo::results {
 

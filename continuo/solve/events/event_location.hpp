@@ -81,9 +81,9 @@ struct EnclosedStep {
 /// a ball at t = 1000 is found on the floor, not a hundred thousand roundings of h below it. `evaluate(s, span)` gives
 /// all guards at a place of the current stretch.
 template <class Real>
-class GuardWatch {
+class EventLocator {
  public:
-  explicit GuardWatch(std::size_t size = 0)
+  explicit EventLocator(std::size_t size = 0)
       : states_(size),
         scanned_(size),
         first_(size),

@@ -16,7 +16,7 @@
 namespace continuo {
 
 template <class Real, int Dim>
-class PairList {
+class BroadPhase {
  public:
   using V = Vector<Real, Dim>;
   using Bodies = SolverBodies<Real, Dim>;

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "example.hpp"
-#include <continuo/results/csv.hpp>
-#include <continuo/results/tables.hpp>
+#include <continuo/results/csv_writer.hpp>
+#include <continuo/results/run_tables.hpp>
 
 namespace continuo::results {
 namespace {

@@ -1,4 +1,4 @@
-// continuo/results/csv.hpp
+// continuo/results/csv_writer.hpp
 // Tables as text: RFC 4180 with a first line `# manifest HASH`. Numbers are the shortest that read back as the same
 // double, with a point whatever the locale; NaN and infinities are `nan`, `inf`, `-inf`.
 //
