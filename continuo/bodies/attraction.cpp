@@ -1,4 +1,5 @@
 // continuo/bodies/attraction.cpp
+// Gravity between all pairs of bodies: exact sums, and a Barnes-Hut tree.
 #include <algorithm>
 #include <array>
 #include <cmath>

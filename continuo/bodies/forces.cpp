@@ -1,4 +1,5 @@
 // continuo/bodies/forces.cpp
+// Forces, torques and potential energies of a world at given positions and velocities.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

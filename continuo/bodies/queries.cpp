@@ -1,3 +1,4 @@
+// Rays, regions and neighbours, answered by a tree over the bodies of a world.
 #include <algorithm>
 #include <cmath>
 #include <iterator>

@@ -1,3 +1,4 @@
+// Writes a world and the memory of its motion as bytes, and reads them with every value checked.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

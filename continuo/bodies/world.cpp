@@ -1,4 +1,5 @@
 // continuo/bodies/world.cpp
+// Adds, checks and removes bodies, walls and springs, and sums up momenta and energies.
 #include <array>
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,5 @@
 // continuo/language/describe.cpp
+// Writes the description of a checked model: states, equations, units, events, experiment.
 #include <algorithm>
 #include <iterator>
 #include <string>

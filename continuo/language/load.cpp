@@ -1,4 +1,5 @@
 // continuo/language/load.cpp
+// Reads, parses and checks a model.
 #include <algorithm>
 
 #include <fmt/format.h>

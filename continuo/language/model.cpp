@@ -1,4 +1,5 @@
 // continuo/language/model.cpp
+// Searches a checked model for its states, parameters and columns.
 #include <algorithm>
 
 #include <continuo/language/model.hpp>

@@ -1,4 +1,5 @@
 // continuo/language/world.cpp
+// Names of what a world measures, and of the methods that move it.
 #include <continuo/language/world.hpp>
 
 namespace continuo::model {

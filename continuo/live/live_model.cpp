@@ -1,4 +1,5 @@
 // continuo/live/live_model.cpp
+// Prepares a model for the view: curves, drawing and handles as expressions on one tape.
 #include <algorithm>
 #include <map>
 #include <utility>

@@ -1,4 +1,5 @@
 // continuo/live/loop.cpp
+// The thread of a session: commands, turns and the pace of pictures.
 #include <chrono>
 #include <exception>
 #include <utility>

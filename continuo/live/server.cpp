@@ -1,4 +1,5 @@
 // continuo/live/server.cpp
+// Listens, accepts connections, and hands slices and messages to all clients.
 #include <utility>
 
 #include <boost/asio/post.hpp>

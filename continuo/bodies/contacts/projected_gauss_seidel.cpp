@@ -1,3 +1,4 @@
+// Instantiates the projected Gauss-Seidel iteration for the usual scalars and dimensions.
 #include <continuo/bodies/contacts/projected_gauss_seidel.hpp>
 
 namespace continuo {

@@ -1,3 +1,4 @@
+// The exact motion of spheres on parabolas, from one predicted event to the next.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// Numbers as little-endian bytes and back, with bounds checked.
 #include <algorithm>
 
 #include <continuo/bodies/support/bytes.hpp>

@@ -1,3 +1,4 @@
+// Instantiates the fast motion for double precision.
 #include <continuo/bodies/time_stepping/fast_motion_members.hpp>
 
 namespace continuo {

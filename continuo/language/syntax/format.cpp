@@ -1,3 +1,4 @@
+// Writes expressions, names and ranges with as few brackets as their operators need.
 #include <algorithm>
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Splits text into tokens, with a message for each character that begins none.
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -1,3 +1,4 @@
+// Parses the statements of a model.
 #include <algorithm>
 #include <array>
 

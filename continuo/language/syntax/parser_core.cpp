@@ -1,3 +1,4 @@
+// Moves of the parser over tokens, its messages, and how it goes on after an error.
 #include <algorithm>
 #include <array>
 

@@ -1,3 +1,4 @@
+// Parses definitions: parameters, lets, outputs, inputs, tables, unknowns.
 #include <fmt/format.h>
 
 #include <continuo/language/syntax/parser_core.hpp>

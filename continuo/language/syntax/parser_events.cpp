@@ -1,3 +1,4 @@
+// Parses events, schedules and their actions.
 #include <algorithm>
 #include <array>
 

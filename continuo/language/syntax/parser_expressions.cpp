@@ -1,3 +1,4 @@
+// Parses operators by their strength, and looks for indices among brackets.
 #include <algorithm>
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Parses the settings of a model: run, plot, draw, check.
 #include <algorithm>
 #include <array>
 

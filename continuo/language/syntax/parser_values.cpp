@@ -1,3 +1,4 @@
+// Parses the operands of expressions: numbers, names, calls, sums, choices.
 #include <algorithm>
 
 #include <fmt/format.h>

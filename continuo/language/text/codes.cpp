@@ -1,3 +1,4 @@
+// Searches the register of codes.
 #include <algorithm>
 #include <array>
 #include <cctype>

@@ -1,3 +1,4 @@
+// Messages as text: the excerpt of the source with its marks, label and help.
 #include <algorithm>
 #include <numeric>
 #include <utility>

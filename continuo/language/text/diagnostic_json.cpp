@@ -1,3 +1,4 @@
+// Messages as JSON.
 #include <nlohmann/json.hpp>
 
 #include <continuo/language/text/diagnostic.hpp>

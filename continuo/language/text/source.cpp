@@ -1,3 +1,4 @@
+// Lines and columns of places in a text.
 #include <algorithm>
 #include <fstream>
 #include <iterator>

@@ -1,3 +1,4 @@
+// Decodes UTF-8, and classifies letters by ranges of code points.
 #include <algorithm>
 #include <array>
 

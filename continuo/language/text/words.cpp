@@ -1,3 +1,4 @@
+// The lists of the words of the language.
 #include <algorithm>
 #include <array>
 

@@ -1,3 +1,4 @@
+// Compares rows with straight lines between their neighbours.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,5 @@
 // continuo/live/motion/clock.cpp
+// The time that a model should have reached, and the speed that it reaches.
 #include <continuo/live/motion/clock.hpp>
 
 namespace continuo::live {

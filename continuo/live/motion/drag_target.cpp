@@ -1,4 +1,5 @@
 // continuo/live/motion/drag_target.cpp
+// Chooses the states that move a point, and moves them towards the hand.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

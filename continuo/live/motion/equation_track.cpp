@@ -1,4 +1,5 @@
 // continuo/live/motion/equation_track.cpp
+// Integrates a model's equations as a Track.
 #include <limits>
 #include <utility>
 

@@ -1,4 +1,5 @@
 // continuo/live/motion/history.cpp
+// Keeps samples within a bound of memory, and thins the older ones.
 #include <algorithm>
 #include <utility>
 

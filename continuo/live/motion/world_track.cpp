@@ -1,4 +1,5 @@
 // continuo/live/motion/world_track.cpp
+// Moves a world of bodies as a Track.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,5 @@
 // continuo/live/server/client.cpp
+// Reads and writes one WebSocket.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,4 +1,5 @@
 // continuo/live/server/frames.cpp
+// Writes slices as binary frames.
 #include <bit>
 #include <cstring>
 #include <type_traits>

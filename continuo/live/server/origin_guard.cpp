@@ -1,4 +1,5 @@
 // continuo/live/server/origin_guard.cpp
+// Compares token, host and origin of a request.
 #include <array>
 #include <stdexcept>
 #include <utility>

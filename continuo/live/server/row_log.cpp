@@ -1,4 +1,5 @@
 // continuo/live/server/row_log.cpp
+// Keeps rows for clients, each with a mark of what it has read.
 #include <algorithm>
 #include <utility>
 

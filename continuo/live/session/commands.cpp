@@ -1,4 +1,5 @@
 // continuo/live/session/commands.cpp
+// Reads commands from JSON, and calls the session.
 #include <array>
 #include <functional>
 #include <map>

@@ -1,4 +1,5 @@
 // continuo/live/session/messages.cpp
+// Writes the messages of a session as JSON.
 #include <array>
 #include <cmath>
 #include <filesystem>

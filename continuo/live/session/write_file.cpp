@@ -1,4 +1,5 @@
 // continuo/live/session/write_file.cpp
+// Writes a file whole or not at all, by a temporary one beside it.
 #include <cerrno>
 #include <cstring>
 #include <filesystem>

@@ -1,4 +1,5 @@
 // continuo/studies/boundary/boundary_family.cpp
+// Follows families of solutions of a boundary-value problem, and those that cross them.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

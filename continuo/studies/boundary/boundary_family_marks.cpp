@@ -1,4 +1,5 @@
 // continuo/studies/boundary/boundary_family_marks.cpp
+// Locates folds and crossings between two places of a family.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,5 @@
 // continuo/studies/boundary/boundary_family_of_model.cpp
+// Poses a model's boundary-value problem for each value of a parameter, and follows it.
 #include <algorithm>
 #include <cstddef>
 #include <limits>

@@ -1,4 +1,5 @@
 // continuo/studies/boundary/boundary_family_steps.cpp
+// Predictor and corrector on a family of solutions.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// Evaluates the restricted likelihood over the ratios of unknown variances.
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Draws weighted points over the ratios of variances, spread by a lattice.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,5 @@
 // continuo/language/check/world/placement.cpp
+// Places spheres at random without overlap, by a grid of cells.
 #include <algorithm>
 #include <cmath>
 
