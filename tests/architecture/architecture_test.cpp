@@ -43,6 +43,10 @@ TEST(Architecture, NoFolderIsCrowded) {
   EXPECT_THAT(SourceTree(root).crowded_folders(30, 45), IsEmpty());
 }
 
+TEST(Architecture, EverySourceSaysAtItsTopWhatItIsFor) {
+  EXPECT_THAT(SourceTree(root).sources_without_purpose(), IsEmpty());
+}
+
 TEST(Architecture, IncludesStartAtTheRoot) {
   for (const auto& file : sources_below(root / "continuo")) {
     const auto directives = directives_of(text_of(file));

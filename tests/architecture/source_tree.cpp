@@ -162,4 +162,20 @@ std::vector<std::string> SourceTree::crowded_folders(std::size_t most_subjects, 
   return crowded;
 }
 
+std::vector<std::string> SourceTree::sources_without_purpose() const {
+  std::vector<std::string> without;
+  for (const auto& [file, includes] : includes_) {
+    if (fs::path(file).extension() != ".cpp") continue;
+    std::ifstream in(root_ / file);
+    std::string line;
+    bool says = false;
+    while (!says && std::getline(in, line) && line.starts_with("//")) {
+      const auto first = line.find_first_not_of("/ ");
+      says = first != std::string::npos && line.substr(first) != file;
+    }
+    if (!says) without.push_back(file);
+  }
+  return without;
+}
+
 }  // namespace continuo::architecture

@@ -39,6 +39,9 @@ class SourceTree {
   /// Folders with more subjects (a header with its source is one), or more files, than a reader can take in.
   std::vector<std::string> crowded_folders(std::size_t most_subjects, std::size_t most_files) const;
 
+  /// The .cpp files that do not begin with a comment, or with one that has no line but their own path.
+  std::vector<std::string> sources_without_purpose() const;
+
  private:
   struct Place {
     std::size_t module;  // its number

@@ -106,5 +106,16 @@ TEST_F(Tree, AHeaderWithItsSourceIsOneSubject) {
   EXPECT_THAT(SourceTree(root).crowded_folders(1, 9), ElementsAre("continuo/shop: 2 subjects in 2 files"));
 }
 
+TEST_F(Tree, ASourceSaysAtItsTopWhatItIsFor) {
+  write("continuo/shop/hall/attic/box.cpp",
+        "// Keeps what the hall has no room for.\n#include <continuo/shop/shop.hpp>\n");
+  write("apps/continuo/high/verb.cpp", "// apps/continuo/high/verb.cpp\n// Sells.\n");
+  EXPECT_THAT(SourceTree(root).sources_without_purpose(), IsEmpty());
+  write("continuo/shop/till.cpp", "\n// Too late.\n");
+  write("apps/continuo/high/verb.cpp", "// apps/continuo/high/verb.cpp\n#include <continuo/shop/door.hpp>\n");
+  EXPECT_THAT(SourceTree(root).sources_without_purpose(),
+              ElementsAre("apps/continuo/high/verb.cpp", "continuo/shop/till.cpp"));
+}
+
 }  // namespace
 }  // namespace continuo::architecture
