@@ -326,8 +326,8 @@ TEST(ExactMotion, SaysWhatItCannotDo) {
   World<double, 3> world;
   ASSERT_TRUE(world.add({}));
   ExactMotion motion(world);
-  EXPECT_NE(motion.advance_to(-1), "");
-  EXPECT_NE(motion.advance_to(std::numeric_limits<double>::quiet_NaN()), "");
+  EXPECT_FALSE(motion.advance_to(-1));
+  EXPECT_FALSE(motion.advance_to(std::numeric_limits<double>::quiet_NaN()));
 }
 
 }  // namespace
