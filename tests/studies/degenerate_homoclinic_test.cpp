@@ -95,19 +95,23 @@ OrbitMark start_of(const Space& space, const Flow& flow, double first_constant, 
   return mark;
 }
 
-/// All that is marked on the curve in the first two constants through m, followed in three.
+/// All that is marked on the curve in the first two constants through m, followed in three. `longer`: than usual, the
+/// first steps of all curves.
 template <class F>
 std::vector<DegenerateHomoclinicCurve> curves_from(const Space& space, F flow, const Triple& m, double size,
-                                                   const std::array<double, 2>& third) {
+                                                   const std::array<double, 2>& third, double longer = 1) {
   auto system = space.system(flow);
   const Triple p = space.outside(m);
   system.constants = {p[0], p[1], p[2]};
-  const OrbitCurveOptions plane{.low = {p[0] - size, p[1] - size}, .high = {p[0] + size, p[1] + size}};
+  const OrbitCurveOptions plane{.low = {p[0] - size, p[1] - size},
+                                .high = {p[0] + size, p[1] + size},
+                                .first_step = 0.01 * longer,
+                                .largest_step = 0.05 * longer};
   const auto curve = follow_orbit_bifurcation(system, start_of(space, flow(m), p[0], 22), plane);
   EXPECT_GT(curve.points.size(), 4u) << curve.message;
   const DegenerateHomoclinicOptions options{.low = {plane.low[0], plane.low[1], third[0]},
                                             .high = {plane.high[0], plane.high[1], third[1]},
-                                            .first_step = 0.05,
+                                            .first_step = 0.05 * longer,
                                             .largest_step = 0.4};
   return degenerate_homoclinic_curves(system, {{curve, {0}}}, options);
 }
@@ -122,7 +126,7 @@ TEST(DegenerateHomoclinic, NeutralSaddlesAndSaddleNodes) {
   const auto flow = [](const Triple& m) {
     return Flow{.a = 0.6 + m[0], .b = 1 + 0.5 * m[2], .c = -2, .alpha = 0.5, .beta = 1, .mu = 0, .nu = m[1]};
   };
-  const auto curves = curves_from(space, flow, {-0.3, 0, 0}, 1.5, {-0.1, 0.1});
+  const auto curves = curves_from(space, flow, {-0.3, 0, 0}, 1.5, {-0.1, 0.1}, 3);
   ASSERT_EQ(curves.size(), 3u);
   std::size_t neutral = 0, nodes = 0;
   for (const auto& curve : curves) {
