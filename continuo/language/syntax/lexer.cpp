@@ -113,7 +113,7 @@ std::size_t name_size(std::string_view text, std::size_t at) {
 
 }  // namespace
 
-Lexer::Lexer(const Source& source) : source_(&source), text_(source.text()) {
+Lexer::Lexer(const Source& source) : text_(source.text()) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text_.starts_with(byte_order_mark)) at_ = byte_order_mark.size();
 }
