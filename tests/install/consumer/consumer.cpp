@@ -27,5 +27,5 @@ int main() {
          return true;
        }});
   if (!found.found || std::abs(found.p[0] - 2) > 1e-8) return 3;
-  return continuo::results::write_netcdf(*loaded.model, *simulated.run, "decay.nc", "") ? 4 : 0;
+  return continuo::results::write_netcdf(*loaded.model, *simulated.run, "decay.nc", "") ? 0 : 4;
 }
