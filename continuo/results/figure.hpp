@@ -2,7 +2,7 @@
 // Pictures through gnuplot: panels one below the other, each with curves over a common axis.
 //
 //   Figure figure{.title = "Ball", .panels = {{.x_label = "t [s]", .y_label = "h [m]", .curves = {{"h", t, h}}}}};
-//   if (auto failure = draw(figure, "ball.svg")) fmt::print(stderr, "{}\n", *failure);
+//   if (const Status status = draw(figure, "ball.svg"); !status) fmt::print(stderr, "{}\n", status.message);
 #pragma once
 #include <cstddef>
 #include <optional>

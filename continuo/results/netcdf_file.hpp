@@ -3,7 +3,7 @@
 //   NetcdfFile file;
 //   const std::size_t time = file.dimension("time", 3);
 //   file.variable({.name = "x", .dimensions = {time}, .values = [] { return std::vector{0.0, 1.0, 4.0}; }});
-//   if (auto failure = write_netcdf_file(file, "x.nc")) fmt::print(stderr, "{}\n", *failure);
+//   if (const Status status = write_netcdf_file(file, "x.nc"); !status) fmt::print(stderr, "{}\n", status.message);
 #pragma once
 #include <cstddef>
 #include <functional>
