@@ -1,5 +1,5 @@
-// The contacts of a step: of the pairs that are listed those that may touch in it, coloured and put into batches. No two
-// contacts of a colour share a body that moves, so lanes and threads may solve them in any order, to the same bits.
+// The contacts of a step: of the pairs that are listed those that may touch in it, coloured and put into batches. No
+// two contacts of a colour share a body that moves, so lanes and threads may solve them in any order, to the same bits.
 // Impulses outlive the step: they are kept by the places of the two bodies, and are the start of the next.
 #pragma once
 #include <algorithm>
