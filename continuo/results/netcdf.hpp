@@ -1,8 +1,8 @@
 // continuo/results/netcdf.hpp
 // A run as a netCDF-4 file, for xarray and its like:
 //
-//   if (const Status status = write_netcdf(model, run, "gas.nc", hash); !status) fmt::print(stderr, "{}\n",
-//   status.message);
+//   const Status status = write_netcdf(model, run, "gas.nc", hash);
+//   if (!status) fmt::print(stderr, "{}\n", status.message);
 //   >>> xarray.open_dataset("gas.nc").position.sel(component="x")          # (time, body)
 //
 // Dimensions: time; where the model has a world also body and component. Variables: time, position and velocity (time,
