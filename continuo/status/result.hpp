@@ -5,7 +5,6 @@
 //   if (!world) return world.status();
 //   advance(*world);
 #pragma once
-#include <cassert>
 #include <optional>
 #include <utility>
 
@@ -18,8 +17,11 @@ template <class T>
 class [[nodiscard]] Result {
  public:
   Result(T value) : value_(std::move(value)) {}  // NOLINT(google-explicit-constructor): `return value;` is meant
-  /// Why there is no value. A status that succeeded needs one, so that it is given with it.
-  Result(Status status) : status_(std::move(status)) { assert(!status_); }  // NOLINT(google-explicit-constructor)
+  /// Why there is no value. A status that succeeded gives no reason: it counts as a failure, so that nobody who passes
+  /// it on reports a success.
+  Result(Status status) : status_(std::move(status)) {  // NOLINT(google-explicit-constructor)
+    if (status_) status_ = {.ending = Ending::cannot_continue, .message = "there is no value", .place = {}};
+  }
 
   /// Whether there is a value.
   explicit operator bool() const { return value_.has_value(); }

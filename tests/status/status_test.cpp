@@ -66,5 +66,12 @@ TEST(Result, IsAValueOrTheReasonWhyThereIsNone) {
   EXPECT_EQ(none.status().message, "an odd number has no half");
 }
 
+TEST(Result, WithoutAValueIsNeverASuccess) {
+  const Result<int> none = Status{};
+  EXPECT_FALSE(none);
+  EXPECT_FALSE(none.status());
+  EXPECT_EQ(none.status().ending, Ending::cannot_continue);
+}
+
 }  // namespace
 }  // namespace continuo::status_test
