@@ -344,7 +344,9 @@ struct Model {
   bool accelerations_depend_on_velocities = false;  // then such methods lose their order: a warning
 
   std::vector<Quantity> lets, outputs, energies;
-  NodeId total_energy;  // the sum of `energies` and of the world's; not valid without any
+  NodeId total_energy;               // the sum of `energies` and of the world's; not valid without any
+  std::string total_energy_unit;     // empty without units
+  std::vector<NodeId> energy_terms;  // of that sum: `energies`, then the kinetic and the potential one of the world
   std::vector<When> events;
   std::vector<Scheduled> schedule;
   std::vector<EventOrder> event_order;

@@ -84,7 +84,7 @@ struct WorldMode {
 
 struct WorldDescription {
   int dimension = 2;
-  std::string length_unit, mass_unit, energy_unit;
+  std::string length_unit, mass_unit;
   NodePoint gravity;
   NodeId attraction, softening, opening;  // not valid without attraction
   NodeId drag_linear, drag_quadratic;     // not valid without drag

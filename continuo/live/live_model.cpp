@@ -61,11 +61,7 @@ class Preparation {
     for (const model::Quantity& energy : model_.energies)
       add(energy.name, energy.unit, ColumnKind::energy, energy.node);
     if (model_.total_energy.valid())
-      made_.energy = add("energy", energy_unit(), ColumnKind::energy, model_.total_energy);
-  }
-
-  std::string energy_unit() const {
-    return model_.energies.empty() ? model_.world->energy_unit : model_.energies.front().unit;
+      made_.energy = add("energy", model_.total_energy_unit, ColumnKind::energy, model_.total_energy);
   }
 
   LiveCurve curve(const model::Series& series) {

@@ -53,6 +53,8 @@ void store(Quantities made, Model& model) {
   model.outputs = std::move(made.outputs);
   model.energies = std::move(made.energies);
   model.total_energy = made.total_energy;
+  model.total_energy_unit = std::move(made.total_energy_unit);
+  model.energy_terms = std::move(made.energy_terms);
 }
 
 void store(EventList made, Model& model) {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include <continuo/language/world.hpp>
 #include <continuo/simulation/drive/run_recorder.hpp>
 
 namespace continuo::model {
@@ -18,10 +17,6 @@ std::vector<NodeId> quantity_nodes(const Model& model) {
   for (const Quantity& energy : model.energies) nodes.push_back(energy.node);
   if (model.total_energy.valid()) nodes.push_back(model.total_energy);
   return nodes;
-}
-
-std::string energy_unit(const Model& model) {
-  return model.has_world() ? model.world->energy_unit : model.energies[0].unit;
 }
 
 std::vector<Column> columns_of(const Model& model) {
@@ -77,7 +72,7 @@ void RunRecorder::watch(double t, const X& x) {
   watched_(t, x, watched_values_);
   if (!any_) {
     for (const double value : watched_values_) extremes_.push_back({value, value, t, t});
-    if (has_energy_) energy_ = {watched_values_[0], watched_values_[0], 0, energy_unit(program_.model)};
+    if (has_energy_) energy_ = {watched_values_[0], watched_values_[0], 0, program_.model.total_energy_unit};
   }
   any_ = true;
   for (std::size_t k = 0; k < watched_values_.size(); ++k) {

@@ -8,7 +8,6 @@
 #include <utility>
 #include <variant>
 
-#include <continuo/language/world.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 
 namespace continuo::model {
@@ -143,17 +142,9 @@ void compile_blocks(ModelProgram& program) {
 
 void place_watched(ModelProgram& program) {
   Graph& graph = program.model.graph;
-  for (const Quantity& energy : program.model.energies) {
-    const NodeId size = graph.apply(Op::absolute, energy.node);
+  for (const NodeId energy : program.model.energy_terms) {
+    const NodeId size = graph.apply(Op::absolute, energy);
     program.energy_scale = program.energy_scale.valid() ? graph.add(program.energy_scale, size) : size;
-  }
-  if (program.model.has_world()) {
-    const WorldDescription& world = *program.model.world;
-    for (std::size_t k = 0; k < 2; ++k) {  // kinetic, potential
-      const auto variable = static_cast<std::uint32_t>(program.model.layout.states + world.first_measure + k);
-      const NodeId size = graph.apply(Op::absolute, graph.variable(variable));
-      program.energy_scale = program.energy_scale.valid() ? graph.add(program.energy_scale, size) : size;
-    }
   }
   for (const Check& check : program.model.checks) {
     if (check.measure != Measure::always) continue;
@@ -227,7 +218,6 @@ bool is_autonomous(const ModelProgram& program) {
 /// Which states are only of interest to events and outputs.
 std::vector<char> find_counters(const Model& model) {
   std::vector<char> counters(model.states.size(), 0);
-  if (model.has_world()) return counters;
   for (std::size_t i = 0; i < counters.size(); ++i) counters[i] = stands_still(model, i) ? 1 : 0;
   for (const Mode& mode : model.modes) {
     for (const std::uint32_t v : variables_of(model.graph, mode.derivatives))
@@ -245,6 +235,11 @@ std::shared_ptr<const ModelProgram> compile(Model model) {
   compile_equations(*program);
   compile_blocks(*program);
   program->autonomous = is_autonomous(*program);
+  if (program->model.has_world()) {  // it moves on from every event anew, and samples its conditions by itself
+    program->counters.assign(program->model.states.size(), 0);
+    program->switches.resize(program->model.modes.size());
+    return program;
+  }
   program->counters = find_counters(program->model);
   for (std::size_t mode = 0; mode < program->model.modes.size(); ++mode)
     program->switches.push_back(switched_equations(*program, mode));

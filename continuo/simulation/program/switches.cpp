@@ -166,7 +166,6 @@ NodeId approach_of(ModelProgram& program, const SwitchedEquations& equations, No
 }  // namespace
 
 SwitchedEquations switched_equations(ModelProgram& program, std::size_t mode) {
-  if (program.model.has_world()) return {};
   SwitchedEquations equations = Rewriting(program, mode).equations();
   if (equations.empty()) return equations;
   std::vector<NodeId> surfaces, approach;

@@ -34,7 +34,11 @@ Quantities make_quantities(Expressions& expressions) {
   scope.highest = &highest;
   const Span span = made.energies.empty() ? Span{} : made.energies.front().span;
   Value total = expressions.lookup.total_energy(span, scope);
-  made.total_energy = expressions.values.settle(std::move(total), span, highest).node;
+  for (const Quantity& energy : made.energies) made.energy_terms.push_back(energy.node);
+  for (const NodeId energy : expressions.lookup.world_energies()) made.energy_terms.push_back(energy);
+  total = expressions.values.settle(std::move(total), span, highest);
+  made.total_energy = total.node;
+  made.total_energy_unit = unit_or_nothing(total.measured);
   return made;
 }
 

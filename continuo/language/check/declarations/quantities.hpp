@@ -1,6 +1,7 @@
 // continuo/language/check/declarations/quantities.hpp
 // Named expressions: lets, outputs, energies; and the guesses of unknowns.
 #pragma once
+#include <string>
 #include <vector>
 
 #include <continuo/language/check/expressions/expressions.hpp>
@@ -10,6 +11,8 @@ namespace continuo::model::detail {
 struct Quantities {
   std::vector<Quantity> lets, outputs, energies;
   NodeId total_energy;
+  std::string total_energy_unit;
+  std::vector<NodeId> energy_terms;
 };
 
 /// Every definition is looked at once, named or not, so that its mistakes are reported.

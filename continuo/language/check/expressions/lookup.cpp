@@ -115,16 +115,22 @@ Value Lookup::builtin(const ast::Name& name, const std::string& key, Scope& scop
   return unknown_name(name, key);
 }
 
+std::vector<NodeId> Lookup::world_energies() const {
+  if (!workspace_.declared.world.text) return {};
+  const auto first = static_cast<std::uint32_t>(first_world_measure());
+  return {workspace_.graph.variable(workspace_.layout.states + first),
+          workspace_.graph.variable(workspace_.layout.states + first + 1)};
+}
+
+std::size_t Lookup::first_world_measure() const {
+  const Symbol* measures = workspace_.declared.symbols.find("world.kinetic", Scope::no_mode);
+  return workspace_.declared.bases[measures->index].first;
+}
+
 Value Lookup::total_energy(Span span, Scope& scope) const {
   Value total;
-  if (workspace_.declared.world.text) {  // kinetic and potential
-    const Symbol* measures = workspace_.declared.symbols.find("world.kinetic", Scope::no_mode);
-    const std::size_t first = workspace_.declared.bases[measures->index].first;
-    const NodeId kinetic = workspace_.graph.variable(workspace_.layout.states + static_cast<std::uint32_t>(first));
-    const NodeId potential =
-        workspace_.graph.variable(workspace_.layout.states + static_cast<std::uint32_t>(first + 1));
-    total = {workspace_.graph.add(kinetic, potential), workspace_.units.of_state(first)};
-  }
+  if (const std::vector<NodeId> parts = world_energies(); !parts.empty())
+    total = {workspace_.graph.add(parts[0], parts[1]), workspace_.units.of_state(first_world_measure())};
   for (std::size_t i = 0; i < workspace_.declared.definitions.size(); ++i) {
     if (workspace_.declared.definitions[i].kind != Definition::Kind::energy) continue;
     const ast::Name& name = workspace_.declared.definitions[i].text->name;

@@ -1,7 +1,9 @@
 // continuo/language/check/expressions/lookup.hpp
 // What a name stands for.
 #pragma once
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include <continuo/language/check/names/scope.hpp>
 
@@ -21,6 +23,8 @@ class Lookup {
   Value derivative(const ast::Name& name, std::size_t base, Scope& scope) const;
   /// Of `energy` and of the world; its node is not valid where there is none.
   Value total_energy(Span span, Scope& scope) const;
+  /// The kinetic and the potential energy of the world; empty without bodies.
+  std::vector<NodeId> world_energies() const;
   /// E222: what stands in a constant changes with time.
   Value not_constant(Span span, const std::string& name, const Scope& scope) const;
   /// `undeclared`: what to do about it where the name is not like any other.
@@ -31,6 +35,7 @@ class Lookup {
   Value builtin(const ast::Name& name, const std::string& key, Scope& scope) const;
   Value without_time(const ast::Name& name, const Scope& scope) const;
   Value not_a_value(const ast::Name& name) const;
+  std::size_t first_world_measure() const;  // of the kinetic energy, among the states
 
   Expressions& expressions_;
   Workspace& workspace_;

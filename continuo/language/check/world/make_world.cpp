@@ -51,7 +51,6 @@ void make_world(Expressions& expressions, WorldAtWork& work, Model& model) {
   made.mass_unit = unit_or_nothing(work.mass);
   const Symbol* measures = workspace.declared.symbols.find("world.kinetic", Scope::no_mode);
   made.first_measure = workspace.declared.bases[measures->index].first;
-  made.energy_unit = states[made.first_measure].unit;
   WorldSettings(expressions, work).make();
   Bodies(expressions, work, states).make();
   work.stage = Stage::bodies_made;
