@@ -7,6 +7,7 @@
 
 #include <continuo/boundary/boundary_continuation.hpp>
 #include <continuo/boundary/boundary_problem_of_model.hpp>
+#include <continuo/simulation/drive/planner.hpp>
 #include <continuo/simulation/of_model.hpp>
 #include <continuo/symbolic/graph/expression.hpp>
 
@@ -198,13 +199,24 @@ std::optional<Diagnostic> what_does_not_fit(const Model& model, const Experiment
 
 }  // namespace
 
+std::optional<model::Plan> plan_boundary(const Model& model, const Experiment& experiment,
+                                         std::vector<Diagnostic>& problems) {
+  model::Planner planner(model, experiment, problems);
+  planner.begin();
+  planner.set_integration();  // of problems at the start, which the search for guesses may integrate
+  if (experiment.max_step || experiment.max_steps)
+    planner.fail("E333", "conditions at several times are met without steps in time",
+                 "leave out --max-step and --max-steps", true);
+  return planner.finish();
+}
+
 std::optional<PosedBoundary> pose_boundary(const std::shared_ptr<const ModelProgram>& program,
                                            const Experiment& experiment, std::vector<Diagnostic>& problems) {
   if (auto problem = what_does_not_fit(program->model, experiment)) {
     problems.push_back(std::move(*problem));
     return std::nullopt;
   }
-  auto planned = model::plan(program->model, experiment, problems);
+  auto planned = plan_boundary(program->model, experiment, problems);
   if (!planned) return std::nullopt;
   if (auto problem = what_stands_outside(program->model, *planned)) {
     problems.push_back(std::move(*problem));

@@ -65,6 +65,10 @@ struct GuessTable {
   std::vector<std::vector<double>> values;  // by column, one per time; NaN where there is none
 };
 
+/// The plan of a model whose conditions stand at several times, or nothing where `problems` has the reason: E33x, E34x.
+[[nodiscard]] std::optional<model::Plan> plan_boundary(const model::Model& model, const model::Experiment& experiment,
+                                                       std::vector<model::Diagnostic>& problems);
+
 /// Ready to be solved.
 struct PosedBoundary {
   std::shared_ptr<const model::ModelProgram> program;

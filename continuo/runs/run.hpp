@@ -24,6 +24,10 @@ struct RunRequest {
 [[nodiscard]] model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program,
                                    const model::Experiment& experiment = {}, const RunRequest& request = {});
 
+/// The plan of its run, or nothing where `problems` has the reason: E33x, E34x.
+[[nodiscard]] std::optional<model::Plan> plan(const model::Model& model, const model::Experiment& experiment,
+                                              std::vector<model::Diagnostic>& problems);
+
 /// The plan of a motion from its start that somebody else makes the steps of; nothing where it has none, for which
 /// `problems` has the reason.
 [[nodiscard]] std::optional<model::Plan> plan_from_start(const model::ModelProgram& program,

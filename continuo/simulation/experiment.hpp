@@ -59,8 +59,13 @@ struct Plan {
   double atol_of(std::size_t state) const { return atol.size() == 1 ? atol.front() : atol[state]; }
 };
 
-/// The plan, or why there is none: E33x, E34x.
-std::optional<Plan> plan(const Model& model, const Experiment& experiment, std::vector<Diagnostic>& problems);
+/// The plan of an integration from the start, or nothing where `problems` has the reason: E33x, E34x; E321 and E323 for
+/// conditions at several times and for bodies, which runs::plan plans as well.
+[[nodiscard]] std::optional<Plan> plan(const Model& model, const Experiment& experiment,
+                                       std::vector<Diagnostic>& problems);
+
+/// E323: a study of equations does not see collisions.
+[[nodiscard]] Diagnostic no_study_of_worlds(const Model& model);
 
 /// E340, E344 with the names that may have been meant.
 Diagnostic no_parameter(const Model& model, std::string_view name, Span span);

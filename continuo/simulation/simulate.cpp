@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <continuo/language/world.hpp>
 #include <continuo/simulation/drive/error_estimate.hpp>
 #include <continuo/simulation/drive/integrate.hpp>
 #include <continuo/simulation/drive/run_checks.hpp>
@@ -15,15 +14,6 @@
 namespace continuo::model {
 
 namespace {
-
-/// Models that no integration from the start can run.
-std::optional<Diagnostic> no_integration(const Model& model) {
-  if (model.has_world()) return no_study_of_worlds(model);
-  if (!model.needs_boundary_solver()) return std::nullopt;
-  return error("E321", model.boundary.front().span, "conditions at different times cannot be integrated from the start",
-               "this makes it a boundary-value problem",
-               "`continuo run` solves it; or give all conditions at the start");
-}
 
 Options<ModelSystem::X> options_of(const Plan& plan, const Experiment& experiment) {
   Options<ModelSystem::X> options{.rtol = plan.rtol, .atol = plan.atol.front()};
@@ -59,18 +49,8 @@ bool is_positive_period(const Model& model, const Plan& plan, std::vector<Diagno
 
 }  // namespace
 
-Diagnostic no_study_of_worlds(const Model& model) {
-  return error("E323", model.world->span, "a world of bodies is not integrated like equations",
-               "its bodies collide, and no study of equations can see that",
-               "`continuo run`, `verify`, `compare`, `converge`, `sense` and `fit` move it");
-}
-
 std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
                              std::vector<Diagnostic>& problems) {
-  if (auto problem = no_integration(program.model)) {
-    problems.push_back(std::move(*problem));
-    return std::nullopt;
-  }
   auto planned = plan(program.model, experiment, problems);
   if (!planned || !is_positive_period(program.model, *planned, problems)) return std::nullopt;
   place_step_inputs(program, *planned);
@@ -111,7 +91,6 @@ Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Exp
 }
 
 Simulated simulate(const Model& model, const Experiment& experiment) {
-  if (auto problem = no_integration(model)) return {std::nullopt, {std::move(*problem)}};
   return simulate(compile(model), experiment);
 }
 

@@ -37,9 +37,6 @@ Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Exp
 std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
                              std::vector<Diagnostic>& problems);
 
-/// E323: what a verb or a study says that cannot see collisions.
-Diagnostic no_study_of_worlds(const Model& model);
-
 /// What an ending that is no success says as a diagnostic: E30x, E310.
 Diagnostic failure(const Model& model, const Outcome<double>& outcome);
 /// With the jump of the equations at which the run has come to stand, if there is one.

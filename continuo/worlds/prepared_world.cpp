@@ -1,5 +1,6 @@
 // continuo/worlds/prepared_world.cpp
 // Checks, plans and builds a world for a run.
+#include <continuo/worlds/plan_world.hpp>
 #include <continuo/worlds/prepared_world.hpp>
 
 namespace continuo::worlds {
@@ -28,7 +29,7 @@ PreparedWorld prepare_world(const std::shared_ptr<const model::ModelProgram>& pr
     problems.push_back(std::move(*problem));
     return {};
   }
-  auto planned = plan(model, experiment, problems);
+  auto planned = plan_world(model, experiment, problems);
   if (!planned) return {};
   for (const model::TableInput& input : program->step_inputs)
     planned->variables[input.variable] = input.table.value(planned->from);

@@ -10,6 +10,7 @@
 #include <continuo/simulation/drive/error_estimate.hpp>
 #include <continuo/simulation/drive/run_checks.hpp>
 #include <continuo/simulation/drive/run_recorder.hpp>
+#include <continuo/worlds/plan_world.hpp>
 #include <continuo/worlds/prepared_world.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 #include <continuo/worlds/world_events.hpp>
@@ -261,7 +262,7 @@ model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& 
                               std::size_t checkpoint, const GoOn& how, RunLog* log) {
   model::Simulated simulated;
   model::Experiment experiment = recording.head.experiment;
-  const auto as_recorded = plan(program->model, experiment, simulated.diagnostics);
+  const auto as_recorded = plan_world(program->model, experiment, simulated.diagnostics);
   if (!as_recorded) return simulated;
   experiment.interrupt = how.interrupt;
   experiment.progress = how.progress;
@@ -285,7 +286,7 @@ model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& 
                               const RunRecording& recording) {
   model::Simulated simulated;
   const model::Model& model = program->model;
-  auto planned = plan(model, recording.head.experiment, simulated.diagnostics);
+  auto planned = plan_world(model, recording.head.experiment, simulated.diagnostics);
   if (!planned) return simulated;
   model::RunRecorder recorder(*program, as_the_recorder_sees(*planned), recording.head.experiment.keep_rows,
                               sample_times(model, *planned), program->always);

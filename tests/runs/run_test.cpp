@@ -69,6 +69,42 @@ TEST(Run, IsPlannedWhereItHasAStart) {
   EXPECT_EQ(problems.front().code, "E321");
 }
 
+TEST(Run, IsPlannedByTheModuleThatRunsIt) {
+  struct Case {
+    std::string text, method;
+    double rtol;
+  };
+  for (const Case& one : {Case{decay, "dop853", 1e-10}, Case{ball, "exact", 1e-10}, Case{both_ends, "dop853", 1e-10}}) {
+    const auto program = program_of(one.text);
+    std::vector<model::Diagnostic> problems;
+    const model::Experiment experiment =
+        one.method == "exact" ? model::Experiment{} : model::Experiment{.method = one.method, .rtol = 1e-10};
+    const auto planned = runs::plan(program->model, experiment, problems);
+    ASSERT_TRUE(planned) << one.text;
+    EXPECT_EQ(planned->method, one.method);
+    EXPECT_EQ(planned->rtol, one.rtol);
+    EXPECT_EQ(planned->variables.size(), program->model.layout.size);
+  }
+}
+
+TEST(Run, IsNotPlannedWithLimitsOfStepsWhereThereAreNone) {
+  for (const std::string& text : {ball, both_ends}) {
+    std::vector<model::Diagnostic> problems;
+    EXPECT_FALSE(runs::plan(program_of(text)->model, {.max_steps = 5}, problems));
+    ASSERT_FALSE(problems.empty());
+    EXPECT_EQ(problems.front().code, "E333");
+  }
+}
+
+TEST(Run, OfOtherThanEquationsIsNotPlannedAsAnIntegration) {
+  std::vector<model::Diagnostic> problems;
+  EXPECT_FALSE(model::plan(program_of(ball)->model, {}, problems));
+  EXPECT_FALSE(model::plan(program_of(both_ends)->model, {}, problems));
+  ASSERT_EQ(problems.size(), 2U);
+  EXPECT_EQ(problems[0].code, "E323");
+  EXPECT_EQ(problems[1].code, "E321");
+}
+
 TEST(Run, CostsWhatItsKindCounts) {
   const auto equations = program_of(decay), bodies = program_of(ball);
   const auto integrated = run(equations), moved = run(bodies);

@@ -18,6 +18,7 @@
 
 #include <continuo/language/load.hpp>
 #include <continuo/simulation/check_derivatives.hpp>
+#include <continuo/simulation/drive/planner.hpp>
 #include <continuo/simulation/program/model_system.hpp>
 #include <continuo/simulation/run_along.hpp>
 #include <continuo/simulation/simulate.hpp>
@@ -121,7 +122,11 @@ class GalleryJacobian : public testing::TestWithParam<GalleryModel> {
       return simulated.run ? std::move(*simulated.run) : model::Run{};
     }
     std::vector<Diagnostic> problems;
-    auto planned = plan(program_->model, {.output_steps = true}, problems);
+    const Experiment experiment{.output_steps = true};
+    Planner planner(program_->model, experiment, problems);
+    planner.begin();
+    planner.set_integration();
+    auto planned = planner.finish();
     if (!planned) return {};
     const double from = planned->from, third = (planned->to - from) / 3;
     const std::vector<double> steps{from + third, from + 2 * third};

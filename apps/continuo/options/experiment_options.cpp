@@ -13,6 +13,7 @@
 
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/runs/kind.hpp>
+#include <continuo/runs/run.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::app {
@@ -145,7 +146,7 @@ std::function<void(double)> watcher_of(const Prepared& prepared, Progress& progr
   const model::Model& model = prepared.program->model;
   if (!runs::kind_of(model).has_start) return progress.parts();
   std::vector<model::Diagnostic> problems;  // the run itself will tell of them
-  const auto plan = model::plan(model, prepared.experiment, problems);
+  const auto plan = runs::plan(model, prepared.experiment, problems);
   return plan ? progress.over(plan->from, plan->to) : progress.number("t");
 }
 

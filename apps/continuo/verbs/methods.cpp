@@ -13,6 +13,7 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
+#include <continuo/runs/run.hpp>
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/solve/catalogue.hpp>
 
@@ -99,7 +100,7 @@ ExitCode why(const std::string& file) {
   if (!loaded) return wrong_model;
   const model::Model& model = *loaded.model;
   std::vector<model::Diagnostic> problems;
-  const auto plan = model::plan(model, {}, problems);
+  const auto plan = runs::plan(model, {}, problems);
   show(problems, loaded.source);
   if (!plan) return usage;
   print(fmt::format("{}: {}; {}\n", model.name, plan->method, plan->reason));

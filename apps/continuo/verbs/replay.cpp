@@ -18,6 +18,7 @@
 
 #include <continuo/language/load.hpp>
 #include <continuo/runs/kind.hpp>
+#include <continuo/runs/run.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 
 namespace continuo::app {
@@ -102,7 +103,7 @@ ExitCode resume(const ReplayRequest& request) {
   const model::Simulated simulated = [&] {
     Progress progress;
     std::vector<model::Diagnostic> problems;  // the run itself will tell of them
-    const auto plan = model::plan(opened.program->model, head.experiment, problems);
+    const auto plan = runs::plan(opened.program->model, head.experiment, problems);
     return worlds::resume_world(opened.program, recording, checkpoint,
                                 {.to = request.until,
                                  .interrupt = &interrupt_flag(),

@@ -29,17 +29,17 @@ model::Experiment with_common_rows(const model::ModelProgram& program, const Com
     std::vector<double> steps = request.steps;
     if (steps.empty()) {
       experiment.method = "fast";
-      const auto fast = model::plan(program.model, experiment, problems);
+      const auto fast = runs::plan(program.model, experiment, problems);
       if (fast) steps.push_back(fast->step);
     }
     experiment.method = "exact";
-    const auto plan = model::plan(program.model, experiment, problems);
+    const auto plan = runs::plan(program.model, experiment, problems);
     if (!plan || steps.empty()) return experiment;
     const double longest = std::ranges::max(steps), wanted = (plan->to - plan->from) / grid_intervals;
     experiment.output = longest * std::max(1.0, std::round(wanted / longest));
     return experiment;
   }
-  const auto plan = model::plan(program.model, experiment, problems);
+  const auto plan = runs::plan(program.model, experiment, problems);
   if (plan && plan->output == model::OutputPlan::Kind::steps) {
     experiment.output = std::abs(plan->to - plan->from) / grid_intervals;
   }

@@ -7,6 +7,7 @@
 
 #include <continuo/runs/kind.hpp>
 #include <continuo/runs/methods.hpp>
+#include <continuo/runs/run.hpp>
 #include <continuo/simulation/of_model.hpp>
 #include <continuo/simulation/program/evaluation.hpp>
 #include <continuo/studies/compare.hpp>
@@ -160,7 +161,7 @@ Convergence converge(const std::shared_ptr<const model::ModelProgram>& program, 
                      const ConvergeRequest& request) {
   const runs::Kind kind = runs::kind_of(program->model);
   std::vector<model::Diagnostic> problems;
-  const auto plan = model::plan(program->model, experiment, problems);
+  const auto plan = runs::plan(program->model, experiment, problems);
   if (!plan || !kind.has_start) {
     Convergence result;
     result.problem = problems.empty() ? "the model's conditions stand at several times: it has no run from the start"

@@ -41,7 +41,7 @@ class MovingConditions {
     if (known != kept_.end()) return known->conditions.get();
     experiment_.parameters[parameter_] = value;
     std::vector<Diagnostic> ignored;
-    const auto planned = model::plan(program_->model, experiment_, ignored);
+    const auto planned = boundary::plan_boundary(program_->model, experiment_, ignored);
     if (kept_.size() == most_kept) kept_.erase(kept_.begin());
     kept_.push_back({value, planned ? std::make_shared<boundary::BoundaryConditions>(*program_, *planned) : nullptr});
     return kept_.back().conditions.get();

@@ -7,6 +7,7 @@
 
 #include <continuo/methods/automatic.hpp>
 #include <continuo/runs/kind.hpp>
+#include <continuo/runs/run.hpp>
 #include <continuo/simulation/program/jumps.hpp>
 #include <continuo/simulation/program/switches.hpp>
 #include <continuo/solve/choice.hpp>
@@ -171,7 +172,7 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   // A plan wants one that chooses its steps; which it is, is decided where the size is known.
   experiment.method = model.needs_dae_solver() ? Radau::name : Dop853Radau::name;
   experiment.step.reset();
-  auto planned = model::plan(model, experiment, run.diagnostics);
+  auto planned = runs::plan(model, experiment, run.diagnostics);
   if (auto refused = no_sensitivity(model, influences())) run.diagnostics.push_back(std::move(*refused));
   if (!planned || !run.diagnostics.empty()) return run;
   std::vector<double>& variables = planned->variables;
