@@ -1,5 +1,5 @@
 // continuo/live/audience.hpp
-// Whoever looks: what a session shows, in the words of docs/protocol.md.
+// The observers of a session: the data that a session shows them, with the names of docs/protocol.md.
 #pragma once
 #include <cstddef>
 #include <cstdint>

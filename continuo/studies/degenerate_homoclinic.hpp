@@ -1,4 +1,4 @@
-// Homoclinic orbits that are more than that (with a flip, a neutral saddle, a saddle-node), followed while three
+// Degenerate homoclinic orbits (with a flip, a neutral saddle, a saddle-node), followed while three
 // constants move: HomCont's curves with a fixed psi. At each place one constant, that which moves fastest, is given; in
 // the other two a homoclinic orbit with a zero of the test function is solved for, along the curve of homoclinic orbits
 // that goes through there. A. R. Champneys, Yu. A. Kuznetsov, B. Sandstede, "A numerical toolbox for homoclinic

@@ -1,4 +1,4 @@
-// How long a step may be before a method makes motions grow that should die out: its region of absolute stability, with
+// The longest step with which a method keeps decaying motions bounded: its region of absolute stability, with
 // a model the largest stable step.
 //
 //   const StabilityRegion region = stability_region(steps_of("rk4"));

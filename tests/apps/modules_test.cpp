@@ -1,4 +1,4 @@
-// What is loaded when the command starts, and what when it is asked for.
+// The modules that the command loads at its start, and those that it loads on demand.
 #include <filesystem>
 #include <regex>
 #include <string>

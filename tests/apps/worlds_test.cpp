@@ -1,4 +1,4 @@
-// What the verbs make of a world of bodies.
+// The verbs of the command, run on a world of bodies.
 #include <array>
 #include <sstream>
 #include <string>

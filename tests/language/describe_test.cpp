@@ -1,4 +1,4 @@
-// What `continuo info` says of a model.
+// The description of a model by `continuo info`.
 #include <gmock/gmock.h>
 
 #include "check_helpers.hpp"

@@ -1,4 +1,4 @@
-// The server under clients that mean it no good. Sockets by hand: a library would not send what is sent here.
+// The server under malicious clients. Sockets by hand: a library would not send what is sent here.
 #include <atomic>
 #include <chrono>
 #include <memory>

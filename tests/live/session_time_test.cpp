@@ -1,4 +1,4 @@
-// What the clock does to a session, and going back.
+// The clock of a session, and its history.
 #include <algorithm>
 
 #include <tests/live/spectator.hpp>

@@ -6,7 +6,7 @@
 //   Checked checked = check(parsed.model, source);
 //   if (!checked.model) std::cerr << render(checked.diagnostics, source);
 //
-// The codes are in codes.hpp; every message stands where the author can mend it.
+// The codes are in codes.hpp; every message marks the place in the text that has to be corrected.
 #pragma once
 #include <optional>
 #include <vector>

@@ -1,5 +1,5 @@
 // continuo/language/text/diagnostic.hpp
-// What Continuo has to say about a model, and how it is shown.
+// The diagnostics of a model, and how they are shown.
 //
 //   Diagnostic d = error("E201", span, "units do not match", "`F - k*x` is N, `c*x` is N*s", "did you mean c*x' ?");
 //   std::string text = render(d, source);   // the block with the line and its carets

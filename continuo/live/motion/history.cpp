@@ -26,7 +26,7 @@ void History::add(Sample sample) {
   }
 }
 
-/// Of the older half every second moment goes: what is long ago is known more coarsely, and none the less.
+/// Deletes every second moment of the older half: the distant past is kept at a lower resolution.
 void History::thin() {
   std::deque<Sample> kept;
   const std::size_t half = samples_.size() / 2;

@@ -37,7 +37,7 @@ class OriginGuard {
   unsigned port_;
 };
 
-/// Says each kind of thing once, and counts the others: a flood of requests is no flood of lines.
+/// Logs each kind of refusal once and counts the others, so that a flood of requests does not flood the log.
 class SayOnce {
  public:
   using Say = std::function<void(const std::string&)>;

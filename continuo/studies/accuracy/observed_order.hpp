@@ -1,4 +1,4 @@
-// What a list of errors says of the order behind them:
+// The order of a method, estimated from a list of errors:
 //
 //   const ErrorCurve curve = read_errors(steps, errors);
 //   curve.order;       // the slope, error = constant * step^order, where it is one

@@ -1,4 +1,4 @@
-// What lies between two neighbouring places of a family of solutions: folds, crossings. Internal to boundary_family.
+// The folds and crossings between two neighbouring places of a family of solutions. Internal to boundary_family.
 #pragma once
 #include <optional>
 

@@ -1,4 +1,4 @@
-// The numbers of the normal forms where a fold is more than a fold. Internal to bifurcation_curve. Yu. A. Kuznetsov,
+// The coefficients of the normal forms of degenerate folds. Internal to bifurcation_curve. Yu. A. Kuznetsov,
 // "Numerical normalization techniques for all codim 2 bifurcations of equilibria in ODE's", SIAM J. Numer. Anal. 36
 // (1999) 1104-1124.
 #pragma once

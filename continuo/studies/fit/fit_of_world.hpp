@@ -1,4 +1,4 @@
-// What a fit of a world of bodies must look at, since its motion has kinks and jumps. Internal to fit.
+// The checks that a fit of a world of bodies needs, since its motion has kinks and jumps. Internal to fit.
 #pragma once
 #include <functional>
 #include <string>

@@ -1,4 +1,4 @@
-// What the residuals of a fit say: how each column is met, chi squared, likelihood, and what is to be doubted.
+// Statistics of the residuals of a fit: the agreement of each column, chi squared, likelihood, and warnings.
 // Internal to fit.
 #pragma once
 #include <vector>

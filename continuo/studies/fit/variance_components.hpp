@@ -1,4 +1,4 @@
-// How far measurements scatter, and how sure that leaves what was fitted to them.
+// The variance of measurements, and the resulting uncertainty of the fitted unknowns.
 //
 // Residuals r with derivatives J by the unknowns have variances that are sums of components, v_i = sum_k theta_k d_ik:
 // one for each column of constant noise, d = y^2 for noise in proportion to y, two of them for both. Those that are not

@@ -1,4 +1,4 @@
-// What a sensitivity is taken by, and what a fit finds: a parameter of a model, or the initial value of a state.
+// The variable of a sensitivity, or the unknown of a fit: a parameter of a model, or the initial value of a state.
 #pragma once
 #include <cstddef>
 #include <string>

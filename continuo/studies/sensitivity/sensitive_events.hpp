@@ -1,4 +1,4 @@
-// What happens in a model, and what it does to the sensitivities: its events, and the jumps of its equations. Internal
+// The events of a model and the jumps of its equations, and their effect on the sensitivities. Internal
 // to sensitivity.
 #pragma once
 #include <cstddef>

@@ -1,4 +1,4 @@
-// After which time all that hangs on the time in a model repeats: `cos(omega*t)`, `mod(t, 2)`, `every 0.5 { ... }`. It
+// The period of a model's explicit dependence on time: `cos(omega*t)`, `mod(t, 2)`, `every 0.5 { ... }`. It
 // is proven from the text: t may stand only in what a period of a function takes out again.
 //
 //   const Forcing forcing = forcing_of(program);

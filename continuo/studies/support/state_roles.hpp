@@ -1,4 +1,4 @@
-// What the states of a model are to a study that looks at neighbours of its motion: directions in which these may lie,
+// The roles of the states of a model in a study of neighbouring motions: directions in which these may lie,
 // flags and counters that jump by whole steps, sums that nothing reads.
 #pragma once
 #include <cstddef>

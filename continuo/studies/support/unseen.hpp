@@ -1,4 +1,4 @@
-// What a study of x' = f(x) alone would not see of a model, so that it can say so: events, the time, jumps.
+// The features of a model that a study of x' = f(x) alone ignores, so that it can report them: events, the time, jumps.
 //
 //   if (const auto unseen = unseen_of(program, mode)) refuse(unseen->span, unseen->what);
 #pragma once

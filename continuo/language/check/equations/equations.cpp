@@ -1,5 +1,5 @@
 // continuo/language/check/equations/equations.cpp
-// One equation after the other, then what hangs together, mode by mode.
+// Solves single equations first, then the coupled ones together, mode by mode.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // continuo/language/check/equations/equations.hpp
 // Equations solved for their highest derivatives: each alone where it holds one, else together where they hang
-// together (accelerations coupled through a mass matrix). What has no such derivative determines an unknown.
+// together (accelerations coupled through a mass matrix). An equation without such a derivative determines an unknown.
 #pragma once
 #include <vector>
 

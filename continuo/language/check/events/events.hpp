@@ -1,5 +1,5 @@
 // continuo/language/check/events/events.hpp
-// Events: guards, times and what happens.
+// Events: guards, times and actions.
 #pragma once
 #include <vector>
 

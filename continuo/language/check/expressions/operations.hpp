@@ -1,5 +1,5 @@
 // continuo/language/check/expressions/operations.hpp
-// What operators make of values: a node, and the unit of the result. Knows no names and no scopes.
+// The result of operators: a node and its unit. Knows no names and no scopes.
 #pragma once
 #include <functional>
 #include <string>

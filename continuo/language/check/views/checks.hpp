@@ -1,5 +1,5 @@
 // continuo/language/check/views/checks.hpp
-// `check ...`: what the model says about itself.
+// `check ...`: assertions of a model about its own run.
 #pragma once
 #include <string>
 #include <vector>

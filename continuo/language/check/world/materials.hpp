@@ -1,5 +1,5 @@
 // continuo/language/check/world/materials.hpp
-// What surfaces are made of.
+// The materials of surfaces: restitution, friction and rolling resistance.
 #pragma once
 #include <continuo/language/check/world/world_numbers.hpp>
 
