@@ -203,10 +203,10 @@ std::optional<model::Plan> plan_boundary(const Model& model, const Experiment& e
                                          std::vector<Diagnostic>& problems) {
   model::Planner planner(model, experiment, problems);
   planner.begin();
-  planner.set_integration();  // of problems at the start, which the search for guesses may integrate
   if (experiment.max_step || experiment.max_steps)
     planner.fail("E333", "conditions at several times are met without steps in time",
                  "leave out --max-step and --max-steps", true);
+  planner.set_integration();  // for its tolerances; pose_boundary replaces the method and the step
   return planner.finish();
 }
 

@@ -33,7 +33,7 @@ class Planner {
   Plan& plan() { return plan_; }
   /// A problem of this code at the run statement. `overridden`: the experiment asked for it, not the model.
   void fail(const char* code, std::string message, std::string help, bool overridden = false);
-  /// A value of the run statement in these circumstances, where it is given.
+  /// The value of a setting of the run statement with the parameters of the experiment; nothing where it is not given.
   [[nodiscard]] std::optional<double> value(const std::optional<Setting>& setting) const;
   /// Whether the experiment names a tolerance.
   [[nodiscard]] bool asks_for_tolerance() const;

@@ -235,7 +235,7 @@ std::shared_ptr<const ModelProgram> compile(Model model) {
   compile_equations(*program);
   compile_blocks(*program);
   program->autonomous = is_autonomous(*program);
-  if (program->model.has_world()) {  // it moves on from every event anew, and samples its conditions by itself
+  if (program->model.has_world()) {  // worlds/ locates events by samples, without counters and switches
     program->counters.assign(program->model.states.size(), 0);
     program->switches.resize(program->model.modes.size());
     return program;
