@@ -42,10 +42,7 @@ Status ExactMotion<Real, Dim>::advance_to(const Real& t) {
     return invalid_input("the time to advance to must be finite and not before the present");
   if (is_parabolic() != was_parabolic_) refresh();
   engine_->contacts.clear();
-  std::string fault = engine_->advance_to(t);
-  if (fault.empty()) return {};
-  return {.ending = options_.is_interrupted() ? Ending::interrupted : Ending::cannot_continue,
-          .message = std::move(fault)};
+  return engine_->advance_to(t);
 }
 template <class Real, int Dim>
 void ExactMotion<Real, Dim>::refresh() {

@@ -8,8 +8,8 @@
 //   recorder.finish();                                     // writes the index
 //
 //   const auto recording = Recording<double, 3>::read(bytes_of_the_file);
-//   if (!recording.error.empty()) ...
-//   const auto frame = recording.frame(17);                // frame.time, frame.position[i]
+//   if (!recording) std::cerr << describe(recording.status());
+//   const auto frame = recording->frame(17);               // frame.time, frame.position[i]
 //
 // The last block is the index; a file that ends without it, because the run did not, is read as far as its blocks are
 // whole.
@@ -25,6 +25,7 @@
 
 #include <continuo/bodies/snapshot.hpp>
 #include <continuo/bodies/support/blocks.hpp>
+#include <continuo/status/result.hpp>
 
 namespace continuo {
 
@@ -98,7 +99,6 @@ class Recorder {
 
 template <class Real, int Dim>
 struct Recording {
-  std::string error{};    // why nothing can be played; else all below is as the file says
   bool is_whole = false;  // false where the run ended before its recording did
   std::vector<World<Real, Dim>> scenes{};
   std::vector<Frame<Real, Dim>> frames{};
@@ -110,7 +110,8 @@ struct Recording {
     return after == frames.begin() ? frames.front() : *(after - 1);
   }
 
-  static Recording read(std::span<const std::byte> bytes) {
+  /// Unreadable where nothing can be played.
+  static Result<Recording> read(std::span<const std::byte> bytes) {
     Recording recording;
     ByteReader file(bytes);
     detail::recording_format.expect(file);
@@ -122,10 +123,12 @@ struct Recording {
       const std::uint64_t begin = file.position();
       const auto block = next_block(file, detail::RecordingBlock::index);
       if (block) recording.take(file, block->kind, block->bytes, begin, found);
-      if (!file.ok()) return {.error = file.error()};
+      if (!file.ok()) return file.status();
       if (!block) break;
     }
-    if (recording.frames.empty()) return {.error = "byte " + std::to_string(bytes.size()) + ": not one frame"};
+    if (recording.frames.empty())
+      return Status{.ending = Ending::unreadable,
+                    .message = "byte " + std::to_string(bytes.size()) + ": not one frame"};
     return recording;
   }
 

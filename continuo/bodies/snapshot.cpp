@@ -178,9 +178,8 @@ Bytes written(const World<Real, Dim>& world, Of of, WriteMotion&& write_motion) 
   return writer.take();
 }
 
-/// Bytes that cannot be read; a success where there is no message.
+/// Bytes that cannot be read.
 Status corrupt(std::string message) {
-  if (message.empty()) return {};
   return {.ending = Ending::unreadable, .message = std::move(message)};
 }
 
@@ -202,7 +201,7 @@ Status read(std::span<const std::byte> bytes, World<Real, Dim>& world, ReadMotio
   reader.expect(size == sizeof(Real), "numbers of another size: float and double worlds do not mix");
   reader.expect(dim == Dim, "another number of dimensions");
   reader.expect(of <= Of::fast_motion, "a snapshot of nothing known");
-  if (!reader.ok()) return corrupt(reader.error());
+  if (!reader.ok()) return reader.status();
   std::uint64_t sum = 0;
   ByteReader(bytes.last(sizeof sum))(sum);
   if (sum != checksum(body))
@@ -212,7 +211,7 @@ Status read(std::span<const std::byte> bytes, World<Real, Dim>& world, ReadMotio
   found.torque_laws = world.torque_laws;
   SnapshotAccess::transfer_world(reader, found);
   if (reader.ok()) read_motion(reader, of, found);
-  return corrupt(reader.error());
+  return reader.status();
 }
 
 }  // namespace

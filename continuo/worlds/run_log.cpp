@@ -160,7 +160,7 @@ void RunLog::add(const RunEnd& end) {
   out_.flush();
 }
 
-RunRecording RunRecording::read(std::span<const std::byte> bytes) {
+Result<RunRecording> RunRecording::read(std::span<const std::byte> bytes) {
   RunRecording recording;
   ByteReader reader(bytes);
   run_format.expect(reader);
@@ -186,7 +186,7 @@ RunRecording RunRecording::read(std::span<const std::byte> bytes) {
   }
   if (reader.ok() && recording.notes.empty())
     reader.fail(has_head ? "it was cut off before its first row" : "it was cut off before it began");
-  if (!reader.ok()) return {.error = reader.error()};
+  if (!reader.ok()) return reader.status();
   return recording;
 }
 

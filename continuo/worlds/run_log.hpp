@@ -4,10 +4,10 @@
 //   std::ofstream file("gas.run", std::ios::binary);
 //   RunLog log(file, {.file = "gas.sim", .text = text});
 //   simulate_world(program, experiment, &log);
-//   const RunRecording recording = RunRecording::read(bytes_of_the_file);
-//   if (!recording.error.empty()) ...
-//   replay_world(program, recording);                              // the same run, without moving a body
-//   resume_world(program, recording, recording.checkpoints.size() - 1, {.to = 20});
+//   const Result<RunRecording> recording = RunRecording::read(bytes_of_the_file);
+//   if (!recording) std::cerr << describe(recording.status());
+//   replay_world(program, *recording);                             // the same run, without moving a body
+//   resume_world(program, *recording, recording->checkpoints.size() - 1, {.to = 20});
 //
 // A file that was cut off is read as far as its blocks are whole.
 #pragma once
@@ -23,6 +23,7 @@
 #include <continuo/simulation/drive/run_recorder.hpp>
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/run.hpp>
+#include <continuo/status/result.hpp>
 #include <continuo/worlds/world_run.hpp>
 
 namespace continuo::worlds {
@@ -81,13 +82,13 @@ class RunLog {
 };
 
 struct RunRecording {
-  std::string error{};  // why there is nothing; else all below is as the file says
   RunHead head{};
   std::vector<Note> notes{};
   std::vector<Checkpoint> checkpoints{};
   std::optional<RunEnd> end{};  // none where the file was cut off
 
-  static RunRecording read(std::span<const std::byte> bytes);
+  /// Unreadable where not one note of the run is there.
+  static Result<RunRecording> read(std::span<const std::byte> bytes);
   /// The last checkpoint not after t; the first where all are.
   std::size_t checkpoint_at(double t) const;
 };

@@ -41,44 +41,44 @@ std::string run(std::vector<World<double, 2>>& seen, bool finishes) {
 TEST(Recording, IsWhatWasSeen) {
   std::vector<World<double, 2>> seen;
   const auto recording = Recording<double, 2>::read(bytes_of(run(seen, true)));
-  ASSERT_EQ(recording.error, "");
-  EXPECT_TRUE(recording.is_whole);
-  ASSERT_EQ(recording.frames.size(), seen.size());
-  ASSERT_EQ(recording.scenes.size(), 2u);
+  ASSERT_TRUE(recording) << describe(recording.status());
+  EXPECT_TRUE(recording->is_whole);
+  ASSERT_EQ(recording->frames.size(), seen.size());
+  ASSERT_EQ(recording->scenes.size(), 2u);
   for (std::size_t k = 0; k < seen.size(); ++k) {
-    EXPECT_EQ(recording.frame(k).time, seen[k].time);
-    EXPECT_EQ(recording.frame(k).position, seen[k].position);
-    EXPECT_EQ(recording.frame(k).orientation, seen[k].orientation);
-    EXPECT_EQ(recording.scenes[recording.frame(k).scene].radius, seen[k].radius);
+    EXPECT_EQ(recording->frame(k).time, seen[k].time);
+    EXPECT_EQ(recording->frame(k).position, seen[k].position);
+    EXPECT_EQ(recording->frame(k).orientation, seen[k].orientation);
+    EXPECT_EQ(recording->scenes[recording->frame(k).scene].radius, seen[k].radius);
   }
-  EXPECT_EQ(recording.at(0.25).time, seen[2].time);
-  EXPECT_EQ(recording.at(-1).time, seen[0].time);
-  EXPECT_EQ(recording.at(99).time, seen[9].time);
+  EXPECT_EQ(recording->at(0.25).time, seen[2].time);
+  EXPECT_EQ(recording->at(-1).time, seen[0].time);
+  EXPECT_EQ(recording->at(99).time, seen[9].time);
 }
 
 TEST(Recording, CutOffIsReadAsFarAsItGoes) {
   std::vector<World<double, 2>> seen;
   std::string text = run(seen, false);
   const auto all = Recording<double, 2>::read(bytes_of(text));
-  EXPECT_EQ(all.error, "");
-  EXPECT_FALSE(all.is_whole);
-  EXPECT_EQ(all.frames.size(), 10u);
+  ASSERT_TRUE(all) << describe(all.status());
+  EXPECT_FALSE(all->is_whole);
+  EXPECT_EQ(all->frames.size(), 10u);
   text.resize(text.size() - 5);
-  EXPECT_EQ((Recording<double, 2>::read(bytes_of(text)).frames.size()), 9u);
+  EXPECT_EQ((Recording<double, 2>::read(bytes_of(text))->frames.size()), 9u);
 }
 
 TEST(Recording, CorruptBytesAreTold) {
   std::vector<World<double, 2>> seen;
   const Bytes bytes = bytes_of(run(seen, true));
-  EXPECT_NE((Recording<double, 3>::read(bytes).error), "");
-  EXPECT_NE((Recording<double, 2>::read({}).error), "");
+  EXPECT_EQ((Recording<double, 3>::read(bytes).status().ending), Ending::unreadable);
+  EXPECT_EQ((Recording<double, 2>::read({}).status().ending), Ending::unreadable);
   std::mt19937 engine(1);
   for (int k = 0; k < 200; ++k) {
     Bytes wrong = bytes;
     wrong[engine() % wrong.size()] ^= static_cast<std::byte>(1 + engine() % 255);
     const auto recording = Recording<double, 2>::read(wrong);
     // A size that is too large now reads as a file cut off; all else is found.
-    EXPECT_TRUE(recording.error.starts_with("byte ") || !recording.is_whole);
+    EXPECT_TRUE(recording ? !recording->is_whole : recording.status().message.starts_with("byte "));
   }
 }
 

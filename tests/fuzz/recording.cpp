@@ -30,16 +30,17 @@ namespace {
 using namespace continuo;
 using namespace continuo::worlds;
 
-void check_refusal(const std::string& error) {
-  if (error.substr(0, 5) != "byte ") std::abort();
+void check_refusal(const Status& status) {
+  if (status.ending != Ending::unreadable || !status.message.starts_with("byte ")) std::abort();
 }
 
 template <class Real, int Dim>
 void play(std::span<const std::byte> bytes) {
   const auto recording = Recording<Real, Dim>::read(bytes);
-  if (!recording.error.empty()) return check_refusal(recording.error);
-  for (const auto& frame : recording.frames)
-    if (recording.at(frame.time).position.size() != recording.scenes.at(frame.scene).size() && frame.time == frame.time)
+  if (!recording) return check_refusal(recording.status());
+  for (const auto& frame : recording->frames)
+    if (recording->at(frame.time).position.size() != recording->scenes.at(frame.scene).size() &&
+        frame.time == frame.time)
       std::abort();
 }
 
@@ -88,19 +89,19 @@ void tell_and_go_on(const std::shared_ptr<const model::ModelProgram>& program, c
   if (!on.run) return;
   // What it wrote is in order whatever it went on from.
   const std::string text = file.str();
-  if (!RunRecording::read(std::as_bytes(std::span(text))).error.empty()) std::abort();
+  if (!RunRecording::read(std::as_bytes(std::span(text)))) std::abort();
 }
 
 void go_on(std::span<const std::byte> bytes) {
   static const std::array programs{program_of(recorded_models[0].text), program_of(recorded_models[1].text),
                                    program_of(recorded_models[2].text)};
-  const RunRecording recording = RunRecording::read(bytes);
-  if (!recording.error.empty()) return check_refusal(recording.error);
+  const Result<RunRecording> recording = RunRecording::read(bytes);
+  if (!recording) return check_refusal(recording.status());
   const auto fits = [&](const auto& program) {
-    return program->model.states.size() == recording.notes.front().x.size();
+    return program->model.states.size() == recording->notes.front().x.size();
   };
   const auto found = std::ranges::find_if(programs, fits);
-  tell_and_go_on(found == programs.end() ? programs.front() : *found, recording);
+  tell_and_go_on(found == programs.end() ? programs.front() : *found, *recording);
 }
 
 }  // namespace

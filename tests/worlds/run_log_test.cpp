@@ -105,10 +105,10 @@ TEST(RunLog, IsTheSameRunAgain) {
     const Recorded made = recorded(each.text);
     EXPECT_GT(made.run.events.size(), 3U) << each.name;
     expect_same(made.run, run_of(each.text), each.name);  // being recorded changes nothing
-    const RunRecording recording = RunRecording::read(bytes_of(made.file));
-    ASSERT_EQ(recording.error, "");
-    EXPECT_EQ(recording.head.text, each.text);
-    const model::Simulated again = replay_world(made.program, recording);
+    const Result<RunRecording> recording = RunRecording::read(bytes_of(made.file));
+    ASSERT_TRUE(recording) << describe(recording.status());
+    EXPECT_EQ(recording->head.text, each.text);
+    const model::Simulated again = replay_world(made.program, *recording);
     ASSERT_TRUE(again.run) << each.name;
     expect_same(made.run, *again.run, each.name);
   }
@@ -118,20 +118,20 @@ TEST(RunLog, GoesOnToTheSameBits) {
   for (const Case& each : cases()) {
     // At every step; of these each twelfth, after 0.1, the scheduled events among them: some are off by rounding.
     const Recorded made = recorded(each.text, 400);
-    const RunRecording recording = RunRecording::read(bytes_of(made.file));
-    ASSERT_GE(recording.checkpoints.size(), 20U) << each.name;
-    for (std::size_t k = 0; k < recording.checkpoints.size(); k += recording.checkpoints.size() > 50 ? 12 : 1) {
+    const Result<RunRecording> recording = RunRecording::read(bytes_of(made.file));
+    ASSERT_GE(recording->checkpoints.size(), 20U) << each.name;
+    for (std::size_t k = 0; k < recording->checkpoints.size(); k += recording->checkpoints.size() > 50 ? 12 : 1) {
       std::ostringstream file;
-      RunLog log(file, recording.head, 400);
-      const model::Simulated on = resume_world(made.program, recording, k, {}, &log);
+      RunLog log(file, recording->head, 400);
+      const model::Simulated on = resume_world(made.program, *recording, k, {}, &log);
       const std::string what = each.name + (" from checkpoint " + std::to_string(k));
       ASSERT_TRUE(on.run) << what;
       expect_same(made.run, *on.run, what);
       // What it has recorded is a whole run, too.
-      const RunRecording longer = RunRecording::read(bytes_of(file.str()));
-      ASSERT_EQ(longer.error, "");
-      EXPECT_GE(longer.checkpoints.size(), recording.checkpoints.size()) << what;
-      expect_same(made.run, *replay_world(made.program, longer).run, what);
+      const Result<RunRecording> longer = RunRecording::read(bytes_of(file.str()));
+      ASSERT_TRUE(longer) << describe(longer.status());
+      EXPECT_GE(longer->checkpoints.size(), recording->checkpoints.size()) << what;
+      expect_same(made.run, *replay_world(made.program, *longer).run, what);
     }
   }
 }
@@ -142,12 +142,12 @@ TEST(RunLog, GoesOnBeyondItsEnd) {
     return made.replace(made.find("0..2 "), 5, std::string("0..") + end + " ");
   };
   const Recorded made = recorded(text("2"));
-  const RunRecording recording = RunRecording::read(bytes_of(made.file));
-  const model::Simulated on = resume_world(made.program, recording, recording.checkpoints.size() - 1, {.to = 3});
+  const Result<RunRecording> recording = RunRecording::read(bytes_of(made.file));
+  const model::Simulated on = resume_world(made.program, *recording, recording->checkpoints.size() - 1, {.to = 3});
   ASSERT_TRUE(on.run);
   expect_same(run_of(text("3")), *on.run, "beyond");
-  EXPECT_EQ(recording.checkpoint_at(0.01), 0U);
-  EXPECT_EQ(recording.checkpoint_at(100), recording.checkpoints.size() - 1);
+  EXPECT_EQ(recording->checkpoint_at(0.01), 0U);
+  EXPECT_EQ(recording->checkpoint_at(100), recording->checkpoints.size() - 1);
 }
 
 // What is cut off anywhere is a shorter run, or none, and can be gone on with to the end as it was.
@@ -155,20 +155,21 @@ TEST(RunLog, MayBeCutOffAnywhere) {
   const Recorded made = recorded(cases()[0].text, 5);
   std::size_t usable = 0;
   for (std::size_t size = 0; size < made.file.size(); size += 1 + size / 100) {
-    const RunRecording recording = RunRecording::read(bytes_of(made.file.substr(0, size)));
-    if (!recording.error.empty()) {
-      EXPECT_TRUE(recording.error.starts_with("byte ")) << recording.error;
+    const Result<RunRecording> recording = RunRecording::read(bytes_of(made.file.substr(0, size)));
+    if (!recording) {
+      EXPECT_EQ(recording.status().ending, Ending::unreadable);
+      EXPECT_TRUE(recording.status().message.starts_with("byte ")) << recording.status().message;
       continue;
     }
-    EXPECT_FALSE(recording.end);
-    const model::Simulated again = replay_world(made.program, recording);
+    EXPECT_FALSE(recording->end);
+    const model::Simulated again = replay_world(made.program, *recording);
     ASSERT_TRUE(again.run);
     EXPECT_EQ(again.run->outcome.ending, Ending::interrupted);
     ASSERT_LE(again.run->motion.values.size(), made.run.motion.values.size());
     EXPECT_TRUE(std::ranges::equal(again.run->motion.values,
                                    std::span(made.run.motion.values).first(again.run->motion.values.size())));
-    if (recording.checkpoints.empty() || ++usable % 10 != 0) continue;
-    const model::Simulated on = resume_world(made.program, recording, recording.checkpoints.size() - 1);
+    if (recording->checkpoints.empty() || ++usable % 10 != 0) continue;
+    const model::Simulated on = resume_world(made.program, *recording, recording->checkpoints.size() - 1);
     ASSERT_TRUE(on.run);
     expect_same(made.run, *on.run, "cut off after " + std::to_string(size));
   }
@@ -195,20 +196,21 @@ TEST(RunLog, IsRefusedWhereItIsWrong) {
       wrong[at] = static_cast<char>(static_cast<unsigned char>(wrong[at]) ^ (1 + engine() % 255));
     }
     if (is_mended) wrong = with_right_sums(wrong);
-    const RunRecording recording = RunRecording::read(bytes_of(wrong));
-    if (!recording.error.empty()) {
-      EXPECT_TRUE(recording.error.starts_with("byte ")) << recording.error;
+    const Result<RunRecording> recording = RunRecording::read(bytes_of(wrong));
+    if (!recording) {
+      EXPECT_EQ(recording.status().ending, Ending::unreadable);
+      EXPECT_TRUE(recording.status().message.starts_with("byte ")) << recording.status().message;
       ++refused;
       continue;
     }
     ++taken;
-    EXPECT_TRUE(is_mended || !recording.end) << "a changed byte was not seen";  // a changed size looks cut off
+    EXPECT_TRUE(is_mended || !recording->end) << "a changed byte was not seen";  // a changed size looks cut off
     for (const model::Simulated& simulated :
-         {replay_world(made.program, recording),
-          recording.checkpoints.empty()
+         {replay_world(made.program, *recording),
+          recording->checkpoints.empty()
               ? model::Simulated{}
-              : resume_world(made.program, recording, engine() % recording.checkpoints.size(), {.to = 1.5})})
-      EXPECT_TRUE(simulated.run || recording.checkpoints.empty() || has_errors(simulated.diagnostics));
+              : resume_world(made.program, *recording, engine() % recording->checkpoints.size(), {.to = 1.5})})
+      EXPECT_TRUE(simulated.run || recording->checkpoints.empty() || has_errors(simulated.diagnostics));
   }
   EXPECT_GT(refused, 100U);
   EXPECT_GT(taken, 50U);
@@ -216,9 +218,9 @@ TEST(RunLog, IsRefusedWhereItIsWrong) {
 
 TEST(RunLog, OfAnotherModelIsRefused) {
   const Recorded made = recorded(cases()[0].text);
-  const RunRecording recording = RunRecording::read(bytes_of(made.file));
+  const Result<RunRecording> recording = RunRecording::read(bytes_of(made.file));
   const auto other = program_of("world { body ball at (0, 0) }\nrun 0..1\n");
-  for (const model::Simulated& simulated : {replay_world(other, recording), resume_world(other, recording, 0)}) {
+  for (const model::Simulated& simulated : {replay_world(other, *recording), resume_world(other, *recording, 0)}) {
     EXPECT_FALSE(simulated.run);
     ASSERT_EQ(simulated.diagnostics.size(), 1U);
     EXPECT_EQ(simulated.diagnostics[0].code, "E325");
@@ -229,15 +231,15 @@ TEST(RunLog, OfAnotherModelIsRefused) {
 // the end of the array), steps that began so early that no number of them comes to the end.
 TEST(RunLog, DoesNotGoOnFromPlacesThatAreNoneOfItsRun) {
   const Recorded made = recorded(cases()[2].text, 5);
-  const RunRecording recording = RunRecording::read(bytes_of(made.file));
-  const std::size_t last = recording.checkpoints.size() - 1;
+  const Result<RunRecording> recording = RunRecording::read(bytes_of(made.file));
+  const std::size_t last = recording->checkpoints.size() - 1;
   const auto more_bodies = [] {
     std::string text = cases()[2].text;
     text.replace(text.find("random 8"), 8, "random 9");
-    return RunRecording::read(bytes_of(recorded(text, 5).file));
+    return *RunRecording::read(bytes_of(recorded(text, 5).file));
   }();
   const auto expect_refused = [&](auto&& change, const std::string& why) {
-    RunRecording wrong = recording;
+    RunRecording wrong = *recording;
     change(wrong.checkpoints[last].world);
     const model::Simulated on = resume_world(made.program, wrong, last, {.to = 1.6});
     EXPECT_FALSE(on.run) << why;
@@ -246,7 +248,7 @@ TEST(RunLog, DoesNotGoOnFromPlacesThatAreNoneOfItsRun) {
     EXPECT_NE(on.diagnostics[0].label.find(why), std::string::npos) << on.diagnostics[0].label;
   };
   expect_refused([&](Snapshot& world) { world.bodies = more_bodies.checkpoints[last].world.bodies; }, "other bodies");
-  expect_refused([&](Snapshot& world) { world.bodies = recording.checkpoints[0].world.bodies; }, "another time");
+  expect_refused([&](Snapshot& world) { world.bodies = recording->checkpoints[0].world.bodies; }, "another time");
   expect_refused([](Snapshot& world) { world.start = -1e300; }, "none of its steps");
   expect_refused([](Snapshot& world) { world.steps += 5; }, "none of its steps");
   expect_refused([](Snapshot& world) { world.equations[0] = std::nan(""); }, "not finite");

@@ -55,9 +55,9 @@ std::optional<worlds::RunRecording> read_run(const std::string& path) {
     say(fmt::format("cannot read {}", path));
     return std::nullopt;
   }
-  worlds::RunRecording recording = worlds::RunRecording::read(bytes);
-  if (recording.error.empty()) return recording;
-  say(fmt::format("{}: {}", path, recording.error));
+  Result<worlds::RunRecording> recording = worlds::RunRecording::read(bytes);
+  if (recording) return *std::move(recording);
+  say(fmt::format("{}: {}", path, recording.status().message));
   return std::nullopt;
 }
 

@@ -44,12 +44,12 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
       : ConstrainedMotion(world, options, companions, usual_contact_time_under_forces(world, companions)) {}
 
   /// From state to state until a call ends. It begins in the state that is known from the last one.
-  std::string advance_to(const Real& t) override {
-    if (contact_state_.last.size() != world_.size()) return "bodies have come or gone: the motion needs a `refresh`";
+  Status advance_to(const Real& t) override {
+    if (contact_state_.last.size() != world_.size()) return other_bodies();
     resolved_.reset();  // a motion that is read from a snapshot has none
     Call call{.until = t};
     for (MotionState state = first_state(t); state != MotionState::ended;) state = next_state(state, act(state, call));
-    return std::move(call.fault);
+    return std::move(call.status);
   }
 
   std::unique_ptr<ContactEngine<Real, Dim>> clone() const override {
@@ -98,7 +98,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   struct Call {
     Real until{};
     std::size_t events = 0;
-    std::string fault{};
+    Status status{};
   };
 
   ConstrainedMotion(World<Real, Dim>& world, const ExactOptions<Real>& options, Companions<Real, Dim>* companions,
@@ -154,15 +154,14 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     }
     return MotionEvent::failed;
   }
-  static MotionEvent fail(Call& call, std::string fault) {
-    call.fault = std::move(fault);
+  static MotionEvent fail(Call& call, Status status) {
+    call.status = std::move(status);
     return MotionEvent::failed;
   }
   /// What ends a call before its time, looked for between flights and between steps.
   std::optional<MotionEvent> stops(Call& call) const {
-    if (++call.events > options_.most_events)
-      return fail(call, "more events than `most_events`: bodies may be caught between others");
-    if (options_.is_interrupted()) return fail(call, "interrupted");
+    if (++call.events > options_.most_events) return fail(call, too_many_events());
+    if (options_.is_interrupted()) return fail(call, interrupted());
     if (farthest_way(world_, begin_) > room_ / 2) return MotionEvent::left_room;
     return {};
   }
@@ -214,7 +213,8 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     is_steady_ = was_slow && is_slow_;
     lasted_ = h;
     if (!(steps_.fastest() < never))
-      return fail(call, "a body's motion is no longer finite: a speed or a force is too large for the numbers");
+      return fail(call, cannot_continue(
+                            "a body's motion is no longer finite: a speed or a force is too large for the numbers"));
     if (!(world_.time < call.until)) return MotionEvent::time_reached;
     if (is_steady_) return MotionEvent::nothing_moves;
     return zeno_guard_.is_in_steps() ? MotionEvent::stepped : MotionEvent::steps_made;
@@ -313,8 +313,8 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
       zeno_guard_.has_flown(lasted_, stride_);
     }
     if (!is_too_short && !succeeded(integrator.outcome().ending))
-      return fail(call, "the path cannot be followed beyond t = " + std::to_string(integrator.t()) + ": " +
-                            std::string(to_string(integrator.outcome().ending)));
+      return fail(call, cannot_continue("the path cannot be followed beyond t = " + std::to_string(integrator.t()) +
+                                        ": " + std::string(to_string(integrator.outcome().ending))));
     land(integrator.system(), integrator.x(), integrator.t());
     if (!(world_.time < call.until)) return MotionEvent::time_reached;
     return zeno_guard_.is_in_steps() ? MotionEvent::too_many_events : MotionEvent::contact_changes;

@@ -15,7 +15,6 @@
 #include <map>
 #include <memory>
 #include <numeric>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -45,30 +44,29 @@ class Islands final : public ExactEngine<Real, Dim> {
     gas_ = event_driven(world, options_);
   }
 
-  std::string advance_to(const Real& t) override {
-    if (island_of_.size() != world_.size()) return "bodies have come or gone: the motion needs a `refresh`";
+  Status advance_to(const Real& t) override {
+    if (island_of_.size() != world_.size()) return other_bodies();
     until_ = t;
     gas_->contacts.clear();
-    std::string fault = renew_all();
-    for (std::size_t events = 0; fault.empty();) {
-      if (++events > options_.most_events)
-        fault = "more events than `most_events`: bodies may be caught between others";
-      if (options_.is_interrupted()) fault = "interrupted";
-      if (!fault.empty()) break;
+    Status status = renew_all();
+    for (std::size_t events = 0; status;) {
+      if (++events > options_.most_events) status = too_many_events();
+      if (options_.is_interrupted()) status = interrupted();
+      if (!status) break;
       const auto next = std::ranges::min_element(islands_, {}, [](const auto& one) { return one.second.end; });
       const Real end = next == islands_.end() ? t : std::min(t, next->second.end);
-      fault = gas_->run_to(end);
-      if (!fault.empty()) break;
+      status = gas_->run_to(end);
+      if (!status) break;
       if (gas_->met) {
-        fault = meet((*gas_->met)[0], (*gas_->met)[1]);
+        status = meet((*gas_->met)[0], (*gas_->met)[1]);
       } else if (end < t) {
-        fault = regroup({next->first}, {});
+        status = regroup({next->first}, {});
       } else {
         break;
       }
     }
-    const Real reached = fault.empty() ? t : gas_->now();
-    return finish(reached, std::move(fault));
+    const Real reached = status ? t : gas_->now();
+    return finish(reached, std::move(status));
   }
 
   void save(ByteWriter& writer) override {
@@ -129,32 +127,32 @@ class Islands final : public ExactEngine<Real, Dim> {
   };
 
   /// From a snapshot the motion goes on to the same bits: windows begin with each call, and nothing is left of earlier.
-  std::string renew_all() {
+  Status renew_all() {
     Numbers awake;
     for (const auto& [id, island] : islands_) {
       if (!(island.end < never)) continue;
       awake.push_back(id);
       replace_by_proxy(island);
     }
-    std::string fault;
+    Status status;
     for (const std::uint32_t id : awake)
-      if (fault.empty() && islands_.contains(id)) fault = regroup({id}, {});
-    return fault;
+      if (status && islands_.contains(id)) status = regroup({id}, {});
+    return status;
   }
-  std::string finish(const Real& t, std::string fault) {
+  Status finish(const Real& t, Status status) {
     for (auto& [id, island] : islands_) {
-      std::string other = bring_to(island, t);
-      if (fault.empty()) fault = std::move(other);
+      Status other = bring_to(island, t);
+      status = first_failure(std::move(status), std::move(other));
       put_back(island);
       harvest(island);
     }
     gas_->synchronize(t);
     statistics += std::exchange(gas_->statistics, {});
     harvest_gas();
-    return fault.empty() ? fault_of_motion(world_) : fault;
+    return status ? check_motion(world_) : status;
   }
   /// Two that have come to lie on each other, one that is squeezed, or one that comes to an island.
-  std::string meet(std::uint32_t a, std::uint32_t b) {
+  Status meet(std::uint32_t a, std::uint32_t b) {
     Numbers ids, joining;
     for (const std::uint32_t i : {a, b}) {
       const bool is_in_island = island_of_[i] != nowhere;
@@ -165,10 +163,10 @@ class Islands final : public ExactEngine<Real, Dim> {
     return regroup(ids, joining);
   }
 
-  std::string regroup(const Numbers& ids, const Numbers& joining, const Real& least_room = Real(0)) {
+  Status regroup(const Numbers& ids, const Numbers& joining, const Real& least_room = Real(0)) {
     Pool pool;
-    std::string fault;
-    for (const std::uint32_t id : ids) take_in(pool, id, fault);
+    Status status;
+    for (const std::uint32_t id : ids) take_in(pool, id, status);
     for (const std::uint32_t i : joining) {
       draw_in(pool, i);
       if (ids.empty()) together_[i] = gas_->now();
@@ -177,20 +175,20 @@ class Islands final : public ExactEngine<Real, Dim> {
       const Real room = std::max(least_room, room_for(pool));
       if (!(room > pool.room)) break;
       pool.room = room;
-      for (std::size_t k = 0; k < pool.bodies.size(); ++k) look_round(pool, k, fault);
+      for (std::size_t k = 0; k < pool.bodies.size(); ++k) look_round(pool, k, status);
     }
     for (const std::uint32_t i : pool.bodies) pool_place_[i] = nowhere;
     Numbers founded;
     for (Numbers& group : share_out(pool)) founded.push_back(settle(pool, std::move(group)));
     for (const std::uint32_t id : founded)  // one whose window is too small may take in another
-      if (fault.empty() && islands_.contains(id)) fault = open(islands_.at(id), id, pool.room);
-    return fault;
+      if (status && islands_.contains(id)) status = open(islands_.at(id), id, pool.room);
+    return status;
   }
-  void take_in(Pool& pool, std::uint32_t id, std::string& fault) {
+  void take_in(Pool& pool, std::uint32_t id, Status& status) {
     Island island = std::move(islands_.at(id));
     islands_.erase(id);
-    std::string other = bring_to(island, gas_->now());
-    if (fault.empty()) fault = std::move(other);
+    Status other = bring_to(island, gas_->now());
+    status = first_failure(std::move(status), std::move(other));
     put_back(island);
     for (std::size_t k = 0; k < island.bodies.size(); ++k) {
       if (world_.is_fixed(island.bodies[k])) continue;
@@ -220,7 +218,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     return std::max(Real(smallest / 4), Real(32 * stride_ * (sqrt(fastest) + 2 * length(world_.gravity) * stride_)));
   }
   /// Draws the sphere of one, and takes in whom it overlaps.
-  void look_round(Pool& pool, std::size_t k, std::string& fault) {
+  void look_round(Pool& pool, std::size_t k, Status& status) {
     const std::uint32_t i = pool.bodies[k];
     gas_->replace_by_proxy(i, world_.position[i], world_.radius[i] + pool.room);
     gas_->find_overlapping(i, near_);
@@ -229,7 +227,7 @@ class Islands final : public ExactEngine<Real, Dim> {
         pool.at_fixed.emplace_back(j, i);
         continue;
       }
-      if (pool_place_[j] == nowhere) island_of_[j] == nowhere ? draw_in(pool, j) : take_in(pool, island_of_[j], fault);
+      if (pool_place_[j] == nowhere) island_of_[j] == nowhere ? draw_in(pool, j) : take_in(pool, island_of_[j], status);
       pool.parent[root(pool, pool_place_[j])] = root(pool, pool_place_[i]);
     }
   }
@@ -310,7 +308,7 @@ class Islands final : public ExactEngine<Real, Dim> {
   }
 
   /// Moves it ahead through its next window.
-  std::string open(Island& island, std::uint32_t id, const Real& room) {
+  Status open(Island& island, std::uint32_t id, const Real& room) {
     if (island.engine->is_steady()) {
       replace_by_proxy(island);
       island.end = never;
@@ -319,13 +317,13 @@ class Islands final : public ExactEngine<Real, Dim> {
     island.begin = *island.world;
     island.engine_at_begin = island.engine->clone();
     island.engine->keep_within(room);
-    std::string fault = island.engine->advance_to(std::min(until_, Real(gas_->now() + strides_of_window * stride_)));
+    Status status = island.engine->advance_to(std::min(until_, Real(gas_->now() + strides_of_window * stride_)));
     island.end = island.world->time;
     Real farthest(0);
     for (std::size_t k = 0; k < island.bodies.size(); ++k)
       farthest = std::max(farthest, squared(V(island.world->position[k] - island.begin.position[k])));
-    if (fault.empty() && farthest > room * room) return regroup({id}, {}, Real(4 * room));
-    return fault;
+    if (status && farthest > room * room) return regroup({id}, {}, Real(4 * room));
+    return status;
   }
   /// Without spheres: it stands where it is in the world.
   void replace_by_proxy(const Island& island) {
@@ -333,7 +331,7 @@ class Islands final : public ExactEngine<Real, Dim> {
       if (!world_.is_fixed(i)) gas_->replace_by_proxy(i, world_.position[i], world_.radius[i]);
   }
   /// To a time in its window, or to any where it is at rest.
-  std::string bring_to(Island& island, const Real& t) {
+  Status bring_to(Island& island, const Real& t) {
     if (island.world->time > t) {
       *island.world = std::move(island.begin);
       island.engine = std::move(island.engine_at_begin);

@@ -38,17 +38,17 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     for (std::uint32_t i = 0; i < flights_.paths.size(); ++i) predict(i);
   }
 
-  std::string advance_to(const Real& t) override {
-    std::string fault = run_to(t);
+  Status advance_to(const Real& t) override {
+    Status status = run_to(t);
     synchronize(flights_.now);
-    return fault.empty() ? fault_of_motion(world_) : fault;
+    return status ? check_motion(world_) : status;
   }
-  std::string run_to(const Real& t) override {
+  Status run_to(const Real& t) override {
     std::size_t events = 0;
     met.reset();
     while (queue_.time() <= t) {
-      if (++events > options_.most_events) return "more events than `most_events`: bodies may be caught between others";
-      if (events % 1024 == 0 && options_.is_interrupted()) return "interrupted";
+      if (++events > options_.most_events) return too_many_events();
+      if (events % 1024 == 0 && options_.is_interrupted()) return interrupted();
       flights_.now = std::max(flights_.now, queue_.time());
       prefetch_.look_ahead(queue_, flights_);
       handle(queue_.first());

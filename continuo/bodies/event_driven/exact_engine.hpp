@@ -10,21 +10,36 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <continuo/bodies/contact_events.hpp>
 #include <continuo/bodies/exact_options.hpp>
 #include <continuo/bodies/support/bytes.hpp>
 #include <continuo/bodies/world.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo {
+
+inline Status cannot_continue(std::string message) {
+  return {.ending = Ending::cannot_continue, .message = std::move(message)};
+}
+inline Status too_many_events() {
+  return cannot_continue("more events than `most_events`: bodies may be caught between others");
+}
+inline Status other_bodies() {
+  return cannot_continue("bodies have come or gone: the motion needs a `refresh`");
+}
+inline Status interrupted() {
+  return {.ending = Ending::interrupted, .message = "interrupted"};
+}
 
 template <class Real, int Dim>
 class ExactEngine {
  public:
   explicit ExactEngine(const ExactOptions<Real>& options) : contacts(options.contact_events) {}
   virtual ~ExactEngine() = default;
-  virtual std::string advance_to(const Real& t) = 0;
+  virtual Status advance_to(const Real& t) = 0;
   virtual void save(ByteWriter& writer) = 0;
   virtual void load(ByteReader& reader) = 0;
 
@@ -43,7 +58,7 @@ class ParabolicEngine : public ExactEngine<Real, Dim> {
  public:
   using ExactEngine<Real, Dim>::ExactEngine;
   /// No further than to where two come to lie on each other, or one meets such a sphere. Leaves the world as it is.
-  virtual std::string run_to(const Real& t) = 0;
+  virtual Status run_to(const Real& t) = 0;
   virtual Real now() const = 0;
   /// All but what is set aside, in the world at time t, where nothing happens before.
   virtual void synchronize(const Real& t) = 0;
@@ -78,12 +93,12 @@ class ContactEngine : public ExactEngine<Real, Dim> {
   std::vector<Real> together;  // when each body lay on another last
 };
 
-/// Of parabolas; empty where nothing is wrong.
+/// Whether parabolas are still within the numbers.
 template <class Real, int Dim>
-std::string fault_of_motion(const World<Real, Dim>& world) {
+Status check_motion(const World<Real, Dim>& world) {
   for (std::size_t i = 0; i < world.size(); ++i)
     if (!is_finite(world.position[i]) || !is_finite(world.velocity[i]))
-      return "a body's motion is no longer finite: a speed or gravity is too large for the numbers";
+      return cannot_continue("a body's motion is no longer finite: a speed or gravity is too large for the numbers");
   return {};
 }
 

@@ -12,7 +12,7 @@
 //   format.expect(file);
 //   while (const auto block = next_block(file, Kind::last))
 //     read_block(file, block->bytes, [&](ByteReader& reader) { reader(frame); });
-//   if (!file.ok()) return file.error();
+//   if (!file.ok()) return file.status();
 #pragma once
 #include <array>
 #include <cstddef>
@@ -108,7 +108,7 @@ void read_block(ByteReader& file, std::span<const std::byte> block, Read&& read)
   ByteReader reader(block);
   read(reader);
   if (reader.ok()) reader.expect_end();
-  if (!reader.ok()) fail_in_block(file, reader.error());
+  if (!reader.ok()) fail_in_block(file, reader.status().message);
 }
 
 }  // namespace continuo

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <continuo/bodies/support/vector.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo {
 
@@ -117,7 +118,10 @@ class ByteReader {
   }
 
   bool ok() const { return error_.empty(); }
-  const std::string& error() const { return error_; }
+  /// Unreadable, with the place of the first fault; a success where there is none.
+  [[nodiscard]] Status status() const {
+    return ok() ? Status{} : Status{.ending = Ending::unreadable, .message = error_};
+  }
   std::size_t position() const { return at_; }
   std::size_t left() const { return bytes_.size() - at_; }
   /// The first fault counts.
