@@ -48,14 +48,14 @@ void Loop::obey_all() {
     now.swap(waiting_);
   }
   for (const Waiting& waiting : now) {
-    std::string problem;
+    Status status;
     try {
-      problem = obey(session_, waiting.command);
+      status = obey(session_, waiting.command);
     } catch (const std::exception& error) {  // out of memory, most likely: the view lives on
       session_.pause();
-      problem = std::string("internal error: ") + error.what();
+      status = {.ending = Ending::cannot_continue, .message = std::string("internal error: ") + error.what()};
     }
-    if (!problem.empty()) complain_(waiting.client, problem);
+    if (!status) complain_(waiting.client, status.message);
   }
 }
 

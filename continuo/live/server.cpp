@@ -25,18 +25,21 @@ Server::~Server() {
   stop();
 }
 
-std::string Server::listen() {
+Status Server::listen() {
   error_code error;
   const auto address = asio::ip::make_address(parts_->options.address, error);
   if (error)
-    return fmt::format("{} is no address of a computer, such as 127.0.0.1 or 0.0.0.0", parts_->options.address);
+    return invalid_input(
+        fmt::format("{} is no address of a computer, such as 127.0.0.1 or 0.0.0.0", parts_->options.address));
   const tcp::endpoint endpoint(address, parts_->options.port);
   parts_->acceptor->open(endpoint.protocol(), error);
   if (!error) parts_->acceptor->set_option(tcp::acceptor::reuse_address(true), error);
   if (!error) parts_->acceptor->bind(endpoint, error);
   if (!error) parts_->acceptor->listen(asio::socket_base::max_listen_connections, error);
   if (error)
-    return fmt::format("cannot listen at {}:{}: {}", parts_->options.address, endpoint.port(), error.message());
+    return {.ending = Ending::cannot_continue,
+            .message =
+                fmt::format("cannot listen at {}:{}: {}", parts_->options.address, endpoint.port(), error.message())};
   parts_->port = parts_->acceptor->local_endpoint().port();
   parts_->origin_guard.emplace(parts_->token, parts_->options.address, parts_->port);
   return {};

@@ -3,7 +3,7 @@
 // the newest picture when it has read the last one; what it has not read does not pile up.
 //
 //   Server server({.page = page}, say);
-//   if (const std::string problem = server.listen(); !problem.empty()) ...;
+//   if (const Status status = server.listen(); !status) std::cerr << describe(status) << '\n';
 //   server.start();  open_browser(server.url());
 //   session.turn();                                 // server is the session's Audience
 #pragma once
@@ -15,6 +15,7 @@
 
 #include <continuo/live/audience.hpp>
 #include <continuo/live/session/commands.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo::live {
 
@@ -41,8 +42,8 @@ class Server final : public Audience {
   Server(ServerOptions options, Say say);
   ~Server() override;
 
-  /// Empty, or why there is no listening there.
-  std::string listen();
+  /// Invalid input where the address is none; cannot continue where nobody can listen there.
+  Status listen();
   void start(ServerHooks hooks);
   /// Says goodbye to all and returns when the thread has ended.
   void stop();

@@ -87,7 +87,7 @@ class LiveServer : public ::testing::Test {
     });
     session = std::make_unique<Session>(steady_seconds, *server,
                                         Place{.path = std::string(CONTINUO_SOURCE_DIR) + "/models/pendulum.sim"});
-    ASSERT_EQ(server->listen(), "");
+    ASSERT_EQ(server->listen(), Status{});
     ASSERT_TRUE(session->open_file().model);
     session->play();
     loop = std::make_unique<Loop>(

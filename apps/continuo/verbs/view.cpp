@@ -160,8 +160,8 @@ ExitCode view(ViewRequest& request) {
   live::Server server(request.server, [](const std::string& text) { say(text); });
   live::Session session(live::steady_seconds, server,
                         {.path = request.experiment.file, .gallery = gallery_for(request.experiment.file)});
-  if (const std::string problem = server.listen(); !problem.empty()) {
-    say(problem);
+  if (const Status status = server.listen(); !status) {
+    say(status.message);
     return usage;
   }
   if (const ExitCode exit = set_up(session); exit != done) return exit;

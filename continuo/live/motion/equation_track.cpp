@@ -28,7 +28,7 @@ class EquationTrack final : public Track, model::StepWatcher {
 
   bool advance(double) override {
     remember();
-    if (names_.marks_seen() > most_marks) go_on(instant_at(t(), true), variables_, held_);  // which forgets them
+    if (names_.marks_seen() > most_marks) restart(instant_at(t(), true));  // which forgets them
     if (run_->advance(*this)) return true;
     if (run_->outcome().ending != Ending::reached_end) return false;
     run_->extend_to(t() + lengths_ahead * length());
@@ -52,13 +52,10 @@ class EquationTrack final : public Track, model::StepWatcher {
     return instant;
   }
 
-  std::string go_on(const Instant& instant, std::span<const double> variables,
-                    std::span<const std::size_t> held) override {
+  Status go_on(const Instant& instant, std::span<const double> variables, std::span<const std::size_t> held) override {
     variables_.assign(variables.begin(), variables.end());
     held_.assign(held.begin(), held.end());
-    run_->go_on(instant, variables_, held_);
-    names_.restart();
-    remember();
+    restart(instant);
     return {};
   }
 
@@ -68,6 +65,11 @@ class EquationTrack final : public Track, model::StepWatcher {
   const model::Stepping* equations() const override { return run_.get(); }
 
  private:
+  void restart(const Instant& instant) {
+    run_->go_on(instant, variables_, held_);
+    names_.restart();
+    remember();
+  }
   static model::Experiment endless(double longest_step) {
     model::Experiment experiment;
     experiment.max_step = longest_step;
@@ -104,9 +106,10 @@ class EquationTrack final : public Track, model::StepWatcher {
 
 }  // namespace
 
-MadeTrack make_track(const std::shared_ptr<const model::ModelProgram>& program, const model::Plan& plan) {
+Result<std::unique_ptr<Track>> make_track(const std::shared_ptr<const model::ModelProgram>& program,
+                                          const model::Plan& plan) {
   if (runs::kind_of(program->model).solver == runs::Solver::world) return make_world_track(program, plan);
-  return {std::make_unique<EquationTrack>(program, plan), {}};
+  return std::unique_ptr<Track>(std::make_unique<EquationTrack>(program, plan));
 }
 
 }  // namespace continuo::live

@@ -12,6 +12,7 @@
 
 #include <continuo/simulation/program/event_names.hpp>
 #include <continuo/simulation/stepping.hpp>
+#include <continuo/status/result.hpp>
 #include <continuo/worlds/world_run.hpp>
 
 namespace continuo::live {
@@ -55,9 +56,9 @@ class Track {
   virtual void at(double t, X& x) = 0;
   /// What it takes to go on from a time of the last step; with `whole` false only to look at it.
   virtual Instant instant_at(double t, bool whole = true) = 0;
-  /// Empty, or why it cannot go on with these parameters.
-  virtual std::string go_on(const Instant& instant, std::span<const double> variables,
-                            std::span<const std::size_t> held) = 0;
+  /// Fails where it cannot go on with these parameters.
+  virtual Status go_on(const Instant& instant, std::span<const double> variables,
+                       std::span<const std::size_t> held) = 0;
 
   virtual const Outcome<double>& outcome() const = 0;
   virtual const std::string& stop_text() const = 0;
@@ -80,11 +81,8 @@ class Track {
   std::vector<Passed> passed_;
 };
 
-/// `plan` as `plan_run` gives it, of a world as `model::plan` does. Null where it cannot begin, and why.
-struct MadeTrack {
-  std::unique_ptr<Track> track;
-  std::string error;
-};
-MadeTrack make_track(const std::shared_ptr<const model::ModelProgram>& program, const model::Plan& plan);
+/// `plan` as `plan_run` gives it, of a world as `model::plan` does. Fails where the motion cannot begin.
+Result<std::unique_ptr<Track>> make_track(const std::shared_ptr<const model::ModelProgram>& program,
+                                          const model::Plan& plan);
 
 }  // namespace continuo::live

@@ -57,7 +57,7 @@ class WorldTrack final : public Track {
         events_(program, plan.variables, plan.from, length() / looks),
         layout_(program->model.layout),
         chunk_(length() / looks) {
-    error_ = events_.begin(*run_, sink()).message;
+    status_ = events_.begin(*run_, sink());
     remember();
     end_where_stopped();
   }
@@ -66,7 +66,7 @@ class WorldTrack final : public Track {
 
   /// With steps: one. Without: as far as is wanted, or as a moment's work takes it.
   bool advance(double wanted) override {
-    if (!error_.empty() || events_.stopped()) return false;
+    if (!status_ || events_.stopped()) return false;
     remember();
     passed_.clear();
     ++statistics_.steps;
@@ -74,21 +74,21 @@ class WorldTrack final : public Track {
     const auto begin = std::chrono::steady_clock::now();
     const double step = run_->step();
     const double to = step > 0 ? before_t_ + step / 2 : std::min(std::max(wanted, before_t_), before_t_ + chunk_);
-    error_ = events_.advance(*run_, std::min(to, events_.next(*run_))).message;
+    status_ = events_.advance(*run_, std::min(to, events_.next(*run_)));
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     constexpr double moment = 4e-3;  // seconds
     chunk_ *= took.count() > moment ? 0.5 : 1.5;
     chunk_ = std::clamp(chunk_, 1e-9 * length(), length());
     put_held();
     note_contacts();
-    if (error_.empty()) error_ = events_.happen(*run_, sink()).message;
+    if (status_) status_ = events_.happen(*run_, sink());
     end_where_stopped();
-    if (error_.empty() && run_->time() > before_t_) return !events_.stopped();
+    if (status_ && run_->time() > before_t_) return !events_.stopped();
     if (events_.stopped()) return false;
-    if (error_.empty()) error_ = "the time does not advance";
+    if (status_) status_ = {.ending = Ending::cannot_continue, .message = "the time does not advance"};
     outcome_.ending = Ending::not_finite;
     outcome_.t = run_->time();
-    outcome_.hint = error_;
+    outcome_.hint = status_.message;
     return false;
   }
 
@@ -112,27 +112,27 @@ class WorldTrack final : public Track {
     return instant;
   }
 
-  std::string go_on(const Instant& instant, std::span<const double> variables, std::span<const std::size_t>) override {
-    error_.clear();
+  Status go_on(const Instant& instant, std::span<const double> variables, std::span<const std::size_t>) override {
+    status_ = {};
     outcome_ = {};
     passed_.clear();
     if (!is_of_this_motion(instant)) {
       place(instant);
     } else {
-      if (instant.world->time != run_->time()) error_ = run_->restore(*instant.world).message;
+      if (instant.world->time != run_->time()) status_ = run_->restore(*instant.world);
       if (instant.moved) run_->set_state(instant.x);
     }
     const std::vector<double> now(run_->variables().begin(), run_->variables().end());
-    for (std::uint32_t i = layout_.parameters; i < layout_.samples && error_.empty(); ++i) {
-      if (now[i] != variables[i]) error_ = run_->set(i, variables[i]).message;
+    for (std::uint32_t i = layout_.parameters; i < layout_.samples && status_; ++i) {
+      if (now[i] != variables[i]) status_ = run_->set(i, variables[i]);
     }
     events_.go_on(*run_, run_->variables(), instant.stops);
     remember();
-    return error_;
+    return status_;
   }
 
   const Outcome<double>& outcome() const override { return outcome_; }
-  const std::string& stop_text() const override { return error_.empty() ? events_.stop_text() : error_; }
+  const std::string& stop_text() const override { return status_ ? events_.stop_text() : status_.message; }
   Statistics statistics() const override { return statistics_; }
   const WorldRun* world() const override { return run_.get(); }
 
@@ -212,21 +212,22 @@ class WorldTrack final : public Track {
   std::size_t mode_ = 0;
   double chunk_;
   std::optional<HeldBody> held_;
-  std::string error_;
+  Status status_;
   Outcome<double> outcome_;
   Statistics statistics_;
 };
 
 }  // namespace
 
-MadeTrack make_world_track(const std::shared_ptr<const model::ModelProgram>& program, const model::Plan& plan) {
+Result<std::unique_ptr<Track>> make_world_track(const std::shared_ptr<const model::ModelProgram>& program,
+                                                const model::Plan& plan) {
   worlds::WorldOptions options = worlds::options_of(plan);
   options.most_contacts = 200;
   std::vector<double> variables = plan.variables;
   for (const model::TableInput& input : program->step_inputs) variables[input.variable] = input.table.value(plan.from);
   auto started = worlds::start_world(program, options, variables);
-  if (!started) return {nullptr, started.status().message};
-  return {std::make_unique<WorldTrack>(program, *std::move(started), plan), {}};
+  if (!started) return started.status();
+  return std::unique_ptr<Track>(std::make_unique<WorldTrack>(program, *std::move(started), plan));
 }
 
 }  // namespace continuo::live

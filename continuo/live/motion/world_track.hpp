@@ -7,7 +7,8 @@
 
 namespace continuo::live {
 
-MadeTrack make_world_track(const std::shared_ptr<const model::ModelProgram>& program, const model::Plan& plan);
+Result<std::unique_ptr<Track>> make_world_track(const std::shared_ptr<const model::ModelProgram>& program,
+                                                const model::Plan& plan);
 
 /// How much of the way of a body is free: 1, or less where it would come to overlap another or a wall.
 double free_part(const worlds::WorldRun& run, std::size_t body, const worlds::Point& to);

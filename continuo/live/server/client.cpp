@@ -83,13 +83,13 @@ void Client::was_read() {
 }
 
 void Client::obey(std::string text) {
-  ReadCommand read = read_command(std::move(text));
-  if (!read.command) return complain(read.problem);
-  Command& command = *read.command;
+  Result<Command> read = read_command(std::move(text));
+  if (!read) return complain(read.status().message);
+  Command& command = *read;
   const bool for_me = command.what == "check" || command.what == "ping" || command.what == "rate";
   if (!for_me) return hand_on(std::move(command));
-  std::optional<Asked> what = asked(command);
-  if (!what) return complain(fmt::format("`{}` has a part that does not fit", command.what));
+  Result<Asked> what = asked(command);
+  if (!what) return complain(what.status().message);
   if (command.what == "ping") {
     give(Topic::message, std::make_shared<const std::string>(pong_json(what->number)));
   } else if (command.what == "rate") {
@@ -97,7 +97,7 @@ void Client::obey(std::string text) {
     rate_ = what->number;
     parts_->tell_rate();
   } else if (checking_) {
-    next_check_ = std::move(what);  // the newest text counts
+    next_check_ = *std::move(what);  // the newest text counts
   } else {
     checking_ = true;
     parts_->check(number_, std::move(*what));

@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -109,30 +110,30 @@ constexpr std::array<std::string_view, 3> of_the_server = {"check", "ping", "rat
 
 }  // namespace
 
-ReadCommand read_command(std::string text) {
+Result<Command> read_command(std::string text) {
   const json command = json::parse(text, nullptr, false);
-  if (command.is_discarded()) return {std::nullopt, "this is no JSON"};
-  if (!command.is_object()) return {std::nullopt, "a command is an object"};
+  if (command.is_discarded()) return invalid_input("this is no JSON");
+  if (!command.is_object()) return invalid_input("a command is an object");
   const auto what = command.find("do");
-  if (what == command.end() || !what->is_string()) return {std::nullopt, "a command has a text `do`"};
+  if (what == command.end() || !what->is_string()) return invalid_input("a command has a text `do`");
   std::string name = what->get<std::string>();
   const bool known = doings().contains(name) || std::ranges::find(of_the_server, name) != of_the_server.end();
-  if (!known) return {std::nullopt, "there is no such command"};
-  return {Command{std::move(name), std::move(text)}, {}};
+  if (!known) return invalid_input("there is no such command");
+  return Command{std::move(name), std::move(text)};
 }
 
-std::string obey(Session& session, const Command& command) {
+Status obey(Session& session, const Command& command) {
   const auto doing = doings().find(command.what);
-  if (doing == doings().end()) return "there is no such command";
+  if (doing == doings().end()) return invalid_input("there is no such command");
   try {
     doing->second(session, json::parse(command.text));
   } catch (const Unfit& unfit) {
-    return "`" + command.what + "` needs " + unfit.part;
+    return invalid_input("`" + command.what + "` needs " + unfit.part);
   }
   return {};
 }
 
-std::optional<Asked> asked(const Command& command) {
+Result<Asked> asked(const Command& command) {
   const json all = json::parse(command.text);
   try {
     if (command.what == "check") return Asked{number(all, "id"), word(all, "text")};
@@ -140,7 +141,7 @@ std::optional<Asked> asked(const Command& command) {
     if (command.what == "rate") return Asked{number(all, "fps"), {}};
   } catch (const Unfit&) {
   }
-  return std::nullopt;
+  return invalid_input("`" + command.what + "` has a part that does not fit");
 }
 
 }  // namespace continuo::live

@@ -50,13 +50,14 @@ std::unique_ptr<Track> planned_track(const LiveModel& shown, const Settings& set
                                      Notices& notices) {
   const auto plan = plan_by(shown, settings, choice, notices);
   if (!plan) return nullptr;
-  MadeTrack made = make_track(shown.program, *plan);
-  if (!made.track) {
-    const model::Diagnostic problem = model::error("", {}, made.error);
+  Result<std::unique_ptr<Track>> made = make_track(shown.program, *plan);
+  if (!made) {
+    const model::Diagnostic problem = model::error("", {}, made.status().message);
     notices.set_problems({problem});
     notices.say(problem);
+    return nullptr;
   }
-  return std::move(made.track);
+  return *std::move(made);
 }
 
 }  // namespace continuo::live

@@ -290,8 +290,8 @@ void Playback::leave_look() {
   ended_.clear();
   next_passed_ = 0;
   cursor_ = sample.main.t;
-  put(*main_, sample.main);
-  if (ghost_) put(*ghost_, sample.ghost.value_or(sample.main));
+  bring(*main_, sample.main);
+  if (ghost_) bring(*ghost_, sample.ghost.value_or(sample.main));
   rows_.set_first_energy(sample.first_energy);
   rewind_to(cursor_);
   emit(sample.main);
@@ -312,17 +312,21 @@ void Playback::use(Variables variables) {
 }
 
 /// A track to an instant, with what stands in variables_ and held_states_; what follows a file in steps has the value
-/// of that time. Empty, or why it cannot go on.
-std::string Playback::put(Track& track, const Instant& instant) const {
+/// of that time. Fails where it cannot go on.
+Status Playback::put(Track& track, const Instant& instant) const {
   std::vector<double> variables = *variables_;
   for (const model::TableInput& input : shown_->program->step_inputs)
     variables[input.variable] = input.table.value(instant.t);
   return track.go_on(instant, variables, held_states_);
 }
 
+void Playback::bring(Track& track, const Instant& instant) const {
+  static_cast<void>(put(track, instant));
+}
+
 void Playback::go_on() {
   const Instant here = instant();
-  if (ghost_) put(*ghost_, ghost_->instant_at(cursor_));
+  if (ghost_) bring(*ghost_, ghost_->instant_at(cursor_));
   resume(here);
 }
 
@@ -332,14 +336,14 @@ void Playback::go_on_from(const Instant& changed, std::span<const std::size_t> o
     ghost.mode = changed.mode;
     ghost.moved = true;
     for (const std::size_t i : of_ghost_too) ghost.x[i] = changed.x[i];
-    put(*ghost_, ghost);
+    bring(*ghost_, ghost);
   }
   resume(changed);
 }
 
 /// The motion from here, and what is shown with it.
 void Playback::resume(const Instant& instant) {
-  if (const std::string problem = put(*main_, instant); !problem.empty()) notices_.say(model::error("", {}, problem));
+  if (const Status status = put(*main_, instant); !status) notices_.say(model::error("", {}, status.message));
   next_passed_ = 0;
   main_over_ = false;
   ended_.clear();
@@ -351,13 +355,13 @@ void Playback::resume(const Instant& instant) {
 
 void Playback::change_main(std::unique_ptr<Track> main) {
   const Instant here = instant();
-  put(*main, here);
+  bring(*main, here);
   main_ = std::move(main);
   go_on_from(here);
 }
 
 void Playback::change_ghost(std::unique_ptr<Track> ghost) {
-  if (ghost) put(*ghost, instant());
+  if (ghost) bring(*ghost, instant());
   ghost_ = std::move(ghost);
   show_again();
   state_changed_ = true;
@@ -372,8 +376,8 @@ void Playback::change_program(std::shared_ptr<const LiveModel> shown, Variables 
   variables_ = std::move(variables);
   main_ = std::move(main);
   ghost_ = std::move(ghost);
-  put(*main_, here);
-  if (ghost_ && of_ghost) put(*ghost_, *of_ghost);
+  bring(*main_, here);
+  if (ghost_ && of_ghost) bring(*ghost_, *of_ghost);
   rows_.show(shown_, variables_);
 }
 

@@ -125,7 +125,9 @@ class Playback {
   void look_at(std::size_t i);
   void rewind_to(double t);
   void restart_clock() { clock_.start(now_(), cursor_); }
-  std::string put(Track& track, const Instant& instant) const;
+  Status put(Track& track, const Instant& instant) const;
+  /// As `put`. A track that cannot go on fails again when it is asked to advance, and its failure is told then.
+  void bring(Track& track, const Instant& instant) const;
   void resume(const Instant& instant);
   void show_again();
 
