@@ -14,13 +14,15 @@ namespace {
 std::optional<double> factor_between(const studies::Measurements& data, const std::string& column,
                                      const std::string& from, const std::string& to) {
   if (from.empty() || to.empty()) return 1;
-  const model::ParsedUnit parsed = model::parse_unit(from), wanted = model::parse_unit(to);
-  if (!parsed.unit || !wanted.unit) {
-    say(fmt::format("{}:1: column `{}`: {}{}", data.file, column, parsed.unit ? wanted.problem : parsed.problem,
-                    parsed.suggestion.empty() ? "" : fmt::format("; did you mean `{}`?", parsed.suggestion)));
+  const Result<model::Unit> parsed = model::parse_unit(from), wanted = model::parse_unit(to);
+  if (!parsed || !wanted) {
+    const std::string suggestion = model::suggested_unit(from);
+    say(fmt::format("{}:1: column `{}`: {}{}", data.file, column,
+                    first_failure(parsed.status(), wanted.status()).message,
+                    suggestion.empty() ? "" : fmt::format("; did you mean `{}`?", suggestion)));
     return std::nullopt;
   }
-  const auto result = model::conversion_factor(*parsed.unit, *wanted.unit);
+  const auto result = model::conversion_factor(*parsed, *wanted);
   if (!result) say(fmt::format("{}:1: column `{}` is in {}, but the model has it in {}", data.file, column, from, to));
   return result;
 }

@@ -42,7 +42,7 @@ std::optional<Parameter> read_value(std::string_view text, std::string& problem)
 
 std::optional<double> in_unit(const std::string& unit, const Parameter& given, std::string& problem) {
   if (given.unit.empty() || given.unit == unit) return given.value;
-  const auto from = parse_unit(given.unit).unit, to = parse_unit(unit.empty() ? "1" : unit).unit;
+  const Result<Unit> from = parse_unit(given.unit), to = parse_unit(unit.empty() ? "1" : unit);
   const auto factor = from && to ? conversion_factor(*from, *to) : std::nullopt;
   if (factor) return given.value * *factor;
   problem = fmt::format("[{}] is no [{}]", given.unit, unit.empty() ? "1" : unit);

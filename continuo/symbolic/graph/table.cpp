@@ -33,27 +33,29 @@ std::span<const Table::Piece> Table::pieces(double from, double to) const {
 
 namespace {
 
+Status unreadable(std::string what, const std::string& file, std::size_t line) {
+  return {.ending = Ending::unreadable, .message = std::move(what), .place = fmt::format("{}:{}", file, line)};
+}
+
 class Reader {
  public:
   Reader(const std::string& name, std::string_view x, std::string_view y) : name_(name), x_name_(x), y_name_(y) {}
 
-  ReadTable read(std::string_view text, Table::Between between) {
+  Result<Table> read(std::string_view text, Table::Between between) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the mark some spreadsheets put before UTF-8
-    while (!text.empty() && problem_.empty()) {
+    while (!text.empty() && status_) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       ++line_;
       row(text.substr(0, std::min(text.find_first_of("#\r\n"), end)));
       text.remove_prefix(std::min(end + 1, text.size()));
     }
-    if (problem_.empty() && xs_.empty()) fail("no numbers here");
-    if (!problem_.empty()) return {std::nullopt, std::move(problem_)};
-    return {Table(std::move(xs_), std::move(ys_), between), {}};
+    if (status_ && xs_.empty()) fail("no numbers here");
+    if (!status_) return std::move(status_);
+    return Table(std::move(xs_), std::move(ys_), between);
   }
 
  private:
-  void fail(std::string_view what) {
-    problem_ = fmt::format("{}:{}: {}", name_, std::max<std::size_t>(line_, 1), what);
-  }
+  void fail(std::string_view what) { status_ = unreadable(std::string(what), name_, std::max<std::size_t>(line_, 1)); }
 
   void row(std::string_view line) {
     const auto cells = split_cells(line);
@@ -102,20 +104,20 @@ class Reader {
   bool started_ = false;
   std::string x_title_ = "the first column";
   std::vector<double> xs_, ys_;
-  std::string problem_;
+  Status status_;
 };
 
 }  // namespace
 
-ReadTable parse_table(std::string_view text, const std::string& name, Table::Between between, std::string_view x,
-                      std::string_view y) {
+Result<Table> parse_table(std::string_view text, const std::string& name, Table::Between between, std::string_view x,
+                          std::string_view y) {
   return Reader(name, x, y).read(text, between);
 }
 
-ReadTable read_table(const std::filesystem::path& file, Table::Between between, std::string_view x,
-                     std::string_view y) {
+Result<Table> read_table(const std::filesystem::path& file, Table::Between between, std::string_view x,
+                         std::string_view y) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return {std::nullopt, fmt::format("{}:1: the file cannot be read", file.string())};
+  if (!stream) return unreadable("the file cannot be read", file.string(), 1);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   return parse_table(text, file.string(), between, x, y);
 }

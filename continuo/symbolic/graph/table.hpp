@@ -1,19 +1,20 @@
 // continuo/symbolic/graph/table.hpp
 // A function given by points, read from a CSV file:
 //
-//   const ReadTable read = read_table("thrust.csv", Table::Between::linear);
-//   if (!read.table) fmt::print("{}\n", read.problem);       // "thrust.csv:7: 3 comes after 4: t must increase"
-//   const double force = read.table->value(0.3);
+//   const Result<Table> table = read_table("thrust.csv", Table::Between::linear);
+//   if (!table) std::cerr << describe(table.status());       // "thrust.csv:7: 3 comes after 4: t must increase"
+//   const double force = table->value(0.3);
 //
 // Before the first and after the last point the function keeps the end's value.
 #pragma once
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <continuo/status/result.hpp>
 
 namespace continuo::model {
 
@@ -49,19 +50,14 @@ class Table {
   std::vector<Piece> pieces_;  // before the first point, then from each point on
 };
 
-/// A table, or what is wrong with the file, beginning with "file:line: ".
-struct ReadTable {
-  std::optional<Table> table;
-  std::string problem;
-};
-
 /// Columns are told apart by commas, semicolons or blanks; a first line without numbers names them; `#` begins a
-/// comment. `x` and `y` name the columns to read; empty ones mean the first and the second.
-ReadTable read_table(const std::filesystem::path& file, Table::Between between, std::string_view x = {},
-                     std::string_view y = {});
+/// comment. `x` and `y` name the columns to read; empty ones mean the first and the second. A failure is unreadable,
+/// its place "file:line".
+Result<Table> read_table(const std::filesystem::path& file, Table::Between between, std::string_view x = {},
+                         std::string_view y = {});
 
 /// The same from text, `name` being what messages call it.
-ReadTable parse_table(std::string_view text, const std::string& name, Table::Between between, std::string_view x = {},
-                      std::string_view y = {});
+Result<Table> parse_table(std::string_view text, const std::string& name, Table::Between between,
+                          std::string_view x = {}, std::string_view y = {});
 
 }  // namespace continuo::model

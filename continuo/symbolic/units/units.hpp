@@ -1,9 +1,9 @@
 // continuo/symbolic/units/units.hpp
 // Units of measurement: what a number counts.
 //
-//   const Unit stiffness = *parse_unit("N/m").unit, metre = *parse_unit("m").unit;
+//   const Unit stiffness = *parse_unit("N/m"), metre = *parse_unit("m");
 //   to_text(stiffness * metre);                                          // "N"
-//   conversion_factor(*parse_unit("km/h").unit, *parse_unit("m/s").unit);  // 1/3.6
+//   conversion_factor(*parse_unit("km/h"), *parse_unit("m/s"));  // 1/3.6
 //
 // The names come from UDUNITS-2; the usual ones are known here already, so that most models never load its database.
 #pragma once
@@ -13,6 +13,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include <continuo/status/result.hpp>
 
 namespace continuo::model {
 
@@ -67,14 +69,11 @@ std::optional<double> conversion_factor(const Unit& from, const Unit& to);
 /// As short as it can be said: what the user wrote where symbols cancel to that, N for kg*m/s^2, `1` for a number.
 std::string to_text(const Unit& unit);
 
-/// A unit, or what is wrong with the text.
-struct ParsedUnit {
-  std::optional<Unit> unit;
-  std::string problem;     // "`meterz` is not a unit"
-  std::string suggestion;  // a unit that may have been meant, or empty
-};
-
 /// Reads `m/s^2`, `N*s`, `kg m2 s-2`, `km/h`, `1/s`, `(m/s)^0.5`, `60 s`, `rad`, `degC`, `1`.
-ParsedUnit parse_unit(std::string_view text);
+/// Invalid input where the text is none: "`meterz` is not a unit".
+Result<Unit> parse_unit(std::string_view text);
+
+/// A unit that may have been meant where the text is none, or empty.
+std::string suggested_unit(std::string_view text);
 
 }  // namespace continuo::model

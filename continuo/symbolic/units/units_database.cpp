@@ -177,21 +177,19 @@ bool place_scale(Found& found) {
 
 }  // namespace
 
-std::optional<Unit> database_unit(const std::string& name, std::string& problem) {
+Result<Unit> database_unit(const std::string& name) {
   ut_system* const system = database();
   if (system == nullptr) {
-    problem = "the units database of UDUNITS-2 cannot be read, which is needed for `" + name + "`";
-    return std::nullopt;
+    return Status{.ending = Ending::unreadable,
+                  .message = "the units database of UDUNITS-2 cannot be read, which is needed for `" + name + "`"};
   }
   const std::unique_ptr<ut_unit, FreeUnit> parsed(ut_parse(system, name.c_str(), UT_UTF8));
   if (parsed == nullptr) {
-    problem = "`" + name + "` is not a unit";
-    return std::nullopt;
+    return invalid_input("`" + name + "` is not a unit");
   }
   Found found;
   if (ut_accept_visitor(parsed.get(), &visitor, &found) != UT_SUCCESS || !found.usable || !place_scale(found)) {
-    problem = "`" + name + "` has no fixed size, so it cannot be used in equations";
-    return std::nullopt;
+    return invalid_input("`" + name + "` has no fixed size, so it cannot be used in equations");
   }
   return Unit(name, found.dimension, found.factor);
 }

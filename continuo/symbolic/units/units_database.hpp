@@ -12,8 +12,8 @@ namespace continuo::model::detail {
 /// The usual names with their exact definitions; no database is read.
 std::optional<Unit> usual_unit(std::string_view name);
 
-/// What UDUNITS-2 knows under this name. `problem` says why there is none.
-std::optional<Unit> database_unit(const std::string& name, std::string& problem);
+/// What UDUNITS-2 knows under this name.
+Result<Unit> database_unit(const std::string& name);
 
 /// The usual name nearest to this one, or nothing.
 std::string nearest_usual_name(std::string_view name);

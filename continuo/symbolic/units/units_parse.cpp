@@ -18,14 +18,19 @@ class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
 
-  ParsedUnit read() {
+  Result<Unit> read() {
     skip_spaces();
-    if (at_end()) return {std::nullopt, "the unit is empty", "1"};
+    if (at_end()) {
+      suggestion_ = "1";
+      return invalid_input("the unit is empty");
+    }
     auto unit = product(0);
     if (unit && !at_end()) fail("`" + std::string(text_.substr(at_)) + "` is left over in the unit `" + whole() + "`");
-    if (!problem_.empty()) return {std::nullopt, problem_, suggestion_};
-    return {std::move(unit), {}, {}};
+    if (!problem_.empty()) return invalid_input(problem_);
+    return *std::move(unit);
   }
+  /// Of the text that was read; empty where there is none.
+  const std::string& suggestion() const { return suggestion_; }
 
  private:
   static constexpr int deepest = 50;
@@ -99,13 +104,10 @@ class Reader {
     while (is_letter(peek())) ++at_;
     const std::string name(text_.substr(begin, at_ - begin));
     if (auto unit = detail::usual_unit(name)) return unit;
-    std::string problem;
-    auto unit = detail::database_unit(name, problem);
-    if (!unit) {
-      if (problem_.empty()) suggestion_ = detail::nearest_usual_name(name);
-      return fail(std::move(problem));
-    }
-    return unit;
+    Result<Unit> unit = detail::database_unit(name);
+    if (unit) return *std::move(unit);
+    if (problem_.empty()) suggestion_ = detail::nearest_usual_name(name);
+    return fail(unit.status().message);
   }
 
   std::optional<Unit> raised(const Unit& base, bool digits_may_follow) {
@@ -157,8 +159,13 @@ class Reader {
 
 }  // namespace
 
-ParsedUnit parse_unit(std::string_view text) {
+Result<Unit> parse_unit(std::string_view text) {
   return Reader(text).read();
+}
+
+std::string suggested_unit(std::string_view text) {
+  Reader reader(text);
+  return reader.read() ? std::string() : reader.suggestion();
 }
 
 }  // namespace continuo::model

@@ -25,11 +25,12 @@ std::optional<Table> points_of(const std::string& file, Span span, Table::Betwee
                                Report& report) {
   if (file.empty()) return std::nullopt;
   if (!column.empty()) {
-    if (ReadTable named = read_table(file, between, {}, column); named.table) return std::move(named.table);
+    if (Result<Table> named = read_table(file, between, {}, column)) return *std::move(named);
   }
-  ReadTable read = read_table(file, between);
-  if (!read.table) report.fail("E272", span, "this file is not a table", read.problem);
-  return std::move(read.table);
+  Result<Table> read = read_table(file, between);
+  if (read) return *std::move(read);
+  report.fail("E272", span, "this file is not a table", describe(read.status()));
+  return std::nullopt;
 }
 
 }  // namespace continuo::model::detail

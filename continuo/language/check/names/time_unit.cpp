@@ -91,7 +91,7 @@ bool has_units(const std::vector<ast::Statement>& statements) {
 void stated_time_unit(TimeUnit& time, const ast::Unit& text, Report& report) {
   const auto unit = unit_of(text, report);
   if (!unit) return;
-  if (convertible(*unit, *parse_unit("s").unit) || !time.model_has_units) {
+  if (convertible(*unit, *parse_unit("s")) || !time.model_has_units) {
     time.unit = unit;
   } else {
     report.fail("E201", text.span, "units do not match", fmt::format("time cannot be in {}", to_text(*unit)),
@@ -120,15 +120,16 @@ TimeUnit find_time_unit(const ast::Model& tree, Report& report) {
     if (last && !run->interval->unit) stated_time_unit(time, last->unit, report);
     break;
   }
-  if (time.model_has_units && !time.unit) time.unit = parse_unit("s").unit;
+  if (time.model_has_units && !time.unit) time.unit = *parse_unit("s");
   return time;
 }
 
 std::optional<Unit> unit_of(const ast::Unit& unit, Report& report) {
-  ParsedUnit parsed = parse_unit(unit.text);
-  if (parsed.unit) return parsed.unit;
-  report.fail("E203", unit.span, "this is not a unit", parsed.problem,
-              parsed.suggestion.empty() ? std::string() : fmt::format("did you mean [{}]?", parsed.suggestion));
+  Result<Unit> parsed = parse_unit(unit.text);
+  if (parsed) return *std::move(parsed);
+  const std::string suggestion = suggested_unit(unit.text);
+  report.fail("E203", unit.span, "this is not a unit", parsed.status().message,
+              suggestion.empty() ? std::string() : fmt::format("did you mean [{}]?", suggestion));
   return std::nullopt;
 }
 

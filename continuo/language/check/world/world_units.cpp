@@ -45,7 +45,7 @@ Measured stated_length(Expressions& expressions, WorldAtWork& work) {
 void measure_world(Expressions& expressions, WorldAtWork& work) {
   if (!expressions.workspace.declared.world.text) return;
   work.length = stated_length(expressions, work);
-  if (work.length.is_known()) work.mass = Measured::known(*parse_unit("kg").unit);
+  if (work.length.is_known()) work.mass = Measured::known(*parse_unit("kg"));
   const Measured length = work.length, none = Measured::unknown();
   const Measured pure = length.is_known() ? Measured::known(Unit()) : none;
   const Measured momentum = product(work.mass, expressions.workspace.time.per_time(length));
