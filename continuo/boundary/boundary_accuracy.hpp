@@ -24,8 +24,8 @@ struct Residuals {
   std::vector<double> shares;      // by interval: the greatest of the integrals relative to the size of its component
   std::vector<double> integrals;   // as the rows of the system but those of conditions
 };
-Residuals residuals_of(const BoundaryValueProblem& problem, BoundaryValueSolution& solution,
-                       const CollocationSystem& system, double tolerance);
+[[nodiscard]] Residuals residuals_of(const BoundaryValueProblem& problem, BoundaryValueSolution& solution,
+                                     const CollocationSystem& system, double tolerance);
 
 /// By component, then by constant: the greatest over the interval, in its own unit.
 struct ErrorBounds {
@@ -39,11 +39,11 @@ struct ErrorBounds {
     double part = 0;
     std::size_t component = 0;
   };
-  Worst worst(const std::vector<double>& errors) const;
+  [[nodiscard]] Worst worst(const std::vector<double>& errors) const;
 };
 /// Needs the matrix of an iteration at, or close to, the solution.
-ErrorBounds error_bounds(CollocationSystem& system, const Residuals& residuals);
+[[nodiscard]] ErrorBounds error_bounds(CollocationSystem& system, const Residuals& residuals);
 /// Of rounding alone.
-ErrorBounds rounding_bounds(CollocationSystem& system);
+[[nodiscard]] ErrorBounds rounding_bounds(CollocationSystem& system);
 
 }  // namespace continuo::boundary

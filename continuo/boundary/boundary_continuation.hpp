@@ -23,15 +23,16 @@ struct FollowedSolution {
   double reached = 0;
   std::size_t steps = 0;  // to values between
 };
-FollowedSolution follow_path(const BoundaryPath& path, const BoundaryValueGuess& guess = {},
-                             const BoundaryValueOptions& options = {});
+[[nodiscard]] FollowedSolution follow_path(const BoundaryPath& path, const BoundaryValueGuess& guess = {},
+                                           const BoundaryValueOptions& options = {});
 
 /// Whether another way may lead to a solution where the search has ended without one, or at one that is not determined.
-bool may_be_followed(const BoundaryValueProblem& problem, const BoundaryValueSolution& solution);
+[[nodiscard]] bool may_be_followed(const BoundaryValueProblem& problem, const BoundaryValueSolution& solution);
 
 /// From x' = s f(t, x, p) with a small s, by which layers are wide and motions slow, to s = 1. Tried where a problem
 /// that is not linear has no solution near the guess.
-BoundaryValueSolution solve_with_continuation(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess = {},
-                                              const BoundaryValueOptions& options = {});
+[[nodiscard]] BoundaryValueSolution solve_with_continuation(const BoundaryValueProblem& problem,
+                                                            const BoundaryValueGuess& guess = {},
+                                                            const BoundaryValueOptions& options = {});
 
 }  // namespace continuo::boundary

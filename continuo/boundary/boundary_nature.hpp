@@ -7,9 +7,9 @@
 namespace continuo::boundary {
 
 /// Whether f and the conditions are linear in x, with whatever else is added; not where there are unknown constants.
-bool is_linear(const BoundaryValueProblem& problem);
+[[nodiscard]] bool is_linear(const BoundaryValueProblem& problem);
 
 /// Ends of the interval at which f has no value wherever x is, while it has some beside it: -2/t*x' at 0.
-OpenEnds open_ends(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess);
+[[nodiscard]] OpenEnds open_ends(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess);
 
 }  // namespace continuo::boundary

@@ -32,11 +32,13 @@ struct BoundaryRuns {
   std::size_t guesses = 0;
   std::vector<model::Diagnostic> diagnostics;
 };
-BoundaryRuns solve_boundary(const std::shared_ptr<const model::ModelProgram>& program,
-                            const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
+[[nodiscard]] BoundaryRuns solve_boundary(const std::shared_ptr<const model::ModelProgram>& program,
+                                          const model::Experiment& experiment = {},
+                                          const BoundaryRequest& request = {});
 
 /// The one of them that is asked for, as a run.
-model::Simulated simulate_boundary(const std::shared_ptr<const model::ModelProgram>& program,
-                                   const model::Experiment& experiment = {}, const BoundaryRequest& request = {});
+[[nodiscard]] model::Simulated simulate_boundary(const std::shared_ptr<const model::ModelProgram>& program,
+                                                 const model::Experiment& experiment = {},
+                                                 const BoundaryRequest& request = {});
 
 }  // namespace continuo::boundary

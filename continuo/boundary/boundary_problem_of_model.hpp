@@ -22,14 +22,14 @@ class BoundaryConditions {
  public:
   BoundaryConditions(const model::ModelProgram& program, const model::Plan& plan);
 
-  const std::vector<double>& times() const { return times_; }
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
   /// Which of `times` this setting of a condition is.
-  std::size_t place_of(const model::Setting& setting) const;
+  [[nodiscard]] std::size_t place_of(const model::Setting& setting) const;
 
   void operator()(Values x, std::span<double> residuals);
 
   /// Which entries of the Jacobian may differ from zero.
-  std::vector<MatrixPlace> places() const;
+  [[nodiscard]] std::vector<MatrixPlace> places() const;
 
   /// The values that state `i` is given without reference to others: times and values.
   std::vector<std::pair<double, double>> known(std::size_t state);
@@ -48,7 +48,7 @@ class BoundaryConditions {
   };
 
   double value(std::size_t i, Values x);
-  double time_of(const model::Setting& setting) const;
+  [[nodiscard]] double time_of(const model::Setting& setting) const;
 
   const model::Model& model_;
   std::size_t n_;
@@ -78,22 +78,22 @@ struct PosedBoundary {
   BoundaryValueOptions options;
 };
 /// Nothing where the model does not go together with such conditions, or with the experiment; `problems` says why.
-std::optional<PosedBoundary> pose_boundary(const std::shared_ptr<const model::ModelProgram>& program,
-                                           const model::Experiment& experiment,
-                                           std::vector<model::Diagnostic>& problems);
+[[nodiscard]] std::optional<PosedBoundary> pose_boundary(const std::shared_ptr<const model::ModelProgram>& program,
+                                                         const model::Experiment& experiment,
+                                                         std::vector<model::Diagnostic>& problems);
 
 /// How many guesses the model has: at least one.
-std::size_t guess_count(const model::Model& model);
+[[nodiscard]] std::size_t guess_count(const model::Model& model);
 /// The k-th of them: what the model guesses, else straight lines between the values of the conditions. It refers to
 /// `posed`.
-BoundaryValueGuess guess_of(const PosedBoundary& posed, std::size_t k);
+[[nodiscard]] BoundaryValueGuess guess_of(const PosedBoundary& posed, std::size_t k);
 /// From the columns of a table; states that it does not have as in the first guess, derivatives as slopes. E349 where
 /// it has none of them, or is outside of the run.
-std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const GuessTable& table,
-                                             std::vector<model::Diagnostic>& problems);
+[[nodiscard]] std::optional<BoundaryValueGuess> guess_from(const PosedBoundary& posed, const GuessTable& table,
+                                                           std::vector<model::Diagnostic>& problems);
 /// The solution that it leads to.
-BoundaryValueSolution solve_from_guess(const PosedBoundary& posed, std::size_t k);
+[[nodiscard]] BoundaryValueSolution solve_from_guess(const PosedBoundary& posed, std::size_t k);
 /// Why there is none: E307, E322.
-model::Diagnostic boundary_failure(const model::Model& model, const BoundaryValueSolution& solution);
+[[nodiscard]] model::Diagnostic boundary_failure(const model::Model& model, const BoundaryValueSolution& solution);
 
 }  // namespace continuo::boundary

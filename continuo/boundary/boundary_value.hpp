@@ -30,7 +30,7 @@ struct BoundaryValueProblem {
 };
 
 /// Why a problem cannot be solved by any method; empty where nothing is wrong.
-std::string what_is_wrong(const BoundaryValueProblem& problem);
+[[nodiscard]] std::string what_is_wrong(const BoundaryValueProblem& problem);
 
 struct BoundaryValueOptions {
   /// Of |x' - f| / (1 + |f|), root mean square over each interval of the mesh; and of the estimated error of each
@@ -69,10 +69,11 @@ struct BoundaryValueSolution {
 
   void at(double t, std::span<double> x) const;
   void slope_at(double t, std::span<double> dxdt) const;
-  std::vector<double> operator()(double t) const;
+  [[nodiscard]] std::vector<double> operator()(double t) const;
 };
 
-BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess = {},
-                                            const BoundaryValueOptions& options = {});
+[[nodiscard]] BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem,
+                                                          const BoundaryValueGuess& guess = {},
+                                                          const BoundaryValueOptions& options = {});
 
 }  // namespace continuo::boundary

@@ -34,11 +34,11 @@ class CollocationSystem {
   /// `mesh` holds every one of problem.times.
   CollocationSystem(const BoundaryValueProblem& problem, std::span<const double> mesh, OpenEnds open = {});
 
-  std::size_t components() const { return n_; }
-  std::size_t point_count() const { return per_interval * intervals() + 1; }
-  std::size_t intervals() const { return mesh_.size() - 1; }
-  double time(std::size_t point) const;
-  bool has_open_end(std::size_t interval) const {
+  [[nodiscard]] std::size_t components() const { return n_; }
+  [[nodiscard]] std::size_t point_count() const { return per_interval * intervals() + 1; }
+  [[nodiscard]] std::size_t intervals() const { return mesh_.size() - 1; }
+  [[nodiscard]] double time(std::size_t point) const;
+  [[nodiscard]] bool has_open_end(std::size_t interval) const {
     return (open_.first && interval == 0) || (open_.last && interval + 1 == intervals());
   }
 
@@ -47,18 +47,18 @@ class CollocationSystem {
   std::span<double> point(std::size_t q) { return std::span(z_).subspan(q * n_, n_); }
   std::span<double> constants() { return std::span(z_).subspan(point_count() * n_, m_); }
   /// f at the points, of the last iteration.
-  std::span<const double> slopes() const { return f_; }
+  [[nodiscard]] std::span<const double> slopes() const { return f_; }
 
   /// Damped until a correction is below `target`, relative to the size of each component.
   NewtonEnding iterate(double target, const BoundaryValueOptions& options);
-  std::size_t iterations() const { return iterations_; }
-  std::size_t evaluations() const { return evaluations_; }
+  [[nodiscard]] std::size_t iterations() const { return iterations_; }
+  [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
   /// The component or constant that moved most, in its measure, in the last correction.
-  std::size_t worst() const { return worst_; }
+  [[nodiscard]] std::size_t worst() const { return worst_; }
   /// The size of the corrections, in that measure, below which rounding did not let them fall; else 0.
-  double held_at() const { return held_at_; }
+  [[nodiscard]] double held_at() const { return held_at_; }
   /// Whether there is a matrix of an iteration.
-  bool is_factored() const { return factored_; }
+  [[nodiscard]] bool is_factored() const { return factored_; }
   /// The inverse of that matrix times b, in place.
   void solve(std::span<double> b) { lu_->solve(b.data()); }
   /// How large the terms are whose sum is each equation where the unknowns are z: what rounding leaves of it is some
@@ -68,10 +68,10 @@ class CollocationSystem {
  private:
   void make_pattern();
   void evaluate_slopes(std::span<const double> z);
-  bool is_open(std::size_t point) const {
+  [[nodiscard]] bool is_open(std::size_t point) const {
     return (open_.first && point == 0) || (open_.last && point + 1 == point_count());
   }
-  double weight(std::size_t interval, std::size_t i, std::size_t j) const;
+  [[nodiscard]] double weight(std::size_t interval, std::size_t i, std::size_t j) const;
   void evaluate_residuals(std::span<const double> z, std::span<double> residuals);
   void evaluate_jacobians();
   void difference_jacobian(std::size_t q, std::span<double> block);
@@ -79,7 +79,9 @@ class CollocationSystem {
   void fill_matrix();
   void measure();
   double size_of(std::span<const double> correction);
-  std::span<const double> constants_of(std::span<const double> z) const { return z.subspan(point_count() * n_, m_); }
+  [[nodiscard]] std::span<const double> constants_of(std::span<const double> z) const {
+    return z.subspan(point_count() * n_, m_);
+  }
   std::span<const double> gather(std::span<const double> z);
 
   const BoundaryValueProblem& problem_;

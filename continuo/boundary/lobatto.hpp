@@ -18,7 +18,7 @@ struct LobattoTable {
   std::array<std::array<double, s>, s> a{};  // a_ij = integral of l_j from 0 to c_i
 
   /// The integrals at theta: x(t + theta h) = x + h sum_j weights[j] f_j.
-  constexpr std::array<double, s> rises(double theta) const {
+  [[nodiscard]] constexpr std::array<double, s> rises(double theta) const {
     std::array<double, s> weights{};
     for (std::size_t j = 0; j < s; ++j) {
       double sum = 0;
@@ -27,7 +27,7 @@ struct LobattoTable {
     }
     return weights;
   }
-  constexpr std::array<double, s> slopes(double theta) const {
+  [[nodiscard]] constexpr std::array<double, s> slopes(double theta) const {
     std::array<double, s> weights{};
     for (std::size_t j = 0; j < s; ++j)
       for (std::size_t k = s; k-- > 0;) weights[j] = weights[j] * theta + slope[j][k];
@@ -36,7 +36,7 @@ struct LobattoTable {
 };
 
 template <std::size_t s>
-constexpr LobattoTable<s> make_lobatto(const std::array<double, s>& nodes) {
+[[nodiscard]] constexpr LobattoTable<s> make_lobatto(const std::array<double, s>& nodes) {
   LobattoTable<s> table{.c = nodes};
   for (std::size_t j = 0; j < s; ++j) {
     std::array<double, s + 1> product{1};  // of (theta - c_i) / (c_j - c_i), i != j

@@ -14,7 +14,7 @@ namespace continuo::live {
 struct Bodies {
   std::size_t dimension = 3;
   std::vector<float> position, orientation;
-  std::size_t count() const { return position.size() / dimension; }
+  [[nodiscard]] std::size_t count() const { return position.size() / dimension; }
 };
 
 struct LiveEvent {

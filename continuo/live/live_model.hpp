@@ -59,8 +59,8 @@ struct LiveModel {
   std::optional<std::size_t> energy, drift;  // columns
   int dimension = 2;
 
-  const model::Model& model() const { return program->model; }
-  std::size_t distance() const { return columns.size() - 1; }
+  [[nodiscard]] const model::Model& model() const { return program->model; }
+  [[nodiscard]] std::size_t distance() const { return columns.size() - 1; }
 };
 
 /// The values of the model's variables as they are at some instant: parameters and inputs. Shared by all that was
@@ -69,6 +69,6 @@ using Variables = std::shared_ptr<const std::vector<double>>;
 
 /// Inputs that somebody moves (those with a key, and `taken`) do not follow their files.
 using Taken = std::set<std::string, std::less<>>;
-LiveModel prepare(model::Model model, const Taken& taken = {});
+[[nodiscard]] LiveModel prepare(model::Model model, const Taken& taken = {});
 
 }  // namespace continuo::live

@@ -15,7 +15,7 @@
 namespace continuo::live {
 
 /// Seconds of a clock that never goes backwards.
-double steady_seconds();
+[[nodiscard]] double steady_seconds();
 
 class Loop {
  public:

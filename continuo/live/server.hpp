@@ -48,9 +48,9 @@ class Server final : public Audience {
   /// Says goodbye to all and returns when the thread has ended.
   void stop();
 
-  unsigned short port() const;
-  std::string url() const;
-  std::size_t clients() const;
+  [[nodiscard]] unsigned short port() const;
+  [[nodiscard]] std::string url() const;
+  [[nodiscard]] std::size_t clients() const;
 
   // From any thread.
   void see(std::shared_ptr<const Slice> slice) override;

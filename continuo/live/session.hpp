@@ -41,9 +41,9 @@ class Session {
 
   /// Reads the file of the place, or what is wrong with it: then there is nothing to show.
   model::Loaded open_file();
-  bool is_open() const { return playback_.shown() != nullptr; }
+  [[nodiscard]] bool is_open() const { return playback_.shown() != nullptr; }
   /// Why there is nothing to show.
-  const std::vector<model::Diagnostic>& problems() const { return notices_.problems(); }
+  [[nodiscard]] const std::vector<model::Diagnostic>& problems() const { return notices_.problems(); }
 
   /// What is due by the clock; publishes what there is to see.
   void turn();
@@ -75,19 +75,19 @@ class Session {
   void run_text(const std::string& text);
   void save_text(const std::string& text);
 
-  bool playing() const { return playback_.playing(); }
-  bool has_ended() const { return !playback_.ended().empty(); }
-  double shown_time() const { return playback_.shown_time(); }
+  [[nodiscard]] bool playing() const { return playback_.playing(); }
+  [[nodiscard]] bool has_ended() const { return !playback_.ended().empty(); }
+  [[nodiscard]] double shown_time() const { return playback_.shown_time(); }
   /// Where the run of the text ends; the view goes on.
-  double planned_end() const { return playback_.main().plan().to; }
-  const LiveModel& shown() const { return *playback_.shown(); }
-  const History& history() const { return playback_.history(); }
-  const PacedClock& clock() const { return playback_.clock(); }
+  [[nodiscard]] double planned_end() const { return playback_.main().plan().to; }
+  [[nodiscard]] const LiveModel& shown() const { return *playback_.shown(); }
+  [[nodiscard]] const History& history() const { return playback_.history(); }
+  [[nodiscard]] const PacedClock& clock() const { return playback_.clock(); }
   /// Null without bodies.
-  const worlds::WorldRun* world() const { return playback_.main().world(); }
+  [[nodiscard]] const worlds::WorldRun* world() const { return playback_.main().world(); }
   /// For those who come later.
-  std::string model_json() const;
-  std::string state_json() const;
+  [[nodiscard]] std::string model_json() const;
+  [[nodiscard]] std::string state_json() const;
 
  private:
   bool begin(model::Model model, ModelText text);

@@ -34,6 +34,6 @@ struct Place {
 };
 
 /// The models of a folder by name, each with the first line of its heading.
-std::vector<GalleryModel> gallery_in(const std::string& folder);
+[[nodiscard]] std::vector<GalleryModel> gallery_in(const std::string& folder);
 
 }  // namespace continuo::live

@@ -8,6 +8,6 @@
 namespace continuo::results {
 
 /// Of a model with a world, and a run with a row.
-Panel bodies_panel(const model::Model& model, const model::Run& run);
+[[nodiscard]] Panel bodies_panel(const model::Model& model, const model::Run& run);
 
 }  // namespace continuo::results

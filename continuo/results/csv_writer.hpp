@@ -15,7 +15,7 @@ namespace continuo::results {
 
 /// The number at the end of the text.
 void append_number(std::string& text, double value);
-std::string number(double value);
+[[nodiscard]] std::string number(double value);
 
 /// The field at the end of the text, in quotes where it holds a comma, a quote or a line end.
 void append_field(std::string& text, std::string_view field);

@@ -7,9 +7,9 @@
 namespace continuo::results {
 
 /// A few lines, indented.
-std::string derivatives_text(const model::DerivativeReport& report);
+[[nodiscard]] std::string derivatives_text(const model::DerivativeReport& report);
 
 /// One object, without a line end.
-std::string derivatives_json(const model::DerivativeReport& report);
+[[nodiscard]] std::string derivatives_json(const model::DerivativeReport& report);
 
 }  // namespace continuo::results

@@ -22,6 +22,6 @@ struct ColumnFamily {
 };
 
 /// In the order of their first columns. What is no whole rectangle of indices, or differs in its unit, stays apart.
-std::vector<ColumnFamily> families_of(std::span<const model::Column> columns);
+[[nodiscard]] std::vector<ColumnFamily> families_of(std::span<const model::Column> columns);
 
 }  // namespace continuo::results

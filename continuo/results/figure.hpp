@@ -48,14 +48,14 @@ struct Figure {
 };
 
 /// The colour of the curve of this number where it names none.
-std::string_view color_of(std::size_t number);
+[[nodiscard]] std::string_view color_of(std::size_t number);
 
 /// The file's ending says the format: .svg or .png. Returns what went wrong, if anything: unknown ending, gnuplot not
 /// installed, folder not writable.
 Status draw(const Figure& figure, const std::string& path);
 
 /// The program for gnuplot that `draw` runs.
-std::string gnuplot_script(const Figure& figure, const std::string& path);
+[[nodiscard]] std::string gnuplot_script(const Figure& figure, const std::string& path);
 
 struct Range {
   double low, high;
@@ -64,12 +64,12 @@ struct Range {
 /// What an axis shows of values from low to high, with so much air as a part of these. It has an extent even over a
 /// constant (with its round-off) and over nothing at all (low > high): left to choose, gnuplot warns of the one and
 /// ends at the other.
-Range axis_over(double low, double high, double air);
+[[nodiscard]] Range axis_over(double low, double high, double air);
 
 /// What of a closed path without gaps lies in a rectangle.
-Curve clipped(const Curve& path, Range x, Range y);
+[[nodiscard]] Curve clipped(const Curve& path, Range x, Range y);
 
 /// A curve of many points without those that no eye can tell apart on a picture `pixels` wide. Peaks stay.
-Curve thinned(const Curve& curve, std::size_t pixels);
+[[nodiscard]] Curve thinned(const Curve& curve, std::size_t pixels);
 
 }  // namespace continuo::results

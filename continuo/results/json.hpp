@@ -13,13 +13,13 @@ namespace continuo::results {
 
 /// What was run and how it ended: version, model text and hash, parameters, method, tolerances, statistics.
 /// `seed` is null: nothing in a run is drawn by chance.
-std::string manifest(const model::Model& model, const model::Run& run, std::string_view version);
+[[nodiscard]] std::string manifest(const model::Model& model, const model::Run& run, std::string_view version);
 
 /// The hash of a manifest without what differs from run to run of the same thing (wall time): equal hashes, equal
 /// results.
-std::string manifest_hash(const model::Model& model, const model::Run& run, std::string_view version);
+[[nodiscard]] std::string manifest_hash(const model::Model& model, const model::Run& run, std::string_view version);
 
 /// One object: outcome, t, state by name, events, statistics, energy, checks. Ends with a line end.
-std::string run_json(const model::Run& run);
+[[nodiscard]] std::string run_json(const model::Run& run);
 
 }  // namespace continuo::results

@@ -21,7 +21,7 @@
 namespace continuo::results {
 
 /// By its name: the path ends in .nc.
-bool is_netcdf(std::string_view path);
+[[nodiscard]] bool is_netcdf(std::string_view path);
 
 /// What went wrong, if anything.
 Status write_netcdf(const model::Model& model, const model::Run& run, const std::string& path,

@@ -24,7 +24,7 @@ class OutputFile {
   void write(std::string_view bytes);
   /// Writes what is left. The first failure since the file was opened: "cannot write ball.csv: Permission denied".
   Status close();
-  const Status& status() const { return status_; }
+  [[nodiscard]] const Status& status() const { return status_; }
 
  private:
   void flush();

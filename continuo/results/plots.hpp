@@ -22,16 +22,16 @@ struct PlotData {
 };
 
 /// The model's `plot` statements; where it has none, its states against time, up to eight.
-std::vector<PlotData> plots_of(const model::ModelProgram& program, const model::Run& run);
+[[nodiscard]] std::vector<PlotData> plots_of(const model::ModelProgram& program, const model::Run& run);
 
 /// What `run --plot` draws: the `plot` statements, or, of bodies without any, where they are at the end, with the
 /// states of one or two; and the drift of the energy.
-Figure figure_of(const model::ModelProgram& program, const model::Run& run);
+[[nodiscard]] Figure figure_of(const model::ModelProgram& program, const model::Run& run);
 
 /// Curves of one unit share a panel; curves of different units get panels of their own, one below the other.
-Figure figure_of(std::string title, const model::Run& run, std::span<const PlotData> plots);
+[[nodiscard]] Figure figure_of(std::string title, const model::Run& run, std::span<const PlotData> plots);
 
 /// "h [m/s]", "h" without a unit.
-std::string label_of(const model::Column& column);
+[[nodiscard]] std::string label_of(const model::Column& column);
 
 }  // namespace continuo::results

@@ -19,9 +19,10 @@ struct ReportSection {
 };
 
 /// `heading`: plain text, of which the first paragraph stands below the title; the rest is in the model.
-std::string report_page(std::string_view title, std::string_view heading, std::span<const ReportSection> sections);
+[[nodiscard]] std::string report_page(std::string_view title, std::string_view heading,
+                                      std::span<const ReportSection> sections);
 
 /// Text with & < > " as HTML wants them.
-std::string escaped(std::string_view text);
+[[nodiscard]] std::string escaped(std::string_view text);
 
 }  // namespace continuo::results

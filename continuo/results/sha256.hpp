@@ -7,6 +7,6 @@
 namespace continuo::results {
 
 /// 64 hexadecimal digits. FIPS 180-4, section 6.2.
-std::string sha256(std::string_view bytes);
+[[nodiscard]] std::string sha256(std::string_view bytes);
 
 }  // namespace continuo::results

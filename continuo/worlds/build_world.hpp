@@ -18,7 +18,7 @@ struct BuiltWorld {
 
 /// Where bodies are and how they move comes from the states in `variables`. Bodies stand in the description's order.
 template <int Dim>
-BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> variables);
+[[nodiscard]] BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> variables);
 
 extern template BuiltWorld<2> build_world(const model::Model&, std::span<const double>);
 extern template BuiltWorld<3> build_world(const model::Model&, std::span<const double>);

@@ -26,14 +26,14 @@ class CoupledEquations {
 
   CoupledEquations(const model::ModelProgram& program, std::span<const double> variables);
 
-  std::size_t states() const { return count_; }
-  bool has_forces() const { return !forces_of_.empty(); }
-  bool has_torques() const { return !torques_of_.empty(); }
-  bool is_empty() const { return count_ == 0 && !has_forces() && !has_torques(); }
+  [[nodiscard]] std::size_t states() const { return count_; }
+  [[nodiscard]] bool has_forces() const { return !forces_of_.empty(); }
+  [[nodiscard]] bool has_torques() const { return !torques_of_.empty(); }
+  [[nodiscard]] bool is_empty() const { return count_ == 0 && !has_forces() && !has_torques(); }
   /// Where the states of the equations begin among the model's.
-  std::size_t first() const { return first_; }
+  [[nodiscard]] std::size_t first() const { return first_; }
   void set(std::uint32_t variable, double value);
-  std::size_t mode() const { return mode_; }
+  [[nodiscard]] std::size_t mode() const { return mode_; }
   void go(std::size_t mode) { mode_ = mode; }
 
   /// Adds to forces and torques and gives the rates of the equations' states z; each may be left out by an empty span.

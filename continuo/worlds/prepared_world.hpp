@@ -21,8 +21,8 @@ struct PreparedWorld {
   std::unique_ptr<WorldRun> world;  // null where it cannot begin
 };
 /// `initial`: values of states in place of the model's.
-PreparedWorld prepare_world(const std::shared_ptr<const model::ModelProgram>& program,
-                            const model::Experiment& experiment, std::vector<model::Diagnostic>& problems,
-                            std::span<const std::pair<std::size_t, double>> initial = {});
+[[nodiscard]] PreparedWorld prepare_world(const std::shared_ptr<const model::ModelProgram>& program,
+                                          const model::Experiment& experiment, std::vector<model::Diagnostic>& problems,
+                                          std::span<const std::pair<std::size_t, double>> initial = {});
 
 }  // namespace continuo::worlds

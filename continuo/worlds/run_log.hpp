@@ -74,7 +74,7 @@ class RunLog {
   void add(const Checkpoint& checkpoint);
   void add(const RunEnd& end);
   /// So many checkpoints are wanted, evenly over the run, and more where that takes long; none for 0.
-  std::size_t checkpoints() const { return checkpoints_; }
+  [[nodiscard]] std::size_t checkpoints() const { return checkpoints_; }
 
  private:
   BlockWriter out_;
@@ -90,7 +90,7 @@ struct RunRecording {
   /// Unreadable where not one note of the run is there.
   static Result<RunRecording> read(std::span<const std::byte> bytes);
   /// The last checkpoint not after t; the first where all are.
-  std::size_t checkpoint_at(double t) const;
+  [[nodiscard]] std::size_t checkpoint_at(double t) const;
 };
 
 }  // namespace continuo::worlds

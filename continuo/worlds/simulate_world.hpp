@@ -20,11 +20,12 @@
 namespace continuo::worlds {
 
 /// With a log it is recorded as it goes.
-model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
-                                const model::Experiment& experiment = {}, RunLog* log = nullptr);
+[[nodiscard]] model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
+                                              const model::Experiment& experiment = {}, RunLog* log = nullptr);
 
 /// The run that was recorded, told again. The program must be of its text; numbers that do not fit it are told (E325).
-model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording);
+[[nodiscard]] model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& program,
+                                            const RunRecording& recording);
 
 /// What of a run that goes on may be other than recorded.
 struct GoOn {
@@ -34,7 +35,8 @@ struct GoOn {
 };
 /// The recorded run up to one of its checkpoints, and from there on simulated: to the end that it was to have, to the
 /// same bits as without a break, or to another.
-model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording,
-                              std::size_t checkpoint, const GoOn& how = {}, RunLog* log = nullptr);
+[[nodiscard]] model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program,
+                                            const RunRecording& recording, std::size_t checkpoint, const GoOn& how = {},
+                                            RunLog* log = nullptr);
 
 }  // namespace continuo::worlds

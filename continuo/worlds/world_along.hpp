@@ -34,6 +34,7 @@ struct WorldAlong {
   std::vector<model::Diagnostic> diagnostics;
 };
 
-WorldAlong world_along(const std::shared_ptr<const model::ModelProgram>& program, const AlongRequest& request);
+[[nodiscard]] WorldAlong world_along(const std::shared_ptr<const model::ModelProgram>& program,
+                                     const AlongRequest& request);
 
 }  // namespace continuo::worlds

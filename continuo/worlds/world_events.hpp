@@ -25,7 +25,7 @@ namespace continuo::worlds {
 inline constexpr double looks = 1000;
 
 /// With steps, how much earlier than due the end of a step may be.
-double slack_of(const WorldRun& world);
+[[nodiscard]] double slack_of(const WorldRun& world);
 
 /// Events of one instant; the world is as they left it.
 struct WorldHappening {
@@ -46,7 +46,7 @@ class WorldEvents {
   /// What happens at the very beginning. Empty, or why the run cannot go on; so with `happen`.
   Status begin(WorldRun& world, const Sink& sink);
   /// How far it may be advanced at once.
-  double next(const WorldRun& world) const;
+  [[nodiscard]] double next(const WorldRun& world) const;
   /// To the first end of a step that is not before `to`; to the first instant of an event where one comes before.
   Status advance(WorldRun& world, double to);
   /// What is due now, in the order of the text, each on what the one before has left; then, round by round, what these
@@ -54,10 +54,10 @@ class WorldEvents {
   Status happen(WorldRun& world, const Sink& sink);
 
   /// A `stop` has been reached: by which event, and what it says.
-  bool stopped() const { return stopped_; }
-  const std::string& stopped_by() const { return stopped_by_; }
-  const std::string& stop_text() const { return events_.stop_text(); }
-  std::span<const std::size_t> stops() const { return events_.stops(); }
+  [[nodiscard]] bool stopped() const { return stopped_; }
+  [[nodiscard]] const std::string& stopped_by() const { return stopped_by_; }
+  [[nodiscard]] const std::string& stop_text() const { return events_.stop_text(); }
+  [[nodiscard]] std::span<const std::size_t> stops() const { return events_.stops(); }
 
   /// The world has been put elsewhere, or its variables changed: what was scheduled for this very instant is over.
   void go_on(WorldRun& world, std::span<const double> variables, std::span<const std::size_t> stops);
@@ -66,8 +66,8 @@ class WorldEvents {
   double next_scheduled() const;
   void read_guards(WorldRun& world, std::vector<double>& values);
   void place_guards(WorldRun& world);
-  bool passed(std::size_t i) const;
-  bool any_passed() const;
+  [[nodiscard]] bool passed(std::size_t i) const;
+  [[nodiscard]] bool any_passed() const;
   Status look_at_first_contact(WorldRun& world, const Snapshot& saved);  // event_search.cpp
   Status look_where_guards_turn(WorldRun& world, const Snapshot& saved, const X& before);
   double slope(std::size_t i, double t, const X& state, double length);

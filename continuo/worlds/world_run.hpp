@@ -35,7 +35,7 @@ namespace continuo::worlds {
 /// z is 0 in the plane.
 using Point = std::array<double, 3>;
 
-inline double dot(const Point& a, const Point& b) {
+[[nodiscard]] inline double dot(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -74,7 +74,7 @@ struct WorldOptions {
   const std::atomic<bool>* interrupt = nullptr;  // once it is true, an advance ends early and says so
   std::size_t most_contacts = 0;                 // so many of one advance are kept
 };
-WorldOptions options_of(const model::Plan& plan);
+[[nodiscard]] WorldOptions options_of(const model::Plan& plan);
 
 /// A world at an instant, with all that is needed to go on to the same bits.
 struct Snapshot {
@@ -95,29 +95,29 @@ class WorldRun {
   WorldRun& operator=(const WorldRun&) = delete;
   virtual ~WorldRun() = default;
 
-  virtual int dimension() const = 0;
-  virtual double time() const = 0;
+  [[nodiscard]] virtual int dimension() const = 0;
+  [[nodiscard]] virtual double time() const = 0;
   /// Where it fails the world is where it got to. With steps, to the first end of a step that is not before t.
   virtual Status advance_to(double t) = 0;
   /// 0 without steps.
-  virtual double step() const = 0;
+  [[nodiscard]] virtual double step() const = 0;
 
-  virtual const std::vector<BodyShape>& bodies() const = 0;
-  virtual const std::vector<WallShape>& walls() const = 0;
-  virtual const std::vector<SpringShape>& springs() const = 0;
+  [[nodiscard]] virtual const std::vector<BodyShape>& bodies() const = 0;
+  [[nodiscard]] virtual const std::vector<WallShape>& walls() const = 0;
+  [[nodiscard]] virtual const std::vector<SpringShape>& springs() const = 0;
 
-  virtual Point position(std::size_t body) const = 0;
-  virtual Point velocity(std::size_t body) const = 0;
+  [[nodiscard]] virtual Point position(std::size_t body) const = 0;
+  [[nodiscard]] virtual Point velocity(std::size_t body) const = 0;
   /// About the axes; in the plane its third component.
-  virtual Point spin(std::size_t body) const = 0;
+  [[nodiscard]] virtual Point spin(std::size_t body) const = 0;
   /// A unit quaternion (w, x, y, z).
-  virtual std::array<double, 4> orientation(std::size_t body) const = 0;
-  virtual double kinetic_energy() const = 0;
-  virtual double potential_energy() const = 0;
+  [[nodiscard]] virtual std::array<double, 4> orientation(std::size_t body) const = 0;
+  [[nodiscard]] virtual double kinetic_energy() const = 0;
+  [[nodiscard]] virtual double potential_energy() const = 0;
   /// Of the last advance, the first `most_contacts`.
-  virtual const std::vector<Contact>& contacts() const = 0;
+  [[nodiscard]] virtual const std::vector<Contact>& contacts() const = 0;
   /// "ball meets floor", "ball leaves floor".
-  std::string name_of(const Contact& contact) const;
+  [[nodiscard]] std::string name_of(const Contact& contact) const;
 
   /// The model's states: of bodies, of equations, measures of the world.
   virtual const std::vector<double>& state() = 0;
@@ -134,10 +134,10 @@ class WorldRun {
   /// The register file: t, states, parameters, inputs.
   virtual std::span<const double> variables() = 0;
   /// Of the equations.
-  virtual std::size_t mode() const = 0;
+  [[nodiscard]] virtual std::size_t mode() const = 0;
   virtual void go(std::size_t mode) = 0;
 
-  virtual Snapshot snapshot() const = 0;
+  [[nodiscard]] virtual Snapshot snapshot() const = 0;
   /// Whether this run can go on from a snapshot that was read from a file, which may say anything.
   virtual Status check(const Snapshot& snapshot) const = 0;
   /// Goes on from a snapshot of a run by the same method and step.

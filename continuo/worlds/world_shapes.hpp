@@ -18,7 +18,7 @@ struct Shapes {
 };
 
 template <int Dim>
-Point point_of(const Vector<double, Dim>& v) {
+[[nodiscard]] Point point_of(const Vector<double, Dim>& v) {
   Point point{};
   for (std::size_t i = 0; i < v.size(); ++i) point[i] = v[i];
   return point;
@@ -26,7 +26,7 @@ Point point_of(const Vector<double, Dim>& v) {
 
 /// `text` is what the world was built from, whose names are in its order.
 template <int Dim>
-Shapes shapes_of(const World<double, Dim>& world, const model::WorldDescription& text) {
+[[nodiscard]] Shapes shapes_of(const World<double, Dim>& world, const model::WorldDescription& text) {
   Shapes shapes;
   for (std::size_t i = 0; i < world.size(); ++i)
     shapes.bodies.push_back({text.bodies[i].name, world.radius[i], world.mass[i], world.is_fixed(i)});
