@@ -2,7 +2,7 @@
 // rounding takes over.
 //
 //   const auto decay = convergence_problem(1, [](auto, auto x, auto dxdt) { dxdt[0] = -x[0]; }, {1}, {0, 1});
-//   const Convergence study = converge(decay, {.methods = {"explicit_euler", "rk4"}});
+//   const Convergence study = require(converge(decay, {.methods = {"explicit_euler", "rk4"}}));
 //   study.methods[1].global.order;  // 4.00
 //
 // Two errors stand side by side. The local one is that of a single step from a point of the true solution: it goes to
@@ -23,6 +23,7 @@
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/solve/outcome.hpp>
+#include <continuo/status/result.hpp>
 #include <continuo/studies/accuracy/kinks.hpp>
 #include <continuo/studies/accuracy/observed_order.hpp>
 #include <continuo/studies/support/named_solve.hpp>
@@ -94,7 +95,7 @@ struct MethodConvergence {
   std::vector<StepErrors> points{};
   ErrorCurve global{}, local{}, energy{}, in_float{}, in_long_double{};
   std::optional<FloorPrediction> floor{}, floor_in_float{};
-  std::string problem{};  // why there is nothing, if there is nothing
+  Status status{};  // a failure where the method cannot be studied
 };
 
 /// What takes a method's order from it: steps across a place where the equations jump or bend, or that end at an event.
@@ -109,14 +110,14 @@ struct Convergence {
   std::optional<SpoiledOrder> spoiled{};  // of a model, where some method keeps less than its order
   bool by_tolerance = false, interrupted = false;
   std::string reference{};  // what was compared with
-  std::string problem{};    // why there is no reference
 };
 
-Convergence converge(const ConvergenceProblem& problem, const ConvergeRequest& request);
+/// A failure where there is no reference run.
+Result<Convergence> converge(const ConvergenceProblem& problem, const ConvergeRequest& request);
 
 /// The same for any model. With events, modes, tables or algebraic equations: global and energy errors only, in rows at
 /// output times, against a strict run in double; of a world of bodies against its exact motion.
-Convergence converge(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
-                     const ConvergeRequest& request);
+Result<Convergence> converge(const std::shared_ptr<const model::ModelProgram>& program,
+                             const model::Experiment& experiment, const ConvergeRequest& request);
 
 }  // namespace continuo::studies

@@ -2,7 +2,7 @@
 // model's exact sensitivities as derivatives.
 //
 //   const Fit result = fit({.program = program,
-//                           .data = {{.measurements = read.measurements, .columns = {{0, "x"}}}},
+//                           .data = {{.measurements = *read, .columns = {{0, "x"}}}},
 //                           .unknowns = {{{.index = model::find_parameter(program->model, "k")}}}});
 //   if (result.found()) fmt::print("{} +- {}\n", result.estimates[0].value, result.half_width(0));
 #pragma once
@@ -15,6 +15,7 @@
 
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/model_program.hpp>
+#include <continuo/status/status.hpp>
 #include <continuo/studies/fit/variance_components.hpp>
 #include <continuo/studies/least_squares.hpp>
 #include <continuo/studies/sensitivity/influence.hpp>
@@ -130,7 +131,7 @@ struct Fit {
   std::vector<FitDoubt> doubts;
   std::size_t runs = 0;
   std::vector<model::Diagnostic> diagnostics;
-  std::string problem;  // why there is no fit, or "file:line: ..."; else empty
+  Status status;  // a failure where there is no fit; of data, the message begins with "file:line: "
 
   bool found() const { return least.found; }
   /// Of the 95 % confidence interval.

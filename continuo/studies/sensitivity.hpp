@@ -20,6 +20,7 @@
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/simulation/stepping.hpp>
 #include <continuo/solve/outcome.hpp>
+#include <continuo/status/status.hpp>
 #include <continuo/studies/sensitivity/influence.hpp>
 
 namespace continuo::studies {
@@ -40,13 +41,17 @@ struct SensitivityRun {
   std::vector<double> values;     // row after row: x, then dx/dp of each influence
   std::vector<double> variables;  // the register file at the start
   std::vector<SensitivityEvent> events;
-  std::size_t mode = 0;  // at the end
-  Outcome<double> outcome;
+  std::size_t mode = 0;     // at the end
+  Outcome<double> outcome;  // of the integration
   Statistics statistics;
-  std::string problem;  // why the motion has no derivative; else empty
+  /// A failure where the run failed, as the outcome or the first diagnostic says, and where the motion has no
+  /// derivative; the rows up to there are kept.
+  Status status;
   std::vector<model::Diagnostic> diagnostics;
 
-  bool good() const { return diagnostics.empty() && problem.empty() && succeeded(outcome.ending); }
+  bool good() const { return diagnostics.empty() && succeeded(status.ending); }
+  /// Whether the status tells why the motion has no derivative, and not how a run failed.
+  bool has_no_derivative() const { return !status && diagnostics.empty() && status.ending != outcome.ending; }
   std::size_t rows() const { return times.size(); }
   std::span<const double> row(std::size_t r) const {
     const std::size_t width = states * (1 + influences);
@@ -88,6 +93,8 @@ class SensitivityStudy {
   Along along(std::span<const model::NodeId> quantities) const;
 
  private:
+  SensitivityRun integrated(const SensitivityRequest& request) const;
+
   std::shared_ptr<const detail::SensitiveProgram> program_;
 };
 

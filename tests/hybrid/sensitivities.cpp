@@ -121,9 +121,9 @@ SensitivityAttack attack_sensitivities(std::size_t count, std::uint64_t seed, st
     const studies::SensitivityStudy study(program, influences);
     const studies::SensitivityRun run = study.run({.experiment = {.rtol = 1e-11, .atol = {1e-11}}});
     if (!run.good()) {
-      ++result.refused[!run.diagnostics.empty() ? run.diagnostics.front().message
-                       : !run.problem.empty()   ? run.problem.substr(run.problem.rfind('`') + 1)
-                                                : describe(run.outcome).substr(0, 30)];
+      ++result.refused[!run.diagnostics.empty()  ? run.diagnostics.front().message
+                       : run.has_no_derivative() ? run.status.message.substr(run.status.message.rfind('`') + 1)
+                                                 : run.status.message.substr(0, 30)];
       continue;
     }
     result.through_events += !here.events.empty();

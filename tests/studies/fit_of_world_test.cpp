@@ -80,7 +80,7 @@ TEST(WorldSensitivity, OfABouncingBallIsThatOfItsParabolas) {
     const SensitivityStudy study(program, {{.index = 0}, {.index = 1}});
     const std::vector<double> times{0.3, 0.7, 1.1, 1.35};
     const SensitivityRun run = study.run({.times = times});
-    ASSERT_TRUE(run.good()) << mode << run.problem;
+    ASSERT_TRUE(run.good()) << mode << run.status.message;
     ASSERT_EQ(run.rows(), times.size());
     const std::size_t y = model::find_state(program->model, "ball.y");
     for (std::size_t row = 0; row < times.size(); ++row) {
@@ -127,7 +127,7 @@ TEST(FitOfWorld, IntervalsOfGravityAndRestitutionHoldWhatTheyPromise) {
       request.unknowns[1].low = 0, request.unknowns[1].high = 1;
       request.data.push_back(data_of(times, {"ball.y"}, {y}));
       const Fit found = fit(request);
-      ASSERT_TRUE(found.found()) << mode << k << found.problem;
+      ASSERT_TRUE(found.found()) << mode << k << found.status.message;
       held[0] += std::abs(found.least.p[0] - g) <= found.half_width(0) ? 1 : 0;
       held[1] += std::abs(found.least.p[1] - e) <= found.half_width(1) ? 1 : 0;
     }
@@ -178,7 +178,7 @@ TEST(FitOfWorld, FindsFrictionMassesAndSprings) {
     FitRequest request = request_of(program, names);
     request.data.push_back(data_of(times, each.places, values));
     const Fit found = fit(request);
-    ASSERT_TRUE(found.found()) << each.text << found.problem;
+    ASSERT_TRUE(found.found()) << each.text << found.status.message;
     for (std::size_t u = 0; u < names.size(); ++u)
       EXPECT_NEAR(found.least.p[u], each.truth[u].second, 1e-6 * each.truth[u].second) << names[u];
   }
@@ -191,7 +191,7 @@ TEST(FitOfWorld, RefusesWhatJumpsAtImpacts) {
     request.data.push_back(data_of({0.5, 1, 1.5}, {quantity}, {{0, 1, 2}}));
     const Fit found = fit(request);
     EXPECT_FALSE(found.found());
-    EXPECT_THAT(found.problem, HasSubstr("jumps where bodies meet")) << quantity;
+    EXPECT_THAT(found.status.message, HasSubstr("jumps where bodies meet")) << quantity;
     // Before anything meets it is a quantity like others.
     request.data.clear();
     request.data.push_back(data_of({0.1, 0.3, 0.5}, {"ball.y'"}, {{-0.981, -2.943, -4.905}}));
@@ -217,7 +217,7 @@ TEST(FitOfWorld, RefusesIntervalsInChaos) {
     request.data.push_back(data_of(times, {"b[1].x"}, {x}));
     const Fit found = fit(request);
     EXPECT_FALSE(found.found()) << start;
-    EXPECT_THAT(found.problem, HasSubstr("no smooth function of e")) << start;
+    EXPECT_THAT(found.status.message, HasSubstr("no smooth function of e")) << start;
   }
 }
 

@@ -49,7 +49,7 @@ TEST(FitPublished, AlphaPinene) {
   for (FitColumn& column : request.data[0].columns) column.deviation = 1;
   for (FitUnknown& unknown : request.unknowns) unknown.logarithmic = true;
   const Fit found = fit(request);
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   EXPECT_NEAR(*found.statistics.chi_squared, 19.872, 5e-4);
   const double published[] = {5.926e-5, 2.963e-5, 2.047e-5, 2.745e-4, 3.998e-5};
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(found.estimates[i].value, published[i], 5e-4 * published[i]);
@@ -68,7 +68,7 @@ TEST(FitPublished, Barnes) {
                {0.3, 0.35, 0.4, 0.5, 0.5, 0.4, 0.3, 0.25, 0.25, 0.3, 0.35}}));
   for (FitColumn& column : request.data[0].columns) column.deviation = 0.1;
   const Fit found = fit(request);
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   const double values[] = {0.86094089, 2.07902922, 1.81494416};
   const double deviations[] = {0.056513552, 0.09340913, 0.097666419};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -90,7 +90,7 @@ TEST(FitPublished, Theophylline) {
       data_of({0, 0.25, 0.57, 1.12, 2.02, 3.82, 5.1, 7.03, 9.05, 12.12, 24.37}, {"conc"},
               {{0.74, 2.84, 6.57, 10.5, 9.66, 8.58, 8.36, 7.47, 6.89, 5.94, 3.28}}));
   const Fit found = fit(request);
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   const double values[] = {-2.9196, 0.5752, -3.9159}, deviations[] = {0.1709, 0.1728, 0.1273};
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(found.estimates[i].value, values[i], 6e-5);
@@ -118,7 +118,7 @@ TEST(FitPublished, HareAndLynx) {
   for (FitUnknown& unknown : request.unknowns) unknown.logarithmic = true;
   for (FitColumn& column : request.data[0].columns) column.error = ErrorModel::lognormal;
   const Fit found = fit(request);
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   // SciPy's least squares of the logarithms with equal weights; the deviations of the two are equal to 1 %.
   const double values[] = {0.54016, 0.0271654, 0.796384, 0.0236946, 34.6024, 5.84451};
   for (std::size_t i = 0; i < 6; ++i) {
@@ -169,7 +169,7 @@ TEST(FitPublished, DimersOfStat5) {
   request.likelihood = Likelihood::plain;
   request.starts_in_doubt = 0;
   const Fit found = fit(request);
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   EXPECT_NEAR(*found.statistics.log_likelihood, -138.222, 2e-3);
   EXPECT_TRUE(found.estimates[1].at_bound);  // as the best known has it
 }

@@ -72,7 +72,7 @@ TEST(FitStatistics, OfAStraightLineAreThoseOfTheTextbooks) {
     const auto t = times(rows), y = noisy(t, 1, 0.3, random);
     const Straight expected = straight(t, y);
     const Fit found = fit(request_of(line, {"a", "b"}, {data_of("y", t, y)}));
-    ASSERT_TRUE(found.found()) << found.problem;
+    ASSERT_TRUE(found.found()) << found.status.message;
     EXPECT_NEAR(found.estimates[0].value, expected.a, 1e-9);
     EXPECT_NEAR(found.estimates[1].deviation, expected.deviation_b, 1e-6 * expected.deviation_b);
     const double n = static_cast<double>(rows), quantile = student_t_quantile(0.95, n - 2);
@@ -112,7 +112,7 @@ TEST(FitStatistics, EveryColumnHasADeviationOfItsOwn) {
   const Fit found = fit(request_of(line, {"a", "b"},
                                    {data_of("y", t, noisy(t, 1, 0.1, random)), data_of("y", t, noisy(t, 1, 2, random)),
                                     data_of("z", few, noisy(few, 10, 30, random))}));
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   EXPECT_NEAR(found.columns[0].met, 0.1, 0.04);
   EXPECT_NEAR(found.columns[1].met, 2, 0.8);
   EXPECT_NEAR(found.columns[2].met, 30, 4 * 30 / std::sqrt(12));
@@ -127,7 +127,7 @@ TEST(FitStatistics, ShortColumnsShareADeviation) {
   const char* fading = "param a = 1\nx' = -a*x\nx(0) = 1\noutput y = 100*x\nrun 0..2\n";
   const Fit found =
       fit(request_of(fading, {"a"}, {data_of("x", {0, 1}, {1, 0.60}), data_of("y", {1, 2}, {61.5, 36.2})}));
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   EXPECT_NEAR(found.estimates[0].degrees, 2, 1e-6);
   EXPECT_NEAR(found.columns[0].degrees + found.columns[1].degrees, 2, 1e-9);
   EXPECT_GT(found.half_width(0), 0.01);  // 4.3 times a hundredth of x over dx/da = 0.6, over the root of three values
@@ -139,7 +139,7 @@ TEST(FitStatistics, WhatTheDataDoNotDetermineHidesNothingElse) {
   const auto t = times(20), y = noisy(t, 1, 0.3, random);
   const char* product = "param a = 1, b = 0.5, c = 1\ns' = 0\ns(0) = 0\noutput y = a + b*c*t\nrun 0..10\n";
   const Fit found = fit(request_of(product, {"a", "b", "c"}, {data_of("y", t, y)}));
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   const Straight expected = straight(t, y);
   EXPECT_NEAR(found.estimates[0].deviation, expected.deviation_a, 0.05 * expected.deviation_a);  // 17 and 18 degrees
   EXPECT_TRUE(found.estimates[1].undetermined);
@@ -241,7 +241,7 @@ TEST(FitStatistics, LogarithmsOfUnknownsAndOfValues) {
   request.unknowns[0].logarithmic = true;
   request.data[0].columns[0].error = ErrorModel::lognormal;
   const Fit found = fit(request);
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   double mean = 0, square = 0;
   for (const double value : y) mean += std::log(value) / 5;
   for (const double value : y) square += std::pow(std::log(value) - mean, 2) / 4;
@@ -268,31 +268,32 @@ TEST(FitStatistics, DeviationsMayDependOnWhatTheModelSays) {
 TEST(FitStatistics, RefusesValuesThatTheirErrorsMakeImpossible) {
   FitRequest request = request_of(line, {"a"}, {data_of("y", {0, 1}, {1, -1})});
   request.data[0].columns[0].error = ErrorModel::lognormal;
-  EXPECT_THAT(fit(request).problem, HasSubstr("y.csv:3: -1 in column `y` cannot have a lognormal error"));
+  EXPECT_THAT(fit(request).status.message, HasSubstr("y.csv:3: -1 in column `y` cannot have a lognormal error"));
   request.data[0].columns[0].error = ErrorModel::poisson;
-  EXPECT_THAT(fit(request).problem, HasSubstr("y.csv:3: -1 in column `y` is no count"));
+  EXPECT_THAT(fit(request).status.message, HasSubstr("y.csv:3: -1 in column `y` is no count"));
   request.data[0].columns[0].error = ErrorModel::constant;
   // Their squares are infinite or zero: a fit of them would say that the data do not determine a.
   for (const double size : {1e200, 1e-200}) {
     request.data[0].measurements.values[0] = {size, 2 * size};
-    EXPECT_THAT(fit(request).problem, HasSubstr("to be squared: give it in another unit"));
+    EXPECT_THAT(fit(request).status.message, HasSubstr("to be squared: give it in another unit"));
   }
   request.data[0].measurements.values[0] = {1, 2};
   request.data[0].columns[0].deviation = 1e-200;
-  EXPECT_EQ(fit(request).problem, "y.csv: y: a deviation of 1e-200 is too small to be squared (--sigma)");
+  EXPECT_EQ(fit(request).status.message, "y.csv: y: a deviation of 1e-200 is too small to be squared (--sigma)");
   request.data[0].columns[0].deviation.reset();
   request.data[0].measurements.columns.push_back("s");
   request.data[0].measurements.values.push_back({1, 1e-80});
   request.data[0].columns[0].deviations_in = 1;
-  EXPECT_EQ(fit(request).problem, "y.csv:3: 1e-80 in column `s` is too small to be squared: give it in another unit");
+  EXPECT_EQ(fit(request).status.message,
+            "y.csv:3: 1e-80 in column `s` is too small to be squared: give it in another unit");
   request.data[0].columns[0].deviations_in.reset();
   request.unknowns[0].prior = {.center = 1e300, .deviation = 1};
-  EXPECT_EQ(fit(request).problem, "a: a prior about 1e+300 is too far away to be squared (--prior)");
+  EXPECT_EQ(fit(request).status.message, "a: a prior about 1e+300 is too far away to be squared (--prior)");
   request.unknowns[0].prior = {.center = 1, .deviation = 1e-300};
-  EXPECT_EQ(fit(request).problem, "a: a deviation of 1e-300 is too small to be squared (--prior)");
+  EXPECT_EQ(fit(request).status.message, "a: a deviation of 1e-300 is too small to be squared (--prior)");
   request.unknowns[0].prior.reset();
   request.unknowns[0].start = -1, request.unknowns[0].logarithmic = true;
-  EXPECT_THAT(fit(request).problem, HasSubstr("only what is positive has a logarithm"));
+  EXPECT_THAT(fit(request).status.message, HasSubstr("only what is positive has a logarithm"));
 }
 
 /// How likely a new measurement of y = a (1 + t) at a time is within `half` of `middle`: Student's t for each ratio of
@@ -335,7 +336,7 @@ TEST(FitStatistics, BandsMixTheRatiosOfTwoDeviationsAsIntervalsDo) {
       request_of("param a = 1\ns' = 0\ns(0) = 0\noutput y = a*(1 + t)\nrun 0..10\n", {"a"}, {data_of("y", t, y)});
   request.data[0].columns[0].error = ErrorModel::both;
   const Fit found = fit(request);
-  ASSERT_TRUE(found.found()) << found.problem;
+  ASSERT_TRUE(found.found()) << found.status.message;
   const std::vector<FitCurve> curves = curves_of(request, found, 4);
   for (std::size_t i = 0; i < 4; ++i) {
     const double half = curves[0].high[i] - curves[0].y[i];
@@ -384,7 +385,7 @@ std::array<int, 4> held_by_two_columns(std::size_t rows, int fits) {
       for (const double at : t) request.data[d].measurements.values[0].push_back(measure(at, d == 0 ? 1 : 10));
     }
     const Fit found = fit(request);
-    EXPECT_TRUE(found.found()) << found.problem;
+    EXPECT_TRUE(found.found()) << found.status.message;
     EXPECT_FALSE(found.sure.ratios_failed);
     held[0] += found.estimates[0].low <= 2 && 2 <= found.estimates[0].high ? 1 : 0;
     held[1] += found.estimates[1].low <= 0.5 && 0.5 <= found.estimates[1].high ? 1 : 0;

@@ -49,7 +49,7 @@ FitRequest spring_request(std::size_t count, double noise, std::mt19937_64& rand
 TEST(Fit, FindsWhatMadeTheData) {  // without noise: to the runs' tolerance
   std::mt19937_64 random(1);
   const Fit result = fit(spring_request(50, 0, random));
-  ASSERT_TRUE(result.found()) << result.problem;
+  ASSERT_TRUE(result.found()) << result.status.message;
   EXPECT_NEAR(result.least.p[0], 4, 1e-6);
   EXPECT_NEAR(result.least.p[1], 0.6, 1e-6);
 }
@@ -63,7 +63,7 @@ TEST(Fit, IntervalsHoldTheTruthAsOftenAsTheySayInThousandRepeats) {
   for (int repeat = 0; repeat < 1000; ++repeat) {
     request.data[0].measurements = spring_data(100, 0.05, random);
     const Fit result = fit(request);
-    ASSERT_TRUE(result.found()) << result.problem;
+    ASSERT_TRUE(result.found()) << result.status.message;
     k_inside += std::abs(result.least.p[0] - 4) <= result.half_width(0) ? 1 : 0;
     c_inside += std::abs(result.least.p[1] - 0.6) <= result.half_width(1) ? 1 : 0;
   }
@@ -81,7 +81,7 @@ TEST(Fit, FindsInitialValuesToo) {
   request.unknowns.push_back(start_of(*request.program, "x", 0.3));
   request.unknowns.push_back(start_of(*request.program, "x'", 0.5));
   const Fit result = fit(request);
-  ASSERT_TRUE(result.found()) << result.problem;
+  ASSERT_TRUE(result.found()) << result.status.message;
   EXPECT_NEAR(result.least.p[0], 4, 1e-6);
   EXPECT_NEAR(result.least.p[2], 1, 1e-6);
   EXPECT_NEAR(result.least.p[3], 0, 1e-6);
@@ -127,7 +127,7 @@ TEST(Fit, TakesSeveralSetsEachWithItsOwnParametersAndGaps) {
            .data = {{.measurements = first, .columns = {{0, "x", 0.1}}},
                     {.measurements = second, .columns = {{0, "twice", 0.1}}, .parameters = {{"x0", 3.0}}}},
            .unknowns = {unknown(*program, "a")}});
-  ASSERT_TRUE(result.found()) << result.problem;
+  ASSERT_TRUE(result.found()) << result.status.message;
   EXPECT_NEAR(result.least.p[0], a, 1e-7);
   // Known deviations: 1/s^2 = sum of (dq/da)^2 / 0.1^2.
   const double one = std::exp(-a), two = 3 * std::exp(-a / 2);
@@ -188,15 +188,15 @@ TEST(Fit, BandHoldsTheMeasurementsItShould) {
 TEST(Fit, SaysWhyThereIsNone) {
   std::mt19937_64 random(9);
   FitRequest request = spring_request(1, 0, random);
-  EXPECT_NE(fit(request).problem.find("1 measured values cannot determine 2 unknowns"), std::string::npos);
+  EXPECT_NE(fit(request).status.message.find("1 measured values cannot determine 2 unknowns"), std::string::npos);
   request = spring_request(10, 0, random);
   request.data[0].measurements.times[0] = -1;
-  EXPECT_EQ(fit(request).problem, "spring.csv:2: the time -1 is before the model's start at 0");
+  EXPECT_EQ(fit(request).status.message, "spring.csv:2: the time -1 is before the model's start at 0");
   const auto explodes = program_of("param a = 1\nx' = a*x^2\nx(0) = 1\nrun 0..10\n");
   request.program = explodes;
   request.data[0].measurements = spring_data(10, 0, random);
   request.unknowns = {unknown(*explodes, "a")};
-  EXPECT_NE(fit(request).problem.find("the run from the starting values fails"), std::string::npos);
+  EXPECT_NE(fit(request).status.message.find("the run from the starting values fails"), std::string::npos);
 }
 
 }  // namespace

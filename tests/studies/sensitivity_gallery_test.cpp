@@ -77,7 +77,7 @@ struct Case {
 // computations of the same state differ, or one of a tenth of the accuracy; so is what the sensitivities err.
 void compare(const Case& of, const std::string& name) {
   const SensitivityRun run = SensitivityStudy(of.program, {of.influence}).run(of.request(of.value()));
-  ASSERT_TRUE(run.good()) << name << ": " << describe(run.outcome) << run.problem;
+  ASSERT_TRUE(run.good()) << name << ": " << describe(run.status);
   const std::size_t here = of.row(run.rows());
   const SensitivityRun loose = SensitivityStudy(of.program, {of.influence}).run(of.request(of.value(), 1e-10));
   const double p = of.value(), h = p == 0 ? 1e-3 : 1e-3 * std::abs(p);

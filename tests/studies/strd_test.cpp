@@ -138,7 +138,7 @@ TEST_P(Strd, IsFoundFromBothStarts) {
   const bool exact = certified.sum_of_squares < 1e-20;
   for (const int start : {0, 1}) {
     const Fit found = fit(request_of(GetParam(), certified, start));
-    ASSERT_TRUE(found.found()) << found.problem;
+    ASSERT_TRUE(found.found()) << found.status.message;
     EXPECT_FALSE(found.doubts_of(FitDoubt::Kind::not_converged)) << start;
     for (std::size_t i = 0; i < certified.values.size(); ++i) {
       EXPECT_NEAR(found.estimates[i].value, certified.values[i],

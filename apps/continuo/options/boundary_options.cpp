@@ -87,15 +87,14 @@ std::optional<boundary::BoundaryRequest> read_boundary(const BoundaryOptions& op
   if (!options.guess.empty()) {
     if (!readable(options.guess)) return std::nullopt;
     auto read = studies::read_measurements(options.guess);
-    if (!read.problem.empty()) {
-      say(read.problem);
+    if (!read) {
+      say(read.status().message);
       return std::nullopt;
     }
-    studies::Measurements& table = read.measurements;
-    request.guess = {.name = std::move(table.file),
-                     .columns = std::move(table.columns),
-                     .times = std::move(table.times),
-                     .values = std::move(table.values)};
+    request.guess = {.name = std::move(read->file),
+                     .columns = std::move(read->columns),
+                     .times = std::move(read->times),
+                     .values = std::move(read->values)};
   }
   return request;
 }

@@ -84,9 +84,9 @@ Times times_of(const Studied& studied, const ExplorationLimits& limits) {
 void find_whole_orbit(const Studied& studied, const Times& times, Exploration& found) {
   const studies::Forcing forcing =
       studies::forcing_of(*studied.prepared.program, studied.prepared.experiment.parameters);
-  if (!forcing.problem.empty()) {
+  if (!forcing.status) {
     found.open.push_back(fmt::format("no closed orbit was looked for: {}: {}; `continuo orbit --period T` gives it",
-                                     place_text(studied.prepared, forcing.span), forcing.problem));
+                                     place_text(studied.prepared, forcing.span), forcing.status.message));
     return;
   }
   const HybridOrbitRequest request{
@@ -227,9 +227,7 @@ void weigh_parameters(const Studied& studied, Exploration& found) {
   experiment.interrupt = &interrupt_flag();
   const studies::SensitivityStudy study(program, influences, experiment.parameters);
   const studies::SensitivityRun run = study.run({.experiment = experiment});
-  if (!run.good())
-    found.open.push_back("parameters were weighed only in part: " +
-                         (run.problem.empty() ? describe(run.outcome) : run.problem));
+  if (!run.good()) found.open.push_back("parameters were weighed only in part: " + run.status.message);
   found.influences = strongest(program->model, run, influences, found);
 }
 

@@ -50,13 +50,13 @@ bool set_forcing(const Studied& studied, const HybridOrbitRequest& request, stud
       say(fmt::format("the model is not periodic with the period {:.10g} (--period)", *request.forcing));
       return false;
     }
-    if (!forcing.period && forcing.problem.empty()) {
+    if (!forcing.period && forcing.status) {
       say("--period: the model does not depend on time, so the period is computed");
       return false;
     }
     search.forcing = request.forcing;
-  } else if (!forcing.problem.empty()) {
-    say(fmt::format("{}: {}; --period T gives it", place_text(studied.prepared, forcing.span), forcing.problem));
+  } else if (!forcing.status) {
+    say(fmt::format("{}: {}; --period T gives it", place_text(studied.prepared, forcing.span), forcing.status.message));
     return false;
   }
   if (search.forcing || request.turns == 0) return true;

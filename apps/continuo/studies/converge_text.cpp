@@ -132,8 +132,8 @@ std::string convergence_text(const Convergence& study, const model::Model& model
   end_line(text);
   bool unreached = false;
   for (const MethodConvergence& method : study.methods) {
-    if (!method.problem.empty()) {
-      text += fmt::format("{:<24} {}\n", method.method, method.problem);
+    if (!method.status) {
+      text += fmt::format("{:<24} {}\n", method.method, method.status.message);
       continue;
     }
     unreached = unreached || (method.global.best_step > 0 && !method.global.floor_reached);
@@ -147,11 +147,11 @@ std::string convergence_text(const Convergence& study, const model::Model& model
   if (study.by_tolerance) text += "slope 1: a tenth of the tolerance leaves a tenth of the error\n";
   if (unreached && !study.by_tolerance) text += "* smaller steps would still gain: --most-steps\n";
   for (const MethodConvergence& method : study.methods)
-    if (method.problem.empty() && !study.by_tolerance) text += what_keeps_its_order(method.method);
+    if (method.status && !study.by_tolerance) text += what_keeps_its_order(method.method);
   if (study.spoiled) text += spoiled_text(*study.spoiled, model);
   if (all_points)
     for (const MethodConvergence& method : study.methods)
-      if (method.problem.empty()) text += points_text(method, study.by_tolerance, in_float, in_long_double);
+      if (method.status) text += points_text(method, study.by_tolerance, in_float, in_long_double);
   if (study.interrupted) text += "interrupted: what there was until then\n";
   return text;
 }

@@ -87,8 +87,8 @@ class FitRequestReader {
   bool read_data() {
     for (const std::string& file : options_.data) {
       auto read = studies::read_measurements(file);
-      if (!read.problem.empty()) {
-        say(read.problem);
+      if (!read) {
+        say(read.status().message);
         return false;
       }
       std::error_code error;
@@ -97,7 +97,7 @@ class FitRequestReader {
           say(fmt::format("{} is given twice: its values would count twice", file));
           return false;
         }
-      request_.data.push_back({.measurements = std::move(read.measurements), .columns = {}});
+      request_.data.push_back({.measurements = *std::move(read), .columns = {}});
     }
     return true;
   }

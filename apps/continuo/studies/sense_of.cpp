@@ -66,7 +66,7 @@ ExitCode sense_period(const ExperimentOptions& options, const std::vector<std::s
   }
   const model::Overrides& set = studied.prepared.experiment.parameters;
   const studies::Forcing forcing = studies::forcing_of(*studied.prepared.program, set);
-  if (forcing.period || !forcing.problem.empty()) {
+  if (forcing.period || !forcing.status) {
     say("--of period: the model depends on time, so its period is a multiple of that of the forcing");
     return wrong_model;
   }

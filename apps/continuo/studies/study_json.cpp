@@ -75,7 +75,7 @@ std::string sensitivity_json(const model::Model& model, const studies::Sensitivi
     events.push_back({{"name", event.name}, {"t", event.t}, {"time_by", event.time_moves}});
   json result{
       {"states", states}, {"by", by}, {"rows", rows}, {"events", events}, {"outcome", outcome_json(run.outcome)}};
-  if (!run.problem.empty()) result["problem"] = run.problem;
+  if (run.has_no_derivative()) result["problem"] = run.status.message;
   return text_of(result);
 }
 
@@ -109,7 +109,7 @@ std::string convergence_json(const studies::Convergence& study) {
                                       {"in_float", &method.in_float},
                                       {"in_long_double", &method.in_long_double}})
       if (json read = curve_json(*curve); !read.is_null()) one[name] = std::move(read);
-    if (!method.problem.empty()) one["problem"] = method.problem;
+    if (!method.status) one["problem"] = method.status.message;
     methods.push_back(std::move(one));
   }
   json result{{"reference", study.reference}, {"interrupted", study.interrupted}, {"methods", methods}};

@@ -81,18 +81,18 @@ ExitCode converge(const ConvergeOptions& options) {
                                         .in_long_double = options.in_long_double,
                                         .interrupt = &interrupt_flag(),
                                         .progress = progress.parts()});
-  if (!study.problem.empty()) {
+  if (!study) {
     if (interrupt_flag().load()) return interrupted;
-    say(study.problem);
+    say(study.status().message);
     return numerical_failure;
   }
-  print(options.json ? convergence_json(study)
-                     : convergence_text(study, prepared.program->model, options.in_float, options.in_long_double,
+  print(options.json ? convergence_json(*study)
+                     : convergence_text(*study, prepared.program->model, options.in_float, options.in_long_double,
                                         options.all_points));
-  const bool nothing = std::ranges::all_of(
-      study.methods, [](const studies::MethodConvergence& method) { return !method.problem.empty(); });
-  const ExitCode exit = study.interrupted ? interrupted : nothing ? usage : done;
-  return draw(convergence_figure(study, prepared.program->model.name), options.plot, exit);
+  const bool nothing =
+      std::ranges::all_of(study->methods, [](const studies::MethodConvergence& method) { return !method.status; });
+  const ExitCode exit = study->interrupted ? interrupted : nothing ? usage : done;
+  return draw(convergence_figure(*study, prepared.program->model.name), options.plot, exit);
 }
 
 }  // namespace

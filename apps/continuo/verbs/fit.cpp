@@ -73,11 +73,8 @@ ExitCode fit(const FitOptions& options) {
   }
   show(found.diagnostics, prepared.loaded.source);
   if (!found.found()) {
-    if (found.least.interrupted) {
-      say("interrupted before anything was found");
-      return interrupted;
-    }
-    say(found.problem);
+    say(found.status.message);
+    if (found.status.ending == Ending::interrupted) return interrupted;
     return found.diagnostics.empty() ? numerical_failure : wrong_model;
   }
   print(options.json ? fit_json(*request, found, profiles) : fit_text(*request, found, profiles));

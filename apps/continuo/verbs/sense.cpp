@@ -175,7 +175,7 @@ ExitCode sense(const SenseOptions& options) {
   }
   if (!run.good()) {
     exit = run.outcome.ending == Ending::interrupted ? interrupted : numerical_failure;
-    say(run.problem.empty() ? describe(run.outcome) : fmt::format("at t = {}: {}", run.outcome.t, run.problem));
+    say(run.has_no_derivative() ? fmt::format("at t = {}: {}", run.outcome.t, run.status.message) : run.status.message);
   }
   bool fine = options.output.empty() || written(write(model, run, *influences, options.output));
   if (!options.plot.empty()) fine = written(results::draw(figure_of(model, run, *influences), options.plot)) && fine;

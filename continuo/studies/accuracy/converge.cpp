@@ -28,7 +28,7 @@ class Truth {
   Truth(const ConvergenceProblem& problem, const std::atomic<bool>* interrupt)
       : problem_(problem), interrupt_(interrupt) {
     const LongValues start(problem.x0.begin(), problem.x0.end());
-    for (std::size_t k = 0; k <= stations && problem_text.empty(); ++k)
+    for (std::size_t k = 0; k <= stations && status; ++k)
       states_.push_back(k == 0 ? start : move(states_.back(), time(k - 1), time(k)));
     sizes_.assign(start.size(), 0);
     for (const LongValues& state : states_)
@@ -37,7 +37,7 @@ class Truth {
       if (!(size > 0)) size = 1;
   }
 
-  std::string problem_text{};  // why there is none
+  Status status{};  // a failure where there is none
 
   long double time(std::size_t k) const {
     const long double from = problem_.interval.from, to = problem_.interval.to;
@@ -72,8 +72,9 @@ class Truth {
       solution = strict(x, {from, to});
     }
     if (!succeeded(solution.outcome.ending)) {
-      problem_text = fmt::format("there is no reference run: {} at t = {}", to_string(solution.outcome.ending),
-                                 static_cast<double>(solution.outcome.t));
+      status = {.ending = solution.outcome.ending,
+                .message = fmt::format("there is no reference run: {} at t = {}", to_string(solution.outcome.ending),
+                                       static_cast<double>(solution.outcome.t))};
       return LongValues(x.size(), std::numeric_limits<long double>::quiet_NaN());
     }
     return solution.final_state();
@@ -118,20 +119,20 @@ class Study {
     const MethodInfo* info = find_method(name);
     result.nominal = info == nullptr || !request_.tolerances.empty() ? 0 : info->order_of_fixed_steps;
     if (!request_.tolerances.empty() && info != nullptr && info->error_order == 0) {
-      result.problem = "has no step control; it is studied by steps";
+      result.status = invalid_input("has no step control; it is studied by steps");
       return result;
     }
     const std::size_t count =
         request_.tolerances.empty() ? step_counts(request_.most_steps).size() : request_.tolerances.size();
     std::size_t beyond = 0;  // points in a row that rounding made worse
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < count && beyond < 5 && result.problem.empty() && !interrupted(); ++i) {
+    for (std::size_t i = 0; i < count && beyond < 5 && result.status && !interrupted(); ++i) {
       const StepErrors errors =
           request_.tolerances.empty() ? with_step(name, i, result) : with_tolerance(name, i, result);
       // Five smaller steps that do worse are the floor, if there is an error to speak of.
       beyond = errors.global > least && least < 1e-6 ? beyond + 1 : 0;
       least = std::min(least, std::isnan(errors.global) ? least : errors.global);
-      if (result.problem.empty()) result.points.push_back(errors);
+      if (result.status) result.points.push_back(errors);
       if (request_.progress)
         request_.progress((static_cast<double>(number) + weight(i + 1, count)) /
                           static_cast<double>(request_.methods.size()));
@@ -159,7 +160,7 @@ class Study {
                       .in_long_double = not_measured};
     run<double>(name, problem_.system, {.rtol = newton_tolerance, .atol = newton_tolerance, .step = h}, steps, errors,
                 result);
-    if (!result.problem.empty()) return errors;
+    if (!result.status) return errors;
     errors.local = local_error(name, h);
     if (request_.in_long_double && problem_.in_long_double.size > 0) {
       MethodConvergence ignored{.method = name};
@@ -214,7 +215,7 @@ class Study {
     };
     options.interrupt = request_.interrupt;
     const auto solution = named_solve<Real>(name, system, start, interval, options);
-    if (solution.outcome.ending == Ending::invalid_input) result.problem = solution.outcome.hint;
+    if (solution.outcome.ending == Ending::invalid_input) result.status = invalid_input(solution.outcome.hint);
     errors.evaluations = solution.statistics.evaluations;
     errors.seconds = solution.statistics.seconds;
     if (!succeeded(solution.outcome.ending)) return;
@@ -286,12 +287,11 @@ class Study {
 
 }  // namespace
 
-Convergence converge(const ConvergenceProblem& problem, const ConvergeRequest& request) {
+Result<Convergence> converge(const ConvergenceProblem& problem, const ConvergeRequest& request) {
   Convergence result{.by_tolerance = !request.tolerances.empty()};
   Truth truth(problem, request.interrupt);
-  result.problem = truth.problem_text;
   result.reference = problem.exact ? "the closed form" : "a strict run in long double";
-  if (!result.problem.empty()) return result;
+  if (!truth.status) return truth.status;
   Study study(problem, request, truth);
   for (std::size_t i = 0; i < request.methods.size() && !study.interrupted(); ++i)
     result.methods.push_back(study.of(request.methods[i], i));

@@ -52,14 +52,14 @@ MethodConvergence by_comparison(const model::Model& model, const std::string& me
   for (const Contender& contender : contenders) {
     if (contender.method != method) continue;
     if (!contender.simulated.run) {
-      result.problem =
-          contender.simulated.diagnostics.empty() ? "cannot run it" : contender.simulated.diagnostics.front().message;
+      result.status = invalid_input(
+          contender.simulated.diagnostics.empty() ? "cannot run it" : contender.simulated.diagnostics.front().message);
       continue;
     }
     const model::Run& run = *contender.simulated.run;
     const bool ended = succeeded(run.outcome.ending);
     if (!contender.step && !contender.tolerance) {
-      result.problem = "it has no step to make smaller";
+      result.status = invalid_input("it has no step to make smaller");
       continue;
     }
     const double step = contender.step ? *contender.step : contender.tolerance.value_or(not_measured);
@@ -80,8 +80,9 @@ MethodConvergence by_comparison(const model::Model& model, const std::string& me
   return result;
 }
 
-Convergence compare_runs(const std::shared_ptr<const model::ModelProgram>& program, model::Experiment experiment,
-                         Interval<double> interval, const ConvergeRequest& request) {
+Result<Convergence> compare_runs(const std::shared_ptr<const model::ModelProgram>& program,
+                                 model::Experiment experiment, Interval<double> interval,
+                                 const ConvergeRequest& request) {
   Convergence result{
       .by_tolerance = !request.tolerances.empty(),
       .reference = runs::kind_of(program->model).solver == runs::Solver::world ? "the exact motion" : "a strict run"};
@@ -95,8 +96,9 @@ Convergence compare_runs(const std::shared_ptr<const model::ModelProgram>& progr
     const Comparison comparison = compare(program, compared);
     if (!comparison.reference.run || !succeeded(comparison.reference.run->outcome.ending)) {
       const auto& problems = comparison.reference.diagnostics;
-      result.problem = problems.empty() ? "there is no reference run" : problems.front().message;
-      return result;
+      return Status{
+          .ending = comparison.reference.run ? comparison.reference.run->outcome.ending : Ending::invalid_input,
+          .message = problems.empty() ? "there is no reference run" : problems.front().message};
     }
     result.methods.push_back(
         by_comparison(program->model, request.methods[i], comparison.contenders, result.by_tolerance));
@@ -112,8 +114,7 @@ Convergence compare_runs(const std::shared_ptr<const model::ModelProgram>& progr
 /// Orders are measured to a few hundredths; what is missing more is not there.
 bool falls_short(const MethodConvergence& method) {
   constexpr double missing = 0.25;
-  return method.nominal > 0 && method.problem.empty() && method.global.found &&
-         method.global.order < method.nominal - missing;
+  return method.nominal > 0 && method.status && method.global.found && method.global.order < method.nominal - missing;
 }
 
 /// Looks for it along a strict run, in rows two thousandths of it apart at most.
@@ -157,23 +158,22 @@ std::optional<ConvergenceProblem> convergence_problem(const std::shared_ptr<cons
   return problem;
 }
 
-Convergence converge(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
-                     const ConvergeRequest& request) {
+Result<Convergence> converge(const std::shared_ptr<const model::ModelProgram>& program,
+                             const model::Experiment& experiment, const ConvergeRequest& request) {
   const runs::Kind kind = runs::kind_of(program->model);
   std::vector<model::Diagnostic> problems;
   const auto plan = runs::plan(program->model, experiment, problems);
-  if (!plan || !kind.has_start) {
-    Convergence result;
-    result.problem = problems.empty() ? "the model's conditions stand at several times: it has no run from the start"
-                                      : problems.front().message;
-    return result;
-  }
+  if (!plan || !kind.has_start)
+    return invalid_input(problems.empty()
+                             ? "the model's conditions stand at several times: it has no run from the start"
+                             : problems.front().message);
   const Interval<double> interval{plan->from, plan->to};
   const auto problem = interval.to > interval.from ? convergence_problem(program, experiment.parameters, interval)
                                                    : std::optional<ConvergenceProblem>();
-  Convergence study = problem ? converge(*problem, request) : compare_runs(program, experiment, interval, request);
-  if (kind.solver == runs::Solver::integration && study.problem.empty())
-    study.spoiled = spoiled_order(program, experiment, interval, study);
+  Result<Convergence> study =
+      problem ? converge(*problem, request) : compare_runs(program, experiment, interval, request);
+  if (kind.solver == runs::Solver::integration && study)
+    study->spoiled = spoiled_order(program, experiment, interval, *study);
   return study;
 }
 

@@ -22,8 +22,8 @@ using detail::FitProblem;
 using detail::FitSearch;
 
 /// Why the run at p has no rows to compare: said once, at the start.
-std::string unsupported_reason(const FitRequest& request, const FitProblem& problem, std::span<const double> p,
-                               std::vector<model::Diagnostic>& diagnostics) {
+Status failure_at_start(const FitRequest& request, const FitProblem& problem, std::span<const double> p,
+                        std::vector<model::Diagnostic>& diagnostics) {
   for (std::size_t part = 0; part < problem.parts().size(); ++part) {
     SensitivityRun run;
     const FitPart::Values values = problem.values(part, p, problem.parts()[part].times(), &run);
@@ -34,42 +34,46 @@ std::string unsupported_reason(const FitRequest& request, const FitProblem& prob
         if (data.columns[c].error != ErrorModel::lognormal) continue;
         for (std::size_t i = c * width; i < values.numbers.size(); i += data.columns.size() * width)
           if (!(values.numbers[i] > 0))
-            return fmt::format("{}: {} has lognormal errors, but is {} in the run from the starting values",
-                               data.measurements.file, data.columns[c].quantity, values.numbers[i]);
+            return invalid_input(
+                fmt::format("{}: {} has lognormal errors, but is {} in the run from the starting values",
+                            data.measurements.file, data.columns[c].quantity, values.numbers[i]));
       }
       continue;
     }
     diagnostics = run.diagnostics;
-    if (!diagnostics.empty()) return "the model cannot be run";
-    if (!run.problem.empty()) return run.problem;
-    if (!succeeded(run.outcome.ending)) return "the run from the starting values fails: " + describe(run.outcome);
-    return fmt::format("{}:{}: the run from the starting values ends at t = {}, before the data do",
-                       data.measurements.file, data.measurements.lines.back(), run.outcome.t);
+    if (!diagnostics.empty()) return invalid_input("the model cannot be run");
+    if (!run.status && !run.has_no_derivative())
+      run.status.message = "the run from the starting values fails: " + run.status.message;
+    if (!run.status) return run.status;
+    return invalid_input(fmt::format("{}:{}: the run from the starting values ends at t = {}, before the data do",
+                                     data.measurements.file, data.measurements.lines.back(), run.outcome.t));
   }
   for (const FitUnknown& unknown : request.unknowns)
     if (unknown.prior && unknown.prior->kind == FitPrior::Kind::lognormal && !unknown.logarithmic)
-      return "the runs give no finite numbers, or an unknown with a lognormal prior does not start above 0";
-  return "the runs give no finite numbers";
+      return {
+          .ending = Ending::not_finite,
+          .message = "the runs give no finite numbers, or an unknown with a lognormal prior does not start above 0"};
+  return {.ending = Ending::not_finite, .message = "the runs give no finite numbers"};
 }
 
-/// Why no derivative says how the quantities depend on the unknowns; empty: places alone are measured, or nothing
-/// meets.
-std::string jump_of(const FitProblem& problem, const model::Model& model, std::span<const double> p) {
+/// A failure where no derivative says how the quantities depend on the unknowns; a success where places alone are
+/// measured, or nothing meets.
+Status jump_of(const FitProblem& problem, const model::Model& model, std::span<const double> p) {
   for (std::size_t part = 0; part < problem.parts().size(); ++part) {
     const std::string name = problem.parts()[part].jumping_quantity();
     SensitivityRun run;
     if (name.empty() || !problem.values(part, p, problem.parts()[part].times(), &run).good) continue;
     if (model::collisions_of(*model.world, run.row(run.rows() - 1).first(run.states)) > 0)
-      return fmt::format(
-          "`{}` jumps where bodies meet, at instants that the unknowns move: it cannot be fitted; "
-          "measured places can",
-          name);
+      return invalid_input(
+          fmt::format("`{}` jumps where bodies meet, at instants that the unknowns move: it cannot be fitted; "
+                      "measured places can",
+                      name));
   }
   return {};
 }
 
-/// Which measurement lies before the model's start, or behind its end where conditions stand there; empty: none.
-std::string outside(const FitRequest& request, double start) {
+/// A failure where a measurement lies before the model's start, or behind its end where conditions stand there.
+Status outside(const FitRequest& request, double start) {
   const model::Model& model = request.program->model;
   for (const FitData& data : request.data) {
     const Measurements& measured = data.measurements;
@@ -78,11 +82,11 @@ std::string outside(const FitRequest& request, double start) {
     for (std::size_t i = 0; i < measured.times.size(); ++i) {
       const double t = measured.times[i];
       if (t < start)
-        return fmt::format("{}:{}: the time {} is before the model's start at {}", measured.file, measured.lines[i], t,
-                           start);
+        return invalid_input(fmt::format("{}:{}: the time {} is before the model's start at {}", measured.file,
+                                         measured.lines[i], t, start));
       if (t > end)
-        return fmt::format("{}:{}: the time {} is behind the model's end at {}", measured.file, measured.lines[i], t,
-                           end);
+        return invalid_input(fmt::format("{}:{}: the time {} is behind the model's end at {}", measured.file,
+                                         measured.lines[i], t, end));
     }
   }
   return {};
@@ -95,9 +99,9 @@ bool is_beyond_numbers(double size) {
   return size > greatest_size || size < least_size;
 }
 
-/// A column of the data that is so large or small that sums of its squares would be no numbers; empty: it is not.
+/// A failure where a column of the data is so large or small that sums of its squares would be no numbers.
 /// Of deviations each must be within, of values the largest.
-std::string beyond_numbers(const Measurements& measured, std::size_t column, bool each) {
+Status beyond_numbers(const Measurements& measured, std::size_t column, bool each) {
   const auto& values = measured.values[column];
   std::size_t largest = values.size();
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -108,22 +112,21 @@ std::string beyond_numbers(const Measurements& measured, std::size_t column, boo
     if (each && is_beyond_numbers(values[i])) break;
   }
   if (largest == values.size() || values[largest] == 0 || !is_beyond_numbers(std::abs(values[largest]))) return {};
-  return fmt::format("{}:{}: {} in column `{}` is too {} to be squared: give it in another unit", measured.file,
-                     measured.lines[largest], values[largest], measured.columns[column],
-                     std::abs(values[largest]) < 1 ? "small" : "large");
+  return invalid_input(fmt::format("{}:{}: {} in column `{}` is too {} to be squared: give it in another unit",
+                                   measured.file, measured.lines[largest], values[largest], measured.columns[column],
+                                   std::abs(values[largest]) < 1 ? "small" : "large"));
 }
 
-std::string beyond_numbers(const FitRequest& request) {
+Status beyond_numbers(const FitRequest& request) {
   const auto deviation_beyond = [](const std::string& of_what, double deviation, std::string_view option) {
-    return fmt::format("{}: a deviation of {} is too {} to be squared ({})", of_what, deviation,
-                       deviation < 1 ? "small" : "large", option);
+    return invalid_input(fmt::format("{}: a deviation of {} is too {} to be squared ({})", of_what, deviation,
+                                     deviation < 1 ? "small" : "large", option));
   };
   for (const FitData& data : request.data)
     for (const FitColumn& column : data.columns) {
-      std::string problem = beyond_numbers(data.measurements, column.column, false);
-      if (problem.empty() && column.deviations_in)
-        problem = beyond_numbers(data.measurements, *column.deviations_in, true);
-      if (!problem.empty()) return problem;
+      Status status = beyond_numbers(data.measurements, column.column, false);
+      if (status && column.deviations_in) status = beyond_numbers(data.measurements, *column.deviations_in, true);
+      if (!status) return status;
       for (const auto& deviation : {column.deviation, column.relative})
         if (deviation && is_beyond_numbers(*deviation))
           return deviation_beyond(data.measurements.file + ": " + column.quantity, *deviation, "--sigma");
@@ -132,21 +135,22 @@ std::string beyond_numbers(const FitRequest& request) {
     if (!unknown.prior) continue;
     const std::string name = name_of(request.program->model, unknown.influence);
     if (!(std::abs(unknown.prior->center) <= greatest_size))
-      return fmt::format("{}: a prior about {} is too far away to be squared (--prior)", name, unknown.prior->center);
+      return invalid_input(
+          fmt::format("{}: a prior about {} is too far away to be squared (--prior)", name, unknown.prior->center));
     if (is_beyond_numbers(unknown.prior->deviation)) return deviation_beyond(name, unknown.prior->deviation, "--prior");
   }
   return {};
 }
 
-/// Which measured value its own noise makes impossible; empty: none.
-std::string impossible_value(const FitRequest& request) {
+/// A failure where the noise of a measured value makes that value impossible.
+Status impossible_value(const FitRequest& request) {
   for (const FitData& data : request.data) {
     for (const FitColumn& column : data.columns) {
       for (std::size_t i = 0; i < data.measurements.times.size(); ++i) {
         const double value = data.measurements.values[column.column][i];
         if (std::isnan(value)) continue;
         const auto line = [&](std::string_view what) {
-          return fmt::format("{}:{}: {}", data.measurements.file, data.measurements.lines[i], what);
+          return invalid_input(fmt::format("{}:{}: {}", data.measurements.file, data.measurements.lines[i], what));
         };
         if (column.error == ErrorModel::lognormal && !(value > 0))
           return line(fmt::format("{} in column `{}` cannot have a lognormal error: only positive numbers can", value,
@@ -274,15 +278,15 @@ Fit fit(const FitRequest& request) {
   for (const FitUnknown& unknown : request.unknowns) influences.push_back(unknown.influence);
   if (auto refused = no_sensitivity(model, influences)) {
     result.diagnostics.push_back(std::move(*refused));
-    result.problem = "the model cannot be fitted";
+    result.status = invalid_input("the model cannot be fitted");
     return result;
   }
   const std::vector<double> variables =
       model::start_values(model, request.experiment.parameters, request.experiment.from);
-  result.problem = outside(request, variables[0]);
-  if (result.problem.empty()) result.problem = impossible_value(request);
-  if (result.problem.empty()) result.problem = beyond_numbers(request);
-  if (!result.problem.empty()) return result;
+  result.status = outside(request, variables[0]);
+  if (result.status) result.status = impossible_value(request);
+  if (result.status) result.status = beyond_numbers(request);
+  if (!result.status) return result;
   FitProblem problem(request);
   std::vector<double> start;
   for (std::size_t u = 0; u < request.unknowns.size(); ++u) {
@@ -292,35 +296,37 @@ Fit fit(const FitRequest& request) {
                                        : model.parameters[unknown.influence.index].variable;
     const double value = std::clamp(unknown.start.value_or(variables[variable]), unknown.low, unknown.high);
     if (unknown.logarithmic && !(value > 0)) {
-      result.problem = fmt::format("{} starts at {}: only what is positive has a logarithm",
-                                   name_of(model, unknown.influence), value);
+      result.status = invalid_input(fmt::format("{} starts at {}: only what is positive has a logarithm",
+                                                name_of(model, unknown.influence), value));
       return result;
     }
     start.push_back(problem.to_search(u, value));
   }
   if (problem.size() < start.size()) {
-    result.problem = fmt::format("{}: {} measured values cannot determine {} unknowns",
-                                 request.data.front().measurements.file, problem.size(), start.size());
+    result.status = invalid_input(fmt::format("{}: {} measured values cannot determine {} unknowns",
+                                              request.data.front().measurements.file, problem.size(), start.size()));
     return result;
   }
   const bool by_differences = !runs::kind_of(model).has_exact_derivatives;
-  if (by_differences) result.problem = jump_of(problem, model, start);
-  if (!result.problem.empty()) return result;
+  if (by_differences) result.status = jump_of(problem, model, start);
+  if (!result.status) return result;
   Fitting(request, problem).fit_from(start, result);
   result.runs = result.least.evaluations * request.data.size();
   if (!result.found()) {
-    if (!result.least.interrupted) result.problem = unsupported_reason(request, problem, start, result.diagnostics);
+    result.status = result.least.interrupted
+                        ? Status{.ending = Ending::interrupted, .message = "interrupted before anything was found"}
+                        : failure_at_start(request, problem, start, result.diagnostics);
     return result;
   }
   if (!by_differences || result.least.interrupted) return result;
   std::vector<std::string> names;
   for (const Influence& influence : influences) names.push_back(name_of(model, influence));
   LeastSquares least = problem.least_squares(result.least.p);
-  result.problem = detail::judge_slopes(
+  result.status = detail::judge_slopes(
       least, request.options, names, [&](const std::vector<double>& increments) { problem.set_increments(increments); },
       result.least);
   result.runs = result.least.evaluations * request.data.size();
-  if (result.problem.empty()) {
+  if (result.status) {
     std::vector<FitDoubt> doubts = std::move(result.doubts);
     judge(request, problem, true, result);
     result.doubts = std::move(doubts);

@@ -35,8 +35,8 @@ std::vector<double> deviations_of(const LeastSquaresResult& result) {
 
 }  // namespace
 
-std::string judge_slopes(LeastSquares& least, const LeastSquaresOptions& options, const std::vector<std::string>& names,
-                         const std::function<void(std::vector<double>)>& set_increments, LeastSquaresResult& result) {
+Status judge_slopes(LeastSquares& least, const LeastSquaresOptions& options, const std::vector<std::string>& names,
+                    const std::function<void(std::vector<double>)>& set_increments, LeastSquaresResult& result) {
   constexpr double most_change = 1.5;
   const std::vector<double> deviations = deviations_of(result);
   std::vector<double> increments;
@@ -52,16 +52,21 @@ std::string judge_slopes(LeastSquares& least, const LeastSquaresOptions& options
   LeastSquaresOptions once = options;
   once.starts = 1;
   LeastSquaresResult wide = least_squares(least, once);
-  if (!wide.found) return wide.interrupted ? "" : "the world cannot be run all over the width of the intervals";
+  if (!wide.found && wide.interrupted) return {};
+  if (!wide.found)
+    return {.ending = Ending::cannot_continue,
+            .message = "the world cannot be run all over the width of the intervals"};
   const std::vector<double> of_wide = deviations_of(wide);
   for (std::size_t u = 0; u < result.p.size(); ++u) {
     const double before = deviations[u], after = of_wide[u];
     if (!std::isfinite(before) || result.at_bound[u] != 0) continue;
     if (after <= most_change * before && before <= most_change * after) continue;
-    return fmt::format(
-        "the motion is no smooth function of {}: over the width of its interval it changes at another rate than at "
-        "{:g}, so that no interval is honest; a stretch of the data with fewer impacts may have one",
-        names[u], result.p[u]);
+    return {
+        .ending = Ending::cannot_continue,
+        .message = fmt::format(
+            "the motion is no smooth function of {}: over the width of its interval it changes at another rate than at "
+            "{:g}, so that no interval is honest; a stretch of the data with fewer impacts may have one",
+            names[u], result.p[u])};
   }
   wide.best_start = result.best_start, wide.starts_done = result.starts_done;
   wide.starts_agreeing = result.starts_agreeing;

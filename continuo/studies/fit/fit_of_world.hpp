@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <continuo/language/model.hpp>
+#include <continuo/status/status.hpp>
 #include <continuo/studies/least_squares.hpp>
 
 namespace continuo::studies::detail {
@@ -15,8 +16,8 @@ bool jumps_at_impacts(const model::Model& model, const std::vector<std::uint32_t
 
 /// Intervals are as honest as the slopes behind them: these are taken anew, over the width of the interval of each
 /// unknown (`set_increments`), and the search ended with them. Where the intervals come out as others the motion is no
-/// smooth function of that unknown. Empty, or what is wrong.
-std::string judge_slopes(LeastSquares& least, const LeastSquaresOptions& options, const std::vector<std::string>& names,
-                         const std::function<void(std::vector<double>)>& set_increments, LeastSquaresResult& result);
+/// smooth function of that unknown, which is a failure.
+Status judge_slopes(LeastSquares& least, const LeastSquaresOptions& options, const std::vector<std::string>& names,
+                    const std::function<void(std::vector<double>)>& set_increments, LeastSquaresResult& result);
 
 }  // namespace continuo::studies::detail

@@ -83,11 +83,12 @@ std::vector<double> SensitiveEvents::time_moves(std::size_t event, std::span<con
   const std::string_view name = plain_.name(event + undeclared_);
   // Where g is not zero it has jumped, by what its slope does not show.
   const double nearly_zero = least_jump * std::abs(rate_of(guard, values, rates)) * length_;
-  if (!(std::abs(values[guard.value]) <= nearly_zero) && problem_.empty())
-    problem_ = fmt::format(
-        "`{}` jumps across its threshold, so that how its time moves is not known: let the event watch "
-        "what is continuous",
-        name);
+  if (!(std::abs(values[guard.value]) <= nearly_zero) && status_)
+    status_ = {.ending = Ending::cannot_continue,
+               .message = fmt::format(
+                   "`{}` jumps across its threshold, so that how its time moves is not known: let the event watch "
+                   "what is continuous",
+                   name)};
   return crossing_moves(name, guard, values, rates);
 }
 
@@ -99,8 +100,9 @@ std::vector<double> SensitiveEvents::crossing_moves(std::string_view name, const
   for (std::size_t k = 0; k < count_; ++k) {
     const double along = values[guard.along + k];
     moves[k] = along == 0 ? 0 : -along / rate;
-    if (!std::isfinite(moves[k]) && problem_.empty())
-      problem_ = fmt::format("`{}` is not crossed with a slope: the motion has no derivative there", name);
+    if (!std::isfinite(moves[k]) && status_)
+      status_ = {.ending = Ending::cannot_continue,
+                 .message = fmt::format("`{}` is not crossed with a slope: the motion has no derivative there", name)};
   }
   return moves;
 }
@@ -214,7 +216,7 @@ EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::size_t fired, 
   const bool changed = response.restart || now != before;
   if (changed) instant_.push_back({before, now, moves_});
   x = std::move(now);
-  return {response.stop || !problem_.empty(), changed};
+  return {response.stop || !status_, changed};
 }
 
 }  // namespace continuo::studies::detail

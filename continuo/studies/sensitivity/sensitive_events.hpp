@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <continuo/simulation/program/model_events.hpp>
+#include <continuo/status/status.hpp>
 #include <continuo/studies/sensitivity/sensitive_system.hpp>
 
 namespace continuo::studies::detail {
@@ -51,8 +52,8 @@ class SensitiveEvents {
 
   std::span<const SensitiveHappening> happened() const { return happened_; }
   bool is_declared(std::size_t i) const { return plain_.is_declared(i); }
-  /// Why the motion has no derivative; empty where it has.
-  const std::string& problem() const { return problem_; }
+  /// A failure where the motion has no derivative.
+  const Status& status() const { return status_; }
 
  private:
   struct Jump;
@@ -101,7 +102,7 @@ class SensitiveEvents {
   double instant_t_;  // of what follows
   std::vector<Change> instant_{};
   std::vector<double> moves_{};  // of the event that is firing
-  std::string problem_;
+  Status status_;
 };
 
 static_assert(EventSource<SensitiveEvents, SensitiveSystem, SensitiveSystem::X>);

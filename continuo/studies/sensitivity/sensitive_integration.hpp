@@ -32,7 +32,7 @@ struct SensitiveEnding {
   Outcome<double> outcome;
   Statistics statistics;
   std::vector<SensitiveHappening> happened;
-  std::string problem;
+  Status status;  // a failure where the motion has no derivative
   std::size_t mode;
 };
 
@@ -85,7 +85,7 @@ SensitiveEnding integrate_sensitive_by(SensitiveIntegration integration, Sensiti
   return {integrator.outcome(),
           integrator.statistics(),
           {happened.begin(), happened.end()},
-          integrator.events().problem(),
+          integrator.events().status(),
           integrator.system().mode()};
 }
 

@@ -161,6 +161,18 @@ const std::vector<Influence>& SensitivityStudy::influences() const {
 }
 
 SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
+  SensitivityRun run = integrated(request);
+  if (!run.diagnostics.empty()) {
+    run.status = {.ending = run.outcome ? Ending::invalid_input : run.outcome.ending,
+                  .message = run.diagnostics.front().message};
+  } else if (run.status) {
+    run.status = status(run.outcome);
+  }
+  return run;
+}
+
+/// Its status is a failure only where the motion has no derivative.
+SensitivityRun SensitivityStudy::integrated(const SensitivityRequest& request) const {
   const model::Model& model = program().model;
   const runs::Kind kind = runs::kind_of(model);
   if (!kind.has_start && !no_sensitivity(model, influences())) return detail::boundary_sensitivity(program_, request);
@@ -218,7 +230,7 @@ SensitivityRun SensitivityStudy::run(const SensitivityRequest& request) const {
   run.values = std::move(rows.values);
   run.outcome = ending.outcome;
   run.statistics = ending.statistics;
-  run.problem = ending.problem;
+  run.status = ending.status;
   run.mode = ending.mode;
   for (const detail::SensitiveHappening& happened : ending.happened) {
     const model::EventOrder& place = model.event_order[happened.event];

@@ -34,8 +34,8 @@ class Differences {
     made.outcome = here_.outcome;
     made.diagnostics = here_.diagnostics;
     if (!made.diagnostics.empty()) return made;
-    for (std::size_t k = 0; k < made.influences && made.problem.empty(); ++k) made.problem = take_sides(k);
-    if (!made.problem.empty()) return made;
+    for (std::size_t k = 0; k < made.influences && made.status; ++k) made.status = take_sides(k);
+    if (!made.status) return made;
     const std::size_t n = made.states, width = n * (1 + made.influences);
     made.values.resize(made.times.size() * width);
     for (std::size_t row = 0; row < made.times.size(); ++row) {
@@ -69,8 +69,8 @@ class Differences {
     side.good = side.along.diagnostics.empty() && succeeded(side.along.outcome.ending);
     return side;
   }
-  /// Empty, or why there is none.
-  std::string take_sides(std::size_t k) {
+  /// A failure where there is none.
+  Status take_sides(std::size_t k) {
     const model::Model& model = model_program_->model;
     const Influence& influence = program_.influences()[k];
     const std::uint32_t variable = influence.kind == Influence::Kind::parameter
@@ -83,7 +83,9 @@ class Differences {
     sides_.push_back({at(influence, p - increment), at(influence, p + increment)});
     p_.push_back(p);
     if (sides_.back()[0].good || sides_.back()[1].good) return {};
-    return fmt::format("the world cannot be run on either side of {} = {:g}", name_of(model, influence), p);
+    return {
+        .ending = Ending::cannot_continue,
+        .message = fmt::format("the world cannot be run on either side of {} = {:g}", name_of(model, influence), p)};
   }
 
   bool has_row(const Side& side, std::size_t row) const { return side.good && row < side.along.states.size(); }

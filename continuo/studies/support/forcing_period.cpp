@@ -192,7 +192,8 @@ Forcing forcing_of(const model::ModelProgram& program, const model::Overrides& p
       join(periods, course.periods);
       continue;
     }
-    forcing.problem = "what hangs on the time here does not repeat after a time that the text shows";
+    forcing.status = {.ending = Ending::cannot_continue,
+                      .message = "what hangs on the time here does not repeat after a time that the text shows"};
     forcing.span = mover.span;
     return forcing;
   }
@@ -204,7 +205,9 @@ Forcing forcing_of(const model::ModelProgram& program, const model::Overrides& p
   if (forcing.period) return forcing;
   std::string all;
   for (const double period : periods) all += fmt::format("{}{:.10g}", all.empty() ? "" : ", ", period);
-  forcing.problem = fmt::format("what hangs on the time has periods of {}, which no common time is a multiple of", all);
+  forcing.status = {
+      .ending = Ending::cannot_continue,
+      .message = fmt::format("what hangs on the time has periods of {}, which no common time is a multiple of", all)};
   forcing.span = model.run.span;
   return forcing;
 }

@@ -2,20 +2,21 @@
 // is proven from the text: t may stand only in what a period of a function takes out again.
 //
 //   const Forcing forcing = forcing_of(program);
-//   if (forcing.problem.empty() && forcing.period) fmt::print("period {}\n", *forcing.period);
+//   if (forcing.status && forcing.period) fmt::print("period {}\n", *forcing.period);
 #pragma once
 #include <optional>
 #include <span>
 #include <string>
 
 #include <continuo/simulation/program/model_program.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo::studies {
 
 struct Forcing {
   std::optional<double> period;  // nothing where nothing hangs on the time
-  std::string problem;           // why there is none that is known; else empty
-  model::Span span;              // of what the problem is about
+  Status status;                 // a failure where there is one that is not known
+  model::Span span;              // of what the failure is about
 };
 
 Forcing forcing_of(const model::ModelProgram& program, const model::Overrides& parameters = {});

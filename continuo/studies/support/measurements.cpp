@@ -19,25 +19,27 @@ namespace {
 
 class Reader {
  public:
-  explicit Reader(const std::string& name) { read_.measurements.file = name; }
+  explicit Reader(const std::string& name) { data_.file = name; }
 
-  ReadMeasurements read(std::string_view text) {
+  Result<Measurements> read(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the mark some spreadsheets put before UTF-8
-    while (!text.empty() && read_.problem.empty()) {
+    while (!text.empty() && status_) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       ++line_;
       row(text.substr(0, std::min(text.find_first_of("#\r\n"), end)));
       text.remove_prefix(std::min(end + 1, text.size()));
     }
-    if (read_.problem.empty() && headings_.empty()) fail("the file is empty");
-    if (read_.problem.empty() && data_.times.empty()) fail("no rows of numbers below the names of the columns");
-    if (read_.problem.empty()) sort();
-    return std::move(read_);
+    if (status_ && headings_.empty()) fail("the file is empty");
+    if (status_ && data_.times.empty()) fail("no rows of numbers below the names of the columns");
+    if (status_) sort();
+    if (!status_) return std::move(status_);
+    return std::move(data_);
   }
 
  private:
   void fail(std::string_view what) {
-    read_.problem = fmt::format("{}:{}: {}", data_.file, std::max<std::size_t>(line_, 1), what);
+    status_ = {.ending = Ending::unreadable,
+               .message = fmt::format("{}:{}: {}", data_.file, std::max<std::size_t>(line_, 1), what)};
   }
 
   void row(std::string_view line) {
@@ -46,7 +48,7 @@ class Reader {
     if (headings_.empty()) return head(cells);
     if (cells.size() > headings_.size())
       return fail(fmt::format("{} cells under {} names of columns", cells.size(), headings_.size()));
-    for (std::size_t c = 0; c < headings_.size() && read_.problem.empty(); ++c) {
+    for (std::size_t c = 0; c < headings_.size() && status_; ++c) {
       const std::string_view cell = c < cells.size() ? cells[c] : std::string_view();
       const bool missing = cell.empty() || cell == "NA" || cell == "nan" || cell == "NaN";
       const auto number = missing ? std::nan("") : model::cell_number(cell);
@@ -107,23 +109,24 @@ class Reader {
     for (auto& column : data_.values) arrange(column);
   }
 
-  ReadMeasurements read_;
-  Measurements& data_ = read_.measurements;
+  Measurements data_;
+  Status status_;
   std::vector<std::string> headings_;
   std::size_t time_ = 0, line_ = 0;
 };
 
 }  // namespace
 
-ReadMeasurements parse_measurements(std::string_view text, const std::string& name) {
+Result<Measurements> parse_measurements(std::string_view text, const std::string& name) {
   return Reader(name).read(text);
 }
 
-ReadMeasurements read_measurements(const std::string& file) {
+Result<Measurements> read_measurements(const std::string& file) {
   std::error_code error;
-  if (std::filesystem::is_directory(file, error)) return {{}, fmt::format("cannot read {}: it is a folder", file)};
+  if (std::filesystem::is_directory(file, error))
+    return Status{Ending::unreadable, fmt::format("cannot read {}: it is a folder", file)};
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return {{}, fmt::format("{}:1: the file cannot be read", file)};
+  if (!stream) return Status{Ending::unreadable, fmt::format("{}:1: the file cannot be read", file)};
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   return parse_measurements(text, file);
 }

@@ -1,12 +1,14 @@
 // Measured columns over time from a CSV file, for fits:
 //
-//   const ReadMeasurements read = read_measurements("spring.csv");
-//   if (!read.problem.empty()) fmt::print("{}\n", read.problem);   // "spring.csv:7: `abc` in column `x` is no number"
+//   const Result<Measurements> read = read_measurements("spring.csv");
+//   if (!read) fmt::print("{}\n", read.status().message);   // "spring.csv:7: `abc` in column `x` is no number"
 #pragma once
 #include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <continuo/status/result.hpp>
 
 namespace continuo::studies {
 
@@ -20,15 +22,11 @@ struct Measurements {
   std::string time_unit{};
 };
 
-struct ReadMeasurements {
-  Measurements measurements;
-  std::string problem;  // begins with "file:line: "; empty where all is well
-};
-
 /// The first line names the columns; one of them is `t`, else the first is the time. Empty cells, `nan` and `NA` are
 /// missing values. Rows may come in any order. A name may have its unit behind it, after a blank: `x [cm]`.
-ReadMeasurements read_measurements(const std::string& file);
+/// The message of a failure begins with "file:line: ".
+Result<Measurements> read_measurements(const std::string& file);
 /// The same from text, `name` being what messages call it.
-ReadMeasurements parse_measurements(std::string_view text, const std::string& name);
+Result<Measurements> parse_measurements(std::string_view text, const std::string& name);
 
 }  // namespace continuo::studies

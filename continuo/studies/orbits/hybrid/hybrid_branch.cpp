@@ -81,22 +81,26 @@ bool HybridBranchSteps::begin(const model::Instant& start, double period, double
       return other && std::abs(*other - *forcing) < 0.1 * *forcing;
     };
     if (!forcing || !about(before) || !about(after)) {
-      problem_ = fmt::format("what hangs on the time has no common period beside {} = {:.10g}", name_, constant);
+      status_ = {
+          .ending = Ending::cannot_continue,
+          .message = fmt::format("what hangs on the time has no common period beside {} = {:.10g}", name_, constant)};
       return false;
     }
     turns_ = std::round(period / *forcing);
   }
   const FlowImage image = (*flow_)(start, period);
-  problem_ = image.problem;
-  if (!image.problem.empty()) return false;
+  status_ = image.status;
+  if (!image.status) return false;
   for (const std::size_t i : directions_of(*program_)) {
     const bool comes_back = std::abs(image.x[i] - start.x[i]) <= 0.01 * sizes_[i];
     if (!is_unread(*program_, i) || comes_back) directions_.push_back(i);
   }
   for (std::size_t i = 0; i < sizes_.size(); ++i)
     if (is_discrete(*program_, i) && !is_unread(*program_, i)) held_.push_back(i);
-  if (directions_.empty()) problem_ = "no state has neighbours: all of them are flags and counters";
-  return problem_.empty();
+  if (directions_.empty())
+    status_ = {.ending = Ending::cannot_continue,
+               .message = "no state has neighbours: all of them are flags and counters"};
+  return succeeded(status_.ending);
 }
 
 Vec HybridBranchSteps::scaled(const model::Instant& start, double period, double constant) const {
@@ -158,7 +162,9 @@ std::optional<HybridBranchSteps::Equations> HybridBranchSteps::evaluate(const mo
     const double aside = 1e-6 * range_;
     const auto here = forcing_at(constant), before = forcing_at(constant - aside), after = forcing_at(constant + aside);
     if (!here || !before || !after || std::abs(*after - *before) > 0.1 * *here) {
-      problem_ = fmt::format("what hangs on the time has no common period at {} = {:.10g}", name_, constant);
+      status_ = {
+          .ending = Ending::cannot_continue,
+          .message = fmt::format("what hangs on the time has no common period at {} = {:.10g}", name_, constant)};
       return std::nullopt;
     }
     period = turns_ * *here;
@@ -169,11 +175,11 @@ std::optional<HybridBranchSteps::Equations> HybridBranchSteps::evaluate(const mo
   const model::Instant begin = instant(start, z);
   Equations equations{.image = (*flow_)(begin, period), .residual = {}, .rows = {}};
   const FlowImage& image = equations.image;
-  if (!image.run.events.empty() || image.problem.empty()) last_events_ = image.run.events;
-  problem_ = image.problem;
-  if (!problem_.empty()) return std::nullopt;
+  if (!image.run.events.empty() || image.status) last_events_ = image.run.events;
+  status_ = image.status;
+  if (!status_) return std::nullopt;
   if (image.mode != begin.mode || std::ranges::any_of(held_, [&](std::size_t i) { return image.x[i] != begin.x[i]; })) {
-    problem_ = "a mode, a flag or a counter does not come back";
+    status_ = {.ending = Ending::nonlinear_solve_failed, .message = "a mode, a flag or a counter does not come back"};
     return std::nullopt;
   }
   const auto n = static_cast<Eigen::Index>(directions_.size());
@@ -199,7 +205,7 @@ std::optional<HybridBranchSteps::Equations> HybridBranchSteps::evaluate(const mo
     equations.rows.row(n) = shift.transpose();
   }
   if (equations.residual.allFinite() && equations.rows.allFinite()) return equations;
-  problem_ = "the derivative of the motion is not finite";
+  status_ = {.ending = Ending::not_finite, .message = "the derivative of the motion is not finite"};
   return std::nullopt;
 }
 
@@ -224,7 +230,8 @@ std::optional<Vec> HybridBranchSteps::corrected(const model::Instant& start, con
   };
   const NewtonOutcome outcome = newton_iteration(limits_of_returns, correct, is_near);
   if (outcome) return z;
-  if (outcome.ending != NewtonEnding::not_finite) problem_ = "Newton's method does not converge";
+  if (outcome.ending != NewtonEnding::not_finite)
+    status_ = {.ending = Ending::nonlinear_solve_failed, .message = "Newton's method does not converge"};
   return std::nullopt;
 }
 
@@ -278,7 +285,7 @@ std::optional<HybridPlace> HybridBranchSteps::stepped(const HybridPlace& from, d
   const auto z = corrected(from.start, guess, from.z, from.tangent);
   if (!z) return std::nullopt;
   if ((*z - guess).norm() > step) {
-    problem_ = "the next orbit is farther away than the step";
+    status_ = {.ending = Ending::nonlinear_solve_failed, .message = "the next orbit is farther away than the step"};
     return std::nullopt;
   }
   return described(from.start, *z, from.tangent);
@@ -348,7 +355,7 @@ void HybridBranchSteps::begin_anew(HybridPlace& place) {
   const Vec old_tangent = place.tangent;
   flow_->set(0, place.point.constant);
   const FlowImage image = (*flow_)(place.start, best - from);
-  if (!image.problem.empty()) return;
+  if (!image.status) return;
   std::vector<double> old = unscaled_direction(old_tangent), moved;
   for (const std::size_t i : directions_) {
     double sum = image.by_parameters[i] * old.back();
@@ -372,7 +379,7 @@ void HybridBranchSteps::begin_anew(HybridPlace& place) {
 std::optional<Vec> HybridBranchSteps::halves(const HybridPlace& place) {
   flow_->set(0, place.point.constant);
   const FlowImage image = (*flow_)(place.start, place.point.period / 2);
-  if (!image.problem.empty()) return std::nullopt;
+  if (!image.status) return std::nullopt;
   Vec apart(static_cast<Eigen::Index>(directions_.size()));
   for (std::size_t k = 0; k < directions_.size(); ++k)
     apart[static_cast<Eigen::Index>(k)] =

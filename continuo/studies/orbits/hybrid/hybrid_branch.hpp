@@ -38,7 +38,7 @@ class HybridBranchSteps {
                     const HybridContinuationOptions& options, double period, const std::vector<double>& low,
                     const std::vector<double>& high);
 
-  /// The states that are solved for, by where a known orbit leads; false where there is none: `problem` says why.
+  /// The states that are solved for, by where a known orbit leads; false where there is none: `status` says why.
   bool begin(const model::Instant& start, double period, double constant);
 
   /// The orbit near a start with this value of the parameter.
@@ -71,7 +71,7 @@ class HybridBranchSteps {
   double constant_of(const Eigen::VectorXd& z) const { return z[z.size() - 1] * range_; }
   double size_of(std::size_t state) const { return sizes_[state]; }
   bool is_forced() const { return options_.forcing.has_value(); }
-  const std::string& problem() const { return problem_; }
+  const Status& status() const { return status_; }
   /// The events of the last orbit that was run, solved for or not.
   const std::vector<SensitivityEvent>& last_events() const { return last_events_; }
   /// Of the forcing where the parameter has this value; nothing where none is known.
@@ -102,7 +102,7 @@ class HybridBranchSteps {
   std::vector<double> sizes_;
   std::vector<std::size_t> directions_, held_;
   std::optional<ReturnFlow> flow_;
-  std::string problem_;
+  Status status_;
   std::vector<SensitivityEvent> last_events_;
 };
 

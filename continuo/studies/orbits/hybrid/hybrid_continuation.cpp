@@ -18,22 +18,23 @@ namespace {
 struct Wanted {
   std::string name;
   double now = 0;
-  std::string problem;  // why nothing can be followed; else empty
+  Status status;  // a failure where nothing can be followed
 };
 
 Wanted wanted_of(const model::ModelProgram& program, const model::Experiment& experiment,
                  const HybridContinuationOptions& options) {
   Wanted wanted;
   if (options.constant >= program.model.parameters.size()) {
-    wanted.problem =
-        fmt::format("there is no parameter number {}; there are {}", options.constant, program.model.parameters.size());
+    wanted.status = invalid_input(fmt::format("there is no parameter number {}; there are {}", options.constant,
+                                              program.model.parameters.size()));
     return wanted;
   }
   const model::Parameter& parameter = program.model.parameters[options.constant];
   wanted.name = parameter.name;
   const auto set = experiment.parameters.find(parameter.name);
   wanted.now = set == experiment.parameters.end() ? parameter.value : set->second;
-  if (!(options.low < options.high)) wanted.problem = fmt::format("the range of {} is empty", wanted.name);
+  if (!(options.low < options.high))
+    wanted.status = invalid_input(fmt::format("the range of {} is empty", wanted.name));
   return wanted;
 }
 
@@ -56,7 +57,7 @@ OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgra
                                   const HybridContinuationOptions& options) {
   OrbitBranch branch;
   const Wanted wanted = wanted_of(*program, experiment, options);
-  branch.message = wanted.problem;
+  branch.message = wanted.status.message;
   if (branch.message.empty() && !start.outcome) branch.message = start.outcome.hint;
   if (branch.message.empty() && !(wanted.now >= options.low && wanted.now <= options.high))
     branch.message = fmt::format("{} is {:.10g} at the start, outside of {:.10g}..{:.10g}", wanted.name, wanted.now,
@@ -70,7 +71,7 @@ OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgra
       options.forcing ? early(*program, experiment, start.start, *options.forcing) : start.start;
   detail::HybridBranchSteps steps(program, experiment, options, start.period, start.low, start.high);
   if (!steps.begin(begin, start.period, wanted.now)) {
-    branch.message = steps.problem();
+    branch.message = steps.status().message;
     return branch;
   }
   return detail::HybridFollower(options, wanted.name, steps).from_orbit(begin, start.period, wanted.now);
@@ -81,7 +82,7 @@ OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgra
                                   const HybridContinuationOptions& options) {
   OrbitBranch branch;
   const Wanted wanted = wanted_of(*program, experiment, options);
-  branch.message = wanted.problem;
+  branch.message = wanted.status.message;
   const bool branches = start.kind == OrbitBifurcation::period_doubling || start.kind == OrbitBifurcation::crossing;
   if (branch.message.empty() && !branches)
     branch.message = fmt::format("no branch begins at a {}", to_string(start.kind));
@@ -90,7 +91,7 @@ OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgra
   const double period = start.kind == OrbitBifurcation::period_doubling ? 2 * start.at.period : start.at.period;
   detail::HybridBranchSteps steps(program, experiment, options, period, start.at.low, start.at.high);
   if (!steps.begin(*start.begin, period, start.at.constant)) {
-    branch.message = steps.problem();
+    branch.message = steps.status().message;
     return branch;
   }
   return detail::HybridFollower(options, wanted.name, steps).from_mark(start);

@@ -122,7 +122,7 @@ OrbitBranchEnd HybridFollower::lost(const Place& here) const {
             fmt::format("neighbours part by a factor of {:.2g} within a period, too fast to follow it", largest)};
   return {OrbitEnding::lost, at,
           fmt::format("it could not be followed further; the period is {:.6g} there{}{}", here.point.period,
-                      steps_.problem().empty() ? "" : ": ", steps_.problem())};
+                      steps_.status().message.empty() ? "" : ": ", steps_.status().message)};
 }
 
 OrbitBranchEnd HybridFollower::at_bound(OrbitBranch& branch, const Place& a, const Place& b) {
@@ -231,8 +231,8 @@ OrbitBranch HybridFollower::from_orbit(const model::Instant& start, double perio
   OrbitBranch branch;
   auto first = steps_.at_constant(start, period, constant);
   if (!first) {
-    branch.message =
-        is_interrupted() ? "it was interrupted" : fmt::format("there is no orbit near the start: {}", steps_.problem());
+    branch.message = is_interrupted() ? "it was interrupted"
+                                      : fmt::format("there is no orbit near the start: {}", steps_.status().message);
     return branch;
   }
   steps_.begin_anew(*first);

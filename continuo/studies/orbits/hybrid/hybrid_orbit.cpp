@@ -74,7 +74,7 @@ class OrbitSearch {
     flow_.emplace(program, options.parameters, exact_);
   }
 
-  /// Nothing where there is no orbit near this return; then `problem` says why.
+  /// Nothing where there is no orbit near this return; then `status` says why.
   std::optional<HybridOrbit> from(const detail::OrbitStart& begin) {
     forced_ = begin.turns > 0;
     const ShootingPoint first{begin.start, begin.period};
@@ -84,7 +84,7 @@ class OrbitSearch {
     std::optional<ShootingPoint> found = shooting_->solve(first, conserved_cut, options_.tolerance);
     if (!found && !interrupted()) found = shooting_->solve(first, rounding_cut, options_.tolerance);
     if (!found) {
-      problem_ = shooting_->problem();
+      status_ = shooting_->status();
       return std::nullopt;
     }
     HybridOrbit orbit;
@@ -92,20 +92,20 @@ class OrbitSearch {
     shorten(*found, orbit);
     std::optional<Shot> shot = shooting_->shoot(*found);
     if (!shot) {
-      problem_ = shooting_->problem();
+      status_ = shooting_->status();
       return std::nullopt;
     }
     orbit.family = is_family(*found, *shot);
     describe(*found, *shot, orbit);
     if (!orbit.outcome) {
-      problem_ = orbit.outcome.hint;
+      status_ = {.ending = Ending::cannot_continue, .message = orbit.outcome.hint};
       refused_ = true;
       return std::nullopt;
     }
     return orbit;
   }
 
-  const std::string& problem() const { return problem_; }
+  const Status& status() const { return status_; }
   /// There is an orbit, but no derivative.
   bool refused() const { return refused_; }
   bool interrupted() const { return shooting_ && shooting_->interrupted(); }
@@ -116,8 +116,8 @@ class OrbitSearch {
     unknowns_.clear();
     aside_.clear();
     const detail::FlowImage image = (*flow_)(first.start, first.period);
-    if (!image.problem.empty()) {
-      problem_ = image.problem;
+    if (!image.status) {
+      status_ = image.status;
       return false;
     }
     for (const std::size_t i : directions_of(*program_)) {
@@ -128,7 +128,9 @@ class OrbitSearch {
         unknowns_.push_back(i);
       }
     }
-    if (unknowns_.empty()) problem_ = "no state has neighbours: all of them are flags and counters";
+    if (unknowns_.empty())
+      status_ = {.ending = Ending::cannot_continue,
+                 .message = "no state has neighbours: all of them are flags and counters"};
     return !unknowns_.empty();
   }
 
@@ -236,7 +238,7 @@ class OrbitSearch {
   std::optional<Shooting> shooting_;
   double first_period_ = 0;
   bool forced_ = false, refused_ = false;
-  std::string problem_;
+  Status status_;
 };
 
 /// Which event is to blame: two at the same time that neighbours pass one after the other, or one whose time hangs on
@@ -285,14 +287,14 @@ HybridOrbit find_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& 
   for (const detail::OrbitStart& start : starts.starts) {
     if (auto found = search.from(start)) return std::move(*found);
     if (search.interrupted()) return without_hybrid_orbit({}, {.ending = Ending::interrupted});
-    if (search.refused()) return without_hybrid_orbit(search.problem());
+    if (search.refused()) return without_hybrid_orbit(search.status().message);
   }
   HybridOrbit none = without_hybrid_orbit(
       starts.nearby
           ? fmt::format("the motion does not come back to where it was within a time of {}, and no orbit was found "
                         "near its way: it may need longer to settle, or have no period",
                         options.duration)
-          : fmt::format("the motion comes back, but no closed orbit could be solved for: {}", search.problem()));
+          : fmt::format("the motion comes back, but no closed orbit could be solved for: {}", search.status().message));
   none.wanders = starts.nearby;
   return none;
 }

@@ -44,20 +44,14 @@ FlowImage ReturnFlow::operator()(const model::Instant& start, double duration) c
   request.experiment.output_steps = true;
   image.run = study_.run(request);
   const SensitivityRun& run = image.run;
-  if (!run.diagnostics.empty()) {
-    image.problem = run.diagnostics.front().message;
-  } else if (!run.problem.empty()) {
-    image.problem = run.problem;
-  } else if (run.outcome.ending == Ending::stopped_by_event) {
-    image.problem = fmt::format("`{}` ends the run", run.outcome.event);
-  } else if (run.outcome.ending == Ending::events_accumulate) {
-    image.problem =
+  image.status = run.status;
+  if (run.status.ending == Ending::stopped_by_event) {
+    image.status = {.ending = Ending::cannot_continue, .message = fmt::format("`{}` ends the run", run.outcome.event)};
+  } else if (run.status.ending == Ending::events_accumulate) {
+    image.status.message =
         fmt::format("the times of `{}` close in on a limit, beyond which there is no derivative", run.outcome.event);
-  } else if (!run.good()) {
-    image.interrupted = run.outcome.ending == Ending::interrupted;
-    image.problem = describe(run.outcome);
   }
-  if (!image.problem.empty()) return image;
+  if (!image.status) return image;
   const std::size_t last = run.rows() - 1;
   image.mode = run.mode;
   for (std::size_t i = 0; i < n_; ++i) {

@@ -9,14 +9,14 @@
 
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/stepping.hpp>
+#include <continuo/status/status.hpp>
 #include <continuo/studies/sensitivity.hpp>
 #include <continuo/system/parametric_system.hpp>
 
 namespace continuo::studies::detail {
 
 struct FlowImage {
-  std::string problem;  // why there is none; else empty
-  bool interrupted = false;
+  Status status;  // a failure where there is none: then of the rest, the run alone
   std::vector<double> x;
   std::size_t mode = 0;
   std::vector<double> by_start;       // d x / d x(0), n by n, row by row

@@ -45,15 +45,15 @@ Shooting::Shooting(const ReturnFlow& flow, std::vector<std::size_t> unknowns, st
 std::optional<Shot> Shooting::shoot(const ShootingPoint& point) {
   Shot shot{.image = flow_(point.start, point.period), .residual = {}, .matrix = {}};
   const FlowImage& image = shot.image;
-  interrupted_ = interrupted_ || image.interrupted;
-  if (!image.problem.empty()) {
-    problem_ = image.problem;
+  interrupted_ = interrupted_ || image.status.ending == Ending::interrupted;
+  if (!image.status) {
+    status_ = image.status;
     return std::nullopt;
   }
   const bool comes_back = image.mode == point.start.mode &&
                           std::ranges::all_of(held_, [&](std::size_t i) { return image.x[i] == point.start.x[i]; });
   if (!comes_back) {
-    problem_ = "a mode, a flag or a counter does not come back";
+    status_ = {.ending = Ending::nonlinear_solve_failed, .message = "a mode, a flag or a counter does not come back"};
     return std::nullopt;
   }
   const std::size_t n = unknowns_.size(), size = n + (forced_ ? 0 : 1);
@@ -75,7 +75,7 @@ std::optional<Shot> Shooting::shoot(const ShootingPoint& point) {
     shot.residual[row_of(n)] += phase_[row_of(k)] * (point.start.x[i] - from_.start.x[i]) / sizes_[i];
   }
   if (shot.residual.allFinite() && shot.matrix.allFinite()) return shot;
-  problem_ = "the derivative of the motion is not finite";
+  status_ = {.ending = Ending::not_finite, .message = "the derivative of the motion is not finite"};
   return std::nullopt;
 }
 
@@ -123,7 +123,7 @@ std::optional<ShootingPoint> Shooting::solve(ShootingPoint point, double cut, do
     // Where rounding keeps the residual from falling, the point is as good as it can be.
     if (outcome || (last && outcome.ending == NewtonEnding::no_descent)) return point;
   }
-  if (problem_.empty()) problem_ = "Newton's method does not converge";
+  if (status_) status_ = {.ending = Ending::nonlinear_solve_failed, .message = "Newton's method does not converge"};
   return std::nullopt;
 }
 

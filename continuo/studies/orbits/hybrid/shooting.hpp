@@ -38,9 +38,9 @@ class Shooting {
            std::vector<double> sizes, bool forced, ShootingPoint from);
 
   /// Newton's method; singular values below `cut` of the largest count as none. Nothing where it does not converge to
-  /// `tolerance`: `problem` says why.
+  /// `tolerance`: `status` says why.
   std::optional<ShootingPoint> solve(ShootingPoint point, double cut, double tolerance);
-  const std::string& problem() const { return problem_; }
+  const Status& status() const { return status_; }
   bool interrupted() const { return interrupted_; }
 
   /// Nothing where the flow is not defined there or comes to another mode.
@@ -55,7 +55,7 @@ class Shooting {
   bool forced_;
   ShootingPoint from_;
   Eigen::VectorXd phase_;
-  std::string problem_;
+  Status status_;
   bool interrupted_ = false;
 };
 
