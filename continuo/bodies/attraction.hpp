@@ -15,6 +15,6 @@ void add_attraction(const World<Real, Dim>& world, std::span<const Vector<Real, 
 
 /// -G m1 m2 / sqrt(r^2 + softening^2) over all pairs that include a body that moves; exact, O(N^2).
 template <class Real, int Dim>
-Real attraction_energy(const World<Real, Dim>& world);
+[[nodiscard]] Real attraction_energy(const World<Real, Dim>& world);
 
 }  // namespace continuo

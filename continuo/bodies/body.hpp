@@ -38,7 +38,7 @@ struct CombineRule {
 };
 
 template <class Real>
-Real combined(Combine how, const Real& a, const Real& b) {
+[[nodiscard]] Real combined(Combine how, const Real& a, const Real& b) {
   using std::sqrt;
   switch (how) {
     case Combine::average:
@@ -55,7 +55,8 @@ Real combined(Combine how, const Real& a, const Real& b) {
   return sqrt(a * b);
 }
 template <class Real>
-Material<Real> combined(const CombineRule& combine_rule, const Material<Real>& a, const Material<Real>& b) {
+[[nodiscard]] Material<Real> combined(const CombineRule& combine_rule, const Material<Real>& a,
+                                      const Material<Real>& b) {
   return {combined(combine_rule.restitution, a.restitution, b.restitution),
           combined(combine_rule.friction, a.friction, b.friction),
           combined(combine_rule.rolling_resistance, a.rolling_resistance, b.rolling_resistance)};
@@ -82,13 +83,13 @@ struct BodyHandle {
 
 /// Volume of a ball, area of a disc.
 template <class Real, int Dim>
-Real volume(const Sphere<Real>& sphere) {
+[[nodiscard]] Real volume(const Sphere<Real>& sphere) {
   const Real r = sphere.radius, pi = Real(std::numbers::pi_v<long double>);
   return Dim == 2 ? pi * r * r : Real(4) / Real(3) * pi * r * r * r;
 }
 /// Moment of inertia about the centre: 2/5 m r^2 of a ball, 1/2 m r^2 of a disc.
 template <class Real, int Dim>
-Real inertia(const Sphere<Real>& sphere, const Real& mass) {
+[[nodiscard]] Real inertia(const Sphere<Real>& sphere, const Real& mass) {
   return (Dim == 2 ? Real(1) / Real(2) : Real(2) / Real(5)) * mass * sphere.radius * sphere.radius;
 }
 

@@ -34,7 +34,7 @@ struct ContactEvent {
   Real impulse{};                       // along the normal: of an impact; of a contact that ends, since it began
   Real time{};
 
-  bool with_wall() const { return wall != no_wall; }
+  [[nodiscard]] bool with_wall() const { return wall != no_wall; }
 };
 
 /// The events of one call, the first `most`; those beyond are counted.
@@ -43,7 +43,7 @@ class ContactLog {
  public:
   explicit ContactLog(std::size_t most = 0) : most_(most) {}
 
-  bool is_kept() const { return most_ > 0; }
+  [[nodiscard]] bool is_kept() const { return most_ > 0; }
   void clear() {
     events_.clear();
     lost_ = 0;
@@ -72,8 +72,8 @@ class ContactLog {
     if (events_.size() > most_) lost_ += events_.size() - most_, events_.resize(most_);
     other.clear();
   }
-  std::span<const ContactEvent<Real, Dim>> events() const { return events_; }
-  std::size_t lost() const { return lost_; }
+  [[nodiscard]] std::span<const ContactEvent<Real, Dim>> events() const { return events_; }
+  [[nodiscard]] std::size_t lost() const { return lost_; }
 
  private:
   std::size_t most_, lost_ = 0;

@@ -49,22 +49,22 @@ class ExactMotion {
 
   /// Brings the world to time t, all its bodies to the same instant. Where it fails the world is at the time of
   /// the last event.
-  Status advance_to(const Real& t);
+  [[nodiscard]] Status advance_to(const Real& t);
   /// Predicts everything again from the world as it is.
   void refresh();
 
-  const ExactStatistics& statistics() const;
+  [[nodiscard]] const ExactStatistics& statistics() const;
   /// What happened in the last call of advance_to, and how many more there were than `contact_events`.
-  std::span<const ContactEvent<Real, Dim>> contact_events() const;
-  std::size_t lost_contact_events() const;
+  [[nodiscard]] std::span<const ContactEvent<Real, Dim>> contact_events() const;
+  [[nodiscard]] std::size_t lost_contact_events() const;
 
   /// For snapshot.hpp: what is to be known beside the world to go on to the same bits.
   void save(ByteWriter& writer) const;
   void load(ByteReader& reader);
 
  private:
-  bool is_parabolic() const;
-  std::unique_ptr<ExactEngine<Real, Dim>> engine() const;
+  [[nodiscard]] bool is_parabolic() const;
+  [[nodiscard]] std::unique_ptr<ExactEngine<Real, Dim>> engine() const;
 
   World<Real, Dim>* world_;
   Companions<Real, Dim>* companions_ = nullptr;

@@ -37,7 +37,7 @@ struct ExactOptions {
   std::size_t contact_events = 0;  // so many of a call are kept, see contact_events.hpp
   const std::atomic<bool>* interrupt = nullptr;  // once it is true, advance_to ends early and says so
 
-  bool is_interrupted() const { return interrupt != nullptr && interrupt->load(); }
+  [[nodiscard]] bool is_interrupted() const { return interrupt != nullptr && interrupt->load(); }
 };
 
 struct ExactStatistics {

@@ -52,19 +52,19 @@ class FastMotion {
   ~FastMotion();
 
   /// One step. Where it fails the world is as it was before the step.
-  Status advance();
+  [[nodiscard]] Status advance();
   void refresh();
 
   /// The deepest overlap of two bodies, or of one and a wall, now.
-  Real deepest_overlap() const;
-  const FastStatistics& statistics() const;
+  [[nodiscard]] Real deepest_overlap() const;
+  [[nodiscard]] const FastStatistics& statistics() const;
   /// What happened in the last step: impacts at their instants; what lasts begins and ends with a step, and its impulse
   /// is that of the last substep times their number, summed over the steps. And how many more there were than asked
   /// for.
-  std::span<const ContactEvent<Real, Dim>> contact_events() const;
-  std::size_t lost_contact_events() const;
+  [[nodiscard]] std::span<const ContactEvent<Real, Dim>> contact_events() const;
+  [[nodiscard]] std::size_t lost_contact_events() const;
   /// Bytes held beside the world: bodies as contacts need them, pairs, contacts.
-  std::size_t memory() const;
+  [[nodiscard]] std::size_t memory() const;
 
   /// For snapshot.hpp: what is to be known beside the world to go on to the same bits.
   void save(ByteWriter& writer) const;

@@ -20,6 +20,6 @@ void torques(const World<Real, Dim>& world, Real t, const BodyStates<Real, Dim>&
 
 /// Whether gravity is the only force, so that paths between collisions are parabolas.
 template <class Real, int Dim>
-bool only_gravity(const World<Real, Dim>& world);
+[[nodiscard]] bool only_gravity(const World<Real, Dim>& world);
 
 }  // namespace continuo

@@ -40,7 +40,7 @@ struct RayHit {
   std::uint32_t wall = no_wall;
   Real distance{};                      // along the ray; 0 where it starts inside the body or behind the wall
   Vector<Real, Dim> point{}, normal{};  // of the surface; against the ray where it starts inside
-  bool is_wall() const { return wall != no_wall; }
+  [[nodiscard]] bool is_wall() const { return wall != no_wall; }
 };
 
 template <class Real>
@@ -64,14 +64,17 @@ class Queries {
   // All fail where the question cannot be meant: it must be finite, a direction not 0, no region inside out.
 
   /// The nearest hit, if any: one element or none. Of equal distances bodies come before walls, lower numbers first.
-  Result<std::vector<RayHit<Real, Dim>>> first_hit(const Ray<Real, Dim>& ray, const QueryFilter& filter = {}) const;
+  [[nodiscard]] Result<std::vector<RayHit<Real, Dim>>> first_hit(const Ray<Real, Dim>& ray,
+                                                                 const QueryFilter& filter = {}) const;
   /// All of them, the nearest first.
-  Result<std::vector<RayHit<Real, Dim>>> all_hits(const Ray<Real, Dim>& ray, const QueryFilter& filter = {}) const;
+  [[nodiscard]] Result<std::vector<RayHit<Real, Dim>>> all_hits(const Ray<Real, Dim>& ray,
+                                                                const QueryFilter& filter = {}) const;
   /// What a ball, or a box with its faces along the axes, touches. In the order of the world.
-  Result<Overlap> in_sphere(const V& centre, const Real& radius, const QueryFilter& filter = {}) const;
-  Result<Overlap> in_box(const V& lower, const V& upper, const QueryFilter& filter = {}) const;
+  [[nodiscard]] Result<Overlap> in_sphere(const V& centre, const Real& radius, const QueryFilter& filter = {}) const;
+  [[nodiscard]] Result<Overlap> in_box(const V& lower, const V& upper, const QueryFilter& filter = {}) const;
   /// The `count` bodies whose surfaces are nearest, or as many as there are; the nearest first.
-  Result<std::vector<Neighbour<Real>>> nearest(const V& point, std::size_t count, const QueryFilter& filter = {}) const;
+  [[nodiscard]] Result<std::vector<Neighbour<Real>>> nearest(const V& point, std::size_t count,
+                                                             const QueryFilter& filter = {}) const;
 
  private:
   struct Item {

@@ -103,15 +103,15 @@ struct Recording {
   std::vector<World<Real, Dim>> scenes{};
   std::vector<Frame<Real, Dim>> frames{};
 
-  const Frame<Real, Dim>& frame(std::size_t i) const { return frames[i]; }
+  [[nodiscard]] const Frame<Real, Dim>& frame(std::size_t i) const { return frames[i]; }
   /// The last frame not after t; the first where all are.
-  const Frame<Real, Dim>& at(const Real& t) const {
+  [[nodiscard]] const Frame<Real, Dim>& at(const Real& t) const {
     const auto after = std::ranges::upper_bound(frames, t, {}, &Frame<Real, Dim>::time);
     return after == frames.begin() ? frames.front() : *(after - 1);
   }
 
   /// Unreadable where nothing can be played.
-  static Result<Recording> read(std::span<const std::byte> bytes) {
+  [[nodiscard]] static Result<Recording> read(std::span<const std::byte> bytes) {
     Recording recording;
     ByteReader file(bytes);
     detail::recording_format.expect(file);

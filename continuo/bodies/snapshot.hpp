@@ -24,20 +24,20 @@ namespace continuo {
 inline constexpr std::uint32_t snapshot_version = 8;
 
 template <class Real, int Dim>
-Bytes snapshot(const World<Real, Dim>& world);
+[[nodiscard]] Bytes snapshot(const World<Real, Dim>& world);
 /// The motion must be of this world.
 template <class Real, int Dim>
-Bytes snapshot(const World<Real, Dim>& world, const ExactMotion<Real, Dim>& motion);
+[[nodiscard]] Bytes snapshot(const World<Real, Dim>& world, const ExactMotion<Real, Dim>& motion);
 template <class Real, int Dim>
-Bytes snapshot(const World<Real, Dim>& world, const FastMotion<Real, Dim>& motion);
+[[nodiscard]] Bytes snapshot(const World<Real, Dim>& world, const FastMotion<Real, Dim>& motion);
 
 /// Of a snapshot with a motion or without.
 template <class Real, int Dim>
-Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world);
+[[nodiscard]] Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world);
 /// The motion must be of this world, and the snapshot of such a motion.
 template <class Real, int Dim>
-Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, ExactMotion<Real, Dim>& motion);
+[[nodiscard]] Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, ExactMotion<Real, Dim>& motion);
 template <class Real, int Dim>
-Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, FastMotion<Real, Dim>& motion);
+[[nodiscard]] Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, FastMotion<Real, Dim>& motion);
 
 }  // namespace continuo

@@ -40,7 +40,7 @@ struct Wall {
 };
 /// The wall as one at x has it before it.
 template <class Real, int Dim>
-Wall<Real, Dim> facing(Wall<Real, Dim> wall, const Vector<Real, Dim>& x) {
+[[nodiscard]] Wall<Real, Dim> facing(Wall<Real, Dim> wall, const Vector<Real, Dim>& x) {
   if (wall.thin && dot(wall.normal, x) < wall.offset) {
     wall.normal = -wall.normal;
     wall.offset = -wall.offset;
@@ -79,7 +79,7 @@ using ForceLaw = std::function<void(const World<Real, Dim>& world, Real t, std::
 
 /// Whether a surface can have these values.
 template <class Real>
-Status check(const Material<Real>& material);
+[[nodiscard]] Status check(const Material<Real>& material);
 
 /// How bodies are moved: of body i, x[i], v[i] and so on.
 template <class Real, int Dim>
@@ -116,42 +116,44 @@ class World {
   Result<BodyHandle> add(const BodyDefinition<Real, Dim>& definition);
   /// False where it was not there. O(1): the last body takes its place.
   bool remove(BodyHandle handle);
-  bool contains(BodyHandle handle) const {
+  [[nodiscard]] bool contains(BodyHandle handle) const {
     return handle.slot < slots_.size() && slots_[handle.slot].generation == handle.generation &&
            slots_[handle.slot].index != nowhere;
   }
   /// The handle must be of a body that is there.
-  std::size_t index(BodyHandle handle) const { return slots_[handle.slot].index; }
-  BodyHandle handle(std::size_t index) const { return {slot_of_[index], slots_[slot_of_[index]].generation}; }
+  [[nodiscard]] std::size_t index(BodyHandle handle) const { return slots_[handle.slot].index; }
+  [[nodiscard]] BodyHandle handle(std::size_t index) const {
+    return {slot_of_[index], slots_[slot_of_[index]].generation};
+  }
 
   /// Some of the bodies, in this order, with all walls, under gravity alone.
-  World part(std::span<const std::uint32_t> bodies) const;
+  [[nodiscard]] World part(std::span<const std::uint32_t> bodies) const;
 
   /// Empty where it was added: the normal must be finite and not zero; it is made a unit.
-  Status add_wall(Wall<Real, Dim> wall);
+  [[nodiscard]] Status add_wall(Wall<Real, Dim> wall);
   /// The inside of a box with its faces along the axes.
-  Status add_container(const V& lower, const V& upper, const Material<Real>& material = {});
-  std::span<const Wall<Real, Dim>> walls() const { return walls_; }
+  [[nodiscard]] Status add_container(const V& lower, const V& upper, const Material<Real>& material = {});
+  [[nodiscard]] std::span<const Wall<Real, Dim>> walls() const { return walls_; }
 
   /// Bodies of groups a and b pass through each other from here on.
   void ignore(std::uint32_t a, std::uint32_t b) {
     ignored_[a] |= 1u << b;
     ignored_[b] |= 1u << a;
   }
-  std::uint32_t group(std::size_t i) const { return group_[i]; }
-  bool has_ignored_groups() const { return ignored_ != std::array<std::uint32_t, 32>{}; }
-  bool collide(std::size_t i, std::size_t j) const {
+  [[nodiscard]] std::uint32_t group(std::size_t i) const { return group_[i]; }
+  [[nodiscard]] bool has_ignored_groups() const { return ignored_ != std::array<std::uint32_t, 32>{}; }
+  [[nodiscard]] bool collide(std::size_t i, std::size_t j) const {
     return (ignored_[group_[i]] >> group_[j] & 1u) == 0 && (inverse_mass[i] > 0 || inverse_mass[j] > 0);
   }
 
-  std::size_t size() const { return position.size(); }
+  [[nodiscard]] std::size_t size() const { return position.size(); }
   /// Room for so many bodies: without it, arrays that grow take up to twice what they hold.
   void reserve(std::size_t bodies) {
     for_each_array(*this, [&](auto& array) { array.reserve(bodies); });
     slots_.reserve(bodies);
   }
   /// Bytes held for bodies.
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     std::size_t sum = slots_.capacity() * sizeof(Slot) + free_slots_.capacity() * sizeof(std::uint32_t);
     for_each_array(*this, [&](const auto& array) { sum += array.capacity() * sizeof(array[0]); });
     return sum;
@@ -164,9 +166,9 @@ class World {
   std::vector<Real> radius, mass, inverse_mass, inverse_inertia;  // inverses are 0 of fixed bodies
   std::vector<Material<Real>> material;
 
-  const V& position_of(BodyHandle body) const { return position[index(body)]; }
-  const V& velocity_of(BodyHandle body) const { return velocity[index(body)]; }
-  bool is_fixed(std::size_t i) const { return inverse_mass[i] == Real(0); }
+  [[nodiscard]] const V& position_of(BodyHandle body) const { return position[index(body)]; }
+  [[nodiscard]] const V& velocity_of(BodyHandle body) const { return velocity[index(body)]; }
+  [[nodiscard]] bool is_fixed(std::size_t i) const { return inverse_mass[i] == Real(0); }
 
  private:
   friend struct SnapshotAccess;  // snapshot.cpp
@@ -190,19 +192,19 @@ class World {
 
 /// Sums over all bodies that move. Angular momentum is about the origin, spin included.
 template <class Real, int Dim>
-Real kinetic_energy(const World<Real, Dim>& world);
+[[nodiscard]] Real kinetic_energy(const World<Real, Dim>& world);
 /// Of gravity, constant forces, springs and attraction.
 template <class Real, int Dim>
-Real potential_energy(const World<Real, Dim>& world);
+[[nodiscard]] Real potential_energy(const World<Real, Dim>& world);
 template <class Real, int Dim>
-Vector<Real, Dim> momentum(const World<Real, Dim>& world);
+[[nodiscard]] Vector<Real, Dim> momentum(const World<Real, Dim>& world);
 template <class Real, int Dim>
-Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world);
+[[nodiscard]] Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world);
 
 /// Of time and of every body's position, orientation, velocity and spin, to the last bit: two runs that are the same
 /// have the same (FNV-1a; G. Fowler, L. C. Noll, K.-P. Vo).
 template <class Real, int Dim>
-std::uint64_t state_hash(const World<Real, Dim>& world);
+[[nodiscard]] std::uint64_t state_hash(const World<Real, Dim>& world);
 
 extern template class World<float, 2>;
 extern template class World<float, 3>;

@@ -15,6 +15,6 @@ struct DescribeOptions {
   std::size_t longest_expression = 200;  // characters
 };
 
-std::string describe(const Model& model, const DescribeOptions& options = {});
+[[nodiscard]] std::string describe(const Model& model, const DescribeOptions& options = {});
 
 }  // namespace continuo::model

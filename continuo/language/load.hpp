@@ -24,12 +24,14 @@ struct Loaded {
 
   explicit operator bool() const { return model.has_value(); }
   /// All diagnostics as shown on a terminal.
-  std::string text(const RenderOptions& options = {}) const { return render(diagnostics, source, options); }
+  [[nodiscard]] std::string text(const RenderOptions& options = {}) const {
+    return render(diagnostics, source, options);
+  }
 };
 
 /// Reads, parses and checks. Files of tables and inputs are found relative to the model's folder.
-Loaded load(const std::filesystem::path& path, const CheckOptions& options = {});
+[[nodiscard]] Loaded load(const std::filesystem::path& path, const CheckOptions& options = {});
 /// The same for a text that is in memory already.
-Loaded load(Source source, const CheckOptions& options = {});
+[[nodiscard]] Loaded load(Source source, const CheckOptions& options = {});
 
 }  // namespace continuo::model

@@ -226,7 +226,7 @@ struct DrawItem {
 };
 
 /// Whether the mouse may move it: `ball (x, y) drag`.
-bool is_dragged(const DrawItem& item);
+[[nodiscard]] bool is_dragged(const DrawItem& item);
 
 /// When a check reads the motion. Events count from 1 among those whose name begins with `event`.
 struct Moment {
@@ -364,36 +364,37 @@ struct Model {
 
   std::shared_ptr<const WorldDescription> world;  // null where the model has no bodies
 
-  bool needs_boundary_solver() const { return !boundary.empty(); }
-  bool needs_dae_solver() const { return !algebraic.empty(); }
-  bool has_world() const { return world != nullptr; }
+  [[nodiscard]] bool needs_boundary_solver() const { return !boundary.empty(); }
+  [[nodiscard]] bool needs_dae_solver() const { return !algebraic.empty(); }
+  [[nodiscard]] bool has_world() const { return world != nullptr; }
 };
 
 /// A state whose derivative is zero in every mode: only events change it.
-bool stands_still(const Model& model, std::size_t state);
+[[nodiscard]] bool stands_still(const Model& model, std::size_t state);
 
 /// By name, `npos` where there is none: "h'" for states, "k" or "m[3]" for parameters.
 inline constexpr std::size_t npos = static_cast<std::size_t>(-1);
-std::size_t find_state(const Model& model, std::string_view column);
+[[nodiscard]] std::size_t find_state(const Model& model, std::string_view column);
 /// The state of that column; where there is none, the states of the family of that name: "u'" for all u[i]'.
-std::vector<std::size_t> states_named(const Model& model, std::string_view name);
-std::size_t find_parameter(const Model& model, std::string_view name);
-std::size_t find_input(const Model& model, std::string_view name);
-std::size_t find_mode(const Model& model, std::string_view name);
+[[nodiscard]] std::vector<std::size_t> states_named(const Model& model, std::string_view name);
+[[nodiscard]] std::size_t find_parameter(const Model& model, std::string_view name);
+[[nodiscard]] std::size_t find_input(const Model& model, std::string_view name);
+[[nodiscard]] std::size_t find_mode(const Model& model, std::string_view name);
 
 /// Values of parameters by name that stand for those in the text. Unknown names are left aside: see `find_parameter`.
 using Overrides = std::map<std::string, double, std::less<>>;
 
 /// A whole register file for the moment the run begins: t, initial states, parameters (those not overridden follow
 /// from their expressions), inputs, guesses of unknowns; samples are 0. `from` replaces the text's start time.
-std::vector<double> start_values(const Model& model, const Overrides& overrides = {},
-                                 std::optional<double> from = std::nullopt);
+[[nodiscard]] std::vector<double> start_values(const Model& model, const Overrides& overrides = {},
+                                               std::optional<double> from = std::nullopt);
 
 /// The value of an expression of the model for a register file as above.
-double evaluate(const Model& model, NodeId node, std::span<const double> variables);
-std::vector<double> evaluate(const Model& model, std::span<const NodeId> nodes, std::span<const double> variables);
+[[nodiscard]] double evaluate(const Model& model, NodeId node, std::span<const double> variables);
+[[nodiscard]] std::vector<double> evaluate(const Model& model, std::span<const NodeId> nodes,
+                                           std::span<const double> variables);
 
 /// The column, parameter or input that lies at this place of the flat space: for printing expressions.
-std::string variable_name(const Model& model, std::uint32_t variable);
+[[nodiscard]] std::string variable_name(const Model& model, std::uint32_t variable);
 
 }  // namespace continuo::model

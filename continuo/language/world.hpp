@@ -98,20 +98,20 @@ struct WorldDescription {
   std::size_t first_measure = 0;  // of `measures(dimension)` in Model::states: world.kinetic, ...; the last states
   Span span;
 
-  std::size_t body_states() const { return bodies.size() * states_of_body(dimension); }
+  [[nodiscard]] std::size_t body_states() const { return bodies.size() * states_of_body(dimension); }
   /// In the plane x, x', y, y', angle, angle'; in space x, x', y, y', z, z', q_w, q_x, q_y, q_z, spin_x, spin_y,
   /// spin_z.
-  static constexpr std::size_t states_of_body(int dimension) { return dimension == 2 ? 6 : 13; }
+  [[nodiscard]] static constexpr std::size_t states_of_body(int dimension) { return dimension == 2 ? 6 : 13; }
 };
 
 /// What a world tells of itself: `world.kinetic`, `world.potential`, `world.momentum_x`, ..., `world.collisions`.
-std::vector<std::string> world_measures(int dimension);
+[[nodiscard]] std::vector<std::string> world_measures(int dimension);
 
 /// So many there were until the model was in this state.
-double collisions_of(const WorldDescription& world, std::span<const double> state);
+[[nodiscard]] double collisions_of(const WorldDescription& world, std::span<const double> state);
 
 /// What can stand in place of the mode of a world: `exact`, and its paths by `dop853` or `rk4` with a step; `fast` with
 /// the integrator that the world names, or by the name of one.
-std::vector<std::string> world_methods();
+[[nodiscard]] std::vector<std::string> world_methods();
 
 }  // namespace continuo::model

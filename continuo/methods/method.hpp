@@ -24,7 +24,7 @@ struct Interpolant {
   void operator()(Scalar<X> theta, X& x) const {
     for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] = component(theta, i);
   }
-  Scalar<X> component(Scalar<X> theta, std::size_t i) const {
+  [[nodiscard]] Scalar<X> component(Scalar<X> theta, std::size_t i) const {
     Scalar<X> value = c[Degree].data()[i];
     for (int j = Degree - 1; j >= 0; --j) value = value * theta + c[static_cast<std::size_t>(j)].data()[i];
     return value;
@@ -43,19 +43,19 @@ struct Tolerance {
   const Real* atol_each = nullptr;
   Real rounding_of_time{};  // what rounding of t leaves undecided of a step, as a part of the change it makes
 
-  Real scale(std::size_t i, const Real& x, const Real& x_new) const {
+  [[nodiscard]] Real scale(std::size_t i, const Real& x, const Real& x_new) const {
     using std::abs;
     using std::max;
     return (atol_each ? atol_each[i] : atol) + (rtol_each ? rtol_each[i] : rtol) * max(abs(x), abs(x_new));
   }
   /// Of a step from x to x_new. An unknown of 0 = g(t, x) is known no better than t is: to |x'| times the spacing of
   /// numbers at t, which no shorter step makes less.
-  Real scale_of_step(std::size_t i, const Real& x, const Real& x_new) const {
+  [[nodiscard]] Real scale_of_step(std::size_t i, const Real& x, const Real& x_new) const {
     using std::abs;
     return scale(i, x, x_new) + rounding_of_time * abs(x_new - x);
   }
   /// For an error that is multiplied by a factor before it is measured: rounding is not.
-  Tolerance of_error_times(const Real& factor) const {
+  [[nodiscard]] Tolerance of_error_times(const Real& factor) const {
     Tolerance result = *this;
     result.rounding_of_time *= factor;
     return result;
@@ -116,7 +116,7 @@ concept Method = State<X> && requires(const X& x) {
 namespace detail {
 
 template <class M>
-constexpr bool is_implicit() {
+[[nodiscard]] constexpr bool is_implicit() {
   if constexpr (requires { M::implicit; }) {
     return M::implicit;
   } else {
@@ -124,7 +124,7 @@ constexpr bool is_implicit() {
   }
 }
 template <class M>
-constexpr bool is_automatic() {
+[[nodiscard]] constexpr bool is_automatic() {
   if constexpr (requires { M::automatic; }) {
     return M::automatic;
   } else {
@@ -132,7 +132,7 @@ constexpr bool is_automatic() {
   }
 }
 template <class M, class Work>
-StepStatus status_of(const Work& work) {
+[[nodiscard]] StepStatus status_of(const Work& work) {
   if constexpr (requires { M::status(work); }) {
     return M::status(work);
   } else {
@@ -140,7 +140,7 @@ StepStatus status_of(const Work& work) {
   }
 }
 template <class M>
-constexpr int starting_order() {
+[[nodiscard]] constexpr int starting_order() {
   if constexpr (requires { M::starting_order; }) {
     return M::starting_order;
   } else {
@@ -148,7 +148,7 @@ constexpr int starting_order() {
   }
 }
 template <class M>
-constexpr int order_of_fixed_steps() {
+[[nodiscard]] constexpr int order_of_fixed_steps() {
   if constexpr (requires { M::order_of_fixed_steps; }) {
     return M::order_of_fixed_steps;
   } else {
@@ -156,7 +156,7 @@ constexpr int order_of_fixed_steps() {
   }
 }
 template <class M, class Work>
-int error_order_of(const Work& work) {
+[[nodiscard]] int error_order_of(const Work& work) {
   if constexpr (requires { M::error_order_of(work); }) {
     return M::error_order_of(work);
   } else {

@@ -50,13 +50,13 @@ struct Switching {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return {NonStiff::workspace(x), Stiff::workspace(x), Interpolant<X, NonStiff::dense_degree>(x),
             Interpolant<X, Stiff::dense_degree>(x), StiffnessWatch<X>(x)};
   }
 
   template <class System, State X>
-  static std::string_view unsupported_reason(const System& system, const X& x) {
+  [[nodiscard]] static std::string_view unsupported_reason(const System& system, const X& x) {
     if constexpr (requires { NonStiff::unsupported_reason(system, x); }) return NonStiff::unsupported_reason(system, x);
     return {};
   }
@@ -71,8 +71,8 @@ struct Switching {
   }
 
   template <class System, State X>
-  static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
-                  Workspace<X>& work, X& x_new) {
+  [[nodiscard]] static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
+                                Workspace<X>& work, X& x_new) {
     if (!work.begun) {
       work.begun = true;
       work.has_mass = work.is_stiff = continuo::has_mass<X>(system);
@@ -94,30 +94,30 @@ struct Switching {
   }
 
   template <State X>
-  static StepStatus status(const Workspace<X>& work) {
+  [[nodiscard]] static StepStatus status(const Workspace<X>& work) {
     return work.is_stiff ? detail::status_of<Stiff>(work.stiff) : detail::status_of<NonStiff>(work.nonstiff);
   }
   template <State X>
-  static EquationCosts costs(const Workspace<X>& work) {
+  [[nodiscard]] static EquationCosts costs(const Workspace<X>& work) {
     return Stiff::costs(work.stiff);
   }
   template <State X>
-  static int error_order_of(const Workspace<X>& work) {
+  [[nodiscard]] static int error_order_of(const Workspace<X>& work) {
     return work.is_stiff ? detail::error_order_of<Stiff>(work.stiff) : detail::error_order_of<NonStiff>(work.nonstiff);
   }
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     return work.is_stiff ? Stiff::error_norm(work.stiff, h, x, x_new, tolerance)
                          : strictness_of_turns(work) * NonStiff::error_norm(work.nonstiff, h, x, x_new, tolerance);
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
     return work.is_stiff ? Stiff::error_of(work.stiff, h, i) : NonStiff::error_of(work.nonstiff, h, i);
   }
   template <State X>
-  static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h, const X& x,
-                               const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h,
+                                             const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
     if constexpr (requires { Stiff::next_factor(work.stiff, factor, h, x, x_new, tolerance); }) {
       if (work.is_stiff) return Stiff::next_factor(work.stiff, factor, h, x, x_new, tolerance);
     }
@@ -138,8 +138,8 @@ struct Switching {
   }
 
   template <class System, State X>
-  static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, const X& x_new,
-                         Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {
+  [[nodiscard]] static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                       const X& x_new, Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {
     if (work.is_stiff) {
       const int evaluations = Stiff::interpolate(system, t, x, h, x_new, work.stiff, work.stiff_interpolant);
       widen(work.stiff_interpolant, interpolant);
@@ -171,7 +171,7 @@ struct Switching {
   }
 
   template <State X>
-  static X derivative(const Workspace<X>& work) {
+  [[nodiscard]] static X derivative(const Workspace<X>& work) {
     if (work.is_stiff) return Stiff::derivative(work.stiff);
     return NonStiff::derivative(work.nonstiff);
   }
@@ -201,7 +201,7 @@ struct Switching {
     }
   }
   template <State X>
-  static Scalar<X> strictness_of_turns(const Workspace<X>& work) {
+  [[nodiscard]] static Scalar<X> strictness_of_turns(const Workspace<X>& work) {
     if (work.begins && work.watch.oscillates()) return Scalar<X>(strictness_at_start);
     if (work.turns <= free_turns) return Scalar<X>(1);
     return Scalar<X>(static_cast<double>(work.turns) / static_cast<double>(free_turns));
@@ -210,8 +210,8 @@ struct Switching {
   // The explicit method is held by stiffness, or its steps are far shorter than those of the stiff method were, even if
   // it is accuracy that shortens them.
   template <class System, State X>
-  static bool stiff_would_help(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
-                               int& evaluations) {
+  [[nodiscard]] static bool stiff_would_help(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                             Workspace<X>& work, int& evaluations) {
     using std::abs;
     const auto& slope = NonStiff::derivative(work.nonstiff);
     work.watch.probe(system, t, x, slope, work.tolerance);
@@ -222,8 +222,8 @@ struct Switching {
 
   // Any explicit method could make steps like those of the stiff one, or they are not so much longer.
   template <class System, State X>
-  static bool explicit_would_do(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
-                                int& evaluations) {
+  [[nodiscard]] static bool explicit_would_do(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                              Workspace<X>& work, int& evaluations) {
     using std::abs;
     work.watch.probe(system, t, x, Stiff::derivative(work.stiff), work.tolerance);
     ++evaluations;

@@ -67,16 +67,16 @@ class BandElimination {
   }
 
   /// What is left of row columns + i, from column `columns` on.
-  [[gnu::always_inline]] const Number& rest(std::size_t i, std::size_t j) const {
+  [[nodiscard]] [[gnu::always_inline]] const Number& rest(std::size_t i, std::size_t j) const {
     return window_[i * (right_ + 1) + j];
   }
   /// Entry j of a row of the matrix.
-  [[gnu::always_inline]] Number row(std::size_t i, std::size_t j) const {
+  [[nodiscard]] [[gnu::always_inline]] Number row(std::size_t i, std::size_t j) const {
     return rows_(i, j, static_cast<std::size_t>(lower_));
   }
 
   /// Column k. False where its pivot is zero or not a number.
-  [[gnu::always_inline]] bool eliminate(std::size_t k) {
+  [[nodiscard]] [[gnu::always_inline]] bool eliminate(std::size_t k) {
     const Lower lower = lower_;
     const Right right = right_;
     const auto at = [&](auto i, auto j)

@@ -19,13 +19,15 @@ struct BandLayout {
   }
 
   /// Such a band is decomposed in registers, from both ends.
-  bool is_narrow() const {
+  [[nodiscard]] bool is_narrow() const {
     const std::size_t widest = std::max({lower, upper, std::size_t{1}});
     return widest <= greatest_narrow && size >= 8 * widest;
   }
   /// How many numbers; those no entry lies at are zero.
-  std::size_t numbers() const { return stride * (lower + upper + 1); }
-  std::size_t place(std::size_t row, std::size_t column) const { return (lower + column - row) * stride + row; }
+  [[nodiscard]] std::size_t numbers() const { return stride * (lower + upper + 1); }
+  [[nodiscard]] std::size_t place(std::size_t row, std::size_t column) const {
+    return (lower + column - row) * stride + row;
+  }
 
  private:
   static constexpr std::size_t greatest_narrow = 4;

@@ -20,8 +20,8 @@ struct BothEnds {
 
   friend BothEnds operator-(const BothEnds& a, const BothEnds& b) { return {a.top - b.top, a.bottom - b.bottom}; }
   friend BothEnds operator*(const BothEnds& a, const BothEnds& b) { return {a.top * b.top, a.bottom * b.bottom}; }
-  const Number& first() const { return top; }
-  const Number& second() const { return bottom; }
+  [[nodiscard]] const Number& first() const { return top; }
+  [[nodiscard]] const Number& second() const { return bottom; }
   void set(std::size_t end, const Number& number) { (end == 0 ? top : bottom) = number; }
 };
 template <>
@@ -34,8 +34,8 @@ struct BothEnds<double> {
   explicit BothEnds(const Register& both_) : both(both_) {}
   friend BothEnds operator-(const BothEnds& a, const BothEnds& b) { return BothEnds(a.both - b.both); }
   friend BothEnds operator*(const BothEnds& a, const BothEnds& b) { return BothEnds(a.both * b.both); }
-  double first() const { return both[0]; }
-  double second() const { return both[1]; }
+  [[nodiscard]] double first() const { return both[0]; }
+  [[nodiscard]] double second() const { return both[1]; }
   void set(std::size_t end, double number) { both[end] = number; }
 };
 
@@ -53,7 +53,7 @@ class BandRecurrence {
       : coefficients_(size * width), joining_(size / group * group * width) {}
 
   template <std::size_t B>
-  [[gnu::always_inline]] Both& coefficient(std::size_t i, std::size_t q) {
+  [[nodiscard]] [[gnu::always_inline]] Both& coefficient(std::size_t i, std::size_t q) {
     return coefficients_[i * B + q - 1];
   }
 
@@ -109,7 +109,7 @@ class BandRecurrence {
  private:
   static constexpr std::size_t group = 4;
   template <std::size_t B>
-  static constexpr bool is_grouped() {
+  [[nodiscard]] static constexpr bool is_grouped() {
     return std::is_same_v<Number, double> && B <= 2;
   }
 
@@ -132,12 +132,12 @@ struct StraightFactors {
       : columns(columns_), inverse(columns), lower(columns, width), upper(columns, width), below(width * width) {}
 
   template <std::size_t B>
-  [[gnu::always_inline]] Both& in_lower(std::size_t row, std::size_t column) {
+  [[nodiscard]] [[gnu::always_inline]] Both& in_lower(std::size_t row, std::size_t column) {
     if (row < columns) return lower.template coefficient<B>(row, row - column);
     return below[(row - columns) * B + columns - 1 - column];
   }
   template <std::size_t B>
-  [[gnu::always_inline]] Both& in_upper(std::size_t row, std::size_t column) {
+  [[nodiscard]] [[gnu::always_inline]] Both& in_upper(std::size_t row, std::size_t column) {
     return upper.template coefficient<B>(columns - 1 - row, column - row);
   }
   template <std::size_t B>
@@ -147,7 +147,7 @@ struct StraightFactors {
   }
 
   /// The unknowns i of both ends, each counted from there.
-  [[gnu::always_inline]] static Both get(const Number* b, const Number* last, std::size_t i) {
+  [[nodiscard]] [[gnu::always_inline]] static Both get(const Number* b, const Number* last, std::size_t i) {
     return {b[i], *(last - i)};
   }
   [[gnu::always_inline]] static void put(const Both& value, std::size_t i, Number* b, Number* last) {
@@ -191,15 +191,15 @@ class StraightElimination {
   }
 
   /// What is left of row columns + i, from column `columns` on.
-  [[gnu::always_inline]] Number rest(std::size_t i, std::size_t j) const {
+  [[nodiscard]] [[gnu::always_inline]] Number rest(std::size_t i, std::size_t j) const {
     if (j <= B) return window_[i][j];
     return j <= B + i ? rows_(factors_.columns + i, B + j - i, B) : Number{};
   }
   /// Entry j of a row of the matrix.
-  [[gnu::always_inline]] Number row(std::size_t i, std::size_t j) const { return rows_(i, j, B); }
+  [[nodiscard]] [[gnu::always_inline]] Number row(std::size_t i, std::size_t j) const { return rows_(i, j, B); }
 
   /// Column k. False where its pivot is zero or not a number, or another one of the column is greater.
-  [[gnu::always_inline]] bool eliminate(std::size_t k) {
+  [[nodiscard]] [[gnu::always_inline]] bool eliminate(std::size_t k) {
     const auto greatest = magnitude(window_[0][0]);
     bool stays = greatest > 0 && greatest - greatest == 0;
     unrolled<1, B + 1>([&](auto i)

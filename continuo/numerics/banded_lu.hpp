@@ -36,11 +36,11 @@ class BandedLU {
   BandedLU() = default;
   explicit BandedLU(const BandLayout& layout);
 
-  std::size_t size() const { return size_; }
+  [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Decomposes c M - J. `jacobian` is J as it lies in the layout, `mass` the diagonal of M, or empty for the identity.
   /// False where a pivot is zero or not a number: the matrix is singular, or was not finite.
-  bool factor(std::span<const Real> jacobian, const Number& c, std::span<const Real> mass = {});
+  [[nodiscard]] bool factor(std::span<const Real> jacobian, const Number& c, std::span<const Real> mass = {});
 
   /// b becomes the solution.
   void solve(Number* b);
@@ -52,7 +52,7 @@ class BandedLU {
   using FromTop = Rows<1>;
   using FromBottom = Rows<-1>;
 
-  bool is_wide() const { return ends_[1].columns == 0; }
+  [[nodiscard]] bool is_wide() const { return ends_[1].columns == 0; }
 
   /// act<B>() for the width of a narrow band.
   template <class Act>
@@ -69,7 +69,7 @@ class BandedLU {
     }
   }
 
-  bool factor_wide(const FromTop& rows) {
+  [[nodiscard]] bool factor_wide(const FromTop& rows) {
     detail::BandElimination<Number, FromTop, std::size_t, std::size_t, std::vector<Number>&> elimination(
         ends_[0], rows, lower_, lower_ + upper_, window_);
     for (std::size_t k = 0; k < size_; ++k)
@@ -85,7 +85,7 @@ class BandedLU {
 
   /// Mostly the diagonal has the greatest entries: that is tried first.
   template <std::size_t B>
-  bool factor_narrow(const FromTop& top, const FromBottom& bottom) {
+  [[nodiscard]] bool factor_narrow(const FromTop& top, const FromBottom& bottom) {
     reach_ = B;
     if (eliminate<B>(detail::StraightElimination<Number, FromTop, B>(straight_, 0, top),
                      detail::StraightElimination<Number, FromBottom, B>(straight_, 1, bottom))) {
@@ -99,7 +99,7 @@ class BandedLU {
   }
 
   template <std::size_t B, class Top, class Bottom>
-  [[gnu::always_inline]] bool eliminate(Top top, Bottom bottom) {
+  [[nodiscard]] [[gnu::always_inline]] bool eliminate(Top top, Bottom bottom) {
     const std::size_t columns = ends_[0].columns;
     bool regular = true;
     if constexpr (B <= 2) {  // both windows fit into the registers
@@ -164,7 +164,7 @@ class BandedLU {
   }
 
   /// The unknown i of an end, counted from there.
-  [[gnu::always_inline]] Number& at(Number* b, std::size_t end, std::size_t i) const {
+  [[nodiscard]] [[gnu::always_inline]] Number& at(Number* b, std::size_t end, std::size_t i) const {
     return end == 0 ? b[i] : b[size_ - 1 - i];
   }
 

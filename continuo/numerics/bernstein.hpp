@@ -22,14 +22,14 @@ namespace detail {
 inline constexpr std::array<double, 5> cosine{1, 0.92387953251128675613, 0.70710678118654752440, 0.38268343236508977173,
                                               0};
 
-constexpr double lobatto(std::size_t k) {
+[[nodiscard]] constexpr double lobatto(std::size_t k) {
   return k == 0 ? 0.0 : k == degree ? 1.0 : k <= 4 ? (1 - cosine[k]) / 2 : (1 + cosine[degree - k]) / 2;
 }
 
 using Matrix = std::array<std::array<double, count>, count>;
 
 // values_i = sum_j binomial(8, j) theta_i^j (1 - theta_i)^(8 - j) coefficient_j, inverted by Gauss and Jordan.
-constexpr Matrix coefficients_from_values() {
+[[nodiscard]] constexpr Matrix coefficients_from_values() {
   Matrix left{}, right{};
   for (std::size_t i = 0; i < count; ++i) {
     const double theta = lobatto(i);
@@ -77,7 +77,7 @@ inline constexpr std::array<double, count> nodes = [] {
 }();
 
 /// The coefficients of the polynomial through the values at the nodes. The ends are taken over exactly.
-inline Coefficients from_values(const std::array<double, count>& value) {
+[[nodiscard]] inline Coefficients from_values(const std::array<double, count>& value) {
   Coefficients b{};
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < count; ++j) b[i] += detail::inverse[i][j] * value[j];
@@ -88,7 +88,7 @@ inline Coefficients from_values(const std::array<double, count>& value) {
 
 /// How far the function may stray from the polynomial through its values: twice the last two Chebyshev coefficients,
 /// which bound the next ones where the series converges.
-inline double interpolation_error(const std::array<double, count>& value) {
+[[nodiscard]] inline double interpolation_error(const std::array<double, count>& value) {
   double last = (value[0] + value[degree]) / 2, before_last = (value[0] - value[degree]) / 2;
   for (std::size_t j = 1; j < degree; ++j) {
     last += (j % 2 ? -1 : 1) * value[j];
@@ -103,7 +103,7 @@ inline double interpolation_error(const std::array<double, count>& value) {
 }
 
 /// Changes of sign along the coefficients, zeros passed over.
-inline int sign_changes(const Coefficients& b) {
+[[nodiscard]] inline int sign_changes(const Coefficients& b) {
   int changes = 0;
   double previous = 0;
   for (const double value : b) {
@@ -115,7 +115,7 @@ inline int sign_changes(const Coefficients& b) {
 }
 
 /// The coefficients on the two parts of the interval, cut at `part`.
-inline std::array<Coefficients, 2> split(Coefficients b, double part) {
+[[nodiscard]] inline std::array<Coefficients, 2> split(Coefficients b, double part) {
   Coefficients left{}, right{};
   for (std::size_t level = 0; level < count; ++level) {
     left[level] = b.front();

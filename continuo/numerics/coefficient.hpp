@@ -36,7 +36,7 @@ class Coefficient {
   /// The value in the scalar type asked for: rounded once for float, double and long double, all the digits there are
   /// for wider types, a constant (no derivative, equal lanes) for dual numbers and lanes.
   template <class Real>
-  constexpr Real as() const {
+  [[nodiscard]] constexpr Real as() const {
     if constexpr (std::is_same_v<Real, double>) {
       return nearest();
     } else if constexpr (std::is_same_v<Real, float>) {
@@ -75,7 +75,7 @@ class Coefficient {
   constexpr Coefficient& operator-=(const Coefficient& b) { return *this = *this - b; }
 
   friend constexpr bool operator==(const Coefficient&, const Coefficient&) = default;
-  constexpr bool is_zero() const { return part_[0] == 0; }
+  [[nodiscard]] constexpr bool is_zero() const { return part_[0] == 0; }
 
  private:
   double part_[3] = {0, 0, 0};
@@ -86,34 +86,34 @@ class Coefficient {
     double value, error;
   };
 
-  static constexpr Exact sum(double a, double b) {  // Knuth
+  [[nodiscard]] static constexpr Exact sum(double a, double b) {  // Knuth
     const double value = a + b;
     const double shadow = value - a;
     return {value, (a - (value - shadow)) + (b - shadow)};
   }
 
-  static constexpr Exact product(double a, double b) {
+  [[nodiscard]] static constexpr Exact product(double a, double b) {
     const double value = a * b;
     if (!std::is_constant_evaluated()) return {value, std::fma(a, b, -value)};
     const Exact x = halves(a), y = halves(b);  // Dekker
     return {value, ((x.value * y.value - value) + x.value * y.error + x.error * y.value) + x.error * y.error};
   }
-  static constexpr Exact halves(double a) {  // Veltkamp: 26 bits each
+  [[nodiscard]] static constexpr Exact halves(double a) {  // Veltkamp: 26 bits each
     const double shifted = 134217729.0 * a;
     const double high = shifted - (shifted - a);
     return {high, a - high};
   }
 
-  constexpr bool is_double() const { return part_[1] == 0; }
+  [[nodiscard]] constexpr bool is_double() const { return part_[1] == 0; }
 
-  constexpr Coefficient times(double b) const {
+  [[nodiscard]] constexpr Coefficient times(double b) const {
     const Exact p = product(part_[0], b), q = product(part_[1], b);
     return distil({p.value, q.value, p.error, q.error, part_[2] * b}, 5);
   }
 
   /// The sum of the first `count` terms as three doubles. The sums are written out, not called: this is what a
   /// compiler spends its time on when it reads a tableau.
-  static constexpr Coefficient distil(std::array<double, 7> given, std::size_t count) {
+  [[nodiscard]] static constexpr Coefficient distil(std::array<double, 7> given, std::size_t count) {
     double term[7] = {given[0], given[1], given[2], given[3], given[4], given[5], given[6]};
     for (std::size_t pass = 0; pass < 2; ++pass) {
       for (std::size_t i = count - 1; i-- > pass;) {
@@ -132,7 +132,7 @@ class Coefficient {
   }
 
   /// part_[0] is the nearest double, but for a tie that part_[2] breaks.
-  constexpr double nearest() const {
+  [[nodiscard]] constexpr double nearest() const {
     const double twice = 2 * part_[1];
     const bool tie = twice != 0 && (part_[0] + twice) - part_[0] == twice;
     return tie && part_[2] != 0 && (part_[2] > 0) == (part_[1] > 0) ? part_[0] + twice : part_[0];

@@ -37,19 +37,19 @@ struct ComplexNumber {
 
 /// What a pivot is chosen by: |re| + |im|.
 template <class Real>
-[[gnu::always_inline]] inline Real magnitude(const ComplexNumber<Real>& z) {
+[[nodiscard]] [[gnu::always_inline]] inline Real magnitude(const ComplexNumber<Real>& z) {
   using std::abs;
   return abs(z.re) + abs(z.im);
 }
 template <class Real>
-[[gnu::always_inline]] inline Real magnitude(const Real& x) {
+[[nodiscard]] [[gnu::always_inline]] inline Real magnitude(const Real& x) {
   using std::abs;
   return abs(x);
 }
 
 /// 1/z, scaled so that neither square overflows (R. L. Smith, "Algorithm 116", CACM 5 (1962)).
 template <class Real>
-[[gnu::always_inline]] inline ComplexNumber<Real> reciprocal(const ComplexNumber<Real>& z) {
+[[nodiscard]] [[gnu::always_inline]] inline ComplexNumber<Real> reciprocal(const ComplexNumber<Real>& z) {
   using std::abs;
   if (abs(z.re) >= abs(z.im)) {
     const Real ratio = z.im / z.re, denominator = z.re + z.im * ratio;
@@ -59,7 +59,7 @@ template <class Real>
   return {ratio / denominator, Real(-1) / denominator};
 }
 template <class Real>
-[[gnu::always_inline]] inline Real reciprocal(const Real& x) {
+[[nodiscard]] [[gnu::always_inline]] inline Real reciprocal(const Real& x) {
   return Real(1) / x;
 }
 

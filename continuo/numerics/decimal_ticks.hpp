@@ -21,7 +21,7 @@ struct Decimal {
 };
 
 /// Empty where more than fifteen digits are needed: nobody wrote such a number as a decimal (1/3, 0.1 + 0.2).
-inline std::optional<Decimal> shortest_decimal(double number) {
+[[nodiscard]] inline std::optional<Decimal> shortest_decimal(double number) {
   if (!std::isfinite(number)) return std::nullopt;
   char text[32];
   const auto written = std::to_chars(text, text + sizeof text, number, std::chars_format::scientific);
@@ -51,7 +51,7 @@ inline std::optional<Decimal> shortest_decimal(double number) {
 }
 
 /// digits * 10^exponent, rounded once.
-inline double value_of(std::int64_t digits, int exponent) {
+[[nodiscard]] inline double value_of(std::int64_t digits, int exponent) {
   // Both whole numbers are doubles: a single division or multiplication rounds once.
   constexpr double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
@@ -81,8 +81,8 @@ class DecimalTicks {
     if constexpr (std::is_same_v<Real, double>) align();
   }
 
-  const Real& first() const { return first_; }
-  const Real& period() const { return period_; }
+  [[nodiscard]] const Real& first() const { return first_; }
+  [[nodiscard]] const Real& period() const { return period_; }
 
   /// The instant of number k = 0, 1, 2, ...
   Real operator[](Real k) const {
@@ -96,7 +96,7 @@ class DecimalTicks {
 
   /// The first instant after t, or at t where `inclusive`. The period must be greater than the spacing of numbers
   /// there, see `advances`.
-  Real next(Real t, bool inclusive) const {
+  [[nodiscard]] Real next(Real t, bool inclusive) const {
     using std::floor;
     Real k = floor((t - first_) / period_) - 1;
     if (!(k > 0)) k = 0;
@@ -108,7 +108,7 @@ class DecimalTicks {
   }
 
   /// Whether the instants up to `to` are different numbers: a period of 1e-17 at 1 leads nowhere.
-  bool advances(Real to) const {
+  [[nodiscard]] bool advances(Real to) const {
     using std::abs, std::fmax;
     const Real largest = abs(to) > abs(first_) ? abs(to) : abs(first_);
     return period_ > 2 * std::numeric_limits<Real>::epsilon() * largest;

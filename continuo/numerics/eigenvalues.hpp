@@ -19,6 +19,6 @@ struct Eigenvalues {
 };
 
 /// `rows`: n * n, row by row.
-Eigenvalues eigenvalues(std::span<const double> rows, std::size_t n);
+[[nodiscard]] Eigenvalues eigenvalues(std::span<const double> rows, std::size_t n);
 
 }  // namespace continuo

@@ -20,21 +20,21 @@ inline constexpr int units = 4;
 
 /// Of a function that grows.
 template <class Real, class Function>
-Enclosure<Real> growing(const Enclosure<Real>& a, Function&& function) {
+[[nodiscard]] Enclosure<Real> growing(const Enclosure<Real>& a, Function&& function) {
   return widened_by<units>(Real(function(a.lo)), Real(function(a.hi)));
 }
 /// Bounds that a function keeps everywhere.
 template <class Real>
-Enclosure<Real> within(const Enclosure<Real>& a, Real least, Real greatest) {
+[[nodiscard]] Enclosure<Real> within(const Enclosure<Real>& a, Real least, Real greatest) {
   return {std::max(a.lo, least), std::min(a.hi, greatest)};
 }
 /// A function that grows between these bounds.
 template <class Real, class Function>
-Enclosure<Real> growing_within(const Enclosure<Real>& a, Real least, Real greatest, Function&& function) {
+[[nodiscard]] Enclosure<Real> growing_within(const Enclosure<Real>& a, Real least, Real greatest, Function&& function) {
   return a.is_entire() ? a : within(growing(a, function), least, greatest);
 }
 template <class Real>
-bool is_within(const Enclosure<Real>& a, Real least, Real greatest) {
+[[nodiscard]] bool is_within(const Enclosure<Real>& a, Real least, Real greatest) {
   return a.lo >= least && a.hi <= greatest;
 }
 
@@ -42,13 +42,13 @@ bool is_within(const Enclosure<Real>& a, Real least, Real greatest) {
 template <class Real>
 struct HalfTurns {
   Real first, last;
-  bool none() const { return first > last; }
-  bool several() const { return first < last; }
-  bool one_is_even() const { return first == 2 * std::floor(first / 2); }
+  [[nodiscard]] bool none() const { return first > last; }
+  [[nodiscard]] bool several() const { return first < last; }
+  [[nodiscard]] bool one_is_even() const { return first == 2 * std::floor(first / 2); }
 };
 
 template <class Real>
-HalfTurns<Real> half_turns(const Enclosure<Real>& angle, Real shift) {
+[[nodiscard]] HalfTurns<Real> half_turns(const Enclosure<Real>& angle, Real shift) {
   const Real from = angle.lo * std::numbers::inv_pi_v<Real>, to = angle.hi * std::numbers::inv_pi_v<Real>;
   // A rounding each of 1/pi, of the product and of the sum, and as much again.
   const Real rounding = 4 * std::numeric_limits<Real>::epsilon() * (std::max(std::abs(from), std::abs(to)) + 1);
@@ -57,7 +57,7 @@ HalfTurns<Real> half_turns(const Enclosure<Real>& angle, Real shift) {
 
 /// Of a wave that has its extremes at (k + shift) pi, 1 for even k and -1 for odd.
 template <class Real, class Function>
-Enclosure<Real> wave(const Enclosure<Real>& angle, Real shift, Function&& function) {
+[[nodiscard]] Enclosure<Real> wave(const Enclosure<Real>& angle, Real shift, Function&& function) {
   if (angle.is_entire()) return angle;
   const HalfTurns<Real> extremes = half_turns(angle, shift);
   if (extremes.several()) return {Real(-1), Real(1)};
@@ -70,73 +70,73 @@ Enclosure<Real> wave(const Enclosure<Real>& angle, Real shift, Function&& functi
 }  // namespace enclosing
 
 template <class Real>
-Enclosure<Real> sin(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> sin(const Enclosure<Real>& a) {
   return enclosing::wave(a, Real(0.5), [](Real x) { return std::sin(x); });
 }
 template <class Real>
-Enclosure<Real> cos(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> cos(const Enclosure<Real>& a) {
   return enclosing::wave(a, Real(0), [](Real x) { return std::cos(x); });
 }
 
 /// Poles are at (k + 1/2) pi.
 template <class Real>
-Enclosure<Real> tan(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> tan(const Enclosure<Real>& a) {
   if (!a.is_bounded() || !enclosing::half_turns(a, Real(0.5)).none()) return Enclosure<Real>::entire();
   return enclosing::growing(a, [](Real x) { return std::tan(x); });
 }
 
 template <class Real>
-Enclosure<Real> asin(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> asin(const Enclosure<Real>& a) {
   if (!enclosing::is_within(a, Real(-1), Real(1))) return Enclosure<Real>::entire();
   return enclosing::growing(a, [](Real x) { return std::asin(x); });
 }
 template <class Real>
-Enclosure<Real> acos(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> acos(const Enclosure<Real>& a) {
   if (!enclosing::is_within(a, Real(-1), Real(1))) return Enclosure<Real>::entire();
   return enclosing::growing(-a, [](Real x) { return std::acos(-x); });
 }
 template <class Real>
-Enclosure<Real> atan(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> atan(const Enclosure<Real>& a) {
   return enclosing::growing_within(a, Real(-2), Real(2), [](Real x) { return std::atan(x); });
 }
 
 template <class Real>
-Enclosure<Real> abs(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> abs(const Enclosure<Real>& a) {
   if (a.lo >= 0 || a.is_entire()) return a;
   if (a.hi <= 0) return -a;
   return {Real(0), a.magnitude()};
 }
 
 template <class Real>
-Enclosure<Real> sinh(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> sinh(const Enclosure<Real>& a) {
   return enclosing::growing(a, [](Real x) { return std::sinh(x); });
 }
 template <class Real>
-Enclosure<Real> cosh(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> cosh(const Enclosure<Real>& a) {
   return enclosing::growing_within(abs(a), Real(1), Enclosure<Real>::infinity, [](Real x) { return std::cosh(x); });
 }
 template <class Real>
-Enclosure<Real> tanh(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> tanh(const Enclosure<Real>& a) {
   return enclosing::growing_within(a, Real(-1), Real(1), [](Real x) { return std::tanh(x); });
 }
 
 template <class Real>
-Enclosure<Real> exp(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> exp(const Enclosure<Real>& a) {
   return enclosing::growing_within(a, Real(0), Enclosure<Real>::infinity, [](Real x) { return std::exp(x); });
 }
 template <class Real>
-Enclosure<Real> log(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> log(const Enclosure<Real>& a) {
   if (!(a.lo > 0)) return Enclosure<Real>::entire();
   return enclosing::growing(a, [](Real x) { return std::log(x); });
 }
 template <class Real>
-Enclosure<Real> log10(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> log10(const Enclosure<Real>& a) {
   if (!(a.lo > 0)) return Enclosure<Real>::entire();
   return enclosing::growing(a, [](Real x) { return std::log10(x); });
 }
 
 template <class Real>
-Enclosure<Real> sqrt(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> sqrt(const Enclosure<Real>& a) {
   if (!(a.lo >= 0)) return Enclosure<Real>::entire();
   const Real lo = std::sqrt(a.lo), hi = std::sqrt(a.hi);
   if (a.is_point() && enclosing::is_exact_product(lo, lo, a.lo)) return Enclosure<Real>(lo);
@@ -144,31 +144,31 @@ Enclosure<Real> sqrt(const Enclosure<Real>& a) {
 }
 
 template <class Real>
-Enclosure<Real> hypot(const Enclosure<Real>& a, const Enclosure<Real>& b) {
+[[nodiscard]] Enclosure<Real> hypot(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   return sqrt(square(a) + square(b));
 }
 
 template <class Real>
-Enclosure<Real> min(const Enclosure<Real>& a, const Enclosure<Real>& b) {
+[[nodiscard]] Enclosure<Real> min(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   if (a.is_entire() || b.is_entire()) return Enclosure<Real>::entire();
   return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
 }
 template <class Real>
-Enclosure<Real> max(const Enclosure<Real>& a, const Enclosure<Real>& b) {
+[[nodiscard]] Enclosure<Real> max(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   if (a.is_entire() || b.is_entire()) return Enclosure<Real>::entire();
   return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
 
 template <class Real>
-Enclosure<Real> floor(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> floor(const Enclosure<Real>& a) {
   return {std::floor(a.lo), std::floor(a.hi)};
 }
 template <class Real>
-Enclosure<Real> ceil(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> ceil(const Enclosure<Real>& a) {
   return {std::ceil(a.lo), std::ceil(a.hi)};
 }
 template <class Real>
-Enclosure<Real> sign(const Enclosure<Real>& a) {
+[[nodiscard]] Enclosure<Real> sign(const Enclosure<Real>& a) {
   if (a.is_entire()) return a;
   const auto of = [](Real x) { return Real((x > 0) - (x < 0)); };
   return {of(a.lo), of(a.hi)};
@@ -178,7 +178,7 @@ namespace enclosing {
 
 /// a - b*floor(a/b) where the integer is not decided: from 0 to b, or a rounding beyond.
 template <class Real>
-Enclosure<Real> any_remainder(const Enclosure<Real>& a, const Enclosure<Real>& b) {
+[[nodiscard]] Enclosure<Real> any_remainder(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   const Real rounding = units * std::numeric_limits<Real>::epsilon() * a.magnitude() + underflow<Real>;
   return bounded(std::min(b.lo, Real(0)) - rounding, std::max(b.hi, Real(0)) + rounding);
 }
@@ -187,7 +187,7 @@ Enclosure<Real> any_remainder(const Enclosure<Real>& a, const Enclosure<Real>& b
 
 /// a - b*floor(a/b): has the sign of b.
 template <class Real>
-Enclosure<Real> mod(const Enclosure<Real>& a, const Enclosure<Real>& b) {
+[[nodiscard]] Enclosure<Real> mod(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   const Enclosure<Real> times = floor(a / b);
   return times.is_point() ? a - b * times : enclosing::any_remainder(a, b);
 }
@@ -196,7 +196,7 @@ namespace enclosing {
 
 /// x^n of a whole n for any x: even, odd, and with a pole at zero where n is negative.
 template <class Real>
-Enclosure<Real> whole_power(const Enclosure<Real>& x, Real n) {
+[[nodiscard]] Enclosure<Real> whole_power(const Enclosure<Real>& x, Real n) {
   if (n == 0) return Enclosure<Real>(Real(1));
   if (n < 0 && x.lo <= 0 && x.hi >= 0) return Enclosure<Real>::entire();
   if (x.is_entire()) return x;
@@ -211,7 +211,7 @@ Enclosure<Real> whole_power(const Enclosure<Real>& x, Real n) {
 
 /// Of a positive x it is monotone in x for every y and in y for every x: the extremes are at corners.
 template <class Real>
-Enclosure<Real> pow(const Enclosure<Real>& x, const Enclosure<Real>& y) {
+[[nodiscard]] Enclosure<Real> pow(const Enclosure<Real>& x, const Enclosure<Real>& y) {
   if (y.is_point() && std::floor(y.lo) == y.lo) return enclosing::whole_power(x, y.lo);
   if (!(x.lo > 0 || (x.lo == 0 && y.lo > 0)) || !x.is_bounded() || !y.is_bounded()) return Enclosure<Real>::entire();
   const Real a = std::pow(x.lo, y.lo), b = std::pow(x.lo, y.hi), c = std::pow(x.hi, y.lo), d = std::pow(x.hi, y.hi);
@@ -222,11 +222,11 @@ Enclosure<Real> pow(const Enclosure<Real>& x, const Enclosure<Real>& y) {
 /// The angle of (x, y). It jumps from -pi to pi where y changes its sign at a negative x; elsewhere the extremes of the
 /// angle of a rectangle are at its corners.
 template <class Real>
-bool is_angle_continuous(const Enclosure<Real>& y, const Enclosure<Real>& x) {
+[[nodiscard]] bool is_angle_continuous(const Enclosure<Real>& y, const Enclosure<Real>& x) {
   return x.lo > 0 || y.lo > 0 || y.hi < 0;
 }
 template <class Real>
-Enclosure<Real> atan2(const Enclosure<Real>& y, const Enclosure<Real>& x) {
+[[nodiscard]] Enclosure<Real> atan2(const Enclosure<Real>& y, const Enclosure<Real>& x) {
   if (y.is_entire() || x.is_entire()) return Enclosure<Real>::entire();
   constexpr Real pi = std::numbers::pi_v<Real>;
   const Enclosure<Real> circle = enclosing::widened_by<enclosing::units>(-pi, pi);

@@ -72,7 +72,8 @@ class Gmres {
   // The basis grows from the residual in basis_[0] of the given length, which becomes that of the residual after.
   // Returns the number of directions.
   template <class Apply>
-  std::size_t cycle(Apply& apply, Real& length, const Real& target, std::size_t most_products, Result& result) {
+  [[nodiscard]] std::size_t cycle(Apply& apply, Real& length, const Real& target, std::size_t most_products,
+                                  Result& result) {
     scale(basis_[0], Real(1) / length);
     rest_[0] = length;
     std::size_t k = 0;
@@ -92,7 +93,7 @@ class Gmres {
 
   // Modified Gram-Schmidt; column k of the Hessenberg matrix goes into the triangle, what is left below the diagonal is
   // returned. Once more where so much was taken away that rounding is what remains.
-  Real orthogonalise(std::size_t k, X& next) {
+  [[nodiscard]] Real orthogonalise(std::size_t k, X& next) {
     for (std::size_t j = 0; j <= k; ++j) entry(j, k) = Real(0);
     const Real before = length_of(next);
     Real after = before;
@@ -112,7 +113,7 @@ class Gmres {
 
   // Givens rotations make the Hessenberg matrix a triangle, column by column; rest_ is the right-hand side with them.
   // False where the matrix maps the direction to nothing that the others do not give.
-  bool rotate(std::size_t k, const Real& below) {
+  [[nodiscard]] bool rotate(std::size_t k, const Real& below) {
     using std::max, std::sqrt;
     Real greatest = below;
     for (std::size_t j = 0; j <= k; ++j) greatest = max(greatest, abs_of(entry(j, k)));
@@ -140,19 +141,19 @@ class Gmres {
     }
   }
 
-  Result give_up(X& b, Result result) {
+  [[nodiscard]] Result give_up(X& b, Result result) {
     fill(b, std::numeric_limits<Real>::quiet_NaN());
     result.converged = false;
     return result;
   }
 
-  Real& entry(std::size_t row, std::size_t column) { return triangle_[column * directions_ + row]; }
-  static Real abs_of(const Real& value) { return value < Real(0) ? Real(-value) : value; }
+  [[nodiscard]] Real& entry(std::size_t row, std::size_t column) { return triangle_[column * directions_ + row]; }
+  [[nodiscard]] static Real abs_of(const Real& value) { return value < Real(0) ? Real(-value) : value; }
   static void fill(X& x, const Real& value) { std::fill(x.data(), x.data() + dimension(x), value); }
   static void scale(X& x, const Real& factor) {
     for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] *= factor;
   }
-  static Real length_of(const X& x) {
+  [[nodiscard]] static Real length_of(const X& x) {
     using std::sqrt;
     Real sum(0);
     for (std::size_t i = 0; i < dimension(x); ++i) sum += x.data()[i] * x.data()[i];

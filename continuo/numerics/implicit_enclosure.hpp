@@ -67,8 +67,8 @@ class ImplicitEnclosure {
   ///   slopes(box, by_u, by_theta): F(u) - F(v) is in by_u (u - v) for all u and v of the box and every theta of the
   ///       part, row by row, and by_theta the same for every u; unbounded where F may jump.
   template <class Numbers, class Residuals, class Slopes>
-  bool over(std::span<const Range> guess, std::span<const Real> start, const Range& part, Numbers&& numbers,
-            Residuals&& residuals, Slopes&& slopes) {
+  [[nodiscard]] bool over(std::span<const Range> guess, std::span<const Real> start, const Range& part,
+                          Numbers&& numbers, Residuals&& residuals, Slopes&& slopes) {
     is_proved_ = false;
     if (find_middle(start, numbers, residuals, slopes)) {
       for (std::size_t i = 0; i < size_; ++i) {
@@ -83,8 +83,8 @@ class ImplicitEnclosure {
 
   /// Of the solution over the last part, wider by the rounding of an iteration that solves for it in the number format;
   /// entire where nothing is proved.
-  std::span<const Range> values() const { return values_; }
-  std::span<const Range> slopes() {
+  [[nodiscard]] std::span<const Range> values() const { return values_; }
+  [[nodiscard]] std::span<const Range> slopes() {
     if (is_proved_) {
       bound_slopes();
     } else {
@@ -98,16 +98,16 @@ class ImplicitEnclosure {
   static constexpr int most_matrices = 4, most_steps = 4, most_boxes = 6;
   static constexpr Real greatest_contraction = Real(0.99);
 
-  static Real width(const Range& a) { return a.hi - a.lo; }
-  static Real mid(const Range& a) { return a.lo + width(a) / 2; }
-  static Range inflated(const Range& a, Real further) {
+  [[nodiscard]] static Real width(const Range& a) { return a.hi - a.lo; }
+  [[nodiscard]] static Real mid(const Range& a) { return a.lo + width(a) / 2; }
+  [[nodiscard]] static Range inflated(const Range& a, Real further) {
     const Real by = width(a) / 8 + 8 * epsilon * a.magnitude() + further + underflow<Real>;
     return {a.lo - by, a.hi + by};
   }
 
   /// Newton's iteration at the middle, down to rounding, with the matrix that is at hand as long as it serves.
   template <class Numbers, class Residuals, class Slopes>
-  bool find_middle(std::span<const Real> start, Numbers& numbers, Residuals& residuals, Slopes& slopes) {
+  [[nodiscard]] bool find_middle(std::span<const Real> start, Numbers& numbers, Residuals& residuals, Slopes& slopes) {
     std::ranges::copy(start, middle_.begin());
     if (has_inverse_ && iterate(numbers, residuals)) return true;
     std::ranges::copy(start, middle_.begin());
@@ -120,7 +120,7 @@ class ImplicitEnclosure {
   }
 
   template <class Numbers, class Residuals>
-  bool iterate(Numbers& numbers, Residuals& residuals) {
+  [[nodiscard]] bool iterate(Numbers& numbers, Residuals& residuals) {
     bool is_rounding = false;
     for (int step = 0; step < most_steps && !is_rounding; ++step) {
       numbers(std::span<const Real>(middle_), std::span<Real>(numbers_));
@@ -137,7 +137,7 @@ class ImplicitEnclosure {
   }
 
   /// Whether the residuals at the middle are no more than their rounding.
-  bool is_solved() {
+  [[nodiscard]] bool is_solved() {
     bool solved = true;
     for (std::size_t i = 0; i < size_; ++i) {
       Real correction = 0, rounding = 0;
@@ -153,13 +153,13 @@ class ImplicitEnclosure {
 
   /// The slopes over the box.
   template <class Slopes>
-  bool look(Slopes& slopes) {
+  [[nodiscard]] bool look(Slopes& slopes) {
     slopes(std::span<const Range>(box_), std::span<Range>(by_unknowns_), std::span<Range>(by_part_));
     const auto is_bounded = [](const Range& slope) { return slope.is_bounded(); };
     return std::ranges::all_of(by_unknowns_, is_bounded) && std::ranges::all_of(by_part_, is_bounded);
   }
 
-  bool invert() {
+  [[nodiscard]] bool invert() {
     std::ranges::transform(by_unknowns_, lu_.matrix().begin(), [](const Range& slope) { return mid(slope); });
     has_inverse_ = lu_.factor();
     std::ranges::fill(columns_, Real(0));
@@ -171,7 +171,7 @@ class ImplicitEnclosure {
   }
 
   template <class Slopes>
-  bool prove(const Range& part, Slopes& slopes) {
+  [[nodiscard]] bool prove(const Range& part, Slopes& slopes) {
     bool is_proved = false;
     for (int tries = 0; tries < most_boxes; ++tries) {
       if (!look(slopes)) return false;
@@ -191,14 +191,14 @@ class ImplicitEnclosure {
   }
 
   /// Y times a column of enclosures.
-  Range times_inverse(std::size_t i, std::span<const Range> column) const {
+  [[nodiscard]] Range times_inverse(std::size_t i, std::span<const Range> column) const {
     Range sum;
     for (std::size_t k = 0; k < size_; ++k) sum = sum + Range(columns_[k * size_ + i]) * column[k];
     return sum;
   }
 
   /// K(U), and I - Y A.
-  bool map(const Range& part) {
+  [[nodiscard]] bool map(const Range& part) {
     subtract_product();
     for (std::size_t i = 0; i < size_; ++i) {
       Range image = Range(middle_[i]) - times_inverse(i, residuals_) - times_inverse(i, by_part_) * part;
@@ -237,7 +237,7 @@ class ImplicitEnclosure {
     }
   }
 
-  bool is_inside() const {
+  [[nodiscard]] bool is_inside() const {
     for (std::size_t i = 0; i < size_; ++i)
       if (!(image_[i].lo > box_[i].lo && image_[i].hi < box_[i].hi)) return false;
     return true;
@@ -245,7 +245,7 @@ class ImplicitEnclosure {
 
   /// The box becomes what the image leaves of it. True where that is so much less, and still so much more than it would
   /// be if I - Y A were zero, that another look pays.
-  bool take_image() {
+  [[nodiscard]] bool take_image() {
     bool pays = false;
     for (std::size_t i = 0; i < size_; ++i) {
       const Range left = intersection(image_[i], box_[i]);
@@ -257,7 +257,7 @@ class ImplicitEnclosure {
     return pays;
   }
 
-  Real contraction() const {
+  [[nodiscard]] Real contraction() const {
     Real greatest = 0;
     for (std::size_t i = 0; i < size_; ++i) {
       Real sum = 0;

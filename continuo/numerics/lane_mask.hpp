@@ -18,14 +18,16 @@ struct LaneParts {
   using Part = Real;
   using MaskPart = bool;
   static constexpr std::size_t count = W;
-  static Part select(bool mask, const Part& yes, const Part& no) { return mask ? yes : no; }
+  [[nodiscard]] static Part select(bool mask, const Part& yes, const Part& no) { return mask ? yes : no; }
 };
 template <class Batch, std::size_t W>
 struct BatchParts {
   using Part = Batch;
   using MaskPart = typename Batch::batch_bool_type;
   static constexpr std::size_t count = W / Batch::size;
-  static Part select(const MaskPart& mask, const Part& yes, const Part& no) { return xsimd::select(mask, yes, no); }
+  [[nodiscard]] static Part select(const MaskPart& mask, const Part& yes, const Part& no) {
+    return xsimd::select(mask, yes, no);
+  }
 };
 template <class Real>
 concept HasRegisters = std::same_as<Real, float> || std::same_as<Real, double>;
@@ -76,14 +78,14 @@ class LaneMask {
 
   // For Lanes, which are cut the same way.
   using Part = typename detail::LaneParts<Real, W>::MaskPart;
-  Part& part(std::size_t i) { return part_[i]; }
-  const Part& part(std::size_t i) const { return part_[i]; }
+  [[nodiscard]] Part& part(std::size_t i) { return part_[i]; }
+  [[nodiscard]] const Part& part(std::size_t i) const { return part_[i]; }
 
  private:
   static constexpr std::size_t parts = detail::LaneParts<Real, W>::count;
   std::array<Part, parts> part_;
 
-  static bool any_in(const Part& part) {
+  [[nodiscard]] static bool any_in(const Part& part) {
     if constexpr (std::same_as<Part, bool>) {
       return part;
     } else {
@@ -91,7 +93,7 @@ class LaneMask {
     }
   }
   template <class F, class... A>
-  static LaneMask map(F f, const A&... a) {
+  [[nodiscard]] static LaneMask map(F f, const A&... a) {
     LaneMask result;
     for (std::size_t i = 0; i < parts; ++i) result.part_[i] = f(a.part_[i]...);
     return result;

@@ -48,7 +48,7 @@ class Lanes {
     all[lane] = value;
     part_ = std::bit_cast<Parts>(all);
   }
-  std::array<Real, W> values() const { return std::bit_cast<std::array<Real, W>>(part_); }
+  [[nodiscard]] std::array<Real, W> values() const { return std::bit_cast<std::array<Real, W>>(part_); }
 
   friend Lanes operator+(const Lanes& a, const Lanes& b) {
     return map([](const Part& x, const Part& y) { return Part(x + y); }, a, b);
@@ -132,22 +132,22 @@ class Lanes {
 
   /// exp is comfortably finite and normal up to here.
   static constexpr Real exponent_limit = Real(0.95) * std::numeric_limits<Real>::max_exponent * Real(0.693);
-  static bool near(const Lanes& a, Real limit) { return all(abs(a) < Lanes(limit)); }
+  [[nodiscard]] static bool near(const Lanes& a, Real limit) { return all(abs(a) < Lanes(limit)); }
 
   template <class F, class... A>
-  static Lanes each(F f, const A&... a) {
+  [[nodiscard]] static Lanes each(F f, const A&... a) {
     std::array<Real, W> result;
     for (std::size_t i = 0; i < W; ++i) result[i] = f(a[i]...);
     return Lanes(result);
   }
   template <class F, class... A>
-  static Lanes map(F f, const A&... a) {
+  [[nodiscard]] static Lanes map(F f, const A&... a) {
     Lanes result;
     for (std::size_t i = 0; i < parts; ++i) result.part_[i] = f(a.part_[i]...);
     return result;
   }
   template <class F, class... A>
-  static Mask test(F f, const A&... a) {
+  [[nodiscard]] static Mask test(F f, const A&... a) {
     Mask result;
     for (std::size_t i = 0; i < parts; ++i) result.part(i) = f(a.part_[i]...);
     return result;

@@ -35,13 +35,13 @@ class EliminationList {
   std::array<std::uint8_t, N * N> unknown{};          // of each value: the place that its row (below) or its column
                                                       // (right) has among the pivots
   std::array<std::uint16_t, most_products> target{};  // the value that changes by below * right, pivot after pivot
-  std::size_t values() const { return first[N]; }
+  [[nodiscard]] std::size_t values() const { return first[N]; }
 
   enum class Result { done, singular, too_many };
 
   /// Learns the zeros of `matrix`, besides those it knows, and takes pivots by its numbers.
   template <class Number>
-  Result choose(std::array<Number, N * N> matrix, double least_pivot) {
+  [[nodiscard]] Result choose(std::array<Number, N * N> matrix, double least_pivot) {
     for (std::size_t i = 0; i < N; ++i)
       for (std::size_t j = 0; j < N; ++j)
         if (!(matrix[i * N + j] == Number{})) pattern_[i] |= bit(j);
@@ -66,7 +66,7 @@ class EliminationList {
   struct Place {
     std::size_t row, column;
   };
-  static constexpr std::uint32_t bit(std::size_t i) { return std::uint32_t{1} << i; }
+  [[nodiscard]] static constexpr std::uint32_t bit(std::size_t i) { return std::uint32_t{1} << i; }
   template <class Visit>
   static void for_each_bit(std::uint32_t set, Visit&& visit) {
     for (; set != 0; set &= set - 1) visit(static_cast<std::size_t>(std::countr_zero(set)));
@@ -74,8 +74,8 @@ class EliminationList {
 
   /// Row N where a column has nothing to divide by.
   template <class Number>
-  static Place cheapest(const std::array<Number, N * N>& matrix, const std::array<std::uint32_t, N>& rows,
-                        const std::array<std::uint32_t, N>& columns, double least_pivot) {
+  [[nodiscard]] static Place cheapest(const std::array<Number, N * N>& matrix, const std::array<std::uint32_t, N>& rows,
+                                      const std::array<std::uint32_t, N>& columns, double least_pivot) {
     Place best{N, N};
     int least_cost = std::numeric_limits<int>::max();
     double best_ratio = 0;
@@ -115,7 +115,8 @@ class EliminationList {
     rows[i] = columns[j] = 0;
   }
 
-  Result list(const std::array<std::uint32_t, N>& right_of, const std::array<std::uint32_t, N>& below_of) {
+  [[nodiscard]] Result list(const std::array<std::uint32_t, N>& right_of,
+                            const std::array<std::uint32_t, N>& below_of) {
     std::array<std::uint8_t, N> turn_of_row{}, turn_of_column{};
     for (std::size_t k = 0; k < N; ++k) {
       turn_of_row[row[k]] = static_cast<std::uint8_t>(k);
@@ -157,7 +158,7 @@ class ListedLU {
   enum class Result { done, singular, not_listed };
 
   /// `not_listed`: the matrix has too few zeros, or the pivots have to change too often.
-  Result factor(const std::array<Number, N * N>& matrix) {
+  [[nodiscard]] Result factor(const std::array<Number, N * N>& matrix) {
     if (hopeless_) return Result::not_listed;
     if (has_list_ && eliminate(matrix)) {
       credit_ += credit_ < most_credit ? 1 : 0;
@@ -201,7 +202,7 @@ class ListedLU {
   static constexpr int price_of_list = 16, most_credit = 6 * price_of_list;
 
   /// With the pivots there are. False where they will not do.
-  bool eliminate(const std::array<Number, N * N>& matrix) {
+  [[nodiscard]] bool eliminate(const std::array<Number, N * N>& matrix) {
     using Real = decltype(magnitude(matrix[0]));
     const std::size_t values = list_.values();
     std::int64_t listed = 0, all = 0;
@@ -231,11 +232,11 @@ class ListedLU {
   }
 
   template <class Real>
-  static std::int64_t numbers_in(const ComplexNumber<Real>& z) {
+  [[nodiscard]] static std::int64_t numbers_in(const ComplexNumber<Real>& z) {
     return (z.re != Real(0) ? 1 : 0) + (z.im != Real(0) ? 1 : 0);
   }
   template <class Real>
-  static std::int64_t numbers_in(const Real& x) {
+  [[nodiscard]] static std::int64_t numbers_in(const Real& x) {
     return x != Real(0) ? 1 : 0;
   }
 

@@ -42,7 +42,8 @@ struct NewtonLimits {
 /// In full steps. `correct()` evaluates, solves and goes by the correction. `is_near()`: whether the place that this
 /// has led to may still lead to the solution that is meant.
 template <class Correct, class IsNear>
-NewtonOutcome newton_iteration(const NewtonLimits& limits, const Correct& correct, const IsNear& is_near) {
+[[nodiscard]] NewtonOutcome newton_iteration(const NewtonLimits& limits, const Correct& correct,
+                                             const IsNear& is_near) {
   double before = std::numeric_limits<double>::infinity();
   for (std::size_t k = 1; k <= limits.most_iterations; ++k) {
     const NewtonCorrection correction = correct();
@@ -56,7 +57,7 @@ NewtonOutcome newton_iteration(const NewtonLimits& limits, const Correct& correc
   return {NewtonEnding::too_many, limits.most_iterations};
 }
 template <class Correct>
-NewtonOutcome newton_iteration(const NewtonLimits& limits, const Correct& correct) {
+[[nodiscard]] NewtonOutcome newton_iteration(const NewtonLimits& limits, const Correct& correct) {
   return newton_iteration(limits, correct, [] { return true; });
 }
 
@@ -72,7 +73,8 @@ enum class NewtonAttempt { refused, taken, solved };
 /// In steps that are halved until one is taken. `correct()` evaluates and solves. `attempt(part, size)` goes by so much
 /// of the correction, of that size, and judges what that leads to: by the residual, or by the next correction.
 template <class Correct, class Attempt>
-NewtonOutcome damped_newton(const DampedNewtonLimits& limits, const Correct& correct, const Attempt& attempt) {
+[[nodiscard]] NewtonOutcome damped_newton(const DampedNewtonLimits& limits, const Correct& correct,
+                                          const Attempt& attempt) {
   double damping = 1;
   for (std::size_t k = 1; k <= limits.most_iterations; ++k) {
     const NewtonCorrection correction = correct();

@@ -31,13 +31,13 @@ namespace enclosing {
 
 /// What coefficients can be off by together, for the sum of their sizes 1.
 template <class Real>
-constexpr Real polynomial_rounding(std::size_t count) {
+[[nodiscard]] constexpr Real polynomial_rounding(std::size_t count) {
   return (3 * static_cast<Real>(count) + 2) * std::numeric_limits<Real>::epsilon();
 }
 
 /// Of `count` coefficients, a constant for the loops' sake.
 template <std::size_t count, class Real>
-EnclosureWithSlope<Real> polynomial_over(std::span<const Real> c, Real from, Real to) {
+[[nodiscard]] EnclosureWithSlope<Real> polynomial_over(std::span<const Real> c, Real from, Real to) {
   std::array<Real, count> d{};
   for (std::size_t j = 0; j < c.size(); ++j) d[j] = c[j];
   Real weight = 0, slope_weight = 0;
@@ -72,7 +72,7 @@ EnclosureWithSlope<Real> polynomial_over(std::span<const Real> c, Real from, Rea
 
 /// sum_j c[j] theta^j for theta in from..to, a part of 0..1. At least one coefficient.
 template <class Real>
-EnclosureWithSlope<Real> enclose_polynomial(std::span<const Real> c, Real from, Real to) {
+[[nodiscard]] EnclosureWithSlope<Real> enclose_polynomial(std::span<const Real> c, Real from, Real to) {
   if (c.size() <= 4) return enclosing::polynomial_over<4>(c, from, to);
   if (c.size() <= 8) return enclosing::polynomial_over<8>(c, from, to);
   return enclosing::polynomial_over<greatest_enclosed_degree + 1>(c, from, to);
@@ -81,7 +81,7 @@ EnclosureWithSlope<Real> enclose_polynomial(std::span<const Real> c, Real from, 
 /// The values on all of 0..1 in a fifth of the time, from the ranges of the terms as they are: two or three times as
 /// wide where the motion turns. `coefficient(j)` gives c_j for j in 0..count.
 template <class Real, class Coefficient>
-Enclosure<Real> enclose_whole_polynomial(std::size_t count, const Coefficient& coefficient) {
+[[nodiscard]] Enclosure<Real> enclose_whole_polynomial(std::size_t count, const Coefficient& coefficient) {
   // max(c, 0) = (|c| + c)/2; two sums of each, as one addition does not wait for the other then.
   Real weight = 0, total = 0, other_weight = 0, other_total = 0;
   std::size_t j = 1;
@@ -100,7 +100,7 @@ Enclosure<Real> enclose_whole_polynomial(std::size_t count, const Coefficient& c
 
 /// The value for one theta in 0..1.
 template <class Real>
-Enclosure<Real> polynomial_at(std::span<const Real> c, Real theta) {
+[[nodiscard]] Enclosure<Real> polynomial_at(std::span<const Real> c, Real theta) {
   const std::size_t n = c.size() - 1;
   Real weight = 0, value = 0;
   for (std::size_t j = n; j > 0; --j) {

@@ -21,7 +21,7 @@ struct Bracket {
 /// evaluations is bounded by about three times the bits of Real; a smooth f takes eight to twelve.
 /// M. Dowell, P. Jarratt, "A modified regula falsi method", BIT 11 (1971); the safeguard is T. J. Dekker's (1969).
 template <class Real, class F>
-Bracket<Real> enclose_root(F&& beyond, Real near, Real far, Real value_near, Real value_far) {
+[[nodiscard]] Bracket<Real> enclose_root(F&& beyond, Real near, Real far, Real value_near, Real value_far) {
   using std::abs, std::max, std::min, std::nextafter;
   int slow = 0, last_side = 0;
   Real width = far - near;

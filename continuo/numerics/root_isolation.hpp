@@ -68,7 +68,7 @@ class Walk {
         held_(from),
         result_{.side = side} {}
 
-  Isolation run() {
+  [[nodiscard]] Isolation run() {
     push({from_, to_, 0, from_});
     while (count_ > 0 && !result_.stopped) {
       const Piece<Real> piece = pile_[--count_];
@@ -92,14 +92,16 @@ class Walk {
   // Division goes down to the least width, which is reached by as many halvings as the format has digits.
   static constexpr std::size_t deepest = 2 * std::numeric_limits<Real>::digits;
 
-  Real end_of_part() const { return from_ + (to_ - from_) * static_cast<Real>(part_) / parts; }
+  [[nodiscard]] Real end_of_part() const { return from_ + (to_ - from_) * static_cast<Real>(part_) / parts; }
 
   void push(const Piece<Real>& piece) { pile_[count_++] = piece; }
 
-  int certain_sign(const Enclosure<Real>& value) const { return (value.lo > band_) - (value.hi < -band_); }
+  [[nodiscard]] int certain_sign(const Enclosure<Real>& value) const {
+    return (value.lo > band_) - (value.hi < -band_);
+  }
 
   /// Nowhere beyond zero, seen from the side, or all the way in the band where it began.
-  bool is_free(const Enclosure<Real>& value) const {
+  [[nodiscard]] bool is_free(const Enclosure<Real>& value) const {
     const Real zero = least_band();
     const bool on_side = (result_.side < 0 || value.lo >= -zero) && (result_.side > 0 || value.hi <= zero);
     return on_side || (value.lo >= -band_ && value.hi <= band_);
@@ -118,13 +120,13 @@ class Walk {
     if (const int sign = certain_sign(value_at(where)); sign != 0) meet(sign, where);
   }
 
-  Enclosure<Real> value_at(Real theta) {
+  [[nodiscard]] Enclosure<Real> value_at(Real theta) {
     ++result_.evaluations;
     return value_(theta);
   }
 
   /// Whether that is all there is to know of the piece.
-  bool settles(const Enclosure<Real>& value, const Piece<Real>& piece) {
+  [[nodiscard]] bool settles(const Enclosure<Real>& value, const Piece<Real>& piece) {
     const int sign = certain_sign(value);
     if (sign == 0 && !is_free(value)) return false;
     if (sign != 0) meet(sign, piece.from);
@@ -147,7 +149,7 @@ class Walk {
   }
 
   /// A side that is not that of the start is left there.
-  bool contradicts_start() {
+  [[nodiscard]] bool contradicts_start() {
     const int sign = certain_sign(value_at(from_));
     if (sign == 0 || sign == result_.side) return false;
     meet(sign, from_);
@@ -206,7 +208,7 @@ class Walk {
     held_ = to;
   }
 
-  static Real least_band() { return std::sqrt(std::numeric_limits<Real>::min()); }
+  [[nodiscard]] static Real least_band() { return std::sqrt(std::numeric_limits<Real>::min()); }
 
   const Real from_, to_;
   Real band_;

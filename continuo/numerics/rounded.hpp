@@ -22,10 +22,10 @@ namespace continuo {
 /// Of a comparison whose sides are not known exactly.
 enum class Truth { no, yes, undecided };
 
-constexpr bool certainly(bool truth) {
+[[nodiscard]] constexpr bool certainly(bool truth) {
   return truth;
 }
-constexpr bool certainly(Truth truth) {
+[[nodiscard]] constexpr bool certainly(Truth truth) {
   return truth == Truth::yes;
 }
 constexpr Truth operator!(Truth truth) {
@@ -40,12 +40,12 @@ struct Rounded {
   constexpr Rounded() = default;
   constexpr Rounded(Real value_, Real rounding_ = 0) : value(value_), rounding(rounding_) {}
   /// A number of which nothing is known.
-  static constexpr Rounded anything() {
+  [[nodiscard]] static constexpr Rounded anything() {
     return {std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity()};
   }
 
-  constexpr bool is_exactly_zero() const { return value == 0 && rounding == 0; }
-  bool is_known() const { return rounding < std::numeric_limits<Real>::infinity() && !std::isnan(value); }
+  [[nodiscard]] constexpr bool is_exactly_zero() const { return value == 0 && rounding == 0; }
+  [[nodiscard]] bool is_known() const { return rounding < std::numeric_limits<Real>::infinity() && !std::isnan(value); }
 
   friend Rounded operator-(const Rounded& a) { return {-a.value, a.rounding}; }
   friend Rounded operator+(const Rounded& a, const Rounded& b) {

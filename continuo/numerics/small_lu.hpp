@@ -31,9 +31,9 @@ template <std::size_t First, std::size_t Last, class Body>
 template <class Number, std::size_t N>
 class SmallLU {
  public:
-  std::array<Number, N * N>& matrix() { return entries_; }
+  [[nodiscard]] std::array<Number, N * N>& matrix() { return entries_; }
 
-  bool factor() {
+  [[nodiscard]] bool factor() {
     // Few rows are in registers; of many, those that have nothing to be eliminated are left as they are.
     constexpr bool in_registers = N <= 4;
     std::conditional_t<in_registers, std::array<Number, N * N>, std::array<Number, N * N>&> a = entries_;

@@ -26,15 +26,15 @@ class SparseLU {
   SparseLU& operator=(SparseLU other) noexcept;
   ~SparseLU();
 
-  std::span<Number> values() { return values_; }
+  [[nodiscard]] std::span<Number> values() { return values_; }
   /// False where the matrix is singular or not finite.
-  bool factor();
+  [[nodiscard]] bool factor();
   /// b becomes the solution.
   void solve(Number* b);
 
  private:
   struct Factors;
-  bool choose_pivots();
+  [[nodiscard]] bool choose_pivots();
 
   std::vector<Number> values_;
   std::vector<Number> pivot_values_;  // of the matrix whose pivots are in use; empty before the first

@@ -21,29 +21,29 @@ class SparsePattern {
   /// Places in any order, doubles allowed.
   SparsePattern(std::size_t size, std::span<const MatrixPlace> places);
 
-  std::size_t size() const { return starts_.empty() ? 0 : starts_.size() - 1; }
-  std::size_t entries() const { return rows_.size(); }
-  std::size_t begin(std::size_t column) const { return static_cast<std::size_t>(starts_[column]); }
-  std::size_t end(std::size_t column) const { return static_cast<std::size_t>(starts_[column + 1]); }
-  std::size_t row(std::size_t entry) const { return static_cast<std::size_t>(rows_[entry]); }
+  [[nodiscard]] std::size_t size() const { return starts_.empty() ? 0 : starts_.size() - 1; }
+  [[nodiscard]] std::size_t entries() const { return rows_.size(); }
+  [[nodiscard]] std::size_t begin(std::size_t column) const { return static_cast<std::size_t>(starts_[column]); }
+  [[nodiscard]] std::size_t end(std::size_t column) const { return static_cast<std::size_t>(starts_[column + 1]); }
+  [[nodiscard]] std::size_t row(std::size_t entry) const { return static_cast<std::size_t>(rows_[entry]); }
   /// Which entry is (row, column); entries() where it is none.
-  std::size_t find(std::size_t row, std::size_t column) const;
+  [[nodiscard]] std::size_t find(std::size_t row, std::size_t column) const;
   /// How far the entries reach below and above the diagonal.
   struct Bandwidth {
     std::size_t lower, upper;
   };
-  Bandwidth bandwidth() const;
+  [[nodiscard]] Bandwidth bandwidth() const;
   /// Whether a factorization as a band, with what pivoting adds, has at most four times the entries of the pattern:
   /// then it takes a half to a third of the time of a sparse solver, which is faster where most of a band would be
   /// empty.
-  bool is_banded() const;
-  BandLayout band() const;
+  [[nodiscard]] bool is_banded() const;
+  [[nodiscard]] BandLayout band() const;
   /// Of the entries in that layout.
-  std::vector<std::uint32_t> places_in_band() const;
+  [[nodiscard]] std::vector<std::uint32_t> places_in_band() const;
 
   // In the form that sparse solvers read.
-  std::span<const std::int32_t> starts() const { return starts_; }
-  std::span<const std::int32_t> rows() const { return rows_; }
+  [[nodiscard]] std::span<const std::int32_t> starts() const { return starts_; }
+  [[nodiscard]] std::span<const std::int32_t> rows() const { return rows_; }
 
  private:
   std::vector<std::int32_t> starts_, rows_;
@@ -56,8 +56,8 @@ class ColumnGroups {
   ColumnGroups() = default;
   explicit ColumnGroups(const SparsePattern& pattern);
 
-  std::size_t count() const { return starts_.empty() ? 0 : starts_.size() - 1; }
-  std::span<const std::size_t> group(std::size_t i) const {
+  [[nodiscard]] std::size_t count() const { return starts_.empty() ? 0 : starts_.size() - 1; }
+  [[nodiscard]] std::span<const std::size_t> group(std::size_t i) const {
     return std::span(columns_).subspan(starts_[i], starts_[i + 1] - starts_[i]);
   }
 

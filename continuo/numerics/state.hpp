@@ -24,17 +24,17 @@ using Scalar = typename X::value_type;
 
 /// The number of components.
 template <State X>
-constexpr std::size_t dimension(const X& x) {
+[[nodiscard]] constexpr std::size_t dimension(const X& x) {
   return static_cast<std::size_t>(x.size());
 }
 
 /// The components as a span.
 template <State X>
-constexpr std::span<const Scalar<X>> components(const X& x) {
+[[nodiscard]] constexpr std::span<const Scalar<X>> components(const X& x) {
   return {x.data(), dimension(x)};
 }
 template <State X>
-constexpr std::span<Scalar<X>> components(X& x) {
+[[nodiscard]] constexpr std::span<Scalar<X>> components(X& x) {
   return {x.data(), dimension(x)};
 }
 

@@ -141,11 +141,11 @@ inline constexpr bool is_taylor<Taylor<Scalar, order>> = true;
 
 /// The number itself, without its rounding.
 template <std::floating_point Real>
-Real midpoint(Real x) {
+[[nodiscard]] Real midpoint(Real x) {
   return x;
 }
 template <class Real>
-Real midpoint(const Rounded<Real>& x) {
+[[nodiscard]] Real midpoint(const Rounded<Real>& x) {
   return x.value;
 }
 
@@ -153,13 +153,13 @@ namespace detail {
 
 /// j/k x
 template <class Scalar>
-Scalar part(std::size_t j, std::size_t k, const Scalar& x) {
+[[nodiscard]] Scalar part(std::size_t j, std::size_t k, const Scalar& x) {
   return j == k ? x : Scalar(static_cast<double>(j)) * x / Scalar(static_cast<double>(k));
 }
 
 /// y with y' = slope a' and y(0) = value. `slope` gives its coefficients 0..k - 1 when y's are known up to k - 1.
 template <class Scalar, std::size_t order, class Slope>
-Taylor<Scalar, order> integral(const Scalar& value, const Taylor<Scalar, order>& a, Slope&& slope) {
+[[nodiscard]] Taylor<Scalar, order> integral(const Scalar& value, const Taylor<Scalar, order>& a, Slope&& slope) {
   using Series = Taylor<Scalar, order>;
   Series y(value);
   for (std::size_t k = 1; k <= order; ++k) {
@@ -172,20 +172,21 @@ Taylor<Scalar, order> integral(const Scalar& value, const Taylor<Scalar, order>&
 
 /// y with y' = slope a' of which the slope is known.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> along(const Scalar& value, const Taylor<Scalar, order>& slope, const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> along(const Scalar& value, const Taylor<Scalar, order>& slope,
+                                          const Taylor<Scalar, order>& a) {
   return integral(value, a, [&](const auto&, std::size_t k) { return slope.c[k]; });
 }
 
 /// a/s^m of which the last m coefficients are not known.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> shifted_down(const Taylor<Scalar, order>& a, std::size_t m) {
+[[nodiscard]] Taylor<Scalar, order> shifted_down(const Taylor<Scalar, order>& a, std::size_t m) {
   Taylor<Scalar, order> shifted;
   for (std::size_t k = 0; k <= order; ++k) shifted.c[k] = k + m <= order ? a.c[k + m] : shifted.unknown();
   return shifted;
 }
 /// a s^m
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> shifted_up(const Taylor<Scalar, order>& a, std::size_t m) {
+[[nodiscard]] Taylor<Scalar, order> shifted_up(const Taylor<Scalar, order>& a, std::size_t m) {
   Taylor<Scalar, order> shifted;
   for (std::size_t k = m; k <= order; ++k) shifted.c[k] = a.c[k - m];
   return shifted;
@@ -193,7 +194,8 @@ Taylor<Scalar, order> shifted_up(const Taylor<Scalar, order>& a, std::size_t m) 
 
 /// y = a^p where a(0) is not zero: a y' = p y a'.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> power_away_from_zero(const Taylor<Scalar, order>& a, const Scalar& value, const Scalar& p) {
+[[nodiscard]] Taylor<Scalar, order> power_away_from_zero(const Taylor<Scalar, order>& a, const Scalar& value,
+                                                         const Scalar& p) {
   using Series = Taylor<Scalar, order>;
   Series y(value);
   for (std::size_t k = 1; k <= order; ++k) {
@@ -209,7 +211,7 @@ Taylor<Scalar, order> power_away_from_zero(const Taylor<Scalar, order>& a, const
 
 /// a^p for p > 0 that is no whole number, where a(0) = 0: with a = s^m b, it is s^(m p) b^p.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> power_at_zero(const Taylor<Scalar, order>& a, double p) {
+[[nodiscard]] Taylor<Scalar, order> power_at_zero(const Taylor<Scalar, order>& a, double p) {
   using std::pow;
   using Series = Taylor<Scalar, order>;
   const std::size_t m = a.leading();
@@ -231,7 +233,7 @@ Taylor<Scalar, order> power_at_zero(const Taylor<Scalar, order>& a, double p) {
 }
 
 template <class Series>
-Series whole_power(Series a, unsigned n) {
+[[nodiscard]] Series whole_power(Series a, unsigned n) {
   Series power(1);
   for (bool begun = false; n > 0; n >>= 1, a = a * a) {
     if (n % 2 == 1) power = begun ? power * a : a, begun = true;
@@ -241,14 +243,14 @@ Series whole_power(Series a, unsigned n) {
 
 /// y with y' = y w' and this value: exp(w), up to a factor.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> exponential_of(const Scalar& value, const Taylor<Scalar, order>& w) {
+[[nodiscard]] Taylor<Scalar, order> exponential_of(const Scalar& value, const Taylor<Scalar, order>& w) {
   return integral(value, w, [](const auto& y, std::size_t k) { return y.c[k]; });
 }
 
 /// Both of a pair of functions whose slopes are second and sign*first: sin and cos, sinh and cosh.
 template <class Scalar, std::size_t order>
-std::array<Taylor<Scalar, order>, 2> pair_of(const Scalar& first, const Scalar& second, const Taylor<Scalar, order>& a,
-                                             double sign) {
+[[nodiscard]] std::array<Taylor<Scalar, order>, 2> pair_of(const Scalar& first, const Scalar& second,
+                                                           const Taylor<Scalar, order>& a, double sign) {
   using Series = Taylor<Scalar, order>;
   std::array<Series, 2> pair{Series(first), Series(second)};
   for (std::size_t k = 1; k <= order; ++k) {
@@ -266,7 +268,7 @@ std::array<Taylor<Scalar, order>, 2> pair_of(const Scalar& first, const Scalar& 
 }  // namespace detail
 
 template <class Scalar, std::size_t order>
-[[gnu::noinline]] Taylor<Scalar, order> sqrt(const Taylor<Scalar, order>& a) {
+[[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> sqrt(const Taylor<Scalar, order>& a) {
   using std::sqrt;
   using Series = Taylor<Scalar, order>;
   if (Series::is_zero(a.c[0])) return detail::power_at_zero(a, 0.5);
@@ -280,25 +282,26 @@ template <class Scalar, std::size_t order>
 }
 
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> exp(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> exp(const Taylor<Scalar, order>& a) {
   using std::exp;
   return detail::exponential_of(Scalar(exp(a.c[0])), a);
 }
 
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> log(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> log(const Taylor<Scalar, order>& a) {
   using std::log;
   return detail::along(Scalar(log(a.c[0])), 1.0 / a, a);
 }
 
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> log10(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> log10(const Taylor<Scalar, order>& a) {
   using std::log10, std::log;
   return detail::along(Scalar(log10(a.c[0])), Taylor<Scalar, order>(Scalar(1) / Scalar(log(Scalar(10)))) / a, a);
 }
 
 template <class Scalar, std::size_t order>
-[[gnu::noinline]] Taylor<Scalar, order> pow(const Taylor<Scalar, order>& a, const Taylor<Scalar, order>& b) {
+[[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> pow(const Taylor<Scalar, order>& a,
+                                                          const Taylor<Scalar, order>& b) {
   using std::pow;
   using Series = Taylor<Scalar, order>;
   const Scalar value = pow(a.c[0], b.c[0]);
@@ -319,47 +322,47 @@ template <class Scalar, std::size_t order>
 }
 
 template <class Scalar, std::size_t order>
-[[gnu::noinline]] Taylor<Scalar, order> sin(const Taylor<Scalar, order>& a) {
+[[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> sin(const Taylor<Scalar, order>& a) {
   using std::sin, std::cos;
   return detail::pair_of(Scalar(sin(a.c[0])), Scalar(cos(a.c[0])), a, -1)[0];
 }
 template <class Scalar, std::size_t order>
-[[gnu::noinline]] Taylor<Scalar, order> cos(const Taylor<Scalar, order>& a) {
+[[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> cos(const Taylor<Scalar, order>& a) {
   using std::sin, std::cos;
   return detail::pair_of(Scalar(sin(a.c[0])), Scalar(cos(a.c[0])), a, -1)[1];
 }
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> tan(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> tan(const Taylor<Scalar, order>& a) {
   return sin(a) / cos(a);
 }
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> asin(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> asin(const Taylor<Scalar, order>& a) {
   using std::asin;
   return detail::along(Scalar(asin(a.c[0])), 1.0 / sqrt((1.0 - a) * (1.0 + a)), a);
 }
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> acos(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> acos(const Taylor<Scalar, order>& a) {
   using std::acos;
   return detail::along(Scalar(acos(a.c[0])), -1.0 / sqrt((1.0 - a) * (1.0 + a)), a);
 }
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> atan(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> atan(const Taylor<Scalar, order>& a) {
   using std::atan;
   return detail::along(Scalar(atan(a.c[0])), 1.0 / (1.0 + a * a), a);
 }
 template <class Scalar, std::size_t order>
-[[gnu::noinline]] Taylor<Scalar, order> sinh(const Taylor<Scalar, order>& a) {
+[[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> sinh(const Taylor<Scalar, order>& a) {
   using std::sinh, std::cosh;
   return detail::pair_of(Scalar(sinh(a.c[0])), Scalar(cosh(a.c[0])), a, 1)[0];
 }
 template <class Scalar, std::size_t order>
-[[gnu::noinline]] Taylor<Scalar, order> cosh(const Taylor<Scalar, order>& a) {
+[[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> cosh(const Taylor<Scalar, order>& a) {
   using std::sinh, std::cosh;
   return detail::pair_of(Scalar(sinh(a.c[0])), Scalar(cosh(a.c[0])), a, 1)[1];
 }
 /// The slope is 1 - y^2.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> tanh(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> tanh(const Taylor<Scalar, order>& a) {
   using std::tanh;
   return detail::integral(Scalar(tanh(a.c[0])), a, [](const auto& y, std::size_t k) { return (1.0 - y * y).c[k]; });
 }
@@ -367,7 +370,7 @@ Taylor<Scalar, order> tanh(const Taylor<Scalar, order>& a) {
 /// What both have in common as a power of s stands before the root, so that a way through the corner is known to the
 /// last coefficient.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> hypot(const Taylor<Scalar, order>& a, const Taylor<Scalar, order>& b) {
+[[nodiscard]] Taylor<Scalar, order> hypot(const Taylor<Scalar, order>& a, const Taylor<Scalar, order>& b) {
   const std::size_t m = std::min(a.leading(), b.leading());
   if (m == 0) return sqrt(a * a + b * b);
   if (m > order) return {};
@@ -378,7 +381,8 @@ Taylor<Scalar, order> hypot(const Taylor<Scalar, order>& a, const Taylor<Scalar,
 /// The angle of (x, y), whose slope is (x y' - y x')/(x^2 + y^2). Out of the corner it is that of the way taken, and on
 /// the negative axis y decides whether it is pi or -pi.
 template <class Scalar, std::size_t order>
-[[gnu::noinline]] Taylor<Scalar, order> atan2(const Taylor<Scalar, order>& y, const Taylor<Scalar, order>& x) {
+[[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> atan2(const Taylor<Scalar, order>& y,
+                                                            const Taylor<Scalar, order>& x) {
   using std::atan2;
   using Series = Taylor<Scalar, order>;
   const std::size_t m = std::min(x.leading(), y.leading());
@@ -393,20 +397,20 @@ template <class Scalar, std::size_t order>
 }
 
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> abs(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> abs(const Taylor<Scalar, order>& a) {
   return select(a < Taylor<Scalar, order>(0), -a, a);
 }
 
 /// Of a whole number that falls: one less.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> floor(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> floor(const Taylor<Scalar, order>& a) {
   using Series = Taylor<Scalar, order>;
   const double value = static_cast<double>(midpoint(a.c[0])), nearest = std::round(value);
   if (!std::isfinite(value)) return Series(Series::unknown());
   return select(a < Series(nearest), Series(nearest - 1), Series(nearest));
 }
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> ceil(const Taylor<Scalar, order>& a) {
+[[nodiscard]] Taylor<Scalar, order> ceil(const Taylor<Scalar, order>& a) {
   return -floor(-a);
 }
 

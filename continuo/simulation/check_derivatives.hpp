@@ -40,12 +40,13 @@ struct DerivativeReport {
   std::vector<DerivativeEntry> undecided;   // f is not finite nearby, or too rough; each entry once
   std::optional<DerivativeEntry> furthest;  // of those that agree
 
-  bool agrees() const { return wrong.empty(); }
+  [[nodiscard]] bool agrees() const { return wrong.empty(); }
 };
 
 /// The run is as the model says, or the experiment in its place, but for the method and no longer than some thousand
 /// steps. Empty where there can be none; `problems` says why.
-std::optional<DerivativeReport> check_derivatives(const std::shared_ptr<const ModelProgram>& program,
-                                                  const Experiment& experiment, std::vector<Diagnostic>& problems);
+[[nodiscard]] std::optional<DerivativeReport> check_derivatives(const std::shared_ptr<const ModelProgram>& program,
+                                                                const Experiment& experiment,
+                                                                std::vector<Diagnostic>& problems);
 
 }  // namespace continuo::model

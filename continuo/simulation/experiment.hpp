@@ -55,8 +55,8 @@ struct Plan {
   double first = 0;               // and its first time
   std::vector<double> variables;  // the register file at the start
 
-  double rtol_of(std::size_t state) const { return rtol_each.empty() ? rtol : rtol_each[state]; }
-  double atol_of(std::size_t state) const { return atol.size() == 1 ? atol.front() : atol[state]; }
+  [[nodiscard]] double rtol_of(std::size_t state) const { return rtol_each.empty() ? rtol : rtol_each[state]; }
+  [[nodiscard]] double atol_of(std::size_t state) const { return atol.size() == 1 ? atol.front() : atol[state]; }
 };
 
 /// The plan of an integration from the start, or nothing where `problems` has the reason: E33x, E34x; E321 and E323 for
@@ -68,8 +68,8 @@ struct Plan {
 [[nodiscard]] Diagnostic no_study_of_worlds(const Model& model);
 
 /// E340, E344 with the names that may have been meant.
-Diagnostic no_parameter(const Model& model, std::string_view name, Span span);
-Diagnostic no_state(const Model& model, std::string_view name, Span span);
+[[nodiscard]] Diagnostic no_parameter(const Model& model, std::string_view name, Span span);
+[[nodiscard]] Diagnostic no_state(const Model& model, std::string_view name, Span span);
 
 /// The times at which rows are wanted, one after the other; infinity when there are no more.
 class OutputTimes {

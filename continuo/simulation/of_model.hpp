@@ -21,9 +21,9 @@ struct OfModel {
 
 /// Derivatives are exact, by the model's graph; sparse where the model is. Each call of the system's functions changes
 /// registers that its copies share: one thread at a time.
-ParametricSystem of_model(const std::shared_ptr<const ModelProgram>& program, const OfModel& what = {});
+[[nodiscard]] ParametricSystem of_model(const std::shared_ptr<const ModelProgram>& program, const OfModel& what = {});
 
 /// The initial state of the model with these parameters.
-std::vector<double> start_of(const Model& model, const Overrides& parameters = {});
+[[nodiscard]] std::vector<double> start_of(const Model& model, const Overrides& parameters = {});
 
 }  // namespace continuo::model

@@ -23,10 +23,12 @@ struct Motion {
   std::vector<double> values;  // row after row
   std::size_t states = 0;      // how many columns after t are states
 
-  std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
-  std::span<const double> row(std::size_t i) const { return {values.data() + i * columns.size(), columns.size()}; }
-  double time(std::size_t i) const { return row(i)[0]; }
-  std::span<const double> state(std::size_t i) const { return row(i).subspan(1, states); }
+  [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
+  [[nodiscard]] std::span<const double> row(std::size_t i) const {
+    return {values.data() + i * columns.size(), columns.size()};
+  }
+  [[nodiscard]] double time(std::size_t i) const { return row(i)[0]; }
+  [[nodiscard]] std::span<const double> state(std::size_t i) const { return row(i).subspan(1, states); }
 };
 
 /// An event of the model as it happened.
@@ -37,7 +39,7 @@ struct Happened {
   std::vector<double> before, after;  // both empty for a contact
   std::optional<double> impulse{};    // of a contact of bodies: along the normal
 
-  bool is_contact() const { return impulse.has_value(); }
+  [[nodiscard]] bool is_contact() const { return impulse.has_value(); }
 };
 
 /// The sum of the energies; `drift` is the largest |E - first| of the run, relative to |first| where that is
@@ -75,9 +77,9 @@ struct Run {
   std::vector<CheckResult> checks;
   std::optional<ErrorEstimate> error;
 
-  double final_time() const { return motion.time(motion.rows() - 1); }
-  std::span<const double> final_state() const { return motion.state(motion.rows() - 1); }
-  bool checks_passed() const {
+  [[nodiscard]] double final_time() const { return motion.time(motion.rows() - 1); }
+  [[nodiscard]] std::span<const double> final_state() const { return motion.state(motion.rows() - 1); }
+  [[nodiscard]] bool checks_passed() const {
     for (const CheckResult& check : checks) {
       if (!check.passed) return false;
     }

@@ -12,7 +12,7 @@ namespace continuo::model {
 
 /// x(t) from plan.from to plan.to; `steps` are times between, in ascending order, at which rows stand where the plan
 /// wants one at every step. The run has no statistics and its outcome is that the end was reached.
-Run run_along(const ModelProgram& program, Plan plan, std::span<const double> steps,
-              const std::function<void(double t, std::vector<double>& x)>& at);
+[[nodiscard]] Run run_along(const ModelProgram& program, Plan plan, std::span<const double> steps,
+                            const std::function<void(double t, std::vector<double>& x)>& at);
 
 }  // namespace continuo::model

@@ -26,25 +26,25 @@ struct Simulated {
   std::vector<Diagnostic> diagnostics;
 
   /// There is a run, it ended well, and every check passed.
-  bool passed() const { return run && succeeded(run->outcome.ending) && run->checks_passed(); }
+  [[nodiscard]] bool passed() const { return run && succeeded(run->outcome.ending) && run->checks_passed(); }
 };
 
-Simulated simulate(const Model& model, const Experiment& experiment = {});
+[[nodiscard]] Simulated simulate(const Model& model, const Experiment& experiment = {});
 /// The same for a program compiled before: for many runs of one model.
-Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment = {});
+[[nodiscard]] Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment = {});
 
 /// The plan of a run with its inputs in place, or why there can be no run.
-std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
-                             std::vector<Diagnostic>& problems);
+[[nodiscard]] std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,
+                                           std::vector<Diagnostic>& problems);
 
 /// What an ending that is no success says as a diagnostic: E30x, E310.
-Diagnostic failure(const Model& model, const Outcome<double>& outcome);
+[[nodiscard]] Diagnostic failure(const Model& model, const Outcome<double>& outcome);
 /// With the jump of the equations at which the run has come to stand, if there is one.
-Diagnostic failure(const ModelProgram& program, const Run& run);
+[[nodiscard]] Diagnostic failure(const ModelProgram& program, const Run& run);
 
 /// The values of expressions of the model at every row of the run: one list per expression.
-std::vector<std::vector<double>> values_along(const ModelProgram& program, const Run& run,
-                                              std::span<const NodeId> nodes);
+[[nodiscard]] std::vector<std::vector<double>> values_along(const ModelProgram& program, const Run& run,
+                                                            std::span<const NodeId> nodes);
 
 /// `k=5`, `k = 2*pi`, `k=30 [N/cm]`: a parameter and its value in the model's unit for it. The unit may be left out.
 struct ParameterSetting {
@@ -52,8 +52,8 @@ struct ParameterSetting {
   double value;
 };
 /// Empty where the text cannot be used; `problems` says why (E34x), or warns of a value outside the declared range.
-std::optional<ParameterSetting> parse_setting(const Model& model, std::string_view text,
-                                              std::vector<Diagnostic>& problems);
+[[nodiscard]] std::optional<ParameterSetting> parse_setting(const Model& model, std::string_view text,
+                                                            std::vector<Diagnostic>& problems);
 
 /// `1e-8` for all states, `y2=1e-10`, `x' = 1 [mm/s]` for one or a family of them; absolute ones in the state's unit.
 enum class ToleranceKind { relative, absolute };
@@ -62,7 +62,7 @@ struct ToleranceSetting {
   double value;
 };
 /// Empty where the text cannot be used; `problems` says why (E344, E345).
-std::optional<ToleranceSetting> parse_tolerance(const Model& model, ToleranceKind kind, std::string_view text,
-                                                std::vector<Diagnostic>& problems);
+[[nodiscard]] std::optional<ToleranceSetting> parse_tolerance(const Model& model, ToleranceKind kind,
+                                                              std::string_view text, std::vector<Diagnostic>& problems);
 
 }  // namespace continuo::model

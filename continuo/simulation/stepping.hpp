@@ -28,8 +28,8 @@ struct Integration {
 };
 
 /// A run as planned: of simulate, or step by step.
-Integration integration_of(const std::shared_ptr<const ModelProgram>& program, const Plan& plan,
-                           const Experiment& experiment);
+[[nodiscard]] Integration integration_of(const std::shared_ptr<const ModelProgram>& program, const Plan& plan,
+                                         const Experiment& experiment);
 
 /// All that a run has to know to go on from some instant, besides the values of parameters and inputs.
 struct Instant {
@@ -55,15 +55,15 @@ class Stepping {
   virtual ~Stepping() = default;
 
   /// One step, cut short at an event that changes the state. True while there is more.
-  virtual bool advance(StepWatcher& watcher) = 0;
-  virtual double t() const = 0;
-  virtual const X& x() const = 0;
+  [[nodiscard]] virtual bool advance(StepWatcher& watcher) = 0;
+  [[nodiscard]] virtual double t() const = 0;
+  [[nodiscard]] virtual const X& x() const = 0;
   /// x at a time of the last stretch, on the dense output.
   virtual void at(double t, X& x) = 0;
-  virtual const ModelSystem& system() const = 0;
-  virtual const ModelEvents& events() const = 0;
-  virtual const Outcome<double>& outcome() const = 0;
-  virtual Statistics statistics() const = 0;
+  [[nodiscard]] virtual const ModelSystem& system() const = 0;
+  [[nodiscard]] virtual const ModelEvents& events() const = 0;
+  [[nodiscard]] virtual const Outcome<double>& outcome() const = 0;
+  [[nodiscard]] virtual Statistics statistics() const = 0;
   virtual void extend_to(double to) = 0;
 
   /// Goes on from another instant with these parameters and inputs, as after an event; events scheduled for that very
@@ -72,10 +72,10 @@ class Stepping {
 };
 
 /// What both cost together.
-Statistics sum(const Statistics& a, const Statistics& b);
+[[nodiscard]] Statistics sum(const Statistics& a, const Statistics& b);
 
 /// The method's name must be one of the catalogue.
-std::unique_ptr<Stepping> begin_integration(std::string_view method, Integration integration,
-                                            Interval<double> interval);
+[[nodiscard]] std::unique_ptr<Stepping> begin_integration(std::string_view method, Integration integration,
+                                                          Interval<double> interval);
 
 }  // namespace continuo::model

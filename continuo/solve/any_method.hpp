@@ -20,13 +20,13 @@ struct AnyMethod {
 
 /// The steps of M, ready to be taken.
 template <class M, class System, State X>
-std::unique_ptr<Steps<System, X>> begin_steps(System f, X x0, Scalar<X> t0, Scalar<X> forward,
-                                              const Options<X>& options) {
+[[nodiscard]] std::unique_ptr<Steps<System, X>> begin_steps(System f, X x0, Scalar<X> t0, Scalar<X> forward,
+                                                            const Options<X>& options) {
   return std::make_unique<StepControl<System, X, M>>(std::move(f), std::move(x0), t0, forward, options);
 }
 
 template <class M, class System, State X>
-AnyMethod<System, X> any_method() {
+[[nodiscard]] AnyMethod<System, X> any_method() {
   return {begin_steps<M, System, X>};
 }
 

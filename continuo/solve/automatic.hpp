@@ -20,7 +20,7 @@ namespace continuo {
 
 /// What `choose_method` wants to know of a system and a state of it.
 template <class System, State X>
-SystemTraits traits_of(System& system, const X& x, double rtol) {
+[[nodiscard]] SystemTraits traits_of(System& system, const X& x, double rtol) {
   SystemTraits traits{.size = dimension(x), .rtol = rtol, .algebraic = has_mass<X>(system)};
   if constexpr (SecondOrder<System>) {
     traits.accelerations = 2 * system.pair_count(traits.size) == traits.size && ignores_velocity(system, x);
@@ -35,8 +35,8 @@ SystemTraits traits_of(System& system, const X& x, double rtol) {
 }
 
 template <class System, State X>
-auto solve(System system, const X& x0, Interval<std::type_identity_t<Scalar<X>>> interval,
-           const std::type_identity_t<Options<X>>& options = {}) {
+[[nodiscard]] auto solve(System system, const X& x0, Interval<std::type_identity_t<Scalar<X>>> interval,
+                         const std::type_identity_t<Options<X>>& options = {}) {
   const auto rtol = options.rtol_each.empty() ? options.rtol : *std::ranges::min_element(options.rtol_each);
   const std::string_view method = choose_method(traits_of(system, x0, static_cast<double>(rtol))).method;
   const auto by = [&](auto chosen) { return solve(std::move(system), x0, interval, chosen, options); };

@@ -20,12 +20,12 @@ struct MethodInfo {
 };
 
 /// Other names of a method: `euler` for explicit_euler, `crank_nicolson` for trapezoidal.
-std::string_view canonical_name(std::string_view name);
+[[nodiscard]] std::string_view canonical_name(std::string_view name);
 
 /// All methods, simplest first.
-const std::vector<MethodInfo>& method_catalogue();
+[[nodiscard]] const std::vector<MethodInfo>& method_catalogue();
 
 /// The method of that name (canonical or not); null where there is none.
-const MethodInfo* find_method(std::string_view name);
+[[nodiscard]] const MethodInfo* find_method(std::string_view name);
 
 }  // namespace continuo

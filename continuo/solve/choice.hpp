@@ -21,6 +21,6 @@ struct Choice {
 };
 
 /// By tolerance, size and kind: every choice takes stiff systems as they come.
-Choice choose_method(const SystemTraits& system);
+[[nodiscard]] Choice choose_method(const SystemTraits& system);
 
 }  // namespace continuo

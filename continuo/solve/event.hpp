@@ -53,26 +53,26 @@ struct Event {
 };
 
 template <State X>
-Event<X> falls(std::string name, Guard<X> guard, Action<X> action = {}) {
+[[nodiscard]] Event<X> falls(std::string name, Guard<X> guard, Action<X> action = {}) {
   return {
       .name = std::move(name), .guard = std::move(guard), .direction = Direction::falls, .action = std::move(action)};
 }
 template <State X>
-Event<X> rises(std::string name, Guard<X> guard, Action<X> action = {}) {
+[[nodiscard]] Event<X> rises(std::string name, Guard<X> guard, Action<X> action = {}) {
   return {
       .name = std::move(name), .guard = std::move(guard), .direction = Direction::rises, .action = std::move(action)};
 }
 template <State X>
-Event<X> crosses(std::string name, Guard<X> guard, Action<X> action = {}) {
+[[nodiscard]] Event<X> crosses(std::string name, Guard<X> guard, Action<X> action = {}) {
   return {.name = std::move(name), .guard = std::move(guard), .action = std::move(action)};
 }
 template <State X>
-Event<X> at(std::string name, std::vector<Scalar<X>> times, Action<X> action) {
+[[nodiscard]] Event<X> at(std::string name, std::vector<Scalar<X>> times, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .times = std::move(times)};
 }
 /// Fires at from, from + period, from + 2 period, ...: where these are decimals, at the decimals (DecimalTicks).
 template <State X>
-Event<X> every(std::string name, Scalar<X> period, Scalar<X> from, Action<X> action) {
+[[nodiscard]] Event<X> every(std::string name, Scalar<X> period, Scalar<X> from, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .period = period, .from = from};
 }
 
@@ -121,15 +121,15 @@ class EventList {
     for (const Event<X>& event : events_) ticks_.emplace_back(event.from, event.period);
   }
 
-  std::size_t size() const { return events_.size(); }
-  std::string_view name(std::size_t i) const { return events_[i].name; }
-  Direction direction(std::size_t i) const { return events_[i].direction; }
-  bool is_guard(std::size_t i) const { return static_cast<bool>(events_[i].guard); }
-  bool can_restart(std::size_t i) const { return events_[i].action || events_[i].stop_after != 0; }
-  bool can_assign(std::size_t i) const { return static_cast<bool>(events_[i].action); }
-  bool has_limit_action(std::size_t i) const { return static_cast<bool>(events_[i].at_limit); }
+  [[nodiscard]] std::size_t size() const { return events_.size(); }
+  [[nodiscard]] std::string_view name(std::size_t i) const { return events_[i].name; }
+  [[nodiscard]] Direction direction(std::size_t i) const { return events_[i].direction; }
+  [[nodiscard]] bool is_guard(std::size_t i) const { return static_cast<bool>(events_[i].guard); }
+  [[nodiscard]] bool can_restart(std::size_t i) const { return events_[i].action || events_[i].stop_after != 0; }
+  [[nodiscard]] bool can_assign(std::size_t i) const { return static_cast<bool>(events_[i].action); }
+  [[nodiscard]] bool has_limit_action(std::size_t i) const { return static_cast<bool>(events_[i].at_limit); }
   template <class System>
-  bool active(const System&, std::size_t) const {
+  [[nodiscard]] bool active(const System&, std::size_t) const {
     return true;
   }
 
@@ -142,7 +142,7 @@ class EventList {
     }
   }
 
-  Real next_time(std::size_t i, Real t, bool inclusive) const {
+  [[nodiscard]] Real next_time(std::size_t i, Real t, bool inclusive) const {
     const Event<X>& event = events_[i];
     Real next = std::numeric_limits<Real>::infinity();
     for (const Real& time : event.times)
@@ -151,7 +151,7 @@ class EventList {
     return next;
   }
   /// Why the times of an event cannot be kept in a run that ends at `to`; empty where they can.
-  std::string schedule_problem(Real to) const {
+  [[nodiscard]] std::string schedule_problem(Real to) const {
     for (std::size_t i = 0; i < events_.size(); ++i)
       if (events_[i].period > 0 && !ticks_[i].advances(to))
         return "the period of the event `" + events_[i].name + "` is below the spacing of numbers at its times";
@@ -159,21 +159,21 @@ class EventList {
   }
 
   template <class System>
-  EventResponse fire(System&, std::size_t i, Real t, const X& before, X& x) {
+  [[nodiscard]] EventResponse fire(System&, std::size_t i, Real t, const X& before, X& x) {
     EventAction<X> now{t, before, x};
     if (events_[i].action) events_[i].action(now);
     if (++fired_[i] == events_[i].stop_after) now.stop = true;
     return response(now);
   }
   template <class System>
-  EventResponse at_limit(System&, std::size_t i, Real t, const X& before, X& x) {
+  [[nodiscard]] EventResponse at_limit(System&, std::size_t i, Real t, const X& before, X& x) {
     EventAction<X> now{t, before, x};
     events_[i].at_limit(now);
     return response(now);
   }
 
  private:
-  static EventResponse response(const EventAction<X>& now) {
+  [[nodiscard]] static EventResponse response(const EventAction<X>& now) {
     bool changed = now.restart;
     for (std::size_t k = 0; k < dimension(now.x); ++k) changed = changed || now.x.data()[k] != now.before.data()[k];
     return {.stop = now.stop, .restart = changed, .changed = false};

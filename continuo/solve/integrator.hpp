@@ -33,15 +33,15 @@ class Integrator : public Driver<System, X, Events> {
       : Base(begin(method, std::move(f), x0, interval, options), x0, interval, options, std::move(events)) {}
 
   /// The last step: dense output in theta = (t - begin) / size.
-  const auto& interpolant()
+  [[nodiscard]] const auto& interpolant()
     requires Method<M, X>
   {
     return static_cast<StepControl<System, X, M>&>(this->steps()).interpolant();
   }
 
  private:
-  static std::unique_ptr<Steps<System, X>> begin(M method, System f, const X& x0, Interval<Real> interval,
-                                                 const Options<X>& options) {
+  [[nodiscard]] static std::unique_ptr<Steps<System, X>> begin(M method, System f, const X& x0, Interval<Real> interval,
+                                                               const Options<X>& options) {
     const Real forward = interval.to < interval.from ? Real(-1) : Real(1);
     if constexpr (Method<M, X>) {
       return begin_steps<M, System, X>(std::move(f), x0, interval.from, forward, options);

@@ -31,11 +31,11 @@ struct Save {
   Real spacing{};                                  // Kind::grid: from, from + spacing, ...
   std::function<void(Real, const X&)> callback{};  // sees every saved state; with it nothing is stored
 
-  static Save every_step() { return {}; }
-  static Save at(std::vector<Real> times) { return {.kind = Kind::times, .times = std::move(times)}; }
-  static Save every(Real spacing) { return {.kind = Kind::grid, .spacing = spacing}; }
-  static Save dense() { return {.kind = Kind::dense}; }
-  static Save only_end() { return {.kind = Kind::end}; }
+  [[nodiscard]] static Save every_step() { return {}; }
+  [[nodiscard]] static Save at(std::vector<Real> times) { return {.kind = Kind::times, .times = std::move(times)}; }
+  [[nodiscard]] static Save every(Real spacing) { return {.kind = Kind::grid, .spacing = spacing}; }
+  [[nodiscard]] static Save dense() { return {.kind = Kind::dense}; }
+  [[nodiscard]] static Save only_end() { return {.kind = Kind::end}; }
 };
 
 template <State X>

@@ -23,13 +23,13 @@ struct Outcome {
 };
 
 /// "half of the steps lie between t = 1 and t = 1.01".
-std::string where_steps_lie(double from, double to);
+[[nodiscard]] std::string where_steps_lie(double from, double to);
 
 /// One sentence: what happened, where, why, what to try.
 [[nodiscard]] std::string describe(const Outcome<double>& outcome);
 
 /// The same as every other function of the library tells how it ended; the place is the time.
-Status status(const Outcome<double>& outcome);
+[[nodiscard]] Status status(const Outcome<double>& outcome);
 
 /// What a run cost.
 struct Statistics {

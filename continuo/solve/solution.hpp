@@ -48,7 +48,7 @@ struct Solution {
   Outcome<Real> outcome;
 
   /// The last state that stands.
-  const X& final_state() const { return x.back(); }
+  [[nodiscard]] const X& final_state() const { return x.back(); }
 
   /// x(t) anywhere in the run; needs Save::dense(). At an event: the state after it.
   X operator()(Real time) const {

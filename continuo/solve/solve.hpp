@@ -76,7 +76,7 @@ class SolutionRecorder {
   }
 
  private:
-  Real forward() const { return interval_.to < interval_.from ? Real(-1) : Real(1); }
+  [[nodiscard]] Real forward() const { return interval_.to < interval_.from ? Real(-1) : Real(1); }
 
   void skip_to_start() {
     using std::abs, std::floor;
@@ -92,14 +92,14 @@ class SolutionRecorder {
     while (index_ < count_ && forward() * (next_ - interval_.from) < 0) next_ = time(++index_);
   }
 
-  Real time(std::size_t index) const {
+  [[nodiscard]] Real time(std::size_t index) const {
     if (index >= count_) return forward() * std::numeric_limits<Real>::infinity();
     if (save_.kind == Save<X>::Kind::times) return save_.times[index];
     const Real t = interval_.from + forward() * Real(index) * save_.spacing;
     return forward() * (t - interval_.to) > 0 ? interval_.to : t;
   }
 
-  bool kept_at(Real t) const { return any_ && last_ == t; }
+  [[nodiscard]] bool kept_at(Real t) const { return any_ && last_ == t; }
 
   void keep(Real t, const X& x) {
     any_ = true;
@@ -123,7 +123,7 @@ class SolutionRecorder {
 
 /// Runs an integrator to its end.
 template <class System, State X, class Events>
-Solution<X> run(Driver<System, X, Events>& integrator) {
+[[nodiscard]] Solution<X> run(Driver<System, X, Events>& integrator) {
   Solution<X> solution;
   const auto begin = std::chrono::steady_clock::now();
   for (std::size_t i = 0; i < integrator.events().size(); ++i)
@@ -142,16 +142,16 @@ Solution<X> run(Driver<System, X, Events>& integrator) {
 /// Integrates dx/dt = f(t, x) from x(from) = x0. Never throws for what happens on the way: see Solution::outcome.
 template <class System, State X, class M>
   requires Method<M, X> || std::same_as<M, AnyMethod<System, X>>
-Solution<X> solve(System system, X x0, Interval<std::type_identity_t<Scalar<X>>> interval, M method,
-                  std::type_identity_t<Options<X>> options = {}) {
+[[nodiscard]] Solution<X> solve(System system, X x0, Interval<std::type_identity_t<Scalar<X>>> interval, M method,
+                                std::type_identity_t<Options<X>> options = {}) {
   Integrator<System, X, M> integrator(std::move(system), std::move(x0), interval, method, std::move(options));
   return run(integrator);
 }
 
 /// The same with a source of events of your own (see EventSource).
 template <class System, State X, class M, class Events>
-Solution<X> solve(System system, X x0, Interval<std::type_identity_t<Scalar<X>>> interval, M method,
-                  std::type_identity_t<Options<X>> options, Events events) {
+[[nodiscard]] Solution<X> solve(System system, X x0, Interval<std::type_identity_t<Scalar<X>>> interval, M method,
+                                std::type_identity_t<Options<X>> options, Events events) {
   Integrator<System, X, M, Events> integrator(std::move(system), std::move(x0), interval, method, std::move(options),
                                               std::move(events));
   return run(integrator);

@@ -35,7 +35,7 @@ class [[nodiscard]] Result {
   const T* operator->() const { return &*value_; }
 
   /// How the operation ended.
-  const Status& status() const { return status_; }
+  [[nodiscard]] const Status& status() const { return status_; }
 
  private:
   std::optional<T> value_;

@@ -48,13 +48,13 @@ struct [[nodiscard]] Status {
 };
 
 /// What was given cannot be meant. An empty message is a success: functions that look for faults return the first.
-inline Status invalid_input(std::string message, std::string place = {}) {
+[[nodiscard]] inline Status invalid_input(std::string message, std::string place = {}) {
   if (message.empty()) return {};
   return {Ending::invalid_input, std::move(message), std::move(place)};
 }
 
 /// The first of two that failed; a success where both succeeded.
-inline Status first_failure(Status first, Status second) {
+[[nodiscard]] inline Status first_failure(Status first, Status second) {
   return first ? std::move(second) : std::move(first);
 }
 

@@ -32,7 +32,7 @@ struct CurvePoint {
 /// curve of folds and one of Hopf points touch, the latter ends. `generalized_hopf`: the first Lyapunov coefficient
 /// vanishes (Bautin). `zero_hopf`: a zero eigenvalue and a pair on the imaginary axis. `double_hopf`: two such pairs.
 enum class Degeneracy { cusp, bogdanov_takens, generalized_hopf, zero_hopf, double_hopf };
-std::string_view to_string(Degeneracy kind);
+[[nodiscard]] std::string_view to_string(Degeneracy kind);
 
 /// A number of a normal form, by the name it has in the books.
 struct NormalFormNumber {
@@ -83,8 +83,8 @@ struct CurveStart {
   std::vector<double> x;
   double frequency = 0;  // of a Hopf point
 };
-BifurcationCurve follow_bifurcation(const ParametricSystem& system, const CurveStart& start,
-                                    const CurveOptions& options);
+[[nodiscard]] BifurcationCurve follow_bifurcation(const ParametricSystem& system, const CurveStart& start,
+                                                  const CurveOptions& options);
 
 /// Curves through several starts, and those that begin at the degenerate points of others, each once.
 struct CurveOfDiagram {
@@ -92,7 +92,8 @@ struct CurveOfDiagram {
   std::vector<std::size_t> starts;    // those that lie on it
   std::optional<std::size_t> from{};  // it was found at a degenerate point of this curve
 };
-std::vector<CurveOfDiagram> bifurcation_curves(const ParametricSystem& system, const std::vector<CurveStart>& starts,
-                                               const CurveOptions& options, std::size_t most_curves = 20);
+[[nodiscard]] std::vector<CurveOfDiagram> bifurcation_curves(const ParametricSystem& system,
+                                                             const std::vector<CurveStart>& starts,
+                                                             const CurveOptions& options, std::size_t most_curves = 20);
 
 }  // namespace continuo::studies

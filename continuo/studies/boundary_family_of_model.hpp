@@ -28,7 +28,7 @@ struct ModelFamilies {
   double start = 0;  // of the parameter
   std::vector<model::Diagnostic> diagnostics;
 };
-ModelFamilies families_of_model(const std::shared_ptr<const model::ModelProgram>& program,
-                                const model::Experiment& experiment, const FamilyRequest& request);
+[[nodiscard]] ModelFamilies families_of_model(const std::shared_ptr<const model::ModelProgram>& program,
+                                              const model::Experiment& experiment, const FamilyRequest& request);
 
 }  // namespace continuo::studies

@@ -29,7 +29,7 @@ struct Contender {
   double final_error, largest_error;  // NaN without a run
   std::vector<double> times, errors;  // at each output time that was reached
 
-  std::string label() const;  // "rk4, h = 0.1"
+  [[nodiscard]] std::string label() const;  // "rk4, h = 0.1"
 };
 
 struct Comparison {
@@ -42,6 +42,7 @@ struct Comparison {
 inline constexpr double reference_rtol = 1e-13;
 
 /// Without a good reference run there are no contenders; its diagnostics say why.
-Comparison compare(const std::shared_ptr<const model::ModelProgram>& program, const CompareRequest& request);
+[[nodiscard]] Comparison compare(const std::shared_ptr<const model::ModelProgram>& program,
+                                 const CompareRequest& request);
 
 }  // namespace continuo::studies

@@ -25,17 +25,18 @@ struct ConservationLaw {
 
 /// Those linear combinations w with w . f(t, x, p) = 0 for any t, x and constants, from f at random places and
 /// confirmed at others, also far off. Empty where there is none, or more components than are worth it (400).
-std::vector<ConservationLaw> conservation_laws_of(const ParametricSystem& system, std::span<const double> start);
+[[nodiscard]] std::vector<ConservationLaw> conservation_laws_of(const ParametricSystem& system,
+                                                                std::span<const double> start);
 
 /// "a + 2 c", "v1 - v2".
-std::string law_text(const ParametricSystem& system, const ConservationLaw& law);
+[[nodiscard]] std::string law_text(const ParametricSystem& system, const ConservationLaw& law);
 
 /// The same motion where the laws hold, and one that comes to there where they do not: x' = f - r M (W x - c(p)), M a
 /// right inverse of W. As W f = 0, so W (df/dx - r M W) = -r W: each law turns one eigenvalue 0 into -r and leaves the
 /// others as they are. `start`: the initial state, which gives c, by the constants. The studies leave out what
 /// `conserved` in the system counts.
-ParametricSystem holding(const ParametricSystem& system, const std::vector<ConservationLaw>& laws,
-                         std::function<std::vector<double>(Values p)> start);
+[[nodiscard]] ParametricSystem holding(const ParametricSystem& system, const std::vector<ConservationLaw>& laws,
+                                       std::function<std::vector<double>(Values p)> start);
 
 /// Takes out the eigenvalues that come from laws that are held: those nearest to `own`, which are so many.
 void leave_out_conserved(const ParametricSystem& system, std::complex<double> own,

@@ -27,7 +27,7 @@ struct BranchPoint {
 /// with `frequency` is born. `transcritical`: another branch passes through. `pitchfork`: one of the two branches turns
 /// round there. `crossing`: another branch is there, but its direction was not found.
 enum class Bifurcation { fold, hopf, transcritical, pitchfork, crossing };
-std::string_view to_string(Bifurcation kind);
+[[nodiscard]] std::string_view to_string(Bifurcation kind);
 
 struct BifurcationPoint {
   Bifurcation kind;
@@ -59,10 +59,11 @@ struct ContinuationOptions {
 };
 
 /// From an equilibrium (near x at the constant's present value) in both directions.
-Branch continue_equilibrium(const ParametricSystem& system, std::vector<double> x, const ContinuationOptions& options);
+[[nodiscard]] Branch continue_equilibrium(const ParametricSystem& system, std::vector<double> x,
+                                          const ContinuationOptions& options);
 /// The other branch through a transcritical point or a pitchfork.
-Branch continue_equilibrium(const ParametricSystem& system, const BifurcationPoint& from,
-                            const ContinuationOptions& options);
+[[nodiscard]] Branch continue_equilibrium(const ParametricSystem& system, const BifurcationPoint& from,
+                                          const ContinuationOptions& options);
 
 /// An equilibrium near x where the constant has this value.
 struct BranchStart {
@@ -70,8 +71,8 @@ struct BranchStart {
   std::vector<double> x;
 };
 /// Whether the branch passes there.
-bool passes_through(const ParametricSystem& system, const Branch& branch, const BranchStart& place,
-                    const ContinuationOptions& options);
+[[nodiscard]] bool passes_through(const ParametricSystem& system, const Branch& branch, const BranchStart& place,
+                                  const ContinuationOptions& options);
 /// Branches through several starts, and those that cross them, each once.
 struct BranchOfDiagram {
   Branch branch;
@@ -79,7 +80,9 @@ struct BranchOfDiagram {
   std::optional<std::size_t> crossed{};  // it was found where it crosses this branch
 };
 /// At most `most_branches`.
-std::vector<BranchOfDiagram> continue_equilibria(const ParametricSystem& system, const std::vector<BranchStart>& starts,
-                                                 const ContinuationOptions& options, std::size_t most_branches = 30);
+[[nodiscard]] std::vector<BranchOfDiagram> continue_equilibria(const ParametricSystem& system,
+                                                               const std::vector<BranchStart>& starts,
+                                                               const ContinuationOptions& options,
+                                                               std::size_t most_branches = 30);
 
 }  // namespace continuo::studies

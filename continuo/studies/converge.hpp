@@ -44,7 +44,8 @@ struct ConvergenceProblem {
 
 /// f called as f(t, x, dxdt) with spans of any number.
 template <class F>
-ConvergenceProblem convergence_problem(std::size_t size, F f, std::vector<double> x0, Interval<double> interval) {
+[[nodiscard]] ConvergenceProblem convergence_problem(std::size_t size, F f, std::vector<double> x0,
+                                                     Interval<double> interval) {
   return {.system = named_system<double>(size, f),
           .in_float = named_system<float>(size, f),
           .in_long_double = named_system<long double>(size, f),
@@ -53,7 +54,8 @@ ConvergenceProblem convergence_problem(std::size_t size, F f, std::vector<double
 }
 /// The same where the second half of the state are the velocities of the first, and f reads none of them but for that.
 template <class F>
-ConvergenceProblem motion_problem(std::size_t size, F f, std::vector<double> x0, Interval<double> interval) {
+[[nodiscard]] ConvergenceProblem motion_problem(std::size_t size, F f, std::vector<double> x0,
+                                                Interval<double> interval) {
   return {.system = named_motion<double>(size, f),
           .in_float = named_motion<float>(size, f),
           .in_long_double = named_motion<long double>(size, f),
@@ -62,8 +64,9 @@ ConvergenceProblem motion_problem(std::size_t size, F f, std::vector<double> x0,
 }
 /// A model of one mode without events, schedule, algebraic equations or inputs from tables; nothing where it is
 /// another.
-std::optional<ConvergenceProblem> convergence_problem(const std::shared_ptr<const model::ModelProgram>& program,
-                                                      const model::Overrides& parameters, Interval<double> interval);
+[[nodiscard]] std::optional<ConvergenceProblem> convergence_problem(
+    const std::shared_ptr<const model::ModelProgram>& program, const model::Overrides& parameters,
+    Interval<double> interval);
 
 struct ConvergeRequest {
   std::vector<std::string> methods{};
@@ -113,11 +116,11 @@ struct Convergence {
 };
 
 /// A failure where there is no reference run.
-Result<Convergence> converge(const ConvergenceProblem& problem, const ConvergeRequest& request);
+[[nodiscard]] Result<Convergence> converge(const ConvergenceProblem& problem, const ConvergeRequest& request);
 
 /// The same for any model. With events, modes, tables or algebraic equations: global and energy errors only, in rows at
 /// output times, against a strict run in double; of a world of bodies against its exact motion.
-Result<Convergence> converge(const std::shared_ptr<const model::ModelProgram>& program,
-                             const model::Experiment& experiment, const ConvergeRequest& request);
+[[nodiscard]] Result<Convergence> converge(const std::shared_ptr<const model::ModelProgram>& program,
+                                           const model::Experiment& experiment, const ConvergeRequest& request);
 
 }  // namespace continuo::studies

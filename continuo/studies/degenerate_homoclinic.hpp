@@ -48,13 +48,13 @@ struct DegenerateHomoclinicOptions {
 
 /// From what is marked on a curve of homoclinic orbits of the first two constants, the third one having the system's
 /// value.
-DegenerateHomoclinicCurve follow_degenerate_homoclinic(const ParametricSystem& system, const DegenerateOrbit& start,
-                                                       const DegenerateHomoclinicOptions& options);
+[[nodiscard]] DegenerateHomoclinicCurve follow_degenerate_homoclinic(const ParametricSystem& system,
+                                                                     const DegenerateOrbit& start,
+                                                                     const DegenerateHomoclinicOptions& options);
 
 /// Curves through all that is marked, each once.
-std::vector<DegenerateHomoclinicCurve> degenerate_homoclinic_curves(const ParametricSystem& system,
-                                                                    const std::vector<OrbitCurveOfDiagram>& curves,
-                                                                    const DegenerateHomoclinicOptions& options,
-                                                                    std::size_t most_curves = 12);
+[[nodiscard]] std::vector<DegenerateHomoclinicCurve> degenerate_homoclinic_curves(
+    const ParametricSystem& system, const std::vector<OrbitCurveOfDiagram>& curves,
+    const DegenerateHomoclinicOptions& options, std::size_t most_curves = 12);
 
 }  // namespace continuo::studies

@@ -38,12 +38,12 @@ struct DifferenceErrors {
 
 /// Steps are the powers of 1/2 from `from` down, of which x + h is exact as long as it has the digits; f is called with
 /// float and double. The exact derivatives are those that errors are measured against (relative; absolute where 0).
-std::vector<DifferenceErrors> converge_differences(const std::function<double(double)>& f,
-                                                   const std::function<float(float)>& in_float, double x,
-                                                   double first_derivative, double second_derivative);
+[[nodiscard]] std::vector<DifferenceErrors> converge_differences(const std::function<double(double)>& f,
+                                                                 const std::function<float(float)>& in_float, double x,
+                                                                 double first_derivative, double second_derivative);
 template <class F>
-std::vector<DifferenceErrors> converge_differences(const F& f, double x, double first_derivative,
-                                                   double second_derivative) {
+[[nodiscard]] std::vector<DifferenceErrors> converge_differences(const F& f, double x, double first_derivative,
+                                                                 double second_derivative) {
   return converge_differences(std::function<double(double)>(f), std::function<float(float)>(f), x, first_derivative,
                               second_derivative);
 }

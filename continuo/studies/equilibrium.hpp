@@ -19,10 +19,11 @@ namespace continuo::studies {
 /// some on either side, `undecided` one on the imaginary axis and none on the right (then the linear part does not
 /// say).
 enum class Stability { asymptotically_stable, unstable, saddle, undecided };
-std::string_view to_string(Stability stability);
+[[nodiscard]] std::string_view to_string(Stability stability);
 /// `undecided` where a real part is within `slack` times the largest eigenvalue of zero, or times `size` where that is
 /// more.
-Stability stability_of(const std::vector<std::complex<double>>& eigenvalues, double slack = 1e-9, double size = 0);
+[[nodiscard]] Stability stability_of(const std::vector<std::complex<double>>& eigenvalues, double slack = 1e-9,
+                                     double size = 0);
 
 struct Equilibrium {
   std::vector<double> x;  // unknowns of algebraic equations among them
@@ -36,7 +37,7 @@ struct Equilibrium {
 
 /// How one search ended.
 enum class EquilibriumEnding { found, no_descent, not_finite, too_many };
-std::string_view to_string(EquilibriumEnding ending);
+[[nodiscard]] std::string_view to_string(EquilibriumEnding ending);
 
 struct EquilibriumSearch {
   EquilibriumEnding ending = EquilibriumEnding::too_many;
@@ -48,13 +49,16 @@ struct EquilibriumSearch {
 
 /// Damped Newton from x. Steps are shortened until |f| falls, each component measured by its size at the start; where
 /// df/dx is singular they follow the least-squares solution (Levenberg, Marquardt).
-EquilibriumSearch find_equilibrium(const ParametricSystem& system, std::vector<double> x, Values p, double t = 0);
+[[nodiscard]] EquilibriumSearch find_equilibrium(const ParametricSystem& system, std::vector<double> x, Values p,
+                                                 double t = 0);
 
 /// Solves the algebraic equations for their unknowns, the other components of x stay.
-EquilibriumSearch find_unknowns(const ParametricSystem& system, const std::vector<double>& x, Values p, double t = 0);
+[[nodiscard]] EquilibriumSearch find_unknowns(const ParametricSystem& system, const std::vector<double>& x, Values p,
+                                              double t = 0);
 
 /// The eigenvalues and what follows from them.
-Equilibrium describe_equilibrium(const ParametricSystem& system, std::vector<double> x, Values p, double t = 0);
+[[nodiscard]] Equilibrium describe_equilibrium(const ParametricSystem& system, std::vector<double> x, Values p,
+                                               double t = 0);
 
 /// A box to search: `starts` points that fill it evenly (a Halton sequence, the same at every call), after `first`.
 struct EquilibriumBox {
@@ -71,7 +75,7 @@ struct Equilibria {
   std::size_t searches = 0, arrived = 0, outside = 0;  // outside of the box: of those that arrived
   EquilibriumSearch nearest;                           // where none was found: the search that came closest
 };
-Equilibria find_equilibria(const ParametricSystem& system, const EquilibriumBox& box);
+[[nodiscard]] Equilibria find_equilibria(const ParametricSystem& system, const EquilibriumBox& box);
 
 /// x' = A u, y = C u near (x, p): the matrices of the linear system, the inputs being the constants p. Unknowns of
 /// algebraic equations are taken out; where these do not determine them there are no matrices.
@@ -81,7 +85,7 @@ struct Linearization {
   std::vector<double> b;  // states * inputs
   Undetermined undetermined{};
 };
-Linearization linearize(const ParametricSystem& system, Values x, Values p, double t = 0);
+[[nodiscard]] Linearization linearize(const ParametricSystem& system, Values x, Values p, double t = 0);
 
 /// One eigenvalue, or a pair of conjugates, as motion: exp(real t) cos(imag t).
 struct MotionMode {
@@ -91,6 +95,6 @@ struct MotionMode {
   double time_constant = 0;                 // -1 / real: to 1/e; negative where it grows; infinite on the axis
   std::vector<std::complex<double>> shape;  // the eigenvector
 };
-std::vector<MotionMode> modes_of(const std::vector<double>& a, std::size_t n);
+[[nodiscard]] std::vector<MotionMode> modes_of(const std::vector<double>& a, std::size_t n);
 
 }  // namespace continuo::studies

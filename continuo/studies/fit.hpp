@@ -133,10 +133,12 @@ struct Fit {
   std::vector<model::Diagnostic> diagnostics;
   Status status;  // a failure where there is no fit; of data, the message begins with "file:line: "
 
-  bool found() const { return least.found; }
+  [[nodiscard]] bool found() const { return least.found; }
   /// Of the 95 % confidence interval.
-  double half_width(std::size_t unknown) const { return (estimates[unknown].high - estimates[unknown].low) / 2; }
-  bool doubts_of(FitDoubt::Kind kind) const {
+  [[nodiscard]] double half_width(std::size_t unknown) const {
+    return (estimates[unknown].high - estimates[unknown].low) / 2;
+  }
+  [[nodiscard]] bool doubts_of(FitDoubt::Kind kind) const {
     for (const FitDoubt& doubt : doubts)
       if (doubt.kind == kind) return true;
     return false;
@@ -149,10 +151,10 @@ inline constexpr double greatest_rtol_of_fit = 1e-8;
 /// Some hundred roundings of a double: with less, steps become ever shorter and nothing more exact.
 inline constexpr double least_rtol_of_fit = 1e-14;
 
-Fit fit(const FitRequest& request);
+[[nodiscard]] Fit fit(const FitRequest& request);
 
 /// The fitted model along time. `points` per curve.
-std::vector<FitCurve> curves_of(const FitRequest& request, const Fit& fit, std::size_t points = 400);
+[[nodiscard]] std::vector<FitCurve> curves_of(const FitRequest& request, const Fit& fit, std::size_t points = 400);
 
 /// How much worse the best fit becomes where one unknown is held elsewhere: chi squared's rise (of one degree, over the
 /// deviations that the fit found), and the values at which it is as large as an interval of 95 % allows.
@@ -164,9 +166,9 @@ struct Profile {
   std::vector<double> values, rises;  // ascending
   bool better = false;                // somewhere the fit was better than the one that was found
 };
-std::vector<Profile> profiles_of(const FitRequest& request, const Fit& fit);
+[[nodiscard]] std::vector<Profile> profiles_of(const FitRequest& request, const Fit& fit);
 
 /// Names a column may have: states, outputs, lets and energies.
-std::vector<std::string> quantities_of(const model::Model& model);
+[[nodiscard]] std::vector<std::string> quantities_of(const model::Model& model);
 
 }  // namespace continuo::studies

@@ -24,12 +24,12 @@ struct HybridContinuationOptions : OrbitContinuationOptions {
 };
 
 /// From an orbit at the parameter's present value in the experiment, in both directions.
-OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& program,
-                                  const model::Experiment& experiment, const HybridOrbit& start,
-                                  const HybridContinuationOptions& options);
+[[nodiscard]] OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& program,
+                                                const model::Experiment& experiment, const HybridOrbit& start,
+                                                const HybridContinuationOptions& options);
 /// From a period doubling: the orbits of twice the period. From a crossing: the other branch, in both directions.
-OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& program,
-                                  const model::Experiment& experiment, const OrbitMark& start,
-                                  const HybridContinuationOptions& options);
+[[nodiscard]] OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& program,
+                                                const model::Experiment& experiment, const OrbitMark& start,
+                                                const HybridContinuationOptions& options);
 
 }  // namespace continuo::studies

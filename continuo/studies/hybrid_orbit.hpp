@@ -57,7 +57,8 @@ struct HybridOrbit {
   bool wanders = false;            // there is none because the motion did not come back: a longer run may find one
 };
 
-HybridOrbit find_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& program,
-                              const model::Experiment& experiment, const HybridOrbitOptions& options = {});
+[[nodiscard]] HybridOrbit find_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& program,
+                                            const model::Experiment& experiment,
+                                            const HybridOrbitOptions& options = {});
 
 }  // namespace continuo::studies

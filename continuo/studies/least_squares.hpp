@@ -48,6 +48,6 @@ struct LeastSquaresResult {
   std::size_t iterations = 0, evaluations = 0, starts_done = 0, starts_agreeing = 0;
 };
 
-LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquaresOptions& options = {});
+[[nodiscard]] LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquaresOptions& options = {});
 
 }  // namespace continuo::studies

@@ -19,7 +19,8 @@ struct LinearModel {
 };
 
 /// At (t, x), inputs and parameters as the model has them unless `parameters` says otherwise.
-LinearModel linearize_model(const std::shared_ptr<const model::ModelProgram>& program, std::vector<double> x, double t,
-                            const model::Overrides& parameters = {}, std::size_t mode = 0);
+[[nodiscard]] LinearModel linearize_model(const std::shared_ptr<const model::ModelProgram>& program,
+                                          std::vector<double> x, double t, const model::Overrides& parameters = {},
+                                          std::size_t mode = 0);
 
 }  // namespace continuo::studies

@@ -31,8 +31,8 @@ struct LyapunovExponents {
   double averaged = 0;            // over how much time
 };
 
-LyapunovExponents lyapunov_exponents(const ParametricSystem& system, std::vector<double> x0,
-                                     const LyapunovOptions& options = {});
+[[nodiscard]] LyapunovExponents lyapunov_exponents(const ParametricSystem& system, std::vector<double> x0,
+                                                   const LyapunovOptions& options = {});
 
 /// Of a model with all that happens in it: events with their jumps, modes, jumps of the equations, the time. Neighbours
 /// are run beside the motion, a millionth of its size away in each direction, and put back to that distance every so
@@ -40,7 +40,8 @@ LyapunovExponents lyapunov_exponents(const ParametricSystem& system, std::vector
 /// change, by steps (a counter, a flag), has no neighbours and no exponent. All of them run at a tolerance of 1e-12,
 /// whatever the options say; directions that shrink by more than e^-16 between two looks count as that. `experiment`
 /// says where the model begins, and with which parameters.
-LyapunovExponents lyapunov_exponents(const std::shared_ptr<const model::ModelProgram>& program,
-                                     const model::Experiment& experiment, const LyapunovOptions& options = {});
+[[nodiscard]] LyapunovExponents lyapunov_exponents(const std::shared_ptr<const model::ModelProgram>& program,
+                                                   const model::Experiment& experiment,
+                                                   const LyapunovOptions& options = {});
 
 }  // namespace continuo::studies

@@ -41,7 +41,7 @@ struct OrbitPoint {
 /// `central_homoclinic`: there, of a saddle-node, which the orbit leaves and comes back to along the direction of the
 /// eigenvalue zero.
 enum class OrbitBifurcation { fold, period_doubling, torus, crossing, homoclinic, central_homoclinic };
-std::string_view to_string(OrbitBifurcation kind);
+[[nodiscard]] std::string_view to_string(OrbitBifurcation kind);
 
 struct OrbitMark {
   OrbitBifurcation kind;
@@ -99,16 +99,16 @@ struct OrbitContinuationOptions {
 };
 
 /// From an orbit at the constant's present value, in both directions.
-OrbitBranch continue_orbit(const ParametricSystem& system, const PeriodicOrbit& start,
-                           const OrbitContinuationOptions& options);
+[[nodiscard]] OrbitBranch continue_orbit(const ParametricSystem& system, const PeriodicOrbit& start,
+                                         const OrbitContinuationOptions& options);
 /// From a point of another branch, or any state next to an orbit whose period is about known.
-OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitPoint& start,
-                           const OrbitContinuationOptions& options);
+[[nodiscard]] OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitPoint& start,
+                                         const OrbitContinuationOptions& options);
 /// From where an equilibrium begins to oscillate: the orbits that are born there.
-OrbitBranch continue_orbit(const ParametricSystem& system, const HopfPoint& start,
-                           const OrbitContinuationOptions& options);
+[[nodiscard]] OrbitBranch continue_orbit(const ParametricSystem& system, const HopfPoint& start,
+                                         const OrbitContinuationOptions& options);
 /// From a period doubling: the orbits of twice the period. From a crossing: the other branch, in both directions.
-OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitMark& start,
-                           const OrbitContinuationOptions& options);
+[[nodiscard]] OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitMark& start,
+                                         const OrbitContinuationOptions& options);
 
 }  // namespace continuo::studies

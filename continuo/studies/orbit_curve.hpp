@@ -74,7 +74,7 @@ enum class OrbitDegeneracy {
   non_central
 };
 inline constexpr std::size_t orbit_degeneracies = 24;
-std::string_view to_string(OrbitDegeneracy kind);
+[[nodiscard]] std::string_view to_string(OrbitDegeneracy kind);
 
 struct DegenerateOrbit {
   OrbitDegeneracy kind;
@@ -105,7 +105,7 @@ struct OrbitCurveEnd {
   std::string reason{};  // one sentence
 };
 
-inline bool is_homoclinic(OrbitBifurcation kind) {
+[[nodiscard]] inline bool is_homoclinic(OrbitBifurcation kind) {
   return kind == OrbitBifurcation::homoclinic || kind == OrbitBifurcation::central_homoclinic;
 }
 
@@ -131,18 +131,20 @@ struct OrbitCurveOptions {
 
 /// From what is marked on a branch of orbits of the first constant, the second one having the system's value. From its
 /// homoclinic end: of homoclinic orbits, by projection (homoclinic_curve.hpp).
-OrbitCurve follow_orbit_bifurcation(const ParametricSystem& system, const OrbitMark& start,
-                                    const OrbitCurveOptions& options);
+[[nodiscard]] OrbitCurve follow_orbit_bifurcation(const ParametricSystem& system, const OrbitMark& start,
+                                                  const OrbitCurveOptions& options);
 /// The same, and behind it the curves that begin where homoclinic ones end, at most so many in all.
-std::vector<OrbitCurve> follow_orbit_bifurcations(const ParametricSystem& system, const OrbitMark& start,
-                                                  const OrbitCurveOptions& options, std::size_t most);
+[[nodiscard]] std::vector<OrbitCurve> follow_orbit_bifurcations(const ParametricSystem& system, const OrbitMark& start,
+                                                                const OrbitCurveOptions& options, std::size_t most);
 
 /// Curves through several marks, each once, and those that begin where homoclinic ones end.
 struct OrbitCurveOfDiagram {
   OrbitCurve curve;
   std::vector<std::size_t> starts;  // those that lie on it; none where it begins at the end of another
 };
-std::vector<OrbitCurveOfDiagram> orbit_curves(const ParametricSystem& system, const std::vector<OrbitMark>& starts,
-                                              const OrbitCurveOptions& options, std::size_t most_curves = 12);
+[[nodiscard]] std::vector<OrbitCurveOfDiagram> orbit_curves(const ParametricSystem& system,
+                                                            const std::vector<OrbitMark>& starts,
+                                                            const OrbitCurveOptions& options,
+                                                            std::size_t most_curves = 12);
 
 }  // namespace continuo::studies

@@ -38,17 +38,17 @@ struct PeriodicOrbit {
   bool wanders = false;  // there is none because the motion did not come back: a longer run may find one
 };
 
-PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<double> x0,
-                                  const PeriodicOrbitOptions& options = {});
+[[nodiscard]] PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<double> x0,
+                                                const PeriodicOrbitOptions& options = {});
 
 /// The least and the greatest value of each component on an orbit that was found.
 struct OrbitExtents {
   std::vector<double> low, high;
 };
-OrbitExtents extents_of(const ParametricSystem& system, const PeriodicOrbit& found);
+[[nodiscard]] OrbitExtents extents_of(const ParametricSystem& system, const PeriodicOrbit& found);
 
 /// Whether f(t, x) differs from one t to another.
-bool depends_on_time(const ParametricSystem& system, const std::vector<double>& x);
+[[nodiscard]] bool depends_on_time(const ParametricSystem& system, const std::vector<double>& x);
 
 /// Crossings of a plane x_i = level, in the direction of growth: a Poincare section.
 struct SectionPoint {
@@ -67,12 +67,13 @@ struct SectionOptions {
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
 };
-Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component,
-                         const SectionOptions& options);
+[[nodiscard]] Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component,
+                                       const SectionOptions& options);
 
 /// Of a model with all that happens in it: events, modes, jumps of the equations, the time. What an event carries over
 /// the plane has passed it.
-Section poincare_section(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
-                         std::size_t component, const SectionOptions& options);
+[[nodiscard]] Section poincare_section(const std::shared_ptr<const model::ModelProgram>& program,
+                                       const model::Experiment& experiment, std::size_t component,
+                                       const SectionOptions& options);
 
 }  // namespace continuo::studies

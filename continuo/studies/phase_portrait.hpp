@@ -43,6 +43,6 @@ struct PhasePortrait {
 };
 
 /// The system must have two components.
-PhasePortrait phase_portrait(const ParametricSystem& system, const PhasePlane& plane);
+[[nodiscard]] PhasePortrait phase_portrait(const ParametricSystem& system, const PhasePlane& plane);
 
 }  // namespace continuo::studies

@@ -49,16 +49,18 @@ struct SensitivityRun {
   Status status;
   std::vector<model::Diagnostic> diagnostics;
 
-  bool good() const { return diagnostics.empty() && succeeded(status.ending); }
+  [[nodiscard]] bool good() const { return diagnostics.empty() && succeeded(status.ending); }
   /// Whether the status tells why the motion has no derivative, and not how a run failed.
-  bool has_no_derivative() const { return !status && diagnostics.empty() && status.ending != outcome.ending; }
-  std::size_t rows() const { return times.size(); }
-  std::span<const double> row(std::size_t r) const {
+  [[nodiscard]] bool has_no_derivative() const {
+    return !status && diagnostics.empty() && status.ending != outcome.ending;
+  }
+  [[nodiscard]] std::size_t rows() const { return times.size(); }
+  [[nodiscard]] std::span<const double> row(std::size_t r) const {
     const std::size_t width = states * (1 + influences);
     return {values.data() + r * width, width};
   }
-  double value(std::size_t r, std::size_t state) const { return row(r)[state]; }
-  double sensitivity(std::size_t r, std::size_t state, std::size_t influence) const {
+  [[nodiscard]] double value(std::size_t r, std::size_t state) const { return row(r)[state]; }
+  [[nodiscard]] double sensitivity(std::size_t r, std::size_t state, std::size_t influence) const {
     return row(r)[states * (1 + influence) + state];
   }
 };
@@ -84,24 +86,25 @@ class SensitivityStudy {
   SensitivityStudy(std::shared_ptr<const model::ModelProgram> program, std::vector<Influence> influences,
                    const model::Overrides& overrides = {}, bool start_is_given = false);
 
-  SensitivityRun run(const SensitivityRequest& request = {}) const;
+  [[nodiscard]] SensitivityRun run(const SensitivityRequest& request = {}) const;
 
-  const model::ModelProgram& program() const;
-  const std::vector<Influence>& influences() const;
+  [[nodiscard]] const model::ModelProgram& program() const;
+  [[nodiscard]] const std::vector<Influence>& influences() const;
   /// Quantities q of the model along a run: for each row and each quantity q, then dq/dp of each influence.
   using Along = std::function<std::vector<double>(const SensitivityRun& run)>;
-  Along along(std::span<const model::NodeId> quantities) const;
+  [[nodiscard]] Along along(std::span<const model::NodeId> quantities) const;
 
  private:
-  SensitivityRun integrated(const SensitivityRequest& request) const;
+  [[nodiscard]] SensitivityRun integrated(const SensitivityRequest& request) const;
 
   std::shared_ptr<const detail::SensitiveProgram> program_;
 };
 
 /// Why there are no sensitivities of this model by these influences: E36x.
-std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::span<const Influence> influences);
+[[nodiscard]] std::optional<model::Diagnostic> no_sensitivity(const model::Model& model,
+                                                              std::span<const Influence> influences);
 
 /// "m/(N/m)": the unit of a derivative. Empty without units.
-std::string unit_of_ratio(const std::string& of, const std::string& by);
+[[nodiscard]] std::string unit_of_ratio(const std::string& of, const std::string& by);
 
 }  // namespace continuo::studies

@@ -18,7 +18,7 @@ namespace continuo::studies {
 
 /// From the origin in this direction: the distance at which the steps first grow. Infinite where they never do up to
 /// `farthest`; 0 where they do from the start; NaN where the method has no factors.
-double stability_limit(const StepSequence& sequence, Complex direction, double farthest = 1e4);
+[[nodiscard]] double stability_limit(const StepSequence& sequence, Complex direction, double farthest = 1e4);
 
 struct StabilityRegion {
   double real_limit = 0, imaginary_limit = 0;  // distances down the real axis and up the imaginary one
@@ -32,8 +32,8 @@ struct StabilityRegion {
 };
 
 /// `points`: of the grid on which the curve is looked for, along one side; without them no curve.
-StabilityRegion stability_region(const StepSequence& sequence, std::size_t points = 160,
-                                 const std::atomic<bool>* interrupt = nullptr);
+[[nodiscard]] StabilityRegion stability_region(const StepSequence& sequence, std::size_t points = 160,
+                                               const std::atomic<bool>* interrupt = nullptr);
 
 /// Where the eigenvalues of df/dx lie along a run.
 struct Spectrum {
@@ -41,8 +41,8 @@ struct Spectrum {
   std::vector<std::vector<Complex>> values;  // at each time
 };
 /// At the states that are given. Empty where a Jacobian is not finite.
-Spectrum spectrum_along(const ParametricSystem& system, const std::vector<double>& times,
-                        const std::vector<std::vector<double>>& states);
+[[nodiscard]] Spectrum spectrum_along(const ParametricSystem& system, const std::vector<double>& times,
+                                      const std::vector<std::vector<double>>& states);
 
 /// The largest stable step of a method on a spectrum; what grows by itself (positive real part) asks nothing of it.
 struct StepLimit {
@@ -51,11 +51,11 @@ struct StepLimit {
   double time = 0;       // and when
   double beyond = 0;     // the factor of each step that is one part in a hundred longer
 };
-StepLimit largest_stable_step(std::string_view method, const Spectrum& spectrum);
+[[nodiscard]] StepLimit largest_stable_step(std::string_view method, const Spectrum& spectrum);
 
 /// What two runs with fixed steps that begin next to each other do: their distance dies out or stays, or it grows.
 enum class Fate { bounded, grows, no_run };
-std::string_view to_string(Fate fate);
+[[nodiscard]] std::string_view to_string(Fate fate);
 /// What a run needs to know of a system besides its equations, for methods of x'' = a.
 struct Pairing {
   std::vector<PositionVelocity> pairs{};
@@ -64,7 +64,7 @@ struct Pairing {
 /// Runs the equations near one state with this step. `factor` is what a step is expected to multiply a growing motion
 /// by: the nearer to 1, the more steps it takes to tell. Fate::no_run where that would be too many, or the method
 /// refuses.
-Fate fate_of(std::string_view method, const ParametricSystem& system, const Pairing& pairing, double t,
-             const std::vector<double>& x, double step, double factor);
+[[nodiscard]] Fate fate_of(std::string_view method, const ParametricSystem& system, const Pairing& pairing, double t,
+                           const std::vector<double>& x, double step, double factor);
 
 }  // namespace continuo::studies

@@ -41,7 +41,7 @@ struct JacobianCheck {
   std::vector<Entry> right;      // at most one: the one furthest apart
   std::size_t compared = 0;
 
-  bool agrees() const { return wrong.empty(); }
+  [[nodiscard]] bool agrees() const { return wrong.empty(); }
 };
 
 template <class Real>
@@ -56,7 +56,7 @@ namespace detail {
 
 /// What the system says, by every way it says it: matrices of n rows, row by row.
 template <class F, State X>
-std::vector<std::vector<Scalar<X>>> given_jacobians(F& f, const Scalar<X>& t, const X& x) {
+[[nodiscard]] std::vector<std::vector<Scalar<X>>> given_jacobians(F& f, const Scalar<X>& t, const X& x) {
   using Real = Scalar<X>;
   const std::size_t n = dimension(x);
   std::vector<std::vector<Real>> all;
@@ -121,7 +121,8 @@ class EntryJudge {
 
 /// What the terms of f[i] may amount to: rounding is a part of it.
 template <State X>
-std::vector<Scalar<X>> sizes_of_terms(const X& x, const X& fx, const std::vector<std::vector<Scalar<X>>>& given) {
+[[nodiscard]] std::vector<Scalar<X>> sizes_of_terms(const X& x, const X& fx,
+                                                    const std::vector<std::vector<Scalar<X>>>& given) {
   using Real = Scalar<X>;
   using std::abs, std::max;
   const std::size_t n = dimension(x);
@@ -139,8 +140,8 @@ std::vector<Scalar<X>> sizes_of_terms(const X& x, const X& fx, const std::vector
 
 /// What the system says of one place: of several ways of saying it the one that is furthest off.
 template <class F, class Real>
-JacobianEntry<Real> given_entry(F& f, std::size_t i, std::size_t j, std::size_t n,
-                                const std::vector<std::vector<Real>>& given, const Real& measured) {
+[[nodiscard]] JacobianEntry<Real> given_entry(F& f, std::size_t i, std::size_t j, std::size_t n,
+                                              const std::vector<std::vector<Real>>& given, const Real& measured) {
   using std::abs;
   JacobianEntry<Real> entry{.row = i, .column = j};
   if constexpr (HasJacobianPattern<F>) {
@@ -160,8 +161,8 @@ JacobianEntry<Real> given_entry(F& f, std::size_t i, std::size_t j, std::size_t 
 /// Compares at one (t, x). A system that gives no derivatives can still have a wrong pattern, or say wrongly that it is
 /// autonomous.
 template <class F, State X>
-JacobianCheck<Scalar<X>> check_jacobian(F& f, const Scalar<X>& t, const X& x,
-                                        const JacobianCheckOptions<Scalar<X>>& options = {}) {
+[[nodiscard]] JacobianCheck<Scalar<X>> check_jacobian(F& f, const Scalar<X>& t, const X& x,
+                                                      const JacobianCheckOptions<Scalar<X>>& options = {}) {
   using Real = Scalar<X>;
   using std::abs, std::max;
   const std::size_t n = dimension(x);
@@ -218,7 +219,7 @@ JacobianCheck<Scalar<X>> check_jacobian(F& f, const Scalar<X>& t, const X& x,
 /// "d(x')/d(y)": what a message calls an entry. Rows of algebraic equations are "0" of their number; rows of M x' = f
 /// with a full M are "f[i]".
 template <class F, class Real>
-std::string entry_name(const F& f, const JacobianEntry<Real>& entry, std::size_t size) {
+[[nodiscard]] std::string entry_name(const F& f, const JacobianEntry<Real>& entry, std::size_t size) {
   std::string row = component_name(f, entry.row) + "'";
   if constexpr (requires {
                   { f.mass(entry.row) } -> std::convertible_to<Real>;

@@ -35,8 +35,8 @@ class Differences {
   /// d f / d x[j]; fx = f(t, x), size > 0 says how large x[j] is, terms[i] what the terms of f[i] amount to, of which
   /// rounding is a part.
   template <class F>
-  Column by_component(F& f, const Real& t, const X& x, const X& fx, std::size_t j, const Real& size,
-                      const std::vector<Real>& terms) {
+  [[nodiscard]] Column by_component(F& f, const Real& t, const X& x, const X& fx, std::size_t j, const Real& size,
+                                    const std::vector<Real>& terms) {
     moved_ = x;
     return measure(x.data()[j], size, fx, terms, [&](const Real& value, X& result) {
       moved_.data()[j] = value;
@@ -46,7 +46,8 @@ class Differences {
 
   /// df/dt.
   template <class F>
-  Column by_time(F& f, const Real& t, const X& x, const X& fx, const Real& size, const std::vector<Real>& terms) {
+  [[nodiscard]] Column by_time(F& f, const Real& t, const X& x, const X& fx, const Real& size,
+                               const std::vector<Real>& terms) {
     return measure(t, size, fx, terms, [&](const Real& value, X& result) { evaluate(f, value, x, result); });
   }
 
@@ -62,7 +63,8 @@ class Differences {
   static constexpr int safety = 10;          // the shown error is an estimate, and rounding comes several times
 
   template <class Value>
-  Column measure(const Real& at, const Real& size, const X& fx, const std::vector<Real>& terms, Value&& value) {
+  [[nodiscard]] Column measure(const Real& at, const Real& size, const X& fx, const std::vector<Real>& terms,
+                               Value&& value) {
     using std::ilogb, std::ldexp;
     const int exponent = static_cast<int>(ilogb(size)) + first_exponent;
     for (int k = 0; k < levels; ++k) {
@@ -83,19 +85,19 @@ class Differences {
 
   struct Increments {
     Real above, below;
-    Real both() const { return above + below; }
+    [[nodiscard]] Real both() const { return above + below; }
   };
 
-  const Real& high(int k, std::size_t i) const { return above_[static_cast<std::size_t>(k)].data()[i]; }
-  const Real& low(int k, std::size_t i) const { return below_[static_cast<std::size_t>(k)].data()[i]; }
+  [[nodiscard]] const Real& high(int k, std::size_t i) const { return above_[static_cast<std::size_t>(k)].data()[i]; }
+  [[nodiscard]] const Real& low(int k, std::size_t i) const { return below_[static_cast<std::size_t>(k)].data()[i]; }
 
-  Real rounding(int k, const Real& terms) const {
+  [[nodiscard]] Real rounding(int k, const Real& terms) const {
     return std::numeric_limits<Real>::epsilon() * terms / increments_[k].both();
   }
 
   /// The table of extrapolations, of which the entry with the least error is taken. Its errors go with the square of
   /// the increment, so the m-th elimination weighs with 16^m.
-  Difference<Real> extrapolated(std::size_t i, const Real& terms) const {
+  [[nodiscard]] Difference<Real> extrapolated(std::size_t i, const Real& terms) const {
     using std::abs, std::max, std::min;
     Difference<Real> best;
     Real before[most_eliminations + 1] = {}, now[most_eliminations + 1] = {};

@@ -109,7 +109,7 @@ class DualEvaluation {
   using Kept = Pair<std::vector<Number>>;
 
   template <State X>
-  static constexpr std::size_t columns_of() {
+  [[nodiscard]] static constexpr std::size_t columns_of() {
     if constexpr (is_fixed<X>) {
       return std::clamp(std::tuple_size<X>::value, std::size_t{1}, most_columns);
     } else {
@@ -189,7 +189,7 @@ class Differentiable : public F {
 
 /// f with its derivatives.
 template <class Real = double, class F>
-Differentiable<std::decay_t<F>, Real> differentiable(F&& f) {
+[[nodiscard]] Differentiable<std::decay_t<F>, Real> differentiable(F&& f) {
   return Differentiable<std::decay_t<F>, Real>(std::forward<F>(f));
 }
 

@@ -17,7 +17,7 @@ namespace continuo {
 /// The increment of a component for a forward difference: the square root of epsilon times the component, and never
 /// below `least`. Returns what the sum x + increment really adds.
 template <class Real>
-Real difference_increment(const Real& x, const Real& least) {
+[[nodiscard]] Real difference_increment(const Real& x, const Real& least) {
   using std::abs, std::max, std::sqrt;
   const Real moved = x + max(sqrt(std::numeric_limits<Real>::epsilon()) * abs(x), least);
   return moved - x;
@@ -72,7 +72,8 @@ int evaluate_jacobian(F& f, const Scalar<X>& t, const X& x, const X& fx, X& move
 
 /// df/dt; h says how fast time goes. Returns the number of evaluations.
 template <class F, State X>
-int evaluate_time_derivative(F& f, const Scalar<X>& t, const Scalar<X>& h, const X& x, const X& fx, X& dfdt) {
+[[nodiscard]] int evaluate_time_derivative(F& f, const Scalar<X>& t, const Scalar<X>& h, const X& x, const X& fx,
+                                           X& dfdt) {
   if constexpr (HasTimeDerivative<F, X>) {
     f.time_derivative(t, x, dfdt);
     return 0;

@@ -14,7 +14,7 @@ namespace continuo {
 /// Whether M is not the identity. A type whose values differ in this (a model that may have algebraic equations) says
 /// so by a member has_mass().
 template <State X, class F>
-bool has_mass(const F& system) {
+[[nodiscard]] bool has_mass(const F& system) {
   if constexpr (requires {
                   { system.has_mass() } -> std::convertible_to<bool>;
                 }) {
@@ -27,7 +27,7 @@ bool has_mass(const F& system) {
 /// Whether component i is the unknown of an algebraic equation: row and column i of M are zero. Only a diagonal says
 /// so.
 template <State X, class F>
-bool is_algebraic(const F& system, std::size_t i) {
+[[nodiscard]] bool is_algebraic(const F& system, std::size_t i) {
   if constexpr (HasMassDiagonal<F, X>) {
     return has_mass<X>(system) && system.mass(i) == Scalar<X>(0);
   } else {

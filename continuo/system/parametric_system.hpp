@@ -45,23 +45,23 @@ struct ParametricSystem {
   std::size_t conserved = 0;
   double conserved_rate = 0;
 
-  std::size_t differential() const { return size - algebraic; }
-  std::size_t parameters() const { return constants.size(); }
+  [[nodiscard]] std::size_t differential() const { return size - algebraic; }
+  [[nodiscard]] std::size_t parameters() const { return constants.size(); }
   /// `x[i]` where it has none.
-  std::string name(std::size_t i) const;
-  std::string constant_name(std::size_t i) const;
+  [[nodiscard]] std::string name(std::size_t i) const;
+  [[nodiscard]] std::string constant_name(std::size_t i) const;
 };
 
 /// f called as f(t, x, p, dxdt) with spans.
 template <class F>
   requires std::invocable<F&, double, Values, Values, std::span<double>>
-ParametricSystem parametric_system(std::size_t size, F f, std::vector<double> constants = {}) {
+[[nodiscard]] ParametricSystem parametric_system(std::size_t size, F f, std::vector<double> constants = {}) {
   return {.size = size, .constants = std::move(constants), .derivative = std::move(f)};
 }
 
 /// Any System for std::vector<double>, with the Jacobian and the names it has.
 template <RightHandSide<std::vector<double>> System>
-ParametricSystem parametric_system(std::size_t size, System system) {
+[[nodiscard]] ParametricSystem parametric_system(std::size_t size, System system) {
   using X = std::vector<double>;
   struct Shared {
     System system;
@@ -93,9 +93,10 @@ ParametricSystem parametric_system(std::size_t size, System system) {
 
 /// df/dx, n * n row by row, exact where the system gives it, else by central differences. `scale` (of each component,
 /// may be empty) says what is small.
-std::vector<double> jacobian_of(const ParametricSystem& system, double t, Values x, Values p, Values scale = {});
+[[nodiscard]] std::vector<double> jacobian_of(const ParametricSystem& system, double t, Values x, Values p,
+                                              Values scale = {});
 /// df/dp, n * m row by row. Without a `scale` a constant is as large as it is now, which says nothing near zero.
-std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p,
-                                         Values scale = {});
+[[nodiscard]] std::vector<double> constant_jacobian_of(const ParametricSystem& system, double t, Values x, Values p,
+                                                       Values scale = {});
 
 }  // namespace continuo

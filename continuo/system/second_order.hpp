@@ -30,7 +30,7 @@ concept KnowsIfVelocityCounts = requires(const F& f, const X& x) {
 
 /// True only where the system says so.
 template <class F, State X>
-bool ignores_velocity(const F& f, const X& x) {
+[[nodiscard]] bool ignores_velocity(const F& f, const X& x) {
   if constexpr (KnowsIfVelocityCounts<F, X>) {
     return f.ignores_velocity(x);
   } else {
@@ -76,11 +76,11 @@ struct SecondOrderSystem {
     }
   }
 
-  std::size_t pair_count(std::size_t size) const { return size / 2; }
-  PositionVelocity pair(std::size_t i, std::size_t size) const { return {i, i + size / 2}; }
+  [[nodiscard]] std::size_t pair_count(std::size_t size) const { return size / 2; }
+  [[nodiscard]] PositionVelocity pair(std::size_t i, std::size_t size) const { return {i, i + size / 2}; }
 
   template <State X>
-  bool ignores_velocity(const X&) const {
+  [[nodiscard]] bool ignores_velocity(const X&) const {
     if constexpr (std::invocable<Acceleration&, Scalar<X>, const HalfOf<X>&>) {
       return true;
     } else if constexpr (std::invocable<Acceleration&, Scalar<X>, const HalfOf<X>&, OutOf<X>&>) {
@@ -108,7 +108,7 @@ struct SecondOrderSystem {
   using OutOf = typename Halves<X>::Out;
 
   template <State X>
-  static HalfOf<X> half(const X& x, std::size_t first) {
+  [[nodiscard]] static HalfOf<X> half(const X& x, std::size_t first) {
     if constexpr (requires { std::tuple_size<X>::value; }) {
       HalfOf<X> result;
       for (std::size_t i = 0; i < result.size(); ++i) result[i] = x[first + i];
@@ -119,7 +119,7 @@ struct SecondOrderSystem {
   }
   /// Where the acceleration may be written: the span itself, or an array to be copied by `put`.
   template <State X>
-  static OutOf<X> room(X& dxdt) {
+  [[nodiscard]] static OutOf<X> room(X& dxdt) {
     if constexpr (requires { std::tuple_size<X>::value; }) {
       return OutOf<X>{};
     } else {
@@ -133,14 +133,14 @@ struct SecondOrderSystem {
     for (std::size_t i = 0; i < n; ++i) dxdt.data()[n + i] = from.data()[i];
   }
   template <class X>
-  static constexpr bool writes() {
+  [[nodiscard]] static constexpr bool writes() {
     return std::is_void_v<std::invoke_result_t<Acceleration&, Scalar<X>, const HalfOf<X>&, OutOf<X>&>>;
   }
 };
 
 /// The system with state (q, v) of an acceleration a(t, q) or a(t, q, v).
 template <class Acceleration>
-SecondOrderSystem<std::decay_t<Acceleration>> second_order(Acceleration&& acceleration) {
+[[nodiscard]] SecondOrderSystem<std::decay_t<Acceleration>> second_order(Acceleration&& acceleration) {
   return {std::forward<Acceleration>(acceleration)};
 }
 

@@ -101,7 +101,7 @@ concept KnowsAutonomous = requires(const F& f) {
   { f.autonomous } -> std::convertible_to<bool>;
 };
 template <class F>
-constexpr bool is_autonomous(const F& f) {
+[[nodiscard]] constexpr bool is_autonomous(const F& f) {
   if constexpr (KnowsAutonomous<F>) {
     return f.autonomous;
   } else {
@@ -111,7 +111,7 @@ constexpr bool is_autonomous(const F& f) {
 
 /// Whether the system says that f depends on t; a function alone says neither.
 template <class F>
-constexpr bool is_known_to_depend_on_time(const F& f) {
+[[nodiscard]] constexpr bool is_known_to_depend_on_time(const F& f) {
   if constexpr (KnowsAutonomous<F>) {
     return !f.autonomous;
   } else {
@@ -145,7 +145,7 @@ concept IsSplit = requires(F& f, Scalar<X> t, const X& x, X& dxdt) {
 
 /// The name of component i, `x[i]` where the system has none.
 template <class F>
-std::string component_name(const F& f, std::size_t i) {
+[[nodiscard]] std::string component_name(const F& f, std::size_t i) {
   if constexpr (Named<F>) {
     return std::string(f.component_name(i));
   } else {

@@ -21,7 +21,7 @@
 namespace continuo {
 
 template <class Real, int Dim>
-Real greatest_acceleration(const World<Real, Dim>& world, std::span<const Vector<Real, Dim>> force) {
+[[nodiscard]] Real greatest_acceleration(const World<Real, Dim>& world, std::span<const Vector<Real, Dim>> force) {
   Real greatest(0);
   for (std::size_t i = 0; i < force.size(); ++i)
     greatest = std::max(greatest, length(force[i]) * world.inverse_mass[i]);
@@ -66,7 +66,7 @@ class ConstrainedContacts {
   std::vector<Lasting> lasting{};
 
   /// The greatest acceleration by forces when `resolve` was called last.
-  Real pull() const { return allowance / (contact_time * contact_time); }
+  [[nodiscard]] Real pull() const { return allowance / (contact_time * contact_time); }
 
   /// See ContactEngine: pairs keep their order.
   void take_over(const ConstrainedContacts& other, std::span<const std::uint32_t> to) {
@@ -83,8 +83,8 @@ class ConstrainedContacts {
   /// bounces no more, and then moves as one. Gives the contacts that persist: where forces press two together that
   /// hardly move (in the contact time by no more than the forces would move them) no collision happens, and their
   /// normal and friction forces keep them together from here on.
-  PersistentContacts<Real, Dim> resolve(std::span<const Touching> near, std::span<const V> force,
-                                        std::span<const S> torque, const Journal& journal) {
+  [[nodiscard]] PersistentContacts<Real, Dim> resolve(std::span<const Touching> near, std::span<const V> force,
+                                                      std::span<const S> torque, const Journal& journal) {
     const Real acceleration = greatest_acceleration(world_, force), slow = acceleration * contact_time;
     allowance = slow * contact_time;
     if (!(slow < never)) return {};
@@ -116,13 +116,13 @@ class ConstrainedContacts {
   }
 
   /// What counts as touching: the digits of a place, and what a gap may sink.
-  bool touches(const Touching& at) const {
+  [[nodiscard]] bool touches(const Touching& at) const {
     const Real size = length(world_.position[at.a]) + world_.radius[at.a];
     const Real least = Real(16 * std::numeric_limits<Real>::epsilon() * size), gap = gap_of(world_, at);
     return gap <= std::max(least, allowance) || (gap <= left_by_steps && find(lasting, at));
   }
   /// By more than `slow`, and than rounding.
-  bool approaches(const Touching& at, const Real& slow) const {
+  [[nodiscard]] bool approaches(const Touching& at, const Real& slow) const {
     const V rate = (at.with_wall() ? V{} : world_.velocity[at.b]) - world_.velocity[at.a];
     return approach_of(world_, at) > std::max(slow, Real(8 * std::numeric_limits<Real>::epsilon() * length(rate)));
   }
@@ -136,7 +136,8 @@ class ConstrainedContacts {
     return true;
   }
   /// What has collided within the contact time before this instant, or touched already, bounces no more.
-  Material<Real> material_now(const Touching& at, const std::vector<Real>& before, bool is_squeezed) const {
+  [[nodiscard]] Material<Real> material_now(const Touching& at, const std::vector<Real>& before,
+                                            bool is_squeezed) const {
     const bool is_wall = at.with_wall();
     Material<Real> material = combined(world_.combine_rule, world_.material[at.a],
                                        is_wall ? world_.walls()[at.wall].material : world_.material[at.b]);
@@ -181,14 +182,14 @@ class ConstrainedContacts {
 
  private:
   /// Of contacts in order.
-  static const Lasting* find(const std::vector<Lasting>& contacts, const Touching& pair) {
+  [[nodiscard]] static const Lasting* find(const std::vector<Lasting>& contacts, const Touching& pair) {
     const auto at = std::ranges::lower_bound(contacts, pair, {}, &Lasting::pair);
     return at != contacts.end() && at->pair == pair ? &*at : nullptr;
   }
 
   /// What bounces, one after the other, and then what does not, all together. False where nobody approaches.
-  bool strike_all(std::span<const Touching> touching, const Real& slow, const std::vector<Real>& before,
-                  bool is_squeezed, const Journal& journal) {
+  [[nodiscard]] bool strike_all(std::span<const Touching> touching, const Real& slow, const std::vector<Real>& before,
+                                bool is_squeezed, const Journal& journal) {
     bool is_any = false, is_plastic = false;
     std::vector<Touching> plastic;
     for (const Touching& at : touching) {
@@ -215,7 +216,7 @@ class ConstrainedContacts {
   void note(const Touching& at, ContactChange change, const Real& impulse, const Journal& journal) const {
     if (journal.log.is_kept()) journal.log.add(event_of(world_, at, world_.time, change, impulse));
   }
-  Mover<Real, Dim> mover(std::uint32_t i) {
+  [[nodiscard]] Mover<Real, Dim> mover(std::uint32_t i) {
     return {world_.velocity[i], world_.spin[i], world_.radius[i], world_.inverse_mass[i], world_.inverse_inertia[i]};
   }
 

@@ -40,17 +40,19 @@ class ConstrainedEvents {
         x_(begin_),
         v_(begin_) {}
 
-  std::size_t size() const { return candidates_->size() + PersistentContacts<Real, Dim>::guards * held_ + 1; }
-  std::string_view name(std::size_t i) const { return i + 1 < size() ? "contact" : "list"; }
-  Direction direction(std::size_t) const { return Direction::falls; }
-  bool is_guard(std::size_t) const { return true; }
-  bool can_restart(std::size_t) const { return true; }  // each stops the flight
-  bool can_assign(std::size_t) const { return false; }
+  [[nodiscard]] std::size_t size() const {
+    return candidates_->size() + PersistentContacts<Real, Dim>::guards * held_ + 1;
+  }
+  [[nodiscard]] std::string_view name(std::size_t i) const { return i + 1 < size() ? "contact" : "list"; }
+  [[nodiscard]] Direction direction(std::size_t) const { return Direction::falls; }
+  [[nodiscard]] bool is_guard(std::size_t) const { return true; }
+  [[nodiscard]] bool can_restart(std::size_t) const { return true; }  // each stops the flight
+  [[nodiscard]] bool can_assign(std::size_t) const { return false; }
   template <class System>
-  bool active(const System&, std::size_t) const {
+  [[nodiscard]] bool active(const System&, std::size_t) const {
     return true;
   }
-  Real next_time(std::size_t, Real, bool) const { return std::numeric_limits<Real>::infinity(); }
+  [[nodiscard]] Real next_time(std::size_t, Real, bool) const { return std::numeric_limits<Real>::infinity(); }
 
   /// Of an instant that was asked for already they are known: each guard that is looked at more closely asks for all.
   void guards(ConstrainedSystem<Real, Dim>& flow, Real t, const X& state, std::span<Real> values) {
@@ -65,7 +67,7 @@ class ConstrainedEvents {
     known_.push_back({t, state, {values.begin(), values.end()}});
   }
   template <class System>
-  EventResponse fire(System&, std::size_t, Real, const X&, X&) {
+  [[nodiscard]] EventResponse fire(System&, std::size_t, Real, const X&, X&) {
     return {.stop = true};
   }
 
@@ -92,7 +94,7 @@ class ConstrainedEvents {
     for (std::size_t i = 0; i < x_.size(); ++i) farthest = std::max(farthest, squared(V(x_[i] - begin_[i])));
     values[next] = reach_ * reach_ - farthest;
   }
-  Real guard(const Candidate<Real>& at) const {
+  [[nodiscard]] Real guard(const Candidate<Real>& at) const {
     if (at.watched == Candidate<Real>::Watched::nothing) return Real(1);
     const auto [a, b, w] = at.pair;
     Real gap, parting;

@@ -14,11 +14,11 @@ namespace continuo {
 
 /// dq/dt of an orientation q at a spin: half of (0, spin) q in space.
 template <class Real>
-Vector<Real, 1> rate_of_orientation(const Vector<Real, 1>&, const Vector<Real, 1>& spin) {
+[[nodiscard]] Vector<Real, 1> rate_of_orientation(const Vector<Real, 1>&, const Vector<Real, 1>& spin) {
   return spin;
 }
 template <class Real>
-Vector<Real, 4> rate_of_orientation(const Vector<Real, 4>& q, const Vector<Real, 3>& spin) {
+[[nodiscard]] Vector<Real, 4> rate_of_orientation(const Vector<Real, 4>& q, const Vector<Real, 3>& spin) {
   const Vector<Real, 3> imaginary{{q[1], q[2], q[3]}};
   const Vector<Real, 3> rate = (spin * q[0] + turning(spin, imaginary)) * (Real(1) / 2);
   return {{-dot(spin, imaginary) / 2, rate[0], rate[1], rate[2]}};
@@ -63,7 +63,7 @@ class ConstrainedSystem {
     for (std::size_t i = 0; i < n; ++i) put(rate_of_orientation(orientation_[i], spin_[i]));
     for (std::size_t i = 0; i < n; ++i) put(S(torque_[i] * world_->inverse_inertia[i]));
   }
-  X pack() const {
+  [[nodiscard]] X pack() const {
     X state;
     const auto add = [&](const auto& vectors) {
       for (const auto& vector : vectors) state.insert(state.end(), vector.components.begin(), vector.components.end());
@@ -78,10 +78,14 @@ class ConstrainedSystem {
     auto from = state.begin();
     take(from, x), take(from, v);
   }
-  const PersistentContacts<Real, Dim>& held() const { return held_; }
+  [[nodiscard]] const PersistentContacts<Real, Dim>& held() const { return held_; }
   /// Of the state: behind them stand impulses and companions.
-  std::size_t size_of_bodies() const { return x_.size() * (2 * V::size() + (turns_ ? O::size() + S::size() : 0)); }
-  Real impulse(const X& state, std::size_t k) const { return *(state.end() - tail() + static_cast<std::ptrdiff_t>(k)); }
+  [[nodiscard]] std::size_t size_of_bodies() const {
+    return x_.size() * (2 * V::size() + (turns_ ? O::size() + S::size() : 0));
+  }
+  [[nodiscard]] Real impulse(const X& state, std::size_t k) const {
+    return *(state.end() - tail() + static_cast<std::ptrdiff_t>(k));
+  }
   /// The end of a flight of this duration.
   void store(const X& state, World<Real, Dim>& world, Companions<Real, Dim>* companions, const Real& duration) const {
     auto from = state.begin();
@@ -96,7 +100,7 @@ class ConstrainedSystem {
     if (companions) std::copy(from + static_cast<std::ptrdiff_t>(held_.size()), state.end(), companions->state.begin());
   }
   /// Forces and torques, but for those of contacts, at the world as it is.
-  std::pair<std::span<const V>, std::span<const S>> loads(Real t) {
+  [[nodiscard]] std::pair<std::span<const V>, std::span<const S>> loads(Real t) {
     all_forces(t, world_->position, world_->velocity,
                companions_ ? std::span<const Real>(companions_->state) : std::span<const Real>());
     return {f_, torque_};
@@ -104,7 +108,7 @@ class ConstrainedSystem {
 
  private:
   /// Of what stands behind the bodies.
-  std::ptrdiff_t tail() const { return static_cast<std::ptrdiff_t>(held_.size() + rate_.size()); }
+  [[nodiscard]] std::ptrdiff_t tail() const { return static_cast<std::ptrdiff_t>(held_.size() + rate_.size()); }
   template <class Vectors>
   static void take(typename X::const_iterator& from, Vectors& vectors) {
     for (auto& vector : vectors) {

@@ -70,7 +70,7 @@ class ContactSteps {
     if (by_forces > Real(0)) tolerance_ = std::clamp(Real(change_ / (10 * by_forces)), loosest / 1000, loosest);
   }
 
-  std::span<const Pushed> pushed() const { return pushed_; }
+  [[nodiscard]] std::span<const Pushed> pushed() const { return pushed_; }
   /// What pushed other bodies, which have the numbers `to` here.
   void take_over(const ContactSteps& other, std::span<const std::uint32_t> to) {
     for (const Pushed& one : other.pushed_)
@@ -78,15 +78,15 @@ class ContactSteps {
     std::ranges::sort(pushed_, {}, &Pushed::pair);
   }
   /// Of the last step: the greatest speed, and the greatest change of a velocity or of a spin times the radius.
-  Real fastest() const { return fastest_; }
-  Real greatest_change() const { return change_; }
+  [[nodiscard]] Real fastest() const { return fastest_; }
+  [[nodiscard]] Real greatest_change() const { return change_; }
 
   template <class Archive>
   void transfer(Archive& archive) {
     archive(pushed_), archive(tolerance_);
   }
   /// What was read makes sense, of this world.
-  bool is_of(const World<Real, Dim>& world) const {
+  [[nodiscard]] bool is_of(const World<Real, Dim>& world) const {
     return tolerance_ > Real(0) && tolerance_ <= loosest &&
            std::ranges::all_of(pushed_, [&](const Pushed& one) { return one.pair.is_of(world); });
   }

@@ -70,7 +70,7 @@ inline constexpr auto motion_transitions = [] {
 }();
 
 /// Where an event leads; an event that a state cannot have ends the call.
-constexpr MotionState next_state(MotionState state, MotionEvent event) {
+[[nodiscard]] constexpr MotionState next_state(MotionState state, MotionEvent event) {
   const auto is_meant = [&](const MotionTransition& one) { return one.from == state && one.event == event; };
   const auto found = std::ranges::find_if(motion_transitions, is_meant);
   return found != motion_transitions.end() ? found->to : MotionState::ended;

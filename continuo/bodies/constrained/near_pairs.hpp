@@ -12,7 +12,7 @@ namespace continuo {
 
 /// The longest way of a body from where it was before.
 template <class Real, int Dim>
-Real farthest_way(const World<Real, Dim>& world, const std::vector<Vector<Real, Dim>>& before) {
+[[nodiscard]] Real farthest_way(const World<Real, Dim>& world, const std::vector<Vector<Real, Dim>>& before) {
   using std::sqrt;
   Real farthest(0);
   for (std::size_t i = 0; i < before.size(); ++i)
@@ -35,7 +35,7 @@ class NearPairs {
     pairs_ = pairs_within(world, reach_);
   }
   /// In order.
-  std::span<const Touching> pairs() const { return pairs_; }
+  [[nodiscard]] std::span<const Touching> pairs() const { return pairs_; }
 
  private:
   std::vector<Touching> pairs_;

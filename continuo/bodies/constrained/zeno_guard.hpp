@@ -10,7 +10,7 @@ namespace continuo {
 /// follow; then flights are tried again, ever more rarely while that is in vain.
 class ZenoGuard {
  public:
-  bool is_in_steps() const { return steps_ > 0; }
+  [[nodiscard]] bool is_in_steps() const { return steps_ > 0; }
   void has_stepped() { --steps_; }
   template <class Real>
   void has_flown(const Real& duration, const Real& step) {
@@ -27,7 +27,7 @@ class ZenoGuard {
     count_ = full - 4;
   }
 
-  bool is_possible() const {
+  [[nodiscard]] bool is_possible() const {
     return steps_ >= 0 && steps_ <= most && next_ >= fewest && next_ <= most && count_ >= 0 && count_ < full;
   }
   template <class Archive>

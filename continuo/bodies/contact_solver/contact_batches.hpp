@@ -41,7 +41,7 @@ struct StoredImpulses {
   LargeArray<BatchImpulses<Real, Dim>> impulses{};
   LargeArray<SpecialMaterialBatch<Real, Dim>> special{};  // empty where all are alike, and neither bounce nor resist
 
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     return impulses.capacity() * sizeof(impulses[0]) + special.capacity() * sizeof(special[0]);
   }
 };
@@ -68,9 +68,9 @@ struct ColouredBatches : StoredImpulses<Real, Dim> {
 
   /// What more than 63 neighbours leave over goes to the last colour, one contact a batch: these do share bodies, and
   /// are for one after the other.
-  static bool is_shared(std::size_t colour) { return colour == most_colours - 1; }
+  [[nodiscard]] static bool is_shared(std::size_t colour) { return colour == most_colours - 1; }
 
-  SpecialMaterialBatch<Real, Dim>* special_material_of(std::size_t batch) {
+  [[nodiscard]] SpecialMaterialBatch<Real, Dim>* special_material_of(std::size_t batch) {
     return special.empty() ? nullptr : &special[batch];
   }
 
@@ -108,7 +108,7 @@ struct ColouredBatches : StoredImpulses<Real, Dim> {
     for (std::size_t g = 0; g < groups.size(); ++g) clear_spare(g, blocks.stand_ins_of(g), bodies);
     count = {};
   }
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     return StoredImpulses<Real, Dim>::memory() + before.memory() + batches.capacity() * sizeof(batches[0]) +
            bins.capacity() * sizeof(bins[0]) + groups.capacity() * sizeof(groups[0]);
   }

@@ -24,7 +24,7 @@ struct Softness {
 
 /// `hertz` the frequency of the contact, `damping` its ratio z, `h` the substep.
 template <class Real>
-Softness<Real> softness(const Real& hertz, const Real& damping, const Real& h) {
+[[nodiscard]] Softness<Real> softness(const Real& hertz, const Real& damping, const Real& h) {
   const Real w = 2 * std::numbers::pi_v<Real> * hertz, a1 = 2 * damping + h * w, a2 = h * w * a1;
   return {w / a1, a2 / (1 + a2), 1 / (1 + a2)};
 }

@@ -30,9 +30,9 @@ class Disturbances {
     halves_[body / blocks_.half].now |= 1u << blocks_.bin_of(body % blocks_.half);
   }
   /// The last sweep that disturbed it; 0: none in this substep.
-  std::uint8_t sweep_of(std::uint32_t body) const { return sweep_[body]; }
+  [[nodiscard]] std::uint8_t sweep_of(std::uint32_t body) const { return sweep_[body]; }
   /// Those of the last sweep and of this one among the bodies of a group, as `ContactBlocks::bit_of` has them.
-  std::uint64_t bins(std::size_t group) const {
+  [[nodiscard]] std::uint64_t bins(std::size_t group) const {
     if (group == blocks_.rest()) return ~std::uint64_t{0};
     const Half* half = &halves_[blocks_.first_half(group)];
     return half[0].any() | std::uint64_t{half[1].any()} << 32;
@@ -48,19 +48,21 @@ class Disturbances {
     for (std::size_t half = 2 * block; half < 2 * block + 2; ++half) halves_[half] = {halves_[half].now, 0};
   }
   /// Whether this sweep disturbed anything.
-  bool any_now() const {
+  [[nodiscard]] bool any_now() const {
     return std::ranges::any_of(halves_, [](const Half& half) { return half.now != 0; });
   }
   /// Whether there is anything in a half, or in the one behind it.
-  bool any_from(std::size_t half) const { return halves_[half].any() != 0 || halves_[half + 1].any() != 0; }
+  [[nodiscard]] bool any_from(std::size_t half) const {
+    return halves_[half].any() != 0 || halves_[half + 1].any() != 0;
+  }
 
-  std::size_t memory() const { return sweep_.capacity(); }
+  [[nodiscard]] std::size_t memory() const { return sweep_.capacity(); }
 
  private:
   struct Half {
     std::uint32_t last = 0, now = 0;  // bins
 
-    std::uint32_t any() const { return last | now; }
+    [[nodiscard]] std::uint32_t any() const { return last | now; }
   };
 
   ContactBlocks blocks_{};

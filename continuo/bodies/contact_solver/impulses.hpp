@@ -13,16 +13,16 @@
 namespace continuo {
 
 template <class Real>
-ContactLanes<Real> inverse_or_zero(const ContactLanes<Real>& x) {
+[[nodiscard]] ContactLanes<Real> inverse_or_zero(const ContactLanes<Real>& x) {
   return select(x > ContactLanes<Real>(Real(0)), ContactLanes<Real>(Real(1)) / x, ContactLanes<Real>(Real(0)));
 }
 template <class Real>
-ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLanes<Real>& b) {
+[[nodiscard]] ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLanes<Real>& b) {
   return select(b > ContactLanes<Real>(Real(0)), min(a, b), a);  // a wall has none
 }
 /// A wall has neither a radius nor a spin, and any radius will do.
 template <ContactKind kind, class Real>
-ContactLanes<Real> other_radius(const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b) {
+[[nodiscard]] ContactLanes<Real> other_radius(const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b) {
   return kind == ContactKind::with_wall ? radius_a : radius_b;
 }
 
@@ -56,7 +56,7 @@ void add_spin(LaneMotions<Real, 3>& a, LaneMotions<Real, 3>& b, const Vector<Con
 
 /// `impulse` no longer than `most`.
 template <class Number, int Size>
-Vector<Number, Size> clamped(const Vector<Number, Size>& impulse, const Number& most) {
+[[nodiscard]] Vector<Number, Size> clamped(const Vector<Number, Size>& impulse, const Number& most) {
   using std::sqrt;
   const Number square = squared(impulse);
   return impulse * select(square > most * most, most / sqrt(square), Number(1));
@@ -64,9 +64,9 @@ Vector<Number, Size> clamped(const Vector<Number, Size>& impulse, const Number& 
 /// `impulse`, its part across the normal no longer than `most`; what lies along that, in space, resists spinning, and
 /// stays.
 template <class Real, int Dim>
-Vector<ContactLanes<Real>, Dim> clamped_across(const Vector<ContactLanes<Real>, Dim>& impulse,
-                                               const Vector<ContactLanes<Real>, Dim>& normal,
-                                               const ContactLanes<Real>& most) {
+[[nodiscard]] Vector<ContactLanes<Real>, Dim> clamped_across(const Vector<ContactLanes<Real>, Dim>& impulse,
+                                                             const Vector<ContactLanes<Real>, Dim>& normal,
+                                                             const ContactLanes<Real>& most) {
   using std::sqrt;
   using L = ContactLanes<Real>;
   if constexpr (Dim == 2) return clamped(impulse, most);

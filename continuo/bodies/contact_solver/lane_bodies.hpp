@@ -29,7 +29,7 @@ struct alignas(ContactLanes<Real>) StoredLanes {
   }
 };
 template <class Real, int Size>
-Vector<ContactLanes<Real>, Size> loaded(const Vector<StoredLanes<Real>, Size>& stored) {
+[[nodiscard]] Vector<ContactLanes<Real>, Size> loaded(const Vector<StoredLanes<Real>, Size>& stored) {
   Vector<ContactLanes<Real>, Size> v;
   for (std::size_t axis = 0; axis < v.size(); ++axis) v[axis] = stored[axis];
   return v;
@@ -46,13 +46,13 @@ using LaneBatch = xsimd::make_sized_batch_t<Real, lanes_at_once<Real>>;
 
 /// Rows become columns: two halves and again two halves for four, one for two.
 template <class Batch>
-std::array<Batch, 4> transposed(const std::array<Batch, 4>& a) {
+[[nodiscard]] std::array<Batch, 4> transposed(const std::array<Batch, 4>& a) {
   const Batch p = xsimd::zip_lo(a[0], a[2]), q = xsimd::zip_hi(a[0], a[2]);
   const Batch r = xsimd::zip_lo(a[1], a[3]), s = xsimd::zip_hi(a[1], a[3]);
   return {xsimd::zip_lo(p, r), xsimd::zip_hi(p, r), xsimd::zip_lo(q, s), xsimd::zip_hi(q, s)};
 }
 template <class Batch>
-std::array<Batch, 2> transposed(const std::array<Batch, 2>& a) {
+[[nodiscard]] std::array<Batch, 2> transposed(const std::array<Batch, 2>& a) {
   return {xsimd::zip_lo(a[0], a[1]), xsimd::zip_hi(a[0], a[1])};
 }
 
@@ -60,7 +60,7 @@ std::array<Batch, 2> transposed(const std::array<Batch, 2>& a) {
 
 /// The four numbers of every lane's body, by number: `quad_of(i)` is where those of body i lie.
 template <class Real, class QuadOf>
-std::array<ContactLanes<Real>, 4> load_quads(const LaneIndices<Real>& bodies, const QuadOf& quad_of) {
+[[nodiscard]] std::array<ContactLanes<Real>, 4> load_quads(const LaneIndices<Real>& bodies, const QuadOf& quad_of) {
   constexpr std::size_t width = lanes_at_once<Real>;
   using Batch = detail::LaneBatch<Real>;
   std::array<ContactLanes<Real>, 4> result;
@@ -93,7 +93,8 @@ struct LanePlaces {
   ContactLanes<Real> radius;
 };
 template <class Real, int Dim>
-LanePlaces<Real, Dim> load_places(const SolverBodies<Real, Dim>& bodies, const LaneIndices<Real>& numbers) {
+[[nodiscard]] LanePlaces<Real, Dim> load_places(const SolverBodies<Real, Dim>& bodies,
+                                                const LaneIndices<Real>& numbers) {
   const auto quads =
       load_quads<Real>(numbers, [&](std::uint32_t i) -> const Quad<Real>& { return bodies.place[i].x_and_radius; });
   return {vector_of<Dim>(quads), quads[3]};
@@ -107,7 +108,8 @@ struct LaneMotions {
   ContactLanes<Real> mobility;  // of the rim: radius^2 over the moment of inertia
 };
 template <class Real, int Dim>
-LaneMotions<Real, Dim> load_motions(const SolverBodies<Real, Dim>& bodies, const LaneIndices<Real>& numbers) {
+[[nodiscard]] LaneMotions<Real, Dim> load_motions(const SolverBodies<Real, Dim>& bodies,
+                                                  const LaneIndices<Real>& numbers) {
   const auto linear =
       load_quads<Real>(numbers, [&](std::uint32_t i) -> const Quad<Real>& { return bodies.motion[i].linear; });
   const auto rim =

@@ -24,8 +24,9 @@ void mark_touched(const ContactBatch<Real, Dim>& batch, const BatchImpulses<Real
 }
 /// 1 in the lanes of bodies that the last sweep, or this one, disturbed.
 template <class Real, int Dim>
-std::array<Real, lanes_at_once<Real>> disturbed_lanes(const ContactBatch<Real, Dim>& batch,
-                                                      const SolverBodies<Real, Dim>& bodies, std::uint8_t sweep) {
+[[nodiscard]] std::array<Real, lanes_at_once<Real>> disturbed_lanes(const ContactBatch<Real, Dim>& batch,
+                                                                    const SolverBodies<Real, Dim>& bodies,
+                                                                    std::uint8_t sweep) {
   std::array<Real, lanes_at_once<Real>> is{};
   const Disturbances& disturbances = bodies.disturbances;
   for (std::size_t lane = 0; lane < is.size(); ++lane)

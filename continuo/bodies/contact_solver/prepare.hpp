@@ -18,7 +18,8 @@ struct PreparedContacts {
 };
 
 template <ContactKind kind, class Real, int Dim>
-PreparedContacts<Real, Dim> prepare(ContactBatch<Real, Dim>& batch, const SolverBodies<Real, Dim>& bodies) {
+[[nodiscard]] PreparedContacts<Real, Dim> prepare(ContactBatch<Real, Dim>& batch,
+                                                  const SolverBodies<Real, Dim>& bodies) {
   using L = ContactLanes<Real>;
   using std::sqrt;
   const auto place_a = load_places(bodies, batch.a), place_b = load_places(bodies, batch.b);

@@ -17,13 +17,11 @@ namespace continuo {
 /// that have touched since it began: in the end it may be slower than an impact is, and then nothing would hold them
 /// apart. What has struck begins so far behind where it did, perhaps, that it comes from the other side of the other.
 template <class Real, int Dim>
-typename ContactLanes<Real>::Mask is_for_impacts(const ContactBatch<Real, Dim>& batch,
-                                                 const ContactLanes<Real>& restitution,
-                                                 const SolverBodies<Real, Dim>& bodies,
-                                                 const ContactLanes<Real>& separation,
-                                                 const ContactLanes<Real>& parting,
-                                                 const typename ContactLanes<Real>::Mask& parts_in_the_end,
-                                                 const ContactLanes<Real>& radius, const ContactStep<Real>& step) {
+[[nodiscard]] typename ContactLanes<Real>::Mask is_for_impacts(
+    const ContactBatch<Real, Dim>& batch, const ContactLanes<Real>& restitution, const SolverBodies<Real, Dim>& bodies,
+    const ContactLanes<Real>& separation, const ContactLanes<Real>& parting,
+    const typename ContactLanes<Real>::Mask& parts_in_the_end, const ContactLanes<Real>& radius,
+    const ContactStep<Real>& step) {
   using L = ContactLanes<Real>;
   const L zero(Real(0));
   if (!step.may_strike) return typename L::Mask(false);

@@ -40,9 +40,9 @@ struct SolvedImpulses {
 
 /// `inverse`: 1/m_a + 1/m_b. Never below 0: a contact does not pull.
 template <ContactPass pass, class Real>
-ContactLanes<Real> normal_impulse(const ContactLanes<Real>& so_far, const ContactLanes<Real>& speed,
-                                  const ContactLanes<Real>& separation, const ContactLanes<Real>& inverse,
-                                  const ContactStep<Real>& step) {
+[[nodiscard]] ContactLanes<Real> normal_impulse(const ContactLanes<Real>& so_far, const ContactLanes<Real>& speed,
+                                                const ContactLanes<Real>& separation, const ContactLanes<Real>& inverse,
+                                                const ContactStep<Real>& step) {
   using L = ContactLanes<Real>;
   const L zero(Real(0)), one(Real(1));
   const auto is_open = separation > zero;

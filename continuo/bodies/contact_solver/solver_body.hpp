@@ -33,7 +33,7 @@ struct alignas(4 * sizeof(Real)) BodyPlace {
 };
 
 template <int Size, class Real>
-Vector<Real, Size> vector_of(const Quad<Real>& quad) {
+[[nodiscard]] Vector<Real, Size> vector_of(const Quad<Real>& quad) {
   Vector<Real, Size> v;
   for (std::size_t axis = 0; axis < v.size(); ++axis) v[axis] = quad[axis];
   return v;
@@ -58,7 +58,7 @@ struct SolverBodies {
   ContactBlocks blocks{};
   std::size_t bodies = 0;
 
-  std::size_t size() const { return bodies; }
+  [[nodiscard]] std::size_t size() const { return bodies; }
   void resize(std::size_t count, std::size_t walls, const ContactBlocks& in_blocks) {
     blocks = in_blocks;
     const std::size_t all = count + walls + stand_ins * blocks.count;
@@ -69,31 +69,31 @@ struct SolverBodies {
     motion.assign(all, {});
     place.assign(all, {});
   }
-  std::uint32_t wall(std::size_t number) const { return static_cast<std::uint32_t>(size() + number); }
+  [[nodiscard]] std::uint32_t wall(std::size_t number) const { return static_cast<std::uint32_t>(size() + number); }
   /// Two for each lane of a batch, for each block; they are apart, have mass, and never move.
   static constexpr std::size_t stand_ins = 2 * lanes_at_once<Real>;
-  std::uint32_t stand_in(std::size_t block, std::size_t number) const {
+  [[nodiscard]] std::uint32_t stand_in(std::size_t block, std::size_t number) const {
     return static_cast<std::uint32_t>(motion.size() - stand_ins * (block + 1) + number);
   }
 
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     return motion.capacity() * sizeof(motion[0]) + place.capacity() * sizeof(place[0]) + touched.capacity() +
            disturbances.memory() + impacts.capacity() * sizeof(impacts[0]) + accelerations.capacity() * sizeof(V);
   }
 
-  V x(std::size_t k) const { return vector_of<Dim>(place[k].x_and_radius); }
-  V v(std::size_t k) const { return vector_of<Dim>(motion[k].linear); }
-  Real radius(std::size_t k) const { return place[k].x_and_radius[3]; }
-  Real inverse_mass(std::size_t k) const { return motion[k].linear[3]; }
-  bool moves(std::size_t k) const { return inverse_mass(k) > Real(0); }
-  bool all_finite() const {
+  [[nodiscard]] V x(std::size_t k) const { return vector_of<Dim>(place[k].x_and_radius); }
+  [[nodiscard]] V v(std::size_t k) const { return vector_of<Dim>(motion[k].linear); }
+  [[nodiscard]] Real radius(std::size_t k) const { return place[k].x_and_radius[3]; }
+  [[nodiscard]] Real inverse_mass(std::size_t k) const { return motion[k].linear[3]; }
+  [[nodiscard]] bool moves(std::size_t k) const { return inverse_mass(k) > Real(0); }
+  [[nodiscard]] bool all_finite() const {
     Real sum(0);
     for (std::size_t k = 0; k < size(); ++k)
       for (std::size_t axis = 0; axis < 3; ++axis)
         sum += Real(0) * (place[k].x_and_radius[axis] + motion[k].linear[axis] + motion[k].rim[axis]);
     return sum == Real(0);
   }
-  V acceleration(std::size_t k) const {
+  [[nodiscard]] V acceleration(std::size_t k) const {
     if (!accelerations.empty()) return accelerations[k];
     return moves(k) ? gravity : V{};
   }

@@ -30,10 +30,10 @@ void resist_rolling(SpecialMaterialBatch<Real, Dim>& special, const ContactLanes
 /// the impulse of the last substep. If each substep began with none, what such a torque holds would turn a little in
 /// every one: a pile would creep by a millimetre in a second, and let go of a ball now and then for ever.
 template <class Real>
-ContactLanes<Real> resist_spinning(const ContactLanes<Real>& before, const ContactLanes<Real>& force,
-                                   const Vector<ContactLanes<Real>, 3>& normal, LaneMotions<Real, 3>& a,
-                                   LaneMotions<Real, 3>& b, const ContactLanes<Real>& radius_a,
-                                   const ContactLanes<Real>& radius_b) {
+[[nodiscard]] ContactLanes<Real> resist_spinning(const ContactLanes<Real>& before, const ContactLanes<Real>& force,
+                                                 const Vector<ContactLanes<Real>, 3>& normal, LaneMotions<Real, 3>& a,
+                                                 LaneMotions<Real, 3>& b, const ContactLanes<Real>& radius_a,
+                                                 const ContactLanes<Real>& radius_b) {
   using L = ContactLanes<Real>;
   const L stops = dot(a.rim * radius_b - b.rim * radius_a, normal) * max(radius_a, radius_b) *
                   inverse_or_zero<Real>(a.mobility * radius_b * radius_b + b.mobility * radius_a * radius_a);

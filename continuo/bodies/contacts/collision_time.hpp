@@ -16,7 +16,7 @@ namespace detail {
 /// Whether two that touch approach: by more than rounding makes of a motion along each other, which would be found
 /// again and again. What is left out parts after b^2 / |rate|^2, less than an ulp of an ulp deeper.
 template <class Real, int Dim>
-bool approaches(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate) {
+[[nodiscard]] bool approaches(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate) {
   constexpr Real tiny = 8 * std::numeric_limits<Real>::epsilon();
   const Real b = dot(apart, rate);
   return b < Real(0) && b * b > tiny * tiny * squared(apart) * squared(rate);
@@ -29,7 +29,7 @@ bool approaches(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate) {
 /// that leaves two spheres an ulp inside each other does no harm (M. Bannerman, S. Strobl, A. Formella, T. Poschel,
 /// Comp. Part. Mech. 1 (2014) 191-198).
 template <class Real, int Dim>
-Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate, const Real& reach) {
+[[nodiscard]] Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate, const Real& reach) {
   using std::sqrt;
   constexpr Real never = std::numeric_limits<Real>::infinity();
   const Real b = dot(apart, rate);
@@ -43,8 +43,8 @@ Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate
 /// The same where the point also accelerates, within `horizon`; infinity where it does not touch by then. |apart + rate
 /// t + acceleration t^2 / 2|^2 - reach^2 is a polynomial of degree 4, whose roots the Bernstein basis isolates.
 template <class Real, int Dim>
-Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate, const Vector<Real, Dim>& acceleration,
-                   const Real& reach, const Real& horizon) {
+[[nodiscard]] Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate,
+                                 const Vector<Real, Dim>& acceleration, const Real& reach, const Real& horizon) {
   constexpr Real never = std::numeric_limits<Real>::infinity();
   const auto gap = [&](const Real& t) {
     return squared(apart + rate * t + acceleration * (t * t / 2)) - reach * reach;
@@ -88,7 +88,7 @@ Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate
 /// The first t >= 0 at which a gap s that changes at speed w and acceleration a closes; infinity where it never does.
 /// A gap that is closed already counts where it closes further.
 template <class Real>
-Real time_to_close(const Real& s, const Real& w, const Real& a) {
+[[nodiscard]] Real time_to_close(const Real& s, const Real& w, const Real& a) {
   using std::sqrt;
   constexpr Real never = std::numeric_limits<Real>::infinity();
   if (s <= Real(0) && (w < Real(0) || (w == Real(0) && a < Real(0)))) return Real(0);

@@ -29,13 +29,13 @@ struct ContactDirection {
   std::size_t count = 0;
 
   void add(const End& end) { at[count++] = end; }
-  std::span<const End> ends() const { return std::span(at).first(count); }
+  [[nodiscard]] std::span<const End> ends() const { return std::span(at).first(count); }
 };
 
 /// The speed in a direction that a unit in another makes.
 template <class Real, int Dim>
-Real response(const World<Real, Dim>& world, const ContactDirection<Real, Dim>& of,
-              const ContactDirection<Real, Dim>& to) {
+[[nodiscard]] Real response(const World<Real, Dim>& world, const ContactDirection<Real, Dim>& of,
+                            const ContactDirection<Real, Dim>& to) {
   Real sum(0);
   for (const auto& e : of.ends())
     for (const auto& f : to.ends())
@@ -62,7 +62,7 @@ class ContactMatrix {
   /// contacts than bodies need leave it so: of all forces that do, a small diagonal, 1e-5 of the greatest entry there,
   /// takes the smallest. What that leaves wrong two more rounds take away: 1e-15, and no force is more than 3e5 times
   /// what it should be for what cannot be.
-  bool solve(std::vector<Real>& wanted) {
+  [[nodiscard]] bool solve(std::vector<Real>& wanted) {
     const std::size_t n = wanted.size();
     Real greatest(0);
     for (std::size_t k = 0; k < n; ++k) greatest = std::max(greatest, std::abs(values_[diagonal_[k]]));
@@ -86,10 +86,12 @@ class ContactMatrix {
   static constexpr std::size_t greatest_dense = 48;
   using Bodies = std::array<std::uint32_t, 2>;
 
-  static Bodies bodies_of(const ContactDirection<Real, Dim>& direction) {
+  [[nodiscard]] static Bodies bodies_of(const ContactDirection<Real, Dim>& direction) {
     return {direction.at[0].body, direction.at[direction.count - 1].body};
   }
-  bool is_of(const Directions& rows) const { return std::ranges::equal(rows, bodies_, {}, &ContactMatrix::bodies_of); }
+  [[nodiscard]] bool is_of(const Directions& rows) const {
+    return std::ranges::equal(rows, bodies_, {}, &ContactMatrix::bodies_of);
+  }
   void make_pattern(const World<Real, Dim>& world, const Directions& rows) {
     const std::size_t n = rows.size();
     bodies_.clear();
@@ -119,7 +121,7 @@ class ContactMatrix {
     }
   }
 
-  bool factor(const Real& more) {
+  [[nodiscard]] bool factor(const Real& more) {
     if (sparse_) {
       std::ranges::copy(values_, sparse_->values().begin());
       for (const std::size_t entry : diagonal_) sparse_->values()[entry] += static_cast<double>(more);

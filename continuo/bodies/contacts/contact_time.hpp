@@ -10,7 +10,7 @@ namespace continuo {
 
 /// A hundred-thousandth of the time in which a body falls its radius, or flies it where there is no gravity.
 template <class Real, int Dim>
-Real usual_contact_time(const World<Real, Dim>& world) {
+[[nodiscard]] Real usual_contact_time(const World<Real, Dim>& world) {
   using std::sqrt;
   Real smallest = std::numeric_limits<Real>::infinity(), fastest(0), farthest(0);
   for (std::size_t i = 0; i < world.size(); ++i) {

@@ -20,7 +20,8 @@ struct Mover {
 
 /// Velocity of b's surface relative to a's where they touch; `normal` points from a to b.
 template <class Real, int Dim>
-Vector<Real, Dim> slip_of(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b, const Vector<Real, Dim>& normal) {
+[[nodiscard]] Vector<Real, Dim> slip_of(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b,
+                                        const Vector<Real, Dim>& normal) {
   const Vector<Real, Dim> rate =
       b.velocity - turning(b.spin, normal * b.radius) - a.velocity - turning(a.spin, normal * a.radius);
   return rate - normal * dot(rate, normal);
@@ -29,8 +30,8 @@ Vector<Real, Dim> slip_of(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b, 
 /// Collides the two; gives the size of the normal impulse. They must approach. Equal masses exchange their normal
 /// speeds to the last bit where e = 1: no rounding of a quotient of masses comes in.
 template <class Real, int Dim>
-Real collide(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b, const Vector<Real, Dim>& normal,
-             const Material<Real>& material) {
+[[nodiscard]] Real collide(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b, const Vector<Real, Dim>& normal,
+                           const Material<Real>& material) {
   const Real approach = -dot(b.velocity - a.velocity, normal);
   const Real sum = a.inverse_mass + b.inverse_mass;
   const Vector<Real, Dim> slip = slip_of(a, b, normal);

@@ -18,7 +18,8 @@ namespace continuo {
 /// Changes the velocities and spins of the world until the sweeps change no speed by more than `least`, but no more
 /// often than some hundred times. Gives the normal impulses.
 template <class Real, int Dim>
-std::vector<Real> strike_together(World<Real, Dim>& world, std::span<const Touching> touching, const Real& least) {
+[[nodiscard]] std::vector<Real> strike_together(World<Real, Dim>& world, std::span<const Touching> touching,
+                                                const Real& least) {
   std::vector<std::uint32_t> bodies;
   for (const Touching& pair : touching) {
     bodies.push_back(pair.a);

@@ -43,18 +43,18 @@ struct Grip {
     holds = false;
     way_at_start = way = size > Real(0) ? load * (-1 / size) : W{};
   }
-  bool is_too_weak(const Real& press, const Real& rounding) const {
+  [[nodiscard]] bool is_too_weak(const Real& press, const Real& rounding) const {
     return holds && !(length(load) < most * press + rounding);
   }
   /// Against which it acts: where the surfaces move, and where they hardly do, where they will. Beyond the instant at
   /// which they stop it stays the same, so that nothing jumps there, in steps that go too far.
-  W direction(const Real& slow) const {
+  [[nodiscard]] W direction(const Real& slow) const {
     const Real along = dot(rate, way), speed = length(rate);
     const W ahead = rate + way * (std::abs(along) - along);
     return speed > slow ? ahead * (1 / speed) : (ahead + way * (slow - speed)) * (1 / slow);
   }
   /// Falls through 0 where it begins to hold, or holds no more.
-  Real guard(const Real& press, const Real& slow, const Real& rounding) const {
+  [[nodiscard]] Real guard(const Real& press, const Real& slow, const Real& rounding) const {
     if (!(most > Real(0))) return Real(1);
     if (holds) return most * press - length(load) + 2 * rounding;
     return is_fast ? dot(rate, way) - slow / 2 : dot(rate, way) + slow / 8;
@@ -63,11 +63,11 @@ struct Grip {
 
 /// The directions across a normal: one or two.
 template <class Real>
-std::vector<Vector<Real, 2>> across(const Vector<Real, 2>& normal) {
+[[nodiscard]] std::vector<Vector<Real, 2>> across(const Vector<Real, 2>& normal) {
   return {Vector<Real, 2>{{-normal[1], normal[0]}}};
 }
 template <class Real>
-std::vector<Vector<Real, 3>> across(const Vector<Real, 3>& normal) {
+[[nodiscard]] std::vector<Vector<Real, 3>> across(const Vector<Real, 3>& normal) {
   Vector<Real, 3> least{};  // the axis that is least along the normal
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 3; ++k)
@@ -151,21 +151,21 @@ struct PersistentContact {
     if constexpr (Dim == 3) roll.rate -= normal * dot(roll.rate, normal);
   }
 
-  bool can_roll() const { return slip.holds && roll.most > Real(0); }
+  [[nodiscard]] bool can_roll() const { return slip.holds && roll.most > Real(0); }
 
   /// A force on b, from a, and a torque over `arm` beside it: what they do to the ends.
-  ContactDirection<Real, Dim> ends(const World<Real, Dim>& world, const V& force, const S& couple) const {
+  [[nodiscard]] ContactDirection<Real, Dim> ends(const World<Real, Dim>& world, const V& force, const S& couple) const {
     ContactDirection<Real, Dim> all;
     const S twist = moment(normal, force);
     all.add({pair.a, -force, S(twist * -world.radius[pair.a] - couple * arm)});
     if (!pair.with_wall()) all.add({pair.b, force, S(twist * -world.radius[pair.b] + couple * arm)});
     return all;
   }
-  V force() const { return normal * press + slip.load; }
+  [[nodiscard]] V force() const { return normal * press + slip.load; }
 
  private:
   /// A way across the normal, as the normal has turned.
-  V carried(const V& way) const {
+  [[nodiscard]] V carried(const V& way) const {
     const V flat = way - normal * dot(way, normal);
     const Real size = length(flat);
     return size > Real(0) ? flat * (1 / size) : flat;

@@ -44,11 +44,11 @@ class PersistentContacts {
   }
 
   /// False where no set of contacts was found in which all is right.
-  bool is_found() const { return is_found_; }
-  std::size_t size() const { return held_.size(); }
+  [[nodiscard]] bool is_found() const { return is_found_; }
+  [[nodiscard]] std::size_t size() const { return held_.size(); }
   const Touching& operator[](std::size_t k) const { return held_[k].pair; }
   /// Whether spins change.
-  bool rub() const { return rubs_; }
+  [[nodiscard]] bool rub() const { return rubs_; }
 
   /// Adds to the loads what holds the contacts at x, v, spin under these loads.
   void hold(std::span<const V> x, std::span<const V> v, std::span<const S> spin, const Loads& loads) {
@@ -62,11 +62,11 @@ class PersistentContacts {
       }
     }
   }
-  Real press(std::size_t k) const { return held_[k].press; }
+  [[nodiscard]] Real press(std::size_t k) const { return held_[k].press; }
   /// Numbers of each contact that fall through 0 where it lets go, where it begins or ends to slip, and to roll. Of the
   /// last call of `hold`.
   static constexpr std::size_t guards = 3;
-  Real guard(std::size_t k, std::size_t which) const {
+  [[nodiscard]] Real guard(std::size_t k, std::size_t which) const {
     const Held& one = held_[k];
     if (which == 0) return one.press + 2 * rounding_;
     if (which == 1) return one.slip.guard(one.press, slow_, rounding_);
@@ -112,7 +112,7 @@ class PersistentContacts {
   void place(std::span<const V> x, std::span<const V> v, std::span<const S> spin) {
     for (Held& one : held_) one.place(*world_, x, v, spin);
   }
-  static Real speed_in(const Row& row, std::span<const V> v, std::span<const S> spin) {
+  [[nodiscard]] static Real speed_in(const Row& row, std::span<const V> v, std::span<const S> spin) {
     Real sum(0);
     for (const auto& end : row.ends()) sum += dot(end.force, v[end.body]) + dot(end.torque, spin[end.body]);
     return sum;
@@ -144,7 +144,7 @@ class PersistentContacts {
     }
   }
   /// Of what presses a contact by 1, with what then acts against slip and rolling.
-  Row column_of(const RowOf& of, const Row& row) const {
+  [[nodiscard]] Row column_of(const RowOf& of, const Row& row) const {
     const Held& one = held_[of.held];
     if (of.what != Holds::normal) return row;
     V force = one.normal;
@@ -156,8 +156,8 @@ class PersistentContacts {
 
   /// The rate of change, in the direction of a row, of the speed of its contact: by loads, by what bends, and against
   /// what has come about by errors.
-  Real free_rate(const RowOf& of, const Row& row, std::span<const S> spin, std::span<const V> force,
-                 std::span<const S> torque) const {
+  [[nodiscard]] Real free_rate(const RowOf& of, const Row& row, std::span<const S> spin, std::span<const V> force,
+                               std::span<const S> torque) const {
     const Held& one = held_[of.held];
     Real sum(0);
     for (const auto& end : row.ends()) {
@@ -224,7 +224,7 @@ class PersistentContacts {
     is_found_ = false;
   }
   /// Lets go what pulls, takes back what would sink in, lets move what friction cannot hold. False where all is right.
-  bool change(std::span<const V> force, std::span<const S> torque) {
+  [[nodiscard]] bool change(std::span<const V> force, std::span<const S> torque) {
     bool is_other = false;
     Real greatest(0);
     for (const Held& one : held_) greatest = std::max(greatest, one.press);
@@ -238,7 +238,7 @@ class PersistentContacts {
     }
     return is_other;
   }
-  bool change(std::size_t k, const Real& greatest, std::span<const V> force, std::span<const S> torque) {
+  [[nodiscard]] bool change(std::size_t k, const Real& greatest, std::span<const V> force, std::span<const S> torque) {
     Held& one = held_[k];
     // Whether forces would bring the two together by more than rounding: in units of forces.
     const auto returns = [&](const RowOf& of, const Real& least) {

@@ -115,17 +115,17 @@ class ProjectedGaussSeidel {
     }
   }
 
-  Moving& mover(std::size_t place) { return movers_[place]; }
-  const Moving& mover(std::size_t place) const { return movers_[place]; }
-  const std::vector<Row>& rows() const { return rows_; }
+  [[nodiscard]] Moving& mover(std::size_t place) { return movers_[place]; }
+  [[nodiscard]] const Moving& mover(std::size_t place) const { return movers_[place]; }
+  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
   /// Back to what the movers were, and no impulses.
   void restore(const std::vector<Moving>& movers) {
     movers_ = movers;
     for (Row& row : rows_) row.impulse = {};
   }
-  const std::vector<Moving>& movers() const { return movers_; }
+  [[nodiscard]] const std::vector<Moving>& movers() const { return movers_; }
   /// Twice as much.
-  Real energy() const {
+  [[nodiscard]] Real energy() const {
     Real sum(0);
     for (const Moving& one : movers_)
       if (one.inverse_mass > Real(0)) sum += squared(one.v) / one.inverse_mass + squared(one.spin) / over(one);
@@ -133,8 +133,8 @@ class ProjectedGaussSeidel {
   }
 
  private:
-  static Real over(const Moving& one) { return one.radius > Real(0) ? one.turn / one.radius : Real(0); }
-  static S across_normal(const S& spin, const V& normal) {
+  [[nodiscard]] static Real over(const Moving& one) { return one.radius > Real(0) ? one.turn / one.radius : Real(0); }
+  [[nodiscard]] static S across_normal(const S& spin, const V& normal) {
     if constexpr (Dim == 3) {
       return spin - normal * dot(spin, normal);
     } else {
@@ -155,9 +155,9 @@ class ProjectedGaussSeidel {
     a.spin -= by.roll * (row.arm * over(a));
     b.spin += by.roll * (row.arm * over(b));
   }
-  static Real square(const Real& value) { return value * value; }
+  [[nodiscard]] static Real square(const Real& value) { return value * value; }
   /// The whole impulse of one contact, for what the others do. How much it changed, as a speed squared.
-  Real set_right(Row& row) {
+  [[nodiscard]] Real set_right(Row& row) {
     const Moving &a = movers_[row.a], &b = movers_[row.b];
     V rate = b.v - a.v;
     const Real parting = dot(rate, row.normal);
@@ -185,13 +185,13 @@ class ProjectedGaussSeidel {
     return greatest;
   }
   template <class W>
-  static W limited(const W& load, const Real& most) {
+  [[nodiscard]] static W limited(const W& load, const Real& most) {
     const Real size = length(load);
     return size > most ? load * (most / size) : load;
   }
 
   /// Farther along the way so far, by as much as the last two sweeps changed against those before. Gives their size.
-  Real go_on(const Real& size_before) {
+  [[nodiscard]] Real go_on(const Real& size_before) {
     Real size(0);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const Row& row = rows_[r];

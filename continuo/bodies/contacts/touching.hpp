@@ -19,7 +19,7 @@ namespace continuo {
 struct Touching {
   static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t a = 0, b = 0, wall = no_wall;
-  bool with_wall() const { return wall != no_wall; }
+  [[nodiscard]] bool with_wall() const { return wall != no_wall; }
   friend bool operator==(const Touching&, const Touching&) = default;
   friend std::strong_ordering operator<=>(const Touching& one, const Touching& other) {
     return std::tuple(one.a, one.wall, one.b) <=> std::tuple(other.a, other.wall, other.b);
@@ -41,7 +41,7 @@ struct Touching {
 };
 
 template <class Real, int Dim>
-Real gap_of(const World<Real, Dim>& world, const Touching& at) {
+[[nodiscard]] Real gap_of(const World<Real, Dim>& world, const Touching& at) {
   if (at.with_wall()) {
     const Wall<Real, Dim> wall = facing(world.walls()[at.wall], world.position[at.a]);
     return dot(wall.normal, world.position[at.a]) - wall.offset - world.radius[at.a];
@@ -50,7 +50,7 @@ Real gap_of(const World<Real, Dim>& world, const Touching& at) {
 }
 /// From a to b, or into the wall; along the first axis where two are at one place.
 template <class Real, int Dim>
-Vector<Real, Dim> normal_of(const World<Real, Dim>& world, const Touching& at) {
+[[nodiscard]] Vector<Real, Dim> normal_of(const World<Real, Dim>& world, const Touching& at) {
   if (at.with_wall()) return -facing(world.walls()[at.wall], world.position[at.a]).normal;
   Vector<Real, Dim> n = world.position[at.b] - world.position[at.a];
   const Real distance = length(n);
@@ -59,15 +59,15 @@ Vector<Real, Dim> normal_of(const World<Real, Dim>& world, const Touching& at) {
   return n;
 }
 template <class Real, int Dim>
-Real approach_of(const World<Real, Dim>& world, const Touching& at) {
+[[nodiscard]] Real approach_of(const World<Real, Dim>& world, const Touching& at) {
   const Vector<Real, Dim> of_b = at.with_wall() ? Vector<Real, Dim>{} : world.velocity[at.b];
   return -dot(Vector<Real, Dim>(of_b - world.velocity[at.a]), normal_of(world, at));
 }
 
 /// What they do to each other, for the log of contacts.
 template <class Real, int Dim>
-ContactEvent<Real, Dim> event_of(const World<Real, Dim>& world, const Touching& at, const Real& time,
-                                 ContactChange change, const Real& impulse) {
+[[nodiscard]] ContactEvent<Real, Dim> event_of(const World<Real, Dim>& world, const Touching& at, const Real& time,
+                                               ContactChange change, const Real& impulse) {
   const Vector<Real, Dim> n = normal_of(world, at);
   return {.change = change,
           .a = world.handle(at.a),
@@ -81,7 +81,7 @@ ContactEvent<Real, Dim> event_of(const World<Real, Dim>& world, const Touching& 
 
 /// In order, all pairs that are less apart than `reach` twice over: that can meet before one has moved by it.
 template <class Real, int Dim>
-std::vector<Touching> pairs_within(const World<Real, Dim>& world, const Real& reach) {
+[[nodiscard]] std::vector<Touching> pairs_within(const World<Real, Dim>& world, const Real& reach) {
   std::vector<Touching> pairs;
   const Queries<Real, Dim> queries(world);
   for (std::uint32_t i = 0; i < world.size(); ++i) {

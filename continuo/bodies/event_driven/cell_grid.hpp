@@ -27,15 +27,15 @@ class CellGrid {
     lists_ = ShortLists(std::size_t{1} << (bits_ * Dim), bodies);
   }
 
-  Real edge() const { return edge_; }
+  [[nodiscard]] Real edge() const { return edge_; }
   /// Whether x is near enough to the origin for its digits to tell where in a cell it is.
-  bool has_cell(const Vector<Real, Dim>& x) const {
+  [[nodiscard]] bool has_cell(const Vector<Real, Dim>& x) const {
     using std::abs;
     for (std::size_t axis = 0; axis < x.size(); ++axis)
       if (!(abs(x[axis]) < edge_ * farthest)) return false;
     return true;
   }
-  Cell cell_of(const Vector<Real, Dim>& x) const {
+  [[nodiscard]] Cell cell_of(const Vector<Real, Dim>& x) const {
     using std::floor;
     Cell cell{};
     for (std::size_t axis = 0; axis < x.size(); ++axis) cell[axis] = static_cast<std::int64_t>(floor(x[axis] / edge_));
@@ -47,7 +47,7 @@ class CellGrid {
 
   /// Writes the bodies of the cells from `lower` to `upper`, both included and at most three along an axis, to `found`,
   /// which grows as needed; gives their count.
-  std::size_t gather(const Cell& lower, const Cell& upper, std::vector<std::uint32_t>& found) const {
+  [[nodiscard]] std::size_t gather(const Cell& lower, const Cell& upper, std::vector<std::uint32_t>& found) const {
     constexpr std::size_t cells = Dim == 3 ? 27 : 9;
     std::array<std::size_t, cells> lists;
     std::size_t number = 0, count = 0;
@@ -60,7 +60,7 @@ class CellGrid {
   }
 
   /// Of a cell and all its neighbours.
-  std::size_t gather_around(const Cell& cell, std::vector<std::uint32_t>& found) const {
+  [[nodiscard]] std::size_t gather_around(const Cell& cell, std::vector<std::uint32_t>& found) const {
     return gather(shifted(cell, -1), shifted(cell, 1), found);
   }
   /// Their lists lie in rows, each in a cache line or two.
@@ -72,7 +72,7 @@ class CellGrid {
   }
 
   /// Which list of the table a cell has: sorted by it, neighbours in space are neighbours in memory.
-  std::size_t list_of(const Cell& cell) const {
+  [[nodiscard]] std::size_t list_of(const Cell& cell) const {
     std::size_t list = 0;
     for (const std::int64_t coordinate : cell) list = list << bits_ | part_of(coordinate);
     return list;
@@ -81,11 +81,11 @@ class CellGrid {
  private:
   static constexpr Real farthest = Real(std::int64_t{1} << (std::numeric_limits<Real>::digits - 5));
 
-  static Cell shifted(Cell cell, std::int64_t by) {
+  [[nodiscard]] static Cell shifted(Cell cell, std::int64_t by) {
     for (std::int64_t& coordinate : cell) coordinate += by;
     return cell;
   }
-  std::size_t part_of(std::int64_t coordinate) const {
+  [[nodiscard]] std::size_t part_of(std::int64_t coordinate) const {
     return static_cast<std::size_t>(coordinate) & ((std::size_t{1} << bits_) - 1);
   }
   template <class Visit>

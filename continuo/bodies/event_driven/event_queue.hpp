@@ -40,16 +40,16 @@ class EventQueue {
   }
 
   /// The earliest time, infinity where there is none; `first` is the body it belongs to.
-  Real time() {
+  [[nodiscard]] Real time() {
     if (heap_.empty()) fill_heap();
     return heap_.empty() ? never : heap_.front().time;
   }
-  std::uint32_t first() const { return heap_.front().body; }
+  [[nodiscard]] std::uint32_t first() const { return heap_.front().body; }
 
   /// For what is wanted early. Buckets come one after the other, until they begin anew at 0; the bodies of one that is
   /// still to come are the first of `found`, as many as is given back.
-  std::uint32_t present_bucket() const { return present_; }
-  std::size_t coming(std::uint32_t bucket, std::vector<std::uint32_t>& found) const {
+  [[nodiscard]] std::uint32_t present_bucket() const { return present_; }
+  [[nodiscard]] std::size_t coming(std::uint32_t bucket, std::vector<std::uint32_t>& found) const {
     if (bucket >= buckets_.size()) return 0;
     found.resize(std::max(found.size(), std::size_t{2}));
     return buckets_.append_to(found, 0, bucket);
@@ -97,7 +97,7 @@ class EventQueue {
       later_.pop_back();
     }
   }
-  std::uint32_t place_for(const Real& time) const {
+  [[nodiscard]] std::uint32_t place_for(const Real& time) const {
     if (!(time < never)) return nowhere;
     if (!(time > begin_)) return in_heap;
     const Real at = (time - begin_) * buckets_per_time_;

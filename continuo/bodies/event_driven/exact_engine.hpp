@@ -21,16 +21,16 @@
 
 namespace continuo {
 
-inline Status cannot_continue(std::string message) {
+[[nodiscard]] inline Status cannot_continue(std::string message) {
   return {.ending = Ending::cannot_continue, .message = std::move(message)};
 }
-inline Status too_many_events() {
+[[nodiscard]] inline Status too_many_events() {
   return cannot_continue("more events than `most_events`: bodies may be caught between others");
 }
-inline Status other_bodies() {
+[[nodiscard]] inline Status other_bodies() {
   return cannot_continue("bodies have come or gone: the motion needs a `refresh`");
 }
-inline Status interrupted() {
+[[nodiscard]] inline Status interrupted() {
   return {.ending = Ending::interrupted, .message = "interrupted"};
 }
 
@@ -39,7 +39,7 @@ class ExactEngine {
  public:
   explicit ExactEngine(const ExactOptions<Real>& options) : contacts(options.contact_events) {}
   virtual ~ExactEngine() = default;
-  virtual Status advance_to(const Real& t) = 0;
+  [[nodiscard]] virtual Status advance_to(const Real& t) = 0;
   virtual void save(ByteWriter& writer) = 0;
   virtual void load(ByteReader& reader) = 0;
 
@@ -58,8 +58,8 @@ class ParabolicEngine : public ExactEngine<Real, Dim> {
  public:
   using ExactEngine<Real, Dim>::ExactEngine;
   /// No further than to where two come to lie on each other, or one meets such a sphere. Leaves the world as it is.
-  virtual Status run_to(const Real& t) = 0;
-  virtual Real now() const = 0;
+  [[nodiscard]] virtual Status run_to(const Real& t) = 0;
+  [[nodiscard]] virtual Real now() const = 0;
   /// All but what is set aside, in the world at time t, where nothing happens before.
   virtual void synchronize(const Real& t) = 0;
   /// One body in the world as it is now, and that it lies on no wall any more.
@@ -79,11 +79,11 @@ class ContactEngine : public ExactEngine<Real, Dim> {
  public:
   using ExactEngine<Real, Dim>::ExactEngine;
   /// As they are; the world stays the same one.
-  virtual std::unique_ptr<ContactEngine> clone() const = 0;
+  [[nodiscard]] virtual std::unique_ptr<ContactEngine> clone() const = 0;
   /// From here on `advance_to` ends early where a body has gone half as far from its present place, or where nothing
   /// moves any more: `is_steady`. Infinity: no more.
   virtual void keep_within(const Real& room) = 0;
-  virtual bool is_steady() const = 0;
+  [[nodiscard]] virtual bool is_steady() const = 0;
   /// What is known of contacts of other bodies: those that are here are at the places `to`; nowhere: not here.
   static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
   virtual void take_over(const ContactEngine& other, std::span<const std::uint32_t> to) = 0;
@@ -95,7 +95,7 @@ class ContactEngine : public ExactEngine<Real, Dim> {
 
 /// Whether parabolas are still within the numbers.
 template <class Real, int Dim>
-Status check_motion(const World<Real, Dim>& world) {
+[[nodiscard]] Status check_motion(const World<Real, Dim>& world) {
   for (std::size_t i = 0; i < world.size(); ++i)
     if (!is_finite(world.position[i]) || !is_finite(world.velocity[i]))
       return cannot_continue("a body's motion is no longer finite: a speed or gravity is too large for the numbers");
@@ -104,15 +104,18 @@ Status check_motion(const World<Real, Dim>& world) {
 
 /// From event to event on parabolas: event_driven.cpp.
 template <class Real, int Dim>
-std::unique_ptr<ParabolicEngine<Real, Dim>> event_driven(World<Real, Dim>& world, const ExactOptions<Real>& options);
+[[nodiscard]] std::unique_ptr<ParabolicEngine<Real, Dim>> event_driven(World<Real, Dim>& world,
+                                                                       const ExactOptions<Real>& options);
 
 /// From contact to contact on whatever paths forces make, by an error-controlled method: constrained_motion.cpp.
 template <class Real, int Dim>
-std::unique_ptr<ContactEngine<Real, Dim>> constrained_motion(World<Real, Dim>& world, const ExactOptions<Real>& options,
-                                                             Companions<Real, Dim>* companions);
+[[nodiscard]] std::unique_ptr<ContactEngine<Real, Dim>> constrained_motion(World<Real, Dim>& world,
+                                                                           const ExactOptions<Real>& options,
+                                                                           Companions<Real, Dim>* companions);
 
 /// The one, and of those that lie on each other the other: islands.cpp.
 template <class Real, int Dim>
-std::unique_ptr<ExactEngine<Real, Dim>> islands(World<Real, Dim>& world, const ExactOptions<Real>& options);
+[[nodiscard]] std::unique_ptr<ExactEngine<Real, Dim>> islands(World<Real, Dim>& world,
+                                                              const ExactOptions<Real>& options);
 
 }  // namespace continuo

@@ -30,7 +30,7 @@ void transfer_flight(Archive& archive, Flight<Real, Dim>& flight) {
 
 /// What is wrong with a flight that was read; nullptr where nothing is.
 template <class Real, int Dim>
-const char* fault_of_flight(const World<Real, Dim>& world, const Flight<Real, Dim>& flight) {
+[[nodiscard]] const char* fault_of_flight(const World<Real, Dim>& world, const Flight<Real, Dim>& flight) {
   const auto& [path, plan, turning, collisions, act] = flight;
   constexpr Real never = Plan<Real, Dim>::never;
   const auto is_number = [](const Real& value) { return value - value == Real(0); };
@@ -73,7 +73,7 @@ void save_flights(ByteWriter& writer, const Flights<Real, Dim>& flights) {
 }
 /// Into flights of the same world, that are to be sorted then. Whether they could be read.
 template <class Real, int Dim>
-bool load_flights(ByteReader& reader, Flights<Real, Dim>& flights) {
+[[nodiscard]] bool load_flights(ByteReader& reader, Flights<Real, Dim>& flights) {
   Real edge{};
   reader(edge);
   reader.expect(edge > Real(0) && edge < std::numeric_limits<Real>::infinity(), "cells of no size");

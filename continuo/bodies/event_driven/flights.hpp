@@ -25,7 +25,7 @@ namespace continuo {
 
 /// Of cells that hold about one body and are wider than any but the few large ones.
 template <class Real, int Dim>
-Real edge_of_cells(const World<Real, Dim>& world) {
+[[nodiscard]] Real edge_of_cells(const World<Real, Dim>& world) {
   const std::size_t n = world.size();
   if (n == 0) return Real(1);
   std::vector<Real> sorted = world.radius;
@@ -145,19 +145,23 @@ class Flights {
   void for_each_array(Action&& action) {
     action(paths), action(plans), action(turnings), action(collisions), action(acts);
   }
-  Flight<Real, Dim> flight(std::uint32_t i) const { return {paths[i], plans[i], turnings[i], collisions[i], acts[i]}; }
+  [[nodiscard]] Flight<Real, Dim> flight(std::uint32_t i) const {
+    return {paths[i], plans[i], turnings[i], collisions[i], acts[i]};
+  }
   void set_flight(std::uint32_t i, const Flight<Real, Dim>& to) {
     paths[i] = to.path, plans[i] = to.plan, turnings[i] = to.turning, collisions[i] = to.collisions, acts[i] = to.act;
   }
   /// Bytes that events go through.
-  std::size_t memory() const { return paths.size() * (sizeof(Path<Real, Dim>) + sizeof(Plan<Real, Dim>)); }
+  [[nodiscard]] std::size_t memory() const {
+    return paths.size() * (sizeof(Path<Real, Dim>) + sizeof(Plan<Real, Dim>));
+  }
   /// Where the body of each number is.
-  std::vector<std::uint32_t> places() const {
+  [[nodiscard]] std::vector<std::uint32_t> places() const {
     std::vector<std::uint32_t> place(plans.size());
     for (std::uint32_t k = 0; k < place.size(); ++k) place[plans[k].number] = k;
     return place;
   }
-  const Material<Real>& material(std::uint32_t i) const { return materials_[plans[i].material]; }
+  [[nodiscard]] const Material<Real>& material(std::uint32_t i) const { return materials_[plans[i].material]; }
 
   static void advance(Path<Real, Dim>& path, const V& acceleration, const Real& t) {
     const Real dt = t - path.t;
@@ -165,14 +169,14 @@ class Flights {
     path.v += acceleration * dt;
     path.t = t;
   }
-  V place_now(std::uint32_t i) const {
+  [[nodiscard]] V place_now(std::uint32_t i) const {
     Path<Real, Dim> path = paths[i];
     advance(path, plans[i].acceleration, now);
     return path.x;
   }
   void move_to_now(std::uint32_t i) { advance(paths[i], plans[i].acceleration, now); }
 
-  static bool is_support(const Plan<Real, Dim>& plan, std::uint32_t w) {
+  [[nodiscard]] static bool is_support(const Plan<Real, Dim>& plan, std::uint32_t w) {
     const auto end = plan.supports.begin() + plan.support_count;
     return std::find(plan.supports.begin(), end, w) != end;
   }
@@ -238,7 +242,7 @@ class Flights {
   }
 
  private:
-  std::size_t gather_near(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+  [[nodiscard]] std::size_t gather_near(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     std::size_t count = 0;
     if (plans[i].is_large) {
       near.resize(std::max(near.size(), paths.size()));
@@ -329,7 +333,7 @@ class Flights {
   }
   /// Whether two that fall alike approach on lines that come within reach: most neighbours do not, in no order that a
   /// processor could foresee, so that there is no branch here.
-  unsigned may_touch(const Path<Real, Dim>& me, const Path<Real, Dim>& other) const {
+  [[nodiscard]] unsigned may_touch(const Path<Real, Dim>& me, const Path<Real, Dim>& other) const {
     const Real dt = now - other.t;
     const V apart = other.x + other.v * dt + world.gravity * (dt * dt / 2) - me.x;
     const V rate = other.v + world.gravity * dt - me.v;
@@ -341,7 +345,7 @@ class Flights {
   /// Whether two that touch approach so slowly that their velocities do not tell, or that it is as good as rest: how
   /// those end that were struck together. They sink into each other by no more than the digits of places that are lost
   /// on the way.
-  bool is_rounding(const Real& approach, const Real& speeds) const {
+  [[nodiscard]] bool is_rounding(const Real& approach, const Real& speeds) const {
     return approach <= 8 * std::numeric_limits<Real>::epsilon() * std::max(speeds, slow);
   }
 
@@ -367,8 +371,8 @@ class Flights {
   }
   /// How far ahead a meeting on curved paths is looked for: until one of the two does something else, or for a time in
   /// which they could have met.
-  Real horizon(const Plan<Real, Dim>& plan, const Plan<Real, Dim>& other, const V& apart, const V& rate,
-               const V& pull) const {
+  [[nodiscard]] Real horizon(const Plan<Real, Dim>& plan, const Plan<Real, Dim>& other, const V& apart, const V& rate,
+                             const V& pull) const {
     Real end = std::min(plan.collision_time, plan.crossing_time);
     if (other.crossing_time > now) end = std::min(end, other.crossing_time);
     if (end < never) return end;
@@ -387,7 +391,7 @@ class Flights {
     plan.collisions_of_partner = collisions[j];
   }
   /// Of two partners at one instant the lower number comes first, walls before both.
-  bool gives_way(std::uint32_t partner, std::uint32_t j) const {
+  [[nodiscard]] bool gives_way(std::uint32_t partner, std::uint32_t j) const {
     return partner >= look_again || (partner < first_wall && plans[j].number < plans[partner].number);
   }
 

@@ -15,7 +15,7 @@ namespace continuo {
 inline constexpr int fewest_in_a_row = 64, most_in_a_row = 4096, most_strikes_at_once = 64;
 
 template <class Real>
-bool loses(const Material<Real>& material) {
+[[nodiscard]] bool loses(const Material<Real>& material) {
   return material.restitution < Real(1) || material.friction > Real(0);
 }
 
@@ -27,22 +27,24 @@ class InelasticCollapse {
   InelasticCollapse(bool is_heavy, const Real& contact_time) : is_heavy_(is_heavy), contact_time_(contact_time) {}
 
   /// After how many in a row it has piled up. What does not bounce at all is struck together sooner.
-  int enough(const Material<Real>& material) const {
+  [[nodiscard]] int enough(const Material<Real>& material) const {
     if (!is_heavy_ && !(material.restitution > Real(0))) return 4;
     const Real lost = 1 - material.restitution;
     return lost * most_in_a_row > Real(32) ? std::max(fewest_in_a_row, static_cast<int>(32 / lost)) : most_in_a_row;
   }
   /// With so many collisions in a row before this one.
-  bool is_piled(const Material<Real>& material, int in_a_row) const {
+  [[nodiscard]] bool is_piled(const Material<Real>& material, int in_a_row) const {
     return loses(material) && in_a_row >= enough(material);
   }
-  bool is_caught(const Material<Real>& material, const BodyPlan& plan, const Real& now) const {
+  [[nodiscard]] bool is_caught(const Material<Real>& material, const BodyPlan& plan, const Real& now) const {
     if (!loses(material)) return false;
     return is_heavy_ ? in_a_row(plan, now) >= 2 * enough(material)
                      : plan.last_collision == now && plan.strikes_at_once >= most_strikes_at_once;
   }
 
-  int in_a_row(const BodyPlan& plan, const Real& now) const { return is_soon(plan, now) ? plan.in_a_row : 0; }
+  [[nodiscard]] int in_a_row(const BodyPlan& plan, const Real& now) const {
+    return is_soon(plan, now) ? plan.in_a_row : 0;
+  }
   void count(BodyPlan& plan, const Real& now, bool is_strike) const {
     plan.in_a_row = static_cast<std::uint16_t>(is_soon(plan, now) ? std::min(plan.in_a_row + 1, 2 * most_in_a_row) : 0);
     const int strikes = plan.last_collision == now ? plan.strikes_at_once : 0;
@@ -51,7 +53,7 @@ class InelasticCollapse {
   }
 
  private:
-  bool is_soon(const BodyPlan& plan, const Real& now) const {
+  [[nodiscard]] bool is_soon(const BodyPlan& plan, const Real& now) const {
     return plan.last_collision == now || now - plan.last_collision < contact_time_;
   }
 

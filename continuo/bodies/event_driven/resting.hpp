@@ -37,7 +37,8 @@ enum class Rest : std::uint8_t { flies, lies, lies_in_groove };
 /// Lets body i rest on wall `hit`, which it has just met, and on whatever others it touches, where it would leave none
 /// of them for `contact_time`. In a groove it only moves along them then.
 template <class Real, int Dim>
-Rest rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t hit, const Real& contact_time) {
+[[nodiscard]] Rest rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t hit,
+                                 const Real& contact_time) {
   using V = Vector<Real, Dim>;
   const World<Real, Dim>& world = flights.world;
   Path<Real, Dim>& path = flights.paths[i];

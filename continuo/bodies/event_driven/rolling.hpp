@@ -21,8 +21,8 @@ struct Course {
 /// Of w' = pull - resistance * w / |w|, w not 0. Where the pull turns w (on a slope in space), the direction is that of
 /// the middle of a time in which it turns by no more than a thousandth: of second order, errors of 1e-7 a radian.
 template <class Real, int Dim>
-Course<Real, Dim> course_of(const Vector<Real, Dim>& w, const Vector<Real, Dim>& pull, const Real& resistance,
-                            const Real& shortest) {
+[[nodiscard]] Course<Real, Dim> course_of(const Vector<Real, Dim>& w, const Vector<Real, Dim>& pull,
+                                          const Real& resistance, const Real& shortest) {
   const Real size = length(w);
   Course<Real, Dim> course{.direction = w * (1 / size)};
   const Real along = dot(pull, course.direction), across = length(pull - course.direction * along);

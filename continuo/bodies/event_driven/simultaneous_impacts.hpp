@@ -55,7 +55,7 @@ class SimultaneousImpacts {
 
   /// Impulses after which no two approach by more than `least`: those along the normals, pair by pair. The members are
   /// to be at the present.
-  std::vector<Real> strike(World<Real, Dim>& world, Flights<Real, Dim>& flights, const Real& least) {
+  [[nodiscard]] std::vector<Real> strike(World<Real, Dim>& world, Flights<Real, Dim>& flights, const Real& least) {
     for (const std::uint32_t k : members_) {
       const std::uint32_t number = flights.plans[k].number;
       world.position[number] = flights.paths[k].x, world.velocity[number] = flights.paths[k].v;
@@ -75,14 +75,14 @@ class SimultaneousImpacts {
   }
 
   /// By places.
-  std::span<const std::uint32_t> members() const { return members_; }
+  [[nodiscard]] std::span<const std::uint32_t> members() const { return members_; }
   /// Those whose motion the last strike changed.
-  std::span<const std::uint32_t> struck() const { return struck_; }
+  [[nodiscard]] std::span<const std::uint32_t> struck() const { return struck_; }
   /// By numbers, in order.
-  std::span<const Touching> pairs() const { return pairs_; }
+  [[nodiscard]] std::span<const Touching> pairs() const { return pairs_; }
 
  private:
-  static Real rounding(const V& x, const Real& radius) {
+  [[nodiscard]] static Real rounding(const V& x, const Real& radius) {
     return 64 * std::numeric_limits<Real>::epsilon() * (length(x) + radius);
   }
   void add(std::uint32_t i) {

@@ -65,7 +65,7 @@ class BlockWriter {
   }
   void flush() { out_.flush(); }
   /// How much has been written.
-  std::uint64_t position() const { return at_; }
+  [[nodiscard]] std::uint64_t position() const { return at_; }
 
  private:
   std::ostream& out_;
@@ -80,7 +80,7 @@ struct Block {
 /// None at the end, or where the file was cut off; where the block is another than was written, or of a kind after
 /// `last`, the reader says so.
 template <class Kind>
-std::optional<Block<Kind>> next_block(ByteReader& file, Kind last) {
+[[nodiscard]] std::optional<Block<Kind>> next_block(ByteReader& file, Kind last) {
   if (!file.ok() || file.left() == 0) return std::nullopt;
   const ByteReader before = file;
   Block<Kind> block;

@@ -69,8 +69,8 @@ class ByteWriter {
     const_cast<T&>(value).transfer(*this);  // a writer only reads it
   }
 
-  const Bytes& bytes() const { return bytes_; }
-  Bytes take() { return std::move(bytes_); }
+  [[nodiscard]] const Bytes& bytes() const { return bytes_; }
+  [[nodiscard]] Bytes take() { return std::move(bytes_); }
 
  private:
   void put(std::uint64_t bits, std::size_t size);
@@ -117,27 +117,27 @@ class ByteReader {
     value.transfer(*this);
   }
 
-  bool ok() const { return error_.empty(); }
+  [[nodiscard]] bool ok() const { return error_.empty(); }
   /// Unreadable, with the place of the first fault; a success where there is none.
   [[nodiscard]] Status status() const {
     return ok() ? Status{} : Status{.ending = Ending::unreadable, .message = error_};
   }
-  std::size_t position() const { return at_; }
-  std::size_t left() const { return bytes_.size() - at_; }
+  [[nodiscard]] std::size_t position() const { return at_; }
+  [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
   /// The first fault counts.
   void fail(const std::string& what);
   void expect(bool is_right, const char* what) {
     if (!is_right) fail(what);
   }
   void expect_end() { expect(left() == 0, "bytes after the end"); }
-  std::span<const std::byte> take(std::uint64_t count);
+  [[nodiscard]] std::span<const std::byte> take(std::uint64_t count);
 
  private:
-  bool takes(std::uint64_t count);
+  [[nodiscard]] bool takes(std::uint64_t count);
   /// Of the next bytes; 0 where there are none.
-  std::uint64_t get(std::size_t size);
+  [[nodiscard]] std::uint64_t get(std::size_t size);
   /// An element has one byte at least.
-  std::uint64_t list_size();
+  [[nodiscard]] std::uint64_t list_size();
 
   std::span<const std::byte> bytes_;
   std::size_t at_ = 0;
@@ -145,6 +145,6 @@ class ByteReader {
 };
 
 /// FNV-1a, 64 bits (G. Fowler, L. Noll, K.-P. Vo): finds what went wrong by accident.
-std::uint64_t checksum(std::span<const std::byte> bytes);
+[[nodiscard]] std::uint64_t checksum(std::span<const std::byte> bytes);
 
 }  // namespace continuo

@@ -24,7 +24,7 @@ struct LargePages {
   template <class Other>
   LargePages(const LargePages<Other>&) {}
 
-  T* allocate(std::size_t count) {
+  [[nodiscard]] T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     void* memory = ::operator new(bytes, alignment(bytes));
 #ifdef __linux__

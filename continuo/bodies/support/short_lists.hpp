@@ -16,8 +16,8 @@ class ShortLists {
   ShortLists() = default;
   ShortLists(std::size_t lists, std::size_t numbers) : lists_(lists), rest_(lists, none), next_(numbers, none) {}
 
-  std::size_t size() const { return lists_.size(); }
-  bool is_empty(std::size_t at) const { return lists_[at].first == none; }
+  [[nodiscard]] std::size_t size() const { return lists_.size(); }
+  [[nodiscard]] bool is_empty(std::size_t at) const { return lists_[at].first == none; }
 
   void insert(std::size_t at, std::uint32_t number) {
     List& list = lists_[at];
@@ -53,7 +53,7 @@ class ShortLists {
 
   /// Writes the numbers of a list behind the first `count` of `found`, which grows as needed and must have room for two
   /// more; gives the new count.
-  std::size_t append_to(std::vector<std::uint32_t>& found, std::size_t count, std::size_t at) const {
+  [[nodiscard]] std::size_t append_to(std::vector<std::uint32_t>& found, std::size_t count, std::size_t at) const {
     const List list = lists_[at];
     found[count] = list.first & ~more;
     count += list.first != none;

@@ -29,8 +29,8 @@ class ThreadTeam {
       : threads_(static_cast<std::size_t>(std::max(threads, 1))), tickets_(std::make_unique<Ticket[]>(threads_)) {
     if (threads > 1) arena_ = std::make_unique<oneapi::tbb::task_arena>(threads);
   }
-  bool is_alone() const { return !arena_; }
-  std::size_t threads() const { return threads_; }
+  [[nodiscard]] bool is_alone() const { return !arena_; }
+  [[nodiscard]] std::size_t threads() const { return threads_; }
 
   /// Loops within `act` are shared out.
   template <class Act>
@@ -114,14 +114,14 @@ class ThreadTeam {
       take_block(number) ? void(idle = 0) : wait(idle);
   }
   /// The next block of the loop that is under way, from the thread's own part or another's; false where none is left.
-  bool take_block(std::size_t thread) {
+  [[nodiscard]] bool take_block(std::size_t thread) {
     for (std::size_t i = 0; i < threads_; ++i)
       if (take_block_of(tickets_[(thread + i) % threads_])) return true;
     return false;
   }
   /// Who has a block keeps its loop under way, so that what is read of it below is of this loop: the ticket carries its
   /// number, and an old one is worth nothing.
-  bool take_block_of(Ticket& of_part) {
+  [[nodiscard]] bool take_block_of(Ticket& of_part) {
     std::uint64_t ticket = of_part.load(std::memory_order_acquire);
     const std::uint64_t end = ticket >> 16 & 0xffff, next = ticket & 0xffff;
     if (next >= end) return false;

@@ -14,7 +14,7 @@ struct Vector {
 
   constexpr Real& operator[](std::size_t i) { return components[i]; }
   constexpr const Real& operator[](std::size_t i) const { return components[i]; }
-  static constexpr std::size_t size() { return static_cast<std::size_t>(Size); }
+  [[nodiscard]] static constexpr std::size_t size() { return static_cast<std::size_t>(Size); }
 
   constexpr Vector& operator+=(const Vector& b) {
     for (std::size_t i = 0; i < size(); ++i) components[i] += b[i];
@@ -37,22 +37,22 @@ struct Vector {
 };
 
 template <class Real, int Size>
-constexpr Real dot(const Vector<Real, Size>& a, const Vector<Real, Size>& b) {
+[[nodiscard]] constexpr Real dot(const Vector<Real, Size>& a, const Vector<Real, Size>& b) {
   Real sum(0);
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
 }
 template <class Real, int Size>
-constexpr Real squared(const Vector<Real, Size>& a) {
+[[nodiscard]] constexpr Real squared(const Vector<Real, Size>& a) {
   return dot(a, a);
 }
 template <class Real, int Size>
-Real length(const Vector<Real, Size>& a) {
+[[nodiscard]] Real length(const Vector<Real, Size>& a) {
   using std::sqrt;
   return sqrt(squared(a));
 }
 template <class Real, int Size>
-bool is_finite(const Vector<Real, Size>& a) {
+[[nodiscard]] bool is_finite(const Vector<Real, Size>& a) {
   Real sum(0);
   for (std::size_t i = 0; i < a.size(); ++i) sum += Real(0) * a[i];
   return sum == Real(0);
@@ -64,20 +64,20 @@ using Spin = Vector<Real, Dim == 2 ? 1 : 3>;
 
 /// Velocity of the point `arm` away from the centre of what spins: spin x arm.
 template <class Real>
-constexpr Vector<Real, 2> turning(const Vector<Real, 1>& spin, const Vector<Real, 2>& arm) {
+[[nodiscard]] constexpr Vector<Real, 2> turning(const Vector<Real, 1>& spin, const Vector<Real, 2>& arm) {
   return {{-spin[0] * arm[1], spin[0] * arm[0]}};
 }
 template <class Real>
-constexpr Vector<Real, 3> turning(const Vector<Real, 3>& a, const Vector<Real, 3>& b) {
+[[nodiscard]] constexpr Vector<Real, 3> turning(const Vector<Real, 3>& a, const Vector<Real, 3>& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 /// Moment of a force or impulse: arm x force.
 template <class Real>
-constexpr Vector<Real, 1> moment(const Vector<Real, 2>& arm, const Vector<Real, 2>& force) {
+[[nodiscard]] constexpr Vector<Real, 1> moment(const Vector<Real, 2>& arm, const Vector<Real, 2>& force) {
   return {{arm[0] * force[1] - arm[1] * force[0]}};
 }
 template <class Real>
-constexpr Vector<Real, 3> moment(const Vector<Real, 3>& arm, const Vector<Real, 3>& force) {
+[[nodiscard]] constexpr Vector<Real, 3> moment(const Vector<Real, 3>& arm, const Vector<Real, 3>& force) {
   return turning(arm, force);
 }
 
@@ -86,7 +86,7 @@ template <class Real, int Dim>
 using Orientation = Vector<Real, Dim == 2 ? 1 : 4>;
 
 template <class Real, int Dim>
-constexpr Orientation<Real, Dim> upright() {
+[[nodiscard]] constexpr Orientation<Real, Dim> upright() {
   if constexpr (Dim == 2) {
     return {};
   } else {
@@ -96,11 +96,12 @@ constexpr Orientation<Real, Dim> upright() {
 
 /// The orientation after `duration` at a constant spin: exact, by the exponential map.
 template <class Real>
-Vector<Real, 1> turned(const Vector<Real, 1>& orientation, const Vector<Real, 1>& spin, const Real& duration) {
+[[nodiscard]] Vector<Real, 1> turned(const Vector<Real, 1>& orientation, const Vector<Real, 1>& spin,
+                                     const Real& duration) {
   return orientation + spin * duration;
 }
 template <class Real>
-Vector<Real, 4> turned(const Vector<Real, 4>& q, const Vector<Real, 3>& spin, const Real& duration) {
+[[nodiscard]] Vector<Real, 4> turned(const Vector<Real, 4>& q, const Vector<Real, 3>& spin, const Real& duration) {
   using std::cos, std::sin;
   const Real rate = length(spin), half = rate * duration / 2;
   const Real along = rate > Real(0) ? Real(sin(half) / rate) : Real(0);

@@ -22,11 +22,11 @@ class BroadPhase {
   using Bodies = SolverBodies<Real, Dim>;
 
   /// order()[k] is the number in the world of the body at place k.
-  const std::vector<std::uint32_t>& order() const { return order_; }
-  const ContactBlocks& blocks() const { return blocks_; }
-  std::size_t walls() const { return walls_; }
-  Real median_radius() const { return median_; }
-  std::size_t lists() const { return lists_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
+  [[nodiscard]] const ContactBlocks& blocks() const { return blocks_; }
+  [[nodiscard]] std::size_t walls() const { return walls_; }
+  [[nodiscard]] Real median_radius() const { return median_; }
+  [[nodiscard]] std::size_t lists() const { return lists_; }
 
   /// That of the world, as long as nothing is listed.
   void begin(const World<Real, Dim>& world) {
@@ -36,7 +36,7 @@ class BroadPhase {
   }
 
   /// Whether a body may come further in the next step than the list is good for.
-  bool is_outdated(const Bodies& bodies, const Real& step) const {
+  [[nodiscard]] bool is_outdated(const Bodies& bodies, const Real& step) const {
     for (std::size_t k = 0; k < bodies.size(); ++k)
       if (!(length(bodies.x(k) - x_of_list_[k]) + step_reach(bodies, k, step) <= reach_[k])) return true;
     return false;
@@ -102,10 +102,10 @@ class BroadPhase {
   }
 
   /// Where the body at place k was when it was listed, and how far it may go from there.
-  const std::vector<V>& x_of_list() const { return x_of_list_; }
-  const std::vector<Real>& reach_of_list() const { return reach_; }
+  [[nodiscard]] const std::vector<V>& x_of_list() const { return x_of_list_; }
+  [[nodiscard]] const std::vector<Real>& reach_of_list() const { return reach_; }
 
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     return order_.capacity() * 4 + far_.capacity() * 4 + is_far_.capacity() + reach_.capacity() * sizeof(Real) +
            x_of_list_.capacity() * sizeof(V) + cells_.memory();
   }
@@ -132,7 +132,8 @@ class BroadPhase {
     }
   }
   /// Row k: with whom the pairs are that have one that reaches far and stand with the body at k.
-  Rows<std::uint32_t> pairs_with_far(ThreadTeam& team, const World<Real, Dim>& world, const Bodies& bodies) const {
+  [[nodiscard]] Rows<std::uint32_t> pairs_with_far(ThreadTeam& team, const World<Real, Dim>& world,
+                                                   const Bodies& bodies) const {
     Rows<std::uint32_t> found, result;
     if (far_.empty()) return result;
     make_rows(team, far_.size(), found, [&](std::uint32_t f, Rows<std::uint32_t>& part) {
@@ -161,7 +162,8 @@ class BroadPhase {
     return result;
   }
 
-  bool may_meet(const World<Real, Dim>& world, const Bodies& bodies, std::uint32_t i, std::uint32_t j) const {
+  [[nodiscard]] bool may_meet(const World<Real, Dim>& world, const Bodies& bodies, std::uint32_t i,
+                              std::uint32_t j) const {
     const Real near = bodies.radius(i) + reach_[i] + bodies.radius(j) + reach_[j];
     return squared(bodies.x(j) - bodies.x(i)) < near * near && (all_collide_ || world.collide(order_[i], order_[j]));
   }

@@ -43,7 +43,7 @@ class ContactList {
   ContactBlocks blocks;
 
   /// Whether there are contacts that are neither within a block nor across the end of one.
-  bool has_rest() const {
+  [[nodiscard]] bool has_rest() const {
     const auto& first = between_movers.groups[blocks.rest()].first;
     return first.front() < first.back();
   }
@@ -60,7 +60,8 @@ class ContactList {
   }
 
   /// Of two bodies, or of one and a wall, among those that are listed.
-  Real deepest_overlap(const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls) const {
+  [[nodiscard]] Real deepest_overlap(const SolverBodies<Real, Dim>& bodies,
+                                     std::span<const Wall<Real, Dim>> walls) const {
     Real deepest(0);
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       for (const ContactEntry& entry : rows.row(k)) {
@@ -133,7 +134,9 @@ class ContactList {
     archive(kept_);
     has_kept_ = true;
   }
-  bool kept_fits(std::size_t bodies, std::size_t world_walls) const { return kept_.fits(bodies, bodies + world_walls); }
+  [[nodiscard]] bool kept_fits(std::size_t bodies, std::size_t world_walls) const {
+    return kept_.fits(bodies, bodies + world_walls);
+  }
 
   /// visit(k, other, is_wall, impulse) for the contacts that pressed in the last substep.
   template <class Visit>
@@ -149,12 +152,12 @@ class ContactList {
       }
   }
 
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     std::size_t sum = rows.memory() + kept_.memory();
     for (const auto* batches : {&between_movers, &with_fixed, &with_wall}) sum += batches->memory();
     return sum;
   }
-  std::size_t active() const {
+  [[nodiscard]] std::size_t active() const {
     std::size_t sum = 0;
     for (const auto* batches : {&between_movers, &with_fixed, &with_wall}) sum += batches->contacts;
     return sum;
@@ -169,15 +172,15 @@ class ContactList {
     if (first.front() < first.back()) act(std::integral_constant<ContactKind, kind>{}, batches, group);
   }
 
-  const ColouredBatches<Real, Dim>& batches_of(const ContactEntry& entry, std::uint32_t lane) const {
+  [[nodiscard]] const ColouredBatches<Real, Dim>& batches_of(const ContactEntry& entry, std::uint32_t lane) const {
     if (entry.other >= rows.rows()) return with_wall;
     return lane & fixed_bit ? with_fixed : between_movers;
   }
-  ColouredBatches<Real, Dim>& batches_of(const ContactEntry& entry, std::uint32_t lane) {
+  [[nodiscard]] ColouredBatches<Real, Dim>& batches_of(const ContactEntry& entry, std::uint32_t lane) {
     return const_cast<ColouredBatches<Real, Dim>&>(std::as_const(*this).batches_of(entry, lane));
   }
   template <int Size>
-  static Vector<Real, Size> in_lane(const Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
+  [[nodiscard]] static Vector<Real, Size> in_lane(const Vector<StoredLanes<Real>, Size>& stored, std::size_t lane) {
     Vector<Real, Size> v;
     for (std::size_t axis = 0; axis < v.size(); ++axis) v[axis] = stored[axis].lane[lane];
     return v;
@@ -187,7 +190,7 @@ class ContactList {
     for (std::size_t axis = 0; axis < v.size(); ++axis) stored[axis].lane[lane] = v[axis];
   }
 
-  static Real come_closer(const V& rate, const BlockSweptBounds<Real>& reach) {
+  [[nodiscard]] static Real come_closer(const V& rate, const BlockSweptBounds<Real>& reach) {
     using std::abs;
     Real sum(0);
     for (std::size_t axis = 0; axis < V::size(); ++axis) sum += abs(rate[axis]);
@@ -201,14 +204,15 @@ class ContactList {
   static constexpr std::uint32_t chosen = nowhere - 1;  // but without a colour yet
 
   /// The lowest colour that neither has.
-  static std::uint32_t lowest_free(std::uint64_t used) {
+  [[nodiscard]] static std::uint32_t lowest_free(std::uint64_t used) {
     return std::min(static_cast<std::uint32_t>(std::countr_one(used)), last_colour);
   }
-  static std::uint32_t number(ColouredBatches<Real, Dim>& batches, std::size_t group, std::uint32_t colour) {
+  [[nodiscard]] static std::uint32_t number(ColouredBatches<Real, Dim>& batches, std::size_t group,
+                                            std::uint32_t colour) {
     return colour << colour_shift | batches.count[group][colour]++;
   }
   /// `taken`: the colours of what has the body as one of two that move, in their group.
-  std::uint32_t number(std::size_t group, std::uint64_t& taken_by_a, std::uint64_t& taken_by_b) {
+  [[nodiscard]] std::uint32_t number(std::size_t group, std::uint64_t& taken_by_a, std::uint64_t& taken_by_b) {
     const std::uint32_t free = lowest_free(taken_by_a | taken_by_b);
     taken_by_a |= std::uint64_t{1} << free;
     taken_by_b |= std::uint64_t{1} << free;
@@ -235,7 +239,7 @@ class ContactList {
     }
   }
   /// Of the rows of a block; says whether contacts are left that are neither within it nor across its end.
-  bool colour(std::size_t block, const SolverBodies<Real, Dim>& bodies) {
+  [[nodiscard]] bool colour(std::size_t block, const SolverBodies<Real, Dim>& bodies) {
     const std::uint32_t begin = blocks.first(block), end = blocks.last(block, rows.rows());
     std::vector<std::uint64_t> within(2 * blocks.half, 0), across(2 * blocks.half, 0);
     bool has_rest = false;
@@ -270,8 +274,8 @@ class ContactList {
 
   /// The lane of a numbered contact, filled but for the impulses and the normal.
   template <class CombineRuleOf>
-  std::uint32_t fill(ColouredBatches<Real, Dim>& batches, std::size_t group, std::uint32_t numbered, std::uint32_t a,
-                     std::uint32_t b, const CombineRuleOf& combine_rule_of) {
+  [[nodiscard]] std::uint32_t fill(ColouredBatches<Real, Dim>& batches, std::size_t group, std::uint32_t numbered,
+                                   std::uint32_t a, std::uint32_t b, const CombineRuleOf& combine_rule_of) {
     const std::uint32_t colour = numbered >> colour_shift, number = numbered & ((1u << colour_shift) - 1);
     const std::uint32_t lanes = static_cast<std::uint32_t>(width);
     const std::uint32_t p = batches.groups[group].first[colour] + (batches.is_shared(colour) ? number : number / lanes);
@@ -292,8 +296,11 @@ class ContactList {
     V friction{};
     Spin<Real, Dim> rolling{};
   };
-  bool resists_rolling(const ContactEntry& entry) const { return !batches_of(entry, entry.lane).special.empty(); }
-  KeptContact impulse_in_lane(const ContactEntry& entry, std::uint32_t lane_number, bool is_before) const {
+  [[nodiscard]] bool resists_rolling(const ContactEntry& entry) const {
+    return !batches_of(entry, entry.lane).special.empty();
+  }
+  [[nodiscard]] KeptContact impulse_in_lane(const ContactEntry& entry, std::uint32_t lane_number,
+                                            bool is_before) const {
     const ColouredBatches<Real, Dim>& batches = batches_of(entry, lane_number);
     const StoredImpulses<Real, Dim>& of_batches = is_before ? batches.before : batches;
     const std::size_t p = (lane_number & ~fixed_bit) / width, lane = lane_number % width;
@@ -303,7 +310,7 @@ class ContactList {
     if (!of_batches.special.empty()) contact.rolling = in_lane(of_batches.special[p].rolling_impulse, lane);
     return contact;
   }
-  KeptContact impulse_kept(std::uint32_t a, std::uint32_t b, bool was_sorted) const {
+  [[nodiscard]] KeptContact impulse_kept(std::uint32_t a, std::uint32_t b, bool was_sorted) const {
     Real direction(1);
     std::size_t found = kept_.find(a, b);
     if (found == nowhere && was_sorted) {

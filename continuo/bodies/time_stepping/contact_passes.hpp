@@ -52,22 +52,22 @@ class ContactPasses {
   };
 
   template <class Act>
-  Pass pass_of(const Act& act) {
+  [[nodiscard]] Pass pass_of(const Act& act) {
     return {[](std::size_t) {}, [this, act](std::size_t group) { contacts_.in_group(group, act); },
             [this, act](std::size_t block) { contacts_.at_border(block, act); }};
   }
   template <ContactPass pass>
-  auto act_of(const ContactStep<Real>& step) {
+  [[nodiscard]] auto act_of(const ContactStep<Real>& step) {
     return [this, &step](auto kind, auto& batches, std::size_t group) {
       solve_batches<kind(), pass>(batches, group, bodies_, step);
     };
   }
   template <ContactPass pass>
-  Pass solve(const ContactStep<Real>& step) {
+  [[nodiscard]] Pass solve(const ContactStep<Real>& step) {
     return pass_of(act_of<pass>(step));
   }
   template <class Push>
-  Pass starting(const Push& push_body) {
+  [[nodiscard]] Pass starting(const Push& push_body) {
     Pass pass = pass_of(
         [this](auto kind, auto& batches, std::size_t group) { start_batches<kind()>(batches, group, bodies_); });
     pass.before = [this, &push_body](std::size_t block) {
@@ -77,7 +77,7 @@ class ContactPasses {
     return pass;
   }
   template <class Move>
-  Pass relaxing(const ContactStep<Real>& step, const Move& move_body) {
+  [[nodiscard]] Pass relaxing(const ContactStep<Real>& step, const Move& move_body) {
     Pass pass = solve<ContactPass::relax>(step);
     pass.before = [this, &move_body](std::size_t block) { for_each_body(block, move_body); };
     return pass;

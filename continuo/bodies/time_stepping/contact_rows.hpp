@@ -17,9 +17,13 @@ struct Rows {
   std::vector<std::uint32_t> first{0};
   LargeArray<Entry> entries{};
 
-  std::size_t rows() const { return first.size() - 1; }
-  std::span<const Entry> row(std::size_t k) const { return {entries.data() + first[k], entries.data() + first[k + 1]}; }
-  std::span<Entry> row(std::size_t k) { return {entries.data() + first[k], entries.data() + first[k + 1]}; }
+  [[nodiscard]] std::size_t rows() const { return first.size() - 1; }
+  [[nodiscard]] std::span<const Entry> row(std::size_t k) const {
+    return {entries.data() + first[k], entries.data() + first[k + 1]};
+  }
+  [[nodiscard]] std::span<Entry> row(std::size_t k) {
+    return {entries.data() + first[k], entries.data() + first[k + 1]};
+  }
 
   void clear() {
     first.assign(1, 0);
@@ -36,7 +40,9 @@ struct Rows {
     if (entries.capacity() > entries.size() + entries.size() / 16) entries.shrink_to_fit();
     if (first.capacity() > first.size() + first.size() / 16) first.shrink_to_fit();
   }
-  std::size_t memory() const { return first.capacity() * sizeof(first[0]) + entries.capacity() * sizeof(Entry); }
+  [[nodiscard]] std::size_t memory() const {
+    return first.capacity() * sizeof(first[0]) + entries.capacity() * sizeof(Entry);
+  }
 };
 
 /// make_row(k, result) appends what row k has.

@@ -41,13 +41,13 @@ class FastMotion<Real, Dim>::Stepper {
     make_list();
   }
 
-  Status advance() {
+  [[nodiscard]] Status advance() {
     Status status;
     team_.run([&] { status = step(); });
     return status;
   }
 
-  Real deepest_overlap() const { return contacts_.deepest_overlap(bodies_, world_.walls()); }
+  [[nodiscard]] Real deepest_overlap() const { return contacts_.deepest_overlap(bodies_, world_.walls()); }
 
   /// Whatever outlives a step and is not in the world. The list is made again, from where the bodies were then.
   void save(ByteWriter& writer) const {
@@ -104,7 +104,7 @@ class FastMotion<Real, Dim>::Stepper {
     is_restored_ = true;
   }
 
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     return bodies_.memory() + list_.memory() + contacts_.memory() + place_before_.capacity() * sizeof(std::uint32_t) +
            forces_.memory() + sleep_.memory();
   }
@@ -114,7 +114,7 @@ class FastMotion<Real, Dim>::Stepper {
 
  private:
   /// The stages of a step.
-  Status step() {
+  [[nodiscard]] Status step() {
     if (Status status = check_options(); !status) return status;
     load_changed();
     list_pairs();
@@ -133,7 +133,7 @@ class FastMotion<Real, Dim>::Stepper {
     return {};
   }
 
-  Status check_options() const {
+  [[nodiscard]] Status check_options() const {
     if (!(options_.step > Real(0)) || !(options_.step < std::numeric_limits<Real>::infinity()))
       return invalid_input("the step must be greater than 0, and finite");
     if (options_.substeps < 1) return invalid_input("a step has at least one substep");
@@ -194,13 +194,13 @@ class FastMotion<Real, Dim>::Stepper {
     place_before_ = {};  // not needed most of the time
   }
   template <class Is>
-  bool any_material(const Is& is) const {
+  [[nodiscard]] bool any_material(const Is& is) const {
     return std::ranges::any_of(world_.material, is) ||
            std::ranges::any_of(world_.walls(), is, &Wall<Real, Dim>::material);
   }
 
   /// The substeps; false where equations could not be solved.
-  bool integrate() {
+  [[nodiscard]] bool integrate() {
     const Real h = options_.step / static_cast<Real>(options_.substeps);
     log.clear();
     forces_.begin(world_, list_.order());
@@ -241,7 +241,7 @@ class FastMotion<Real, Dim>::Stepper {
     }
     return true;
   }
-  ContactStep<Real> contact_step(const Real& h) const {
+  [[nodiscard]] ContactStep<Real> contact_step(const Real& h) const {
     // From 0.45 of the rate of substeps on, a column under a mass ten times its balls' never comes to rest. What is a
     // disturbance was measured: it keeps the overlaps of a falling heap below a hundredth of the radius.
     return {.h = h,

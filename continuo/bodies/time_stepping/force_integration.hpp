@@ -18,7 +18,7 @@ class ForceIntegration {
   using V = Vector<Real, Dim>;
   using Bodies = SolverBodies<Real, Dim>;
 
-  bool acts() const { return acts_; }
+  [[nodiscard]] bool acts() const { return acts_; }
 
   /// At the start of a step; `order` says which body of the world stands at each place.
   void begin(const World<Real, Dim>& world, const std::vector<std::uint32_t>& order) {
@@ -28,7 +28,7 @@ class ForceIntegration {
   }
   /// The accelerations by all forces in a substep of h from t on. False where the equations of those at its end could
   /// not be solved.
-  bool accelerate(Bodies& bodies, const IntegratorRule& rule, const Real& t, const Real& h) {
+  [[nodiscard]] bool accelerate(Bodies& bodies, const IntegratorRule& rule, const Real& t, const Real& h) {
     if (!acts_) return true;
     return find(bodies, t, rule.solves_equations ? h : Real(0));
   }
@@ -44,14 +44,14 @@ class ForceIntegration {
     });
   }
   /// Whether gravity and the constant force are all that acts on the body at place k.
-  bool is_steady(const Bodies& bodies, std::size_t k) const {
+  [[nodiscard]] bool is_steady(const Bodies& bodies, std::size_t k) const {
     if (!acts_ || !bodies.moves(k)) return true;
     const std::size_t i = (*order_)[k];
     return bodies.acceleration(k) ==
            (world_->mass[i] * world_->gravity + world_->constant_force[i]) * bodies.inverse_mass(k);
   }
 
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     return (x_.capacity() + v_.capacity() + force_.capacity()) * sizeof(V) + inverse_mass_.capacity() * sizeof(Real);
   }
 

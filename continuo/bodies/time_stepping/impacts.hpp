@@ -23,7 +23,8 @@ namespace continuo {
 /// adds to it. With a tenth, and the `gain` of a step's gravity, no impact is to be expected within the step: without
 /// restitution nothing makes a body faster than the fastest.
 template <class Real, int Dim>
-bool may_strike(const SolverBodies<Real, Dim>& bodies, const Real& h, const Real& part_of_radius, const Real& gain) {
+[[nodiscard]] bool may_strike(const SolverBodies<Real, Dim>& bodies, const Real& h, const Real& part_of_radius,
+                              const Real& gain) {
   using std::abs;
   const Real part = part_of_radius / h;
   int fast = 0;
@@ -42,9 +43,10 @@ class Impacts {
 
   /// Of a substep from `begin` on, which it tells the greatest acceleration; paths of a step of `step` are looked at
   /// beyond the list. Gives how many there were.
-  std::size_t make(const World<Real, Dim>& world, const BroadPhase<Real, Dim>& list,
-                   const ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies, ContactStep<Real>& substep,
-                   const Real& step, const Real& begin, ContactLog<Real, Dim>& log) {
+  [[nodiscard]] std::size_t make(const World<Real, Dim>& world, const BroadPhase<Real, Dim>& list,
+                                 const ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies,
+                                 ContactStep<Real>& substep, const Real& step, const Real& begin,
+                                 ContactLog<Real, Dim>& log) {
     using std::sqrt;
     Real pull = squared(bodies.gravity);
     for (const V& acceleration : bodies.accelerations) pull = std::max(pull, squared(acceleration));
@@ -81,7 +83,7 @@ class Impacts {
     Real step, begin;  // begin: of the substep
     ContactLog<Real, Dim>& log;
 
-    const Material<Real>& material(std::uint32_t k) const { return world.material[list.order()[k]]; }
+    [[nodiscard]] const Material<Real>& material(std::uint32_t k) const { return world.material[list.order()[k]]; }
   };
   struct Impact {
     Real time;
@@ -94,12 +96,13 @@ class Impacts {
   };
 
   /// As is_for_impacts of restitution.hpp.
-  static bool counts(const Making& making, const Real& speed, const Real& restitution, const Real& radius) {
+  [[nodiscard]] static bool counts(const Making& making, const Real& speed, const Real& restitution,
+                                   const Real& radius) {
     const ContactStep<Real>& substep = making.substep;
     return restitution > Real(0) ? speed > 4 * substep.greatest_acceleration * substep.h
                                  : speed * substep.h > radius / 2;
   }
-  static bool is_current(const Making& making, const Impact& impact) {
+  [[nodiscard]] static bool is_current(const Making& making, const Impact& impact) {
     const auto& bodies = making.bodies;
     return bodies.impacts[impact.a] == impact.impacts_a &&
            (impact.b >= bodies.size() || bodies.impacts[impact.b] == impact.impacts_b);
@@ -192,9 +195,9 @@ class Impacts {
     V v{};
     Spin<Real, Dim> spin{};
     Real radius{}, inverse_mass{}, inverse_inertia{};
-    Mover<Real, Dim> mover() { return {v, spin, radius, inverse_mass, inverse_inertia}; }
+    [[nodiscard]] Mover<Real, Dim> mover() { return {v, spin, radius, inverse_mass, inverse_inertia}; }
   };
-  static State state(const SolverBodies<Real, Dim>& bodies, std::uint32_t i) {
+  [[nodiscard]] static State state(const SolverBodies<Real, Dim>& bodies, std::uint32_t i) {
     const Real radius = bodies.radius(i);
     const Quad<Real>& rim = bodies.motion[i].rim;
     return {bodies.v(i), vector_of<Spin<Real, Dim>::size()>(rim) * (1 / radius), radius, bodies.inverse_mass(i),

@@ -30,7 +30,7 @@ struct IntegratorRule {
   bool ends_with_correction;  // v1 += h (a1 - a0) / 2
   bool solves_equations;      // a is that of the end
 };
-constexpr IntegratorRule rule_of(ForceIntegrator integrator) {
+[[nodiscard]] constexpr IntegratorRule rule_of(ForceIntegrator integrator) {
   switch (integrator) {
     case ForceIntegrator::implicit_euler:
       return {0, 0.5, false, true};
@@ -48,9 +48,9 @@ constexpr IntegratorRule rule_of(ForceIntegrator integrator) {
 /// solved by Newton's method, each of its linear systems by products with the Jacobian, which are differences of
 /// forces. False where that does not converge.
 template <class Real, int Dim>
-bool forces_at_end(const World<Real, Dim>& world, const Real& t, const Real& h, std::span<const Vector<Real, Dim>> x,
-                   std::span<const Vector<Real, Dim>> v, std::span<const Real> inverse_mass,
-                   std::span<Vector<Real, Dim>> force) {
+[[nodiscard]] bool forces_at_end(const World<Real, Dim>& world, const Real& t, const Real& h,
+                                 std::span<const Vector<Real, Dim>> x, std::span<const Vector<Real, Dim>> v,
+                                 std::span<const Real> inverse_mass, std::span<Vector<Real, Dim>> force) {
   using std::sqrt;
   using V = Vector<Real, Dim>;
   constexpr std::size_t axes = V::size();

@@ -35,7 +35,7 @@ struct KeptImpulses : Rows<KeptImpulse<Real, Dim>> {
     archive(this->first), archive(this->entries), archive(rolling);
   }
   /// Of `bodies`, with others below `others`.
-  bool fits(std::size_t bodies, std::size_t others) const {
+  [[nodiscard]] bool fits(std::size_t bodies, std::size_t others) const {
     const auto& starts = this->first;
     bool fits = !starts.empty() && starts.front() == 0 && starts.back() == this->entries.size() &&
                 starts.size() <= bodies + 1 && std::ranges::is_sorted(starts) &&
@@ -43,7 +43,7 @@ struct KeptImpulses : Rows<KeptImpulse<Real, Dim>> {
     for (const auto& entry : this->entries) fits = fits && entry.other < others;
     return fits;
   }
-  std::size_t find(std::uint32_t k, std::uint32_t other) const {
+  [[nodiscard]] std::size_t find(std::uint32_t k, std::uint32_t other) const {
     if (k < this->rows())
       for (std::size_t i = this->first[k]; i < this->first[k + 1]; ++i)
         if (this->entries[i].other == other) return i;
@@ -57,7 +57,7 @@ struct KeptImpulses : Rows<KeptImpulse<Real, Dim>> {
     Base::append(more);
     rolling.insert(rolling.end(), more.rolling.begin(), more.rolling.end());
   }
-  std::size_t memory() const { return Base::memory() + rolling.capacity() * sizeof(Spin<Real, Dim>); }
+  [[nodiscard]] std::size_t memory() const { return Base::memory() + rolling.capacity() * sizeof(Spin<Real, Dim>); }
 };
 
 }  // namespace continuo

@@ -21,8 +21,8 @@ class Sleep {
   using V = Vector<Real, Dim>;
 
   /// Body i of the world.
-  bool is_asleep(std::size_t i) const { return i < island_.size() && island_[i] != 0; }
-  std::size_t asleep() const { return asleep_; }
+  [[nodiscard]] bool is_asleep(std::size_t i) const { return i < island_.size() && island_[i] != 0; }
+  [[nodiscard]] std::size_t asleep() const { return asleep_; }
   void wake_all() {
     std::ranges::fill(island_, 0);
     std::ranges::fill(rested_, Real(0));
@@ -30,7 +30,7 @@ class Sleep {
   }
 
   /// Wakes those that were changed since; says whether there are any.
-  bool wake_changed(const World<Real, Dim>& world) {
+  [[nodiscard]] bool wake_changed(const World<Real, Dim>& world) {
     if (asleep_ == 0) return false;
     const std::size_t before = asleep_;
     if (world.gravity != gravity_ || world.size() != island_.size()) wake_all();
@@ -50,8 +50,8 @@ class Sleep {
   }
 
   /// Wakes those that one that is awake may touch in a step of dt; says whether there are any. order: world's numbers.
-  bool wake_near(const SolverBodies<Real, Dim>& bodies, const ContactRows& rows,
-                 const std::vector<std::uint32_t>& order, const Real& dt) {
+  [[nodiscard]] bool wake_near(const SolverBodies<Real, Dim>& bodies, const ContactRows& rows,
+                               const std::vector<std::uint32_t>& order, const Real& dt) {
     const std::size_t before = asleep_;
     for (std::uint32_t k = 0; asleep_ > 0 && k < rows.rows(); ++k)
       for (const ContactEntry& entry : rows.row(k)) {
@@ -65,8 +65,9 @@ class Sleep {
   }
 
   /// After a step of dt: what has been slower than `speed` for `duration` falls asleep. Says whether anything did.
-  bool settle(World<Real, Dim>& world, const ContactList<Real, Dim>& contacts, const std::vector<std::uint32_t>& order,
-              const Real& dt, const Real& duration, const Real& speed) {
+  [[nodiscard]] bool settle(World<Real, Dim>& world, const ContactList<Real, Dim>& contacts,
+                            const std::vector<std::uint32_t>& order, const Real& dt, const Real& duration,
+                            const Real& speed) {
     const std::size_t bodies = world.size();
     island_.resize(bodies, 0), rested_.resize(bodies, Real(0)), x_.resize(bodies), force_.resize(bodies);
     leader_.resize(bodies);
@@ -110,12 +111,12 @@ class Sleep {
     asleep_ =
         static_cast<std::size_t>(std::ranges::count_if(island_, [](std::uint32_t island) { return island != 0; }));
   }
-  bool fits(std::size_t bodies) const {
+  [[nodiscard]] bool fits(std::size_t bodies) const {
     const auto fits = [&](const auto& array) { return array.size() == island_.size(); };
     return (island_.empty() || island_.size() == bodies) && fits(rested_) && fits(x_) && fits(force_);
   }
 
-  std::size_t memory() const {
+  [[nodiscard]] std::size_t memory() const {
     return (island_.capacity() + leader_.capacity()) * sizeof(std::uint32_t) + rested_.capacity() * sizeof(Real) +
            (x_.capacity() + force_.capacity() + force_now_.capacity()) * sizeof(V);
   }
@@ -139,7 +140,7 @@ class Sleep {
   }
 
   // Disjoint sets, with paths halved on the way up.
-  std::size_t leader_of(std::size_t i) {
+  [[nodiscard]] std::size_t leader_of(std::size_t i) {
     while (leader_[i] != i) {
       leader_[i] = leader_[leader_[i]];
       i = leader_[i];

@@ -60,14 +60,14 @@ class SortedCells {
   }
 
   /// Of the layers across the longest axis, that which has most bodies.
-  std::size_t most_in_layer() const {
+  [[nodiscard]] std::size_t most_in_layer() const {
     const std::size_t cells = total_ / count_[axes_.back()];
     std::size_t most = 0;
     for (std::size_t c = 0; c < total_; c += cells) most = std::max<std::size_t>(most, first_[c + cells] - first_[c]);
     return most;
   }
 
-  std::size_t memory() const { return first_.capacity() * sizeof(std::uint32_t); }
+  [[nodiscard]] std::size_t memory() const { return first_.capacity() * sizeof(std::uint32_t); }
 
  private:
   using Coordinates = std::array<std::size_t, static_cast<std::size_t>(Dim)>;
@@ -90,7 +90,7 @@ class SortedCells {
       }
     }
   }
-  Coordinates coordinates(const V& x) const {
+  [[nodiscard]] Coordinates coordinates(const V& x) const {
     Coordinates at{};
     for (std::size_t axis = 0; axis < V::size(); ++axis) {
       const Real cells = (x[axis] - lower_[axis]) / edge_;
@@ -98,7 +98,7 @@ class SortedCells {
     }
     return at;
   }
-  std::size_t number(const Coordinates& at) const {
+  [[nodiscard]] std::size_t number(const Coordinates& at) const {
     std::size_t n = 0;
     for (std::size_t i = at.size(); i-- > 0;) n = n * count_[axes_[i]] + at[axes_[i]];
     return n;

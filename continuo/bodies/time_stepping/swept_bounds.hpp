@@ -12,17 +12,17 @@ namespace continuo {
 
 /// How far a body of some radius may go before its pairs are listed anew, if it moves like the others.
 template <class Real>
-Real skin(const Real& radius) {
+[[nodiscard]] Real skin(const Real& radius) {
   return Real(0.22) * radius;
 }
 /// So many of some bodies may look for others themselves before that costs more than it saves.
-inline std::size_t few(std::size_t bodies) {
+[[nodiscard]] inline std::size_t few(std::size_t bodies) {
   return static_cast<std::size_t>(std::sqrt(2 * static_cast<double>(bodies)));
 }
 
 /// How far the body at place k may come in one step.
 template <class Real, int Dim>
-Real step_reach(const SolverBodies<Real, Dim>& bodies, std::size_t k, const Real& step) {
+[[nodiscard]] Real step_reach(const SolverBodies<Real, Dim>& bodies, std::size_t k, const Real& step) {
   return length(bodies.v(k)) * step + length(bodies.acceleration(k)) * step * step / 2;
 }
 
@@ -68,8 +68,9 @@ struct BlockSweptBounds {
 /// That of every block: beside what the velocities of two say, they come nearer by what another gives them, which is no
 /// faster than the fastest of this block and the two beside it, and by what gravity does.
 template <class Real, int Dim>
-std::vector<BlockSweptBounds<Real>> swept_bounds_of_blocks(ThreadTeam& team, const SolverBodies<Real, Dim>& bodies,
-                                                           const Real& step) {
+[[nodiscard]] std::vector<BlockSweptBounds<Real>> swept_bounds_of_blocks(ThreadTeam& team,
+                                                                         const SolverBodies<Real, Dim>& bodies,
+                                                                         const Real& step) {
   using std::sqrt;
   struct Most {
     Real square_of_speed{}, radius{};

@@ -17,7 +17,7 @@ class TorqueIntegration {
   using S = Spin<Real, Dim>;
   using Bodies = SolverBodies<Real, Dim>;
 
-  bool acts() const { return acts_; }
+  [[nodiscard]] bool acts() const { return acts_; }
 
   /// At the start of a step; `order` says which body of the world stands at each place.
   void begin(const World<Real, Dim>& world, const std::vector<std::uint32_t>& order) {
@@ -52,10 +52,10 @@ class TorqueIntegration {
     for (std::size_t k = 0; k < bodies.size(); ++k)
       if (!bodies.touched[k]) add(bodies, k, (rate_after_[k] - rate_[k]) * (h / 2));
   }
-  const Orientation<Real, Dim>& orientation(std::size_t body) const { return orientation_[body]; }
+  [[nodiscard]] const Orientation<Real, Dim>& orientation(std::size_t body) const { return orientation_[body]; }
 
  private:
-  static S spin_of(const Bodies& bodies, std::size_t k) {
+  [[nodiscard]] static S spin_of(const Bodies& bodies, std::size_t k) {
     return vector_of<S::size()>(bodies.motion[k].rim) * (1 / bodies.radius(k));
   }
   static void add(Bodies& bodies, std::size_t k, const S& change) {

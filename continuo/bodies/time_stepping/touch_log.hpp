@@ -67,7 +67,7 @@ class TouchLog {
  private:
   using Key = std::array<std::uint32_t, 5>;
   using Touch = std::pair<Key, ContactEvent<Real, Dim>>;
-  static Key key(const ContactEvent<Real, Dim>& contact) {
+  [[nodiscard]] static Key key(const ContactEvent<Real, Dim>& contact) {
     return {contact.a.slot, contact.a.generation, contact.wall, contact.b.slot, contact.b.generation};
   }
 

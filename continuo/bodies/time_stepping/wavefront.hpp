@@ -29,11 +29,11 @@ namespace detail {
 struct BlockRange {
   std::size_t first = 0, last = 0;  // without the last
 
-  bool has(std::size_t block) const { return first <= block && block < last; }
+  [[nodiscard]] bool has(std::size_t block) const { return first <= block && block < last; }
 };
 
 /// Of a chunk, what sweep i can do without the others, within blocks or across their ends.
-inline BlockRange alone(const BlockRange& chunk, std::size_t blocks, std::size_t sweep, bool is_across) {
+[[nodiscard]] inline BlockRange alone(const BlockRange& chunk, std::size_t blocks, std::size_t sweep, bool is_across) {
   const std::size_t first = chunk.first == 0 ? 0 : chunk.first + sweep;
   const std::size_t less = chunk.last == blocks ? 0 : sweep + (is_across ? 1 : 0);
   return {first, chunk.last > less ? chunk.last - less : 0};

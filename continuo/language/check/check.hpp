@@ -29,6 +29,6 @@ struct Checked {
   std::vector<Diagnostic> diagnostics;  // in order of place
 };
 
-Checked check(const ast::Model& tree, const Source& source, const CheckOptions& options = {});
+[[nodiscard]] Checked check(const ast::Model& tree, const Source& source, const CheckOptions& options = {});
 
 }  // namespace continuo::model

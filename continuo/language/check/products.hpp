@@ -11,7 +11,7 @@
 namespace continuo::model::detail {
 
 /// Its name, heading and text; all else is empty.
-Model empty_model(const ast::Model& tree, const Source& source);
+[[nodiscard]] Model empty_model(const ast::Model& tree, const Source& source);
 
 void store(const TimeUnit& found, Model& model);
 /// Modes and tables.

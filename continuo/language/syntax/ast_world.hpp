@@ -16,7 +16,7 @@ struct WorldAttribute {
   Identifier name;
   Expression value;
 
-  bool has_value() const { return !std::holds_alternative<Missing>(value.node); }
+  [[nodiscard]] bool has_value() const { return !std::holds_alternative<Missing>(value.node); }
 };
 using WorldAttributes = std::vector<WorldAttribute>;
 

@@ -10,17 +10,17 @@
 
 namespace continuo::model {
 
-std::string to_text(const ast::Expression& expression);
-std::string to_text(const ast::Name& name);
-std::string to_text(const ast::Range& range);
-std::string to_text(const ast::Equation& equation);
+[[nodiscard]] std::string to_text(const ast::Expression& expression);
+[[nodiscard]] std::string to_text(const ast::Name& name);
+[[nodiscard]] std::string to_text(const ast::Range& range);
+[[nodiscard]] std::string to_text(const ast::Equation& equation);
 
 /// Made of numbers, `pi` and functions of these, and no unit.
-bool is_plain_number(const ast::Expression& expression);
+[[nodiscard]] bool is_plain_number(const ast::Expression& expression);
 
-std::string event_name(const ast::When& event);
-std::string event_name(const ast::At& event);
-std::string event_name(const ast::Every& event);
-std::string event_name(const ast::Initially& event);
+[[nodiscard]] std::string event_name(const ast::When& event);
+[[nodiscard]] std::string event_name(const ast::At& event);
+[[nodiscard]] std::string event_name(const ast::Every& event);
+[[nodiscard]] std::string event_name(const ast::Initially& event);
 
 }  // namespace continuo::model

@@ -64,17 +64,17 @@ class Lexer {
   explicit Lexer(const Source& source);
 
   /// After the last token, `end` for ever.
-  Token next();
+  [[nodiscard]] Token next();
 
  private:
-  Token scan();
-  Token scan_number();
-  Token scan_text();
-  Token scan_unit();
-  Token scan_sign();
-  Token scan_unknown();
-  Token make(TokenKind kind, std::size_t size);
-  Token bad(std::size_t size, std::string code, std::string message, std::string label, std::string help);
+  [[nodiscard]] Token scan();
+  [[nodiscard]] Token scan_number();
+  [[nodiscard]] Token scan_text();
+  [[nodiscard]] Token scan_unit();
+  [[nodiscard]] Token scan_sign();
+  [[nodiscard]] Token scan_unknown();
+  [[nodiscard]] Token make(TokenKind kind, std::size_t size);
+  [[nodiscard]] Token bad(std::size_t size, std::string code, std::string message, std::string label, std::string help);
   bool skip_blanks();
 
   std::string_view text_;
@@ -84,12 +84,12 @@ class Lexer {
 };
 
 /// The comment block before the first statement, `# ` taken off each line; ends at the first empty line or statement.
-std::string heading_of(std::string_view text);
+[[nodiscard]] std::string heading_of(std::string_view text);
 
 /// What a text token says, its escapes `\" \\ \n \t` resolved.
-std::string unescape(std::string_view token);
+[[nodiscard]] std::string unescape(std::string_view token);
 
 /// The token in words for messages: "`=`", "the number `3`", "the end of the line".
-std::string describe(const Token& token, const Source& source);
+[[nodiscard]] std::string describe(const Token& token, const Source& source);
 
 }  // namespace continuo::model

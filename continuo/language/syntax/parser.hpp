@@ -23,7 +23,7 @@ struct ParseResult {
   std::size_t tokens = 0, looks = 0;    // the work: tokens read, and how often the parser looked at one
 };
 
-ParseResult parse(const Source& source);
+[[nodiscard]] ParseResult parse(const Source& source);
 
 struct ParsedExpression {
   ast::Expression expression;
@@ -31,6 +31,6 @@ struct ParsedExpression {
 };
 
 /// A text that is one expression and nothing else, as in `--set k=2*pi`.
-ParsedExpression parse_expression(const Source& source);
+[[nodiscard]] ParsedExpression parse_expression(const Source& source);
 
 }  // namespace continuo::model

@@ -36,8 +36,8 @@ class Parser {
  public:
   explicit Parser(const Source& source) : source_(source), lexer_(source) {}
 
-  ParseResult parse_model();
-  ParsedExpression parse_only_expression();
+  [[nodiscard]] ParseResult parse_model();
+  [[nodiscard]] ParsedExpression parse_only_expression();
 
  private:
   // Limits, far above what a person writes and low enough for the stack and the memory of any machine.
@@ -60,21 +60,21 @@ class Parser {
   };
 
   // --- tokens (parser_core.cpp)
-  const Token& current() { return look(0); }
-  const Token& look(std::size_t ahead);
+  [[nodiscard]] const Token& current() { return look(0); }
+  [[nodiscard]] const Token& look(std::size_t ahead);
   /// The first token that is no line end, at or after the current one.
-  const Token& look_past_line_ends();
+  [[nodiscard]] const Token& look_past_line_ends();
   Token advance();
-  bool at(TokenKind kind) { return current().kind == kind; }
-  bool at_word(std::string_view word);
-  bool at_statement_end();
+  [[nodiscard]] bool at(TokenKind kind) { return current().kind == kind; }
+  [[nodiscard]] bool at_word(std::string_view word);
+  [[nodiscard]] bool at_statement_end();
   bool accept(TokenKind kind);
   bool accept_word(std::string_view word);
   Token expect(TokenKind kind, std::string_view wanted);
   void expect_word(std::string_view word, std::string_view wanted);
   void skip_line_ends();
-  std::string_view spelled(const Token& token) const { return source_.slice(token.span); }
-  Span since(std::uint32_t begin) const { return {begin, last_end_}; }
+  [[nodiscard]] std::string_view spelled(const Token& token) const { return source_.slice(token.span); }
+  [[nodiscard]] Span since(std::uint32_t begin) const { return {begin, last_end_}; }
 
   // --- errors (parser_core.cpp)
   void report(Diagnostic diagnostic);
@@ -84,11 +84,11 @@ class Parser {
   /// The current token stands where the statement should have ended, or gone on with one of the words.
   [[noreturn]] void left_over(std::initializer_list<std::string_view> words);
   void expect_statement_end(std::initializer_list<std::string_view> words = {});
-  std::string continuation_help();
-  std::string product_help();
+  [[nodiscard]] std::string continuation_help();
+  [[nodiscard]] std::string product_help();
   void recover();
   void recover_to_block();
-  bool at_unclosed_block();
+  [[nodiscard]] bool at_unclosed_block();
 
   /// `{ item item }`, each item read by `read`, with recovery after each.
   template <class Read>
@@ -103,18 +103,18 @@ class Parser {
     Level level;
   };
   std::optional<Operator> operator_at(const Token& token);
-  Tree parse_tree(Level lowest);
-  Tree parse_chain(Level lowest);
-  Tree parse_prefix();
-  Tree parse_power(bool with_unit);
-  Tree parse_primary(bool with_unit);
-  Tree parse_round();
-  Tree parse_conditional();
-  Tree parse_sum();
-  Tree parse_name_or_call();
-  Tree parse_arguments(ast::Name callee, int height);
-  Tree with_unit_after(Tree value);
-  Tree grow(ast::Expression::Node node, Span span, int height);
+  [[nodiscard]] Tree parse_tree(Level lowest);
+  [[nodiscard]] Tree parse_chain(Level lowest);
+  [[nodiscard]] Tree parse_prefix();
+  [[nodiscard]] Tree parse_power(bool with_unit);
+  [[nodiscard]] Tree parse_primary(bool with_unit);
+  [[nodiscard]] Tree parse_round();
+  [[nodiscard]] Tree parse_conditional();
+  [[nodiscard]] Tree parse_sum();
+  [[nodiscard]] Tree parse_name_or_call();
+  [[nodiscard]] Tree parse_arguments(ast::Name callee, int height);
+  [[nodiscard]] Tree with_unit_after(Tree value);
+  [[nodiscard]] Tree grow(ast::Expression::Node node, Span span, int height);
   static void lift_unit(ast::Expression& expression);
   void require_single(const ast::Expression& expression);
   void go_on_inside_brackets();
@@ -123,96 +123,97 @@ class Parser {
   // The values of a statement (parser_values.cpp). Where `height` is given it is raised to the tree's.
 
   /// A condition or number, the whole of what stands there, without `=`.
-  ast::Expression parse_expression(int* height = nullptr);
+  [[nodiscard]] ast::Expression parse_expression(int* height = nullptr);
   /// The same, where a comparison would be the reader's own (`a..b`, `check a < b`).
-  ast::Expression parse_sum_of_terms(int* height = nullptr);
+  [[nodiscard]] ast::Expression parse_sum_of_terms(int* height = nullptr);
   /// The right side of a definition: an expression whose unit may be the whole's, or a list.
-  ast::Expression parse_value();
-  ast::Expression parse_value_or_list();
-  ast::Expression parse_condition(std::string_view where);
-  ast::Name parse_name(std::string_view wanted, int* height = nullptr);
-  ast::Name parse_indices_and_primes(const Token& token, int* height);
+  [[nodiscard]] ast::Expression parse_value();
+  [[nodiscard]] ast::Expression parse_value_or_list();
+  [[nodiscard]] ast::Expression parse_condition(std::string_view where);
+  [[nodiscard]] ast::Name parse_name(std::string_view wanted, int* height = nullptr);
+  [[nodiscard]] ast::Name parse_indices_and_primes(const Token& token, int* height);
   void close_index(const Token& open);
   ast::Identifier parse_identifier(std::string_view wanted);
-  ast::Range parse_range(int* height = nullptr);
-  ast::Range parse_range_from(ast::Expression first, int* height = nullptr);
-  std::string parse_text(std::string_view wanted);
+  [[nodiscard]] ast::Range parse_range(int* height = nullptr);
+  [[nodiscard]] ast::Range parse_range_from(ast::Expression first, int* height = nullptr);
+  [[nodiscard]] std::string parse_text(std::string_view wanted);
 
   // --- statements (parser.cpp)
-  ast::Statement parse_statement(Context context);
-  std::optional<ast::Statement::Node> parse_worded(std::string_view word, Context context);
-  ast::Statement::Node parse_defining(std::string_view word);
+  [[nodiscard]] ast::Statement parse_statement(Context context);
+  [[nodiscard]] std::optional<ast::Statement::Node> parse_worded(std::string_view word, Context context);
+  [[nodiscard]] ast::Statement::Node parse_defining(std::string_view word);
   void parse_model_name();
-  std::vector<ast::Definition> parse_definitions(bool with_range);
-  ast::Definition parse_definition(bool with_range);
+  [[nodiscard]] std::vector<ast::Definition> parse_definitions(bool with_range);
+  [[nodiscard]] ast::Definition parse_definition(bool with_range);
   void parse_element_range(ast::Definition& definition);
-  ast::Input parse_input();
-  ast::Table parse_table();
-  ast::Unknown parse_unknown();
-  ast::Guess parse_guess();
-  ast::Mode parse_mode();
-  ast::Family parse_family(Context context);
-  ast::Statement::Node parse_equation();
-  ast::Condition as_condition(ast::Expression left, ast::Expression value);
+  [[nodiscard]] ast::Input parse_input();
+  [[nodiscard]] ast::Table parse_table();
+  [[nodiscard]] ast::Unknown parse_unknown();
+  [[nodiscard]] ast::Guess parse_guess();
+  [[nodiscard]] ast::Mode parse_mode();
+  [[nodiscard]] ast::Family parse_family(Context context);
+  [[nodiscard]] ast::Statement::Node parse_equation();
+  [[nodiscard]] ast::Condition as_condition(ast::Expression left, ast::Expression value);
   void explain_left_side(const ast::Expression& left);
   void require_allowed(std::string_view word, Context context);
   [[noreturn]] void unknown_statement();
-  std::vector<ast::Statement> parse_statements(std::string_view wanted, Context context);
+  [[nodiscard]] std::vector<ast::Statement> parse_statements(std::string_view wanted, Context context);
   /// `i in 1..N` of families and sums.
-  std::pair<ast::Identifier, ast::Range> parse_index(int* height = nullptr);
+  [[nodiscard]] std::pair<ast::Identifier, ast::Range> parse_index(int* height = nullptr);
 
   // --- events (parser_events.cpp)
-  ast::When parse_when();
+  [[nodiscard]] ast::When parse_when();
   void parse_direction(ast::When& event);
-  std::optional<std::vector<ast::Action>> parse_limit_actions();
-  ast::At parse_at();
-  ast::Every parse_every();
-  std::vector<ast::Action> parse_actions(std::string_view wanted);
-  ast::Action parse_action();
-  ast::If parse_if();
-  ast::Stop parse_stop();
-  ast::ActionFamily parse_action_family();
-  ast::Assignment parse_assignment();
+  [[nodiscard]] std::optional<std::vector<ast::Action>> parse_limit_actions();
+  [[nodiscard]] ast::At parse_at();
+  [[nodiscard]] ast::Every parse_every();
+  [[nodiscard]] std::vector<ast::Action> parse_actions(std::string_view wanted);
+  [[nodiscard]] ast::Action parse_action();
+  [[nodiscard]] ast::If parse_if();
+  [[nodiscard]] ast::Stop parse_stop();
+  [[nodiscard]] ast::ActionFamily parse_action_family();
+  [[nodiscard]] ast::Assignment parse_assignment();
 
   // --- settings (parser_settings.cpp)
-  ast::Run parse_run();
-  bool parse_run_part(ast::Run& run);
+  [[nodiscard]] ast::Run parse_run();
+  [[nodiscard]] bool parse_run_part(ast::Run& run);
   void parse_limit_of_steps(ast::Run& run);
-  ast::OutputTimes parse_output_times();
+  [[nodiscard]] ast::OutputTimes parse_output_times();
   void parse_tolerances(ast::Run& run, bool relative);
-  ast::Plot parse_plot();
-  ast::Draw parse_draw();
-  ast::DrawItem parse_draw_item();
-  ast::Shape parse_shape();
-  ast::Expression parse_point();
-  ast::Expression parse_point_with_unit();
+  [[nodiscard]] ast::Plot parse_plot();
+  [[nodiscard]] ast::Draw parse_draw();
+  [[nodiscard]] ast::DrawItem parse_draw_item();
+  [[nodiscard]] ast::Shape parse_shape();
+  [[nodiscard]] ast::Expression parse_point();
+  [[nodiscard]] ast::Expression parse_point_with_unit();
   void parse_attributes(ast::Shape& shape, std::span<const std::string_view> known);
-  ast::Check parse_check();
-  ast::Measure parse_measure();
-  ast::Moment parse_moment();
-  ast::AtEvent parse_event_reference(bool after);
+  [[nodiscard]] ast::Check parse_check();
+  [[nodiscard]] ast::Measure parse_measure();
+  [[nodiscard]] ast::Moment parse_moment();
+  [[nodiscard]] ast::AtEvent parse_event_reference(bool after);
 
   // --- worlds (parser_world.cpp)
-  bool at_world_word(Context context);
-  ast::Statement::Node parse_world_or_force();
-  ast::World parse_world();
-  ast::Force parse_force(bool is_torque);
-  ast::WorldItem parse_world_item();
-  ast::WorldSetting parse_world_setting(ast::Identifier word);
-  ast::WorldWall parse_world_wall();
-  ast::WorldContainer parse_world_container();
-  ast::WorldBodies parse_world_bodies();
-  ast::WorldSpring parse_world_spring();
-  ast::WorldSprings parse_world_springs();
-  ast::WorldFix parse_world_fix();
-  ast::WorldIgnore parse_world_ignore();
-  ast::WorldFamily parse_world_family();
-  std::optional<ast::Identifier> parse_name_of_wall();
-  ast::WorldAttributes parse_world_attributes(std::string_view of, std::span<const std::string_view> known,
-                                              bool all_names = false);
+  [[nodiscard]] bool at_world_word(Context context);
+  [[nodiscard]] ast::Statement::Node parse_world_or_force();
+  [[nodiscard]] ast::World parse_world();
+  [[nodiscard]] ast::Force parse_force(bool is_torque);
+  [[nodiscard]] ast::WorldItem parse_world_item();
+  [[nodiscard]] ast::WorldSetting parse_world_setting(ast::Identifier word);
+  [[nodiscard]] ast::WorldWall parse_world_wall();
+  [[nodiscard]] ast::WorldContainer parse_world_container();
+  [[nodiscard]] ast::WorldBodies parse_world_bodies();
+  [[nodiscard]] ast::WorldSpring parse_world_spring();
+  [[nodiscard]] ast::WorldSprings parse_world_springs();
+  [[nodiscard]] ast::WorldFix parse_world_fix();
+  [[nodiscard]] ast::WorldIgnore parse_world_ignore();
+  [[nodiscard]] ast::WorldFamily parse_world_family();
+  [[nodiscard]] std::optional<ast::Identifier> parse_name_of_wall();
+  [[nodiscard]] ast::WorldAttributes parse_world_attributes(std::string_view of,
+                                                            std::span<const std::string_view> known,
+                                                            bool all_names = false);
   void skip_to_attribute(std::span<const std::string_view> known);
-  ast::Expression parse_world_value(std::string_view word);
-  ast::Expression parse_world_name(std::string_view word);
+  [[nodiscard]] ast::Expression parse_world_value(std::string_view word);
+  [[nodiscard]] ast::Expression parse_world_name(std::string_view word);
 
   const Source& source_;
   Lexer lexer_;

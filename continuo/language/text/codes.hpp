@@ -14,11 +14,11 @@ struct Code {
 };
 
 /// Each family in order of its codes.
-std::span<const Code> syntax_codes();     // E1xx, codes_syntax.cpp
-std::span<const Code> check_codes();      // E2xx, codes_check.cpp
-std::span<const Code> numerical_codes();  // E3xx, codes_numerical.cpp
+[[nodiscard]] std::span<const Code> syntax_codes();     // E1xx, codes_syntax.cpp
+[[nodiscard]] std::span<const Code> check_codes();      // E2xx, codes_check.cpp
+[[nodiscard]] std::span<const Code> numerical_codes();  // E3xx, codes_numerical.cpp
 
 /// The entry of a code ("E201", also "e201"), or null.
-const Code* find_code(std::string_view code);
+[[nodiscard]] const Code* find_code(std::string_view code);
 
 }  // namespace continuo::model

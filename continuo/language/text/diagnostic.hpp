@@ -34,10 +34,12 @@ struct Diagnostic {
   std::vector<Related> related = {};  // shown below the line, in order
 };
 
-Diagnostic error(std::string code, Span span, std::string message, std::string label = {}, std::string help = {});
-Diagnostic warning(std::string code, Span span, std::string message, std::string label = {}, std::string help = {});
+[[nodiscard]] Diagnostic error(std::string code, Span span, std::string message, std::string label = {},
+                               std::string help = {});
+[[nodiscard]] Diagnostic warning(std::string code, Span span, std::string message, std::string label = {},
+                                 std::string help = {});
 
-bool has_errors(std::span<const Diagnostic> diagnostics);
+[[nodiscard]] bool has_errors(std::span<const Diagnostic> diagnostics);
 
 /// In order of place; those at one place stay in order.
 void sort_by_place(std::vector<Diagnostic>& diagnostics);
@@ -48,13 +50,14 @@ struct RenderOptions {
 };
 
 /// One diagnostic as a block of lines that ends with a line end.
-std::string render(const Diagnostic& diagnostic, const Source& source, const RenderOptions& options = {});
+[[nodiscard]] std::string render(const Diagnostic& diagnostic, const Source& source, const RenderOptions& options = {});
 /// All of them, an empty line between two, in order of place.
-std::string render(std::span<const Diagnostic> diagnostics, const Source& source, const RenderOptions& options = {});
+[[nodiscard]] std::string render(std::span<const Diagnostic> diagnostics, const Source& source,
+                                 const RenderOptions& options = {});
 
 /// {"code", "severity", "message", "label", "help", "file", "line", "column", "end_line", "end_column", "related"}.
-std::string to_json(const Diagnostic& diagnostic, const Source& source);
+[[nodiscard]] std::string to_json(const Diagnostic& diagnostic, const Source& source);
 /// The array of them.
-std::string to_json(std::span<const Diagnostic> diagnostics, const Source& source);
+[[nodiscard]] std::string to_json(std::span<const Diagnostic> diagnostics, const Source& source);
 
 }  // namespace continuo::model

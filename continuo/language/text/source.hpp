@@ -20,12 +20,12 @@ struct Span {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
 
-  bool empty() const { return begin == end; }
+  [[nodiscard]] bool empty() const { return begin == end; }
   bool operator==(const Span&) const = default;
 };
 
 /// The smallest span that holds both.
-constexpr Span cover(Span a, Span b) {
+[[nodiscard]] constexpr Span cover(Span a, Span b) {
   return {a.begin < b.begin ? a.begin : b.begin, a.end > b.end ? a.end : b.end};
 }
 
@@ -45,17 +45,17 @@ class Source {
 
   Source(std::string name, std::string text);
 
-  const std::string& name() const { return name_; }
-  const std::string& text() const { return text_; }
-  std::string_view slice(Span span) const;
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] std::string_view slice(Span span) const;
 
   /// An offset beyond the end is taken as the end.
-  Place place(std::uint32_t offset) const;
+  [[nodiscard]] Place place(std::uint32_t offset) const;
   /// Without its line end; empty for a line that is not there.
-  std::string_view line(int number) const;
-  int line_count() const { return static_cast<int>(line_starts_.size()); }
+  [[nodiscard]] std::string_view line(int number) const;
+  [[nodiscard]] int line_count() const { return static_cast<int>(line_starts_.size()); }
   /// The offset at which the line begins.
-  std::uint32_t line_start(int number) const;
+  [[nodiscard]] std::uint32_t line_start(int number) const;
 
  private:
   std::string name_;
@@ -64,6 +64,6 @@ class Source {
 };
 
 /// Reads a file whole; nothing where it cannot be read or is larger than `Source::largest_size`.
-std::optional<Source> read_source(const std::filesystem::path& path);
+[[nodiscard]] std::optional<Source> read_source(const std::filesystem::path& path);
 
 }  // namespace continuo::model

@@ -13,14 +13,14 @@ struct CodePoint {
 };
 
 /// The code point that begins at `offset` (Unicode 15, table 3-7: no surrogates, no overlong forms).
-CodePoint decode(std::string_view text, std::size_t offset);
+[[nodiscard]] CodePoint decode(std::string_view text, std::size_t offset);
 
 /// The offset of the first byte that is not part of well-formed UTF-8.
-std::optional<std::size_t> first_invalid_byte(std::string_view text);
+[[nodiscard]] std::optional<std::size_t> first_invalid_byte(std::string_view text);
 
 /// May begin a name: an ASCII letter, `_`, or a letter of the common scripts.
-bool begins_name(char32_t c);
+[[nodiscard]] bool begins_name(char32_t c);
 /// May go on with one: also digits, subscripts and combining marks.
-bool continues_name(char32_t c);
+[[nodiscard]] bool continues_name(char32_t c);
 
 }  // namespace continuo::model

@@ -8,15 +8,15 @@
 namespace continuo::model {
 
 /// Words that begin a statement.
-std::span<const std::string_view> statement_words();
+[[nodiscard]] std::span<const std::string_view> statement_words();
 /// Words that begin an action of an event.
-std::span<const std::string_view> action_words();
+[[nodiscard]] std::span<const std::string_view> action_words();
 
 /// Words that cannot be names. `t` and `pi` are names with a meaning and not among them.
-bool is_reserved(std::string_view word);
+[[nodiscard]] bool is_reserved(std::string_view word);
 
 /// `sin`, `max`, `interp`, ...: `sin(0) = 1` is an equation, `h(0) = 1` an initial value.
-bool is_function(std::string_view name);
+[[nodiscard]] bool is_function(std::string_view name);
 
 /// `combine restitution minimum`: how the numbers of two surfaces become those of their contact.
 inline constexpr std::array<std::string_view, 5> combinations{"average", "minimum", "maximum", "product",

@@ -46,7 +46,7 @@ struct CollocationMethod : ImplicitMethod<> {
   using Workspace = collocation::Workspace<X, most>;
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return Workspace<X>(x, least);
   }
 
@@ -68,7 +68,7 @@ struct CollocationMethod : ImplicitMethod<> {
     work.oscillates = oscillates;
   }
   template <State X>
-  static int error_order_of(const Workspace<X>& work) {
+  [[nodiscard]] static int error_order_of(const Workspace<X>& work) {
     return radau ? static_cast<int>(work.stages) : work.linear.has_mass() ? 2 : error_order;
   }
 
@@ -101,18 +101,18 @@ struct CollocationMethod : ImplicitMethod<> {
   }
 
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     return norm_of_error(work, x, x_new, tolerance) + detail::zero_if_all_finite(x_new);
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     return work.error.data()[i] / work.looseness;
   }
 
   template <State X>
-  static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>&, const Scalar<X>& h, const X& x, const X& x_new,
-                               const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>&, const Scalar<X>& h, const X& x,
+                                             const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
     using Real = Scalar<X>;
     using std::min;
     const Real error = norm_of_error(work, x, x_new, tolerance);
@@ -176,7 +176,7 @@ struct CollocationMethod : ImplicitMethod<> {
   }
 
   template <State X>
-  static X derivative(const Workspace<X>& work) {
+  [[nodiscard]] static X derivative(const Workspace<X>& work) {
     return work.linear.has_mass() ? work.slope : work.f;
   }
 
@@ -190,7 +190,7 @@ struct CollocationMethod : ImplicitMethod<> {
     ((stages == Stages ? act.template operator()<Stages>() : void()), ...);
   }
   template <class Real>
-  static constexpr int most_iterations(std::size_t stages) {
+  [[nodiscard]] static constexpr int most_iterations(std::size_t stages) {
     constexpr int in_double = 7, digits = std::numeric_limits<Real>::digits;
     return in_double * (digits > 53 ? digits : 53) / 53 + (radau ? 5 * (static_cast<int>(stages) - 3) / 2 : 3);
   }
@@ -219,8 +219,8 @@ struct CollocationMethod : ImplicitMethod<> {
   }
 
   template <State X>
-  static Scalar<X> norm_of_error(const Workspace<X>& work, const X& x, const X& x_new,
-                                 const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> norm_of_error(const Workspace<X>& work, const X& x, const X& x_new,
+                                               const Tolerance<Scalar<X>>& tolerance) {
     using std::max, std::sqrt;
     Scalar<X> sum(0), dense_sum(0);
     for (std::size_t i = 0; i < dimension(x); ++i) {
@@ -242,7 +242,7 @@ struct CollocationMethod : ImplicitMethod<> {
   // What RADAU calls fast is a rate of 0.002. The stricter the tolerance, the more a higher order gains, and a few
   // iterations more are nothing against it: a nonlinearity that spoils the rate would keep a strict run at order 5.
   template <class Real>
-  static Real fast_rate(const Real& rtol) {
+  [[nodiscard]] static Real fast_rate(const Real& rtol) {
     using std::clamp, std::sqrt;
     return Real(2e-3) * clamp(sqrt(Real(1e-6) / rtol), Real(1), Real(50));
   }
@@ -250,7 +250,7 @@ struct CollocationMethod : ImplicitMethod<> {
   // The strategy of RADAU: the order goes up where Newton's iteration converges fast and steps are calm, and down where
   // it barely converges, for then it is what bounds the step (Hairer & Wanner 1999, section 4).
   template <State X>
-  static std::size_t stages_after(const Workspace<X>& work, const Scalar<X>& factor) {
+  [[nodiscard]] static std::size_t stages_after(const Workspace<X>& work, const Scalar<X>& factor) {
     if (sizeof...(Stages) == 1 || work.steps_of_order < 10) return work.stages;
     const auto& memory = work.memory;
     if (memory.rate >= Scalar<X>(0.8) && work.stages > least) return work.stages - 2;
@@ -261,7 +261,8 @@ struct CollocationMethod : ImplicitMethod<> {
   }
 
   template <class System, State X>
-  static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+  [[nodiscard]] static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                     Workspace<X>& work) {
     const int evaluations = work.linear.evaluate(system, t, x, work.f,
                                                  LeastIncrements(work.tolerance, h, x, work.f, work.linear.has_mass()));
     ++work.costs.jacobians;
@@ -273,7 +274,8 @@ struct CollocationMethod : ImplicitMethod<> {
 
   // The stages. work.status says whether they were found.
   template <std::size_t s, class System, State X>
-  static int solve(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+  [[nodiscard]] static int solve(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                 Workspace<X>& work) {
     collocation::guess<nodes, s>(h, work);
     if (!collocation::decompose<nodes, s>(h, work)) return 0;
     if (work.linear.has_mass()) work.memory.measure_anew(work.tolerance);
@@ -290,7 +292,8 @@ struct CollocationMethod : ImplicitMethod<> {
 
   // x_new, and the error where the stages were found.
   template <std::size_t s, class System, State X>
-  static int finish(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work, X& x_new) {
+  [[nodiscard]] static int finish(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                  Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
     const auto& table = collocation::table_for<X, nodes, s>();
     work.h = h;
@@ -320,8 +323,8 @@ struct CollocationMethod : ImplicitMethod<> {
 
   // The end of a step of Gauss is no stage.
   template <class System, State X>
-  static int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
-                             X& x_new) {
+  [[nodiscard]] static int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                           Workspace<X>& work, X& x_new) {
     if (!detail::has_unknowns(work.linear, dimension(x))) return 0;
     if (!work.lu.factor(work.linear, detail::shift_for_unknowns(h))) {
       work.status = StepStatus::singular_matrix;
@@ -334,7 +337,7 @@ struct CollocationMethod : ImplicitMethod<> {
 
   // f is to blame where one of its components is not finite: x_new takes it over, for the driver to name.
   template <std::size_t s, State X>
-  static int name_not_finite(const Workspace<X>& work, X& x_new) {
+  [[nodiscard]] static int name_not_finite(const Workspace<X>& work, X& x_new) {
     if (work.status == StepStatus::not_finite) {
       for (std::size_t i = 0; i < dimension(x_new); ++i) {
         x_new.data()[i] = Scalar<X>(0);
@@ -347,7 +350,8 @@ struct CollocationMethod : ImplicitMethod<> {
   // The quadrature on 0, c_1, ..., c_s whose weight of f(t, x) is 1 / gamma differs from the method by
   // h / gamma (f(t, x) - q'(0)); divided by 1 - h/gamma J it is bounded for stiff components too (eq. 8.19).
   template <class System, State X>
-  static int estimate_radau(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work, const X& x_new) {
+  [[nodiscard]] static int estimate_radau(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work,
+                                          const X& x_new) {
     const std::size_t n = dimension(x);
     work.linear.multiply_mass(work.slope, work.right);
     for (std::size_t i = 0; i < n; ++i) work.error.data()[i] = work.f.data()[i] - work.right.data()[i];
@@ -368,8 +372,8 @@ struct CollocationMethod : ImplicitMethod<> {
   // h. Filtered as above, with the complex matrix there is. With a mass, equations may be algebraic: then the end alone
   // counts, which shows how far it is from solving them.
   template <class System, State X>
-  static int estimate_gauss(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
-                            const X& x_new) {
+  [[nodiscard]] static int estimate_gauss(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
+                                          const X& x_new) {
     const std::size_t n = dimension(x_new);
     evaluate(system, Scalar<X>(t + h), x_new, work.f_end);
     auto& pair = work.pair_right[0];

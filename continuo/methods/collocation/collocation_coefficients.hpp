@@ -30,7 +30,7 @@ using Matrix = std::array<Row<s>, s>;
 
 /// p(x) and p'(x) of the polynomial with these powers.
 template <class Number, class Powers>
-constexpr std::array<Number, 2> value_and_slope(const Powers& powers, const Number& x) {
+[[nodiscard]] constexpr std::array<Number, 2> value_and_slope(const Powers& powers, const Number& x) {
   Number value(powers.back()), slope{};
   for (std::size_t k = powers.size() - 1; k-- > 0;) {
     slope = slope * x + value;
@@ -40,14 +40,14 @@ constexpr std::array<Number, 2> value_and_slope(const Powers& powers, const Numb
 }
 
 template <class Real>
-constexpr ComplexNumber<Real> inverse(const ComplexNumber<Real>& z) {
+[[nodiscard]] constexpr ComplexNumber<Real> inverse(const ComplexNumber<Real>& z) {
   const Real square = z.re * z.re + z.im * z.im;
   return {z.re / square, -z.im / square};
 }
 
 /// N by its powers.
 template <Nodes nodes, std::size_t s>
-constexpr std::array<Coefficient, s + 1> node_polynomial() {
+[[nodiscard]] constexpr std::array<Coefficient, s + 1> node_polynomial() {
   constexpr std::size_t m = nodes == Nodes::gauss ? s : s - 1;
   std::array<std::int64_t, s + 1> whole{};
   std::int64_t binomial = s % 2 == 0 ? 1 : -1;  // of (x - 1)^s
@@ -64,7 +64,7 @@ constexpr std::array<Coefficient, s + 1> node_polynomial() {
 /// The zeros of N, ascending. Newton's iteration from the left of all of them goes monotonically to the least that is
 /// not divided out yet (H. J. Maehly, ZAMP 5 (1954)); in double first, then to all digits.
 template <Nodes nodes, std::size_t s>
-constexpr Row<s> find_nodes() {
+[[nodiscard]] constexpr Row<s> find_nodes() {
   constexpr auto powers = node_polynomial<nodes, s>();
   std::array<double, s + 1> rounded{};
   for (std::size_t k = 0; k <= s; ++k) rounded[k] = powers[k].template as<double>();
@@ -92,8 +92,8 @@ constexpr Row<s> find_nodes() {
 
 /// N^(k)(c_i) for k = 0..s, in row i.
 template <std::size_t s>
-constexpr std::array<std::array<Coefficient, s + 1>, s> find_derivatives(const std::array<Coefficient, s + 1>& powers,
-                                                                         const Row<s>& c) {
+[[nodiscard]] constexpr std::array<std::array<Coefficient, s + 1>, s> find_derivatives(
+    const std::array<Coefficient, s + 1>& powers, const Row<s>& c) {
   std::array<std::array<Coefficient, s + 1>, s> derivatives{};
   for (std::size_t i = 0; i < s; ++i) {
     std::array<Coefficient, s + 1> row = powers;  // to be the powers of x - c_i
@@ -112,7 +112,7 @@ constexpr std::array<std::array<Coefficient, s + 1>, s> find_derivatives(const s
 
 /// The powers of l_i, in row i.
 template <std::size_t s>
-constexpr Matrix<s> find_lagrange(const std::array<Coefficient, s + 1>& powers, const Row<s>& c) {
+[[nodiscard]] constexpr Matrix<s> find_lagrange(const std::array<Coefficient, s + 1>& powers, const Row<s>& c) {
   Matrix<s> lagrange{};
   for (std::size_t i = 0; i < s; ++i) {
     lagrange[i][s - 1] = powers[s];
@@ -171,8 +171,8 @@ struct Eigenvectors {
 };
 
 template <std::size_t s>
-constexpr Eigenvectors<s> find_vectors(const Complex& value, const Matrix<s>& lagrange,
-                                       const std::array<std::array<Coefficient, s + 1>, s>& derivatives) {
+[[nodiscard]] constexpr Eigenvectors<s> find_vectors(const Complex& value, const Matrix<s>& lagrange,
+                                                     const std::array<std::array<Coefficient, s + 1>, s>& derivatives) {
   Eigenvectors<s> vectors{};
   const Complex one_over_value = inverse(value);
   for (std::size_t i = 0; i < s; ++i) {
@@ -210,7 +210,7 @@ inline constexpr Eigenvectors<s> eigenvectors =
 
 /// The tableau.
 template <Nodes nodes, std::size_t s>
-constexpr Matrix<s> find_a() {
+[[nodiscard]] constexpr Matrix<s> find_a() {
   Matrix<s> a{};
   for (std::size_t i = 0; i < s; ++i)
     for (std::size_t j = 0; j < s; ++j) {
@@ -221,7 +221,7 @@ constexpr Matrix<s> find_a() {
   return a;
 }
 template <Nodes nodes, std::size_t s>
-constexpr Row<s> find_b() {
+[[nodiscard]] constexpr Row<s> find_b() {
   Row<s> b{};
   for (std::size_t j = 0; j < s; ++j)
     for (std::size_t k = 0; k < s; ++k) b[j] = b[j] + lagrange<nodes, s>[j][k] / (k + 1);

@@ -15,7 +15,7 @@ namespace continuo::collocation {
 
 /// gamma / h M - J for all eigenvalues. False where one is singular: work.status says so.
 template <Nodes nodes, std::size_t s, State X, std::size_t most>
-bool decompose(const Scalar<X>& h, Workspace<X, most>& work) {
+[[nodiscard]] bool decompose(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
   const auto& numbers = table_for<X, nodes, s>();
   if (work.decomposed_for == h && work.decomposed_stages == s) return true;
@@ -136,7 +136,7 @@ template <Nodes nodes, std::size_t s, State X, std::size_t most>
 
 /// One correction of Z and W from the slopes F; its norm over all stages.
 template <Nodes nodes, std::size_t s, State X, std::size_t most>
-[[gnu::always_inline]] inline Scalar<X> correct(const Scalar<X>& h, Workspace<X, most>& work) {
+[[nodiscard]] [[gnu::always_inline]] inline Scalar<X> correct(const Scalar<X>& h, Workspace<X, most>& work) {
   using Real = Scalar<X>;
   using std::sqrt;
   const auto& numbers = table_for<X, nodes, s>();

@@ -12,8 +12,8 @@ namespace continuo::collocation {
 
 /// Of one component: sum_j matrix[m][j] x[j] for each m.
 template <class Real, std::size_t rows, std::size_t columns>
-[[gnu::always_inline]] inline std::array<Real, rows> product(const std::array<std::array<Real, columns>, rows>& matrix,
-                                                             const std::array<Real, columns>& x) {
+[[nodiscard]] [[gnu::always_inline]] inline std::array<Real, rows> product(
+    const std::array<std::array<Real, columns>, rows>& matrix, const std::array<Real, columns>& x) {
   std::array<Real, rows> sums{};
   detail::unrolled<0, rows>([&](auto m) __attribute__((always_inline)) {
     detail::unrolled<0, columns>([&](auto j) __attribute__((always_inline)) { sums[m] += matrix[m][j] * x[j]; });
@@ -50,7 +50,7 @@ template <State X, std::size_t rows, std::size_t columns, std::size_t most, clas
 
 /// The sum of the components, in four parts that do not wait for each other.
 template <State X>
-Scalar<X> total(const X& x) {
+[[nodiscard]] Scalar<X> total(const X& x) {
   std::array<Scalar<X>, 4> parts{};
   const std::size_t n = dimension(x), whole = n - n % 4;
   for (std::size_t i = 0; i < whole; i += 4)

@@ -27,7 +27,7 @@ struct Table {
 };
 
 template <class Real, Nodes nodes, std::size_t s>
-constexpr Table<Real, nodes, s> make_table() {
+[[nodiscard]] constexpr Table<Real, nodes, s> make_table() {
   Table<Real, nodes, s> table{};
   const auto real = [](const Coefficient& x) { return x.template as<Real>(); };
   for (std::size_t i = 0; i < s; ++i) {
@@ -73,7 +73,7 @@ constexpr Table<Real, nodes, s> make_table() {
 
 /// Made at compile time where the scalar is built in, else at the first use.
 template <class Real, Nodes nodes, std::size_t s>
-const Table<Real, nodes, s>& table() {
+[[nodiscard]] const Table<Real, nodes, s>& table() {
   if constexpr (std::floating_point<Real>) {
     static constexpr auto numbers = make_table<Real, nodes, s>();
     return numbers;
@@ -100,7 +100,7 @@ extern template const Table<long double, Nodes::radau, 7>& table();
 /// For the steps of a state. Those of fixed size have the numbers in their code, which then has a tenth fewer
 /// instructions (Radau on HIRES, Robertson, van der Pol).
 template <State X, Nodes nodes, std::size_t s>
-const Table<Scalar<X>, nodes, s>& table_for() {
+[[nodiscard]] const Table<Scalar<X>, nodes, s>& table_for() {
   if constexpr (std::floating_point<Scalar<X>> && fixed_size<X>() != run_time_size) {
     static constexpr auto numbers = make_table<Scalar<X>, nodes, s>();
     return numbers;

@@ -15,7 +15,7 @@ namespace continuo::collocation {
 
 /// Count copies of a state, or of anything made from one.
 template <class T, std::size_t Count, class From>
-std::array<T, Count> copies(const From& from) {
+[[nodiscard]] std::array<T, Count> copies(const From& from) {
   return [&]<std::size_t... i>(std::index_sequence<i...>) {
     return std::array<T, Count>{((void)i, T(from))...};
   }(std::make_index_sequence<Count>{});
@@ -86,7 +86,7 @@ struct Workspace : StepEquations<Scalar<X>> {
 
   /// The elementary factor, corrected by how the error changed with the last h (K. Gustafsson, ACM TOMS 20 (1994)), and
   /// less where Newton's iteration was slow: Hairer & Wanner II, eq. 8.21 and 8.25.
-  Real wanted_factor(const Real& step, const Real& step_error, int most_iterations, int error_order) {
+  [[nodiscard]] Real wanted_factor(const Real& step, const Real& step_error, int most_iterations, int error_order) {
     using std::clamp, std::max, std::min, std::pow;
     const Real exponent = Real(1) / Real(error_order + 1), safe = max(step_error, Real(1e-10));
     const Real patience = Real(2 * most_iterations + 1) / Real(2 * most_iterations + memory.iterations);

@@ -27,19 +27,19 @@ struct DiagonalTableau {
   /// x(t + theta h) = x + h sum_ni dense[n][i] theta^(n+1) k_i.
   Coefficient dense[Degree][Stages] = {};
 
-  constexpr bool starts_explicit() const { return a[0][0].is_zero(); }
+  [[nodiscard]] constexpr bool starts_explicit() const { return a[0][0].is_zero(); }
   /// x_new is the argument of the last stage.
-  constexpr bool stiffly_accurate() const {
+  [[nodiscard]] constexpr bool stiffly_accurate() const {
     for (std::size_t j = 0; j < Stages; ++j) {
       if (!(a[last][j] == b[j])) return false;
     }
     return true;
   }
-  constexpr bool is_additive() const { return Stages > 1 && !explicit_a[last][0].is_zero(); }
+  [[nodiscard]] constexpr bool is_additive() const { return Stages > 1 && !explicit_a[last][0].is_zero(); }
 
   /// A first guess of k_i from the stages before: sum_j weight k_j. The parabola through the last three that lie at
   /// different times, a line or a constant where there are less.
-  constexpr Coefficient predictor(std::size_t i, std::size_t j) const {
+  [[nodiscard]] constexpr Coefficient predictor(std::size_t i, std::size_t j) const {
     std::size_t node[3] = {}, count = 0;
     for (std::size_t back = i; back-- > 0 && count < 3;) {
       bool is_new = true;
@@ -58,7 +58,7 @@ struct DiagonalTableau {
   }
 
   /// With the cubic Hermite interpolant of the values and slopes at both ends, where the first and the last stage are.
-  constexpr DiagonalTableau with_hermite() const {
+  [[nodiscard]] constexpr DiagonalTableau with_hermite() const {
     static_assert(Degree == 3);
     DiagonalTableau result = *this;
     for (std::size_t i = 0; i < Stages; ++i) {

@@ -50,7 +50,7 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return [&]<std::size_t... s>(std::index_sequence<s...>) {
       Workspace<X> work{{((void)s, x)...}, {x}, x, x, x, StageSolver<X>(x)};
       work.nonstiff.fill(x);
@@ -74,14 +74,14 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
   /// Root mean square of error_i / scale_i (0 without an estimate), times what a step is held below the tolerance by;
   /// not a number where x_new is not finite.
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
     return sqrt(error_square(work, h, x, x_new, tolerance));
   }
   template <State X>
-  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
-                                const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                              const Tolerance<Scalar<X>>& tolerance) {
     const Scalar<X> strict = strictness_of<Derived>(tolerance), between = work.unknowns.norm(x, x_new, tolerance);
     const Tolerance<Scalar<X>> weights = tolerance.of_error_times(strict);
     Scalar<X> sum(0);
@@ -94,7 +94,7 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
                            Scalar<X>(between * between));
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     using std::abs;
     return detail::greater(Scalar<X>(abs(work.error.data()[i])), work.unknowns.error_of(i));
   }
@@ -120,14 +120,14 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
     work.has_guess = true;
   }
   template <State X>
-  static Scalar<X> next_factor(const Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>&, const X&, const X&,
-                               const Tolerance<Scalar<X>>&) {
+  [[nodiscard]] static Scalar<X> next_factor(const Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>&,
+                                             const X&, const X&, const Tolerance<Scalar<X>>&) {
     return work.solver.next_factor(factor);
   }
 
   /// x' at the start of the last step; at its first stage, if that is implicit.
   template <State X>
-  static const X& derivative(const Workspace<X>& work) {
+  [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.k[0];
   }
 
@@ -158,23 +158,23 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
   };
 
   template <class System, State X>
-  static constexpr bool treats_as_split() {
+  [[nodiscard]] static constexpr bool treats_as_split() {
     return Derived::tableau.is_additive() && IsSplit<System, X> && !HasMassMatrix<System, X> &&
            !HasMassDiagonal<System, X>;
   }
-  static constexpr bool ends_with_slope() {
+  [[nodiscard]] static constexpr bool ends_with_slope() {
     return Derived::tableau.starts_explicit() && Derived::tableau.stiffly_accurate();
   }
   /// How far the iteration goes, in tolerances; further than others where no estimate says that this is too much.
   template <class Real>
-  static Real target(const Tolerance<Real>& tolerance) {
+  [[nodiscard]] static Real target(const Tolerance<Real>& tolerance) {
     if constexpr (Derived::error_order == 0) return Real(1e-4);
     return iteration_target<Derived>(tolerance);
   }
 
   /// Component i of sum_j row_j k_j.
   template <class Source, std::size_t Size, State X, std::size_t Slots>
-  [[gnu::always_inline]] static Scalar<X> sum_of(const std::array<X, Slots>& k, std::size_t i) {
+  [[nodiscard]] [[gnu::always_inline]] static Scalar<X> sum_of(const std::array<X, Slots>& k, std::size_t i) {
     using Weights = detail::Row<Source, Size>;
     return [&]<std::size_t... n>(std::index_sequence<n...>) __attribute__((always_inline)) {
       return (Scalar<X>(0) + ... + (Weights::template weight<Scalar<X>, n>() * k[Weights::place[n]].data()[i]));
@@ -182,8 +182,8 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
   }
 
   template <class System, class Stiff, State X>
-  static int take_step(System& system, Stiff& stiff, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                       bool discontinuity, Workspace<X>& work, X& x_new) {
+  [[nodiscard]] static int take_step(System& system, Stiff& stiff, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                     bool discontinuity, Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
     constexpr std::size_t stages = Derived::tableau.stages;
     auto& solver = work.solver;
@@ -218,8 +218,8 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
 
   /// x' at the start of the step.
   template <class System, class Stiff, State X>
-  static int start(System& system, Stiff& stiff, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                   Workspace<X>& work) {
+  [[nodiscard]] static int start(System& system, Stiff& stiff, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                 Workspace<X>& work) {
     evaluate(stiff, t, x, work.k[0]);
     int evaluations = 1;
     if constexpr (treats_as_split<System, X>()) {
@@ -238,8 +238,8 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
   /// others as far as c is large. f itself is left out of the rows of a diagonal M that are 0: it is no more than what
   /// the consistency of the start has left.
   template <class System, State X>
-  static int divide_by_singular_mass(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                                     Workspace<X>& work) {
+  [[nodiscard]] static int divide_by_singular_mass(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                                   Workspace<X>& work) {
     using Real = Scalar<X>;
     X& k = work.k[0];
     const Real c = 1 / (h * detail::sqrt_of_epsilon<Real>());
@@ -264,8 +264,8 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
   }
 
   template <std::size_t s, class System, class Stiff, State X>
-  static bool stage(System& system, Stiff& stiff, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                    Workspace<X>& work, int& evaluations) {
+  [[nodiscard]] static bool stage(System& system, Stiff& stiff, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                  Workspace<X>& work, int& evaluations) {
     using Real = Scalar<X>;
     if constexpr (!Derived::tableau.a[s][s].is_zero()) {
       auto& solver = work.solver;
@@ -313,8 +313,8 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
 
   // With the Jacobian of the step; where that does not lead to the unknowns, with those of where it does lead.
   template <class System, State X>
-  static int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
-                             X& x_new) {
+  [[nodiscard]] static int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                           Workspace<X>& work, X& x_new) {
     constexpr int most_jacobians = 20;
     auto& solver = work.solver;
     int evaluations = 0;

@@ -95,7 +95,7 @@ inline constexpr Coefficient d[4][16] = {
      -43.533456590011143754432175058_c, 96.3245539591882829483949506_c, -39.177261675615439165231486172_c,
      -149.72683625798562581422125276_c}};
 
-consteval Tableau<12, 3, 7> with_dense() {
+[[nodiscard]] consteval Tableau<12, 3, 7> with_dense() {
   auto result = pair;
   for (std::size_t j = 0; j < 16; ++j) {
     result.dense[j][0] = d[0][j];
@@ -131,8 +131,8 @@ struct Dop853 : ExplicitRungeKutta<Dop853> {
   /// The square of Hairer's combination h |err5|^2 / sqrt(n (|err5|^2 + 0.01 |err3|^2)) of the two estimates (II.10,
   /// eq. 10.17): of the size of h^8, and safe where one of the two vanishes by chance.
   template <State X>
-  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                                const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                              const Tolerance<Scalar<X>>& tolerance) {
     using Unit = detail::Unit<X>;
     const auto fifth = detail::stages_of<Fifth, X>(work.k);
     const auto third = detail::stages_of<Third, X>(work.k);
@@ -151,7 +151,7 @@ struct Dop853 : ExplicitRungeKutta<Dop853> {
   }
 
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
     return detail::size_of_sum<Fifth, X>(work.k, h, i);
   }
 };

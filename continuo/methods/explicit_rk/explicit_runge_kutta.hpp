@@ -24,20 +24,20 @@ template <class Derived>
 struct ExplicitRungeKutta {
  private:
   /// The slot of k that keeps column j of the tableau: `end` shares the last stage's where both are the same.
-  static constexpr std::size_t slot(std::size_t j) {
+  [[nodiscard]] static constexpr std::size_t slot(std::size_t j) {
     return j >= Derived::tableau.stages && Derived::tableau.first_same_as_last() ? j - 1 : j;
   }
-  static constexpr std::size_t column(std::size_t in_slot) {
+  [[nodiscard]] static constexpr std::size_t column(std::size_t in_slot) {
     return in_slot >= Derived::tableau.end && Derived::tableau.first_same_as_last() ? in_slot + 1 : in_slot;
   }
-  static constexpr std::size_t end_slot() { return slot(Derived::tableau.end); }
+  [[nodiscard]] static constexpr std::size_t end_slot() { return slot(Derived::tableau.end); }
   struct ErrorWeight {
     constexpr Coefficient operator()(std::size_t j) const {
       if (Derived::error_order == 0) return 0;
       return Derived::tableau.b[j] - Derived::tableau.embedded[j];
     }
   };
-  static constexpr std::size_t slots() { return slot(Derived::tableau.known - 1) + 1; }
+  [[nodiscard]] static constexpr std::size_t slots() { return slot(Derived::tableau.known - 1) + 1; }
 
  public:
   static constexpr int error_order = 0;   // no estimate, unless Derived says so
@@ -54,7 +54,7 @@ struct ExplicitRungeKutta {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return [&]<std::size_t... j>(std::index_sequence<j...>) {
       return Workspace<X>{{((void)j, detail::keep(x))...}, x};
     }(std::make_index_sequence<slots()>());
@@ -72,15 +72,15 @@ struct ExplicitRungeKutta {
 
   /// Root mean square of error_i / scale_i (0 without an estimate); not a number where x_new is not finite.
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
     return sqrt(Derived::template error_square<X>(work, h, x, x_new, tolerance));
   }
   /// Its square, for who can do without the root: the next step waits for it.
   template <State X>
-  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                                const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                              const Tolerance<Scalar<X>>& tolerance) {
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
     const auto k = detail::stages_of<Error, X>(work.k);
     detail::Unit<X> sum{};
@@ -100,7 +100,7 @@ struct ExplicitRungeKutta {
   }
 
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
     return detail::size_of_sum<Error, X>(work.k, h, i);
   }
@@ -154,8 +154,9 @@ struct ExplicitRungeKutta {
 
  private:
   template <class System, State X>
-  [[gnu::always_inline]] static int take_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                                              bool discontinuity, Workspace<X>& work, X& x_new) {
+  [[nodiscard]] [[gnu::always_inline]] static int take_step(System& system, const Scalar<X>& t, const X& x,
+                                                            const Scalar<X>& h, bool discontinuity, Workspace<X>& work,
+                                                            X& x_new) {
     constexpr auto& tableau = Derived::tableau;
     constexpr bool ends_with_f = tableau.first_same_as_last();
     constexpr std::size_t inner = tableau.stages - (ends_with_f ? 1 : 0);
@@ -176,8 +177,8 @@ struct ExplicitRungeKutta {
   /// With f compiled into it, however often it occurs: a call would cost more than the f of a small state, and would
   /// send what is kept in registers through memory.
   template <class System, State X>
-  [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h, bool discontinuity,
-                                        Workspace<X>& work, X& x_new) {
+  [[nodiscard]] [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h,
+                                                      bool discontinuity, Workspace<X>& work, X& x_new) {
     return take_step(system, t, x, h, discontinuity, work, x_new);
   }
 
@@ -207,7 +208,7 @@ struct ExplicitRungeKutta {
 
   /// t + c h.
   template <class C, class Real>
-  static Real node(const Real& t, const Real& h) {
+  [[nodiscard]] static Real node(const Real& t, const Real& h) {
     if constexpr (C{}(0).is_zero()) {
       return t;
     } else if constexpr (C{}(0) == Coefficient(1)) {

@@ -21,20 +21,20 @@ struct Rkc2 : StabilizedRungeKutta<Rkc2> {
 
   /// The boundary is 0.653 (s + 1)^2 for large s; the slope here is a little less, for every s from 2.
   template <class Real>
-  static std::size_t stages_for(const Real& z, std::size_t greatest) {
+  [[nodiscard]] static std::size_t stages_for(const Real& z, std::size_t greatest) {
     using std::min, std::sqrt;
     const Real wanted = sqrt(Real(1.54) * z + 1);
     if (!(wanted < Real(static_cast<double>(greatest)))) return greatest;
     return std::max(std::size_t{2}, static_cast<std::size_t>(wanted) + 1);
   }
   template <class Real>
-  static Real reach(std::size_t s) {
+  [[nodiscard]] static Real reach(std::size_t s) {
     const Real stages = Real(static_cast<double>(s));
     return (stages * stages - 1) / Real(1.54);
   }
   /// Rounding errors grow like s^2 epsilon within a step.
   template <class Real>
-  static std::size_t most_stages(const Real& rtol) {
+  [[nodiscard]] static std::size_t most_stages(const Real& rtol) {
     using std::min, std::sqrt;
     const Real wanted = min(sqrt(rtol / (10 * std::numeric_limits<Real>::epsilon())), Real(1e6));
     return std::max(std::size_t{2}, static_cast<std::size_t>(wanted));
@@ -102,7 +102,7 @@ struct Rkc2 : StabilizedRungeKutta<Rkc2> {
     }
   };
   template <class Real>
-  static Real w1_of(const Real& w0, std::size_t stages) {
+  [[nodiscard]] static Real w1_of(const Real& w0, std::size_t stages) {
     Chebyshev<Real> polynomial{.w0 = w0};
     polynomial.to_one();
     for (std::size_t j = 2; j <= stages; ++j) polynomial.advance();

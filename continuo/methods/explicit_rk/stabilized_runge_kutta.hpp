@@ -45,7 +45,7 @@ struct StabilizedRungeKutta {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return {x, x, x, x, x, SpectralRadius<X>(x)};
   }
 
@@ -83,20 +83,20 @@ struct StabilizedRungeKutta {
   }
 
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     return strictness_of<Derived>(tolerance) * weighted_norm(work.error, x, x_new, tolerance) +
            detail::zero_if_all_finite(x_new);
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     return work.error.data()[i];
   }
 
   /// Never beyond the reach of the stages that rounding allows.
   template <State X>
-  static Scalar<X> next_factor(const Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h, const X&,
-                               const X&, const Tolerance<Scalar<X>>&) {
+  [[nodiscard]] static Scalar<X> next_factor(const Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h,
+                                             const X&, const X&, const Tolerance<Scalar<X>>&) {
     using std::abs, std::min;
     const Scalar<X> longest = Derived::template reach<Scalar<X>>(most_stages(work));
     return abs(h) * work.radius * factor > longest ? longest / (abs(h) * work.radius) : factor;
@@ -125,7 +125,7 @@ struct StabilizedRungeKutta {
     ++work.radius_age;
   }
   template <State X>
-  static const X& derivative(const Workspace<X>& work) {
+  [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.start;
   }
 
@@ -133,7 +133,7 @@ struct StabilizedRungeKutta {
   static constexpr std::size_t oldest_radius = 25;  // accepted steps; Sommeijer, Shampine & Verwer, section 4
 
   template <State X>
-  static std::size_t most_stages(const Workspace<X>& work) {
+  [[nodiscard]] static std::size_t most_stages(const Workspace<X>& work) {
     using std::max;
     const auto& tolerance = work.tolerance;
     const Scalar<X> rtol = tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol;

@@ -31,7 +31,7 @@ struct Tableau {
   Coefficient dense[known][std::max<std::size_t>(dense_terms, 1)] = {};
 
   /// The last stage is f at the end of the step.
-  constexpr bool first_same_as_last() const {
+  [[nodiscard]] constexpr bool first_same_as_last() const {
     for (std::size_t j = 0; j < Stages; ++j) {
       if (!(a[Stages - 1][j] == b[j])) return false;
     }
@@ -39,7 +39,7 @@ struct Tableau {
   }
 
   /// Takes the interpolant as it is usually published, x + h sum_ij weights[i][j] theta^(j+1) k_i.
-  constexpr Tableau with_dense(const Coefficient (&weights)[known][Degree]) const {
+  [[nodiscard]] constexpr Tableau with_dense(const Coefficient (&weights)[known][Degree]) const {
     Tableau result = *this;
     for (std::size_t i = 0; i < known; ++i) {
       // The cubic Hermite part of this weight is (3 theta^2 - 2 theta^3) b_i, and the slopes' parts where k_i is f at

@@ -11,7 +11,7 @@ namespace continuo {
 
 /// The number of components where the type of state fixes it.
 template <State X>
-constexpr std::size_t fixed_size() {
+[[nodiscard]] constexpr std::size_t fixed_size() {
   if constexpr (requires { std::tuple_size<X>::value; }) {
     return std::tuple_size<X>::value;
   } else {
@@ -41,13 +41,13 @@ class ConstantMass {
     }
   }
 
-  bool is_identity() const { return kind_ == Kind::identity; }
-  bool is_matrix() const { return kind_ == Kind::matrix; }
+  [[nodiscard]] bool is_identity() const { return kind_ == Kind::identity; }
+  [[nodiscard]] bool is_matrix() const { return kind_ == Kind::matrix; }
   /// Entry i of the diagonal, where M is one; entry i of the rows, where it is a matrix.
   const Real& operator[](std::size_t i) const { return entries_[i]; }
 
   /// Whether row and column i are.
-  bool is_zero(std::size_t i, std::size_t size) const {
+  [[nodiscard]] bool is_zero(std::size_t i, std::size_t size) const {
     if (kind_ != Kind::matrix) return kind_ == Kind::diagonal && entries_[i] == Real(0);
     for (std::size_t j = 0; j < size; ++j)
       if (entries_[i * size + j] != Real(0) || entries_[j * size + i] != Real(0)) return false;
@@ -55,7 +55,7 @@ class ConstantMass {
   }
 
   /// Empty where M is the identity.
-  std::span<const Real> diagonal() const {
+  [[nodiscard]] std::span<const Real> diagonal() const {
     return kind_ == Kind::diagonal ? std::span<const Real>(entries_) : std::span<const Real>();
   }
 

@@ -24,34 +24,34 @@ class DirectEquations : public StepEquations<Scalar<X>> {
 
   explicit DirectEquations(const X& x) : linear_(x), lu_(x) {}
 
-  bool prepared() const { return linear_.prepared(); }
+  [[nodiscard]] bool prepared() const { return linear_.prepared(); }
   template <class System>
   void prepare(System& system, const X& x) {
     linear_.prepare(system, x);
   }
   template <class System>
-  static constexpr bool is_always_current(const System&) {
+  [[nodiscard]] static constexpr bool is_always_current(const System&) {
     return false;
   }
 
-  bool has_mass() const { return linear_.has_mass(); }
+  [[nodiscard]] bool has_mass() const { return linear_.has_mass(); }
   void multiply_mass(const X& v, X& product) const { linear_.multiply_mass(v, product); }
 
   template <class System>
-  int linearize(System& system, const Real& t, const X& x, const Real& h, X& f) {
+  [[nodiscard]] int linearize(System& system, const Real& t, const X& x, const Real& h, X& f) {
     evaluate(system, t, x, f);
     ++costs.jacobians;
     return 1 + linear_.evaluate(system, t, x, f, LeastIncrements(tolerance, h, x, f, has_mass()));
   }
   template <class System>
-  bool decompose(System&, const Real& c) {
+  [[nodiscard]] bool decompose(System&, const Real& c) {
     ++costs.factorizations;
     const bool done = lu_.factor(linear_, c);
     status = done ? StepStatus::done : linear_.status_of_failure();
     return done;
   }
   template <class System>
-  int solve(System&, const Real&, const X&, const X&, const Real&, X& b) {
+  [[nodiscard]] int solve(System&, const Real&, const X&, const X&, const Real&, X& b) {
     lu_.solve(b.data());
     ++costs.linear_solves;
     return 0;

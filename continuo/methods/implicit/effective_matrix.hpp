@@ -44,7 +44,7 @@ class EffectiveMatrix {
 
   /// False where E is singular or not finite.
   template <class System>
-  bool factor(const System& system, const Linearization<X>& linear, const Weights& weights) {
+  [[nodiscard]] bool factor(const System& system, const Linearization<X>& linear, const Weights& weights) {
     const std::size_t size = linear.size(), pairs = system.pair_count(size);
     if constexpr (has_sparse) {
       if (sparse_) return factor_sparse(system, linear, weights, pairs);
@@ -110,7 +110,8 @@ class EffectiveMatrix {
   }
 
   template <class System>
-  bool factor_sparse(const System& system, const Linearization<X>& linear, const Weights& weights, std::size_t pairs) {
+  [[nodiscard]] bool factor_sparse(const System& system, const Linearization<X>& linear, const Weights& weights,
+                                   std::size_t pairs) {
     const auto values = sparse_->values();
     for (double& value : values) value = 0;
     for (std::size_t p = 0; p < targets_.size(); ++p) {

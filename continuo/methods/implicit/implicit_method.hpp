@@ -33,11 +33,11 @@ struct ImplicitMethod {
     Where{}(work).tolerance = tolerance;
   }
   template <class Work>
-  static StepStatus status(const Work& work) {
+  [[nodiscard]] static StepStatus status(const Work& work) {
     return Where{}(work).status;
   }
   template <class Work>
-  static const EquationCosts& costs(const Work& work) {
+  [[nodiscard]] static const EquationCosts& costs(const Work& work) {
     return Where{}(work).costs;
   }
 };

@@ -25,28 +25,28 @@ class KrylovEquations : public StepEquations<Scalar<X>> {
 
   explicit KrylovEquations(const X& x) : point_(x), weights_(x), argument_(x), product_(x), moved_(x) {}
 
-  bool prepared() const { return gmres_.has_value(); }
+  [[nodiscard]] bool prepared() const { return gmres_.has_value(); }
   template <class System>
   void prepare(System& system, const X& x) {
     mass_.read(system, dimension(x));
     gmres_.emplace(x, most_vectors);
   }
   template <class System>
-  static constexpr bool is_always_current(const System&) {
+  [[nodiscard]] static constexpr bool is_always_current(const System&) {
     return !HasPreconditioner<System, X>;
   }
 
-  bool has_mass() const { return !mass_.is_identity(); }
+  [[nodiscard]] bool has_mass() const { return !mass_.is_identity(); }
   void multiply_mass(const X& v, X& product) const { mass_.multiply(v, product); }
 
   template <class System>
-  int linearize(System&, const Real& t, const X& x, const Real&, X&) {
+  [[nodiscard]] int linearize(System&, const Real& t, const X& x, const Real&, X&) {
     t_ = t;
     point_ = x;
     return 0;
   }
   template <class System>
-  bool decompose(System& system, const Real& c) {
+  [[nodiscard]] bool decompose(System& system, const Real& c) {
     c_ = c;
     if constexpr (HasPreconditioner<System, X>) {
       ++costs.factorizations;
@@ -59,7 +59,7 @@ class KrylovEquations : public StepEquations<Scalar<X>> {
   /// GMRES works in components measured by the tolerance, where lengths are comparable, on the equations multiplied
   /// from the left by the preconditioner, or by 1/(c M): the residual is then like the error of y itself.
   template <class System>
-  int solve(System& system, const Real& t, const X& x, const X& f, const Real& target, X& b) {
+  [[nodiscard]] int solve(System& system, const Real& t, const X& x, const X& f, const Real& target, X& b) {
     using std::sqrt;
     const std::size_t n = dimension(x);
     const Real root = sqrt(Real(static_cast<double>(n)));
@@ -90,7 +90,8 @@ class KrylovEquations : public StepEquations<Scalar<X>> {
   // product_ = J argument_, where argument_ times the weights has length 1. A difference moves x by about its tolerance
   // in every component, and never by so little that rounding shows.
   template <class System>
-  int multiply_jacobian(System& system, const Real& t, const X& x, const X& f, const Real& rtol, const Real& root) {
+  [[nodiscard]] int multiply_jacobian(System& system, const Real& t, const X& x, const X& f, const Real& rtol,
+                                      const Real& root) {
     if constexpr (HasJacobianAction<System, X>) {
       system.jacobian_action(t, x, argument_, product_);
       return 0;
@@ -115,7 +116,7 @@ class KrylovEquations : public StepEquations<Scalar<X>> {
   }
   // c M without what is beside the diagonal. An algebraic equation stands as it is written: where its unknown has
   // another size there, or stands in other equations mostly, the system should have a preconditioner.
-  Real weight_of_row(std::size_t i) const {
+  [[nodiscard]] Real weight_of_row(std::size_t i) const {
     if (mass_.is_identity() || mass_.is_matrix()) return c_;
     return mass_[i] == Real(0) ? Real(1) : c_ * mass_[i];
   }

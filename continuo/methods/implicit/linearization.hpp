@@ -41,11 +41,11 @@ class Linearization {
 
   explicit Linearization(const X& x) : size_(dimension(x)), moved_(x), slope_(x) {}
 
-  std::size_t size() const { return size_; }
-  bool prepared() const { return prepared_; }
-  bool sparse() const { return sparse_; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool prepared() const { return prepared_; }
+  [[nodiscard]] bool sparse() const { return sparse_; }
   /// Sparse and near the diagonal.
-  bool banded() const { return banded_; }
+  [[nodiscard]] bool banded() const { return banded_; }
 
   /// Learns the structure of the system: pattern and mass. To be called before anything else.
   template <class F>
@@ -73,7 +73,7 @@ class Linearization {
 
   /// J at (t, x); fx = f(t, x), least(j) the least increment for a difference. Returns the number of evaluations of f.
   template <class F, class Least>
-  int evaluate(F& f, const Real& t, const X& x, const X& fx, const Least& least) {
+  [[nodiscard]] int evaluate(F& f, const Real& t, const X& x, const X& fx, const Least& least) {
     if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
       if constexpr (HasBandJacobian<F, X>) {
         if (banded_) {
@@ -92,11 +92,11 @@ class Linearization {
   }
 
   /// Why c M - J could not be decomposed.
-  StepStatus status_of_failure() const {
+  [[nodiscard]] StepStatus status_of_failure() const {
     return detail::is_finite_state(rows_) ? StepStatus::singular_matrix : StepStatus::not_finite;
   }
 
-  bool has_mass() const { return !mass_.is_identity(); }
+  [[nodiscard]] bool has_mass() const { return !mass_.is_identity(); }
   /// Mv = M v.
   void multiply_mass(const X& v, X& product) const { mass_.multiply(v, product); }
   /// Jv = J v.
@@ -128,17 +128,17 @@ class Linearization {
     for (std::size_t p = 0; p < rows_.size(); ++p) values[p] = Number(-rows_[p]);
     for (std::size_t j = 0; j < size_; ++j) values[diagonal_[j]] += mass_.is_identity() ? c : c * Number(mass_[j]);
   }
-  const BandLayout& band() const { return band_; }
+  [[nodiscard]] const BandLayout& band() const { return band_; }
   /// The diagonal of M; empty where it is the identity.
-  std::span<const Real> mass_diagonal() const { return mass_.diagonal(); }
-  const SparsePattern& pattern() const { return pattern_; }
+  [[nodiscard]] std::span<const Real> mass_diagonal() const { return mass_.diagonal(); }
+  [[nodiscard]] const SparsePattern& pattern() const { return pattern_; }
   /// Of J: row by row, of its pattern or of its band.
-  std::span<const Real> entries() const { return rows_; }
+  [[nodiscard]] std::span<const Real> entries() const { return rows_; }
   /// Entry p of the pattern.
-  const Real& entry(std::size_t p) const { return rows_[place(p)]; }
+  [[nodiscard]] const Real& entry(std::size_t p) const { return rows_[place(p)]; }
   /// Whether row and column i of M are zero: of the unknown of an algebraic equation.
-  bool is_without_mass(std::size_t i) const { return mass_.is_zero(i, size_); }
-  Real mass(std::size_t i, std::size_t j) const {
+  [[nodiscard]] bool is_without_mass(std::size_t i) const { return mass_.is_zero(i, size_); }
+  [[nodiscard]] Real mass(std::size_t i, std::size_t j) const {
     if (mass_.is_matrix()) return mass_[i * size_ + j];
     if (i != j) return Real(0);
     return mass_.is_identity() ? Real(1) : mass_[i];
@@ -151,7 +151,7 @@ class Linearization {
     values_.assign(pattern_.entries(), Real(0));
     places_ = pattern_.places_in_band();
   }
-  std::size_t place(std::size_t p) const { return banded_ ? places_[p] : p; }
+  [[nodiscard]] std::size_t place(std::size_t p) const { return banded_ ? places_[p] : p; }
 
   std::size_t size_;
   X moved_, slope_;
@@ -175,7 +175,7 @@ class Factorization {
   explicit Factorization(const X& x) : dense_(N == run_time_size ? 0 : dimension(x)) {}
 
   /// False where the matrix is singular or not finite.
-  bool factor(const Linearization<X>& linear, const Number& c) {
+  [[nodiscard]] bool factor(const Linearization<X>& linear, const Number& c) {
     if constexpr (has_sparse) {
       if (linear.banded()) return factor_band(linear, c);
       if (linear.sparse()) {
@@ -206,7 +206,7 @@ class Factorization {
   struct None {};
   using Sparse = std::conditional_t<has_sparse, SparseLU<std::conditional_t<has_sparse, Number, double>>, None>;
 
-  bool factor_band(const Linearization<X>& linear, const Number& c) {
+  [[nodiscard]] bool factor_band(const Linearization<X>& linear, const Number& c) {
     if (band_.size() == 0) band_ = BandedLU<Number>(linear.band());
     return band_.factor(linear.entries(), c, linear.mass_diagonal());
   }

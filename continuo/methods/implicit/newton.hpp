@@ -31,7 +31,7 @@ struct NewtonMemory {
   Real rounding = 0;  // then: corrections that may be no more than it, in tolerances
 
   /// How the equations of a step have ended, after the last call.
-  StepStatus status(bool converged) const {
+  [[nodiscard]] StepStatus status(bool converged) const {
     if (converged) return StepStatus::done;
     return finite ? StepStatus::newton_diverged : StepStatus::not_finite;
   }
@@ -46,7 +46,7 @@ struct NewtonMemory {
 /// Iterates until what is still to come is below `target` (of a norm in which the tolerance is 1). `correct` makes one
 /// correction and returns its norm. False where it diverges, or would need more than `most` iterations.
 template <class Real, class Correct>
-bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& correct) {
+[[nodiscard]] bool newton(NewtonMemory<Real>& memory, const Real& target, int most, Correct&& correct) {
   using std::max, std::min, std::pow;
   const Real epsilon = std::numeric_limits<Real>::epsilon();
   // eq. 8.10': an estimate before the second correction is there.
@@ -99,8 +99,8 @@ class LeastIncrements {
   }
 
  private:
-  Real scale(std::size_t i) const { return tolerance_.scale(i, x_.data()[i], x_.data()[i]); }
-  Real factor() const {
+  [[nodiscard]] Real scale(std::size_t i) const { return tolerance_.scale(i, x_.data()[i], x_.data()[i]); }
+  [[nodiscard]] Real factor() const {
     using std::abs, std::sqrt;
     const std::size_t n = dimension(x_);
     Real sum(0);

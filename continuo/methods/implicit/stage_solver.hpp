@@ -47,7 +47,7 @@ struct StageSolver : StepEquations<Scalar<X>> {
 
   /// Where a step begins: J at (t, x) unless the one at hand will do.
   template <class System>
-  int prepare(System& system, const Real& t, const X& x, const Real& h, bool discontinuity) {
+  [[nodiscard]] int prepare(System& system, const Real& t, const X& x, const Real& h, bool discontinuity) {
     status = StepStatus::done;
     slowest = Real(0);
     memory.matrix_is_known = is_current;
@@ -56,7 +56,7 @@ struct StageSolver : StepEquations<Scalar<X>> {
     return discontinuity || (is_old && !is_current) ? evaluate_jacobian(system, t, x, h) : 0;
   }
   template <class System>
-  int evaluate_jacobian(System& system, const Real& t, const X& x, const Real& h) {
+  [[nodiscard]] int evaluate_jacobian(System& system, const Real& t, const X& x, const Real& h) {
     if (!linear.prepared()) linear.prepare(system, x);
     int evaluations = 0;
     if constexpr (HasJacobian<System, X> && !HasJacobianPattern<System>) {
@@ -75,7 +75,7 @@ struct StageSolver : StepEquations<Scalar<X>> {
   }
 
   /// c M - J. False where it is singular, or J is not finite.
-  bool decompose(const Real& c) {
+  [[nodiscard]] bool decompose(const Real& c) {
     if (shift == c) return true;
     ++costs.factorizations;
     if (lu.factor(linear, c)) {
@@ -89,8 +89,8 @@ struct StageSolver : StepEquations<Scalar<X>> {
 
   /// Iterates z. `weights_of` is the state that tolerances are relative to. False: status says why.
   template <class System>
-  bool solve(System& system, const Real& t, const X& base, const X& weights_of, X& z, const Real& target,
-             int& evaluations) {
+  [[nodiscard]] bool solve(System& system, const Real& t, const X& base, const X& weights_of, X& z, const Real& target,
+                           int& evaluations) {
     using std::max;
     const std::size_t n = dimension(base);
     const auto correct = [&] {
@@ -119,7 +119,7 @@ struct StageSolver : StepEquations<Scalar<X>> {
   }
 
   /// Where a stage was not solved: a new Jacobian would not help.
-  bool cannot_try_again() const {
+  [[nodiscard]] bool cannot_try_again() const {
     return insists || is_current || status == StepStatus::not_finite || status == StepStatus::singular_matrix;
   }
 
@@ -129,7 +129,7 @@ struct StageSolver : StepEquations<Scalar<X>> {
     is_current = false;
   }
   /// Keeps h, and with it the factorization, where it would grow only little (E. Hairer, G. Wanner II, IV.8).
-  Real next_factor(const Real& factor) const {
+  [[nodiscard]] Real next_factor(const Real& factor) const {
     return factor >= 1 && factor <= Real(1.2) && slowest <= Real(worst_rate) ? Real(1) : factor;
   }
 
@@ -140,8 +140,8 @@ struct StageSolver : StepEquations<Scalar<X>> {
 
   /// Newton's iteration proper, from z = 0.
   template <class System, class Correct>
-  bool solve_fully(System& system, const Real& t, const X& base, X& z, const Real& target, const Correct& correct,
-                   int& evaluations) {
+  [[nodiscard]] bool solve_fully(System& system, const Real& t, const X& base, X& z, const Real& target,
+                                 const Correct& correct, int& evaluations) {
     const Real c = shift;
     for (std::size_t i = 0; i < dimension(z); ++i) z.data()[i] = Real(0);
     for (int k = 0; k < 5 * most_iterations; ++k) {

@@ -13,7 +13,7 @@
 namespace continuo::detail {
 
 template <class Linear>
-bool has_unknowns(const Linear& linear, std::size_t size) {
+[[nodiscard]] bool has_unknowns(const Linear& linear, std::size_t size) {
   for (std::size_t i = 0; i < size && linear.has_mass(); ++i)
     if (linear.is_without_mass(i)) return true;
   return false;
@@ -21,7 +21,7 @@ bool has_unknowns(const Linear& linear, std::size_t size) {
 
 /// The c of c M - J, so large that nothing but the unknowns moves.
 template <class Real>
-Real shift_for_unknowns(const Real& h) {
+[[nodiscard]] Real shift_for_unknowns(const Real& h) {
   using std::sqrt;
   return Real(1 / (h * sqrt(std::numeric_limits<Real>::epsilon())));
 }
@@ -29,9 +29,9 @@ Real shift_for_unknowns(const Real& h) {
 /// Newton's iteration for the unknowns in x_new at time t, with c M - J decomposed in `factors` for the c above; the
 /// tolerances are relative to x. Returns the number of evaluations; `status` says where it failed. f is scratch.
 template <class System, State X, class Linear, class Factors>
-int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Linear& linear, Factors& factors,
-                    const Tolerance<Scalar<X>>& tolerance, const Scalar<X>& target, X& f, X& x_new,
-                    StepStatus& status) {
+[[nodiscard]] int settle_unknowns(System& system, const Scalar<X>& t, const X& x, const Linear& linear,
+                                  Factors& factors, const Tolerance<Scalar<X>>& tolerance, const Scalar<X>& target,
+                                  X& f, X& x_new, StepStatus& status) {
   using Real = Scalar<X>;
   constexpr int most_iterations = 20;
   NewtonMemory<Real> memory{};

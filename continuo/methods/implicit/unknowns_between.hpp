@@ -24,8 +24,8 @@ class UnknownsBetween {
   /// With decomposed c M - J in `lu`, and what `interpolate(interpolant)` says of the step from t to t + h. Returns the
   /// number of evaluations, 0 where the system has no algebraic equation.
   template <class System, class Linear, class Factors, class Interpolate>
-  int measure(System& system, const Real& t, const Real& h, const X& x, const Linear& linear, Factors& lu,
-              const Interpolate& interpolate) {
+  [[nodiscard]] int measure(System& system, const Real& t, const Real& h, const X& x, const Linear& linear, Factors& lu,
+                            const Interpolate& interpolate) {
     if (!linear.has_mass()) return 0;
     if (!known_) known_.emplace(x, linear);
     if (!known_->any) return 0;
@@ -39,10 +39,10 @@ class UnknownsBetween {
   }
 
   /// In tolerances, as an error estimate has them.
-  Real norm(const X& x, const X& x_new, const Tolerance<Real>& tolerance) const {
+  [[nodiscard]] Real norm(const X& x, const X& x_new, const Tolerance<Real>& tolerance) const {
     return known_ && known_->any ? weighted_norm(known_->error, x, x_new, tolerance) / looseness(tolerance) : Real(0);
   }
-  Real error_of(std::size_t i) const {
+  [[nodiscard]] Real error_of(std::size_t i) const {
     using std::abs;
     return known_ && known_->any ? Real(abs(known_->error.data()[i])) : Real(0);
   }
@@ -50,13 +50,13 @@ class UnknownsBetween {
  private:
   /// No stage of a method is there, and none near: where one is, what is between it and the next counts.
   template <class R>
-  static constexpr R inside() {
+  [[nodiscard]] static constexpr R inside() {
     return R(0.2);
   }
   // Between the ends the unknowns are solved for from the state, and what counts is that the step has seen them move:
   // where the error of the method is that of order p, a dense output of order d is off by the power (d + 1) / (p + 1)
   // of it.
-  static Real looseness(const Tolerance<Real>& tolerance) {
+  [[nodiscard]] static Real looseness(const Tolerance<Real>& tolerance) {
     using std::pow;
     constexpr double dense = M::dense_order + 1, end = M::order + 1;
     return Real(10) * pow(tolerance_as_number(tolerance), Real(dense / end - 1));

@@ -55,12 +55,12 @@ struct Adams {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return {{x, x, x, x, x, x, x, x, x, x, x, x, x, x}, x, x};
   }
 
   template <State X>
-  static int error_order_of(const Workspace<X>& work) {
+  [[nodiscard]] static int error_order_of(const Workspace<X>& work) {
     return static_cast<int>(work.order);
   }
 
@@ -100,21 +100,21 @@ struct Adams {
   }
 
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     return detail::zero_if_all_finite(x_new) +
            Scalar<X>(strictness) * norm(x, x_new, tolerance, [&](std::size_t i) { return error_of(work, h, i); });
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
     return h * (work.g[work.order] - work.g[work.order - 1]) * work.d.data()[i];
   }
 
   /// The order whose error, as if all steps had been h, is least, and a step that is worth a change (Shampine & Gordon,
   /// chapter 7): twice as long, the same, or from half to nine tenths.
   template <State X>
-  static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>&, const Scalar<X>& h, const X& x, const X& x_new,
-                               const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>&, const Scalar<X>& h, const X& x,
+                                             const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
     using Real = Scalar<X>;
     using std::abs, std::max, std::min, std::pow;
     const std::size_t k = work.order;
@@ -191,7 +191,7 @@ struct Adams {
   }
 
   template <State X>
-  static const X& derivative(const Workspace<X>& work) {
+  [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.phi[0];
   }
 
@@ -203,7 +203,7 @@ struct Adams {
 
   /// The size of the coefficient of Adams-Moulton formulas: gamma*_0 = 1, sum_j gamma*_j / (m + 1 - j) = 0 (Hairer,
   /// Norsett & Wanner, eq. III.1.10).
-  static double moulton(std::size_t m) {
+  [[nodiscard]] static double moulton(std::size_t m) {
     static constexpr auto sizes = [] {
       std::array<double, greatest_order + 2> gamma{1};
       for (std::size_t n = 1; n < gamma.size(); ++n)
@@ -216,7 +216,7 @@ struct Adams {
 
   /// k! h^k / (psi'_1 ... psi'_k): what makes a difference of k + 1 values one of equal steps h.
   template <State X>
-  static Scalar<X> sigma(const Workspace<X>& work, std::size_t k) {
+  [[nodiscard]] static Scalar<X> sigma(const Workspace<X>& work, std::size_t k) {
     using Real = Scalar<X>;
     Real product(1), distance = work.h;
     for (std::size_t i = 1; i <= k; ++i) {
@@ -282,7 +282,8 @@ struct Adams {
   }
 
   template <State X, class Component>
-  static Scalar<X> norm(const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance, const Component& component) {
+  [[nodiscard]] static Scalar<X> norm(const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance,
+                                      const Component& component) {
     return root_mean_square<Scalar<X>>(dimension(x), [&](std::size_t i) {
       return Scalar<X>(component(i) / tolerance.scale(i, x.data()[i], x_new.data()[i]));
     });

@@ -32,23 +32,23 @@ namespace continuo {
 namespace ndf {
 
 template <class Real>
-Real gamma(std::size_t k) {
+[[nodiscard]] Real gamma(std::size_t k) {
   Real sum(0);
   for (std::size_t j = 1; j <= k; ++j) sum += Real(1) / Real(static_cast<double>(j));
   return sum;
 }
 // Shampine & Reichelt, table 1; order 5 keeps the formula of Gear.
 template <class Real>
-Real kappa(std::size_t k) {
+[[nodiscard]] Real kappa(std::size_t k) {
   constexpr std::array<double, 7> parts{0, -1850, 0, -823, -415, 0, 0};
   return k == 2 ? Real(-1) / Real(9) : Real(parts[k]) / Real(10000);
 }
 template <class Real>
-Real alpha(std::size_t k) {
+[[nodiscard]] Real alpha(std::size_t k) {
   return (Real(1) - kappa<Real>(k)) * gamma<Real>(k);
 }
 template <class Real>
-Real error_constant(std::size_t k) {
+[[nodiscard]] Real error_constant(std::size_t k) {
   return kappa<Real>(k) * gamma<Real>(k) + Real(1) / Real(static_cast<double>(k) + 1);
 }
 
@@ -79,14 +79,14 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     Workspace<X> work{{x, x, x, x, x, x, x, x}, x, x, x, x, x, Equations<X>(x)};
     for (std::size_t i = 0; i < dimension(x); ++i) work.rounding.data()[i] = Scalar<X>(0);
     return work;
   }
 
   template <State X>
-  static int error_order_of(const Workspace<X>& work) {
+  [[nodiscard]] static int error_order_of(const Workspace<X>& work) {
     return static_cast<int>(work.order);
   }
 
@@ -124,20 +124,20 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   }
 
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     return ndf::error_constant<Scalar<X>>(work.order) * strict_norm(work, work.d, x, x_new, tolerance) +
            detail::zero_if_all_finite(x_new);
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     return ndf::error_constant<Scalar<X>>(work.order) * work.d.data()[i];
   }
 
   /// The order whose error estimate allows the longest step, looked for when order + 1 steps were equal.
   template <State X>
-  static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>&, const Scalar<X>&, const X& x, const X& x_new,
-                               const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>&, const Scalar<X>&, const X& x,
+                                             const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
     using Real = Scalar<X>;
     using std::max, std::min, std::pow;
     const std::size_t k = work.order;
@@ -219,7 +219,7 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   }
 
   template <State X>
-  static X derivative(const Workspace<X>& work) {
+  [[nodiscard]] static X derivative(const Workspace<X>& work) {
     X slope = work.D[1];
     for (std::size_t i = 0; i < dimension(slope); ++i) {
       slope.data()[i] = Scalar<X>(0);
@@ -243,7 +243,7 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
 
   // The power of theta in (theta - 1) theta ... (theta + j - 2) / j!, which multiplies D_j of the end of the step.
   template <class Real>
-  static Real basis(std::size_t j, std::size_t power) {
+  [[nodiscard]] static Real basis(std::size_t j, std::size_t power) {
     static constexpr auto table = [] {
       std::array<std::array<double, greatest_order + 1>, greatest_order + 1> result{};
       result[0][0] = 1;
@@ -261,8 +261,8 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
 
   // Whatever the order of the step: strict tolerances are met by the greatest.
   template <State X>
-  static Scalar<X> strict_norm(const Workspace<X>& work, const X& v, const X& x, const X& x_new,
-                               const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> strict_norm(const Workspace<X>& work, const X& v, const X& x, const X& x_new,
+                                             const Tolerance<Scalar<X>>& tolerance) {
     using Real = Scalar<X>;
     const Real strict = strictness(tolerance, order, order + 1);
     // Of steps of a few spacings of t alone: the error of a state adds up.
@@ -281,7 +281,8 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   // iteration leaves the states off that it hangs on, which is little against their tolerances and may be much against
   // its own.
   template <class System, State X>
-  static int measure_rounding(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x, Workspace<X>& work) {
+  [[nodiscard]] static int measure_rounding(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x,
+                                            Workspace<X>& work) {
     using Real = Scalar<X>;
     using std::abs, std::max;
     int evaluations = 0;
@@ -320,7 +321,8 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   }
 
   template <class System, State X>
-  static int begin(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work) {
+  [[nodiscard]] static int begin(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                 Workspace<X>& work) {
     work.decomposed_for = Scalar<X>(0);
     evaluate(system, t, x, work.f);
     divide_by_mass(system, work.f);
@@ -339,8 +341,8 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   // by h times that, and where it moves fast no h is short enough. (c M - J) x' = c M x' + f_t says the same for a c so
   // large that x' of the others stays.
   template <class System, State X>
-  static int add_slope_of_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                                   Workspace<X>& work) {
+  [[nodiscard]] static int add_slope_of_unknowns(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                                 Workspace<X>& work) {
     using Real = Scalar<X>;
     const Real c = 1 / (h * detail::sqrt_of_epsilon<Real>());
     X& slope = work.correction;
@@ -398,7 +400,7 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   }
 
   template <class System, State X>
-  static int linearize(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
+  [[nodiscard]] static int linearize(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
     const int evaluations = work.equations.linearize(system, t, x, work.h, work.f);
     work.has_jacobian = work.is_current = true;
     work.jacobian_age = 0;
@@ -407,7 +409,7 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   }
 
   template <class System, State X>
-  static bool decompose(System& system, Workspace<X>& work, const Scalar<X>& c) {
+  [[nodiscard]] static bool decompose(System& system, Workspace<X>& work, const Scalar<X>& c) {
     const bool done = work.equations.decompose(system, c);
     work.decomposed_for = done ? c : Scalar<X>(0);
     return done;
@@ -415,7 +417,7 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
 
   // How far the iteration goes, in tolerances.
   template <State X>
-  static Scalar<X> target_of(const Workspace<X>& work) {
+  [[nodiscard]] static Scalar<X> target_of(const Workspace<X>& work) {
     using Real = Scalar<X>;
     using std::max, std::min, std::sqrt;
     const Real asked = tolerance_as_number(work.equations.tolerance);
@@ -424,8 +426,8 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
 
   // x comes in as the prediction and leaves as the solution; c = alpha / h, M c (d + sum_j gamma_j D_j / alpha) = f.
   template <class System, State X>
-  static bool solve(System& system, const Scalar<X>& t, const Scalar<X>& c, Workspace<X>& work, X& x,
-                    int& evaluations) {
+  [[nodiscard]] static bool solve(System& system, const Scalar<X>& t, const Scalar<X>& c, Workspace<X>& work, X& x,
+                                  int& evaluations) {
     using Real = Scalar<X>;
     const std::size_t n = dimension(x), k = work.order;
     const Real one_over_alpha = Real(1) / ndf::alpha<Real>(k);

@@ -41,7 +41,7 @@ struct Bdf2 : ImplicitMethod<InFirstStep> {
     bool started = false;  // this step was one of TR-BDF2
   };
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     Workspace<X> work{TrBdf2::workspace(x), x, x, x, x};
     work.start.solver.insists = true;
     return work;
@@ -61,12 +61,12 @@ struct Bdf2 : ImplicitMethod<InFirstStep> {
   }
 
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>&, const Scalar<X>&, const X&, const X& x_new,
-                              const Tolerance<Scalar<X>>&) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>&, const Scalar<X>&, const X&, const X& x_new,
+                                            const Tolerance<Scalar<X>>&) {
     return detail::zero_if_all_finite(x_new);
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>&, const Scalar<X>&, std::size_t) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>&, const Scalar<X>&, std::size_t) {
     return Scalar<X>(0);
   }
 
@@ -91,14 +91,14 @@ struct Bdf2 : ImplicitMethod<InFirstStep> {
     work.start.solver.accept();
   }
   template <State X>
-  static const X& derivative(const Workspace<X>& work) {
+  [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.slope;
   }
 
  private:
   template <class System, State X>
-  static int two_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, Workspace<X>& work,
-                      X& x_new) {
+  [[nodiscard]] static int two_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                    Workspace<X>& work, X& x_new) {
     using Real = Scalar<X>;
     auto& solver = work.start.solver;
     const Real w = h / work.h_before, along = w * w / (1 + 2 * w), gamma = (1 + w) / (1 + 2 * w);

@@ -29,7 +29,7 @@ template <State X>
 using Accelerations = Kept<PerPair<X>>;
 
 template <State X>
-Accelerations<X> no_accelerations(const X& x) {
+[[nodiscard]] Accelerations<X> no_accelerations(const X& x) {
   if constexpr (Packed<X>) {
     static_cast<void>(x);
     return keep(PerPair<X>{});
@@ -40,7 +40,7 @@ Accelerations<X> no_accelerations(const X& x) {
 
 /// Of pair n.
 template <State X>
-Scalar<X> acceleration(const Accelerations<X>& k, std::size_t n, PositionVelocity pair) {
+[[nodiscard]] Scalar<X> acceleration(const Accelerations<X>& k, std::size_t n, PositionVelocity pair) {
   if constexpr (Packed<X>) {
     constexpr std::size_t width = unit_width<PerPair<X>>;
     static_cast<void>(pair);
@@ -53,8 +53,8 @@ Scalar<X> acceleration(const Accelerations<X>& k, std::size_t n, PositionVelocit
 
 /// The member `part` of each pair of x.
 template <class System, Packed X>
-[[gnu::always_inline]] inline Accelerations<X> pick(const System& system, const X& x,
-                                                    std::size_t PositionVelocity::* part) {
+[[nodiscard]] [[gnu::always_inline]] inline Accelerations<X> pick(const System& system, const X& x,
+                                                                  std::size_t PositionVelocity::* part) {
   PerPair<X> result{};
   const std::size_t pairs = system.pair_count(x.size());
   for (std::size_t n = 0; n < result.size() && n < pairs; ++n) result[n] = x[system.pair(n, x.size()).*part];
@@ -83,7 +83,7 @@ struct StartOfPairs<X> {
   Accelerations<X> position, velocity;
 };
 template <class System, State X>
-[[gnu::always_inline]] inline StartOfPairs<X> start_of_pairs(const System& system, const X& x) {
+[[nodiscard]] [[gnu::always_inline]] inline StartOfPairs<X> start_of_pairs(const System& system, const X& x) {
   if constexpr (Packed<X>) {
     return {pick(system, x, &PositionVelocity::position), pick(system, x, &PositionVelocity::velocity)};
   } else {

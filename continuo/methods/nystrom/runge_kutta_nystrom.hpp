@@ -38,7 +38,7 @@ struct NystromTableau {
   Coefficient embedded[Stages] = {}, embedded_v[Stages] = {};
 
   /// The last stage is a at the end of the step.
-  constexpr bool first_same_as_last() const {
+  [[nodiscard]] constexpr bool first_same_as_last() const {
     for (std::size_t j = 0; j < Stages; ++j) {
       if (!(a[Stages - 1][j] == b[j])) return false;
     }
@@ -74,7 +74,7 @@ struct RungeKuttaNystrom {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     const detail::Accelerations<X> none = detail::no_accelerations(x);
     return [&]<std::size_t... j>(std::index_sequence<j...>) {
       return Workspace<X>{{((void)j, none)...}, none, x, x, x, {none, none, none, none}};
@@ -82,7 +82,7 @@ struct RungeKuttaNystrom {
   }
 
   template <class System, State X>
-  static std::string_view unsupported_reason(const System& system, const X& x) {
+  [[nodiscard]] static std::string_view unsupported_reason(const System& system, const X& x) {
     return unsupported_reason_positions_only(system, x);
   }
 
@@ -99,15 +99,15 @@ struct RungeKuttaNystrom {
 
   /// Root mean square of error_i / scale_i over positions and velocities; not a number where x_new is not finite.
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
     return sqrt(error_square(work, h, x, x_new, tolerance));
   }
   /// Its square, as in ExplicitRungeKutta.
   template <State X>
-  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
-                                const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                              const Tolerance<Scalar<X>>& tolerance) {
     using Real = Scalar<X>;
     // `finish` left the errors in work.argument.
     Real sum(0);
@@ -119,7 +119,7 @@ struct RungeKuttaNystrom {
     return sum * detail::one_over_dimension(x);
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     using std::abs;
     return abs(work.argument.data()[i]);
   }
@@ -164,14 +164,15 @@ struct RungeKuttaNystrom {
   }
 
   template <State X>
-  static const X& derivative(const Workspace<X>& work) {
+  [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.slope;
   }
 
  private:
   template <class System, State X>
-  [[gnu::always_inline]] static int take_step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
-                                              bool discontinuity, Workspace<X>& work, X& x_new) {
+  [[nodiscard]] [[gnu::always_inline]] static int take_step(System& system, const Scalar<X>& t, const X& x,
+                                                            const Scalar<X>& h, bool discontinuity, Workspace<X>& work,
+                                                            X& x_new) {
     constexpr std::size_t stages = Derived::tableau.stages;
     int evaluations = static_cast<int>(stages) - 1;
     work.end_fresh = false;
@@ -200,8 +201,8 @@ struct RungeKuttaNystrom {
 
   /// With f compiled into it, as in ExplicitRungeKutta.
   template <class System, State X>
-  [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h, bool discontinuity,
-                                        Workspace<X>& work, X& x_new) {
+  [[nodiscard]] [[gnu::flatten]] static int flat_step(System& system, Scalar<X> t, const X& x, Scalar<X> h,
+                                                      bool discontinuity, Workspace<X>& work, X& x_new) {
     return take_step(system, t, x, h, discontinuity, work, x_new);
   }
 
@@ -297,8 +298,8 @@ struct RungeKuttaNystrom {
   }
 
   template <int Round, class System, State X, int Degree>
-  static int refine(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
-                    Interpolant<X, Degree>& interpolant) {
+  [[nodiscard]] static int refine(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
+                                  Interpolant<X, Degree>& interpolant) {
     constexpr auto& round = detail::QuinticRound<Round>::data;
     const std::size_t size = dimension(work.between);
     for (std::size_t j = 0; j < round.nodes; ++j) {

@@ -43,7 +43,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return [&]<std::size_t... s>(std::index_sequence<s...>) {
       return Workspace<X>{
           {}, {((void)s, detail::keep(x))...}, x, x, x, x, x, x, x, x, Linearization<X>(x), Factorization<X>(x)};
@@ -76,14 +76,14 @@ struct RosenbrockMethod : ImplicitMethod<> {
 
   /// Root mean square of error_i / scale_i; not a number where x_new is not finite.
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     using std::sqrt;
     return sqrt(error_square(work, h, x, x_new, tolerance));
   }
   template <State X>
-  static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
-                                const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_square(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                              const Tolerance<Scalar<X>>& tolerance) {
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
     const auto u = detail::stages_of<Error, X>(work.u);
     const Scalar<X> spare(work.linear.has_mass() ? spare_of_constraints : 1);
@@ -104,7 +104,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
     return detail::greater(square, Scalar<X>(lasting * lasting));
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     using Error = detail::Row<ErrorWeight, Derived::tableau.stages>;
     return detail::greater(detail::size_of_sum<Error, X>(work.u, Scalar<X>(1), i), work.unknowns.error_of(i));
   }
@@ -136,7 +136,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
 
   /// f at the start of the last step; with a mass matrix that is M x'.
   template <State X>
-  static const X& derivative(const Workspace<X>& work) {
+  [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.slope;
   }
 
@@ -173,7 +173,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
 
   /// A method of order 2 makes ten million steps where one of order 4 makes ten thousand. Near 1 each of them loses up
   /// to 1e-16, and mostly on the same side while a component creeps: 4e-12 in Robertson's reaction at rtol = 1e-10.
-  static constexpr bool takes_many_steps() { return Derived::order <= 2; }
+  [[nodiscard]] static constexpr bool takes_many_steps() { return Derived::order <= 2; }
 
   /// x_new once more, from x and what was lost when it was made.
   template <State X>
@@ -208,7 +208,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
 
   /// One coefficient, 0 too.
   template <class Source, class Real>
-  static Real constant() {
+  [[nodiscard]] static Real constant() {
     if constexpr (Source{}(0).is_zero()) {
       return Real(0);
     } else {
@@ -218,8 +218,8 @@ struct RosenbrockMethod : ImplicitMethod<> {
 
   /// f, J and df/dt at the start of the step, as far as they are not known.
   template <class System, State X>
-  static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
-                       Workspace<X>& work) {
+  [[nodiscard]] static int linearize(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
+                                     bool discontinuity, Workspace<X>& work) {
     int evaluations = 0;
     if (discontinuity || !work.start_fresh) {
       evaluate(system, t, x, work.slope);
@@ -324,7 +324,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
 
   /// A unit of a local state, which stays in registers that way.
   template <State X>
-  [[gnu::always_inline]] static detail::Unit<X> unit(const Scalar<X>* from, std::size_t i) {
+  [[nodiscard]] [[gnu::always_inline]] static detail::Unit<X> unit(const Scalar<X>* from, std::size_t i) {
     if constexpr (detail::Packed<X>) {
       return detail::gather<X>(from, i, Scalar<X>(0));
     } else {

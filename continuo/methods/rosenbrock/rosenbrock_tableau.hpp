@@ -29,7 +29,7 @@ struct RosenbrockTableau {
   Coefficient dense[Degree - 1][Stages] = {};
 
   /// f of the last stage is f at the end of the step.
-  constexpr bool first_same_as_last() const {
+  [[nodiscard]] constexpr bool first_same_as_last() const {
     for (std::size_t j = 0; j < Stages; ++j) {
       if (!(a[Stages - 1][j] == m[j])) return false;
     }

@@ -28,7 +28,7 @@ struct CentralDifference : SecondOrderMethod {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return {{x, x}, x, x, Scalar<X>(0), Scalar<X>(0)};
   }
 

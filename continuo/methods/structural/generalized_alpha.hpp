@@ -17,7 +17,7 @@ struct GeneralizedAlphaWith : StructuralDynamics<GeneralizedAlphaWith<Rho>> {
 
   /// The parameters of the paper by the radius asked for: order 2, and the greatest damping of high frequencies.
   template <class Real>
-  static StructuralNumbers<Real> numbers() {
+  [[nodiscard]] static StructuralNumbers<Real> numbers() {
     const Real rho = Real(Rho);
     const Real alpha_m = (Real(2) * rho - Real(1)) / (rho + Real(1)), alpha_f = rho / (rho + Real(1));
     const Real beyond = Real(1) - alpha_m + alpha_f;

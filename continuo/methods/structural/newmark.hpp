@@ -16,7 +16,7 @@ struct NewmarkWith : StructuralDynamics<NewmarkWith<Beta, Gamma>> {
   static constexpr int error_order = Gamma == 0.5 && Beta > 1.0 / 6 ? 2 : 0;
 
   template <class Real>
-  static StructuralNumbers<Real> numbers() {
+  [[nodiscard]] static StructuralNumbers<Real> numbers() {
     return {Real(0), Real(0), Real(Beta), Real(Gamma)};
   }
 

@@ -60,12 +60,12 @@ struct StructuralDynamics : ImplicitMethod<> {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return {{}, x, x, x, x, x, x, x, Linearization<X>(x), EffectiveMatrix<X>(x)};
   }
 
   template <class System, State X>
-  static std::string_view unsupported_reason(const System& system, const X& x) {
+  [[nodiscard]] static std::string_view unsupported_reason(const System& system, const X& x) {
     static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
     const std::size_t n = dimension(x);
     if (2 * system.pair_count(n) != n) return "needs positions and velocities, and no other components";
@@ -120,8 +120,8 @@ struct StructuralDynamics : ImplicitMethod<> {
   /// A step a little longer is not worth a factorization (E. Hairer, G. Wanner, "Solving Ordinary Differential
   /// Equations II", IV.8).
   template <State X>
-  static Scalar<X> next_factor(const Workspace<X>&, const Scalar<X>& factor, const Scalar<X>&, const X&, const X&,
-                               const Tolerance<Scalar<X>>&) {
+  [[nodiscard]] static Scalar<X> next_factor(const Workspace<X>&, const Scalar<X>& factor, const Scalar<X>&, const X&,
+                                             const X&, const Tolerance<Scalar<X>>&) {
     return factor >= Scalar<X>(1) && factor < Scalar<X>(1.2) ? Scalar<X>(1) : factor;
   }
 
@@ -139,8 +139,8 @@ struct StructuralDynamics : ImplicitMethod<> {
   /// Root mean square of the errors against the tolerance, of a method that estimates them; not a number where x_new is
   /// not finite.
   template <State X>
-  static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
-                              const Tolerance<Scalar<X>>& tolerance) {
+  [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>&, const X& x, const X& x_new,
+                                            const Tolerance<Scalar<X>>& tolerance) {
     Scalar<X> sum = detail::zero_if_all_finite(x_new);
     if constexpr (Derived::error_order > 0) {
       // The number of steps grows like tolerance^(-1/3), and so does what their errors add up to: held below the
@@ -152,7 +152,7 @@ struct StructuralDynamics : ImplicitMethod<> {
     return sum;
   }
   template <State X>
-  static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
+  [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>&, std::size_t i) {
     return Derived::error_order == 0 ? Scalar<X>(0) : work.error.data()[i];
   }
 
@@ -162,7 +162,7 @@ struct StructuralDynamics : ImplicitMethod<> {
 
  private:
   template <class System, State X>
-  static bool positions_have_unit_mass(const System& system, const X& x) {
+  [[nodiscard]] static bool positions_have_unit_mass(const System& system, const X& x) {
     using Real = Scalar<X>;
     bool unit = true;
     if constexpr (HasMassMatrix<System, X>) {
@@ -184,7 +184,7 @@ struct StructuralDynamics : ImplicitMethod<> {
 
   /// The accelerations of a new start: M a = f.
   template <class System, State X>
-  static int begin(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
+  [[nodiscard]] static int begin(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
     evaluate(system, t, x, work.a);
     divide_by_mass(system, work.a);
     for_each_pair(system, x, [&](std::size_t position, std::size_t) { work.a.data()[position] = Scalar<X>(0); });
@@ -196,7 +196,7 @@ struct StructuralDynamics : ImplicitMethod<> {
   }
 
   template <class System, State X>
-  static int linearize(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
+  [[nodiscard]] static int linearize(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work) {
     evaluate(system, t, x, work.f);
     const int evaluations =
         work.linear.evaluate(system, t, x, work.f, LeastIncrements(work.tolerance, work.h, x, work.f, false));
@@ -207,7 +207,7 @@ struct StructuralDynamics : ImplicitMethod<> {
   }
 
   template <class System, State X>
-  static bool decompose(const System& system, const Scalar<X>& h, Workspace<X>& work) {
+  [[nodiscard]] static bool decompose(const System& system, const Scalar<X>& h, Workspace<X>& work) {
     using Real = Scalar<X>;
     const StructuralNumbers<Real> m = Derived::template numbers<Real>();
     ++work.costs.factorizations;
@@ -234,7 +234,8 @@ struct StructuralDynamics : ImplicitMethod<> {
 
   /// Newton's iteration for a_new, from a.
   template <class System, State X>
-  static bool solve(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work, int& evaluations) {
+  [[nodiscard]] static bool solve(System& system, const Scalar<X>& t, const X& x, Workspace<X>& work,
+                                  int& evaluations) {
     using Real = Scalar<X>;
     using std::max, std::min, std::sqrt;
     const StructuralNumbers<Real> m = Derived::template numbers<Real>();

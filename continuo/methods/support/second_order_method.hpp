@@ -22,7 +22,7 @@ struct EndDerivatives {
 
   /// Returns the number of evaluations.
   template <class System>
-  int evaluate_start(System& system, const Scalar<X>& t, const X& x, bool discontinuity) {
+  [[nodiscard]] int evaluate_start(System& system, const Scalar<X>& t, const X& x, bool discontinuity) {
     end_fresh = false;
     if (start_fresh && !discontinuity) return 0;
     evaluate(system, t, x, start);
@@ -33,7 +33,7 @@ struct EndDerivatives {
 
 /// What a method for q'' = a(t, q) has against a system of another form; empty where it has nothing.
 template <class System, State X>
-std::string_view unsupported_reason_positions_only(const System& system, const X& x) {
+[[nodiscard]] std::string_view unsupported_reason_positions_only(const System& system, const X& x) {
   static_assert(SecondOrder<System>, "the system must say which components are positions and which velocities");
   if (2 * system.pair_count(dimension(x)) != dimension(x))
     return "needs q'' = a(t, q): here a component is neither a position nor a velocity; take velocity_verlet or dop853";
@@ -50,18 +50,18 @@ struct SecondOrderMethod {
   using Workspace = EndDerivatives<X>;
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return {x, x};
   }
 
   /// There is no estimate: 0, or not a number where x_new is not finite.
   template <State X>
-  static Scalar<X> error_norm(const EndDerivatives<X>&, const Scalar<X>&, const X&, const X& x_new,
-                              const Tolerance<Scalar<X>>&) {
+  [[nodiscard]] static Scalar<X> error_norm(const EndDerivatives<X>&, const Scalar<X>&, const X&, const X& x_new,
+                                            const Tolerance<Scalar<X>>&) {
     return detail::zero_if_all_finite(x_new);
   }
   template <State X>
-  static Scalar<X> error_of(const EndDerivatives<X>&, const Scalar<X>&, std::size_t) {
+  [[nodiscard]] static Scalar<X> error_of(const EndDerivatives<X>&, const Scalar<X>&, std::size_t) {
     return Scalar<X>(0);
   }
 
@@ -97,7 +97,7 @@ struct SecondOrderMethod {
   }
 
   template <State X>
-  static const X& derivative(const EndDerivatives<X>& work) {
+  [[nodiscard]] static const X& derivative(const EndDerivatives<X>& work) {
     return work.start;
   }
 
@@ -128,7 +128,7 @@ struct SecondOrderMethod {
   /// What f gave at a predicted state holds at the corrected one: the correction moves velocities only, and f ignores
   /// them but for the positions' slopes, which are the velocities.
   template <class System, State X>
-  static bool holds_after_correction(const System& system, const X& x) {
+  [[nodiscard]] static bool holds_after_correction(const System& system, const X& x) {
     return ignores_velocity(system, x) && 2 * system.pair_count(dimension(x)) == dimension(x);
   }
 };

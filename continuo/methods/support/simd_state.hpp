@@ -73,7 +73,7 @@ template <State X>
 using Unit = typename Keeping<X>::Unit;
 
 template <State X>
-const Unit<X>* units_of(const Kept<X>& x) {
+[[nodiscard]] const Unit<X>* units_of(const Kept<X>& x) {
   if constexpr (Packed<X>) {
     return x.unit;
   } else {
@@ -84,7 +84,7 @@ const Unit<X>* units_of(const Kept<X>& x) {
 /// The components first, first + 1, ... of x in a register, `beyond` behind the last one; and back. One by one: a state
 /// that f reads or writes stays in registers that way.
 template <Packed X>
-[[gnu::always_inline]] inline Unit<X> gather(const Scalar<X>* x, std::size_t i, Scalar<X> beyond) {
+[[nodiscard]] [[gnu::always_inline]] inline Unit<X> gather(const Scalar<X>* x, std::size_t i, Scalar<X> beyond) {
   return [&]<std::size_t... j>(std::index_sequence<j...>) __attribute__((always_inline)) {
     const std::size_t first = i * SimdState<X>::width;
     return Unit<X>{(first + j < SimdState<X>::size ? x[first + j] : beyond)...};
@@ -100,7 +100,7 @@ template <Packed X>
 
 /// Unit i of a state in memory, read and written in one piece where it is whole.
 template <State X>
-[[gnu::always_inline]] inline Unit<X> load(const Scalar<X>* from, std::size_t i) {
+[[nodiscard]] [[gnu::always_inline]] inline Unit<X> load(const Scalar<X>* from, std::size_t i) {
   if constexpr (Packed<X>) {
     Unit<X> result;
     const std::size_t first = i * SimdState<X>::width;
@@ -139,7 +139,7 @@ template <State X, class Body>
 
 /// A state as it is kept, and back.
 template <State X>
-[[gnu::always_inline]] inline Kept<X> keep(const X& x) {
+[[nodiscard]] [[gnu::always_inline]] inline Kept<X> keep(const X& x) {
   if constexpr (Packed<X>) {
     SimdState<X> result;
     for (std::size_t i = 0; i < SimdState<X>::units; ++i) result.unit[i] = gather<X>(x.data(), i, Scalar<X>(0));
@@ -182,7 +182,7 @@ inline constexpr std::size_t unit_width = [] {
 
 /// Component i of a unit.
 template <State X>
-Scalar<X> component(const Unit<X>& unit, std::size_t i) {
+[[nodiscard]] Scalar<X> component(const Unit<X>& unit, std::size_t i) {
   if constexpr (Packed<X>) {
     return unit[i];
   } else {
@@ -192,7 +192,7 @@ Scalar<X> component(const Unit<X>& unit, std::size_t i) {
 
 /// 1 / n, a constant where the size is: the mean of squares stands between one step and the next.
 template <State X>
-Scalar<X> one_over_dimension(const X& x) {
+[[nodiscard]] Scalar<X> one_over_dimension(const X& x) {
   if constexpr (FixedSize<X>) {
     static_cast<void>(x);
     return Scalar<X>(1.0 / static_cast<double>(std::max<std::size_t>(std::tuple_size<X>::value, 1)));
@@ -203,7 +203,7 @@ Scalar<X> one_over_dimension(const X& x) {
 
 /// The sum of the components of a unit.
 template <State X>
-Scalar<X> total(const Unit<X>& unit) {
+[[nodiscard]] Scalar<X> total(const Unit<X>& unit) {
   if constexpr (Packed<X>) {
     Scalar<X> sum = unit[0];
     for (std::size_t i = 1; i < SimdState<X>::width; ++i) sum += unit[i];
@@ -215,7 +215,7 @@ Scalar<X> total(const Unit<X>& unit) {
 
 /// The size of each component.
 template <State X>
-[[gnu::always_inline]] inline Unit<X> sizes(const Unit<X>& u) {
+[[nodiscard]] [[gnu::always_inline]] inline Unit<X> sizes(const Unit<X>& u) {
   if constexpr (Packed<X>) {
     using Bits = typename Register<Scalar<X>>::bits;
     return std::bit_cast<Unit<X>>(std::bit_cast<Bits>(u) & Register<Scalar<X>>::without_sign);
@@ -227,8 +227,8 @@ template <State X>
 
 /// What an error is measured against (Tolerance::scale) for a unit; 1 beyond the last component.
 template <State X>
-[[gnu::always_inline]] inline Unit<X> error_scale(const Tolerance<Scalar<X>>& tolerance, std::size_t i, const X& x,
-                                                  const X& x_new) {
+[[nodiscard]] [[gnu::always_inline]] inline Unit<X> error_scale(const Tolerance<Scalar<X>>& tolerance, std::size_t i,
+                                                                const X& x, const X& x_new) {
   if constexpr (Packed<X>) {
     std::array<Scalar<X>, SimdState<X>::size> atol, rtol;
     for (std::size_t j = 0; j < SimdState<X>::size; ++j) {
@@ -244,8 +244,8 @@ template <State X>
 }
 /// The same of a step (Tolerance::scale_of_step).
 template <State X>
-[[gnu::always_inline]] inline Unit<X> step_scale(const Tolerance<Scalar<X>>& tolerance, std::size_t i, const X& x,
-                                                 const X& x_new) {
+[[nodiscard]] [[gnu::always_inline]] inline Unit<X> step_scale(const Tolerance<Scalar<X>>& tolerance, std::size_t i,
+                                                               const X& x, const X& x_new) {
   const Unit<X> change = load<X>(x_new.data(), i) - load<X>(x.data(), i);
   return error_scale<X>(tolerance, i, x, x_new) + tolerance.rounding_of_time * sizes<X>(change);
 }

@@ -10,7 +10,7 @@
 namespace continuo::detail {
 
 template <class Real>
-Real sqrt_of_epsilon() {
+[[nodiscard]] Real sqrt_of_epsilon() {
   using std::sqrt;
   return sqrt(std::numeric_limits<Real>::epsilon());
 }
@@ -18,7 +18,8 @@ Real sqrt_of_epsilon() {
 /// df/dt; of a difference with a length that h says more of than t: near t = 0 the other would be so short that
 /// rounding is all there is to see. Returns the number of evaluations.
 template <class System, State X>
-int slope_in_time(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x, const X& fx, X& dfdt) {
+[[nodiscard]] int slope_in_time(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x, const X& fx,
+                                X& dfdt) {
   using Real = Scalar<X>;
   using std::abs;
   if constexpr (HasTimeDerivative<System, X>) {

@@ -22,7 +22,7 @@ struct SpectralRadius {
 
   /// Somewhat more than the spectral radius at (t, x), where f is fx; not a number where f is not finite nearby.
   template <class F>
-  Scalar<X> estimate(F& f, const Scalar<X>& t, const X& x, const X& fx, int& evaluations) {
+  [[nodiscard]] Scalar<X> estimate(F& f, const Scalar<X>& t, const X& x, const X& fx, int& evaluations) {
     using Real = Scalar<X>;
     using std::abs, std::max, std::sqrt;
     const std::size_t n = dimension(x);
@@ -66,12 +66,12 @@ struct SpectralRadius {
 
   /// Between -1 and 1, never 0: the bits of i, mixed as in the finalizer of A. Appleby's MurmurHash3.
   template <class Real>
-  static Real noise(std::size_t i) {
+  [[nodiscard]] static Real noise(std::size_t i) {
     std::uint32_t bits = static_cast<std::uint32_t>(i) + 1;
     for (const std::uint32_t factor : {0x85ebca6bU, 0xc2b2ae35U}) bits = (bits ^ (bits >> 15)) * factor;
     return Real(static_cast<std::int32_t>(bits | 1U)) / Real(2147483648.0);
   }
-  static Scalar<X> length(const X& v) {
+  [[nodiscard]] static Scalar<X> length(const X& v) {
     using std::sqrt;
     Scalar<X> sum(0);
     for (std::size_t i = 0; i < dimension(v); ++i) sum += v.data()[i] * v.data()[i];

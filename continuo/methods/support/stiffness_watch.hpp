@@ -82,16 +82,16 @@ class StiffnessWatch {
   }
 
   /// |lambda| and Re(lambda) of the dominant eigenvalue, as far as the iteration has come.
-  Real radius() const { return radius_; }
-  Real real_part() const { return real_part_; }
+  [[nodiscard]] Real radius() const { return radius_; }
+  [[nodiscard]] Real real_part() const { return real_part_; }
   /// Whether it is nearer to the imaginary axis than to the real one.
-  bool oscillates() const { return turn_ < Real(-0.3) * squared(radius_); }
+  [[nodiscard]] bool oscillates() const { return turn_ < Real(-0.3) * squared(radius_); }
 
   /// Whether stiffness holds a step of this size, as of the last probe, which was made here; an oscillation that is
   /// below so many tolerances is none. Adds to `evaluations`.
   template <class System>
-  bool holds(System& system, const Real& t, const X& x, const X& fx, const Real& h, const Tolerance<Real>& tolerance,
-             int& evaluations, double unseen = unseen_by_default) {
+  [[nodiscard]] bool holds(System& system, const Real& t, const X& x, const X& fx, const Real& h,
+                           const Tolerance<Real>& tolerance, int& evaluations, double unseen = unseen_by_default) {
     if (bounds(h)) return true;
     using std::abs;
     if (!(radius_ * abs(h) > Real(felt))) return false;
@@ -101,7 +101,7 @@ class StiffnessWatch {
 
   /// Whether a step h is at the boundary of an explicit method's stability region, on the side where solutions decay:
   /// the regions of the methods here reach from about 2 to 6 along the negative axis.
-  bool bounds(const Real& h) const {
+  [[nodiscard]] bool bounds(const Real& h) const {
     using std::abs;
     return radius_ * abs(h) > 1 && !oscillates() && real_part_ * (h < 0 ? Real(-1) : Real(1)) < Real(-0.7) * growth_;
   }
@@ -114,8 +114,8 @@ class StiffnessWatch {
 
   // x'' by a difference along the solution, so short that it does not leave it as seen by lambda.
   template <class System>
-  bool follows_slow_solution(System& system, const Real& t, const X& x, const X& fx, const Real& h,
-                             const Tolerance<Real>& tolerance, const Real& unseen) {
+  [[nodiscard]] bool follows_slow_solution(System& system, const Real& t, const X& x, const X& fx, const Real& h,
+                                           const Tolerance<Real>& tolerance, const Real& unseen) {
     using std::max;
     const Real apart = (h < 0 ? Real(-felt) : Real(felt)) / radius_;
     const std::size_t n = dimension(x);
@@ -135,12 +135,12 @@ class StiffnessWatch {
     return squared(Real(much_slower)) * bend < square * slope || bend < squared(Real(unseen_by_default) * square);
   }
 
-  static Real squared(const Real& x) { return x * x; }
-  static Real spread(std::size_t i) {
+  [[nodiscard]] static Real squared(const Real& x) { return x * x; }
+  [[nodiscard]] static Real spread(std::size_t i) {
     return (i % 2 ? Real(-1) : Real(1)) * (Real(1) + Real(static_cast<double>(i % 7)) / Real(7));
   }
   // A tolerance, but enough for the difference to stand out of rounding.
-  static Real size_of(const Real& x, std::size_t i, const Tolerance<Real>& tolerance) {
+  [[nodiscard]] static Real size_of(const Real& x, std::size_t i, const Tolerance<Real>& tolerance) {
     using std::abs, std::max, std::sqrt;
     return max(tolerance.scale(i, x, x), sqrt(std::numeric_limits<Real>::epsilon()) * abs(x));
   }

@@ -20,7 +20,7 @@ namespace continuo {
 
 /// The tolerance as one number: the relative one, or the absolute one where that is greater.
 template <class Real>
-Real tolerance_as_number(const Tolerance<Real>& tolerance) {
+[[nodiscard]] Real tolerance_as_number(const Tolerance<Real>& tolerance) {
   using std::max;
   const Real rtol = tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol;
   const Real atol = tolerance.atol_each ? tolerance.atol_each[0] : tolerance.atol;
@@ -29,7 +29,7 @@ Real tolerance_as_number(const Tolerance<Real>& tolerance) {
 
 /// The relative tolerance as one number, that of the first component, but not below rounding.
 template <class Real>
-Real relative_as_number(const Tolerance<Real>& tolerance) {
+[[nodiscard]] Real relative_as_number(const Tolerance<Real>& tolerance) {
   using std::max;
   return max(tolerance.rtol_each ? tolerance.rtol_each[0] : tolerance.rtol, std::numeric_limits<Real>::epsilon());
 }
@@ -37,7 +37,7 @@ Real relative_as_number(const Tolerance<Real>& tolerance) {
 /// By how much an error of order m of one step is held below the tolerance, in a method of order p. That many errors
 /// may add up as `spare` says before it is above 1. Not below rounding, though: no step, however short, gets there.
 template <class Real>
-Real strictness(const Tolerance<Real>& tolerance, int p, int m, double spare = 1) {
+[[nodiscard]] Real strictness(const Tolerance<Real>& tolerance, int p, int m, double spare = 1) {
   using std::max, std::min, std::pow;
   if (m <= p) return Real(1);
   const Real exponent = Real(p - m) / Real(p), asked = tolerance_as_number(tolerance);
@@ -54,13 +54,13 @@ inline constexpr double spare_of_constraints = 3;
 
 /// Whether the estimate of a method is that of the error of its own result.
 template <class M>
-constexpr bool estimates_its_own_error() {
+[[nodiscard]] constexpr bool estimates_its_own_error() {
   return M::error_order + 1 > M::order;
 }
 
 /// Of the error estimate of a one-step method.
 template <class M, class Real>
-Real strictness_of(const Tolerance<Real>& tolerance) {
+[[nodiscard]] Real strictness_of(const Tolerance<Real>& tolerance) {
   if constexpr (!estimates_its_own_error<M>()) {
     return Real(1);
   } else {
@@ -70,7 +70,7 @@ Real strictness_of(const Tolerance<Real>& tolerance) {
 
 /// How far an iteration goes, in tolerances: to a hundredth of the error that a step may have, but not beyond rounding.
 template <class M, class Real>
-Real iteration_target(const Tolerance<Real>& tolerance) {
+[[nodiscard]] Real iteration_target(const Tolerance<Real>& tolerance) {
   using std::max;
   const Real rounding = 10 * std::numeric_limits<Real>::epsilon() / tolerance_as_number(tolerance);
   return max(rounding, Real(1e-2) / strictness(tolerance, M::order, M::order + 1, spare_of_one_step));

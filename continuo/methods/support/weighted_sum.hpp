@@ -49,7 +49,7 @@ struct Row {
 template <class R, State X>
 using StagePointers = std::array<const Unit<X>*, R::count>;
 template <class R, State X, std::size_t Slots>
-[[gnu::always_inline]] inline StagePointers<R, X> stages_of(const std::array<Kept<X>, Slots>& k) {
+[[nodiscard]] [[gnu::always_inline]] inline StagePointers<R, X> stages_of(const std::array<Kept<X>, Slots>& k) {
   return [&]<std::size_t... n>(std::index_sequence<n...>) __attribute__((always_inline)) {
     return StagePointers<R, X>{units_of<X>(k[R::place[n]])...};
   }(std::make_index_sequence<R::count>());
@@ -57,7 +57,7 @@ template <class R, State X, std::size_t Slots>
 
 /// Unit i of the sum of the first Count terms of row R.
 template <class R, State X, std::size_t Count = R::count>
-[[gnu::always_inline]] inline Unit<X> row_sum(const StagePointers<R, X>& k, std::size_t i) {
+[[nodiscard]] [[gnu::always_inline]] inline Unit<X> row_sum(const StagePointers<R, X>& k, std::size_t i) {
   if constexpr (Count == 0) {
     return Unit<X>{};
   } else {
@@ -69,7 +69,7 @@ template <class R, State X, std::size_t Count = R::count>
 
 /// |h sum_j row_j k_j| of one component.
 template <class R, State X, std::size_t Slots>
-inline Scalar<X> size_of_sum(const std::array<Kept<X>, Slots>& k, const Scalar<X>& h, std::size_t i) {
+[[nodiscard]] inline Scalar<X> size_of_sum(const std::array<Kept<X>, Slots>& k, const Scalar<X>& h, std::size_t i) {
   using std::abs;
   const Unit<X> sum = row_sum<R, X>(stages_of<R, X>(k), i / unit_width<X>);
   return abs(h * component<X>(sum, i % unit_width<X>));

@@ -28,12 +28,12 @@ struct SymplecticTableau {
   Coefficient kick[Stages] = {}, drift[Stages] = {};
 
   /// The last kick is the first of the next step: its acceleration is that at the end.
-  constexpr bool ends_with_kick() const { return drift[Stages - 1].is_zero(); }
+  [[nodiscard]] constexpr bool ends_with_kick() const { return drift[Stages - 1].is_zero(); }
 };
 
 /// c_i, where the time of kick i is t + c_i h.
 template <std::size_t Stages>
-constexpr Coefficient node(SymplecticTableau<Stages> tableau, std::size_t i) {
+[[nodiscard]] constexpr Coefficient node(SymplecticTableau<Stages> tableau, std::size_t i) {
   Coefficient sum = 0;
   for (std::size_t j = 0; j < i; ++j) sum = sum + tableau.drift[j];
   return sum;
@@ -42,7 +42,7 @@ constexpr Coefficient node(SymplecticTableau<Stages> tableau, std::size_t i) {
 /// The symmetric composition of velocity Verlet with steps w_i h: the first half of the w_i, the middle one last. Where
 /// two steps meet, their kicks are one.
 template <std::size_t Half>
-constexpr SymplecticTableau<2 * Half> symmetric_composition(const Coefficient (&half)[Half]) {
+[[nodiscard]] constexpr SymplecticTableau<2 * Half> symmetric_composition(const Coefficient (&half)[Half]) {
   const auto w = [&half](std::size_t i) {  // counted from 1, 0 on both sides
     return i == 0 || i == 2 * Half ? Coefficient(0) : half[i <= Half ? i - 1 : 2 * Half - 1 - i];
   };
@@ -68,12 +68,12 @@ struct SymplecticComposition : SecondOrderMethod {
   };
 
   template <State X>
-  static Workspace<X> workspace(const X& x) {
+  [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return {{x, x}, x, x, x, x, {x, x, x, x}};
   }
 
   template <class System, State X>
-  static std::string_view unsupported_reason(const System& system, const X& x) {
+  [[nodiscard]] static std::string_view unsupported_reason(const System& system, const X& x) {
     return unsupported_reason_positions_only(system, x);
   }
 
@@ -132,8 +132,8 @@ struct SymplecticComposition : SecondOrderMethod {
 
  private:
   template <int Round, class System, State X, int Degree>
-  static int refine(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
-                    Interpolant<X, Degree>& interpolant) {
+  [[nodiscard]] static int refine(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
+                                  Interpolant<X, Degree>& interpolant) {
     constexpr auto& round = detail::QuinticRound<Round>::data;
     for (std::size_t j = 0; j < round.nodes; ++j) {
       const Scalar<X> theta(round.node[j].template as<CoefficientOf<Scalar<X>>>());

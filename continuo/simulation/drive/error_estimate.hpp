@@ -21,8 +21,8 @@ using RunAgain = std::function<Simulated(const Experiment& strict)>;
 
 /// One more run, a hundred times as strict; by a fixed step, with half the step and Richardson's factor 2^p / (2^p -
 /// 1). The method and everything else stay as they were.
-ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                             const Run& run, const RunAgain& again = {});
+[[nodiscard]] ErrorEstimate estimate_error(const std::shared_ptr<const ModelProgram>& program,
+                                           const Experiment& experiment, const Run& run, const RunAgain& again = {});
 
 /// A sentence where the final state of an adaptive run is off by more than 20 tolerances, since the motion multiplies
 /// the errors of its steps (a chaotic one, many periods of an orbit), or where a stricter run ends otherwise; else

@@ -9,6 +9,6 @@ namespace continuo::model {
 using ModelMethod = AnyMethod<ModelSystem, ModelSystem::X>;
 
 template <class M>
-ModelMethod model_method();
+[[nodiscard]] ModelMethod model_method();
 
 }  // namespace continuo::model

@@ -5,7 +5,7 @@
 namespace continuo::model {
 
 template <class M>
-ModelMethod model_method() {
+[[nodiscard]] ModelMethod model_method() {
   return any_method<M, ModelSystem, ModelSystem::X>();
 }
 

@@ -30,7 +30,7 @@ class Planner {
   [[nodiscard]] std::optional<Plan> finish();
 
   /// The plan as far as it is made.
-  Plan& plan() { return plan_; }
+  [[nodiscard]] Plan& plan() { return plan_; }
   /// A problem of this code at the run statement. `overridden`: the experiment asked for it, not the model.
   void fail(const char* code, std::string message, std::string help, bool overridden = false);
   /// The value of a setting of the run statement with the parameters of the experiment; nothing where it is not given.
@@ -39,7 +39,7 @@ class Planner {
   [[nodiscard]] bool asks_for_tolerance() const;
 
  private:
-  double value(const Setting& setting) const;
+  [[nodiscard]] double value(const Setting& setting) const;
   void check_parameters();
   void set_interval();
   void set_accuracy();
@@ -47,10 +47,10 @@ class Planner {
   void set_tolerances();
   void place_by_name(const Overrides& given, std::vector<double>& each);
   void set_method();
-  Choice choice() const;
-  bool is_banded() const;
+  [[nodiscard]] Choice choice() const;
+  [[nodiscard]] bool is_banded() const;
   void accept(const MethodInfo& method);
-  std::string unpaired() const;
+  [[nodiscard]] std::string unpaired() const;
   void set_output();
 
   const Model& model_;

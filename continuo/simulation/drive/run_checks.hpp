@@ -9,9 +9,9 @@
 namespace continuo::model {
 
 /// The times at which checks read the motion, ascending, each once. A time a rounding beyond the end is the end.
-std::vector<double> sample_times(const Model& model, const Plan& plan);
+[[nodiscard]] std::vector<double> sample_times(const Model& model, const Plan& plan);
 
 /// Every check's result; `recorder` has given its rows to the run already.
-std::vector<CheckResult> judge(const Model& model, const Run& run, const RunRecorder& recorder);
+[[nodiscard]] std::vector<CheckResult> judge(const Model& model, const Run& run, const RunRecorder& recorder);
 
 }  // namespace continuo::model

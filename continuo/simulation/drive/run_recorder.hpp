@@ -50,12 +50,12 @@ class RunRecorder {
   void contact(double t, std::string name, double impulse);
   void finish(double t, const X& x);
 
-  std::span<const SampledState> samples() const { return samples_; }
+  [[nodiscard]] std::span<const SampledState> samples() const { return samples_; }
   /// When the next sample is wanted, infinity after the last; how many came before.
-  double next_sample() const;
-  std::size_t samples_taken() const { return next_sample_; }
-  const SampledState* sample(double t) const;
-  std::span<const Extremes> extremes() const { return extremes_; }
+  [[nodiscard]] double next_sample() const;
+  [[nodiscard]] std::size_t samples_taken() const { return next_sample_; }
+  [[nodiscard]] const SampledState* sample(double t) const;
+  [[nodiscard]] std::span<const Extremes> extremes() const { return extremes_; }
   /// Moves what was kept into the run.
   void give(Run& run);
 

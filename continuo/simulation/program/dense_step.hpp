@@ -14,7 +14,7 @@ struct Step {
   double begin, size;
   std::span<const std::vector<double>> coefficients;
 
-  Enclosure<double> time(double from, double to) const {
+  [[nodiscard]] Enclosure<double> time(double from, double to) const {
     return Enclosure<double>(begin) + Enclosure<double>(from, to) * Enclosure<double>(size);
   }
 };
@@ -24,7 +24,7 @@ class StepComponent {
  public:
   StepComponent() : coefficients_(greatest_enclosed_degree + 1) {}
   /// Until the next call.
-  std::span<const double> of(const Step& step, std::size_t i) {
+  [[nodiscard]] std::span<const double> of(const Step& step, std::size_t i) {
     for (std::size_t j = 0; j < step.coefficients.size(); ++j) coefficients_[j] = step.coefficients[j][i];
     return std::span<const double>(coefficients_).first(step.coefficients.size());
   }

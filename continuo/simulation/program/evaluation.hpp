@@ -24,7 +24,7 @@ class Evaluation {
     tape_->prepare<double>(registers_);
   }
 
-  std::size_t output_count() const { return tape_ ? tape_->output_count() : 0; }
+  [[nodiscard]] std::size_t output_count() const { return tape_ ? tape_->output_count() : 0; }
 
   void operator()(double t, std::span<const double> x, std::span<double> outputs) {
     registers_[Layout::time] = t;
@@ -35,7 +35,9 @@ class Evaluation {
     registers_[Layout::time] = t;
     tape_->evaluate<double>(registers_, x, outputs, copies);
   }
-  tape::Copies outputs_at(std::span<const std::uint32_t> places) const { return tape_->outputs_at(places); }
+  [[nodiscard]] tape::Copies outputs_at(std::span<const std::uint32_t> places) const {
+    return tape_->outputs_at(places);
+  }
   std::vector<double> operator()(double t, std::span<const double> x) {
     std::vector<double> outputs(output_count());
     if (!outputs.empty()) (*this)(t, x, outputs);

@@ -20,9 +20,10 @@ class EventNames {
  public:
   /// Of the text's events among those that fired, and, `with_slides`, where the motion begins to slide along a surface
   /// or leaves it. Steps of inputs and other jumps of the equations have no name.
-  std::vector<EventName> of(const ModelEvents& events, std::span<const std::size_t> fired, bool with_slides = false);
+  [[nodiscard]] std::vector<EventName> of(const ModelEvents& events, std::span<const std::size_t> fired,
+                                          bool with_slides = false);
   /// How many marks the source had at the last instant.
-  std::size_t marks_seen() const { return marks_seen_; }
+  [[nodiscard]] std::size_t marks_seen() const { return marks_seen_; }
   /// The source has been made anew.
   void restart() { marks_seen_ = 0; }
 

@@ -29,12 +29,12 @@ class GuardEnclosures {
 
   /// The step that the questions below are about.
   void take(const ModelSystem& system, const Step& step);
-  bool has(std::size_t number) const { return place_[number] != none; }
+  [[nodiscard]] bool has(std::size_t number) const { return place_[number] != none; }
   /// All guards over a part of the step: then `whole(i)`.
   void enclose_all(double from, double to) { whole_ = all_ ? all_->values_over(step_, from, to) : whole_.first(0); }
-  const Enclosure<double>& whole(std::size_t number) const { return whole_[place_[number]]; }
-  EnclosureWithSlope<double> over(std::size_t number, double from, double to);
-  Enclosure<double> value(std::size_t number, double at);
+  [[nodiscard]] const Enclosure<double>& whole(std::size_t number) const { return whole_[place_[number]]; }
+  [[nodiscard]] EnclosureWithSlope<double> over(std::size_t number, double from, double to);
+  [[nodiscard]] Enclosure<double> value(std::size_t number, double at);
 
   /// An input.
   void set(std::uint32_t variable, double value);
@@ -49,9 +49,9 @@ class GuardEnclosures {
     std::vector<std::optional<StepEnclosure>> alone;
   };
   void make(OfMode& mine, const ModelSystem& system);
-  std::vector<std::size_t> switches_of(const UnknownBlock& block, std::size_t mode) const;
-  static bool is_enclosed(const OfMode& mine, std::size_t k, const ModelSystem& system);
-  StepEnclosure& alone(std::size_t number);
+  [[nodiscard]] std::vector<std::size_t> switches_of(const UnknownBlock& block, std::size_t mode) const;
+  [[nodiscard]] static bool is_enclosed(const OfMode& mine, std::size_t k, const ModelSystem& system);
+  [[nodiscard]] StepEnclosure& alone(std::size_t number);
 
   const ModelProgram* program_ = nullptr;
   std::vector<OfMode> modes_;
@@ -66,9 +66,9 @@ class GuardEnclosures {
 /// The guards of the model's events and of the switches of its equations, by mode; `number_of_event` and
 /// `number_of_jump(mode, switch)` give the numbers.
 template <class NumberOfEvent, class NumberOfJump>
-std::vector<std::vector<GuardEnclosures::Guard>> enclosed_guards(const ModelProgram& program,
-                                                                 NumberOfEvent&& number_of_event,
-                                                                 NumberOfJump&& number_of_jump) {
+[[nodiscard]] std::vector<std::vector<GuardEnclosures::Guard>> enclosed_guards(const ModelProgram& program,
+                                                                               NumberOfEvent&& number_of_event,
+                                                                               NumberOfJump&& number_of_jump) {
   std::vector<std::vector<GuardEnclosures::Guard>> guards(program.guards.size());
   for (std::size_t mode = 0; mode < guards.size(); ++mode) {
     for (const std::size_t event : program.guards[mode].events) {

@@ -13,12 +13,12 @@ struct Jump {
   std::size_t state;
   NodeId node, first, second;  // of the jump, and its arguments; without a second one the first again
 };
-std::vector<Jump> jumps_of(const Model& model, std::size_t mode);
+[[nodiscard]] std::vector<Jump> jumps_of(const Model& model, std::size_t mode);
 
 /// How far the arguments of a jump are from where it is: a difference, or a part of a whole number.
-double distance_to(Op op, double a, double b);
+[[nodiscard]] double distance_to(Op op, double a, double b);
 
 /// "1 < x"
-std::string text_of(const Model& model, const Jump& jump);
+[[nodiscard]] std::string text_of(const Model& model, const Jump& jump);
 
 }  // namespace continuo::model

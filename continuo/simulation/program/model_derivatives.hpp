@@ -22,7 +22,7 @@ class ModelDerivatives {
   ModelDerivatives(const ModelProgram& program, std::span<const double> variables, bool held = false);
 
   /// Of all modes together.
-  const SparsePattern& pattern() const { return pattern_; }
+  [[nodiscard]] const SparsePattern& pattern() const { return pattern_; }
   /// The entries in the order of the pattern.
   void jacobian_values(std::size_t mode, double t, std::span<const double> x, std::span<double> values);
   /// The entries in the layout of the pattern's band; only where the pattern is banded.

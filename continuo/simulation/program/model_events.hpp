@@ -33,40 +33,45 @@ class ModelEvents {
   /// switches, the surfaces of these are events as well.
   ModelEvents(const ModelProgram& program, std::span<const double> variables, double from, bool jumps = false);
 
-  std::size_t size() const { return events_.size(); }
-  std::string_view name(std::size_t i) const { return events_[i].name; }
-  Direction direction(std::size_t i) const { return events_[i].direction; }
-  bool is_guard(std::size_t i) const { return events_[i].kind == Kind::guard || events_[i].kind == Kind::jump; }
-  bool can_restart(std::size_t i) const { return events_[i].can_restart; }
-  bool can_assign(std::size_t i) const { return events_[i].can_assign; }
-  bool is_condition(std::size_t i) const { return events_[i].is_condition; }
-  bool active(const ModelSystem& system, std::size_t i) const {
+  [[nodiscard]] std::size_t size() const { return events_.size(); }
+  [[nodiscard]] std::string_view name(std::size_t i) const { return events_[i].name; }
+  [[nodiscard]] Direction direction(std::size_t i) const { return events_[i].direction; }
+  [[nodiscard]] bool is_guard(std::size_t i) const {
+    return events_[i].kind == Kind::guard || events_[i].kind == Kind::jump;
+  }
+  [[nodiscard]] bool can_restart(std::size_t i) const { return events_[i].can_restart; }
+  [[nodiscard]] bool can_assign(std::size_t i) const { return events_[i].can_assign; }
+  [[nodiscard]] bool is_condition(std::size_t i) const { return events_[i].is_condition; }
+  [[nodiscard]] bool active(const ModelSystem& system, std::size_t i) const {
     return !events_[i].in_one_mode || events_[i].mode == system.mode();
   }
-  double next_time(std::size_t i, double t, bool inclusive) const;
+  [[nodiscard]] double next_time(std::size_t i, double t, bool inclusive) const;
   void guards(ModelSystem& system, double t, const X& x, std::span<double> values);
   /// Where the motion carries guard i from zero, by its exact derivatives; empty for surfaces of jumps, and while the
   /// motion slides.
-  std::optional<Carried> carried(const ModelSystem& system, std::size_t i, double t, const X& x, double forward);
+  [[nodiscard]] std::optional<Carried> carried(const ModelSystem& system, std::size_t i, double t, const X& x,
+                                               double forward);
 
   // The guards over a step, enclosed (solve/events/event_location.hpp).
   void take_step(const ModelSystem& system, double begin, double size, std::span<const X> coefficients) {
     enclosures_.take(system, {begin, size, coefficients});
   }
-  bool is_enclosed(std::size_t i) const { return enclosures_.has(i); }
+  [[nodiscard]] bool is_enclosed(std::size_t i) const { return enclosures_.has(i); }
   void enclose_all(double from, double to) { enclosures_.enclose_all(from, to); }
-  const Enclosure<double>& whole(std::size_t i) const { return enclosures_.whole(i); }
-  EnclosureWithSlope<double> enclosure(std::size_t i, double from, double to) { return enclosures_.over(i, from, to); }
-  Enclosure<double> value_enclosure(std::size_t i, double at) { return enclosures_.value(i, at); }
+  [[nodiscard]] const Enclosure<double>& whole(std::size_t i) const { return enclosures_.whole(i); }
+  [[nodiscard]] EnclosureWithSlope<double> enclosure(std::size_t i, double from, double to) {
+    return enclosures_.over(i, from, to);
+  }
+  [[nodiscard]] Enclosure<double> value_enclosure(std::size_t i, double at) { return enclosures_.value(i, at); }
 
-  EventResponse fire(ModelSystem& system, std::size_t i, double t, const X& before, X& x);
-  bool has_limit_action(std::size_t i) const { return events_[i].has_limit; }
-  EventResponse at_limit(ModelSystem& system, std::size_t i, double t, const X& before, X& x);
+  [[nodiscard]] EventResponse fire(ModelSystem& system, std::size_t i, double t, const X& before, X& x);
+  [[nodiscard]] bool has_limit_action(std::size_t i) const { return events_[i].has_limit; }
+  [[nodiscard]] EventResponse at_limit(ModelSystem& system, std::size_t i, double t, const X& before, X& x);
 
   /// When the run began.
-  double begin() const { return begin_; }
+  [[nodiscard]] double begin() const { return begin_; }
   /// How often each `stop` of the model has been reached.
-  std::span<const std::size_t> stops() const { return stop_counts_; }
+  [[nodiscard]] std::span<const std::size_t> stops() const { return stop_counts_; }
   /// The run goes on from t: what was scheduled for that very instant has happened.
   void resume(double t, std::span<const std::size_t> stops) {
     resumed_ = t;
@@ -74,12 +79,14 @@ class ModelEvents {
   }
 
   /// The author knows of it; steps of inputs and jumps of equations are nobody's event.
-  bool is_declared(std::size_t i) const { return events_[i].kind != Kind::input && events_[i].kind != Kind::jump; }
+  [[nodiscard]] bool is_declared(std::size_t i) const {
+    return events_[i].kind != Kind::input && events_[i].kind != Kind::jump;
+  }
   /// A surface along which the motion may slide: marks of it say where it begins to and where it leaves.
-  bool is_jump(std::size_t i) const { return events_[i].kind == Kind::jump; }
-  bool renews_guard(std::size_t i) const { return is_jump(i); }
-  std::span<const Marked> marks() const { return marks_; }
-  const std::string& stop_text() const { return stop_text_; }
+  [[nodiscard]] bool is_jump(std::size_t i) const { return events_[i].kind == Kind::jump; }
+  [[nodiscard]] bool renews_guard(std::size_t i) const { return is_jump(i); }
+  [[nodiscard]] std::span<const Marked> marks() const { return marks_; }
+  [[nodiscard]] const std::string& stop_text() const { return stop_text_; }
 
  private:
   enum class Kind { guard, scheduled, input, jump };
@@ -103,13 +110,13 @@ class ModelEvents {
     std::size_t mode;
   };
 
-  Entry entry_of(const When& when, std::size_t index) const;
-  Entry entry_of(const ModelProgram& program, const Scheduled& scheduled, std::size_t index,
-                 std::span<const double> variables, double from) const;
+  [[nodiscard]] Entry entry_of(const When& when, std::size_t index) const;
+  [[nodiscard]] Entry entry_of(const ModelProgram& program, const Scheduled& scheduled, std::size_t index,
+                               std::span<const double> variables, double from) const;
   void add_jumps(const ModelProgram& program);
-  EventResponse act(ModelSystem& system, const ProgramBlock& block, std::span<const double> values, std::size_t i,
-                    double t, const X& before, X& x);
-  EventResponse pass(ModelSystem& system, std::size_t i, double t, const X& x);
+  [[nodiscard]] EventResponse act(ModelSystem& system, const ProgramBlock& block, std::span<const double> values,
+                                  std::size_t i, double t, const X& before, X& x);
+  [[nodiscard]] EventResponse pass(ModelSystem& system, std::size_t i, double t, const X& x);
   void perform(const std::vector<ProgramAction>& actions, std::span<const double> values, double t, X& x,
                Effect& effect);
 

@@ -68,7 +68,7 @@ struct ModelProgram {
   std::vector<char> counters;  // by state: it stands still between events and no equation reads it, like a counter
   std::vector<std::uint32_t> families;  // as TapeVariables says: u[1], u[2], ... are one, their derivatives another
 
-  TapeVariables tape_variables() const {
+  [[nodiscard]] TapeVariables tape_variables() const {
     return {.variables = model.layout.size + switch_variables,
             .steady_begin = model.layout.parameters,
             .steady_end = model.layout.inputs,
@@ -77,14 +77,14 @@ struct ModelProgram {
             .families = families};
   }
   /// Whether the expression contains the unknown of an algebraic equation.
-  bool reads_unknowns(NodeId node) const;
+  [[nodiscard]] bool reads_unknowns(NodeId node) const;
   /// The expression with interpolated inputs in place, as functions of time.
-  NodeId with_inputs(Graph& graph, NodeId node) const;
+  [[nodiscard]] NodeId with_inputs(Graph& graph, NodeId node) const;
   /// A tape of these expressions, interpolated inputs in place.
-  std::shared_ptr<const Tape> tape_of(std::span<const NodeId> nodes) const;
+  [[nodiscard]] std::shared_ptr<const Tape> tape_of(std::span<const NodeId> nodes) const;
 };
 
 /// Inputs with points follow them, whoever gave the points: the file of the model or a caller.
-std::shared_ptr<const ModelProgram> compile(Model model);
+[[nodiscard]] std::shared_ptr<const ModelProgram> compile(Model model);
 
 }  // namespace continuo::model

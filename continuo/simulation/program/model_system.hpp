@@ -38,70 +38,76 @@ class ModelSystem {
     for (const std::size_t i : held_) dxdt[i] = 0;
   }
 
-  std::size_t mode() const { return mode_; }
+  [[nodiscard]] std::size_t mode() const { return mode_; }
   void go(std::size_t mode) { mode_ = mode; }
   /// A parameter or an input.
   void set(std::uint32_t variable, double value);
-  double value(std::uint32_t variable) const { return variables_[variable]; }
+  [[nodiscard]] double value(std::uint32_t variable) const { return variables_[variable]; }
   /// Parameters and inputs as in this register file.
   void set_all(std::span<const double> variables);
   /// These states stand still from now on, whatever the equations say: somebody holds them.
   void hold(std::vector<std::size_t> states) { held_ = std::move(states); }
-  std::span<const std::size_t> held() const { return held_; }
+  [[nodiscard]] std::span<const std::size_t> held() const { return held_; }
 
   /// The guards that are active in the present mode; values[i] for Model::events[i], the others are left alone. That of
   /// a condition is never zero: its sign says whether the condition holds.
   void guards(double t, const X& x, std::span<double> values);
   /// The expressions of the block of Model::events[i] or Model::schedule[i].
-  std::vector<double> event_expressions(std::size_t i, double t, const X& x) { return event_blocks_[i](t, x); }
-  std::vector<double> limit_expressions(std::size_t i, double t, const X& x) { return limit_blocks_[i](t, x); }
-  std::vector<double> schedule_expressions(std::size_t i, double t, const X& x) { return schedule_blocks_[i](t, x); }
+  [[nodiscard]] std::vector<double> event_expressions(std::size_t i, double t, const X& x) {
+    return event_blocks_[i](t, x);
+  }
+  [[nodiscard]] std::vector<double> limit_expressions(std::size_t i, double t, const X& x) {
+    return limit_blocks_[i](t, x);
+  }
+  [[nodiscard]] std::vector<double> schedule_expressions(std::size_t i, double t, const X& x) {
+    return schedule_blocks_[i](t, x);
+  }
 
   /// From now on the jumps of the equations are located: their switches are held until `pass` or `settle` says
   /// otherwise (SwitchedMotion). Before, every evaluation decides them anew.
   void hold_switches(double t, const X& x);
   void settle_switches(double t, const X& x, const X* before);
-  Passage pass_switch(std::size_t k, double t, const X& x);
+  [[nodiscard]] Passage pass_switch(std::size_t k, double t, const X& x);
   void switch_guards(double t, const X& x, std::span<double> values) { switched_->guards(mode_, t, x, values); }
-  bool has_switches() const { return switched_ && switched_->any(mode_); }
-  bool slides() const { return switched_ && switched_->slides(); }
-  bool slides_along(std::size_t k) const { return switched_ && switched_->slides_along(k); }
-  std::span<const SwitchedMotion::Sliding> sliding() const {
+  [[nodiscard]] bool has_switches() const { return switched_ && switched_->any(mode_); }
+  [[nodiscard]] bool slides() const { return switched_ && switched_->slides(); }
+  [[nodiscard]] bool slides_along(std::size_t k) const { return switched_ && switched_->slides_along(k); }
+  [[nodiscard]] std::span<const SwitchedMotion::Sliding> sliding() const {
     return has_switches() ? switched_->sliding() : std::span<const SwitchedMotion::Sliding>();
   }
-  std::span<const double> switch_values() const {
+  [[nodiscard]] std::span<const double> switch_values() const {
     return has_switches() ? switched_->values() : std::span<const double>();
   }
   /// The right-hand sides and residuals of the present mode, with its switches held where these are.
-  std::span<const NodeId> equations() const {
+  [[nodiscard]] std::span<const NodeId> equations() const {
     return has_switches() ? program_->switches[mode_].derivatives : model().modes[mode_].derivatives;
   }
-  const std::vector<double>& variables() const { return variables_; }
+  [[nodiscard]] const std::vector<double>& variables() const { return variables_; }
 
-  const ModelProgram& program() const { return *program_; }
-  const Model& model() const { return program_->model; }
+  [[nodiscard]] const ModelProgram& program() const { return *program_; }
+  [[nodiscard]] const Model& model() const { return program_->model; }
 
   // What solve and the methods ask of a System.
   bool autonomous;
-  std::string_view component_name(std::size_t i) const { return model().states[i].column; }
-  std::size_t pair_count(std::size_t) const { return model().pairs.size(); }
-  PositionVelocity pair(std::size_t i, std::size_t) const { return model().pairs[i]; }
+  [[nodiscard]] std::string_view component_name(std::size_t i) const { return model().states[i].column; }
+  [[nodiscard]] std::size_t pair_count(std::size_t) const { return model().pairs.size(); }
+  [[nodiscard]] PositionVelocity pair(std::size_t i, std::size_t) const { return model().pairs[i]; }
   /// df/dx, n*n row by row, and where it may differ from zero in any mode. The first call differentiates and compiles.
   void jacobian(double t, const X& x, std::span<double> rows);
-  const SparsePattern& jacobian_pattern() { return derivatives_of_f().pattern(); }
+  [[nodiscard]] const SparsePattern& jacobian_pattern() { return derivatives_of_f().pattern(); }
   void jacobian_values(double t, const X& x, std::span<double> values);
   void jacobian_band(double t, const X& x, std::span<double> band);
   void time_derivative(double t, const X& x, X& dfdt);
-  bool has_mass() const { return model().needs_dae_solver(); }
-  double mass(std::size_t i) const { return model().states[i].algebraic ? 0 : 1; }
-  bool ignores_velocity(const X&) const { return !model().accelerations_depend_on_velocities; }
+  [[nodiscard]] bool has_mass() const { return model().needs_dae_solver(); }
+  [[nodiscard]] double mass(std::size_t i) const { return model().states[i].algebraic ? 0 : 1; }
+  [[nodiscard]] bool ignores_velocity(const X&) const { return !model().accelerations_depend_on_velocities; }
 
  private:
   template <class Visit>
   void for_each(Visit&& visit);
   void place_switches();
   void difference_rows(double t, const X& x, std::span<double> rows);
-  ModelDerivatives& derivatives_of_f();
+  [[nodiscard]] ModelDerivatives& derivatives_of_f();
 
   std::shared_ptr<const ModelProgram> program_;
   std::size_t mode_;

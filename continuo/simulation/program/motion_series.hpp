@@ -49,7 +49,8 @@ class MotionSeries {
   /// where time runs on and -1 where it runs backwards.
   void guards(std::size_t mode, double t, std::span<const double> x, double forward, std::span<GuardMotion> motions);
   /// The states' series, and those of the unknowns. Valid until the next call.
-  std::span<const TapeSeries> states(std::size_t mode, double t, std::span<const double> x, double forward);
+  [[nodiscard]] std::span<const TapeSeries> states(std::size_t mode, double t, std::span<const double> x,
+                                                   double forward);
 
   /// A parameter or an input.
   void set(std::uint32_t variable, double value);
@@ -71,10 +72,10 @@ class MotionSeries {
                 std::span<TapeSeries> outputs);
   void evaluate_rates(const TapeSeries& time, std::span<const TapeSeries> x);
   void sweep();
-  Rounded<double> next_coefficient(std::size_t i, std::size_t k) const;
-  bool is_settled(bool give_up);
+  [[nodiscard]] Rounded<double> next_coefficient(std::size_t i, std::size_t k) const;
+  [[nodiscard]] bool is_settled(bool give_up);
   void invert_slopes_of_unknowns();
-  double doubt_of_unknown(std::size_t row, std::span<const Rounded<double>> residuals) const;
+  [[nodiscard]] double doubt_of_unknown(std::size_t row, std::span<const Rounded<double>> residuals) const;
   void round_unknowns();
   void solve_unknowns(std::size_t k);
 

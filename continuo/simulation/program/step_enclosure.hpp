@@ -31,18 +31,18 @@ class StepEnclosure {
                 std::span<const UnknownBlock> blocks = {});
 
   /// Each expression for theta in from..to, a part of 0..1, with its slope by theta.
-  std::span<const EnclosureWithSlope<double>> over(const Step& step, double from, double to);
+  [[nodiscard]] std::span<const EnclosureWithSlope<double>> over(const Step& step, double from, double to);
   /// The values alone, in a third of the time.
-  std::span<const Enclosure<double>> values_over(const Step& step, double from, double to);
+  [[nodiscard]] std::span<const Enclosure<double>> values_over(const Step& step, double from, double to);
 
   /// The components of the state that the expressions read as the dense output has them, ascending.
-  std::span<const std::uint32_t> components() const { return components_; }
+  [[nodiscard]] std::span<const std::uint32_t> components() const { return components_; }
   /// A parameter or an input.
   void set(std::uint32_t variable, double value);
 
  private:
-  Enclosure<double> component_over(const Step& step, std::size_t i, double from, double to);
-  bool is_solved_for(std::uint32_t component) const;
+  [[nodiscard]] Enclosure<double> component_over(const Step& step, std::size_t i, double from, double to);
+  [[nodiscard]] bool is_solved_for(std::uint32_t component) const;
 
   std::shared_ptr<const Tape> tape_;
   std::uint32_t states_begin_;

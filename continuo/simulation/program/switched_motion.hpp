@@ -32,9 +32,11 @@ class SwitchedMotion {
   SwitchedMotion(const ModelProgram& program, std::span<const double> variables);
 
   /// Whether the equations of this mode have switches; without, the other members do nothing.
-  bool any(std::size_t mode) const { return !program_->switches[mode].empty(); }
-  bool slides() const { return !sliding_.empty(); }
-  bool slides_along(std::size_t k) const { return std::ranges::find(sliding_, k, &Sliding::k) != sliding_.end(); }
+  [[nodiscard]] bool any(std::size_t mode) const { return !program_->switches[mode].empty(); }
+  [[nodiscard]] bool slides() const { return !sliding_.empty(); }
+  [[nodiscard]] bool slides_along(std::size_t k) const {
+    return std::ranges::find(sliding_, k, &Sliding::k) != sliding_.end();
+  }
 
   /// x' with every switch held.
   void rates(std::size_t mode, double t, const X& x, X& dxdt);
@@ -46,34 +48,36 @@ class SwitchedMotion {
   /// it since `before`, still is (null: nothing slid).
   void settle(std::size_t mode, double t, const X& x, const X* before);
   /// The motion has come to the surface of switch k, or to the end of its sliding.
-  Passage pass(std::size_t mode, std::size_t k, double t, const X& x);
+  [[nodiscard]] Passage pass(std::size_t mode, std::size_t k, double t, const X& x);
 
   /// A parameter or an input.
   void set(std::uint32_t variable, double value);
   /// The values of the mode's switches; of one that slides that of its lower side.
-  std::span<const double> values() const { return values_; }
+  [[nodiscard]] std::span<const double> values() const { return values_; }
 
   /// A surface the motion slides along: the values of the switch on its two sides.
   struct Sliding {
     std::size_t k;
     double below, above;
   };
-  std::span<const Sliding> sliding() const { return sliding_; }
+  [[nodiscard]] std::span<const Sliding> sliding() const { return sliding_; }
 
  private:
   struct OfMode {
     Evaluation rates, surfaces, approach;
   };
-  const std::vector<Switch>& switches(std::size_t mode) const { return program_->switches[mode].switches; }
+  [[nodiscard]] const std::vector<Switch>& switches(std::size_t mode) const {
+    return program_->switches[mode].switches;
+  }
   void place(std::size_t mode, std::size_t k, double value);
   void approach(std::size_t mode, double t, const X& x, std::span<double> values);
-  std::vector<double> weights(std::size_t mode, double t, const X& x);
-  double approach_of(std::size_t mode, std::size_t k, double value, double t, const X& x);
+  [[nodiscard]] std::vector<double> weights(std::size_t mode, double t, const X& x);
+  [[nodiscard]] double approach_of(std::size_t mode, std::size_t k, double value, double t, const X& x);
   Passage choose(std::size_t mode, Sliding sides, double t, const X& x);
-  Sliding sides_of(std::size_t mode, std::size_t k, double surface) const;
+  [[nodiscard]] Sliding sides_of(std::size_t mode, std::size_t k, double surface) const;
   bool settle_one(std::size_t mode, std::size_t k, double t, const X& x, const X* before, std::span<const char> slid);
-  double rounding(std::size_t mode, std::size_t k, double t, const X& x);
-  double surface(std::size_t mode, std::size_t k, double t, const X& x);
+  [[nodiscard]] double rounding(std::size_t mode, std::size_t k, double t, const X& x);
+  [[nodiscard]] double surface(std::size_t mode, std::size_t k, double t, const X& x);
 
   const ModelProgram* program_;
   std::vector<OfMode> modes_;

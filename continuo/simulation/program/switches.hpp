@@ -32,16 +32,16 @@ struct SwitchedEquations {
   std::shared_ptr<const Tape> rates, surfaces, approach;  // of derivatives, surfaces, d surface/dt along the motion
   bool slides = false;                                    // a surface hangs on states: the motion may slide along it
 
-  bool empty() const { return switches.empty(); }
+  [[nodiscard]] bool empty() const { return switches.empty(); }
 };
 
 /// Finds the switches of a mode and rewrites its equations. What hangs on the unknowns of algebraic equations, or on
 /// nothing that moves, stays as it is, and so does all of a mode with more than `most_switches` of them, as on a grid:
 /// there error control sees to the jumps. `program` lends its graph, which grows.
-SwitchedEquations switched_equations(ModelProgram& program, std::size_t mode);
+[[nodiscard]] SwitchedEquations switched_equations(ModelProgram& program, std::size_t mode);
 
 /// Whether an operation jumps where its arguments meet something.
-bool is_jump(Op op);
+[[nodiscard]] bool is_jump(Op op);
 
 /// Above as many switches a mode is left as it is, above as many corners their part.
 inline constexpr std::size_t most_switches = 64, most_corners = 8;

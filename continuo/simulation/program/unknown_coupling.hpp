@@ -23,7 +23,7 @@ struct UnknownBlock {
   std::vector<std::uint32_t> components;
   std::vector<NodeId> residuals;
 
-  bool empty() const { return components.empty(); }
+  [[nodiscard]] bool empty() const { return components.empty(); }
 };
 
 /// Unknowns that are enclosed together. The time grows with the third power.
@@ -35,7 +35,7 @@ class UnknownCoupling {
   UnknownCoupling(const ModelProgram& program, std::span<const NodeId> equations);
 
   /// Empty for an expression without unknowns; nothing where there are more than `most_enclosed_unknowns` of them.
-  std::optional<UnknownBlock> block(NodeId expression) const;
+  [[nodiscard]] std::optional<UnknownBlock> block(NodeId expression) const;
 
  private:
   const ModelProgram* program_;

@@ -27,10 +27,10 @@ class UnknownEnclosure {
   /// True where it is proved that the equations have one solution near the dense output for each theta in from..to.
   bool over(const Step& step, double from, double to);
   /// Of that solution; entire where nothing is proved.
-  std::span<const Enclosure<double>> values() const { return solution_.values(); }
-  std::span<const Enclosure<double>> slopes() { return solution_.slopes(); }
+  [[nodiscard]] std::span<const Enclosure<double>> values() const { return solution_.values(); }
+  [[nodiscard]] std::span<const Enclosure<double>> slopes() { return solution_.slopes(); }
 
-  std::span<const std::uint32_t> components() const { return block_.components; }
+  [[nodiscard]] std::span<const std::uint32_t> components() const { return block_.components; }
   /// A parameter or an input.
   void set(std::uint32_t variable, double value);
 

@@ -53,14 +53,14 @@ class Driver {
     return !ended_;
   }
 
-  Real t() const { return t_; }
-  const X& x() const { return x_; }
-  const System& system() const { return steps().system(); }
-  const Events& events() const { return logic_.events(); }
-  const Outcome<Real>& outcome() const { return outcome_; }
-  const Statistics& statistics() const { return steps().statistics(); }
-  const Interval<Real>& interval() const { return interval_; }
-  const Options<X>& options() const { return options_; }
+  [[nodiscard]] Real t() const { return t_; }
+  [[nodiscard]] const X& x() const { return x_; }
+  [[nodiscard]] const System& system() const { return steps().system(); }
+  [[nodiscard]] const Events& events() const { return logic_.events(); }
+  [[nodiscard]] const Outcome<Real>& outcome() const { return outcome_; }
+  [[nodiscard]] const Statistics& statistics() const { return steps().statistics(); }
+  [[nodiscard]] const Interval<Real>& interval() const { return interval_; }
+  [[nodiscard]] const Options<X>& options() const { return options_; }
 
   /// x at a time of the last step, on the dense output, the unknowns of algebraic equations solved for; at an event
   /// what was before it, but for t().
@@ -78,7 +78,7 @@ class Driver {
 
   /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant. Unknowns of algebraic
   /// equations are not solved for: they are as near as the method's polynomial.
-  std::span<const X> dense_output() {
+  [[nodiscard]] std::span<const X> dense_output() {
     const std::span<const X> output = steps().dense_output();
     if (shifted_.empty()) return output;
     shifted_output_.assign(output.begin(), output.end());
@@ -88,8 +88,8 @@ class Driver {
     }
     return shifted_output_;
   }
-  Real step_begin() const { return steps().begin(); }
-  Real step_size() const { return steps().size(); }
+  [[nodiscard]] Real step_begin() const { return steps().begin(); }
+  [[nodiscard]] Real step_size() const { return steps().size(); }
 
   /// Somebody else changed the state (a hand on the mouse): the run goes on from here.
   void set_state(const X& x) {
@@ -122,8 +122,8 @@ class Driver {
     if (settle_algebraic()) this->steps().jump(t_, x_, options_);
   }
 
-  Steps<System, X>& steps() { return *steps_; }
-  const Steps<System, X>& steps() const { return *steps_; }
+  [[nodiscard]] Steps<System, X>& steps() { return *steps_; }
+  [[nodiscard]] const Steps<System, X>& steps() const { return *steps_; }
 
  private:
   using Logic = EventLogic<System, X, Events>;
@@ -139,13 +139,13 @@ class Driver {
     Real value;
   };
 
-  static Real length_of(const Interval<Real>& interval) {
+  [[nodiscard]] static Real length_of(const Interval<Real>& interval) {
     using std::abs;
     return abs(interval.to - interval.from);
   }
 
   /// Where the steps went, and what can be done about it.
-  std::string hint_of_too_many() {
+  [[nodiscard]] std::string hint_of_too_many() {
     const std::size_t all = statistics().steps + statistics().rejected;
     const auto crowd = marks_.crowd();
     std::string hint =
@@ -159,13 +159,13 @@ class Driver {
     add(!steps().stiff(), "raise max_steps or loosen the tolerance");
     return hint;
   }
-  static std::string hint_of_endless(Real steps) {
+  [[nodiscard]] static std::string hint_of_endless(Real steps) {
     using std::floor, std::log10;
     const auto power = static_cast<int>(static_cast<double>(floor(log10(steps))));
     return "some 1e" + std::to_string(power) + " steps more would be needed; " + stiff_hint;
   }
 
-  Real forward() const { return interval_.to < interval_.from ? Real(-1) : Real(1); }
+  [[nodiscard]] Real forward() const { return interval_.to < interval_.from ? Real(-1) : Real(1); }
 
   bool end(Ending ending, std::string hint = {}) {
     outcome_ = {};
@@ -310,7 +310,7 @@ class Driver {
   }
 
   // Whether there is an event at a crossing, and not only a guard that leaves a zero it began at.
-  bool is_event(const Crossing<Real>& found, Real length) {
+  [[nodiscard]] bool is_event(const Crossing<Real>& found, Real length) {
     if (!logic_.leaves_first_zero(found)) return true;
     state_at(found.offset, length, before_);
     return logic_.keep_true_crossings(steps(), steps().begin() + found.offset, before_);
@@ -351,7 +351,7 @@ class Driver {
   // The polynomial of a stiff step leaves the slow path between its ends: where an event begins the motion anew, a step
   // of the method is taken to it, and the instant follows that step's end. The offset of the event; none where the
   // equations of no step can be solved any more.
-  std::optional<Real> land(const Crossing<Real>& crossing, Real length) {
+  [[nodiscard]] std::optional<Real> land(const Crossing<Real>& crossing, Real length) {
     using std::abs;
     const Real place = crossing.offset;
     const bool restarts = std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
@@ -382,7 +382,7 @@ class Driver {
     return steps().end() - steps().begin();
   }
   // The step as it was, with the event on its dense output.
-  std::optional<Real> stay(Real place, Real length) {
+  [[nodiscard]] std::optional<Real> stay(Real place, Real length) {
     return steps().retake(length, options_) ? std::optional<Real>(place) : std::nullopt;
   }
   void end_before_event() {
@@ -394,7 +394,7 @@ class Driver {
   }
   // Of a guard that jumps there is nothing but its side: the first step, some units in the last place longer, that ends
   // beyond.
-  std::optional<Real> land_beyond_jump(std::size_t guard, Real place, Real length) {
+  [[nodiscard]] std::optional<Real> land_beyond_jump(std::size_t guard, Real place, Real length) {
     using std::abs;
     const int far = sign_of(guards_at(place, length, guard_values_)[guard]);
     Real longer = 2 * std::numeric_limits<Real>::epsilon() * abs(place);
@@ -408,7 +408,7 @@ class Driver {
     return stay(place, length);
   }
   // At the end of the step, and wherever rounding may leave the unknowns when they are solved for once more.
-  bool is_surely_on(int side, std::size_t guard) {
+  [[nodiscard]] bool is_surely_on(int side, std::size_t guard) {
     events_guards(steps().end(), steps().x_end());
     if (sign_of(guard_values_[guard]) != side) return false;
     if constexpr (HasMassDiagonal<System, X>) {
@@ -456,7 +456,7 @@ class Driver {
 
   // One event, and where its firings accumulate what it does at the limit.
   template <class Observer>
-  EventResponse act(std::size_t i, Observer& observer, bool at_limit) {
+  [[nodiscard]] EventResponse act(std::size_t i, Observer& observer, bool at_limit) {
     before_ = x_;
     EventResponse response = at_limit ? limit_action(i) : logic_.events().fire(steps().system(), i, t_, before_, x_);
     if (!at_limit) ++steps().statistics().events;
@@ -477,14 +477,14 @@ class Driver {
     return {response.stop || further.stop, response.restart || further.restart, response.changed || further.changed};
   }
 
-  bool has_limit_action(std::size_t i) const {
+  [[nodiscard]] bool has_limit_action(std::size_t i) const {
     if constexpr (requires { logic_.events().has_limit_action(i); }) {
       return logic_.events().has_limit_action(i);
     } else {
       return false;
     }
   }
-  EventResponse limit_action(std::size_t i) {
+  [[nodiscard]] EventResponse limit_action(std::size_t i) {
     if constexpr (requires { logic_.events().at_limit(steps().system(), i, t_, before_, x_); }) {
       return logic_.events().at_limit(steps().system(), i, t_, before_, x_);
     } else {
@@ -501,7 +501,7 @@ class Driver {
     }
   }
 
-  bool stop(std::size_t event) {
+  [[nodiscard]] bool stop(std::size_t event) {
     end(Ending::stopped_by_event);
     outcome_.event = events().name(event);
     return true;
@@ -511,8 +511,10 @@ class Driver {
     outcome_.event = events().name(event);
     outcome_.limit_time = limit;
   }
-  bool interrupted() const { return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed); }
-  bool end_among_events() {
+  [[nodiscard]] bool interrupted() const {
+    return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed);
+  }
+  [[nodiscard]] bool end_among_events() {
     if (interrupted()) {
       end(Ending::interrupted);
     } else {

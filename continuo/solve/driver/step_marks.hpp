@@ -22,7 +22,7 @@ class StepMarks {
   }
 
   /// Between these times lie half of the steps, where that is a tenth of the way at most.
-  std::optional<std::pair<Real, Real>> crowd() const {
+  [[nodiscard]] std::optional<std::pair<Real, Real>> crowd() const {
     if (count_ < least) return std::nullopt;
     const std::size_t half = count_ / 2;
     std::size_t densest = 0;
@@ -35,7 +35,7 @@ class StepMarks {
  private:
   static constexpr std::size_t most = 64, least = 8;
 
-  Real way(std::size_t from, std::size_t to) const {
+  [[nodiscard]] Real way(std::size_t from, std::size_t to) const {
     using std::abs;
     return abs(times_[to] - times_[from]);
   }

@@ -16,7 +16,7 @@ class AccumulationWatch {
   explicit AccumulationWatch(std::size_t size = 0) : tracks_(size) {}
 
   /// Event i fired at t. Gives the limit time where its firings accumulate.
-  std::optional<Real> fired(std::size_t i, Real t) {
+  [[nodiscard]] std::optional<Real> fired(std::size_t i, Real t) {
     using std::abs, std::max;
     Track& track = tracks_[i];
     const Real gap = abs(t - track.t), forward = t >= track.t ? Real(1) : Real(-1);

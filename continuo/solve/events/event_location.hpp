@@ -27,12 +27,12 @@
 namespace continuo {
 
 template <class Real>
-int sign_of(Real value) {
+[[nodiscard]] int sign_of(Real value) {
   return (value > Real(0)) - (value < Real(0));
 }
 
 /// Whether an event that watches this direction fires where the side becomes `side`.
-constexpr bool watches(Direction direction, int side) {
+[[nodiscard]] constexpr bool watches(Direction direction, int side) {
   return direction == Direction::crosses || (direction == Direction::falls) == (side < 0);
 }
 
@@ -46,7 +46,7 @@ struct GuardState {
   int returns = 0;  // crossings in a row out of the band, to the far side, without having left it by the other
 
   /// What g has to pass for the side to change.
-  Real level() const { return at_zero && side != 0 ? -Real(side) * band : Real(0); }
+  [[nodiscard]] Real level() const { return at_zero && side != 0 ? -Real(side) * band : Real(0); }
 };
 
 /// Where the first crossing of a stretch lies and which guards take part.
@@ -58,7 +58,7 @@ struct Crossing {
 
 /// No guard can be enclosed.
 struct NotEnclosed {
-  static constexpr bool has(std::size_t) { return false; }
+  [[nodiscard]] static constexpr bool has(std::size_t) { return false; }
 };
 
 /// The guards of a source of events over the step of this size that it has taken, by offsets into the step.
@@ -67,10 +67,10 @@ struct EnclosedStep {
   Events& events;
   Real size;
 
-  bool has(std::size_t i) const { return events.is_enclosed(i); }
+  [[nodiscard]] bool has(std::size_t i) const { return events.is_enclosed(i); }
   void enclose_all(Real from, Real to) { events.enclose_all(from / size, to / size); }
   /// Whether guard i stays on its side all the way: beyond zero, or in the band that it begins in.
-  bool stays(std::size_t i, const GuardState<Real>& state) const {
+  [[nodiscard]] bool stays(std::size_t i, const GuardState<Real>& state) const {
     const auto& whole = events.whole(i);
     if (state.side > 0 ? whole.lo > 0 : whole.hi < 0) return true;
     return state.at_zero && whole.lo > -state.band && whole.hi < state.band;
@@ -92,20 +92,20 @@ class EventLocator {
     crossing_.guards.reserve(size);
   }
 
-  std::vector<GuardState<Real>>& states() { return states_; }
-  const std::vector<GuardState<Real>>& states() const { return states_; }
+  [[nodiscard]] std::vector<GuardState<Real>>& states() { return states_; }
+  [[nodiscard]] const std::vector<GuardState<Real>>& states() const { return states_; }
   /// The crossing that was found last.
-  Crossing<Real>& crossing() { return crossing_; }
+  [[nodiscard]] Crossing<Real>& crossing() { return crossing_; }
   /// The side on which a guard of the last crossing arrived.
-  int side_after(std::size_t i) const { return scanned_[i].side; }
-  int returns_after(std::size_t i) const { return scanned_[i].returns; }
+  [[nodiscard]] int side_after(std::size_t i) const { return scanned_[i].side; }
+  [[nodiscard]] int returns_after(std::size_t i) const { return scanned_[i].returns; }
 
   /// The first crossing on from..to (negative when time runs backwards), or null. `direction(i)` says which crossings
   /// of guard i count; the others only move its side. Crossings less than `instant` apart are one. `known` are the
   /// guards at `from`, empty where nobody has looked at them there.
   template <class Evaluate, class DirectionOf, class Enclosed>
-  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, std::span<const Real> known,
-                                       Evaluate&& evaluate, DirectionOf&& direction, Enclosed enclosed) {
+  [[nodiscard]] const Crossing<Real>* first_crossing(Real from, Real to, Real instant, std::span<const Real> known,
+                                                     Evaluate&& evaluate, DirectionOf&& direction, Enclosed enclosed) {
     resampled_ = true;
     bool found = false;
     if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) enclosed.enclose_all(from, to);
@@ -160,9 +160,11 @@ class EventLocator {
     resampled_ = false;
   }
 
-  static Real time(Real from, Real to, double part) { return part == 1 ? to : from + Real(part) * (to - from); }
+  [[nodiscard]] static Real time(Real from, Real to, double part) {
+    return part == 1 ? to : from + Real(part) * (to - from);
+  }
 
-  std::array<double, bernstein::count> values(const Scan& scan) const {
+  [[nodiscard]] std::array<double, bernstein::count> values(const Scan& scan) const {
     std::array<double, bernstein::count> value;
     const Real level = scan.state.level();
     for (std::size_t k = 0; k < bernstein::count; ++k) value[k] = static_cast<double>(samples_[k][scan.guard] - level);
@@ -170,13 +172,13 @@ class EventLocator {
   }
 
   template <class Evaluate>
-  Real guard_at(std::size_t guard, Real t, Evaluate& evaluate) {
+  [[nodiscard]] Real guard_at(std::size_t guard, Real t, Evaluate& evaluate) {
     evaluate(t, scratch_);
     return scratch_[guard];
   }
 
   template <class Enclosed>
-  static bool is_far(const Scan& scan, const Enclosed& enclosed) {
+  [[nodiscard]] static bool is_far(const Scan& scan, const Enclosed& enclosed) {
     if constexpr (std::is_same_v<Enclosed, NotEnclosed>) {
       return false;
     } else {
@@ -208,7 +210,7 @@ class EventLocator {
 
   // A guard far from zero by all nine samples: its distance from zero exceeds what it could move between them, taken
   // as its whole range over the step.
-  bool cheap_no(const Scan& scan) const {
+  [[nodiscard]] bool cheap_no(const Scan& scan) const {
     if (scan.state.side == 0) return false;
     Real least = samples_[0][scan.guard], greatest = least;
     for (std::size_t k = 1; k < bernstein::count; ++k) {
@@ -247,13 +249,13 @@ class EventLocator {
   }
 
   template <class Evaluate>
-  bool search_halves(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
+  [[nodiscard]] bool search_halves(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
     const Real middle = time(from, to, 0.5);
     return search_anew(scan, from, middle, evaluate, depth + 1) || search_anew(scan, middle, to, evaluate, depth + 1);
   }
 
   template <class Evaluate>
-  bool search_anew(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
+  [[nodiscard]] bool search_anew(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
     sample(from, to, {}, evaluate);
     resampled_ = true;
     return search(scan, from, to, evaluate, depth);
@@ -261,7 +263,7 @@ class EventLocator {
 
   // A guard that has been zero since the run began: where it leaves its band it gets a side.
   template <class Evaluate>
-  bool leave_zero(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
+  [[nodiscard]] bool leave_zero(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
     using std::abs;
     const Real band = scan.state.band;
     for (std::size_t k = 1; k < bernstein::count; ++k) {
@@ -282,7 +284,7 @@ class EventLocator {
 
   // The changes of sign that the samples themselves show, for a guard with jumps.
   template <class Visit>
-  static bool between_samples(const std::array<double, bernstein::count>& value, Visit&& visit) {
+  [[nodiscard]] static bool between_samples(const std::array<double, bernstein::count>& value, Visit&& visit) {
     for (std::size_t k = 1; k < bernstein::count; ++k)
       if (sign_of(value[k - 1]) != sign_of(value[k]) && visit(bernstein::nodes[k - 1], bernstein::nodes[k]))
         return true;
@@ -290,7 +292,7 @@ class EventLocator {
   }
 
   template <class Evaluate>
-  bool cross(Scan& scan, Real near, Real far, Evaluate& evaluate) {
+  [[nodiscard]] bool cross(Scan& scan, Real near, Real far, Evaluate& evaluate) {
     const Real at_far = guard_at(scan.guard, far, evaluate);
     const int side = sign_of(at_far - scan.state.level());
     return side != 0 && side != scan.state.side && arrive_beyond(scan, side, near, far, at_far, evaluate);
@@ -299,7 +301,7 @@ class EventLocator {
   // Between near and far the guard changes to this side. Where it is known only by proof, its value at far may still be
   // zero by rounding: then that is the place.
   template <class Evaluate>
-  bool arrive_beyond(Scan& scan, int side, Real near, Real far, Real g_far, Evaluate& evaluate) {
+  [[nodiscard]] bool arrive_beyond(Scan& scan, int side, Real near, Real far, Real g_far, Evaluate& evaluate) {
     using std::min;
     const Real level = scan.state.level();
     const GuardState<Real> before = scan.state;
@@ -315,7 +317,7 @@ class EventLocator {
     return true;
   }
 
-  const Crossing<Real>* gather(Real from, Real to, Real instant) {
+  [[nodiscard]] const Crossing<Real>* gather(Real from, Real to, Real instant) {
     const Real forward = to >= from ? Real(1) : Real(-1);
     Real first = std::numeric_limits<Real>::quiet_NaN();
     for (const Real& t : first_)

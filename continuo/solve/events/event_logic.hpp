@@ -51,14 +51,14 @@ class EventLogic {
     next_.reserve(events_.size());
   }
 
-  const Events& events() const { return events_; }
-  Events& events() { return events_; }
-  bool any_guard() const { return any_guard_; }
+  [[nodiscard]] const Events& events() const { return events_; }
+  [[nodiscard]] Events& events() { return events_; }
+  [[nodiscard]] bool any_guard() const { return any_guard_; }
   /// One that can change the motion.
-  bool any_turning_guard() const { return any_turning_guard_; }
-  AccumulationWatch<Real>& accumulation() { return accumulation_; }
+  [[nodiscard]] bool any_turning_guard() const { return any_turning_guard_; }
+  [[nodiscard]] AccumulationWatch<Real>& accumulation() { return accumulation_; }
 
-  bool can_restart(std::size_t i) const {
+  [[nodiscard]] bool can_restart(std::size_t i) const {
     if constexpr (requires { events_.can_restart(i); }) {
       return events_.can_restart(i);
     } else {
@@ -70,11 +70,11 @@ class EventLogic {
   // --------------------------------------------------------------------------------------------------
 
   /// The first scheduled time after t of an event that can change the motion, at most `to`: a step ends there.
-  Real next_restart(Real t, Real to) const {
+  [[nodiscard]] Real next_restart(Real t, Real to) const {
     return next_scheduled(t, to, [&](std::size_t i) { return can_restart(i); });
   }
   /// Of the others, which happen within steps; infinity where there is none up to `to`.
-  std::optional<Real> next_quiet(Real t, Real to) const {
+  [[nodiscard]] std::optional<Real> next_quiet(Real t, Real to) const {
     const Real none = forward_ * std::numeric_limits<Real>::infinity();
     const Real next = next_scheduled(t, none, [&](std::size_t i) { return !can_restart(i); });
     return forward_ * (next - to) <= 0 ? std::optional<Real>(next) : std::nullopt;
@@ -88,7 +88,7 @@ class EventLogic {
       if (!events_.is_guard(i) && events_.next_time(i, t, true) == t) fired_.push_back(i);
     if (!fired_.empty()) scheduled_at_ = t;
   }
-  std::span<const std::size_t> fired() const { return fired_; }
+  [[nodiscard]] std::span<const std::size_t> fired() const { return fired_; }
 
   // ---- guards over a step
   // --------------------------------------------------------------------------------------------
@@ -96,7 +96,8 @@ class EventLogic {
   /// The first crossing on offsets from..to of the present step; evaluate(offset, values) gives the guards. `from_here`
   /// says that the search begins where the guards were settled, armed or fired last: there they are known.
   template <class Evaluate>
-  const Crossing<Real>* first_crossing(Real from, Real to, Real instant, bool from_here, Evaluate&& evaluate) {
+  [[nodiscard]] const Crossing<Real>* first_crossing(Real from, Real to, Real instant, bool from_here,
+                                                     Evaluate&& evaluate) {
     const auto direction = [this](std::size_t i) { return events_.direction(i); };
     const std::span<const Real> known = from_here ? std::span<const Real>(g_) : std::span<const Real>();
     if constexpr (has_enclosures) {
@@ -161,7 +162,7 @@ class EventLogic {
     }
   }
   /// Whether a guard that takes no part in a crossing may leave zero before it.
-  bool others_are_at_zero(const Crossing<Real>& crossing) const {
+  [[nodiscard]] bool others_are_at_zero(const Crossing<Real>& crossing) const {
     for (std::size_t i = 0; i < events_.size(); ++i)
       if (watch_.states()[i].active && watch_.states()[i].at_zero &&
           std::ranges::find(crossing.guards, i) == crossing.guards.end())
@@ -188,7 +189,7 @@ class EventLogic {
     for (std::size_t i = 0; i < events_.size(); ++i) slack_[i] = min(slack_[i], wide_[i] / (many / (2 * few)));
   }
   /// Whether guard i of the crossing that was looked at jumps across zero.
-  bool jumps(std::size_t i) const { return jumps_[i] != 0; }
+  [[nodiscard]] bool jumps(std::size_t i) const { return jumps_[i] != 0; }
   /// The motion has come to the instant t, before any action: guards that cross here are added to the list. `crossing`
   /// are those that were located, null where the instant is a scheduled one.
   void arrive(StepsOf& steps, Real t, const X& x, const Crossing<Real>* crossing) {
@@ -208,12 +209,12 @@ class EventLogic {
   }
 
   /// Whether a guard of the crossing may leave a zero that it had from the start of the run.
-  bool leaves_first_zero(const Crossing<Real>& crossing) const {
+  [[nodiscard]] bool leaves_first_zero(const Crossing<Real>& crossing) const {
     return std::ranges::any_of(crossing.guards, [this](std::size_t i) { return watch_.states()[i].side == 0; });
   }
   /// Takes out of the crossing that was found last those guards that leave a zero they had from the start of the run
   /// and whose events would not turn the motion back: these only get their side. False where no guard is left.
-  bool keep_true_crossings(StepsOf& steps, Real t, const X& x) {
+  [[nodiscard]] bool keep_true_crossings(StepsOf& steps, Real t, const X& x) {
     std::vector<std::size_t>& guards = watch_.crossing().guards;
     std::erase_if(guards, [&](std::size_t i) {
       GuardState<Real>& state = watch_.states()[i];
@@ -263,9 +264,9 @@ class EventLogic {
   }
   /// Event i fires since the motion, not turned back, would leave zero by the far side at once: a ball without
   /// restitution on its floor. If its action changes nothing either, it would fire for ever.
-  bool is_held(std::size_t i) const { return held_[i] != 0; }
+  [[nodiscard]] bool is_held(std::size_t i) const { return held_[i] != 0; }
   /// Event i has fired too often without its guard having left zero in between: the motion stays there.
-  bool stays(std::size_t i) const { return watch_.states()[i].returns >= most_returns; }
+  [[nodiscard]] bool stays(std::size_t i) const { return watch_.states()[i].returns >= most_returns; }
   void clear() { fired_.clear(); }
 
  private:
@@ -277,10 +278,10 @@ class EventLogic {
     if (std::ranges::find(list, i) == list.end()) list.push_back(i);
   }
 
-  bool watched(std::size_t i) const { return events_.is_guard(i); }
+  [[nodiscard]] bool watched(std::size_t i) const { return events_.is_guard(i); }
 
   /// A guard that was made of a condition: its sign at zero itself says whether the condition holds.
-  bool is_condition(std::size_t i) const {
+  [[nodiscard]] bool is_condition(std::size_t i) const {
     if constexpr (requires { events_.is_condition(i); }) {
       return events_.is_condition(i);
     } else {
@@ -290,7 +291,7 @@ class EventLogic {
 
   /// The guard of a jump of the equations, which only the motion crosses: where an action changes the state, the source
   /// settles the jumps by itself. Firing gives the guard another meaning: it has the side that it then has.
-  bool renews_guard(std::size_t i) const {
+  [[nodiscard]] bool renews_guard(std::size_t i) const {
     if constexpr (requires { events_.renews_guard(i); }) {
       return events_.renews_guard(i);
     } else {
@@ -299,7 +300,7 @@ class EventLogic {
   }
 
   template <class Counts>
-  Real next_scheduled(Real t, Real to, Counts&& counts) const {
+  [[nodiscard]] Real next_scheduled(Real t, Real to, Counts&& counts) const {
     Real next = to;
     for (std::size_t i = 0; any_scheduled_ && i < events_.size(); ++i) {
       if (events_.is_guard(i) || !counts(i)) continue;
@@ -353,7 +354,7 @@ class EventLogic {
     for_each_rounded(t, x, moved_, look, units);
   }
 
-  Carried carried(StepsOf& steps, std::size_t i, Real t, const X& x) {
+  [[nodiscard]] Carried carried(StepsOf& steps, std::size_t i, Real t, const X& x) {
     if constexpr (requires { events_.carried(steps.system(), i, t, x, forward_); }) {
       if (const std::optional<Carried> known = events_.carried(steps.system(), i, t, x, forward_)) {
         if (known->order != 1 || known->surely) return *known;
@@ -368,14 +369,14 @@ class EventLogic {
   // Where the motion takes a guard at zero. Of a condition that only a step's inaccuracy keeps from zero, derivatives
   // say which way the part of it goes that is nearest, not whether the condition comes to hold: `x > 1 and x < 1` rises
   // until x = 1 and falls from there on. That shows where the motion has left the inaccuracy behind.
-  Carried way_from_zero(StepsOf& steps, std::size_t i, Real t, const X& x) {
+  [[nodiscard]] Carried way_from_zero(StepsOf& steps, std::size_t i, Real t, const X& x) {
     using std::abs;
     if (is_condition(i) && abs(g_[i]) > rounding_[i])
       if (const int side = sign_beyond(steps, i, t, x, 2 * inaccuracy(i)); side != 0) return {side, 1, true};
     return carried(steps, i, t, x);
   }
 
-  Carried carried_to_first_orders(StepsOf& steps, std::size_t i, Real t, const X& x) {
+  [[nodiscard]] Carried carried_to_first_orders(StepsOf& steps, std::size_t i, Real t, const X& x) {
     return carried_by_differences(
         t, x, g_[i], forward_ * length_to_follow(steps, t), rounding_[i], first_, second_, moved_,
         [&](Real at, X& y) {
@@ -391,7 +392,7 @@ class EventLogic {
 
   // Of a condition at zero that no derivative carries away: one part of it may stay at zero for good, and its sign
   // there says whether it holds, while others leave. Which it is shows a little later.
-  int sign_a_little_later(StepsOf& steps, std::size_t i, Real t, const X& x) {
+  [[nodiscard]] int sign_a_little_later(StepsOf& steps, std::size_t i, Real t, const X& x) {
     sign_beyond(steps, i, t, x, rounding_[i]);
     return sign_of(scratch_[i]);
   }
@@ -410,7 +411,7 @@ class EventLogic {
   }
 
   /// How far the motion may be followed without coming to what happens next.
-  Real length_to_follow(const StepsOf& steps, Real t) const {
+  [[nodiscard]] Real length_to_follow(const StepsOf& steps, Real t) const {
     using std::abs, std::max, std::min;
     const Real length = min(max(abs(steps.size()), longest_ / Real(1e6)), longest_);  // a step to an event is short
     const Real same_instant = 1000 * std::numeric_limits<Real>::epsilon() * abs(t);
@@ -426,14 +427,16 @@ class EventLogic {
 
   /// What g can be off by at the present instant. A surface of the equations that has not been come to is where the
   /// system says that it is.
-  Real inaccuracy(std::size_t i) const { return renews_guard(i) ? rounding_[i] : std::max(rounding_[i], slack_[i]); }
-  bool at_zero(std::size_t i) const {
+  [[nodiscard]] Real inaccuracy(std::size_t i) const {
+    return renews_guard(i) ? rounding_[i] : std::max(rounding_[i], slack_[i]);
+  }
+  [[nodiscard]] bool at_zero(std::size_t i) const {
     using std::abs;
     return !(abs(g_[i]) > inaccuracy(i));
   }
 
   /// The same, or in the band that it has not left since its last event.
-  bool is_still_zero(std::size_t i) const {
+  [[nodiscard]] bool is_still_zero(std::size_t i) const {
     using std::abs;
     const GuardState<Real>& state = watch_.states()[i];
     return at_zero(i) || (state.at_zero && abs(g_[i]) <= state.band);
@@ -562,7 +565,7 @@ class EventLogic {
 
   // Whether the event of guard i, which the motion carries from zero to the far side, would turn it back: tried on
   // copies, a little beyond zero.
-  bool restores(StepsOf& steps, std::size_t i, Real t, const X& x, int near) {
+  [[nodiscard]] bool restores(StepsOf& steps, std::size_t i, Real t, const X& x, int near) {
     if constexpr (requires { events_.can_assign(i); }) {
       if (!events_.can_assign(i)) return false;
     } else if (!can_restart(i)) {
@@ -573,7 +576,7 @@ class EventLogic {
     return false;
   }
 
-  bool restores_after(StepsOf& steps, std::size_t i, Real t, const X& x, int near, Real dt) {
+  [[nodiscard]] bool restores_after(StepsOf& steps, std::size_t i, Real t, const X& x, int near, Real dt) {
     Events events = events_;
     System system = steps.system();
     X slope = steps.slope(t, x), before = x;

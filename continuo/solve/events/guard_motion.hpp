@@ -39,8 +39,8 @@ namespace detail {
 /// By differences over the way dt, twice, along the parabola x + s f + s^2/2 f', where f' is a difference of f as well.
 /// `first` is f(t, x), g0 the guard there.
 template <class Real, class X, class GuardAt, class SlopeAt>
-Carried carried_over(Real t, const X& x, Real dt, Real rounding, const X& first, Real g0, X& second, X& moved,
-                     GuardAt& g_at, SlopeAt& slope_at) {
+[[nodiscard]] Carried carried_over(Real t, const X& x, Real dt, Real rounding, const X& first, Real g0, X& second,
+                                   X& moved, GuardAt& g_at, SlopeAt& slope_at) {
   using std::abs;
   for (std::size_t k = 0; k < dimension(x); ++k) moved.data()[k] = x.data()[k] + dt * first.data()[k];
   slope_at(t + dt, moved, second);
@@ -65,8 +65,8 @@ Carried carried_over(Real t, const X& x, Real dt, Real rounding, const X& first,
 /// way over which g changes far beyond its `rounding` counts: over a longer one it may have turned. g_at(t, x) is the
 /// guard, g0 what it is at (t, x), slope_at(t, x, out) writes x'; first, second and moved are scratch.
 template <class Real, class X, class GuardAt, class SlopeAt>
-Carried carried_by_differences(Real t, const X& x, Real g0, Real length, Real rounding, X& first, X& second, X& moved,
-                               GuardAt&& g_at, SlopeAt&& slope_at) {
+[[nodiscard]] Carried carried_by_differences(Real t, const X& x, Real g0, Real length, Real rounding, X& first,
+                                             X& second, X& moved, GuardAt&& g_at, SlopeAt&& slope_at) {
   slope_at(t, x, first);
   Carried way;
   for (const double part : {1e-8, 1e-6, 1e-4, 1e-2}) {

@@ -20,7 +20,7 @@ struct MethodNeeds {
 };
 
 template <class M, class System, State X>
-MethodNeeds needs_of(const System& system, const X& x) {
+[[nodiscard]] MethodNeeds needs_of(const System& system, const X& x) {
   MethodNeeds needs{M::name, detail::is_implicit<M>(), M::error_order > 0, {}};
   if constexpr (requires { M::unsupported_reason(system, x); })
     needs.unsupported_reason = M::unsupported_reason(system, x);
@@ -29,8 +29,8 @@ MethodNeeds needs_of(const System& system, const X& x) {
 
 /// Why the method cannot begin a run of this system from x with these options, as a hint; empty where it can.
 template <class System, State X>
-std::string wrong_input(const MethodNeeds& method, const System& system, const X& x,
-                        const Interval<Scalar<X>>& interval, const Options<X>& options) {
+[[nodiscard]] std::string wrong_input(const MethodNeeds& method, const System& system, const X& x,
+                                      const Interval<Scalar<X>>& interval, const Options<X>& options) {
   using Real = Scalar<X>;
   for (std::size_t i = 0; i < dimension(x); ++i)
     if (!(Real(0) * x.data()[i] == Real(0))) return component_name(system, i) + " is not finite at the start";

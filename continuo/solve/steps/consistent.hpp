@@ -30,7 +30,7 @@ struct Consistency {
 };
 
 /// What is wrong where there are no consistent values.
-constexpr const char* hint_of(const Consistency& found) {
+[[nodiscard]] constexpr const char* hint_of(const Consistency& found) {
   return found.result == Consistency::Result::singular
              ? "the algebraic equations do not determine their unknowns here: an unknown appears in no equation, two "
                "equations say the same, or the index is above 1"

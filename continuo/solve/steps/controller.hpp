@@ -34,13 +34,13 @@ namespace detail {
 /// next the library's functions are the longest wait. Exponents are taken from the bits; the cubics have the least
 /// greatest error that leaves no jump from one power of two to the next, and are summed in pairs of terms, to be ready
 /// sooner.
-inline float quick_log2(float x) {
+[[nodiscard]] inline float quick_log2(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   const float m = std::bit_cast<float>((bits & 0x007fffffU) | 0x3f800000U);
   const float below = static_cast<float>(static_cast<std::int32_t>(bits >> 23) - 127) - 2.16416994F;
   return (below + 3.06469457F * m) + m * m * (0.159219831F * m - 1.05974446F);
 }
-inline float quick_exp2(float x) {  // for x in -126..127, bounded where it is not
+[[nodiscard]] inline float quick_exp2(float x) {  // for x in -126..127, bounded where it is not
   const float bounded = std::clamp(x, -126.0F, 127.0F);
   // The sum has the nearest whole number in its last bits.
   constexpr float shift = 0x1.8p23F;
@@ -58,7 +58,7 @@ struct ErrorHistory {
   float last = 0, before_last = 0;
 
   /// The factor for the next step after an accepted one; the error is kept for the steps after.
-  float accept(const Controller& controller, int error_order, float error_square) {
+  [[nodiscard]] float accept(const Controller& controller, int error_order, float error_square) {
     const float exponent = exponent_of(error_order);
     const float here = detail::quick_log2(std::max(error_square, 1e-20F));
     const float older =
@@ -73,14 +73,14 @@ struct ErrorHistory {
   }
 
   /// The factor for another try of a rejected step.
-  static float reject(const Controller& controller, int error_order, float error_square) {
+  [[nodiscard]] static float reject(const Controller& controller, int error_order, float error_square) {
     const float wanted = detail::quick_exp2(-exponent_of(error_order) * detail::quick_log2(error_square));
     return std::clamp(static_cast<float>(controller.safety) * wanted, static_cast<float>(controller.least_factor) / 2,
                       0.9F);
   }
 
  private:
-  static float exponent_of(int error_order) { return 0.5F / static_cast<float>(error_order + 1); }
+  [[nodiscard]] static float exponent_of(int error_order) { return 0.5F / static_cast<float>(error_order + 1); }
 };
 
 }  // namespace continuo

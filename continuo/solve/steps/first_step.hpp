@@ -13,8 +13,8 @@ namespace continuo {
 /// A step whose explicit Euler increment and second derivative are small against the tolerance, never longer than
 /// `longest`. f0 = f(t, x); forward is +1 or -1; f1 and x1 are scratch. One evaluation.
 template <State X, class System>
-Scalar<X> first_step(System& system, Scalar<X> t, const X& x, const X& f0, int order, Scalar<X> forward,
-                     Scalar<X> longest, const Tolerance<Scalar<X>>& tolerance, X& x1, X& f1) {
+[[nodiscard]] Scalar<X> first_step(System& system, Scalar<X> t, const X& x, const X& f0, int order, Scalar<X> forward,
+                                   Scalar<X> longest, const Tolerance<Scalar<X>>& tolerance, X& x1, X& f1) {
   using std::max, std::min, std::pow;
   using Real = Scalar<X>;
   const Real size = weighted_norm(x, x, x, tolerance), slope = weighted_norm(f0, x, x, tolerance);

@@ -31,9 +31,9 @@ class StepBudget {
   /// Stiffness does not hold the steps, or something changed.
   void forget() { *this = {}; }
 
-  bool steady() const { return steady_; }
+  [[nodiscard]] bool steady() const { return steady_; }
   /// Steps for what is left of the way.
-  Real steps_for(const Real& way) const {
+  [[nodiscard]] Real steps_for(const Real& way) const {
     using std::abs;
     return abs(way) / per_step_;
   }

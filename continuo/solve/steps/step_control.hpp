@@ -28,11 +28,11 @@ class StepControl final : public Steps<System, X> {
     this->jump(t0, x0, options);
   }
 
-  std::unique_ptr<Base> clone() const override { return std::make_unique<StepControl>(*this); }
+  [[nodiscard]] std::unique_ptr<Base> clone() const override { return std::make_unique<StepControl>(*this); }
 
-  MethodNeeds needs(const X& x) const override { return needs_of<M>(system_, x); }
+  [[nodiscard]] MethodNeeds needs(const X& x) const override { return needs_of<M>(system_, x); }
 
-  bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) override {
+  [[nodiscard]] bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) override {
     advance_to_end();
     if constexpr (M::error_order > 0) {
       if (!fixed(options)) {
@@ -43,7 +43,7 @@ class StepControl final : public Steps<System, X> {
     return take_fixed(limit, options, outcome);
   }
 
-  const Interpolant<X, M::dense_degree>& interpolant() {
+  [[nodiscard]] const Interpolant<X, M::dense_degree>& interpolant() {
     if (!interpolated_) {
       statistics_.evaluations +=
           static_cast<std::size_t>(M::interpolate(system_, begin_, x_begin_, h_, x_end_, work_, interpolant_));
@@ -51,11 +51,11 @@ class StepControl final : public Steps<System, X> {
     }
     return interpolant_;
   }
-  std::span<const X> dense_output() override { return interpolant().c; }
+  [[nodiscard]] std::span<const X> dense_output() override { return interpolant().c; }
   void at_part(Real theta, X& x) override { interpolant()(theta, x); }
 
-  bool lands() const override { return detail::is_implicit<M>(); }
-  bool retake(Real size, const Options<X>& options) override {
+  [[nodiscard]] bool lands() const override { return detail::is_implicit<M>(); }
+  [[nodiscard]] bool retake(Real size, const Options<X>& options) override {
     if constexpr (requires { M::retaken(work_); }) M::retaken(work_);
     jumped_ = began_anew_;
     attempt(size, options);
@@ -95,7 +95,7 @@ class StepControl final : public Steps<System, X> {
   }
 
   /// What a step of size h can be measured by.
-  Tolerance<Real> tolerance_of_step(const Real& h, const Options<X>& options) const {
+  [[nodiscard]] Tolerance<Real> tolerance_of_step(const Real& h, const Options<X>& options) const {
     using std::abs, std::max, std::min;
     constexpr double times_rounded = 4;
     Tolerance<Real> weights = tolerance(options);
@@ -108,7 +108,7 @@ class StepControl final : public Steps<System, X> {
   }
 
   /// The square of M::error_norm, without its root where the method has it so.
-  Real error_square(const Tolerance<Real>& weights) const {
+  [[nodiscard]] Real error_square(const Tolerance<Real>& weights) const {
     if constexpr (requires { M::error_square(work_, h_, x_begin_, x_end_, weights); }) {
       return M::error_square(work_, h_, x_begin_, x_end_, weights);
     } else {
@@ -117,7 +117,7 @@ class StepControl final : public Steps<System, X> {
     }
   }
 
-  bool take_fixed(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+  [[nodiscard]] bool take_fixed(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
     // The grid is computed afresh at each step, so a million steps do not drift.
     const Real nominal = forward_ * options.step;
     const Real on_grid = grid_ + Real(grid_steps_ + 1) * nominal;
@@ -149,7 +149,7 @@ class StepControl final : public Steps<System, X> {
   static constexpr double least_off = 1e-3;  // tolerances
   static constexpr bool watches_stiffness = !detail::is_implicit<M>() && M::error_order > 0;
 
-  bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+  [[nodiscard]] bool take_adaptive(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
     using std::abs, std::max, std::min, std::sqrt;
     const Real epsilon = std::numeric_limits<Real>::epsilon();
     Tolerance<Real> weights = tolerance(options);
@@ -226,14 +226,15 @@ class StepControl final : public Steps<System, X> {
   // function alone does not): beside a solution at rest steps would grow until one of
   // them takes a whole pulse of the input between its stages. A fiftieth of the run so far known is what somebody sees
   // who looks at a plot of it.
-  Real longest_step(Real limit, const Options<X>& options) {
+  [[nodiscard]] Real longest_step(Real limit, const Options<X>& options) {
     using std::abs, std::max, std::min;
     if (!is_known_to_depend_on_time(system_)) return options.max_step;
     reach_ = max(reach_, Real(abs(limit - origin_)));
     return min(options.max_step, reach_ / Real(parts_of_run));
   }
 
-  Real factor_after(float error_square, bool was_rejected, const Tolerance<Real>& weights, const Options<X>& options) {
+  [[nodiscard]] Real factor_after(float error_square, bool was_rejected, const Tolerance<Real>& weights,
+                                  const Options<X>& options) {
     using std::min;
     float factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error_square);
     if (was_rejected) factor = min(factor, 1.0F);
@@ -245,14 +246,14 @@ class StepControl final : public Steps<System, X> {
     }
   }
 
-  Real factor_of_rejected(bool solved, bool finite, float error_square, const Options<X>& options) const {
+  [[nodiscard]] Real factor_of_rejected(bool solved, bool finite, float error_square, const Options<X>& options) const {
     if (!solved) return Real(0.25);
     if (!finite) return Real(0.2);
     return Real(ErrorHistory::reject(options.controller, detail::error_order_of<M>(work_), error_square));
   }
 
-  bool give_up(bool too_many, bool not_finite, Real error, const Tolerance<Real>& weights, const Options<X>& options,
-               Outcome<Real>& outcome) {
+  [[nodiscard]] bool give_up(bool too_many, bool not_finite, Real error, const Tolerance<Real>& weights,
+                             const Options<X>& options, Outcome<Real>& outcome) {
     if (interrupted(options)) return fail(Ending::interrupted, error, {}, {}, outcome);
     if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done && !not_finite)
       return fail_to_solve(status, options, outcome);
@@ -261,7 +262,7 @@ class StepControl final : public Steps<System, X> {
                 singular_hint, outcome);
   }
 
-  std::string worst_component(const Tolerance<Real>& weights) const {
+  [[nodiscard]] std::string worst_component(const Tolerance<Real>& weights) const {
     using std::abs;
     std::size_t worst = 0;
     Real greatest = -1;

@@ -31,31 +31,31 @@ class Steps {
   using Real = Scalar<X>;
 
   virtual ~Steps() = default;
-  virtual std::unique_ptr<Steps> clone() const = 0;
+  [[nodiscard]] virtual std::unique_ptr<Steps> clone() const = 0;
 
-  virtual MethodNeeds needs(const X& x) const = 0;
+  [[nodiscard]] virtual MethodNeeds needs(const X& x) const = 0;
   /// One accepted step from end(), not beyond limit. False: failed, and outcome says how.
-  virtual bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) = 0;
+  [[nodiscard]] virtual bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) = 0;
   /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant.
   virtual std::span<const X> dense_output() = 0;
   virtual void at_part(Real theta, X& x) = 0;
   /// Whether the state between the ends of a step is to be found by a shorter step, not on the dense output: the
   /// polynomial of an implicit method leaves the slow path of a stiff system.
-  virtual bool lands() const = 0;
+  [[nodiscard]] virtual bool lands() const = 0;
   /// The last step once more, from its beginning and of this size. False where its equations could not be solved: then
   /// the step is to be taken again at another size.
-  virtual bool retake(Real size, const Options<X>& options) = 0;
+  [[nodiscard]] virtual bool retake(Real size, const Options<X>& options) = 0;
 
-  System& system() { return system_; }
-  const System& system() const { return system_; }
+  [[nodiscard]] System& system() { return system_; }
+  [[nodiscard]] const System& system() const { return system_; }
   /// Of the last step, whatever has jumped since.
-  Real begin() const { return step_begin_; }
-  Real end() const { return end_; }
-  Real size() const { return h_; }
-  const X& x_begin() const { return x_begin_; }
-  const X& x_end() const { return x_end_; }
-  const Statistics& statistics() const { return statistics_; }
-  Statistics& statistics() { return statistics_; }
+  [[nodiscard]] Real begin() const { return step_begin_; }
+  [[nodiscard]] Real end() const { return end_; }
+  [[nodiscard]] Real size() const { return h_; }
+  [[nodiscard]] const X& x_begin() const { return x_begin_; }
+  [[nodiscard]] const X& x_end() const { return x_end_; }
+  [[nodiscard]] const Statistics& statistics() const { return statistics_; }
+  [[nodiscard]] Statistics& statistics() { return statistics_; }
 
   /// The trajectory goes on from another state (or with another f): step size and history begin anew.
   void jump(Real t, const X& x, const Options<X>& options) {
@@ -78,10 +78,10 @@ class Steps {
   }
 
   /// Whether stability held most of the steps of an explicit method (of a run of some length).
-  bool stiff() const { return probes_ >= least_probes && 2 * stiff_probes_ > probes_; }
+  [[nodiscard]] bool stiff() const { return probes_ >= least_probes && 2 * stiff_probes_ > probes_; }
 
   /// The steps that a run to `limit` would need, where stiffness holds them and they are far too many; else 0.
-  Real endless(Real limit, const Options<X>& options) const {
+  [[nodiscard]] Real endless(Real limit, const Options<X>& options) const {
     if (!step_budget_.steady()) [[likely]]
       return 0;
     const Real steps = step_budget_.steps_for(limit - end_);
@@ -97,7 +97,7 @@ class Steps {
     }
   }
 
-  static Tolerance<Real> tolerance(const Options<X>& options) {
+  [[nodiscard]] static Tolerance<Real> tolerance(const Options<X>& options) {
     return {options.rtol, options.atol, options.rtol_each.empty() ? nullptr : options.rtol_each.data(),
             options.atol_each.empty() ? nullptr : options.atol_each.data()};
   }
@@ -122,13 +122,13 @@ class Steps {
   Steps& operator=(const Steps&) = default;
   Steps& operator=(Steps&&) = default;
 
-  static bool fixed(const Options<X>& options) { return options.step > 0; }
-  static bool interrupted(const Options<X>& options) {
+  [[nodiscard]] static bool fixed(const Options<X>& options) { return options.step > 0; }
+  [[nodiscard]] static bool interrupted(const Options<X>& options) {
     return options.interrupt && options.interrupt->load(std::memory_order_relaxed);
   }
 
   // x_begin_ is the start of the step from here on; after a failure the start is all that stands.
-  bool fail(Ending ending, Real error, std::string component, std::string hint, Outcome<Real>& outcome) {
+  [[nodiscard]] bool fail(Ending ending, Real error, std::string component, std::string hint, Outcome<Real>& outcome) {
     outcome = {ending, begin_, h_, error, std::move(component), {}, {}, std::move(hint)};
     end_ = begin_;
     x_end_ = x_begin_;
@@ -137,7 +137,7 @@ class Steps {
   }
 
   // A step whose equations were not solved.
-  bool fail_to_solve(StepStatus status, const Options<X>& options, Outcome<Real>& outcome) {
+  [[nodiscard]] bool fail_to_solve(StepStatus status, const Options<X>& options, Outcome<Real>& outcome) {
     const char* hint =
         fixed(options)
             ? "Newton's iteration does not converge: take a smaller step, or look for a jump in f and declare "
@@ -152,7 +152,7 @@ class Steps {
   }
 
   // The equations of a step spread what is not finite over all components: which it comes from f knows.
-  bool fail_not_finite(Outcome<Real>& outcome) {
+  [[nodiscard]] bool fail_not_finite(Outcome<Real>& outcome) {
     std::string component = first_not_finite(slope(begin_ + h_, x_begin_));
     if (!component.empty())
       return fail(Ending::not_finite, 0, component,
@@ -168,28 +168,28 @@ class Steps {
 
   /// For a step that did not move t, and only some part of what is carried: a few may be, at the start of a fast
   /// motion.
-  bool stands_still() {
+  [[nodiscard]] bool stands_still() {
     constexpr std::size_t most = 1000;
     if (stood_at_ != begin_) stood_at_ = begin_, standing_ = 0;
     return ++standing_ >= most;
   }
 
-  bool finite_end() const { return detail::is_finite_state(x_end_); }
+  [[nodiscard]] bool finite_end() const { return detail::is_finite_state(x_end_); }
 
-  std::string first_not_finite(const X& x) const {
+  [[nodiscard]] std::string first_not_finite(const X& x) const {
     for (std::size_t i = 0; i < dimension(x); ++i)
       if (!detail::is_finite(x.data()[i])) return component_name(system_, i);
     return {};
   }
 
-  bool accepted() {
+  [[nodiscard]] bool accepted() {
     jumped_ = false;
     ++statistics_.steps;
     return true;
   }
 
   /// The first h of an adaptive run, for a method of this order.
-  bool estimate_first(int order, Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+  [[nodiscard]] bool estimate_first(int order, Real limit, const Options<X>& options, Outcome<Real>& outcome) {
     using std::abs, std::min;
     const Real longest = min(abs(limit - begin_), options.max_step);
     if (options.first_step > 0) {

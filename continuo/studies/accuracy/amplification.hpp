@@ -26,14 +26,14 @@ using StepSequence = std::function<std::vector<Complex>(Complex z, std::size_t s
 
 /// A method of the suite. A method for x'' = a integrates q'' = (z + z*) q' - z z* q, whose motions are those of z and
 /// its conjugate; one that refuses velocities in a only the case without damping, z on the imaginary axis.
-StepSequence steps_of(std::string_view method);
+[[nodiscard]] StepSequence steps_of(std::string_view method);
 /// The same for a motion of two factors: q'' = (z1 + z2) q' - z1 z2 q. They are real, or conjugates of each other.
 std::function<std::vector<Complex>(Complex z1, Complex z2, std::size_t steps)> motion_steps_of(std::string_view method);
 
 /// The greatest |zeta|; NaN where no linear recurrence explains the steps.
-double amplification(const StepSequence& sequence, Complex z);
+[[nodiscard]] double amplification(const StepSequence& sequence, Complex z);
 /// The same of states that are there, without those of a method's start.
-double amplification(std::span<const Complex> states);
+[[nodiscard]] double amplification(std::span<const Complex> states);
 
 /// Factors up to here are taken for 1: what rounding does to them.
 inline constexpr double neutral_factor = 1 + 1e-9;

@@ -19,6 +19,6 @@ struct Kink {
   double first;       // when it is passed first, to the distance between two rows
 };
 /// Of the equations of every mode; one that stands in several is told once. Cost: an evaluation for each row.
-std::vector<Kink> kinks_along(const model::ModelProgram& program, const model::Run& run);
+[[nodiscard]] std::vector<Kink> kinks_along(const model::ModelProgram& program, const model::Run& run);
 
 }  // namespace continuo::studies

@@ -33,14 +33,14 @@ inline constexpr double good_fit = 0.03;
 
 /// `steps` falling, `errors` of each; what is not a positive number is left out. Slopes are made of errors between
 /// `least` (below it they are made of rounding) and `greatest`.
-ErrorCurve read_errors(std::span<const double> steps, std::span<const double> errors, double least = 0,
-                       double greatest = greatest_useful_error);
+[[nodiscard]] ErrorCurve read_errors(std::span<const double> steps, std::span<const double> errors, double least = 0,
+                                     double greatest = greatest_useful_error);
 
 /// Where constant * h^order, which falls with h, and rounding * h^-power, which grows, have the smallest sum, and that
 /// sum.
 struct Balance {
   double step, error;
 };
-Balance balance(double constant, double order, double rounding, double power);
+[[nodiscard]] Balance balance(double constant, double order, double rounding, double power);
 
 }  // namespace continuo::studies

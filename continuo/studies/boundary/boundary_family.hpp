@@ -27,7 +27,7 @@ struct FamilyPoint {
 
 /// `fold`: the family turns round in the constant. `branch_point`: another family crosses.
 enum class FamilyEvent { fold, branch_point };
-std::string_view to_string(FamilyEvent kind);
+[[nodiscard]] std::string_view to_string(FamilyEvent kind);
 
 struct FamilyMark {
   FamilyEvent kind;
@@ -58,12 +58,12 @@ struct FamilyOptions {
 /// The families through solutions near the guesses, where the constant, the problem's only one, has its present value,
 /// and those that cross them, each once. The conditions are as many as components; they may read the constant. A guess
 /// that leads to no solution gives a family without points that says so.
-std::vector<Family> follow_families(const boundary::BoundaryValueProblem& problem,
-                                    const std::vector<boundary::BoundaryValueGuess>& guesses,
-                                    const FamilyOptions& options);
+[[nodiscard]] std::vector<Family> follow_families(const boundary::BoundaryValueProblem& problem,
+                                                  const std::vector<boundary::BoundaryValueGuess>& guesses,
+                                                  const FamilyOptions& options);
 
 /// The value of a component that is farthest from zero, the first of those that are alike: with its sign it tells the
 /// two halves of a pitchfork apart.
-double farthest_from_zero(const boundary::BoundaryValueSolution& solution, std::size_t component);
+[[nodiscard]] double farthest_from_zero(const boundary::BoundaryValueSolution& solution, std::size_t component);
 
 }  // namespace continuo::studies

@@ -9,7 +9,7 @@ namespace continuo::studies::detail {
 
 /// Whether some measures of crossings have changed their signs and some have not, so that one of the two has leapt
 /// through infinity. In shorter steps leaps and crossings part.
-bool is_ambiguous(const FamilyPlace& a, const FamilyPlace& b);
+[[nodiscard]] bool is_ambiguous(const FamilyPlace& a, const FamilyPlace& b);
 
 struct BetweenPlaces {
   FamilyEvent kind = FamilyEvent::fold;
@@ -17,6 +17,7 @@ struct BetweenPlaces {
   bool doubtful = false;               // where it was not found
 };
 /// b is one step ahead of a, along a's tangent. Where the family crosses another one and turns round, it is a crossing.
-BetweenPlaces what_lies_between(FamilySteps& steps, const FamilyPlace& a, const FamilyPlace& b, double step);
+[[nodiscard]] BetweenPlaces what_lies_between(FamilySteps& steps, const FamilyPlace& a, const FamilyPlace& b,
+                                              double step);
 
 }  // namespace continuo::studies::detail

@@ -36,7 +36,7 @@ struct FamilyPlace {
   std::array<double, tests> crossing{};
   FamilyDirection other;
 
-  double constant() const { return solution.parameters[0]; }
+  [[nodiscard]] double constant() const { return solution.parameters[0]; }
 };
 
 class FamilySteps {
@@ -46,42 +46,45 @@ class FamilySteps {
   FamilySteps& operator=(const FamilySteps&) = delete;
 
   /// The solution near the guess with this value of the constant, its tangent towards greater ones.
-  std::optional<FamilyPlace> at_constant(const boundary::BoundaryValueGuess& guess, const std::vector<double>& mesh,
-                                         double value);
+  [[nodiscard]] std::optional<FamilyPlace> at_constant(const boundary::BoundaryValueGuess& guess,
+                                                       const std::vector<double>& mesh, double value);
   /// A step in this direction from a place. Nothing where none is found, or one that is farther off than `farthest`
   /// steps. The tangent is the one nearest to the direction.
-  std::optional<FamilyPlace> stepped(const boundary::BoundaryValueSolution& from, const FamilyDirection& direction,
-                                     double step, double farthest = 0.5);
+  [[nodiscard]] std::optional<FamilyPlace> stepped(const boundary::BoundaryValueSolution& from,
+                                                   const FamilyDirection& direction, double step,
+                                                   double farthest = 0.5);
   /// The same place, solved for with twice as many intervals.
-  std::optional<FamilyPlace> on_halved_mesh(const FamilyPlace& place);
+  [[nodiscard]] std::optional<FamilyPlace> on_halved_mesh(const FamilyPlace& place);
   /// The solution near `guess` whose difference from `through` has no part along the way from `guess` to `towards`.
-  std::optional<FamilyPlace> across(const boundary::BoundaryValueSolution& guess,
-                                    const boundary::BoundaryValueSolution& towards,
-                                    const boundary::BoundaryValueSolution& through);
+  [[nodiscard]] std::optional<FamilyPlace> across(const boundary::BoundaryValueSolution& guess,
+                                                  const boundary::BoundaryValueSolution& towards,
+                                                  const boundary::BoundaryValueSolution& through);
 
   /// Takes the sizes of the components from here where they have grown.
   void measure(const boundary::BoundaryValueSolution& solution);
-  double distance(const boundary::BoundaryValueSolution& a, const boundary::BoundaryValueSolution& b) const;
+  [[nodiscard]] double distance(const boundary::BoundaryValueSolution& a,
+                                const boundary::BoundaryValueSolution& b) const;
   /// To length 1.
   void scale(FamilyDirection& direction) const;
-  static double cosine(const FamilySteps& steps, const FamilyDirection& a, const FamilyDirection& b);
+  [[nodiscard]] static double cosine(const FamilySteps& steps, const FamilyDirection& a, const FamilyDirection& b);
   /// A closer look, at places that are marked.
   void set_tolerance(double tolerance) { tolerance_ = tolerance; }
-  double range() const { return range_; }
+  [[nodiscard]] double range() const { return range_; }
 
  private:
   /// x at the sample times, then the constant, each in its size and so that the sum of squares is a mean over time.
-  std::vector<double> sampled(const boundary::BoundaryValueSolution& solution) const;
-  std::vector<double> sampled(const FamilyDirection& direction) const;
+  [[nodiscard]] std::vector<double> sampled(const boundary::BoundaryValueSolution& solution) const;
+  [[nodiscard]] std::vector<double> sampled(const FamilyDirection& direction) const;
   template <class At>
-  std::vector<double> samples_of(const At& at, double constant) const;
-  std::optional<FamilyPlace> solved(const boundary::BoundaryValueGuess& guess, const std::vector<double>& mesh,
-                                    double constant);
-  bool describe(FamilyPlace& place);
-  std::vector<double> disturbance(const boundary::CollocationSystem& system, std::size_t test) const;
-  double seen(const FamilyDirection& direction, std::size_t test) const;
-  FamilyDirection direction_of(const boundary::CollocationSystem& system,
-                               const boundary::BoundaryValueSolution& solution, std::span<const double> z) const;
+  [[nodiscard]] std::vector<double> samples_of(const At& at, double constant) const;
+  [[nodiscard]] std::optional<FamilyPlace> solved(const boundary::BoundaryValueGuess& guess,
+                                                  const std::vector<double>& mesh, double constant);
+  [[nodiscard]] bool describe(FamilyPlace& place);
+  [[nodiscard]] std::vector<double> disturbance(const boundary::CollocationSystem& system, std::size_t test) const;
+  [[nodiscard]] double seen(const FamilyDirection& direction, std::size_t test) const;
+  [[nodiscard]] FamilyDirection direction_of(const boundary::CollocationSystem& system,
+                                             const boundary::BoundaryValueSolution& solution,
+                                             std::span<const double> z) const;
 
   boundary::BoundaryValueProblem problem_;  // with the condition of the step
   std::size_t n_;

@@ -15,16 +15,16 @@ struct Undetermined {
   std::vector<std::size_t> unknowns;   // that none is left for
 };
 /// `square`: dg/dz, m * m row by row. Empty lists where it is regular.
-Undetermined undetermined_by(std::span<const double> square, std::size_t m);
+[[nodiscard]] Undetermined undetermined_by(std::span<const double> square, std::size_t m);
 
 /// Columns: of x, `states`; of z, `unknowns`; of u, the rest.
 struct LinearColumns {
   std::size_t states = 0, unknowns = 0, inputs = 0;
-  std::size_t all() const { return states + unknowns + inputs; }
+  [[nodiscard]] std::size_t all() const { return states + unknowns + inputs; }
 };
 /// The rows (of f, or of outputs) without the columns of z; `equations` are the rows of g. Empty where dg/dz is
 /// singular.
-std::vector<double> without_unknowns(std::span<const double> rows, std::span<const double> equations,
-                                     const LinearColumns& columns);
+[[nodiscard]] std::vector<double> without_unknowns(std::span<const double> rows, std::span<const double> equations,
+                                                   const LinearColumns& columns);
 
 }  // namespace continuo::studies

@@ -25,7 +25,7 @@ struct Crossing {
 
 /// Near z, on a branch in the direction `along`; z in units in which all is about 1. Nothing where the iteration fails,
 /// goes far away, or the branches touch rather than cross.
-std::optional<Crossing> find_crossing(const CrossingEquations& equations, std::vector<double> z,
-                                      const std::vector<double>& along);
+[[nodiscard]] std::optional<Crossing> find_crossing(const CrossingEquations& equations, std::vector<double> z,
+                                                    const std::vector<double>& along);
 
 }  // namespace continuo::studies::detail

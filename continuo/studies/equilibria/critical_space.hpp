@@ -28,20 +28,23 @@ struct CriticalSpace {
 };
 
 /// That of A which continues `near`. Nothing where the equations for it cannot be solved.
-std::optional<CriticalSpace> continued_space(const std::vector<double>& a, std::size_t n, const CriticalSpace& near);
+[[nodiscard]] std::optional<CriticalSpace> continued_space(const std::vector<double>& a, std::size_t n,
+                                                           const CriticalSpace& near);
 
 /// Of the eigenvalue nearest to zero.
-std::optional<CriticalSpace> fold_space(const std::vector<double>& a, std::size_t n);
+[[nodiscard]] std::optional<CriticalSpace> fold_space(const std::vector<double>& a, std::size_t n);
 /// Of the eigenvalues nearest to +- i angular_frequency.
-std::optional<CriticalSpace> pair_space(const std::vector<double>& a, std::size_t n, double angular_frequency);
+[[nodiscard]] std::optional<CriticalSpace> pair_space(const std::vector<double>& a, std::size_t n,
+                                                      double angular_frequency);
 /// Of the double zero eigenvalue, where `fold` is that of a fold and its margin is zero.
-std::optional<CriticalSpace> double_zero_space(const std::vector<double>& a, std::size_t n, const CriticalSpace& fold);
+[[nodiscard]] std::optional<CriticalSpace> double_zero_space(const std::vector<double>& a, std::size_t n,
+                                                             const CriticalSpace& fold);
 
 /// The eigenvalues without those that are critical.
-std::vector<std::complex<double>> other_eigenvalues(const std::vector<std::complex<double>>& eigenvalues,
-                                                    const CriticalSpace& space);
+[[nodiscard]] std::vector<std::complex<double>> other_eigenvalues(const std::vector<std::complex<double>>& eigenvalues,
+                                                                  const CriticalSpace& space);
 
 /// Solves `matrix` y = b, row by row; empty where it is singular.
-std::vector<double> solution_of(const std::vector<double>& matrix, std::vector<double> b);
+[[nodiscard]] std::vector<double> solution_of(const std::vector<double>& matrix, std::vector<double> b);
 
 }  // namespace continuo::studies::detail

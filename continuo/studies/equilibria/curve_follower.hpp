@@ -19,32 +19,34 @@ class CurveFollower {
         steps_(system, start, options),
         covered_(options.low[1], options.high[1], options.progress) {}
 
-  BifurcationCurve from(const CurveStart& start);
+  [[nodiscard]] BifurcationCurve from(const CurveStart& start);
   /// Another curve, of this kind, through a degenerate point.
-  BifurcationCurve from(const DegeneratePoint& start, Bifurcation kind);
+  [[nodiscard]] BifurcationCurve from(const DegeneratePoint& start, Bifurcation kind);
   /// Whether a curve passes through this place: where it crosses the plane through the place that is upright on the way
   /// between two of its neighbours.
-  bool passes(const BifurcationCurve& curve, const CurvePoint& place, double frequency);
+  [[nodiscard]] bool passes(const BifurcationCurve& curve, const CurvePoint& place, double frequency);
 
  private:
-  std::optional<CriticalSpace> space_at(const Vector& z, Bifurcation kind, double frequency);
+  [[nodiscard]] std::optional<CriticalSpace> space_at(const Vector& z, Bifurcation kind, double frequency);
   /// `begin`: the degenerate point that the first place is; may be null.
-  BifurcationCurve both_ways(BifurcationCurve curve, const Place& first, const DegeneratePoint* begin);
+  [[nodiscard]] BifurcationCurve both_ways(BifurcationCurve curve, const Place& first, const DegeneratePoint* begin);
   /// Appends to `curve`, whose kind is set.
-  CurveEnd followed(BifurcationCurve& curve, const Place& from, double direction, const DegeneratePoint* begin);
-  CurveEnd at_bound(BifurcationCurve& curve, const Place& a, const Place& b);
-  bool inside(const CurvePoint& point) const;
-  bool comes_back(const Place& a, const Place& b, const Place& origin) const;
+  [[nodiscard]] CurveEnd followed(BifurcationCurve& curve, const Place& from, double direction,
+                                  const DegeneratePoint* begin);
+  [[nodiscard]] CurveEnd at_bound(BifurcationCurve& curve, const Place& a, const Place& b);
+  [[nodiscard]] bool inside(const CurvePoint& point) const;
+  [[nodiscard]] bool comes_back(const Place& a, const Place& b, const Place& origin) const;
 
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(BifurcationCurve& curve, const Place& a, const Place& b, double step);
   void add(BifurcationCurve& curve, Degeneracy kind, const Place& a, const Place& b, double step);
-  std::optional<Place> located(Degeneracy kind, const Place& a, const Place& b, double step);
+  [[nodiscard]] std::optional<Place> located(Degeneracy kind, const Place& a, const Place& b, double step);
   /// Whether it is what its name says, beyond the zero of its test. Sets the other frequency.
-  bool is_what(Degeneracy kind, const Place& place, const Place& a, const Place& b, double& other_frequency);
+  [[nodiscard]] bool is_what(Degeneracy kind, const Place& place, const Place& a, const Place& b,
+                             double& other_frequency);
   /// Whether a test changes more than rounding does.
-  bool is_seen(Degeneracy kind, const Place& a, const Place& b);
-  std::vector<NormalFormNumber> numbers_of(Degeneracy kind, const CurvePoint& point) const;
+  [[nodiscard]] bool is_seen(Degeneracy kind, const Place& a, const Place& b);
+  [[nodiscard]] std::vector<NormalFormNumber> numbers_of(Degeneracy kind, const CurvePoint& point) const;
 
   const ParametricSystem& system_;
   const CurveOptions& options_;

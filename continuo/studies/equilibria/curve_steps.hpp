@@ -18,45 +18,45 @@ struct CurvePlace {
   CurvePoint point{};
   /// By Degeneracy; each changes its sign there. Not a number where it cannot be on this curve.
   std::array<double, 5> tests{};
-  double test(Degeneracy kind) const { return tests[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] double test(Degeneracy kind) const { return tests[static_cast<std::size_t>(kind)]; }
 };
 
 class CurveSteps {
  public:
   CurveSteps(const ParametricSystem& system, const CurveStart& start, const CurveOptions& options);
 
-  std::vector<double> scaled(const std::vector<double>& x, const std::array<double, 2>& constants) const;
-  std::vector<double> state_of(const std::vector<double>& z) const;
-  std::array<double, 2> constants_of(const std::vector<double>& z) const;
-  double unit(std::size_t unknown) const { return units_[unknown]; }
-  std::size_t size() const { return n_; }
+  [[nodiscard]] std::vector<double> scaled(const std::vector<double>& x, const std::array<double, 2>& constants) const;
+  [[nodiscard]] std::vector<double> state_of(const std::vector<double>& z) const;
+  [[nodiscard]] std::array<double, 2> constants_of(const std::vector<double>& z) const;
+  [[nodiscard]] double unit(std::size_t unknown) const { return units_[unknown]; }
+  [[nodiscard]] std::size_t size() const { return n_; }
 
   /// df/dx in units, without unknowns of algebraic equations; empty where these do not determine them.
-  std::vector<double> matrix(const std::vector<double>& z);
-  std::size_t matrix_size() const { return system_.differential(); }
+  [[nodiscard]] std::vector<double> matrix(const std::vector<double>& z);
+  [[nodiscard]] std::size_t matrix_size() const { return system_.differential(); }
 
   /// Newton to f = 0, test = 0 and (z - guess) . last = 0.
   struct Found {
     std::vector<double> z;
     CriticalSpace space;
   };
-  std::optional<Found> corrected(const std::vector<double>& guess, const CriticalSpace& near,
-                                 const std::vector<double>& last);
+  [[nodiscard]] std::optional<Found> corrected(const std::vector<double>& guess, const CriticalSpace& near,
+                                               const std::vector<double>& last);
   /// With the tangent nearest to `along`, eigenvalues and tests.
-  std::optional<CurvePlace> described(Found found, const std::vector<double>& along);
+  [[nodiscard]] std::optional<CurvePlace> described(Found found, const std::vector<double>& along);
   /// Nothing where none is found, or only one that is farther off than the step is long.
-  std::optional<CurvePlace> stepped(const CurvePlace& from, double step);
+  [[nodiscard]] std::optional<CurvePlace> stepped(const CurvePlace& from, double step);
   /// A direction along the curve, where none is known.
-  std::optional<CurvePlace> first(const std::vector<double>& z, const CriticalSpace& near);
+  [[nodiscard]] std::optional<CurvePlace> first(const std::vector<double>& z, const CriticalSpace& near);
 
  private:
-  std::vector<double> f(const std::vector<double>& z);
-  std::vector<double> jacobian(const std::vector<double>& z);
+  [[nodiscard]] std::vector<double> f(const std::vector<double>& z);
+  [[nodiscard]] std::vector<double> jacobian(const std::vector<double>& z);
   void set(const std::vector<double>& z);
-  std::vector<double> sizes_of_constants() const;
+  [[nodiscard]] std::vector<double> sizes_of_constants() const;
   /// df/dz and, below it, that of the test; nothing where the matrix is not known nearby.
-  std::optional<std::vector<double>> rows_at(const std::vector<double>& z, const CriticalSpace& space);
-  double turning(const CurvePlace& place, const std::vector<double>& rows) const;
+  [[nodiscard]] std::optional<std::vector<double>> rows_at(const std::vector<double>& z, const CriticalSpace& space);
+  [[nodiscard]] double turning(const CurvePlace& place, const std::vector<double>& rows) const;
   void set_tests(CurvePlace& place, const std::vector<double>& rows);
 
   const ParametricSystem& system_;

@@ -28,29 +28,29 @@ class EquilibriumSteps {
   /// x: what is usual, for its units.
   EquilibriumSteps(const ParametricSystem& system, const std::vector<double>& x, const ContinuationOptions& options);
 
-  std::vector<double> scaled(const std::vector<double>& x, double constant) const;
-  double constant_of(const std::vector<double>& z) const { return z[n_] * units_[n_]; }
-  std::vector<double> state_of(const std::vector<double>& z) const;
-  double unit(std::size_t unknown) const { return units_[unknown]; }
+  [[nodiscard]] std::vector<double> scaled(const std::vector<double>& x, double constant) const;
+  [[nodiscard]] double constant_of(const std::vector<double>& z) const { return z[n_] * units_[n_]; }
+  [[nodiscard]] std::vector<double> state_of(const std::vector<double>& z) const;
+  [[nodiscard]] double unit(std::size_t unknown) const { return units_[unknown]; }
 
-  std::vector<double> f(const std::vector<double>& z);
+  [[nodiscard]] std::vector<double> f(const std::vector<double>& z);
   /// df/dz, n rows of n + 1.
-  std::vector<double> jacobian(const std::vector<double>& z);
+  [[nodiscard]] std::vector<double> jacobian(const std::vector<double>& z);
   /// Newton to f = 0 with (z - guess) . tangent = 0; at fixed constant where `at_constant`.
-  std::optional<std::vector<double>> corrected(const std::vector<double>& guess, std::vector<double> z,
-                                               const std::vector<double>& tangent, bool at_constant);
+  [[nodiscard]] std::optional<std::vector<double>> corrected(const std::vector<double>& guess, std::vector<double> z,
+                                                             const std::vector<double>& tangent, bool at_constant);
   /// The tangent nearest to `along`, eigenvalues and tests.
-  EquilibriumPlace described(std::vector<double> z, const std::vector<double>& along);
+  [[nodiscard]] EquilibriumPlace described(std::vector<double> z, const std::vector<double>& along);
   /// The point and the tests alone.
   void describe(EquilibriumPlace& place);
   /// Forwards or, with a step below 0, back. Nothing where none is found, or only one that is farther off than the step
   /// is long.
-  std::optional<EquilibriumPlace> stepped(const EquilibriumPlace& from, double step);
+  [[nodiscard]] std::optional<EquilibriumPlace> stepped(const EquilibriumPlace& from, double step);
 
  private:
-  std::vector<double> sizes_of_constants() const;
-  std::vector<double> solved(const std::vector<double>& rows, const std::vector<double>& last,
-                             std::vector<double> b) const;
+  [[nodiscard]] std::vector<double> sizes_of_constants() const;
+  [[nodiscard]] std::vector<double> solved(const std::vector<double>& rows, const std::vector<double>& last,
+                                           std::vector<double> b) const;
 
   const ParametricSystem& system_;
   const ContinuationOptions& options_;

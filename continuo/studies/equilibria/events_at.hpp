@@ -22,7 +22,7 @@ struct EventAt {
 
 /// Of the events that are watched in the mode and change something. Those that watch both directions are only met on
 /// their surface.
-std::vector<EventAt> events_at(const model::ModelProgram& program, std::size_t mode, std::span<const double> x,
-                               const model::Overrides& parameters = {});
+[[nodiscard]] std::vector<EventAt> events_at(const model::ModelProgram& program, std::size_t mode,
+                                             std::span<const double> x, const model::Overrides& parameters = {});
 
 }  // namespace continuo::studies

@@ -25,6 +25,7 @@ struct HopfGuess {
   std::vector<double> x{};
   double angular_frequency = 1;
 };
-std::optional<HopfPoint> find_hopf_point(const ParametricSystem& system, const HopfGuess& guess, double t = 0);
+[[nodiscard]] std::optional<HopfPoint> find_hopf_point(const ParametricSystem& system, const HopfGuess& guess,
+                                                       double t = 0);
 
 }  // namespace continuo::studies

@@ -16,13 +16,13 @@ class DirectionalDerivatives {
   DirectionalDerivatives(const ParametricSystem& system, std::vector<double> x, std::vector<double> p, double t);
 
   /// B(u, v) = d/ds d/dr f(x + s u + r v).
-  std::vector<double> second(const std::vector<double>& u, const std::vector<double>& v) const;
+  [[nodiscard]] std::vector<double> second(const std::vector<double>& u, const std::vector<double>& v) const;
   /// C(u, v, v).
-  std::vector<double> third(const std::vector<double>& u, const std::vector<double>& v) const;
+  [[nodiscard]] std::vector<double> third(const std::vector<double>& u, const std::vector<double>& v) const;
 
  private:
   /// df/dx u at x + s v.
-  std::vector<double> along(const std::vector<double>& u, const std::vector<double>& v, double s) const;
+  [[nodiscard]] std::vector<double> along(const std::vector<double>& u, const std::vector<double>& v, double s) const;
 
   const ParametricSystem& system_;
   std::vector<double> x_, p_;
@@ -37,13 +37,14 @@ struct LyapunovCoefficient {
   double value = 0;
   double rounding = 0;  // what rounding and differences may leave of a zero, as where something is conserved
 };
-std::optional<LyapunovCoefficient> first_lyapunov_coefficient(const ParametricSystem& system,
-                                                              const std::vector<double>& x, std::span<const double> p,
-                                                              double angular_frequency, double t = 0);
+[[nodiscard]] std::optional<LyapunovCoefficient> first_lyapunov_coefficient(const ParametricSystem& system,
+                                                                            const std::vector<double>& x,
+                                                                            std::span<const double> p,
+                                                                            double angular_frequency, double t = 0);
 
 /// a = p . B(q, q) / 2 with A q = 0, |q| = 1, p . q = 1, p A = 0: on the line of q the motion is y' = b (constant) +
 /// a y^2, up to the sign of y. Where it is 0 two folds meet, a cusp. Nothing as above.
-std::optional<double> fold_coefficient(const ParametricSystem& system, const std::vector<double>& x,
-                                       std::span<const double> p, double t = 0);
+[[nodiscard]] std::optional<double> fold_coefficient(const ParametricSystem& system, const std::vector<double>& x,
+                                                     std::span<const double> p, double t = 0);
 
 }  // namespace continuo::studies

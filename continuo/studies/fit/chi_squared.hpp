@@ -4,6 +4,6 @@
 namespace continuo::studies {
 
 /// P(X >= x) with `degrees` > 0 of freedom: 0.3173 for 1 and one degree.
-double chi_squared_tail(double x, double degrees);
+[[nodiscard]] double chi_squared_tail(double x, double degrees);
 
 }  // namespace continuo::studies

@@ -17,7 +17,7 @@ struct Decomposed {
 };
 
 /// An unknown whose move by its own size (where `sizes` are given) is seen no better than the accuracy is not seen.
-Decomposed decomposed(const VarianceComponents& noise, std::span<const double> jacobian, double accuracy,
-                      std::span<const double> sizes = {});
+[[nodiscard]] Decomposed decomposed(const VarianceComponents& noise, std::span<const double> jacobian, double accuracy,
+                                    std::span<const double> sizes = {});
 
 }  // namespace continuo::studies::detail

@@ -23,13 +23,13 @@ class FitPart {
     std::vector<double> numbers;
     bool good = false;
   };
-  Values at(std::span<const double> unknowns, const std::vector<double>& times, const std::vector<double>& increments,
-            SensitivityRun* whole = nullptr) const;
+  [[nodiscard]] Values at(std::span<const double> unknowns, const std::vector<double>& times,
+                          const std::vector<double>& increments, SensitivityRun* whole = nullptr) const;
 
-  const std::vector<double>& times() const { return times_; }
-  const FitData& data() const { return data_; }
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  [[nodiscard]] const FitData& data() const { return data_; }
   /// A quantity that jumps at impacts; empty: none.
-  std::string jumping_quantity() const;
+  [[nodiscard]] std::string jumping_quantity() const;
 
  private:
   const FitRequest& request_;
@@ -53,45 +53,45 @@ class FitProblem {
   explicit FitProblem(const FitRequest& request);
 
   /// Residuals over their deviations, at unknowns on the scale of the search.
-  bool evaluate(std::span<const double> p, std::span<double> residuals, std::span<double> rows);
+  [[nodiscard]] bool evaluate(std::span<const double> p, std::span<double> residuals, std::span<double> rows);
   /// All that is to be least, but for where it starts: that is `start`, from the model where the request has none.
-  LeastSquares least_squares(std::span<const double> start);
+  [[nodiscard]] LeastSquares least_squares(std::span<const double> start);
 
-  std::size_t size() const { return measured_.size() + priors_.size(); }
-  const std::vector<Measured>& measured() const { return measured_; }
-  const std::vector<FitPart>& parts() const { return parts_; }
-  const VarianceComponents& noise() const { return noise_; }
+  [[nodiscard]] std::size_t size() const { return measured_.size() + priors_.size(); }
+  [[nodiscard]] const std::vector<Measured>& measured() const { return measured_; }
+  [[nodiscard]] const std::vector<FitPart>& parts() const { return parts_; }
+  [[nodiscard]] const VarianceComponents& noise() const { return noise_; }
   /// Shapes of the deviations (in proportion to what the model says) and their sizes, from residuals as `evaluate` gave
   /// them last. The answer is by what factor the deviations changed, at most; a factor common to all changes no weight
   /// where nothing is known beforehand, and is left out.
-  double update_noise(std::span<const double> residuals, std::span<const double> rows, Loss loss);
+  [[nodiscard]] double update_noise(std::span<const double> residuals, std::span<const double> rows, Loss loss);
   /// As a fit has left it.
   void take_noise(VarianceComponents noise) {
     noise_ = std::move(noise);
     take_deviations();
   }
   /// Residuals and derivatives that were over the deviations of the search, in the units of the measurements.
-  std::vector<double> raw(std::span<const double> over_deviations, std::size_t width) const;
+  [[nodiscard]] std::vector<double> raw(std::span<const double> over_deviations, std::size_t width) const;
   /// What `raw` residuals say the model's value is; of lognormal noise its logarithm is compared.
-  double fitted(std::size_t measured, double raw_residual) const;
+  [[nodiscard]] double fitted(std::size_t measured, double raw_residual) const;
   /// The deviation of one measurement of a group where the model says `value` and components have these variances.
-  double deviation_at(std::size_t group, double value, std::span<const double> variances) const;
-  std::vector<double> noise_variances() const;
-  const FitColumn& column_of(std::size_t group) const { return *columns_[group].column; }
+  [[nodiscard]] double deviation_at(std::size_t group, double value, std::span<const double> variances) const;
+  [[nodiscard]] std::vector<double> noise_variances() const;
+  [[nodiscard]] const FitColumn& column_of(std::size_t group) const { return *columns_[group].column; }
   /// The deviation of a group: its constant part, or the one in proportion to the value.
-  double constant_deviation(std::size_t group) const {
+  [[nodiscard]] double constant_deviation(std::size_t group) const {
     const Column& column = columns_[group];
     return std::sqrt(noise_.components[column.components[0]].variance * column.pooled);
   }
-  double relative_deviation(std::size_t group) const {
+  [[nodiscard]] double relative_deviation(std::size_t group) const {
     return std::sqrt(noise_.components[columns_[group].components[1]].variance);
   }
 
-  double to_search(std::size_t unknown, double value) const;
-  double from_search(std::size_t unknown, double p) const;
-  std::vector<double> from_search(std::span<const double> p) const;
-  FitPart::Values values(std::size_t part, std::span<const double> p, const std::vector<double>& times,
-                         SensitivityRun* whole = nullptr) const;
+  [[nodiscard]] double to_search(std::size_t unknown, double value) const;
+  [[nodiscard]] double from_search(std::size_t unknown, double p) const;
+  [[nodiscard]] std::vector<double> from_search(std::span<const double> p) const;
+  [[nodiscard]] FitPart::Values values(std::size_t part, std::span<const double> p, const std::vector<double>& times,
+                                       SensitivityRun* whole = nullptr) const;
   /// Of a world, on the scale of the search.
   void set_increments(std::vector<double> increments) { increments_ = std::move(increments); }
 
@@ -110,7 +110,7 @@ class FitProblem {
   void add_components();
   void shape(std::size_t measured, double value);
   void take_deviations();
-  bool prior_residual(const PriorRow& row, double p, double& residual, double& slope) const;
+  [[nodiscard]] bool prior_residual(const PriorRow& row, double p, double& residual, double& slope) const;
 
   const FitRequest& request_;
   std::vector<FitPart> parts_;
@@ -124,6 +124,6 @@ class FitProblem {
 };
 
 /// The model's quantity of this name, where it is no state.
-std::optional<model::NodeId> quantity_node(const model::Model& model, const std::string& name);
+[[nodiscard]] std::optional<model::NodeId> quantity_node(const model::Model& model, const std::string& name);
 
 }  // namespace continuo::studies::detail

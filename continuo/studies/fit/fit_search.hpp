@@ -12,14 +12,14 @@ class FitSearch {
  public:
   FitSearch(const FitRequest& request, FitProblem& problem) : request_(request), problem_(problem) {}
 
-  LeastSquaresResult from(std::span<const double> start, std::size_t starts);
+  [[nodiscard]] LeastSquaresResult from(std::span<const double> start, std::size_t starts);
   /// Whether the deviations stayed at last.
-  bool settled() const { return settled_; }
+  [[nodiscard]] bool settled() const { return settled_; }
 
  private:
-  LeastSquaresResult searched(std::span<const double> start, const LeastSquaresResult& before);
+  [[nodiscard]] LeastSquaresResult searched(std::span<const double> start, const LeastSquaresResult& before);
   void settle(Loss loss, LeastSquaresResult& all);
-  LeastSquaresResult evaluated(LeastSquaresResult all);
+  [[nodiscard]] LeastSquaresResult evaluated(LeastSquaresResult all);
 
   const FitRequest& request_;
   FitProblem& problem_;

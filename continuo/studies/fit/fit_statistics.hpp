@@ -9,20 +9,21 @@
 namespace continuo::studies::detail {
 
 /// How sure the unknowns of a search are that are not at a bound; those that are have no deviation.
-Uncertainty uncertainty_of(const VarianceComponents& noise, std::span<const double> residuals,
-                           std::span<const double> rows, const LeastSquaresResult& least, Loss loss,
-                           std::span<const double> sizes, double accuracy,
-                           Likelihood likelihood = Likelihood::restricted);
+[[nodiscard]] Uncertainty uncertainty_of(const VarianceComponents& noise, std::span<const double> residuals,
+                                         std::span<const double> rows, const LeastSquaresResult& least, Loss loss,
+                                         std::span<const double> sizes, double accuracy,
+                                         Likelihood likelihood = Likelihood::restricted);
 
-std::vector<FitColumnResult> column_results(const FitRequest& request, const FitProblem& problem, const Fit& fit);
+[[nodiscard]] std::vector<FitColumnResult> column_results(const FitRequest& request, const FitProblem& problem,
+                                                          const Fit& fit);
 
-FitStatistics statistics_of(const FitRequest& request, const FitProblem& problem, const Fit& fit);
+[[nodiscard]] FitStatistics statistics_of(const FitRequest& request, const FitProblem& problem, const Fit& fit);
 
 /// Of an end that looks like one: not converged, at a bound, residuals too large for their deviations, or of one sign
 /// for too long.
-std::vector<FitDoubt> doubts_of(const FitRequest& request, const Fit& fit);
+[[nodiscard]] std::vector<FitDoubt> doubts_of(const FitRequest& request, const Fit& fit);
 
 /// -2 log L of the residuals with their variances, but for a constant; of a robust loss what takes its place.
-double badness(const FitProblem& problem, const LeastSquaresResult& least);
+[[nodiscard]] double badness(const FitProblem& problem, const LeastSquaresResult& least);
 
 }  // namespace continuo::studies::detail

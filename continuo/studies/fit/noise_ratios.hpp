@@ -24,7 +24,7 @@ struct TwoKinds {
 };
 
 /// The columns with two components that are not both known.
-std::vector<TwoKinds> columns_of_two_kinds(const VarianceComponents& noise);
+[[nodiscard]] std::vector<TwoKinds> columns_of_two_kinds(const VarianceComponents& noise);
 
 /// An axis to integrate over: centers of where the integrand may be, and how far it changes about each.
 struct RatioAxis {
@@ -41,14 +41,14 @@ class NoiseRatios {
               std::span<const double> jacobian, std::span<const double> sizes, double accuracy,
               std::vector<TwoKinds> columns);
 
-  const std::vector<RatioAxis>& axes() const { return axes_; }
-  std::size_t sources() const { return sources_.size(); }
+  [[nodiscard]] const std::vector<RatioAxis>& axes() const { return axes_; }
+  [[nodiscard]] std::size_t sources() const { return sources_.size(); }
 
   /// Of restricted likelihood times prior, but for a constant.
-  double logarithm_at(std::span<const double> point) const;
-  GivenRatios given_at(std::span<const double> point) const;
+  [[nodiscard]] double logarithm_at(std::span<const double> point) const;
+  [[nodiscard]] GivenRatios given_at(std::span<const double> point) const;
   /// Without any ratios yet.
-  MixedRatios frame() const;
+  [[nodiscard]] MixedRatios frame() const;
 
  private:
   struct Source {
@@ -69,11 +69,11 @@ class NoiseRatios {
   void find_sources(const Uncertainty& sure);
   void add_source(std::vector<std::size_t> components, const Uncertainty& sure);
   void find_axes();
-  double size_of(const TwoKinds& column, double ratio) const;
-  std::vector<double> variances_at(std::span<const double> point) const;
-  Solved solved_at(std::span<const double> point) const;
-  double logarithm_of_prior(const Solved& solved) const;
-  double degrees() const { return static_cast<double>(augmented_.rows() - back_.cols()); }
+  [[nodiscard]] double size_of(const TwoKinds& column, double ratio) const;
+  [[nodiscard]] std::vector<double> variances_at(std::span<const double> point) const;
+  [[nodiscard]] Solved solved_at(std::span<const double> point) const;
+  [[nodiscard]] double logarithm_of_prior(const Solved& solved) const;
+  [[nodiscard]] double degrees() const { return static_cast<double>(augmented_.rows() - back_.cols()); }
 
   const VarianceComponents& noise_;
   std::vector<TwoKinds> columns_;

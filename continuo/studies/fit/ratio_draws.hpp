@@ -14,9 +14,9 @@ struct RatioDraws {
 };
 
 /// One ratio is integrated over even places, several by a lattice whose density follows what each has by itself.
-RatioDraws draws_of(const NoiseRatios& ratios);
+[[nodiscard]] RatioDraws draws_of(const NoiseRatios& ratios);
 
 /// Of logarithms, so that the sum is 1; what is no number has no weight.
-std::vector<double> normalized(std::vector<double> logarithms);
+[[nodiscard]] std::vector<double> normalized(std::vector<double> logarithms);
 
 }  // namespace continuo::studies::detail

@@ -17,12 +17,12 @@ inline constexpr std::string_view loss_names[] = {"squares", "huber", "soft_l1",
 inline constexpr double huber_tuning = 1.345, cauchy_tuning = 2.3849, tukey_tuning = 4.6851;
 
 /// Far residuals pull the less the further off they are, so that there may be minima of their own.
-constexpr bool redescends(Loss loss) {
+[[nodiscard]] constexpr bool redescends(Loss loss) {
   return loss == Loss::cauchy || loss == Loss::tukey;
 }
 
 /// rho(u).
-inline double loss_of(Loss loss, double u) {
+[[nodiscard]] inline double loss_of(Loss loss, double u) {
   const double s = u * u;
   switch (loss) {
     case Loss::squares:
@@ -46,7 +46,7 @@ inline double loss_of(Loss loss, double u) {
 }
 
 /// psi(u)/u.
-inline double weight_of(Loss loss, double u) {
+[[nodiscard]] inline double weight_of(Loss loss, double u) {
   const double s = u * u;
   switch (loss) {
     case Loss::squares:
@@ -66,7 +66,7 @@ inline double weight_of(Loss loss, double u) {
 }
 
 /// psi'(u).
-inline double slope_of(Loss loss, double u) {
+[[nodiscard]] inline double slope_of(Loss loss, double u) {
   const double w = weight_of(loss, u), s = u * u;
   switch (loss) {
     case Loss::squares:

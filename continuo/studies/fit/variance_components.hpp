@@ -43,7 +43,7 @@ struct VarianceComponents {
   std::vector<VarianceComponent> components;
   std::size_t groups = 1;
 
-  double variance(std::size_t row) const {
+  [[nodiscard]] double variance(std::size_t row) const {
     double sum = 0;
     for (const auto& share : rows[row].shares) sum += components[share.component].variance * share.factor;
     return sum;
@@ -61,7 +61,7 @@ void estimate_variances(VarianceComponents& noise, std::span<const double> resid
 inline constexpr double interval_confidence = 0.95;
 
 /// Half an interval of that confidence over a deviation with so many degrees of freedom; infinite without any.
-double interval_factor(double degrees);
+[[nodiscard]] double interval_factor(double degrees);
 
 /// What is known where the ratios of the unknown variances are given, and how likely these ratios are. Covariance and
 /// variances are those of the overall size that is estimated with them, where all noise has one.
@@ -78,7 +78,7 @@ struct MixedRatios {
   double degrees = std::numeric_limits<double>::infinity();  // of the overall size; infinite where there is none
   std::vector<double> powers;                                // of each source of noise, in the prior
   std::vector<std::size_t> source_of;                        // of each column; no_source where its noise is known
-  bool empty() const { return given.empty(); }
+  [[nodiscard]] bool empty() const { return given.empty(); }
 };
 inline constexpr std::size_t no_source = std::numeric_limits<std::size_t>::max();
 
@@ -104,8 +104,8 @@ struct Uncertainty {
 
 /// `sizes` of the unknowns say in which units `directions` are; `accuracy` is that of the Jacobian: what its columns
 /// differ by less than that from a linear combination of the others is no information.
-Uncertainty uncertainty(const VarianceComponents& noise, std::span<const double> residuals,
-                        std::span<const double> jacobian, Loss loss, std::span<const double> sizes,
-                        double accuracy = 1e-12);
+[[nodiscard]] Uncertainty uncertainty(const VarianceComponents& noise, std::span<const double> residuals,
+                                      std::span<const double> jacobian, Loss loss, std::span<const double> sizes,
+                                      double accuracy = 1e-12);
 
 }  // namespace continuo::studies

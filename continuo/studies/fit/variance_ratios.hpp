@@ -41,7 +41,7 @@ struct ShiftedT {
 
 /// Half the interval about zero that holds 95 % of such a mixture; not a number where there is none. `guess` is
 /// positive and about as large.
-double half_width_of(std::span<const ShiftedT> mixture, double guess);
+[[nodiscard]] double half_width_of(std::span<const ShiftedT> mixture, double guess);
 
 /// What is asked about where ratios are given: an unknown, a combination of them, a measurement.
 struct Seen {
@@ -50,10 +50,10 @@ struct Seen {
 };
 
 /// Of a combination of the unknowns with these slopes.
-Seen seen_along(const GivenRatios& given, std::span<const double> slopes);
+[[nodiscard]] Seen seen_along(const GivenRatios& given, std::span<const double> slopes);
 
 /// One of each of the ratios.
-std::vector<ShiftedT> mixture_of(const MixedRatios& ratios, std::span<const Seen> seen);
+[[nodiscard]] std::vector<ShiftedT> mixture_of(const MixedRatios& ratios, std::span<const Seen> seen);
 
 /// Sets the factors and the ratios of `sure`, or says that it failed, where columns have two components that are not
 /// both known, and few enough rows for that to matter. Residuals are those of the fit, of squares, the variances those

@@ -15,11 +15,11 @@
 namespace continuo::studies::detail {
 
 /// Of the first solution that the model's guesses lead to.
-SensitivityRun boundary_sensitivity(const std::shared_ptr<const SensitiveProgram>& program,
-                                    const SensitivityRequest& request);
+[[nodiscard]] SensitivityRun boundary_sensitivity(const std::shared_ptr<const SensitiveProgram>& program,
+                                                  const SensitivityRequest& request);
 
 /// Why there is none by these influences: E361.
-std::optional<model::Diagnostic> no_boundary_sensitivity(const model::Model& model,
-                                                         std::span<const Influence> influences);
+[[nodiscard]] std::optional<model::Diagnostic> no_boundary_sensitivity(const model::Model& model,
+                                                                       std::span<const Influence> influences);
 
 }  // namespace continuo::studies::detail

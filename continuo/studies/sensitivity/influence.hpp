@@ -14,11 +14,11 @@ struct Influence {
 };
 
 /// "k", or "x(0)" for an initial value.
-inline std::string name_of(const model::Model& model, const Influence& influence) {
+[[nodiscard]] inline std::string name_of(const model::Model& model, const Influence& influence) {
   if (influence.kind == Influence::Kind::parameter) return model.parameters[influence.index].name;
   return model.states[influence.index].column + "(0)";
 }
-inline const std::string& unit_of(const model::Model& model, const Influence& influence) {
+[[nodiscard]] inline const std::string& unit_of(const model::Model& model, const Influence& influence) {
   if (influence.kind == Influence::Kind::parameter) return model.parameters[influence.index].unit;
   return model.states[influence.index].unit;
 }

@@ -27,33 +27,40 @@ class SensitiveEvents {
 
   SensitiveEvents(const SensitiveProgram& program, std::span<const double> variables, double from, double length);
 
-  std::size_t size() const { return plain_.size(); }
-  std::string_view name(std::size_t i) const { return plain_.name(i); }
-  Direction direction(std::size_t i) const { return plain_.direction(i); }
-  bool is_guard(std::size_t i) const { return plain_.is_guard(i); }
-  bool can_assign(std::size_t i) const { return plain_.can_assign(i); }
-  bool is_condition(std::size_t i) const { return plain_.is_condition(i); }
-  bool renews_guard(std::size_t i) const { return plain_.renews_guard(i); }
-  bool active(const SensitiveSystem& system, std::size_t i) const { return plain_.active(system.plain(), i); }
-  double next_time(std::size_t i, double t, bool inclusive) const { return plain_.next_time(i, t, inclusive); }
+  [[nodiscard]] std::size_t size() const { return plain_.size(); }
+  [[nodiscard]] std::string_view name(std::size_t i) const { return plain_.name(i); }
+  [[nodiscard]] Direction direction(std::size_t i) const { return plain_.direction(i); }
+  [[nodiscard]] bool is_guard(std::size_t i) const { return plain_.is_guard(i); }
+  [[nodiscard]] bool can_assign(std::size_t i) const { return plain_.can_assign(i); }
+  [[nodiscard]] bool is_condition(std::size_t i) const { return plain_.is_condition(i); }
+  [[nodiscard]] bool renews_guard(std::size_t i) const { return plain_.renews_guard(i); }
+  [[nodiscard]] bool active(const SensitiveSystem& system, std::size_t i) const {
+    return plain_.active(system.plain(), i);
+  }
+  [[nodiscard]] double next_time(std::size_t i, double t, bool inclusive) const {
+    return plain_.next_time(i, t, inclusive);
+  }
   void guards(SensitiveSystem& system, double t, const X& x, std::span<double> values);
-  std::optional<Carried> carried(const SensitiveSystem& system, std::size_t i, double t, const X& x, double forward);
+  [[nodiscard]] std::optional<Carried> carried(const SensitiveSystem& system, std::size_t i, double t, const X& x,
+                                               double forward);
   // The guards over a step, enclosed as in a run of the model alone.
   void take_step(const SensitiveSystem& system, double begin, double size, std::span<const X> coefficients);
-  bool is_enclosed(std::size_t i) const { return plain_.is_enclosed(i); }
+  [[nodiscard]] bool is_enclosed(std::size_t i) const { return plain_.is_enclosed(i); }
   void enclose_all(double from, double to) { plain_.enclose_all(from, to); }
-  const Enclosure<double>& whole(std::size_t i) const { return plain_.whole(i); }
-  EnclosureWithSlope<double> enclosure(std::size_t i, double from, double to) { return plain_.enclosure(i, from, to); }
-  Enclosure<double> value_enclosure(std::size_t i, double at) { return plain_.value_enclosure(i, at); }
+  [[nodiscard]] const Enclosure<double>& whole(std::size_t i) const { return plain_.whole(i); }
+  [[nodiscard]] EnclosureWithSlope<double> enclosure(std::size_t i, double from, double to) {
+    return plain_.enclosure(i, from, to);
+  }
+  [[nodiscard]] Enclosure<double> value_enclosure(std::size_t i, double at) { return plain_.value_enclosure(i, at); }
 
-  EventResponse fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x);
+  [[nodiscard]] EventResponse fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x);
   /// The run goes on from t: what was scheduled for that very instant has happened.
   void resume(double t, std::span<const std::size_t> stops) { plain_.resume(t, stops); }
 
-  std::span<const SensitiveHappening> happened() const { return happened_; }
-  bool is_declared(std::size_t i) const { return plain_.is_declared(i); }
+  [[nodiscard]] std::span<const SensitiveHappening> happened() const { return happened_; }
+  [[nodiscard]] bool is_declared(std::size_t i) const { return plain_.is_declared(i); }
   /// A failure where the motion has no derivative.
-  const Status& status() const { return status_; }
+  [[nodiscard]] const Status& status() const { return status_; }
 
  private:
   struct Jump;
@@ -74,11 +81,11 @@ class SensitiveEvents {
     std::vector<double> values;
     X rates;
   };
-  const Change* set_off_by(SensitiveSystem& system, std::size_t fired, double t);
-  std::vector<double> time_moves(std::size_t event, std::span<const double> values, double t,
-                                 std::span<const double> rates);
-  std::vector<double> crossing_moves(std::string_view name, const Variation& guard, std::span<const double> values,
-                                     std::span<const double> rates);
+  [[nodiscard]] const Change* set_off_by(SensitiveSystem& system, std::size_t fired, double t);
+  [[nodiscard]] std::vector<double> time_moves(std::size_t event, std::span<const double> values, double t,
+                                               std::span<const double> rates);
+  [[nodiscard]] std::vector<double> crossing_moves(std::string_view name, const Variation& guard,
+                                                   std::span<const double> values, std::span<const double> rates);
   void cross_surface(std::size_t fired, const Surface& surface, SensitiveSystem& system, double t, const X& rates,
                      X& now);
   void act(std::size_t fired, SensitiveSystem& system, double t, const Acting& acting, X& now);

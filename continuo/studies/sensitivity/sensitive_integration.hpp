@@ -37,7 +37,7 @@ struct SensitiveEnding {
 };
 
 template <class Method>
-SensitiveEnding integrate_sensitive(SensitiveIntegration integration, SensitiveRows& rows);
+[[nodiscard]] SensitiveEnding integrate_sensitive(SensitiveIntegration integration, SensitiveRows& rows);
 
 struct SensitiveObserver {
   SensitiveRows& rows;
@@ -71,7 +71,7 @@ struct SensitiveObserver {
 
 /// The body; included only by the files that instantiate it.
 template <class Method>
-SensitiveEnding integrate_sensitive_by(SensitiveIntegration integration, SensitiveRows& rows) {
+[[nodiscard]] SensitiveEnding integrate_sensitive_by(SensitiveIntegration integration, SensitiveRows& rows) {
   Integrator<SensitiveSystem, SensitiveSystem::X, Method, SensitiveEvents> integrator(
       std::move(integration.system), std::move(integration.x0), integration.interval, Method{},
       std::move(integration.options), std::move(integration.events));

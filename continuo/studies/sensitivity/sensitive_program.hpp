@@ -66,22 +66,24 @@ class SensitiveProgram {
   SensitiveProgram(std::shared_ptr<const model::ModelProgram> program, std::vector<Influence> influences,
                    const model::Overrides& overrides, bool start_is_given);
 
-  const model::ModelProgram& program() const { return *program_; }
-  const std::shared_ptr<const model::ModelProgram>& shared_program() const { return program_; }
-  const std::vector<Influence>& influences() const { return influences_; }
-  std::size_t size() const { return n_; }
-  std::size_t count() const { return influences_.size(); }
+  [[nodiscard]] const model::ModelProgram& program() const { return *program_; }
+  [[nodiscard]] const std::shared_ptr<const model::ModelProgram>& shared_program() const { return program_; }
+  [[nodiscard]] const std::vector<Influence>& influences() const { return influences_; }
+  [[nodiscard]] std::size_t size() const { return n_; }
+  [[nodiscard]] std::size_t count() const { return influences_.size(); }
   /// The component of the wide state that is d x[i] / d influence k.
-  std::size_t place(std::size_t i, std::size_t k) const { return n_ * (1 + k) + i; }
+  [[nodiscard]] std::size_t place(std::size_t i, std::size_t k) const { return n_ * (1 + k) + i; }
   /// "d x / d k"
-  const std::string& name(std::size_t component) const { return names_[component]; }
+  [[nodiscard]] const std::string& name(std::size_t component) const { return names_[component]; }
 
   /// x' and S' of a mode, with its switches held.
-  const std::shared_ptr<const model::Tape>& rates(std::size_t mode) const { return rates_[mode]; }
-  const SensitiveSurfaces& surfaces(std::size_t mode) const { return surfaces_[mode]; }
-  const std::vector<SensitiveEvent>& events() const { return events_; }
+  [[nodiscard]] const std::shared_ptr<const model::Tape>& rates(std::size_t mode) const { return rates_[mode]; }
+  [[nodiscard]] const SensitiveSurfaces& surfaces(std::size_t mode) const { return surfaces_[mode]; }
+  [[nodiscard]] const std::vector<SensitiveEvent>& events() const { return events_; }
   /// Where the registers of S begin in the flat space of these tapes: behind those of the switches.
-  std::uint32_t registers_of_s() const { return program_->model.layout.size + program_->switch_variables; }
+  [[nodiscard]] std::uint32_t registers_of_s() const {
+    return program_->model.layout.size + program_->switch_variables;
+  }
 
   /// Entries of d(x', S')/d(x, S) in every mode, and of d(x', S')/dt.
   struct Entries {
@@ -93,28 +95,30 @@ class SensitiveProgram {
     std::vector<Entries> by_state, by_time;  // by mode
   };
   /// Made at the first call: only stiff methods ask.
-  const Jacobians& jacobians() const;
+  [[nodiscard]] const Jacobians& jacobians() const;
 
   /// S at the start, where the model has one; `rates` is x' there.
-  std::vector<double> start(const std::vector<double>& variables, const std::vector<double>& rates) const;
+  [[nodiscard]] std::vector<double> start(const std::vector<double>& variables, const std::vector<double>& rates) const;
   /// A tape of each quantity q of the model and dq/dx S + dq/dp by every influence, one after the other.
-  std::shared_ptr<const model::Tape> along(const std::vector<model::NodeId>& quantities) const;
+  [[nodiscard]] std::shared_ptr<const model::Tape> along(const std::vector<model::NodeId>& quantities) const;
   /// A tape of one quantity q, dq/dx S + dq/dp by every influence, then dq/dv of each of these variables.
-  std::shared_ptr<const model::Tape> along(model::NodeId quantity, std::span<const std::uint32_t> by) const;
+  [[nodiscard]] std::shared_ptr<const model::Tape> along(model::NodeId quantity,
+                                                         std::span<const std::uint32_t> by) const;
   /// d/dp by every influence of a number that depends on parameters alone.
-  std::vector<double> moves_of(model::NodeId constant, const std::vector<double>& variables) const;
+  [[nodiscard]] std::vector<double> moves_of(model::NodeId constant, const std::vector<double>& variables) const;
   /// Numbers that depend on parameters alone.
-  std::vector<double> evaluate(const std::vector<model::NodeId>& nodes, const std::vector<double>& variables) const;
+  [[nodiscard]] std::vector<double> evaluate(const std::vector<model::NodeId>& nodes,
+                                             const std::vector<double>& variables) const;
 
  private:
   void differentiate_parameters(const model::Overrides& overrides);
-  model::NodeId by_parameters(model::Graph& graph, model::NodeId node, std::size_t k) const;
-  model::NodeId variation(model::Graph& graph, model::NodeId node, std::size_t k) const;
-  Variation variation_of(model::NodeId node, std::vector<model::NodeId>& outputs);
-  std::vector<SensitiveAction> actions_of(const model::Block& block, std::vector<model::NodeId>& outputs);
+  [[nodiscard]] model::NodeId by_parameters(model::Graph& graph, model::NodeId node, std::size_t k) const;
+  [[nodiscard]] model::NodeId variation(model::Graph& graph, model::NodeId node, std::size_t k) const;
+  [[nodiscard]] Variation variation_of(model::NodeId node, std::vector<model::NodeId>& outputs);
+  [[nodiscard]] std::vector<SensitiveAction> actions_of(const model::Block& block, std::vector<model::NodeId>& outputs);
   void add_equations();
   void add_start();
-  SensitiveSurfaces surfaces_of(const model::SwitchedEquations& equations);
+  [[nodiscard]] SensitiveSurfaces surfaces_of(const model::SwitchedEquations& equations);
   void add_events();
 
   std::shared_ptr<const model::ModelProgram> program_;

@@ -48,10 +48,10 @@ class SensitiveSystem {
   SensitiveSystem(std::shared_ptr<const SensitiveProgram> program, std::span<const double> variables);
 
   void operator()(double t, const X& x, X& dxdt) { rates(t, x, dxdt); }
-  std::size_t mode() const { return plain_.mode(); }
-  const SensitiveProgram& program() const { return *program_; }
-  model::ModelSystem& plain() { return plain_; }
-  const model::ModelSystem& plain() const { return plain_; }
+  [[nodiscard]] std::size_t mode() const { return plain_.mode(); }
+  [[nodiscard]] const SensitiveProgram& program() const { return *program_; }
+  [[nodiscard]] model::ModelSystem& plain() { return plain_; }
+  [[nodiscard]] const model::ModelSystem& plain() const { return plain_; }
   /// The jumps of the equations are located from now on, as those of the model's own run.
   void hold_switches(double t, const X& x);
   /// After an event: the switches as the model has them now.
@@ -59,31 +59,31 @@ class SensitiveSystem {
   /// The rates in the present mode.
   void rates(double t, const X& x, X& dxdt);
   /// What is compiled of the surfaces of the present mode.
-  std::vector<double> surfaces(double t, const X& x) { return surfaces_[mode()](t, x); }
+  [[nodiscard]] std::vector<double> surfaces(double t, const X& x) { return surfaces_[mode()](t, x); }
   /// What is compiled of event i of the model, in the order of the text.
-  std::vector<double> event(std::size_t i, double t, const X& x) { return events_[i](t, x); }
+  [[nodiscard]] std::vector<double> event(std::size_t i, double t, const X& x) { return events_[i](t, x); }
   /// An input that has stepped.
   void set(std::uint32_t variable, double value);
-  std::span<const double> variables() const { return variables_; }
+  [[nodiscard]] std::span<const double> variables() const { return variables_; }
 
-  std::string_view component_name(std::size_t i) const { return program_->name(i); }
-  const SparsePattern& jacobian_pattern() { return program_->jacobians().pattern; }
+  [[nodiscard]] std::string_view component_name(std::size_t i) const { return program_->name(i); }
+  [[nodiscard]] const SparsePattern& jacobian_pattern() { return program_->jacobians().pattern; }
   void jacobian_values(double t, const X& x, std::span<double> values);
   void jacobian(double t, const X& x, std::span<double> rows);
   void time_derivative(double t, const X& x, X& dfdt);
-  bool has_mass() const { return plain_.has_mass(); }
-  double mass(std::size_t i) const { return plain_.mass(i % program_->size()); }
+  [[nodiscard]] bool has_mass() const { return plain_.has_mass(); }
+  [[nodiscard]] double mass(std::size_t i) const { return plain_.mass(i % program_->size()); }
 
  private:
   struct Jacobian {
     std::vector<WideEvaluation> by_state, by_time;
     std::vector<std::vector<std::size_t>> entry;  // by mode: where in the pattern each place is
   };
-  Jacobian& derivatives();
+  [[nodiscard]] Jacobian& derivatives();
   void add_mode(std::size_t mode);
   void place(std::size_t k, double value);
   void slide(double t, const X& x, X& dxdt);
-  bool slides_in_full() const;
+  [[nodiscard]] bool slides_in_full() const;
   void difference_rows(double t, const X& x, std::span<double> rows);
 
   std::shared_ptr<const SensitiveProgram> program_;

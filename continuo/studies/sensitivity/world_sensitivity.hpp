@@ -13,10 +13,10 @@
 
 namespace continuo::studies::detail {
 
-SensitivityRun world_sensitivity(const std::shared_ptr<const SensitiveProgram>& program,
-                                 const SensitivityRequest& request);
+[[nodiscard]] SensitivityRun world_sensitivity(const std::shared_ptr<const SensitiveProgram>& program,
+                                               const SensitivityRequest& request);
 
 /// Whether a state of bodies, or a measure of the world, jumps at impacts.
-bool jumps_at_impacts(const model::Model& model, std::size_t state);
+[[nodiscard]] bool jumps_at_impacts(const model::Model& model, std::size_t state);
 
 }  // namespace continuo::studies::detail

@@ -8,8 +8,8 @@ namespace continuo::studies::detail {
 /// Illinois false position, with a bisection where it is slow. `place_at(s)`: the place so far along the branch,
 /// optional; `test` is `at_low` at s = 0 and `at_high` at s = high, of other signs. `found_at`: the last s.
 template <class PlaceAt, class Test>
-auto located_zero(const PlaceAt& place_at, const Test& test, double high, double at_low, double at_high,
-                  double& found_at) {
+[[nodiscard]] auto located_zero(const PlaceAt& place_at, const Test& test, double high, double at_low, double at_high,
+                                double& found_at) {
   constexpr int most = 60;
   constexpr double exact = 1e-10;
   const double step = high;

@@ -11,13 +11,15 @@
 namespace continuo::studies {
 
 /// A run with the constants p.
-Solution<std::vector<double>> run_flow(const ParametricSystem& system, Values p, std::vector<double> x0,
-                                       Interval<double> interval, const Options<std::vector<double>>& options = {});
+[[nodiscard]] Solution<std::vector<double>> run_flow(const ParametricSystem& system, Values p, std::vector<double> x0,
+                                                     Interval<double> interval,
+                                                     const Options<std::vector<double>>& options = {});
 
 /// The system with its variational equations: behind x stand the columns of S = dx/dx(0), n of them, and with
 /// `by_constants` those of dx/dp, m more: S' = (df/dx) S (+ df/dp). Each begins as `variational_start` says.
-ParametricSystem with_variations(const ParametricSystem& system, bool by_constants = false);
+[[nodiscard]] ParametricSystem with_variations(const ParametricSystem& system, bool by_constants = false);
 /// x0, the columns of the identity, zeros.
-std::vector<double> variational_start(const ParametricSystem& system, Values x0, bool by_constants = false);
+[[nodiscard]] std::vector<double> variational_start(const ParametricSystem& system, Values x0,
+                                                    bool by_constants = false);
 
 }  // namespace continuo::studies

@@ -19,14 +19,14 @@ struct Forcing {
   model::Span span;              // of what the failure is about
 };
 
-Forcing forcing_of(const model::ModelProgram& program, const model::Overrides& parameters = {});
+[[nodiscard]] Forcing forcing_of(const model::ModelProgram& program, const model::Overrides& parameters = {});
 
 /// The least common multiple of periods; nothing where two of them have no ratio of small whole numbers.
-std::optional<double> common_period(std::span<const double> periods);
+[[nodiscard]] std::optional<double> common_period(std::span<const double> periods);
 
 /// Whether the equations and guards have the same values a period later, at many times and states near these: what can
 /// be said of a period that somebody gives where nothing is proven. `low`, `high`: of the states.
-bool repeats_after(const model::ModelProgram& program, double period, std::span<const double> low,
-                   std::span<const double> high, const model::Overrides& parameters = {});
+[[nodiscard]] bool repeats_after(const model::ModelProgram& program, double period, std::span<const double> low,
+                                 std::span<const double> high, const model::Overrides& parameters = {});
 
 }  // namespace continuo::studies

@@ -19,11 +19,12 @@ namespace continuo::studies {
 
 /// The experiment by a method that chooses its steps and takes whatever the model has, at rtol = atol = tolerance and
 /// without a limit of steps.
-model::Experiment exactly(const model::ModelProgram& program, model::Experiment experiment, double tolerance);
+[[nodiscard]] model::Experiment exactly(const model::ModelProgram& program, model::Experiment experiment,
+                                        double tolerance);
 
 /// Of such an experiment; nothing where it cannot be run: `outcome` says why.
-std::optional<model::Plan> plan_of(const model::ModelProgram& program, const model::Experiment& exact,
-                                   Outcome<double>& outcome);
+[[nodiscard]] std::optional<model::Plan> plan_of(const model::ModelProgram& program, const model::Experiment& exact,
+                                                 Outcome<double>& outcome);
 
 class HybridRun final : private model::StepWatcher {
  public:
@@ -40,15 +41,15 @@ class HybridRun final : private model::StepWatcher {
   /// From another state, at this instant of another run and in its mode.
   void go_on(const model::Instant& instant);
 
-  double t() const { return run_->t(); }
-  const X& x() const { return run_->x(); }
-  model::Instant instant() const;
-  const Outcome<double>& outcome() const { return run_->outcome(); }
+  [[nodiscard]] double t() const { return run_->t(); }
+  [[nodiscard]] const X& x() const { return run_->x(); }
+  [[nodiscard]] model::Instant instant() const;
+  [[nodiscard]] const Outcome<double>& outcome() const { return run_->outcome(); }
   /// How often the state or the mode has been changed, or the equations jumped, and when that was last.
-  std::size_t happenings() const { return happenings_; }
-  double last_happening() const { return last_; }
+  [[nodiscard]] std::size_t happenings() const { return happenings_; }
+  [[nodiscard]] double last_happening() const { return last_; }
   /// Whether the motion is held by a surface where the equations jump.
-  bool slides() const { return run_->system().slides(); }
+  [[nodiscard]] bool slides() const { return run_->system().slides(); }
 
   /// Called for every piece of motion between happenings: at(t, x) gives the state on from..to, in an x of its size.
   using At = std::function<void(double t, X& x)>;

@@ -25,8 +25,8 @@ struct Measurements {
 /// The first line names the columns; one of them is `t`, else the first is the time. Empty cells, `nan` and `NA` are
 /// missing values. Rows may come in any order. A name may have its unit behind it, after a blank: `x [cm]`.
 /// The message of a failure begins with "file:line: ".
-Result<Measurements> read_measurements(const std::string& file);
+[[nodiscard]] Result<Measurements> read_measurements(const std::string& file);
 /// The same from text, `name` being what messages call it.
-Result<Measurements> parse_measurements(std::string_view text, const std::string& name);
+[[nodiscard]] Result<Measurements> parse_measurements(std::string_view text, const std::string& name);
 
 }  // namespace continuo::studies

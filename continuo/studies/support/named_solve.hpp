@@ -39,10 +39,12 @@ struct NamedSystem {
   // A System, as solve asks for it.
   using X = std::vector<Real>;
   void operator()(const Real& t, const X& x, X& dxdt) { derivative(t, x, dxdt); }
-  std::size_t pair_count(std::size_t) const { return pairs.size(); }
-  PositionVelocity pair(std::size_t i, std::size_t) const { return pairs[i]; }
-  bool ignores_velocity(const X&) const { return velocity_free; }
-  std::string component_name(std::size_t i) const { return name ? name(i) : "x[" + std::to_string(i) + "]"; }
+  [[nodiscard]] std::size_t pair_count(std::size_t) const { return pairs.size(); }
+  [[nodiscard]] PositionVelocity pair(std::size_t i, std::size_t) const { return pairs[i]; }
+  [[nodiscard]] bool ignores_velocity(const X&) const { return velocity_free; }
+  [[nodiscard]] std::string component_name(std::size_t i) const {
+    return name ? name(i) : "x[" + std::to_string(i) + "]";
+  }
   void jacobian(const Real& t, const X& x, std::span<Real> rows) {
     if (given_jacobian) return given_jacobian(t, x, rows);
     // The third root of epsilon balances the error of a central difference with its rounding.
@@ -64,13 +66,13 @@ struct NamedSystem {
 
 /// f called as f(t, x, dxdt) with spans.
 template <class Real, class F>
-NamedSystem<Real> named_system(std::size_t size, F f) {
+[[nodiscard]] NamedSystem<Real> named_system(std::size_t size, F f) {
   return {.size = size, .derivative = std::move(f)};
 }
 /// The first half of the state are positions, the second their velocities; the accelerations read no velocity unless
 /// said otherwise.
 template <class Real, class F>
-NamedSystem<Real> named_motion(std::size_t size, F f, bool velocity_free = true) {
+[[nodiscard]] NamedSystem<Real> named_motion(std::size_t size, F f, bool velocity_free = true) {
   NamedSystem<Real> system{.size = size, .derivative = std::move(f), .velocity_free = velocity_free};
   for (std::size_t i = 0; 2 * i < size; ++i) system.pairs.push_back({i, i + size / 2});
   return system;
@@ -79,16 +81,17 @@ NamedSystem<Real> named_motion(std::size_t size, F f, bool velocity_free = true)
 /// As solve(). A name that is none ends as Ending::invalid_input, and so does a method for x'' = a where there are no
 /// pairs.
 template <class Real>
-Solution<std::vector<Real>> named_solve(std::string_view method, const NamedSystem<Real>& system,
-                                        std::type_identity_t<std::vector<Real>> x0,
-                                        std::type_identity_t<Interval<Real>> interval,
-                                        const std::type_identity_t<Options<std::vector<Real>>>& options);
+[[nodiscard]] Solution<std::vector<Real>> named_solve(std::string_view method, const NamedSystem<Real>& system,
+                                                      std::type_identity_t<std::vector<Real>> x0,
+                                                      std::type_identity_t<Interval<Real>> interval,
+                                                      const std::type_identity_t<Options<std::vector<Real>>>& options);
 
 /// The method chosen as solve() does where none is named.
 template <class Real>
-Solution<std::vector<Real>> named_solve(const NamedSystem<Real>& system, std::type_identity_t<std::vector<Real>> x0,
-                                        std::type_identity_t<Interval<Real>> interval,
-                                        const std::type_identity_t<Options<std::vector<Real>>>& options) {
+[[nodiscard]] Solution<std::vector<Real>> named_solve(const NamedSystem<Real>& system,
+                                                      std::type_identity_t<std::vector<Real>> x0,
+                                                      std::type_identity_t<Interval<Real>> interval,
+                                                      const std::type_identity_t<Options<std::vector<Real>>>& options) {
   const std::string_view method =
       choose_method({.size = system.size,
                      .rtol = static_cast<double>(options.rtol),

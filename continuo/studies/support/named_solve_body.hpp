@@ -10,10 +10,10 @@
 namespace continuo::studies {
 
 template <class Real>
-Solution<std::vector<Real>> named_solve(std::string_view method, const NamedSystem<Real>& system,
-                                        std::type_identity_t<std::vector<Real>> x0,
-                                        std::type_identity_t<Interval<Real>> interval,
-                                        const std::type_identity_t<Options<std::vector<Real>>>& options) {
+[[nodiscard]] Solution<std::vector<Real>> named_solve(std::string_view method, const NamedSystem<Real>& system,
+                                                      std::type_identity_t<std::vector<Real>> x0,
+                                                      std::type_identity_t<Interval<Real>> interval,
+                                                      const std::type_identity_t<Options<std::vector<Real>>>& options) {
   Solution<std::vector<Real>> solution;
   solution.outcome.ending = Ending::invalid_input;
   solution.outcome.hint = "there is no method of this name";

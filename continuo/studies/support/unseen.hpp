@@ -18,21 +18,21 @@ struct Unseen {
   model::Span span;
   std::string what;  // "an event changes the motion"
 };
-std::optional<Unseen> unseen_of(const model::ModelProgram& program, std::size_t mode);
+[[nodiscard]] std::optional<Unseen> unseen_of(const model::ModelProgram& program, std::size_t mode);
 
 /// The first state of the mode whose equation hangs on t, or on an input that a file moves.
-std::optional<std::size_t> hangs_on_time(const model::ModelProgram& program, std::size_t mode);
+[[nodiscard]] std::optional<std::size_t> hangs_on_time(const model::ModelProgram& program, std::size_t mode);
 
 /// A jump of the mode's equations that this state lies at, to nine digits, as it is written: "sign(x)". There no
 /// derivative says what happens nearby.
-std::optional<std::string> jump_at(const model::ModelProgram& program, std::size_t mode, std::span<const double> x,
-                                   const model::Overrides& parameters = {});
+[[nodiscard]] std::optional<std::string> jump_at(const model::ModelProgram& program, std::size_t mode,
+                                                 std::span<const double> x, const model::Overrides& parameters = {});
 
 /// Whether actions set a state or go to a mode, in some branch.
-bool changes_something(const model::Block& block);
+[[nodiscard]] bool changes_something(const model::Block& block);
 /// The first event of a mode, at set times or not, that changes something.
-std::optional<model::Span> changes_by_event(const model::Model& model, std::size_t mode);
+[[nodiscard]] std::optional<model::Span> changes_by_event(const model::Model& model, std::size_t mode);
 /// The first one at set times.
-std::optional<model::Span> changes_at_set_times(const model::Model& model);
+[[nodiscard]] std::optional<model::Span> changes_at_set_times(const model::Model& model);
 
 }  // namespace continuo::studies

@@ -20,7 +20,7 @@ class Assignment {
 
   /// The first equation that is left without one; npos where all have theirs. Where these are as many as the unknowns,
   /// every unknown is determined then.
-  std::size_t first_left_over() {
+  [[nodiscard]] std::size_t first_left_over() {
     for (std::size_t equation = 0; equation < contained_.size(); ++equation) {
       visited_.assign(equation_of_.size(), false);
       if (!find_for(equation)) return equation;
@@ -28,11 +28,13 @@ class Assignment {
     return npos;
   }
   /// The equation that the unknown was assigned to; npos: none.
-  std::size_t equation_of(std::size_t unknown) const { return equation_of_[unknown]; }
-  const std::vector<std::size_t>& contained_in(std::size_t equation) const { return contained_[equation]; }
+  [[nodiscard]] std::size_t equation_of(std::size_t unknown) const { return equation_of_[unknown]; }
+  [[nodiscard]] const std::vector<std::size_t>& contained_in(std::size_t equation) const {
+    return contained_[equation];
+  }
 
  private:
-  bool find_for(std::size_t equation) {
+  [[nodiscard]] bool find_for(std::size_t equation) {
     for (const std::size_t unknown : contained_[equation]) {
       if (visited_[unknown]) continue;
       visited_[unknown] = true;

@@ -8,9 +8,9 @@ namespace continuo::model {
 
 /// Told apart by commas, semicolons or, where there are none, blanks; without blanks and quotes around them. An empty
 /// cell at the very end is not there.
-std::vector<std::string_view> split_cells(std::string_view line);
+[[nodiscard]] std::vector<std::string_view> split_cells(std::string_view line);
 
 /// The number that the whole cell is.
-std::optional<double> cell_number(std::string_view cell);
+[[nodiscard]] std::optional<double> cell_number(std::string_view cell);
 
 }  // namespace continuo::model

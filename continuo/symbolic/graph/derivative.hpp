@@ -11,7 +11,7 @@
 namespace continuo::model {
 
 /// d node / d variable.
-NodeId differentiate(Graph& graph, NodeId node, std::uint32_t variable);
+[[nodiscard]] NodeId differentiate(Graph& graph, NodeId node, std::uint32_t variable);
 
 /// One entry that is not zero everywhere: d outputs[row] / d variables[column].
 struct JacobianEntry {
@@ -20,7 +20,7 @@ struct JacobianEntry {
 };
 
 /// Every such entry, row by row, columns ascending: values and sparsity in one.
-std::vector<JacobianEntry> jacobian(Graph& graph, std::span<const NodeId> outputs,
-                                    std::span<const std::uint32_t> variables);
+[[nodiscard]] std::vector<JacobianEntry> jacobian(Graph& graph, std::span<const NodeId> outputs,
+                                                  std::span<const std::uint32_t> variables);
 
 }  // namespace continuo::model

@@ -28,7 +28,7 @@ namespace continuo::model {
 /// An expression of a Graph: cheap to copy, equal where the expressions are equal.
 struct NodeId {
   std::uint32_t index = std::numeric_limits<std::uint32_t>::max();
-  bool valid() const { return index != std::numeric_limits<std::uint32_t>::max(); }
+  [[nodiscard]] bool valid() const { return index != std::numeric_limits<std::uint32_t>::max(); }
   friend auto operator<=>(NodeId, NodeId) = default;
 };
 
@@ -47,36 +47,36 @@ class Graph {
  public:
   Graph();
 
-  NodeId constant(double value);
-  NodeId truth(bool value) { return constant(value ? 1 : 0); }
-  NodeId variable(std::uint32_t number);
-  NodeId apply(Op op, NodeId a);
-  NodeId apply(Op op, NodeId a, NodeId b);
-  NodeId select(NodeId condition, NodeId if_true, NodeId if_false);
-  NodeId interpolate(std::uint32_t table, NodeId x);
-  NodeId interpolate_slope(std::uint32_t table, NodeId x);
+  [[nodiscard]] NodeId constant(double value);
+  [[nodiscard]] NodeId truth(bool value) { return constant(value ? 1 : 0); }
+  [[nodiscard]] NodeId variable(std::uint32_t number);
+  [[nodiscard]] NodeId apply(Op op, NodeId a);
+  [[nodiscard]] NodeId apply(Op op, NodeId a, NodeId b);
+  [[nodiscard]] NodeId select(NodeId condition, NodeId if_true, NodeId if_false);
+  [[nodiscard]] NodeId interpolate(std::uint32_t table, NodeId x);
+  [[nodiscard]] NodeId interpolate_slope(std::uint32_t table, NodeId x);
 
-  NodeId add(NodeId a, NodeId b) { return apply(Op::add, a, b); }
-  NodeId subtract(NodeId a, NodeId b) { return apply(Op::subtract, a, b); }
-  NodeId multiply(NodeId a, NodeId b) { return apply(Op::multiply, a, b); }
-  NodeId divide(NodeId a, NodeId b) { return apply(Op::divide, a, b); }
-  NodeId power(NodeId a, NodeId b) { return apply(Op::power, a, b); }
-  NodeId negate(NodeId a) { return apply(Op::negate, a); }
-  NodeId less(NodeId a, NodeId b) { return apply(Op::less, a, b); }
-  NodeId less_equal(NodeId a, NodeId b) { return apply(Op::less_equal, a, b); }
-  NodeId greater(NodeId a, NodeId b) { return apply(Op::less, b, a); }
-  NodeId greater_equal(NodeId a, NodeId b) { return apply(Op::less_equal, b, a); }
+  [[nodiscard]] NodeId add(NodeId a, NodeId b) { return apply(Op::add, a, b); }
+  [[nodiscard]] NodeId subtract(NodeId a, NodeId b) { return apply(Op::subtract, a, b); }
+  [[nodiscard]] NodeId multiply(NodeId a, NodeId b) { return apply(Op::multiply, a, b); }
+  [[nodiscard]] NodeId divide(NodeId a, NodeId b) { return apply(Op::divide, a, b); }
+  [[nodiscard]] NodeId power(NodeId a, NodeId b) { return apply(Op::power, a, b); }
+  [[nodiscard]] NodeId negate(NodeId a) { return apply(Op::negate, a); }
+  [[nodiscard]] NodeId less(NodeId a, NodeId b) { return apply(Op::less, a, b); }
+  [[nodiscard]] NodeId less_equal(NodeId a, NodeId b) { return apply(Op::less_equal, a, b); }
+  [[nodiscard]] NodeId greater(NodeId a, NodeId b) { return apply(Op::less, b, a); }
+  [[nodiscard]] NodeId greater_equal(NodeId a, NodeId b) { return apply(Op::less_equal, b, a); }
 
   const Node& operator[](NodeId id) const { return nodes_[id.index]; }
-  std::size_t size() const { return nodes_.size(); }
+  [[nodiscard]] std::size_t size() const { return nodes_.size(); }
 
   /// The number this node is, if it is one.
-  std::optional<double> value(NodeId id) const;
-  bool is(NodeId id, double value) const;
+  [[nodiscard]] std::optional<double> value(NodeId id) const;
+  [[nodiscard]] bool is(NodeId id, double value) const;
 
  private:
   friend struct Simplifier;
-  NodeId intern(const Node& node);
+  [[nodiscard]] NodeId intern(const Node& node);
   void grow();
 
   std::vector<Node> nodes_;
@@ -87,61 +87,64 @@ class Graph {
 struct Arguments {
   std::array<NodeId, 3> ids;
   std::size_t count;
-  const NodeId* begin() const { return ids.data(); }
-  const NodeId* end() const { return ids.data() + count; }
+  [[nodiscard]] const NodeId* begin() const { return ids.data(); }
+  [[nodiscard]] const NodeId* end() const { return ids.data() + count; }
 };
-inline Arguments arguments(const Node& node) {
+[[nodiscard]] inline Arguments arguments(const Node& node) {
   return {{node.a, node.b, node.c}, arity(node.op)};
 }
 
 /// The nodes the roots are made of, each once, arguments before their use.
-std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots);
+[[nodiscard]] std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots);
 
 /// Whether the expression contains the variable.
-bool depends_on(const Graph& graph, NodeId node, std::uint32_t variable);
+[[nodiscard]] bool depends_on(const Graph& graph, NodeId node, std::uint32_t variable);
 
 /// The variables it contains, ascending.
-std::vector<std::uint32_t> variables_of(const Graph& graph, NodeId node);
-std::vector<std::uint32_t> variables_of(const Graph& graph, std::span<const NodeId> nodes);
+[[nodiscard]] std::vector<std::uint32_t> variables_of(const Graph& graph, NodeId node);
+[[nodiscard]] std::vector<std::uint32_t> variables_of(const Graph& graph, std::span<const NodeId> nodes);
 
 /// The expression with every variable replaced that `replacement` gives a node for.
 using Replacement = std::function<std::optional<NodeId>(std::uint32_t variable)>;
-NodeId substitute(Graph& graph, NodeId node, const Replacement& replacement);
-NodeId substitute(Graph& graph, NodeId node, std::uint32_t variable, NodeId replacement);
+[[nodiscard]] NodeId substitute(Graph& graph, NodeId node, const Replacement& replacement);
+[[nodiscard]] NodeId substitute(Graph& graph, NodeId node, std::uint32_t variable, NodeId replacement);
 
 /// The same operation on the images of its arguments.
-NodeId with_arguments(Graph& graph, NodeId node, const std::function<NodeId(NodeId)>& image);
+[[nodiscard]] NodeId with_arguments(Graph& graph, NodeId node, const std::function<NodeId(NodeId)>& image);
 
 /// node = coefficient*variable + remainder, neither of which contains the variable.
 struct Linear {
   NodeId coefficient, remainder;
 };
-std::optional<Linear> linear_in(Graph& graph, NodeId node, std::uint32_t variable);
+[[nodiscard]] std::optional<Linear> linear_in(Graph& graph, NodeId node, std::uint32_t variable);
 
 /// One row for each of `residuals`: what stands before each of `unknowns`, and last what is left without them; if all
 /// are linear in all of them together.
 using LinearRows = std::vector<std::vector<NodeId>>;
-std::optional<LinearRows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
-                                      std::span<const std::uint32_t> unknowns);
+[[nodiscard]] std::optional<LinearRows> linear_rows(Graph& graph, std::span<const NodeId> residuals,
+                                                    std::span<const std::uint32_t> unknowns);
 
 /// The values of the unknowns at which every one of the residuals is zero (accelerations coupled through a mass
 /// matrix); nothing where the matrix is singular. Elimination without exchange for size: meant for a handful. What
 /// `vanishes` says of is divided by only where nothing else is left.
 using Vanishes = std::function<bool(NodeId)>;
-std::optional<std::vector<NodeId>> solve_linear(Graph& graph, LinearRows rows, const Vanishes& vanishes = {});
-std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const NodeId> residuals,
-                                                std::span<const std::uint32_t> unknowns);
+[[nodiscard]] std::optional<std::vector<NodeId>> solve_linear(Graph& graph, LinearRows rows,
+                                                              const Vanishes& vanishes = {});
+[[nodiscard]] std::optional<std::vector<NodeId>> solve_linear(Graph& graph, std::span<const NodeId> residuals,
+                                                              std::span<const std::uint32_t> unknowns);
 
 /// The number the expression has at these values of the variables. For single numbers; a Tape is for many.
 /// `table` computes interp and its slope; without it they are NaN.
 using TableLookup = std::function<double(std::uint32_t table, double x, bool slope)>;
-double evaluate(const Graph& graph, NodeId node, std::span<const double> variables, const TableLookup& table = {});
+[[nodiscard]] double evaluate(const Graph& graph, NodeId node, std::span<const double> variables,
+                              const TableLookup& table = {});
 /// Of many at once: what they share is computed once.
-std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> nodes, std::span<const double> variables,
-                             const TableLookup& table = {});
+[[nodiscard]] std::vector<double> evaluate(const Graph& graph, std::span<const NodeId> nodes,
+                                           std::span<const double> variables, const TableLookup& table = {});
 
 /// The expression as a model would write it, cut off after about `longest` characters.
 using VariableName = std::function<std::string(std::uint32_t variable)>;
-std::string to_text(const Graph& graph, NodeId node, const VariableName& name, std::size_t longest = 2000);
+[[nodiscard]] std::string to_text(const Graph& graph, NodeId node, const VariableName& name,
+                                  std::size_t longest = 2000);
 
 }  // namespace continuo::model

@@ -57,25 +57,25 @@ enum class Op : std::uint8_t {
 };
 
 /// The number of arguments that are expressions.
-constexpr std::size_t arity(Op op) {
+[[nodiscard]] constexpr std::size_t arity(Op op) {
   if (op <= Op::variable) return 0;
   if (op < Op::negate) return 2;
   if (op < Op::select) return 1;
   return op == Op::select ? 3 : 1;
 }
 
-constexpr bool is_commutative(Op op) {
+[[nodiscard]] constexpr bool is_commutative(Op op) {
   return op == Op::add || op == Op::multiply || op == Op::minimum || op == Op::maximum || op == Op::hypotenuse ||
          op == Op::equal || op == Op::not_equal || op == Op::logical_and || op == Op::logical_or;
 }
 
 /// The result is 0 or 1.
-constexpr bool is_logical(Op op) {
+[[nodiscard]] constexpr bool is_logical(Op op) {
   return (op >= Op::less && op <= Op::logical_or) || op == Op::logical_not;
 }
 
 /// It has a jump somewhere, or a kink, where its arguments have none.
-constexpr bool has_corners(Op op) {
+[[nodiscard]] constexpr bool has_corners(Op op) {
   switch (op) {
     case Op::minimum:
     case Op::maximum:
@@ -95,7 +95,7 @@ constexpr bool has_corners(Op op) {
 }
 
 /// The name in a model: `sin`, `+`, `<=`.
-constexpr std::string_view name(Op op) {
+[[nodiscard]] constexpr std::string_view name(Op op) {
   constexpr std::string_view names[] = {
       "constant", "variable", "+",    "-",    "*",      "/",      "^",      "min",         "max",   "hypot", "atan2",
       "mod",      "<",        "<=",   "==",   "!=",     "and",    "or",     "-",           "sin",   "cos",   "tan",
@@ -105,6 +105,6 @@ constexpr std::string_view name(Op op) {
 }
 
 /// What op computes for numbers; constants, variables and tables have nothing to compute and give NaN.
-double compute(Op op, double a, double b = 0, double c = 0);
+[[nodiscard]] double compute(Op op, double a, double b = 0, double c = 0);
 
 }  // namespace continuo::model

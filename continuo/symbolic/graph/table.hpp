@@ -26,23 +26,23 @@ class Table {
   /// x must increase strictly and have as many numbers as y, at least one.
   Table(std::vector<double> x, std::vector<double> y, Between between);
 
-  double value(double x) const {
+  [[nodiscard]] double value(double x) const {
     const Piece& piece = at(x);
     return piece.y + piece.slope * (x - piece.x);
   }
   /// The slope of the piece that `value` reads: at a corner the one to the right.
-  double slope(double x) const { return at(x).slope; }
+  [[nodiscard]] double slope(double x) const { return at(x).slope; }
 
   /// value(x) = y + slope*(x - x_i), also for x that carry derivatives.
   struct Piece {
     double x, y, slope;
   };
-  const Piece& at(double x) const;
+  [[nodiscard]] const Piece& at(double x) const;
   /// All that `at` may give from one x to another, in their order; each holds up to the x of the next.
-  std::span<const Piece> pieces(double from, double to) const;
+  [[nodiscard]] std::span<const Piece> pieces(double from, double to) const;
 
-  std::span<const double> x() const { return x_; }
-  Between between() const { return between_; }
+  [[nodiscard]] std::span<const double> x() const { return x_; }
+  [[nodiscard]] Between between() const { return between_; }
 
  private:
   Between between_;
@@ -53,11 +53,11 @@ class Table {
 /// Columns are told apart by commas, semicolons or blanks; a first line without numbers names them; `#` begins a
 /// comment. `x` and `y` name the columns to read; empty ones mean the first and the second. A failure is unreadable,
 /// its place "file:line".
-Result<Table> read_table(const std::filesystem::path& file, Table::Between between, std::string_view x = {},
-                         std::string_view y = {});
+[[nodiscard]] Result<Table> read_table(const std::filesystem::path& file, Table::Between between,
+                                       std::string_view x = {}, std::string_view y = {});
 
 /// The same from text, `name` being what messages call it.
-Result<Table> parse_table(std::string_view text, const std::string& name, Table::Between between,
-                          std::string_view x = {}, std::string_view y = {});
+[[nodiscard]] Result<Table> parse_table(std::string_view text, const std::string& name, Table::Between between,
+                                        std::string_view x = {}, std::string_view y = {});
 
 }  // namespace continuo::model

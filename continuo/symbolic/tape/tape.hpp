@@ -45,8 +45,8 @@ class Tape {
   Tape(const Graph& graph, std::span<const NodeId> outputs, TapeVariables variables,
        std::span<const Table> tables = {});
 
-  std::size_t register_count() const { return registers_; }
-  std::size_t output_count() const { return output_count_; }
+  [[nodiscard]] std::size_t register_count() const { return registers_; }
+  [[nodiscard]] std::size_t output_count() const { return output_count_; }
 
   /// Constants, and what hangs on them and on the steady variables alone.
   template <class Real>
@@ -63,7 +63,7 @@ class Tape {
   template <class Real>
   void evaluate(std::span<Real> registers, std::span<const Real> states, std::span<Real> outputs,
                 const tape::Copies& copies) const;
-  tape::Copies outputs_at(std::span<const std::uint32_t> places) const;
+  [[nodiscard]] tape::Copies outputs_at(std::span<const std::uint32_t> places) const;
 
   /// How the work is laid out: for tests and for the curious.
   struct Size {
@@ -73,7 +73,7 @@ class Tape {
     std::size_t batched = 0;   // results of those loops
     std::size_t gathered = 0;  // operands of those that do not lie side by side
   };
-  Size size() const;
+  [[nodiscard]] Size size() const;
 
  private:
   friend class TapeCompiler;

@@ -76,7 +76,7 @@ inline constexpr std::size_t operations = static_cast<std::size_t>(Code::interpo
 inline constexpr std::size_t frequent = static_cast<std::size_t>(Code::select_less);
 
 /// Where the evaluation goes for a code: a place of its own for the frequent ones, one for all others, three at last.
-constexpr std::uint16_t entry(Code code) {
+[[nodiscard]] constexpr std::uint16_t entry(Code code) {
   const auto c = static_cast<std::size_t>(code);
   return static_cast<std::uint16_t>(c < operations ? (c < frequent ? c : frequent) : c - operations + frequent + 1);
 }
@@ -105,7 +105,7 @@ struct Batch {
   Operand operand[4] = {};
 };
 
-constexpr std::size_t operands(Code code) {
+[[nodiscard]] constexpr std::size_t operands(Code code) {
   switch (code) {
     case Code::sum_of_products:
     case Code::difference_of_products:
@@ -150,7 +150,7 @@ constexpr std::size_t operands(Code code) {
 
 /// a where the condition holds, else b: of numbers by ?:, of lanes by their own `select`.
 template <class Condition, class Real>
-Real choose(const Condition& condition, const Real& a, const Real& b) {
+[[nodiscard]] Real choose(const Condition& condition, const Real& a, const Real& b) {
   if constexpr (std::is_same_v<Condition, bool>) {
     return condition ? a : b;
   } else {
@@ -160,7 +160,7 @@ Real choose(const Condition& condition, const Real& a, const Real& b) {
 
 /// a - b*floor(a/b). Enclosures bring their own, as the three do not know of each other there.
 template <class Real>
-Real modulus(const Real& a, const Real& b) {
+[[nodiscard]] Real modulus(const Real& a, const Real& b) {
   using std::floor;
   if constexpr (requires { mod(a, b); }) {
     return mod(a, b);
@@ -171,7 +171,7 @@ Real modulus(const Real& a, const Real& b) {
 
 /// -1, 0 or 1.
 template <class Real>
-Real signum(const Real& a) {
+[[nodiscard]] Real signum(const Real& a) {
   if constexpr (requires { sign(a); }) {
     return sign(a);
   } else {
@@ -180,7 +180,7 @@ Real signum(const Real& a) {
 }
 
 template <Code code, class Real>
-Real operate_logic(const Real& a, const Real& b) {
+[[nodiscard]] Real operate_logic(const Real& a, const Real& b) {
   const Real one(1), zero(0);
   if constexpr (code == Code::less) return choose(a < b, one, zero);
   if constexpr (code == Code::less_equal) return choose(a <= b, one, zero);
@@ -192,7 +192,7 @@ Real operate_logic(const Real& a, const Real& b) {
 }
 
 template <Code code, class Real>
-Real operate_function(const Real& a, const Real& b) {
+[[nodiscard]] Real operate_function(const Real& a, const Real& b) {
   using std::min, std::max, std::abs, std::exp, std::pow, std::atan2, std::tan, std::asin, std::acos, std::atan,
       std::sinh, std::cosh, std::tanh, std::log, std::log10, std::floor, std::ceil, std::sqrt, std::sin, std::cos;
   if constexpr (code == Code::square_root) return sqrt(a);
@@ -225,7 +225,7 @@ Real operate_function(const Real& a, const Real& b) {
 
 /// The value of one instruction. Operands the code does not read may be anything.
 template <Code code, class Real>
-[[gnu::always_inline]] inline Real operate(const Real& a, const Real& b, const Real& c, const Real& d) {
+[[nodiscard]] [[gnu::always_inline]] inline Real operate(const Real& a, const Real& b, const Real& c, const Real& d) {
   constexpr bool is_logic = code >= Code::less && code <= Code::logical_not;
   if constexpr (code == Code::add)
     return a + b;

@@ -32,13 +32,13 @@ struct Copies {
   std::vector<Copy> regular;
   std::vector<Turns> joined, parted;  // taking turns where they go; where they come from
 
-  std::size_t loops() const { return regular.size() + joined.size() + parted.size(); }
-  bool is_empty() const { return alone.empty() && loops() == 0; }
+  [[nodiscard]] std::size_t loops() const { return regular.size() + joined.size() + parted.size(); }
+  [[nodiscard]] bool is_empty() const { return alone.empty() && loops() == 0; }
 };
 
 /// The copies for these places: the numbers of a family lie at equal distances, several families mixed, as do their
 /// derivatives among the outputs.
-Copies regular_copies(std::span<const Place> places);
+[[nodiscard]] Copies regular_copies(std::span<const Place> places);
 
 /// Kept apart: small tapes have none, and the code round it stays small.
 template <class Real>

@@ -15,8 +15,8 @@
 namespace continuo::model {
 
 /// The values of a table over an interval, or those of its slope.
-Enclosure<double> enclose(const Table& table, const Enclosure<double>& x, bool slope);
-EnclosureWithSlope<double> enclose(const Table& table, const EnclosureWithSlope<double>& x, bool slope);
+[[nodiscard]] Enclosure<double> enclose(const Table& table, const Enclosure<double>& x, bool slope);
+[[nodiscard]] EnclosureWithSlope<double> enclose(const Table& table, const EnclosureWithSlope<double>& x, bool slope);
 
 extern template void Tape::prepare(std::span<Enclosure<double>>) const;
 extern template void Tape::prepare(std::span<EnclosureWithSlope<double>>) const;

@@ -25,7 +25,7 @@ using Group = std::vector<std::size_t>;
 /// come about in the same way, from members of the same families, have a group of their own: the equations of one
 /// family for all its inner points. `colour` is that of what is not computed here (a family, say), by node; it becomes
 /// that of the results too.
-std::vector<Group> groups_of(std::span<const Selected> selected, std::vector<Colour>& colour);
+[[nodiscard]] std::vector<Group> groups_of(std::span<const Selected> selected, std::vector<Colour>& colour);
 
 /// The registers an operation reads.
 using Places = std::array<std::uint32_t, 4>;
@@ -37,9 +37,9 @@ struct Stretch {
 
 /// Cuts a sequence of operations so that within a stretch each operand stays where it is or goes on by one register,
 /// where that pays.
-std::vector<Stretch> stretches(std::span<const Places> sequence);
+[[nodiscard]] std::vector<Stretch> stretches(std::span<const Places> sequence);
 
 /// How often such a sequence breaks.
-std::size_t breaks(std::span<const Places> sequence);
+[[nodiscard]] std::size_t breaks(std::span<const Places> sequence);
 
 }  // namespace continuo::model::tape

@@ -24,7 +24,7 @@ class TapeRegisters {
   void forget() { is_prepared_ = false; }
 
   Number& operator[](std::size_t variable) { return numbers_[variable]; }
-  std::span<const Number> evaluate(const Tape& tape) {
+  [[nodiscard]] std::span<const Number> evaluate(const Tape& tape) {
     tape.evaluate<Number>(numbers_, outputs_);
     return outputs_;
   }

@@ -35,9 +35,9 @@ inline constexpr std::size_t piece = std::max<std::size_t>(4, 64 * sizeof(double
 
 /// Numbers begin, ..., begin + count - 1 of an operand side by side. `buffer` holds a number that is one for all.
 template <class Real>
-[[gnu::always_inline]] inline const Real* side_by_side(const Operand& operand, const Real* registers,
-                                                       const std::uint32_t* gathered, std::size_t begin,
-                                                       std::size_t count, Real* buffer) {
+[[nodiscard]] [[gnu::always_inline]] inline const Real* side_by_side(const Operand& operand, const Real* registers,
+                                                                     const std::uint32_t* gathered, std::size_t begin,
+                                                                     std::size_t count, Real* buffer) {
   if (operand.layout == Operand::Layout::contiguous) return registers + operand.begin + begin;
   if (operand.layout == Operand::Layout::gathered) {
     const std::uint32_t* const from = gathered + operand.begin + begin;
@@ -99,7 +99,7 @@ void many_wide(Real* registers, const Batch& batch, const std::uint32_t* gathere
 
 /// What compilers make vectors of.
 template <class Real>
-constexpr bool gains_by_vectors(Code code) {
+[[nodiscard]] constexpr bool gains_by_vectors(Code code) {
   const bool is_plain = code <= Code::square_root || (code >= Code::select_less && code <= Code::absolute);
   return is_plain && (std::is_same_v<Real, float> || std::is_same_v<Real, double>);
 }
@@ -128,13 +128,13 @@ inline constexpr auto manys = []<std::size_t... I>(std::index_sequence<I...>) {
 
 /// The straight piece of a table at x, or its slope.
 template <class Real>
-Real along(const Table::Piece& piece, const Real& x, bool slope) {
+[[nodiscard]] Real along(const Table::Piece& piece, const Real& x, bool slope) {
   return slope ? Real(piece.slope) : piece.y + piece.slope * (x - piece.x);
 }
 
 /// A table along a motion of x: at a corner the piece that comes. Within the rounding of x, but not at it, either one.
 template <class Scalar, std::size_t order>
-Taylor<Scalar, order> look_up_along(const Table& table, const Taylor<Scalar, order>& x, bool slope) {
+[[nodiscard]] Taylor<Scalar, order> look_up_along(const Table& table, const Taylor<Scalar, order>& x, bool slope) {
   const auto at = static_cast<double>(midpoint(x.c[0]));
   const Table::Piece& here = table.at(at);
   const Table::Piece& before = table.at(std::nextafter(at, -std::numeric_limits<double>::infinity()));
@@ -153,7 +153,7 @@ Taylor<Scalar, order> look_up_along(const Table& table, const Taylor<Scalar, ord
 
 /// A table at x; lanes one by one, derivatives along the piece that holds the value, enclosures by their own `enclose`.
 template <class Real>
-Real look_up(const Table& table, const Real& x, bool slope) {
+[[nodiscard]] Real look_up(const Table& table, const Real& x, bool slope) {
   if constexpr (requires { enclose(table, x, slope); }) {
     return enclose(table, x, slope);
   } else if constexpr (std::is_arithmetic_v<Real>) {

@@ -21,6 +21,6 @@ struct Selected {
 
 /// The operations that compute the outputs, operands before their use. A product used once goes into the sum that
 /// uses it, a sum used once into the product; comparisons go into the choices they decide.
-std::vector<Selected> select_operations(const Prepared& prepared);
+[[nodiscard]] std::vector<Selected> select_operations(const Prepared& prepared);
 
 }  // namespace continuo::model::tape

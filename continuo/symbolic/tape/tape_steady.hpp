@@ -20,7 +20,7 @@ struct Prepared {
 /// `-k/m*x` becomes `(-k/m)*x`, `x/m*y/l` becomes `(1/m/l)*(x*y)`: one multiplication where steady factors were
 /// spread over the product. `x/r, y/r` becomes `x*(1/r), y*(1/r)`. Results may differ from those of the text in the
 /// last digit.
-Prepared gather_steady_factors(const Graph& graph, std::span<const NodeId> outputs,
-                               const std::function<bool(std::uint32_t variable)>& is_steady);
+[[nodiscard]] Prepared gather_steady_factors(const Graph& graph, std::span<const NodeId> outputs,
+                                             const std::function<bool(std::uint32_t variable)>& is_steady);
 
 }  // namespace continuo::model::tape

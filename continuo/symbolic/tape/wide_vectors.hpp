@@ -5,11 +5,11 @@
 namespace continuo::model {
 
 #if defined(__x86_64__)
-inline bool has_wide_vectors() {
+[[nodiscard]] inline bool has_wide_vectors() {
   return __builtin_cpu_supports("avx2") != 0;
 }
 #else
-constexpr bool has_wide_vectors() {
+[[nodiscard]] constexpr bool has_wide_vectors() {
   return false;
 }
 #endif

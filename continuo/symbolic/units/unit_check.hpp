@@ -15,19 +15,19 @@ struct Measured {
   Kind kind = Kind::unknown;
   Unit unit{};  // of a known one
 
-  static Measured number() { return {Kind::number, {}}; }
-  static Measured unknown() { return {Kind::unknown, {}}; }
-  static Measured known(Unit unit) { return {Kind::known, std::move(unit)}; }
-  bool is_number() const { return kind == Kind::number; }
-  bool is_known() const { return kind == Kind::known; }
+  [[nodiscard]] static Measured number() { return {Kind::number, {}}; }
+  [[nodiscard]] static Measured unknown() { return {Kind::unknown, {}}; }
+  [[nodiscard]] static Measured known(Unit unit) { return {Kind::known, std::move(unit)}; }
+  [[nodiscard]] bool is_number() const { return kind == Kind::number; }
+  [[nodiscard]] bool is_known() const { return kind == Kind::known; }
 };
 
-Measured product(const Measured& a, const Measured& b);
-Measured quotient(const Measured& a, const Measured& b);
+[[nodiscard]] Measured product(const Measured& a, const Measured& b);
+[[nodiscard]] Measured quotient(const Measured& a, const Measured& b);
 /// Of a sum or a choice whose sides fit each other.
-Measured common(const Measured& a, const Measured& b);
+[[nodiscard]] Measured common(const Measured& a, const Measured& b);
 /// The factor that brings a number of `from` to the unit of `to`: 1 where one of them is not known, empty where both
 /// are and do not fit.
-std::optional<double> factor_between(const Measured& from, const Measured& to);
+[[nodiscard]] std::optional<double> factor_between(const Measured& from, const Measured& to);
 
 }  // namespace continuo::model::detail

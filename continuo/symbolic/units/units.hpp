@@ -35,9 +35,9 @@ class Unit {
   /// A unit of one name, worth `factor` coherent SI units of this dimension.
   Unit(std::string symbol, Dimension dimension, double factor);
 
-  const Dimension& dimension() const { return dimension_; }
-  double factor() const { return factor_; }
-  bool dimensionless() const { return dimension_ == Dimension{}; }
+  [[nodiscard]] const Dimension& dimension() const { return dimension_; }
+  [[nodiscard]] double factor() const { return factor_; }
+  [[nodiscard]] bool dimensionless() const { return dimension_ == Dimension{}; }
 
   friend Unit operator*(const Unit& a, const Unit& b);
   friend Unit operator/(const Unit& a, const Unit& b);
@@ -52,28 +52,28 @@ class Unit {
 };
 
 /// unit^(numerator/denominator); empty where the exponents leave the sixtieths.
-std::optional<Unit> power(const Unit& unit, int numerator, int denominator = 1);
+[[nodiscard]] std::optional<Unit> power(const Unit& unit, int numerator, int denominator = 1);
 
 /// unit^exponent for an exponent that is a fraction with a small denominator.
-std::optional<Unit> power(const Unit& unit, double exponent);
+[[nodiscard]] std::optional<Unit> power(const Unit& unit, double exponent);
 
 /// They measure the same thing: a number of one is so many of the other.
-bool convertible(const Unit& a, const Unit& b);
+[[nodiscard]] bool convertible(const Unit& a, const Unit& b);
 
 /// The same thing at the same size: N and kg*m/s^2.
 bool operator==(const Unit& a, const Unit& b);
 
 /// How many `to` one `from` is; empty where they are not convertible.
-std::optional<double> conversion_factor(const Unit& from, const Unit& to);
+[[nodiscard]] std::optional<double> conversion_factor(const Unit& from, const Unit& to);
 
 /// As short as it can be said: what the user wrote where symbols cancel to that, N for kg*m/s^2, `1` for a number.
-std::string to_text(const Unit& unit);
+[[nodiscard]] std::string to_text(const Unit& unit);
 
 /// Reads `m/s^2`, `N*s`, `kg m2 s-2`, `km/h`, `1/s`, `(m/s)^0.5`, `60 s`, `rad`, `degC`, `1`.
 /// Invalid input where the text is none: "`meterz` is not a unit".
-Result<Unit> parse_unit(std::string_view text);
+[[nodiscard]] Result<Unit> parse_unit(std::string_view text);
 
 /// A unit that may have been meant where the text is none, or empty.
-std::string suggested_unit(std::string_view text);
+[[nodiscard]] std::string suggested_unit(std::string_view text);
 
 }  // namespace continuo::model

@@ -10,12 +10,12 @@
 namespace continuo::model::detail {
 
 /// The usual names with their exact definitions; no database is read.
-std::optional<Unit> usual_unit(std::string_view name);
+[[nodiscard]] std::optional<Unit> usual_unit(std::string_view name);
 
 /// What UDUNITS-2 knows under this name.
-Result<Unit> database_unit(const std::string& name);
+[[nodiscard]] Result<Unit> database_unit(const std::string& name);
 
 /// The usual name nearest to this one, or nothing.
-std::string nearest_usual_name(std::string_view name);
+[[nodiscard]] std::string nearest_usual_name(std::string_view name);
 
 }  // namespace continuo::model::detail

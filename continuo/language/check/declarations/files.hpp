@@ -11,9 +11,9 @@
 namespace continuo::model::detail {
 
 /// Relative to the folder of the model; E270 and empty where there is no such file.
-std::string file_of(const std::string& name, Span span, Report& report);
+[[nodiscard]] std::string file_of(const std::string& name, Span span, Report& report);
 /// The column of this name where the file has one, else the second; E272 where it is no table.
-std::optional<Table> points_of(const std::string& file, Span span, Table::Between between, std::string_view column,
-                               Report& report);
+[[nodiscard]] std::optional<Table> points_of(const std::string& file, Span span, Table::Between between,
+                                             std::string_view column, Report& report);
 
 }  // namespace continuo::model::detail

@@ -15,12 +15,12 @@ struct Parameters {
 };
 
 /// Their values go to the registers of the workspace.
-Parameters make_parameters(Expressions& expressions);
+[[nodiscard]] Parameters make_parameters(Expressions& expressions);
 /// E210: overrides whose name is not that of a parameter.
 void check_overrides(const std::vector<Parameter>& parameters, Expressions& expressions);
 /// Which of them decide the size of a family is known only when the whole text has been read.
 void mark_structural(std::vector<Parameter>& parameters, Workspace& workspace);
 
-std::vector<Input> make_inputs(Expressions& expressions);
+[[nodiscard]] std::vector<Input> make_inputs(Expressions& expressions);
 
 }  // namespace continuo::model::detail

@@ -18,8 +18,8 @@ struct Quantities {
 /// Every definition is looked at once, named or not, so that its mistakes are reported.
 void look_at_definitions(Expressions& expressions);
 /// When the equations are solved: highest derivatives may stand in them.
-Quantities make_quantities(Expressions& expressions);
+[[nodiscard]] Quantities make_quantities(Expressions& expressions);
 /// Their units go to the workspace.
-std::vector<Unknown> make_unknowns(Expressions& expressions);
+[[nodiscard]] std::vector<Unknown> make_unknowns(Expressions& expressions);
 
 }  // namespace continuo::model::detail

@@ -27,20 +27,20 @@ class Equations {
         graph_(expressions.workspace.graph),
         model_(model),
         counts_(expressions.workspace) {}
-  SolvedEquations solve();
+  [[nodiscard]] SolvedEquations solve();
 
  private:
-  EquationAtWork read_equation(const Placed<ast::Equation>& equation) const;
+  [[nodiscard]] EquationAtWork read_equation(const Placed<ast::Equation>& equation) const;
   void solve_mode(std::size_t mode);
   void sort_out_algebraic(ModeAtWork& work);
   void count_algebraic(std::size_t count) const;
   void solve_one_by_one(ModeAtWork& work);
   void solve_for(ModeAtWork& work, const EquationAtWork& equation, std::uint32_t base);
-  Vanishes vanishing_beside(const LinearRows& rows);
+  [[nodiscard]] Vanishes vanishing_beside(const LinearRows& rows);
   void solve_coupled(ModeAtWork& work);
   void solve_group(ModeAtWork& work, const std::vector<std::size_t>& members, std::vector<std::uint32_t> open);
   void solve_rows(ModeAtWork& work, const std::vector<std::size_t>& members, const std::vector<std::uint32_t>& open);
-  NodeId with_solved(const ModeAtWork& work, NodeId node) const;
+  [[nodiscard]] NodeId with_solved(const ModeAtWork& work, NodeId node) const;
 
   Expressions& expressions_;
   Report& report_;

@@ -8,7 +8,7 @@
 namespace continuo::model::detail {
 
 /// The derivatives of all states from the highest derivatives of all bases.
-std::vector<NodeId> reduce(const std::vector<NodeId>& highest, Workspace& workspace);
+[[nodiscard]] std::vector<NodeId> reduce(const std::vector<NodeId>& highest, Workspace& workspace);
 
 struct PairedStates {
   std::vector<PositionVelocity> all;
@@ -16,6 +16,6 @@ struct PairedStates {
   bool accelerations_depend_on_velocities = false;  // then methods for x'' = a(t, x) lose their order
 };
 /// x and v are a pair where x' is v in every mode, written as x'' = ... or as x' = v.
-PairedStates pair_up(const Model& model);
+[[nodiscard]] PairedStates pair_up(const Model& model);
 
 }  // namespace continuo::model::detail

@@ -15,7 +15,7 @@ class Actions {
       : expressions_(expressions), report_(expressions.report), declared_(expressions.workspace.declared) {}
 
   /// Of one event.
-  Block actions_of(const std::vector<ast::Action>& actions, Scope& scope) const;
+  [[nodiscard]] Block actions_of(const std::vector<ast::Action>& actions, Scope& scope) const;
 
  private:
   struct Taken {
@@ -23,9 +23,9 @@ class Actions {
     std::optional<Span> go;
   };
 
-  Block block(const std::vector<ast::Action>& actions, Scope& scope) const;
+  [[nodiscard]] Block block(const std::vector<ast::Action>& actions, Scope& scope) const;
   void add(Block& to, const ast::Action& action, Scope& scope) const;
-  std::optional<Assign> assignment(const ast::Assignment& assignment, Scope& scope) const;
+  [[nodiscard]] std::optional<Assign> assignment(const ast::Assignment& assignment, Scope& scope) const;
   void refuse_without_symbol(const ast::Name& target, const std::string& key) const;
   void note_assignments(const Block& block, Taken& taken) const;
 

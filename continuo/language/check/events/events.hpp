@@ -23,7 +23,7 @@ class Events {
         graph_(expressions.workspace.graph),
         model_(model),
         actions_(expressions) {}
-  EventList make();
+  [[nodiscard]] EventList make();
 
  private:
   void add(const ast::When& text, Scope& scope, Span span);
@@ -32,8 +32,8 @@ class Events {
   void add(const ast::Initially& text, Scope& scope, Span span);
   void add_scheduled(Scheduled event, const std::vector<ast::Action>& actions, Scope& scope);
   void make_guard(When& event, const ast::When& text, Scope& scope);
-  Value guard(const ast::Expression& condition, Scope& scope);
-  bool changes_at_events_only(NodeId node) const;
+  [[nodiscard]] Value guard(const ast::Expression& condition, Scope& scope);
+  [[nodiscard]] bool changes_at_events_only(NodeId node) const;
 
   Expressions& expressions_;
   Report& report_;

@@ -17,13 +17,14 @@ class Calls {
  public:
   explicit Calls(Expressions& expressions);
 
-  Value call(const ast::Call& node, Span span, Scope& scope) const;
+  [[nodiscard]] Value call(const ast::Call& node, Span span, Scope& scope) const;
 
  private:
-  Value apply_function(std::string_view name, std::vector<Term>& arguments, Span span, Scope& scope) const;
-  Value interpolation(const ast::Call& node, Span span, Scope& scope) const;
-  Value sample(const ast::Call& node, Span span, Scope& scope) const;
-  Value unknown_function(const ast::Name& callee) const;
+  [[nodiscard]] Value apply_function(std::string_view name, std::vector<Term>& arguments, Span span,
+                                     Scope& scope) const;
+  [[nodiscard]] Value interpolation(const ast::Call& node, Span span, Scope& scope) const;
+  [[nodiscard]] Value sample(const ast::Call& node, Span span, Scope& scope) const;
+  [[nodiscard]] Value unknown_function(const ast::Name& callee) const;
 
   Expressions& expressions_;
   Workspace& workspace_;

@@ -17,14 +17,14 @@ class DefinitionValues {
   /// What the name stands for: of a parameter or an input its variable.
   Value value(std::size_t definition, const ast::Name& name, const Scope& outer);
   /// What it is in a constant: of a parameter its value. It then decides what the model is made of.
-  Value constant(std::size_t definition, const ast::Name& name, const Scope& outer);
+  [[nodiscard]] Value constant(std::size_t definition, const ast::Name& name, const Scope& outer);
 
   /// As written; after `value`.
-  const Value& written(std::size_t definition) { return entry(definition).value; }
+  [[nodiscard]] const Value& written(std::size_t definition) { return entry(definition).value; }
   /// Decides the size of a family, so that it cannot change later.
-  bool is_structural(std::size_t definition) { return entry(definition).structural; }
+  [[nodiscard]] bool is_structural(std::size_t definition) { return entry(definition).structural; }
   /// Parameters, each after those it needs.
-  const std::vector<std::size_t>& evaluation_order() const { return evaluation_order_; }
+  [[nodiscard]] const std::vector<std::size_t>& evaluation_order() const { return evaluation_order_; }
 
  private:
   struct Entry {
@@ -34,11 +34,11 @@ class DefinitionValues {
     bool structural = false;
   };
 
-  Entry& entry(std::size_t definition);
+  [[nodiscard]] Entry& entry(std::size_t definition);
   void find(std::size_t definition, const Scope& outer);
   void find_constant(std::size_t definition, const Scope& outer);
-  Value finished(std::size_t definition, Value value);
-  Value circular(std::size_t definition, Span span) const;
+  [[nodiscard]] Value finished(std::size_t definition, Value value);
+  [[nodiscard]] Value circular(std::size_t definition, Span span) const;
 
   Workspace& workspace_;
   std::vector<Entry> entries_;

@@ -75,6 +75,6 @@ class Expressions {
 };
 
 /// "h'", "k", "t": for messages, also before the states are named.
-std::string name_of_variable(const Workspace& workspace, std::uint32_t variable);
+[[nodiscard]] std::string name_of_variable(const Workspace& workspace, std::uint32_t variable);
 
 }  // namespace continuo::model::detail

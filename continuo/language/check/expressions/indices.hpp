@@ -22,13 +22,14 @@ class Indices {
  public:
   explicit Indices(Expressions& expressions);
 
-  std::optional<long> whole_number(const ast::Expression& expression, Scope& scope, std::string_view what) const;
-  std::optional<std::pair<long, long>> bounds(const ast::Range& range, Scope& scope) const;
-  std::optional<std::vector<long>> indices_of(const ast::Name& name, Scope& scope) const;
+  [[nodiscard]] std::optional<long> whole_number(const ast::Expression& expression, Scope& scope,
+                                                 std::string_view what) const;
+  [[nodiscard]] std::optional<std::pair<long, long>> bounds(const ast::Range& range, Scope& scope) const;
+  [[nodiscard]] std::optional<std::vector<long>> indices_of(const ast::Name& name, Scope& scope) const;
   /// The name as symbols have it: "u[3]", "ball.x".
-  std::optional<std::string> key_of(const ast::Name& name, Scope& scope) const;
+  [[nodiscard]] std::optional<std::string> key_of(const ast::Name& name, Scope& scope) const;
   /// One more member or term; false after saying that there are too many.
-  bool count_written_out(Span span) const;
+  [[nodiscard]] bool count_written_out(Span span) const;
 
   /// Calls body() with the index in the scope, for each of its values; stops where the model becomes too large.
   /// False where the ends of the range are wrong.
@@ -55,7 +56,7 @@ class Indices {
   }
 
  private:
-  bool is_wanted(const ast::Sum& sum, Scope& scope) const;
+  [[nodiscard]] bool is_wanted(const ast::Sum& sum, Scope& scope) const;
 
   Expressions& expressions_;
   Workspace& workspace_;

@@ -18,24 +18,24 @@ class Lookup {
  public:
   explicit Lookup(Expressions& expressions);
 
-  Value lookup(const ast::Name& name, Scope& scope) const;
+  [[nodiscard]] Value lookup(const ast::Name& name, Scope& scope) const;
   /// Of the variable of this index; its highest derivative is noted in the scope.
-  Value derivative(const ast::Name& name, std::size_t base, Scope& scope) const;
+  [[nodiscard]] Value derivative(const ast::Name& name, std::size_t base, Scope& scope) const;
   /// Of `energy` and of the world; its node is not valid where there is none.
-  Value total_energy(Span span, Scope& scope) const;
+  [[nodiscard]] Value total_energy(Span span, Scope& scope) const;
   /// The kinetic and the potential energy of the world; empty without bodies.
-  std::vector<NodeId> world_energies() const;
+  [[nodiscard]] std::vector<NodeId> world_energies() const;
   /// E222: what stands in a constant changes with time.
-  Value not_constant(Span span, const std::string& name, const Scope& scope) const;
+  [[nodiscard]] Value not_constant(Span span, const std::string& name, const Scope& scope) const;
   /// `undeclared`: what to do about it where the name is not like any other.
   Value unknown_name(const ast::Name& name, const std::string& key, std::string undeclared = {}) const;
 
  private:
-  Value of_symbol(const ast::Name& name, const std::string& key, Scope& scope) const;
-  Value builtin(const ast::Name& name, const std::string& key, Scope& scope) const;
-  Value without_time(const ast::Name& name, const Scope& scope) const;
-  Value not_a_value(const ast::Name& name) const;
-  std::size_t first_world_measure() const;  // of the kinetic energy, among the states
+  [[nodiscard]] Value of_symbol(const ast::Name& name, const std::string& key, Scope& scope) const;
+  [[nodiscard]] Value builtin(const ast::Name& name, const std::string& key, Scope& scope) const;
+  [[nodiscard]] Value without_time(const ast::Name& name, const Scope& scope) const;
+  [[nodiscard]] Value not_a_value(const ast::Name& name) const;
+  [[nodiscard]] std::size_t first_world_measure() const;  // of the kinetic energy, among the states
 
   Expressions& expressions_;
   Workspace& workspace_;

@@ -11,6 +11,7 @@ class Expressions;
 
 /// The term with one prime more or less somewhere, if that has the unit that is wanted: "did you mean x' ?". Empty
 /// where nothing fits, in constants, and in trials.
-std::string repair(Expressions& expressions, const Term& term, const Measured& wanted, const Scope& scope);
+[[nodiscard]] std::string repair(Expressions& expressions, const Term& term, const Measured& wanted,
+                                 const Scope& scope);
 
 }  // namespace continuo::model::detail

@@ -23,7 +23,7 @@ class ConditionValues {
   /// `depth`: of the expression that asks.
   Entry& of(std::size_t condition, std::size_t depth = 0);
   void find_all();
-  const std::vector<Entry>& all() const { return entries_; }
+  [[nodiscard]] const std::vector<Entry>& all() const { return entries_; }
 
  private:
   Workspace& workspace_;
@@ -37,12 +37,12 @@ class StateUnits {
   /// Its own initial value's unit, else the nearest one's of its chain times the unit of time.
   Measured of(std::size_t base, int primes, std::size_t depth = 0);
   /// Of a state whose unit has been found.
-  const Measured& of_state(std::size_t state) const { return units_[state]; }
+  [[nodiscard]] const Measured& of_state(std::size_t state) const { return units_[state]; }
   void set(std::size_t state, const Measured& unit);
   void reserve(std::size_t states);
 
  private:
-  Measured own(std::size_t base, int primes, std::size_t depth);
+  [[nodiscard]] Measured own(std::size_t base, int primes, std::size_t depth);
 
   Workspace& workspace_;
   std::vector<Measured> units_;

@@ -14,17 +14,17 @@ class Translator {
  public:
   explicit Translator(Expressions& expressions);
 
-  Value translate(const ast::Expression& expression, Scope& scope) const;
+  [[nodiscard]] Value translate(const ast::Expression& expression, Scope& scope) const;
   /// Brings b to the unit of a; false after saying that they do not fit, and what may have been meant.
-  bool align(const Term& a, Term& b, Span span, Scope& scope) const;
+  [[nodiscard]] bool align(const Term& a, Term& b, Span span, Scope& scope) const;
 
  private:
-  Value translate_node(const ast::Expression& expression, Scope& scope) const;
-  Value unary(const ast::Unary& node, Scope& scope) const;
-  Value binary(const ast::Binary& node, Scope& scope) const;
-  Value conditional(const ast::Conditional& node, Span span, Scope& scope) const;
-  Value quantity(const ast::Quantity& node, Scope& scope) const;
-  Value sum(const ast::Sum& node, Scope& scope) const;
+  [[nodiscard]] Value translate_node(const ast::Expression& expression, Scope& scope) const;
+  [[nodiscard]] Value unary(const ast::Unary& node, Scope& scope) const;
+  [[nodiscard]] Value binary(const ast::Binary& node, Scope& scope) const;
+  [[nodiscard]] Value conditional(const ast::Conditional& node, Span span, Scope& scope) const;
+  [[nodiscard]] Value quantity(const ast::Quantity& node, Scope& scope) const;
+  [[nodiscard]] Value sum(const ast::Sum& node, Scope& scope) const;
 
   Expressions& expressions_;
   Workspace& workspace_;

@@ -20,23 +20,24 @@ class Values {
   explicit Values(Expressions& expressions);
 
   /// The highest derivatives in it replaced by what they equal; before the equations are solved they stay.
-  Value settle(Value value, Span span, const std::vector<std::uint32_t>& highest) const;
-  Value number_of(const ast::Expression& expression, Scope& scope) const;     // settled, and no condition
-  Value condition_of(const ast::Expression& expression, Scope& scope) const;  // settled, and one
+  [[nodiscard]] Value settle(Value value, Span span, const std::vector<std::uint32_t>& highest) const;
+  [[nodiscard]] Value number_of(const ast::Expression& expression, Scope& scope) const;     // settled, and no condition
+  [[nodiscard]] Value condition_of(const ast::Expression& expression, Scope& scope) const;  // settled, and one
   /// A number that does not follow a parameter that changes later.
-  std::optional<double> constant(const ast::Expression& expression, Scope& scope, const Measured& wanted,
-                                 std::string_view what) const;
+  [[nodiscard]] std::optional<double> constant(const ast::Expression& expression, Scope& scope, const Measured& wanted,
+                                               std::string_view what) const;
   /// A number that may depend on parameters and follows them.
-  std::optional<Setting> setting(const ast::Expression& expression, Scope& scope, const Measured& wanted,
-                                 std::string_view what) const;
+  [[nodiscard]] std::optional<Setting> setting(const ast::Expression& expression, Scope& scope, const Measured& wanted,
+                                               std::string_view what) const;
   /// A time without unit is in the unit of the run.
-  std::optional<Setting> time_setting(const ast::Expression& expression, Scope& scope, std::string_view what) const;
+  [[nodiscard]] std::optional<Setting> time_setting(const ast::Expression& expression, Scope& scope,
+                                                    std::string_view what) const;
   bool only_parameters(NodeId node, Span span, std::string_view what, std::string help = {}) const;
   /// E281 where it is not; the end of the run decides, where it is known.
   void check_time_in_run(const Setting& time, Span span) const;
 
  private:
-  Value settled(const ast::Expression& expression, Scope& scope) const;
+  [[nodiscard]] Value settled(const ast::Expression& expression, Scope& scope) const;
 
   Expressions& expressions_;
   Workspace& workspace_;
@@ -44,6 +45,6 @@ class Values {
   const Operations& operations_;
 };
 
-bool is_in_run(const Setting& time, const RunSettings& run);
+[[nodiscard]] bool is_in_run(const Setting& time, const RunSettings& run);
 
 }  // namespace continuo::model::detail

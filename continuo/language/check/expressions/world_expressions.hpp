@@ -12,9 +12,9 @@ class WorldExpressions {
  public:
   virtual ~WorldExpressions() = default;
   /// `ball.x`, `grain[3].y'`, `ball.mass`, `world.kinetic`.
-  virtual Value member(const ast::Name& name, Scope& scope, Expressions& expressions) const = 0;
-  virtual bool is_query(const ast::Name& callee, const Scope& scope) const = 0;
-  virtual Value query(const ast::Call& node, Span span, Scope& scope, Expressions& expressions) const = 0;
+  [[nodiscard]] virtual Value member(const ast::Name& name, Scope& scope, Expressions& expressions) const = 0;
+  [[nodiscard]] virtual bool is_query(const ast::Name& callee, const Scope& scope) const = 0;
+  [[nodiscard]] virtual Value query(const ast::Call& node, Span span, Scope& scope, Expressions& expressions) const = 0;
 };
 
 /// E226: bodies are moved by forces, and the world is only looked at.

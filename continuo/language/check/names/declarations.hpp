@@ -98,7 +98,7 @@ struct WorldText {
   std::vector<PatternText> patterns{};
   std::vector<Placed<ast::Force>> forces{};
 
-  std::size_t axes() const { return static_cast<std::size_t>(dimension); }
+  [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(dimension); }
 };
 
 struct Declarations {
@@ -121,14 +121,15 @@ struct Declarations {
   Span run_span{};
   const ast::Start* start = nullptr;
 
-  bool has_modes() const { return modes.size() > 1; }
-  const Base& base_of_state(std::size_t state) const { return bases[base_index_of_state(state)]; }
-  std::size_t base_index_of_state(std::size_t state) const;
+  [[nodiscard]] bool has_modes() const { return modes.size() > 1; }
+  [[nodiscard]] const Base& base_of_state(std::size_t state) const { return bases[base_index_of_state(state)]; }
+  [[nodiscard]] std::size_t base_index_of_state(std::size_t state) const;
 };
 
 /// `npos` where there is none of this name.
-std::size_t find_mode(const Declarations& declared, std::string_view name);
+[[nodiscard]] std::size_t find_mode(const Declarations& declared, std::string_view name);
 /// Reported where there is none of this name.
-std::optional<std::size_t> mode_named(const Declarations& declared, const ast::Identifier& name, Report& report);
+[[nodiscard]] std::optional<std::size_t> mode_named(const Declarations& declared, const ast::Identifier& name,
+                                                    Report& report);
 
 }  // namespace continuo::model::detail

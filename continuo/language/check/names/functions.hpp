@@ -24,16 +24,16 @@ struct Function {
 };
 
 /// Null where there is none of this name; `interp` is none of these.
-const Function* find_function(std::string_view name);
-bool is_function(std::string_view name);
+[[nodiscard]] const Function* find_function(std::string_view name);
+[[nodiscard]] bool is_function(std::string_view name);
 /// All of them, for suggestions.
-std::vector<std::string> function_names();
+[[nodiscard]] std::vector<std::string> function_names();
 /// "one argument", "at least 2 arguments".
-std::string arguments_of(const Function& function);
+[[nodiscard]] std::string arguments_of(const Function& function);
 /// What is written here instead of a function, or of a number, that other languages have by this name; else nothing.
-std::string_view function_from_elsewhere(std::string_view name);
-std::string_view name_from_elsewhere(std::string_view name);
+[[nodiscard]] std::string_view function_from_elsewhere(std::string_view name);
+[[nodiscard]] std::string_view name_from_elsewhere(std::string_view name);
 /// How a call of it looks: "sin(...)", "atan2(..., ...)".
-std::string example_of_call(std::string_view function);
+[[nodiscard]] std::string example_of_call(std::string_view function);
 
 }  // namespace continuo::model::detail

@@ -19,21 +19,23 @@ class Report {
  public:
   explicit Report(const Source& source) : source_(source) {}
   /// Drops every message: for trying what may have been meant.
-  Report silent() const;
-  bool is_silent() const { return silent_; }
+  [[nodiscard]] Report silent() const;
+  [[nodiscard]] bool is_silent() const { return silent_; }
 
   /// Null where it was said already.
   Diagnostic* fail(const char* code, Span span, std::string message, std::string label = {}, std::string help = {});
   void warn(const char* code, Span span, std::string message, std::string label = {}, std::string help = {});
-  bool was_reported(const char* code, Span span) const { return reported_.contains({code, span.begin, span.end}); }
+  [[nodiscard]] bool was_reported(const char* code, Span span) const {
+    return reported_.contains({code, span.begin, span.end});
+  }
   /// How often something was wrong, repetitions included.
-  std::size_t errors() const { return errors_; }
+  [[nodiscard]] std::size_t errors() const { return errors_; }
   /// In order of place; empties the report.
-  std::vector<Diagnostic> take();
+  [[nodiscard]] std::vector<Diagnostic> take();
 
-  std::string_view slice(Span span) const { return source_.slice(span); }
-  std::string quote(Span span) const;  // `text`, cut off where it is long
-  const Source& source() const { return source_; }
+  [[nodiscard]] std::string_view slice(Span span) const { return source_.slice(span); }
+  [[nodiscard]] std::string quote(Span span) const;  // `text`, cut off where it is long
+  [[nodiscard]] const Source& source() const { return source_; }
 
  private:
   const Source& source_;
@@ -44,14 +46,14 @@ class Report {
 };
 
 /// "x''".
-std::string with_primes(std::string_view name, int primes);
+[[nodiscard]] std::string with_primes(std::string_view name, int primes);
 /// `a`, `b` and `c`; after five: and 7 more.
-std::string listed(const std::vector<std::string>& names);
+[[nodiscard]] std::string listed(const std::vector<std::string>& names);
 /// "this is inf".
-std::string not_finite(double value);
+[[nodiscard]] std::string not_finite(double value);
 /// "m/s", "a pure number", "without unit".
-std::string unit_text(const Measured& measured);
+[[nodiscard]] std::string unit_text(const Measured& measured);
 /// "m/s", empty where no unit is known: as a model keeps it.
-std::string unit_or_nothing(const Measured& measured);
+[[nodiscard]] std::string unit_or_nothing(const Measured& measured);
 
 }  // namespace continuo::model::detail

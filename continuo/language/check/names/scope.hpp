@@ -29,7 +29,7 @@ struct Scope {
   std::vector<std::uint32_t>* highest = nullptr;  // notes the bases whose highest derivatives stand in the expression
   std::size_t depth = 0;                          // of expressions and definitions inside each other
 
-  bool is_constant() const { return !constant.empty(); }
+  [[nodiscard]] bool is_constant() const { return !constant.empty(); }
 };
 
 /// A node with what it measures. `bad`: an error was reported, nothing more is said about it.

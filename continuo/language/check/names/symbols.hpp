@@ -31,19 +31,19 @@ struct FamilyShape {
 class Symbols {
  public:
   /// Names of a mode are found before those of the model. False where the name is taken: that is reported.
-  bool declare(const std::string& name, int mode, Symbol symbol, std::string_view family,
-               const std::vector<long>& indices, Report& report);
+  [[nodiscard]] bool declare(const std::string& name, int mode, Symbol symbol, std::string_view family,
+                             const std::vector<long>& indices, Report& report);
   /// Of the world's own making: of no family, and taken by nobody.
   void add(const std::string& name, Symbol symbol) { symbols_.try_emplace(name, symbol); }
   /// Null where there is none.
-  const Symbol* find(const std::string& name, int mode) const;
-  const FamilyShape* family(std::string_view name) const;
-  bool is_family_of_bodies(std::string_view name) const;
-  std::vector<std::string> all() const;  // in order, with `t` and `pi`
+  [[nodiscard]] const Symbol* find(const std::string& name, int mode) const;
+  [[nodiscard]] const FamilyShape* family(std::string_view name) const;
+  [[nodiscard]] bool is_family_of_bodies(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string> all() const;  // in order, with `t` and `pi`
 
   /// A family that could not be written out: nobody misses its members.
   void lose(const std::string& family) { lost_.insert(family); }
-  bool is_lost(std::string_view family) const { return lost_.contains(family); }
+  [[nodiscard]] bool is_lost(std::string_view family) const { return lost_.contains(family); }
 
  private:
   std::unordered_map<std::string, Symbol> symbols_;
@@ -52,8 +52,8 @@ class Symbols {
 };
 
 /// "u[3]", "a[1,2]".
-std::string indexed(std::string_view name, const std::vector<long>& indices);
+[[nodiscard]] std::string indexed(std::string_view name, const std::vector<long>& indices);
 /// "this is time" of t, "3.14159..." of pi, else nothing.
-std::string_view meaning_of_its_own(std::string_view name);
+[[nodiscard]] std::string_view meaning_of_its_own(std::string_view name);
 
 }  // namespace continuo::model::detail

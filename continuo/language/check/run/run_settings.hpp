@@ -9,7 +9,7 @@ namespace continuo::model::detail {
 class RunReader {
  public:
   explicit RunReader(Expressions& expressions) : expressions_(expressions), report_(expressions.report) {}
-  RunSettings read();
+  [[nodiscard]] RunSettings read();
 
  private:
   void read_times(const ast::Run& run);

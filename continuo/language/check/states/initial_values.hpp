@@ -20,7 +20,7 @@ struct BoundaryProblem {
 class InitialValues {
  public:
   InitialValues(Expressions& expressions, std::vector<State>& states);
-  BoundaryProblem make();
+  [[nodiscard]] BoundaryProblem make();
 
  private:
   void count_conditions() const;

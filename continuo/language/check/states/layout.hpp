@@ -8,10 +8,10 @@
 namespace continuo::model::detail {
 
 /// When all orders are known; gives bases, unknowns, parameters and inputs their places.
-Layout lay_out(Declarations& declared);
+[[nodiscard]] Layout lay_out(Declarations& declared);
 /// Room for what is found out about each place.
 void make_room(Workspace& workspace);
 /// x, x', ... of each base with their units; E201 where the units of a chain do not fit.
-std::vector<State> name_states(Expressions& expressions);
+[[nodiscard]] std::vector<State> name_states(Expressions& expressions);
 
 }  // namespace continuo::model::detail

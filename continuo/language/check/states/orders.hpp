@@ -14,7 +14,7 @@ class StateOrders {
       : declared_(declared), expressions_(expressions), report_(expressions.report) {}
 
   /// False where the equation is refused.
-  bool see_equation(const ast::Equation& equation, Scope& scope);
+  [[nodiscard]] bool see_equation(const ast::Equation& equation, Scope& scope);
   void see_condition(const ast::Condition& condition, Scope& scope, Span span);
   /// After the last equation: primes on the right of explicit ones may raise an order, and what has conditions only
   /// has the order that these ask for.

@@ -13,13 +13,13 @@ class Checks {
   /// `model`: its events by name, and whether it has energies.
   Checks(Expressions& expressions, const Model& model)
       : expressions_(expressions), report_(expressions.report), graph_(expressions.workspace.graph), model_(model) {}
-  std::vector<Check> make();
+  [[nodiscard]] std::vector<Check> make();
 
  private:
   void add(const ast::Check& text, const Scope& outer, Span span);
-  Value measure(const ast::Check& text, Scope& scope, Check& check);
-  Value value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check);
-  Moment moment(const ast::Moment& text, Scope& scope, Span span);
+  [[nodiscard]] Value measure(const ast::Check& text, Scope& scope, Check& check);
+  [[nodiscard]] Value value_at(const ast::ValueOf& text, Scope& scope, Span span, Check& check);
+  [[nodiscard]] Moment moment(const ast::Moment& text, Scope& scope, Span span);
   void check_event_name(const std::string& begin, Span span);
 
   Expressions& expressions_;

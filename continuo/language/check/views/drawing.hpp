@@ -11,14 +11,14 @@ class Drawing {
  public:
   /// `states`: of the model, to tell which points can be dragged.
   Drawing(Expressions& expressions, const std::vector<State>& states) : expressions_(expressions), states_(states) {}
-  std::vector<DrawItem> make();
+  [[nodiscard]] std::vector<DrawItem> make();
 
  private:
   void add(const std::vector<ast::DrawItem>& items, Scope& scope);
   void add_shape(const ast::Shape& shape, Span span, Scope& scope);
-  bool depends_on_states(const DrawArgument& point) const;
-  NodeId drawn(const ast::Expression& expression, Scope& scope, bool of_point);
-  DrawArgument argument_of(const ast::Expression& expression, Scope& scope, bool of_point);
+  [[nodiscard]] bool depends_on_states(const DrawArgument& point) const;
+  [[nodiscard]] NodeId drawn(const ast::Expression& expression, Scope& scope, bool of_point);
+  [[nodiscard]] DrawArgument argument_of(const ast::Expression& expression, Scope& scope, bool of_point);
 
   Expressions& expressions_;
   const std::vector<State>& states_;

@@ -7,6 +7,6 @@
 
 namespace continuo::model::detail {
 
-std::vector<Plot> make_plots(Expressions& expressions);
+[[nodiscard]] std::vector<Plot> make_plots(Expressions& expressions);
 
 }  // namespace continuo::model::detail

@@ -32,10 +32,10 @@ class Bodies {
 
   void make_body(const BodyText& body);
   void make_pattern(const PatternText& pattern);
-  BodyDescription description_of(const ast::WorldAttributes& attributes, Scope& scope);
-  std::uint32_t group_of(const ast::WorldAttributes& attributes);
-  NodePoint velocity_of(const ast::WorldAttributes& attributes, Scope& scope);
-  Turn turn_of(const ast::WorldAttributes& attributes, Scope& scope);
+  [[nodiscard]] BodyDescription description_of(const ast::WorldAttributes& attributes, Scope& scope);
+  [[nodiscard]] std::uint32_t group_of(const ast::WorldAttributes& attributes);
+  [[nodiscard]] NodePoint velocity_of(const ast::WorldAttributes& attributes, Scope& scope);
+  [[nodiscard]] Turn turn_of(const ast::WorldAttributes& attributes, Scope& scope);
   void set_start(std::size_t body, const NodePoint& position, const NodePoint& velocity, const Turn& turn);
   void place_grid(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);
   void place_random(const PatternText& pattern, const NodePoint& velocity, const Turn& turn);

@@ -8,6 +8,6 @@
 namespace continuo::model::detail {
 
 /// E223 where there is no body of this name.
-std::optional<std::size_t> body_named(const ast::Name& name, Scope& scope, Expressions& expressions);
+[[nodiscard]] std::optional<std::size_t> body_named(const ast::Name& name, Scope& scope, Expressions& expressions);
 
 }  // namespace continuo::model::detail

@@ -11,7 +11,7 @@
 namespace continuo::model::detail {
 
 /// Null where the model has no world. Warns of what it finds, of overlaps in a model without errors only.
-std::shared_ptr<const WorldDescription> finish_world(const WorldText& text, WorldAtWork world, const Model& model,
-                                                     Report& report);
+[[nodiscard]] std::shared_ptr<const WorldDescription> finish_world(const WorldText& text, WorldAtWork world,
+                                                                   const Model& model, Report& report);
 
 }  // namespace continuo::model::detail

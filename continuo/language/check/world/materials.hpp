@@ -6,7 +6,7 @@
 namespace continuo::model::detail {
 
 /// That of the world, but for what the attributes say.
-MaterialDescription material_of(const ast::WorldAttributes& attributes, Scope& scope, const WorldAtWork& work,
-                                const WorldNumbers& numbers);
+[[nodiscard]] MaterialDescription material_of(const ast::WorldAttributes& attributes, Scope& scope,
+                                              const WorldAtWork& work, const WorldNumbers& numbers);
 
 }  // namespace continuo::model::detail

@@ -23,7 +23,7 @@ inline constexpr std::array<Member, 10> space_members = {{{"x", 2},
                                                           {"spin_y", 1},
                                                           {"spin_z", 1}}};
 
-inline std::span<const Member> members_of(int dimension) {
+[[nodiscard]] inline std::span<const Member> members_of(int dimension) {
   if (dimension == 2) return plane_members;
   return space_members;
 }

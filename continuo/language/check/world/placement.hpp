@@ -15,10 +15,10 @@ class Random {
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
   /// From 0 to below 1, 53 bits.
-  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
-  double between(double low, double high) { return low + (high - low) * uniform(); }
+  [[nodiscard]] double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+  [[nodiscard]] double between(double low, double high) { return low + (high - low) * uniform(); }
   /// A unit vector, all directions alike: one of a ball's points, made longer (J. von Neumann, 1951).
-  std::array<double, 3> direction(std::size_t dimension);
+  [[nodiscard]] std::array<double, 3> direction(std::size_t dimension);
 
  private:
   std::mt19937_64 engine_;
@@ -32,6 +32,6 @@ struct RandomPlacement {
 
 /// Centres of balls that do not touch, one after the other where there is room (random sequential addition). Fewer than
 /// asked for where the box is full: it ends at about 0.55 of the plane and 0.38 of space.
-std::vector<std::array<double, 3>> place_at_random(const RandomPlacement& wanted, Random& random);
+[[nodiscard]] std::vector<std::array<double, 3>> place_at_random(const RandomPlacement& wanted, Random& random);
 
 }  // namespace continuo::model

@@ -15,7 +15,7 @@
 
 namespace continuo::model::detail {
 
-bool is_query(std::string_view name);
+[[nodiscard]] bool is_query(std::string_view name);
 
 class Queries {
  public:
@@ -28,21 +28,22 @@ class Queries {
         numbers_(expressions, work),
         lines_(expressions.workspace.graph, work.made, text_.dimension) {}
 
-  Value query(const ast::Call& node, Span span, Scope& scope) const;
+  [[nodiscard]] Value query(const ast::Call& node, Span span, Scope& scope) const;
 
  private:
   /// Who asks, and about what.
   using ThingPairs = std::vector<std::pair<Thing, Thing>>;
 
-  std::optional<ThingPairs> pairs_of(const ast::Call& node, std::size_t first, Span span, Scope& scope) const;
-  std::optional<std::vector<Thing>> things(const ast::Expression& text, Scope& scope) const;
-  std::optional<std::vector<Thing>> things_named(const ast::Name& name, Scope& scope) const;
-  Thing thing_of(std::size_t body) const;
-  Value least_gap(const ThingPairs& pairs) const;
-  Value count_within(const ThingPairs& pairs, const ast::Call& node, Scope& scope) const;
-  Value cast_ray(const ThingPairs& pairs, const ast::Call& node, Scope& scope) const;
-  Measured measure_of_direction(const ast::Expression& text, const Scope& scope) const;
-  NodeId length_in(const ast::Expression& text, Scope& scope, std::string_view what) const;
+  [[nodiscard]] std::optional<ThingPairs> pairs_of(const ast::Call& node, std::size_t first, Span span,
+                                                   Scope& scope) const;
+  [[nodiscard]] std::optional<std::vector<Thing>> things(const ast::Expression& text, Scope& scope) const;
+  [[nodiscard]] std::optional<std::vector<Thing>> things_named(const ast::Name& name, Scope& scope) const;
+  [[nodiscard]] Thing thing_of(std::size_t body) const;
+  [[nodiscard]] Value least_gap(const ThingPairs& pairs) const;
+  [[nodiscard]] Value count_within(const ThingPairs& pairs, const ast::Call& node, Scope& scope) const;
+  [[nodiscard]] Value cast_ray(const ThingPairs& pairs, const ast::Call& node, Scope& scope) const;
+  [[nodiscard]] Measured measure_of_direction(const ast::Expression& text, const Scope& scope) const;
+  [[nodiscard]] NodeId length_in(const ast::Expression& text, Scope& scope, std::string_view what) const;
 
   Expressions& expressions_;
   Report& report_;

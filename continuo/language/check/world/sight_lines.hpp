@@ -12,7 +12,7 @@ namespace continuo::model::detail {
 struct Thing {
   std::size_t body = no_body, wall = no_body;  // wall: by its number
   NodePoint point{};                           // of a body its centre
-  bool is_wall() const { return wall != no_body; }
+  [[nodiscard]] bool is_wall() const { return wall != no_body; }
 };
 
 class SightLines {
@@ -21,18 +21,20 @@ class SightLines {
       : graph_(graph), made_(made), dimension_(dimension) {}
 
   /// Between surfaces; below 0 where they overlap.
-  NodeId gap_between(const Thing& a, const Thing& b) const;
+  [[nodiscard]] NodeId gap_between(const Thing& a, const Thing& b) const;
   /// How far it is from a point along a unit vector to a body or a wall; the reach where none is met.
-  NodeId way_to(const Thing& thing, const NodePoint& from, const NodePoint& direction, NodeId reach) const;
-  NodeId length_of(const NodePoint& v) const;
+  [[nodiscard]] NodeId way_to(const Thing& thing, const NodePoint& from, const NodePoint& direction,
+                              NodeId reach) const;
+  [[nodiscard]] NodeId length_of(const NodePoint& v) const;
 
  private:
-  std::size_t axes() const { return static_cast<std::size_t>(dimension_); }
-  NodeId way_to_body(const Thing& body, const NodePoint& centre, const NodePoint& direction, NodeId reach) const;
-  NodeId way_to_wall(const WallDescription& wall, const NodePoint& from, const NodePoint& direction,
-                     NodeId reach) const;
-  NodeId inner_product(const NodePoint& v, const NodePoint& w) const;
-  NodePoint from_to(const NodePoint& from, const NodePoint& to) const;
+  [[nodiscard]] std::size_t axes() const { return static_cast<std::size_t>(dimension_); }
+  [[nodiscard]] NodeId way_to_body(const Thing& body, const NodePoint& centre, const NodePoint& direction,
+                                   NodeId reach) const;
+  [[nodiscard]] NodeId way_to_wall(const WallDescription& wall, const NodePoint& from, const NodePoint& direction,
+                                   NodeId reach) const;
+  [[nodiscard]] NodeId inner_product(const NodePoint& v, const NodePoint& w) const;
+  [[nodiscard]] NodePoint from_to(const NodePoint& from, const NodePoint& to) const;
 
   Graph& graph_;
   const WorldDescription& made_;

@@ -26,7 +26,7 @@ class Springs {
 
  private:
   void add_spring(SpringDescription spring, const ast::WorldAttributes& attributes, Scope& scope);
-  NodeId length_at_start(const SpringDescription& spring) const;
+  [[nodiscard]] NodeId length_at_start(const SpringDescription& spring) const;
 
   Expressions& expressions_;
   Report& report_;

@@ -11,13 +11,13 @@ class WorldNames : public WorldExpressions {
  public:
   WorldNames(const Declarations& declared, WorldAtWork& work) : declared_(declared), work_(work) {}
 
-  Value member(const ast::Name& name, Scope& scope, Expressions& expressions) const override;
-  bool is_query(const ast::Name& callee, const Scope& scope) const override;
-  Value query(const ast::Call& node, Span span, Scope& scope, Expressions& expressions) const override;
+  [[nodiscard]] Value member(const ast::Name& name, Scope& scope, Expressions& expressions) const override;
+  [[nodiscard]] bool is_query(const ast::Name& callee, const Scope& scope) const override;
+  [[nodiscard]] Value query(const ast::Call& node, Span span, Scope& scope, Expressions& expressions) const override;
 
  private:
-  Value own_of_body(const ast::Name& name, std::size_t body, Expressions& expressions) const;
-  Value no_member_of_world(const ast::Name& name, const std::string& key, Expressions& expressions) const;
+  [[nodiscard]] Value own_of_body(const ast::Name& name, std::size_t body, Expressions& expressions) const;
+  [[nodiscard]] Value no_member_of_world(const ast::Name& name, const std::string& key, Expressions& expressions) const;
 
   const Declarations& declared_;
   WorldAtWork& work_;

@@ -18,17 +18,18 @@ class WorldNumbers {
         work_(work) {}
 
   /// Of parameters; judged later. Not valid where it is wrong.
-  NodeId number(const ast::Expression& expression, Scope& scope, const Measured& wanted, std::string_view what,
-                Sort sort) const;
+  [[nodiscard]] NodeId number(const ast::Expression& expression, Scope& scope, const Measured& wanted,
+                              std::string_view what, Sort sort) const;
   /// (1, 2); of parameters unless everything may stand in it.
-  NodePoint point(const ast::Expression& expression, Scope& scope, const Measured& wanted, std::string_view what,
-                  bool parameters_only = true) const;
+  [[nodiscard]] NodePoint point(const ast::Expression& expression, Scope& scope, const Measured& wanted,
+                                std::string_view what, bool parameters_only = true) const;
   /// About an axis: in the plane one number, in space three.
-  NodeId in_plane(const ast::Expression& text, Scope& scope, const Measured& wanted, std::string_view what) const;
-  NodePoint in_space(const ast::Expression& text, Scope& scope, const Measured& wanted, std::string_view what,
-                     bool parameters_only = true) const;
+  [[nodiscard]] NodeId in_plane(const ast::Expression& text, Scope& scope, const Measured& wanted,
+                                std::string_view what) const;
+  [[nodiscard]] NodePoint in_space(const ast::Expression& text, Scope& scope, const Measured& wanted,
+                                   std::string_view what, bool parameters_only = true) const;
   /// The numbers of a point, each with the unit that stands behind the bracket; at least `count`.
-  std::vector<Term> components(const ast::Expression& expression, Scope& scope, std::size_t count) const;
+  [[nodiscard]] std::vector<Term> components(const ast::Expression& expression, Scope& scope, std::size_t count) const;
   /// To be judged with the others.
   void expect(NodeId node, Sort sort, Span span, std::string what) const;
   /// Everything at once, with the parameters as written: what many bodies share is computed once.

@@ -21,7 +21,7 @@ class WorldSettings {
 
  private:
   void read(const ast::WorldSetting& setting, Scope& scope);
-  bool stands_twice(const ast::WorldSetting& setting);
+  [[nodiscard]] bool stands_twice(const ast::WorldSetting& setting);
   void read_attraction(const ast::WorldSetting& setting, Scope& scope);
   void read_drag(const ast::WorldSetting& setting, Scope& scope);
   void read_combinations(const ast::WorldSetting& setting);

@@ -17,22 +17,26 @@ class BorderedCycle {
  public:
   BorderedCycle(std::size_t n, std::size_t interior, std::size_t links);
 
-  std::size_t unknowns() const { return links_ * (interior_ + n_) + 2; }
+  [[nodiscard]] std::size_t unknowns() const { return links_ * (interior_ + n_) + 2; }
   /// Rows of `width()`: the link's own unknowns, its beginning, that of the next one, the two, the right-hand side. To
   /// be filled anew before each `solve`.
-  std::span<double> link(std::size_t k) { return std::span(rows_).subspan(k * height() * width(), height() * width()); }
-  std::size_t width() const { return interior_ + 2 * n_ + 3; }
-  std::size_t height() const { return interior_ + n_; }
+  [[nodiscard]] std::span<double> link(std::size_t k) {
+    return std::span(rows_).subspan(k * height() * width(), height() * width());
+  }
+  [[nodiscard]] std::size_t width() const { return interior_ + 2 * n_ + 3; }
+  [[nodiscard]] std::size_t height() const { return interior_ + n_; }
   /// The border's equation `row`, 0 or 1, of all unknowns.
-  std::span<double> border(std::size_t row) { return std::span(border_).subspan(row * unknowns(), unknowns()); }
+  [[nodiscard]] std::span<double> border(std::size_t row) {
+    return std::span(border_).subspan(row * unknowns(), unknowns());
+  }
 
   /// False where they have no one solution. `border_values`: the right-hand side of the border.
-  bool solve(double first_border_value, double second_border_value, std::span<double> solution);
+  [[nodiscard]] bool solve(double first_border_value, double second_border_value, std::span<double> solution);
 
  private:
-  bool eliminate_interiors();
-  bool eliminate_beginnings();
-  bool solve_last(std::span<double> solution);
+  [[nodiscard]] bool eliminate_interiors();
+  [[nodiscard]] bool eliminate_beginnings();
+  [[nodiscard]] bool solve_last(std::span<double> solution);
   void substitute(std::span<double> solution) const;
 
   std::size_t n_, interior_, links_;

@@ -22,10 +22,12 @@ class ClosedView {
   ClosedView(const ClosedView&) = delete;
   ClosedView& operator=(const ClosedView&) = delete;
 
-  const OrbitCollocation& orbit() const { return orbit_; }
-  const std::vector<double>& unknowns() const { return unknowns_; }
+  [[nodiscard]] const OrbitCollocation& orbit() const { return orbit_; }
+  [[nodiscard]] const std::vector<double>& unknowns() const { return unknowns_; }
   /// Of each interval, in sizes.
-  std::vector<double> errors(std::span<const double> sizes) const { return orbit_.errors(unknowns_, sizes, true); }
+  [[nodiscard]] std::vector<double> errors(std::span<const double> sizes) const {
+    return orbit_.errors(unknowns_, sizes, true);
+  }
   void state(double s, std::span<double> x) const { orbit_.state(unknowns_, s, x); }
 
  private:

@@ -22,7 +22,7 @@ struct GaussCollocation {
   double error_constant = 0;
 
   /// The values at theta of the polynomials that are 1 at one node and 0 at the others.
-  std::array<double, m + 1> basis(double theta) const {
+  [[nodiscard]] std::array<double, m + 1> basis(double theta) const {
     std::array<double, m + 1> values{};
     for (std::size_t j = 0; j <= m; ++j) {
       values[j] = 1;
@@ -31,7 +31,7 @@ struct GaussCollocation {
     }
     return values;
   }
-  std::array<double, m + 1> basis_slopes(double theta) const {
+  [[nodiscard]] std::array<double, m + 1> basis_slopes(double theta) const {
     std::array<double, m + 1> slopes{};
     for (std::size_t j = 0; j <= m; ++j) {
       for (std::size_t k = 0; k <= m; ++k) {
@@ -47,7 +47,7 @@ struct GaussCollocation {
 };
 
 template <std::size_t m>
-GaussCollocation<m> make_gauss_collocation() {
+[[nodiscard]] GaussCollocation<m> make_gauss_collocation() {
   GaussCollocation<m> table;
   for (std::size_t j = 0; j <= m; ++j)
     table.nodes[j] = (1 - std::cos(std::numbers::pi * static_cast<double>(j) / static_cast<double>(m))) / 2;

@@ -24,7 +24,7 @@ namespace continuo::studies::detail {
 void sort_by_size(std::vector<std::complex<double>>& values);
 
 /// The same system of one of its constants; `size` is what is small of it.
-ParametricSystem with_one_constant(const ParametricSystem& system, std::size_t constant, double size);
+[[nodiscard]] ParametricSystem with_one_constant(const ParametricSystem& system, std::size_t constant, double size);
 
 /// 0 = s_0 < s_1 < ... = 1.
 using OrbitMesh = std::vector<double>;
@@ -32,54 +32,56 @@ using OrbitMesh = std::vector<double>;
 class OrbitCollocation {
  public:
   static constexpr std::size_t degree = 6;
-  static const GaussCollocation<degree>& table();
+  [[nodiscard]] static const GaussCollocation<degree>& table();
 
   /// `system` has one constant.
   OrbitCollocation(const ParametricSystem& system, std::shared_ptr<const OrbitMesh> mesh);
 
-  const std::shared_ptr<const OrbitMesh>& mesh() const { return mesh_; }
-  std::size_t size() const { return n_; }
-  std::size_t intervals() const { return mesh_->size() - 1; }
-  std::size_t nodes() const { return intervals() * degree; }
-  std::size_t unknowns() const { return nodes() * n_ + 2; }
-  double period(std::span<const double> z) const { return z[nodes() * n_]; }
-  double constant(std::span<const double> z) const { return z[nodes() * n_ + 1]; }
+  [[nodiscard]] const std::shared_ptr<const OrbitMesh>& mesh() const { return mesh_; }
+  [[nodiscard]] std::size_t size() const { return n_; }
+  [[nodiscard]] std::size_t intervals() const { return mesh_->size() - 1; }
+  [[nodiscard]] std::size_t nodes() const { return intervals() * degree; }
+  [[nodiscard]] std::size_t unknowns() const { return nodes() * n_ + 2; }
+  [[nodiscard]] double period(std::span<const double> z) const { return z[nodes() * n_]; }
+  [[nodiscard]] double constant(std::span<const double> z) const { return z[nodes() * n_ + 1]; }
   /// Where a node stands, as a part of the period; its weight in an integral over the period, all of them 1 together.
-  double place(std::size_t node) const;
-  double weight(std::size_t node) const;
+  [[nodiscard]] double place(std::size_t node) const;
+  [[nodiscard]] double weight(std::size_t node) const;
   /// x at s.
   void state(std::span<const double> z, double s, std::span<double> x) const;
 
   /// Residuals and their derivatives at z, `sizes` being what is small of each component; false where f is not finite.
-  bool evaluate(std::span<const double> z, std::span<const double> sizes);
-  std::span<const double> residuals() const { return residuals_; }
+  [[nodiscard]] bool evaluate(std::span<const double> z, std::span<const double> sizes);
+  [[nodiscard]] std::span<const double> residuals() const { return residuals_; }
   /// Solves d(residuals, shift . z, last . z)/dz y = b at the last evaluation, in which z_j counts in units of scale_j
   /// and the residuals in `sizes`. b becomes the solution; false where there is no one.
-  bool solve(std::span<const double> scale, std::span<const double> sizes, std::span<const double> shift,
-             std::span<const double> last, std::span<double> b);
+  [[nodiscard]] bool solve(std::span<const double> scale, std::span<const double> sizes, std::span<const double> shift,
+                           std::span<const double> last, std::span<double> b);
 
   /// f at the nodes: where a shift along the orbit moves them.
-  std::vector<double> field(std::span<const double> z) const;
+  [[nodiscard]] std::vector<double> field(std::span<const double> z) const;
 
   /// Of each interval the estimated error inside, in sizes. `is_open`: the first interval is not the last one's
   /// neighbour.
-  std::vector<double> errors(std::span<const double> z, std::span<const double> sizes, bool is_open = false) const;
+  [[nodiscard]] std::vector<double> errors(std::span<const double> z, std::span<const double> sizes,
+                                           bool is_open = false) const;
   /// A mesh on which these errors are the same everywhere and, if that takes no more than `most` intervals, below
   /// `wanted`.
-  std::shared_ptr<const OrbitMesh> better_mesh(std::span<const double> errors, double wanted, std::size_t most) const;
+  [[nodiscard]] std::shared_ptr<const OrbitMesh> better_mesh(std::span<const double> errors, double wanted,
+                                                             std::size_t most) const;
 
   /// The least and the greatest value of each component on the orbit.
   struct Extremes {
     std::vector<double> low, high;
   };
-  Extremes extremes(std::span<const double> z) const;
+  [[nodiscard]] Extremes extremes(std::span<const double> z) const;
 
  private:
-  std::span<const double> node(std::span<const double> z, std::size_t k) const {
+  [[nodiscard]] std::span<const double> node(std::span<const double> z, std::size_t k) const {
     return z.subspan(k % nodes() * n_, n_);
   }
   /// Component i at node k; behind the last one it is that of the first a period later.
-  double value(std::span<const double> z, std::size_t k, std::size_t i) const {
+  [[nodiscard]] double value(std::span<const double> z, std::size_t k, std::size_t i) const {
     return k < nodes() || system_.advance.empty() ? z[k % nodes() * n_ + i] : z[i] + system_.advance[i];
   }
 

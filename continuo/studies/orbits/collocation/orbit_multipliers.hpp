@@ -10,7 +10,8 @@ namespace continuo::studies::detail {
 
 /// The multipliers but that of the shift along the orbit, by descending size. `sizes`: of the components. None where f
 /// vanishes on the way.
-std::vector<std::complex<double>> multipliers_of(const ParametricSystem& system, const OrbitCollocation& orbit,
-                                                 std::span<const double> z, std::span<const double> sizes);
+[[nodiscard]] std::vector<std::complex<double>> multipliers_of(const ParametricSystem& system,
+                                                               const OrbitCollocation& orbit, std::span<const double> z,
+                                                               std::span<const double> sizes);
 
 }  // namespace continuo::studies::detail

@@ -14,7 +14,7 @@ struct MultiplierTests {
 };
 
 /// Products over the multipliers, each factor of size 1 at most.
-inline MultiplierTests tests_of(std::span<const std::complex<double>> values) {
+[[nodiscard]] inline MultiplierTests tests_of(std::span<const std::complex<double>> values) {
   std::complex<double> unity = 1, doubling = 1, torus = 1;
   for (std::size_t i = 0; i < values.size(); ++i) {
     unity *= (1.0 - values[i]) / (1 + std::abs(values[i]));

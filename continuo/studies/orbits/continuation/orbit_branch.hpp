@@ -33,14 +33,14 @@ struct OrbitPlace {
 };
 
 /// The equilibrium in which a branch begins or ends, as an orbit without extent.
-OrbitPoint as_orbit(const HopfPoint& hopf, bool stable);
+[[nodiscard]] OrbitPoint as_orbit(const HopfPoint& hopf, bool stable);
 
 class OrbitBranchSteps {
  public:
   OrbitBranchSteps(const ParametricSystem& system, const OrbitContinuationOptions& options);
 
-  const OrbitCollocation& equations() const { return *equations_; }
-  std::size_t iterations() const { return iterations_; }  // of the last correction
+  [[nodiscard]] const OrbitCollocation& equations() const { return *equations_; }
+  [[nodiscard]] std::size_t iterations() const { return iterations_; }  // of the last correction
 
   /// The mesh of the orbits that are passed by their unknowns alone.
   void use(const std::shared_ptr<const OrbitMesh>& mesh);
@@ -52,47 +52,50 @@ class OrbitBranchSteps {
   void forget_sizes(const std::vector<double>& sizes);
 
   /// The orbit near z with this value of the constant.
-  std::optional<OrbitPlace> at_constant(std::vector<double> z, double value);
+  [[nodiscard]] std::optional<OrbitPlace> at_constant(std::vector<double> z, double value);
   /// The orbit near z whose distance from it has no part along `along` (in sizes).
-  std::optional<OrbitPlace> across(const std::vector<double>& z, const std::vector<double>& along);
+  [[nodiscard]] std::optional<OrbitPlace> across(const std::vector<double>& z, const std::vector<double>& along);
   /// Where branches cross or the period doubles, the direction in which the equations hold beside that of the branch,
   /// of length 1 in sizes. z lies next to that place, on the mesh that is used, `along` is the branch's tangent.
-  std::optional<std::vector<double>> other_direction(const std::vector<double>& z, const std::vector<double>& along);
+  [[nodiscard]] std::optional<std::vector<double>> other_direction(const std::vector<double>& z,
+                                                                   const std::vector<double>& along);
   /// x(s) - x(s + 1/2) at the nodes, in sizes: nothing is left of it where twice the same orbit is run through.
-  std::vector<double> halves(const OrbitPlace& place);
+  [[nodiscard]] std::vector<double> halves(const OrbitPlace& place);
   /// A step along the branch. Nothing where none is found, or only one that is farther off than the step is long.
-  std::optional<OrbitPlace> stepped(const OrbitPlace& from, double step);
+  [[nodiscard]] std::optional<OrbitPlace> stepped(const OrbitPlace& from, double step);
   /// Whether the mesh of `place` serves it.
-  bool is_exact(const OrbitPlace& place) const { return place.error <= error_wanted_; }
+  [[nodiscard]] bool is_exact(const OrbitPlace& place) const { return place.error <= error_wanted_; }
   /// Solves for `here` again, on a mesh that serves `there` (on the same mesh as `here`). False where no finer one is
   /// allowed, or nothing is found on it.
-  bool refine(OrbitPlace& here, const OrbitPlace& there);
+  [[nodiscard]] bool refine(OrbitPlace& here, const OrbitPlace& there);
   /// The least and greatest values of the components.
   void complete(OrbitPlace& place);
 
   /// How far the nodes are from the mean, in sizes, all together.
-  std::vector<double> deviations(const OrbitPlace& place);
-  std::vector<double> mean(const OrbitPlace& place);
+  [[nodiscard]] std::vector<double> deviations(const OrbitPlace& place);
+  [[nodiscard]] std::vector<double> mean(const OrbitPlace& place);
   /// The cosine between tangents on the same mesh.
-  static double alike(const OrbitPlace& a, const OrbitPlace& b);
+  [[nodiscard]] static double alike(const OrbitPlace& a, const OrbitPlace& b);
   /// Of the unknowns.
-  const std::vector<double>& sizes() const { return scale_; }
-  double size(std::size_t unknown) const { return scale_[unknown]; }
+  [[nodiscard]] const std::vector<double>& sizes() const { return scale_; }
+  [[nodiscard]] double size(std::size_t unknown) const { return scale_[unknown]; }
   /// Of a component.
-  double size_of(std::size_t component) const { return component_sizes_[component]; }
+  [[nodiscard]] double size_of(std::size_t component) const { return component_sizes_[component]; }
 
  private:
   void use_for(const OrbitPlace& place);
   void set_scales(const std::vector<double>& z);
   void exchange_mesh(OrbitPlace& place, const std::shared_ptr<const OrbitMesh>& mesh);
-  std::vector<double> on_mesh(const std::vector<double>& z, const OrbitMesh& mesh) const;
-  std::vector<double> shift_at(const std::vector<double>& z) const;
-  std::optional<std::vector<double>> solved(const std::vector<double>& shift, const std::vector<double>& last,
-                                            std::vector<double> b);
+  [[nodiscard]] std::vector<double> on_mesh(const std::vector<double>& z, const OrbitMesh& mesh) const;
+  [[nodiscard]] std::vector<double> shift_at(const std::vector<double>& z) const;
+  [[nodiscard]] std::optional<std::vector<double>> solved(const std::vector<double>& shift,
+                                                          const std::vector<double>& last, std::vector<double> b);
   /// With the tangent nearest to `along`, multipliers and tests.
-  std::optional<OrbitPlace> described(std::vector<double> z, const std::vector<double>& along);
-  std::optional<std::vector<double>> corrected(const std::vector<double>& guess, const std::vector<double>& reference,
-                                               const std::vector<double>& shift, const std::vector<double>& last);
+  [[nodiscard]] std::optional<OrbitPlace> described(std::vector<double> z, const std::vector<double>& along);
+  [[nodiscard]] std::optional<std::vector<double>> corrected(const std::vector<double>& guess,
+                                                             const std::vector<double>& reference,
+                                                             const std::vector<double>& shift,
+                                                             const std::vector<double>& last);
 
   const OrbitContinuationOptions& options_;
   ParametricSystem system_;  // of the one constant

@@ -18,8 +18,9 @@ namespace continuo::studies::detail {
 /// The rotation of a torus in turns per period, 0 of another mark; none where the multipliers do not bear the mark out.
 /// `about_minus_one`: how near to -1 one must be where a period doubles. Multipliers of 1e80 pass -1 within the last
 /// digit of the constant: what is found there is no place.
-inline std::optional<double> borne_out(OrbitBifurcation kind, std::span<const std::complex<double>> multipliers,
-                                       double about_minus_one) {
+[[nodiscard]] inline std::optional<double> borne_out(OrbitBifurcation kind,
+                                                     std::span<const std::complex<double>> multipliers,
+                                                     double about_minus_one) {
   constexpr double about_one = 1e-2;        // of the multiplier where branches cross
   constexpr double still_on_circle = 1e-5;  // how near to 1 the size of a located pair is
   const auto one_is_near = [&](double value, double distance) {

@@ -11,9 +11,9 @@ namespace continuo::studies::detail {
 /// Where each component ranges on the way.
 struct Extent {
   std::vector<double> low, high;
-  double size(std::size_t i) const { return high[i] - low[i]; }
+  [[nodiscard]] double size(std::size_t i) const { return high[i] - low[i]; }
 };
-Extent extent_of(const std::vector<std::vector<double>>& states);
+[[nodiscard]] Extent extent_of(const std::vector<std::vector<double>>& states);
 
 struct Return {
   double time = 0;                // 0 where there is none
@@ -21,10 +21,11 @@ struct Return {
 };
 /// Between the last point of the section and one before that is alike to this part of the motion's size, or is but for
 /// whole turns of angles. `noise` is what the integration leaves of a component that has come to rest.
-Return last_return(const ParametricSystem& system, std::span<const SectionPoint> points, const Extent& extent,
-                   const std::vector<std::vector<double>>& states, double part, double noise);
+[[nodiscard]] Return last_return(const ParametricSystem& system, std::span<const SectionPoint> points,
+                                 const Extent& extent, const std::vector<std::vector<double>>& states, double part,
+                                 double noise);
 
 /// Whether a component goes on and on in one direction, as an angle that turns over does.
-bool goes_on(const std::vector<std::vector<double>>& states, const Extent& extent, std::size_t component);
+[[nodiscard]] bool goes_on(const std::vector<std::vector<double>>& states, const Extent& extent, std::size_t component);
 
 }  // namespace continuo::studies::detail

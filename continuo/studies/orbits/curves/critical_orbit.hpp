@@ -34,34 +34,34 @@ class CriticalOrbit {
   CriticalOrbit(const ParametricSystem& system, std::array<std::size_t, 2> constants, OrbitBifurcation kind,
                 std::shared_ptr<const OrbitMesh> mesh, const std::array<double, 2>& sizes_of_constants);
 
-  std::size_t states() const { return states_; }
-  std::size_t unknowns() const { return states_ + behind; }
+  [[nodiscard]] std::size_t states() const { return states_; }
+  [[nodiscard]] std::size_t unknowns() const { return states_ + behind; }
 
   /// All of it at z; x counts in `sizes`, an unknown in `scale`. `borders` may be empty: then some are found. False
   /// where f is not finite, or the equations have no one solution.
-  bool evaluate(std::span<const double> z, std::span<const double> sizes, std::span<const double> scale,
-                std::span<const double> shift, const CriticalVectors& borders);
-  const CriticalVectors& vectors() const { return vectors_; }
-  std::complex<double> test() const { return test_; }
+  [[nodiscard]] bool evaluate(std::span<const double> z, std::span<const double> sizes, std::span<const double> scale,
+                              std::span<const double> shift, const CriticalVectors& borders);
+  [[nodiscard]] const CriticalVectors& vectors() const { return vectors_; }
+  [[nodiscard]] std::complex<double> test() const { return test_; }
   /// The derivatives of the collocation by both constants seen by the left vector: the curve of folds is upright to it.
-  std::array<double, 2> normal() const;
+  [[nodiscard]] std::array<double, 2> normal() const;
 
   /// The residuals in `sizes`; the last one, of the step, is 0.
-  std::vector<double> residuals(std::span<const double> z, std::span<const double> reference,
-                                std::span<const double> shift) const;
+  [[nodiscard]] std::vector<double> residuals(std::span<const double> z, std::span<const double> reference,
+                                              std::span<const double> shift) const;
   /// Solves d(all, last . z)/dz y = b at the last evaluation. False where there is no one solution.
-  bool solve(std::span<const double> last, std::vector<double>& b) const;
+  [[nodiscard]] bool solve(std::span<const double> last, std::vector<double>& b) const;
 
  private:
   struct GaussPoint {
     std::vector<double> x, f, residual, a, by_constant;  // by_constant: 2 columns
   };
-  bool evaluate_points(std::span<const double> z);
-  bool solve_bordered(const CriticalVectors& borders);
+  [[nodiscard]] bool evaluate_points(std::span<const double> z);
+  [[nodiscard]] bool solve_bordered(const CriticalVectors& borders);
   void differentiate();
-  double width(std::size_t interval) const { return (*mesh_)[interval + 1] - (*mesh_)[interval]; }
-  bool is_fold() const { return kind_ == OrbitBifurcation::fold; }
-  std::size_t bordered_size() const { return states_ + (is_fold() ? 2 : 1); }
+  [[nodiscard]] double width(std::size_t interval) const { return (*mesh_)[interval + 1] - (*mesh_)[interval]; }
+  [[nodiscard]] bool is_fold() const { return kind_ == OrbitBifurcation::fold; }
+  [[nodiscard]] std::size_t bordered_size() const { return states_ + (is_fold() ? 2 : 1); }
   /// Into p_.
   void set(double p, double q);
 

@@ -19,7 +19,7 @@ struct DegeneratePlace {
   /// The secant to the place before, and how it has bent, in the constants; in the unknowns the orbit carries both.
   std::array<double, 3> direction{}, bend{};
 
-  DegenerateHomoclinicPoint point() const;
+  [[nodiscard]] DegenerateHomoclinicPoint point() const;
 };
 
 class DegenerateHomoclinicSteps {
@@ -30,25 +30,25 @@ class DegenerateHomoclinicSteps {
                             const DegenerateHomoclinicOptions& options);
 
   /// Where the first two constants are the unknowns, with the curve's direction. Nothing where it is not found.
-  std::optional<DegeneratePlace> first(const HomoclinicPlace& start);
+  [[nodiscard]] std::optional<DegeneratePlace> first(const HomoclinicPlace& start);
   /// Predicted along the direction, as far as `step` in sizes; with the direction of the secant. Nothing where none is
   /// found, or only one that is much farther off than the step is long. `from` holds the constant that `fastest` names.
-  std::optional<DegeneratePlace> stepped(const DegeneratePlace& from, double step);
+  [[nodiscard]] std::optional<DegeneratePlace> stepped(const DegeneratePlace& from, double step);
   /// Between neighbours, so far from the first, of which the second has been found.
-  std::optional<DegeneratePlace> between(const DegeneratePlace& a, const DegeneratePlace& b, double part);
+  [[nodiscard]] std::optional<DegeneratePlace> between(const DegeneratePlace& a, const DegeneratePlace& b, double part);
   /// Likewise with a constant at this value.
-  std::optional<DegeneratePlace> at_bound(const DegeneratePlace& a, const DegeneratePlace& b, std::size_t constant,
-                                          double value);
+  [[nodiscard]] std::optional<DegeneratePlace> at_bound(const DegeneratePlace& a, const DegeneratePlace& b,
+                                                        std::size_t constant, double value);
   /// The same place with another constant held.
-  std::optional<DegeneratePlace> turned(const DegeneratePlace& place, std::size_t held);
+  [[nodiscard]] std::optional<DegeneratePlace> turned(const DegeneratePlace& place, std::size_t held);
   /// Which constant is to be held on the way from here.
-  std::size_t fastest(const DegeneratePlace& place) const;
+  [[nodiscard]] std::size_t fastest(const DegeneratePlace& place) const;
   /// The cosine between the directions of neighbours on the same mesh.
-  double alike(const DegeneratePlace& a, const DegeneratePlace& b);
+  [[nodiscard]] double alike(const DegeneratePlace& a, const DegeneratePlace& b);
   /// Gives a place the direction of another one on the same mesh.
   static void take_direction(DegeneratePlace& place, const DegeneratePlace& of);
   /// Takes a length and a mesh that serve the place.
-  bool renew(DegeneratePlace& place);
+  [[nodiscard]] bool renew(DegeneratePlace& place);
 
  private:
   /// A constant is held: the system with its value, and what follows homoclinic orbits in the other two.
@@ -60,12 +60,12 @@ class DegenerateHomoclinicSteps {
     std::size_t constant;  // which of the system's is held
     void hold(double value) { system.constants[constant] = value; }
   };
-  std::optional<DegeneratePlace> solved(const DegeneratePlace& from, double value, const Vector& guess);
-  std::optional<HomoclinicPlace> zero_from(Plane& plane, HomoclinicPlace place) const;
-  std::optional<DegeneratePlace> near_start(const DegeneratePlace& start, std::size_t held);
+  [[nodiscard]] std::optional<DegeneratePlace> solved(const DegeneratePlace& from, double value, const Vector& guess);
+  [[nodiscard]] std::optional<HomoclinicPlace> zero_from(Plane& plane, HomoclinicPlace place) const;
+  [[nodiscard]] std::optional<DegeneratePlace> near_start(const DegeneratePlace& start, std::size_t held);
   void set_direction(DegeneratePlace& place, const DegeneratePlace& from, double part) const;
-  Vector in_sizes(const DegeneratePlace& at, const DegeneratePlace& of);
-  double range(std::size_t k) const { return options_.high[k] - options_.low[k]; }
+  [[nodiscard]] Vector in_sizes(const DegeneratePlace& at, const DegeneratePlace& of);
+  [[nodiscard]] double range(std::size_t k) const { return options_.high[k] - options_.low[k]; }
 
   HomoclinicTest test_;
   const DegenerateHomoclinicOptions& options_;

@@ -20,10 +20,10 @@ inline constexpr double above_rounding = 1e-9;   // likewise
 inline constexpr std::size_t points_round = 12;  // of a closed curve
 
 /// What a place where this test is zero is; nothing where the zero is none.
-std::optional<OrbitDegeneracy> degeneracy_of(HomoclinicTest test, const HomoclinicPlace& place);
+[[nodiscard]] std::optional<OrbitDegeneracy> degeneracy_of(HomoclinicTest test, const HomoclinicPlace& place);
 
 /// The first one is that from the start; at most so many, and one at least.
-std::vector<OrbitCurve> homoclinic_curves(const ParametricSystem& system, const OrbitMark& start,
-                                          const OrbitCurveOptions& options, std::size_t most);
+[[nodiscard]] std::vector<OrbitCurve> homoclinic_curves(const ParametricSystem& system, const OrbitMark& start,
+                                                        const OrbitCurveOptions& options, std::size_t most);
 
 }  // namespace continuo::studies::detail

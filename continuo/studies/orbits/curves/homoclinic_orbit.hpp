@@ -43,55 +43,56 @@ class HomoclinicOrbit {
                   std::shared_ptr<const OrbitMesh> mesh, double length,
                   const std::array<double, 2>& sizes_of_constants);
 
-  std::size_t nodes() const { return (mesh_->size() - 1) * OrbitCollocation::degree + 1; }
-  std::size_t rest() const { return nodes() * n_; }  // where x0 stands in z
-  std::size_t unknowns() const { return rest() + n_ + 2; }
-  double length() const { return length_; }
+  [[nodiscard]] std::size_t nodes() const { return (mesh_->size() - 1) * OrbitCollocation::degree + 1; }
+  [[nodiscard]] std::size_t rest() const { return nodes() * n_; }  // where x0 stands in z
+  [[nodiscard]] std::size_t unknowns() const { return rest() + n_ + 2; }
+  [[nodiscard]] double length() const { return length_; }
 
   /// Components count in `sizes`, an unknown in `scale`.
   void measure_in(const Vector& sizes, const Vector& scale);
   /// The bases of both eigenspaces are to be like those at z. False where x0 has no such spaces there.
-  bool refer_to(std::span<const double> z);
+  [[nodiscard]] bool refer_to(std::span<const double> z);
   /// All equations at z, and their derivatives. False where f is not finite, or the spaces have turned too far.
-  bool evaluate(std::span<const double> z);
+  [[nodiscard]] bool evaluate(std::span<const double> z);
   /// The residuals, those of the shift and of the step being 0.
-  const Vector& residuals() const { return residuals_; }
+  [[nodiscard]] const Vector& residuals() const { return residuals_; }
   /// Decomposes the derivatives of all equations, of shift . z and of last . z, z in scale. False where they are
   /// singular.
-  bool decompose(std::span<const double> shift, std::span<const double> last);
-  Vector solve(const Vector& b) const;
-  Vector solve_transposed(const Vector& b) const;
+  [[nodiscard]] bool decompose(std::span<const double> shift, std::span<const double> last);
+  [[nodiscard]] Vector solve(const Vector& b) const;
+  [[nodiscard]] Vector solve_transposed(const Vector& b) const;
 
   /// At the last evaluation, in sizes.
-  const SaddleSpaces& spaces() const { return spaces_; }
-  Eigen::VectorXd from_rest(std::span<const double> z, bool at_end) const;
+  [[nodiscard]] const SaddleSpaces& spaces() const { return spaces_; }
+  [[nodiscard]] Eigen::VectorXd from_rest(std::span<const double> z, bool at_end) const;
   /// Along the centre of a saddle-node at z, y' = c y^2 + ...: c.
-  double centre_curvature(std::span<const double> z) const;
+  [[nodiscard]] double centre_curvature(std::span<const double> z) const;
   /// At the last evaluation, of a saddle-node: how fast f along the centre changes with the constants, in ranges and
   /// rates. About 0 where x0 is a place of rest whatever they are, or by a symmetry: it is no fold then.
-  double unfolding() const;
+  [[nodiscard]] double unfolding() const;
   /// Of a solution of the transposed equations: the adjoint solution at the beginning, or at the end.
-  Eigen::VectorXd adjoint_at(const Vector& solution, bool at_end) const;
+  [[nodiscard]] Eigen::VectorXd adjoint_at(const Vector& solution, bool at_end) const;
   /// By how much each equation of both ends misses its manifold, as a right-hand side.
-  Vector missed(std::span<const double> z) const;
+  [[nodiscard]] Vector missed(std::span<const double> z) const;
   /// df/dx at x0.
-  Eigen::MatrixXd matrix_at(std::span<const double> x0, std::span<const double> constants) const;
+  [[nodiscard]] Eigen::MatrixXd matrix_at(std::span<const double> x0, std::span<const double> constants) const;
 
  private:
   struct GaussPoint {
     Vector f, residual, a, by_constant;  // by_constant: 2 columns
   };
-  Vector constants_at(std::span<const double> values) const;
-  bool evaluate_points(std::span<const double> z);
-  bool evaluate_rest(std::span<const double> z);
-  bool evaluate_ends(std::span<const double> z);
-  std::optional<SaddleSpaces> spaces_at(const Eigen::MatrixXd& a) const;
-  std::size_t unstable() const { return n_ - kind_.stable - (kind_.is_saddle_node ? 1 : 0); }
-  Eigen::VectorXd missed_at(std::span<const double> z, bool at_end) const;
+  [[nodiscard]] Vector constants_at(std::span<const double> values) const;
+  [[nodiscard]] bool evaluate_points(std::span<const double> z);
+  [[nodiscard]] bool evaluate_rest(std::span<const double> z);
+  [[nodiscard]] bool evaluate_ends(std::span<const double> z);
+  [[nodiscard]] std::optional<SaddleSpaces> spaces_at(const Eigen::MatrixXd& a) const;
+  [[nodiscard]] std::size_t unstable() const { return n_ - kind_.stable - (kind_.is_saddle_node ? 1 : 0); }
+  [[nodiscard]] Eigen::VectorXd missed_at(std::span<const double> z, bool at_end) const;
   /// Both ends' equations, with spaces of another x0 or other constants.
-  std::optional<Eigen::VectorXd> ends_at(std::span<const double> z, const Vector& rest_and_constants) const;
-  double width(std::size_t interval) const { return (*mesh_)[interval + 1] - (*mesh_)[interval]; }
-  double advance(std::size_t i) const { return system_.advance.empty() ? 0 : system_.advance[i]; }
+  [[nodiscard]] std::optional<Eigen::VectorXd> ends_at(std::span<const double> z,
+                                                       const Vector& rest_and_constants) const;
+  [[nodiscard]] double width(std::size_t interval) const { return (*mesh_)[interval + 1] - (*mesh_)[interval]; }
+  [[nodiscard]] double advance(std::size_t i) const { return system_.advance.empty() ? 0 : system_.advance[i]; }
 
   const ParametricSystem& system_;
   std::array<std::size_t, 2> constants_;

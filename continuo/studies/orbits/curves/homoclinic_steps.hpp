@@ -48,7 +48,7 @@ struct HomoclinicPlace {
   double apart_last = 0;
   /// Each changes its sign where it is zero. Not a number where it says nothing.
   std::array<double, homoclinic_tests> tests{};
-  double test(HomoclinicTest kind) const { return tests[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] double test(HomoclinicTest kind) const { return tests[static_cast<std::size_t>(kind)]; }
   /// Of the tests of flips, what leads by itself: the tests are cosines of an angle, which changes within a hair's
   /// breadth where what leads dies away ever so much slower than the rest.
   std::array<double, 4> flips{};
@@ -76,55 +76,58 @@ class HomoclinicSteps {
 
   /// From a closed orbit of long period that passes next to a saddle, or to where a saddle-node is about to be. Nothing
   /// where none is found; `message` says why.
-  std::optional<HomoclinicPlace> first(const OrbitMark& mark, std::string& message);
+  [[nodiscard]] std::optional<HomoclinicPlace> first(const OrbitMark& mark, std::string& message);
   /// At an orbit of a saddle-node that is not central: as an orbit of the other kind, a saddle's or a central one, with
   /// a tangent of any direction.
-  std::optional<HomoclinicPlace> switched(const HomoclinicPlace& from, HomoclinicRest kind);
+  [[nodiscard]] std::optional<HomoclinicPlace> switched(const HomoclinicPlace& from, HomoclinicRest kind);
   /// From a place that is known, on intervals of this length at most.
   void take_up(const HomoclinicPlace& place, double longest);
   /// The one nearest to `guess` in the direction upright to `last` (in sizes), both on the mesh of `from`.
-  std::optional<HomoclinicPlace> near(const HomoclinicPlace& from, const Vector& guess, const Vector& last);
+  [[nodiscard]] std::optional<HomoclinicPlace> near(const HomoclinicPlace& from, const Vector& guess,
+                                                    const Vector& last);
   /// A difference of unknowns, as long as it counts at a place.
-  Vector in_sizes(const HomoclinicPlace& at, Vector difference);
+  [[nodiscard]] Vector in_sizes(const HomoclinicPlace& at, Vector difference);
   /// Nothing where none is found, or only one that is farther off than the step is long. The step may be negative.
-  std::optional<HomoclinicPlace> stepped(const HomoclinicPlace& from, double step);
+  [[nodiscard]] std::optional<HomoclinicPlace> stepped(const HomoclinicPlace& from, double step);
   /// Between two neighbours on the same mesh, with one constant (0 or 1) at this value.
-  std::optional<HomoclinicPlace> at_bound(const HomoclinicPlace& a, const HomoclinicPlace& b, std::size_t constant,
-                                          double value);
+  [[nodiscard]] std::optional<HomoclinicPlace> at_bound(const HomoclinicPlace& a, const HomoclinicPlace& b,
+                                                        std::size_t constant, double value);
   /// Takes a length and a mesh that serve the place, and solves for it there, where that has become worth it.
-  bool renew(HomoclinicPlace& place);
+  [[nodiscard]] bool renew(HomoclinicPlace& place);
   /// What is followed at present.
-  HomoclinicRest kind() const { return kind_; }
+  [[nodiscard]] HomoclinicRest kind() const { return kind_; }
 
  private:
   void use(const std::shared_ptr<const OrbitMesh>& mesh, double length);
   /// A first place of the present kind, near z.
-  std::optional<HomoclinicPlace> settled(const std::shared_ptr<const OrbitMesh>& mesh, double length, const Vector& z);
+  [[nodiscard]] std::optional<HomoclinicPlace> settled(const std::shared_ptr<const OrbitMesh>& mesh, double length,
+                                                       const Vector& z);
   /// From a closed orbit that begins next to a saddle-node: `nodes` are its states on the mesh.
-  std::optional<HomoclinicPlace> first_central(const OrbitMesh& mesh, double period, const Vector& nodes,
-                                               const SaddleNode& rest);
+  [[nodiscard]] std::optional<HomoclinicPlace> first_central(const OrbitMesh& mesh, double period, const Vector& nodes,
+                                                             const SaddleNode& rest);
   /// Renewed until it is as good as is wanted, or can be.
   void improve(HomoclinicPlace& place);
   /// The time that is missing at an end, in lengths of the interval.
-  double missing(const HomoclinicPlace& place, bool at_end) const;
+  [[nodiscard]] double missing(const HomoclinicPlace& place, bool at_end) const;
   void measure(const Vector& z);
-  std::optional<HomoclinicPlace> corrected(const Vector& guess, const Vector& reference, const Vector& last,
-                                           const HomoclinicPlace* before);
-  std::optional<HomoclinicPlace> described(Vector z, const Vector& along, const HomoclinicPlace* before);
-  Vector adjoint_of(const HomoclinicPlace& place) const;
+  [[nodiscard]] std::optional<HomoclinicPlace> corrected(const Vector& guess, const Vector& reference,
+                                                         const Vector& last, const HomoclinicPlace* before);
+  [[nodiscard]] std::optional<HomoclinicPlace> described(Vector z, const Vector& along, const HomoclinicPlace* before);
+  [[nodiscard]] Vector adjoint_of(const HomoclinicPlace& place) const;
   void set_eigenvalue_tests(HomoclinicPlace& place) const;
   void set_flip_tests(HomoclinicPlace& place, const Vector& adjoint, const HomoclinicPlace* before) const;
   /// Of a central orbit, at the last factorization.
   void set_centre_tests(HomoclinicPlace& place) const;
   /// How the first or the last state's part along the centre changes with the unknowns, in scale.
-  Vector centre_part(bool at_end) const;
-  Vector shift_at(const Vector& z) const;
-  double weight(std::size_t node) const;
-  std::optional<Vector> tangent_of(const Vector& along);
-  bool refined(HomoclinicPlace& place);
-  bool lengthened(HomoclinicPlace& place);
+  [[nodiscard]] Vector centre_part(bool at_end) const;
+  [[nodiscard]] Vector shift_at(const Vector& z) const;
+  [[nodiscard]] double weight(std::size_t node) const;
+  [[nodiscard]] std::optional<Vector> tangent_of(const Vector& along);
+  [[nodiscard]] bool refined(HomoclinicPlace& place);
+  [[nodiscard]] bool lengthened(HomoclinicPlace& place);
   /// z and the tangent, read off where the interval goes from `begin` to `end`, 0 to 1 being the present one.
-  bool move_to(HomoclinicPlace& place, const std::shared_ptr<const OrbitMesh>& mesh, double begin, double end);
+  [[nodiscard]] bool move_to(HomoclinicPlace& place, const std::shared_ptr<const OrbitMesh>& mesh, double begin,
+                             double end);
 
   const ParametricSystem& system_;
   const OrbitCurveOptions& options_;

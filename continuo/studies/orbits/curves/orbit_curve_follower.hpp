@@ -18,23 +18,23 @@ class OrbitCurveFollower {
         steps_(system, kind, options),
         covered_(options.low[1], options.high[1], options.progress) {}
 
-  OrbitCurve from(const OrbitMark& start);
+  [[nodiscard]] OrbitCurve from(const OrbitMark& start);
 
  private:
   /// Appends to `curve`, whose kind is set.
-  OrbitCurveEnd followed(OrbitCurve& curve, const Place& from, double direction);
+  [[nodiscard]] OrbitCurveEnd followed(OrbitCurve& curve, const Place& from, double direction);
   /// What ends the curve between two neighbours, beside a bound.
   /// The greatest deviation of a component, in parts of the greatest on the curve so far.
-  double amplitude(const Place& place);
-  std::optional<OrbitCurveEnd> shrinks_between(const Place& a, const Place& b);
+  [[nodiscard]] double amplitude(const Place& place);
+  [[nodiscard]] std::optional<OrbitCurveEnd> shrinks_between(const Place& a, const Place& b);
   /// Of tori: the 1:1 or 1:2 resonance that comes within the next steps.
-  std::optional<DegenerateOrbit> resonance_ahead(const Place& a, const Place& b, double step);
-  OrbitCurveEnd at_bound(OrbitCurve& curve, const Place& a, const Place& b);
+  [[nodiscard]] std::optional<DegenerateOrbit> resonance_ahead(const Place& a, const Place& b, double step);
+  [[nodiscard]] OrbitCurveEnd at_bound(OrbitCurve& curve, const Place& a, const Place& b);
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(OrbitCurve& curve, const Place& a, const Place& b, double step);
-  std::optional<Place> located(OrbitDegeneracy kind, const Place& a, const Place& b, double step);
+  [[nodiscard]] std::optional<Place> located(OrbitDegeneracy kind, const Place& a, const Place& b, double step);
   /// Whether it is what its name says, beyond the zero of its test.
-  static bool is_what(OrbitDegeneracy kind, OrbitBifurcation curve, const Place& place);
+  [[nodiscard]] static bool is_what(OrbitDegeneracy kind, OrbitBifurcation curve, const Place& place);
 
   const ParametricSystem& system_;
   const OrbitCurveOptions& options_;

@@ -17,7 +17,8 @@ struct SaddleNode {
 
 /// By Newton's method from x and the constants p, of which one may change. Components count in `sizes`, the constant in
 /// `size_of_constant`. Nothing where it does not converge, or leaves by more than a tenth of these.
-std::optional<SaddleNode> saddle_node_near(const ParametricSystem& system, std::size_t constant, const Values& x,
-                                           const Values& p, const Values& sizes, double size_of_constant);
+[[nodiscard]] std::optional<SaddleNode> saddle_node_near(const ParametricSystem& system, std::size_t constant,
+                                                         const Values& x, const Values& p, const Values& sizes,
+                                                         double size_of_constant);
 
 }  // namespace continuo::studies::detail

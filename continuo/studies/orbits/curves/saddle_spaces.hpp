@@ -17,8 +17,8 @@ struct Eigenspace {
   /// space of real vectors, each alone may be complex.
   Eigen::MatrixXcd right{}, left{};  // of A, of its transpose
 
-  std::size_t dimension() const { return eigenvalues.size(); }
-  bool leading_is_real() const { return eigenvalues.front().imag() == 0; }
+  [[nodiscard]] std::size_t dimension() const { return eigenvalues.size(); }
+  [[nodiscard]] bool leading_is_real() const { return eigenvalues.front().imag() == 0; }
 };
 
 /// Of a saddle-node: the simple real eigenvalue next to zero, and its eigenvectors, |right| = 1, left . right = 1.
@@ -35,17 +35,18 @@ struct SaddleSpaces {
 
 /// `stable` eigenvalues on the left, the others on the right, wherever zero is. Nothing where both sides of a pair
 /// would be parted, or one is empty.
-std::optional<SaddleSpaces> saddle_spaces(const Eigen::MatrixXd& a, std::size_t stable);
+[[nodiscard]] std::optional<SaddleSpaces> saddle_spaces(const Eigen::MatrixXd& a, std::size_t stable);
 /// `stable` eigenvalues on the left, then the centre, the others on the right. Nothing where the centre is not apart
 /// from both.
-std::optional<SaddleSpaces> saddle_node_spaces(const Eigen::MatrixXd& a, std::size_t stable);
+[[nodiscard]] std::optional<SaddleSpaces> saddle_node_spaces(const Eigen::MatrixXd& a, std::size_t stable);
 
 /// A real orthonormal basis of the same space.
-Eigen::MatrixXd real_basis(const Eigen::MatrixXcd& columns);
+[[nodiscard]] Eigen::MatrixXd real_basis(const Eigen::MatrixXcd& columns);
 /// The basis L of the same space with reference^T L = 1: the only one, therefore real, and as smooth as the space is.
 /// Nothing where the spaces have nothing to do with each other.
-std::optional<Eigen::MatrixXd> basis_like(const Eigen::MatrixXcd& columns, const Eigen::MatrixXd& reference);
+[[nodiscard]] std::optional<Eigen::MatrixXd> basis_like(const Eigen::MatrixXcd& columns,
+                                                        const Eigen::MatrixXd& reference);
 /// The real vector of length 1 that an eigenvector of a real eigenvalue is a complex multiple of.
-Eigen::VectorXd real_vector(const Eigen::VectorXcd& v);
+[[nodiscard]] Eigen::VectorXd real_vector(const Eigen::VectorXcd& v);
 
 }  // namespace continuo::studies::detail

@@ -16,7 +16,7 @@ struct Stretch {
 
 /// The columns become orthonormal (Gram, Schmidt, modified), each of n numbers; the logarithms of what each was long.
 /// One without a length of its own gets a direction of its own.
-std::vector<double> orthonormalise(std::span<double> columns, std::size_t n);
+[[nodiscard]] std::vector<double> orthonormalise(std::span<double> columns, std::size_t n);
 
 /// Mean of each exponent over twenty parts of the run, and the standard error of that mean.
 void average(LyapunovExponents& result, const std::vector<Stretch>& stretches);

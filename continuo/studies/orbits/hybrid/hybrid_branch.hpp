@@ -39,43 +39,43 @@ class HybridBranchSteps {
                     const std::vector<double>& high);
 
   /// The states that are solved for, by where a known orbit leads; false where there is none: `status` says why.
-  bool begin(const model::Instant& start, double period, double constant);
+  [[nodiscard]] bool begin(const model::Instant& start, double period, double constant);
 
   /// The orbit near a start with this value of the parameter.
-  std::optional<HybridPlace> at_constant(const model::Instant& start, double period, double value);
-  std::optional<HybridPlace> at_constant(const HybridPlace& a, const HybridPlace& b, double value);
+  [[nodiscard]] std::optional<HybridPlace> at_constant(const model::Instant& start, double period, double value);
+  [[nodiscard]] std::optional<HybridPlace> at_constant(const HybridPlace& a, const HybridPlace& b, double value);
   /// A step along the branch. Nothing where none is found, or only one that is farther off than the step is long.
-  std::optional<HybridPlace> stepped(const HybridPlace& from, double step);
+  [[nodiscard]] std::optional<HybridPlace> stepped(const HybridPlace& from, double step);
   /// The orbit near z whose distance from it has no part along `along`.
-  std::optional<HybridPlace> across(const model::Instant& start, const Eigen::VectorXd& z,
-                                    const Eigen::VectorXd& along);
+  [[nodiscard]] std::optional<HybridPlace> across(const model::Instant& start, const Eigen::VectorXd& z,
+                                                  const Eigen::VectorXd& along);
   /// Where branches cross or the period doubles, the direction in which the equations hold beside that of the branch.
-  std::optional<Eigen::VectorXd> other_direction(const model::Instant& start, const Eigen::VectorXd& z,
-                                                 const Eigen::VectorXd& along);
+  [[nodiscard]] std::optional<Eigen::VectorXd> other_direction(const model::Instant& start, const Eigen::VectorXd& z,
+                                                               const Eigen::VectorXd& along);
   /// The least and greatest values of the states.
   void complete(HybridPlace& place);
   /// Whether the orbit is within a hundredth of its extent of one place for a third of its period: near a homoclinic
   /// one all but a fixed time is spent there.
-  bool waits(const HybridPlace& place) const;
+  [[nodiscard]] bool waits(const HybridPlace& place) const;
   /// Where an event comes near to where the orbit begins, it begins elsewhere.
   void begin_anew(HybridPlace& place);
   /// x half a period later less x: nothing is left of it where twice the same orbit is run through.
-  std::optional<Eigen::VectorXd> halves(const HybridPlace& place);
+  [[nodiscard]] std::optional<Eigen::VectorXd> halves(const HybridPlace& place);
 
-  Eigen::VectorXd scaled(const model::Instant& start, double period, double constant) const;
+  [[nodiscard]] Eigen::VectorXd scaled(const model::Instant& start, double period, double constant) const;
   /// Of `scaled`, in the units of the model: x of the directions, T and p.
-  std::vector<double> unscaled_direction(const Eigen::VectorXd& direction) const;
-  Eigen::VectorXd scaled_direction(const std::vector<double>& direction) const;
+  [[nodiscard]] std::vector<double> unscaled_direction(const Eigen::VectorXd& direction) const;
+  [[nodiscard]] Eigen::VectorXd scaled_direction(const std::vector<double>& direction) const;
 
-  double period_of(const Eigen::VectorXd& z) const;
-  double constant_of(const Eigen::VectorXd& z) const { return z[z.size() - 1] * range_; }
-  double size_of(std::size_t state) const { return sizes_[state]; }
-  bool is_forced() const { return options_.forcing.has_value(); }
-  const Status& status() const { return status_; }
+  [[nodiscard]] double period_of(const Eigen::VectorXd& z) const;
+  [[nodiscard]] double constant_of(const Eigen::VectorXd& z) const { return z[z.size() - 1] * range_; }
+  [[nodiscard]] double size_of(std::size_t state) const { return sizes_[state]; }
+  [[nodiscard]] bool is_forced() const { return options_.forcing.has_value(); }
+  [[nodiscard]] const Status& status() const { return status_; }
   /// The events of the last orbit that was run, solved for or not.
-  const std::vector<SensitivityEvent>& last_events() const { return last_events_; }
+  [[nodiscard]] const std::vector<SensitivityEvent>& last_events() const { return last_events_; }
   /// Of the forcing where the parameter has this value; nothing where none is known.
-  std::optional<double> forcing_at(double constant) const;
+  [[nodiscard]] std::optional<double> forcing_at(double constant) const;
 
  private:
   struct Equations {
@@ -83,16 +83,18 @@ class HybridBranchSteps {
     Eigen::VectorXd residual;
     Eigen::MatrixXd rows;  // by z
   };
-  Eigen::Index unknowns() const { return static_cast<Eigen::Index>(directions_.size()) + (is_forced() ? 0 : 1) + 1; }
-  model::Instant instant(const model::Instant& start, const Eigen::VectorXd& z) const;
-  std::optional<Equations> evaluate(const model::Instant& start, const Eigen::VectorXd& z,
-                                    const Eigen::VectorXd& reference, const Eigen::VectorXd& shift);
-  Eigen::VectorXd shift_at(const model::Instant& start, const Eigen::VectorXd& z);
-  std::optional<Eigen::VectorXd> corrected(const model::Instant& start, const Eigen::VectorXd& guess,
-                                           const Eigen::VectorXd& reference, const Eigen::VectorXd& last);
-  std::optional<HybridPlace> described(const model::Instant& start, const Eigen::VectorXd& z,
-                                       const Eigen::VectorXd& along);
-  model::Experiment experiment_at(double constant) const;
+  [[nodiscard]] Eigen::Index unknowns() const {
+    return static_cast<Eigen::Index>(directions_.size()) + (is_forced() ? 0 : 1) + 1;
+  }
+  [[nodiscard]] model::Instant instant(const model::Instant& start, const Eigen::VectorXd& z) const;
+  [[nodiscard]] std::optional<Equations> evaluate(const model::Instant& start, const Eigen::VectorXd& z,
+                                                  const Eigen::VectorXd& reference, const Eigen::VectorXd& shift);
+  [[nodiscard]] Eigen::VectorXd shift_at(const model::Instant& start, const Eigen::VectorXd& z);
+  [[nodiscard]] std::optional<Eigen::VectorXd> corrected(const model::Instant& start, const Eigen::VectorXd& guess,
+                                                         const Eigen::VectorXd& reference, const Eigen::VectorXd& last);
+  [[nodiscard]] std::optional<HybridPlace> described(const model::Instant& start, const Eigen::VectorXd& z,
+                                                     const Eigen::VectorXd& along);
+  [[nodiscard]] model::Experiment experiment_at(double constant) const;
 
   std::shared_ptr<const model::ModelProgram> program_;
   const HybridContinuationOptions& options_;

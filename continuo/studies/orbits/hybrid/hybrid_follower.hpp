@@ -21,29 +21,29 @@ class HybridFollower {
         range_(options.high - options.low),
         covered_(options.low, options.high, options.progress) {}
 
-  OrbitBranch from_orbit(const model::Instant& start, double period, double constant);
-  OrbitBranch from_mark(const OrbitMark& start);
+  [[nodiscard]] OrbitBranch from_orbit(const model::Instant& start, double period, double constant);
+  [[nodiscard]] OrbitBranch from_mark(const OrbitMark& start);
 
  private:
-  OrbitBranch both_ways(Place first);
-  OrbitBranchEnd followed(OrbitBranch& branch, const Place& from, double direction);
-  std::optional<Place> beside(const model::Instant& start, const Eigen::VectorXd& z, const Eigen::VectorXd& other,
-                              double direction);
+  [[nodiscard]] OrbitBranch both_ways(Place first);
+  [[nodiscard]] OrbitBranchEnd followed(OrbitBranch& branch, const Place& from, double direction);
+  [[nodiscard]] std::optional<Place> beside(const model::Instant& start, const Eigen::VectorXd& z,
+                                            const Eigen::VectorXd& other, double direction);
   /// Whether the orbits go on as they were, though other events pass: some do nothing.
-  static bool goes_on(const Place& a, const Place& b);
-  OrbitBranchEnd lost(const Place& here) const;
-  OrbitBranchEnd at_bound(OrbitBranch& branch, const Place& a, const Place& b);
-  std::optional<OrbitBranchEnd> turns_become_one(OrbitBranch& branch, const Place& here, const Place& next,
-                                                 double step);
+  [[nodiscard]] static bool goes_on(const Place& a, const Place& b);
+  [[nodiscard]] OrbitBranchEnd lost(const Place& here) const;
+  [[nodiscard]] OrbitBranchEnd at_bound(OrbitBranch& branch, const Place& a, const Place& b);
+  [[nodiscard]] std::optional<OrbitBranchEnd> turns_become_one(OrbitBranch& branch, const Place& here,
+                                                               const Place& next, double step);
   /// What the last points say: the period grows without bound, or neighbours part too fast to go on.
-  std::optional<OrbitBranchEnd> ending_of(std::span<const OrbitPoint> way, const Place& here);
-  bool comes_back(const Place& here, const Place& origin, double step) const;
+  [[nodiscard]] std::optional<OrbitBranchEnd> ending_of(std::span<const OrbitPoint> way, const Place& here);
+  [[nodiscard]] bool comes_back(const Place& here, const Place& origin, double step) const;
   /// What lies between two neighbours.
   void mark(OrbitBranch& branch, const Place& a, const Place& b, double step);
   /// `at`: so far from `before` the place was found.
   void add(OrbitBranch& branch, OrbitBifurcation kind, const Place& before, Place place, double at);
-  bool is_interrupted() const { return options_.interrupt && options_.interrupt->load(); }
-  bool inside(const Place& place) const {
+  [[nodiscard]] bool is_interrupted() const { return options_.interrupt && options_.interrupt->load(); }
+  [[nodiscard]] bool inside(const Place& place) const {
     return place.point.constant >= options_.low && place.point.constant <= options_.high;
   }
 

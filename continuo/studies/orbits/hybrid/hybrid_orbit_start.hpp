@@ -24,7 +24,7 @@ struct OrbitStarts {
   std::vector<double> low, high;  // where each state ranges after it has settled
 };
 
-OrbitStarts orbit_starts(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
-                         const HybridOrbitOptions& options);
+[[nodiscard]] OrbitStarts orbit_starts(const std::shared_ptr<const model::ModelProgram>& program,
+                                       const model::Experiment& experiment, const HybridOrbitOptions& options);
 
 }  // namespace continuo::studies::detail

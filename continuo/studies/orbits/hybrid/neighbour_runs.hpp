@@ -21,6 +21,6 @@ struct NeighbourRuns {
 };
 
 /// `m`: of the directions, in sizes.
-bool confirms(const NeighbourRuns& runs, const ShootingPoint& orbit, const Eigen::MatrixXd& m);
+[[nodiscard]] bool confirms(const NeighbourRuns& runs, const ShootingPoint& orbit, const Eigen::MatrixXd& m);
 
 }  // namespace continuo::studies::detail

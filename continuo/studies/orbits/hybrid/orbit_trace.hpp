@@ -15,7 +15,7 @@ struct OrbitTrace {
   std::vector<double> low, high;  // of each state on the way
 };
 
-OrbitTrace traced(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& exact,
-                  const model::Instant& start, double period);
+[[nodiscard]] OrbitTrace traced(const std::shared_ptr<const model::ModelProgram>& program,
+                                const model::Experiment& exact, const model::Instant& start, double period);
 
 }  // namespace continuo::studies::detail

@@ -35,9 +35,9 @@ class ReturnFlow {
 
   FlowImage operator()(const model::Instant& start, double duration) const;
   /// x' at an instant at which nothing happens.
-  std::vector<double> rates(const model::Instant& start) const;
-  const model::ModelProgram& program() const { return *program_; }
-  std::size_t size() const { return n_; }
+  [[nodiscard]] std::vector<double> rates(const model::Instant& start) const;
+  [[nodiscard]] const model::ModelProgram& program() const { return *program_; }
+  [[nodiscard]] std::size_t size() const { return n_; }
 
  private:
   std::shared_ptr<const model::ModelProgram> program_;

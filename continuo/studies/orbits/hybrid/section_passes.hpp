@@ -35,12 +35,12 @@ class SectionPasses {
   }
 
  private:
-  double height(double t, const HybridRun::At& at) {
+  [[nodiscard]] double height(double t, const HybridRun::At& at) {
     at(t, x_);
     return x_[component_] - level_;
   }
   // By halving, to neighbouring numbers.
-  double pass_between(double low, double high, const HybridRun::At& at) {
+  [[nodiscard]] double pass_between(double low, double high, const HybridRun::At& at) {
     for (double middle = low + (high - low) / 2; low < middle && middle < high; middle = low + (high - low) / 2)
       (height(middle, at) < 0 ? low : high) = middle;
     return high;

@@ -39,14 +39,14 @@ class Shooting {
 
   /// Newton's method; singular values below `cut` of the largest count as none. Nothing where it does not converge to
   /// `tolerance`: `status` says why.
-  std::optional<ShootingPoint> solve(ShootingPoint point, double cut, double tolerance);
-  const Status& status() const { return status_; }
-  bool interrupted() const { return interrupted_; }
+  [[nodiscard]] std::optional<ShootingPoint> solve(ShootingPoint point, double cut, double tolerance);
+  [[nodiscard]] const Status& status() const { return status_; }
+  [[nodiscard]] bool interrupted() const { return interrupted_; }
 
   /// Nothing where the flow is not defined there or comes to another mode.
-  std::optional<Shot> shoot(const ShootingPoint& point);
-  ShootingPoint moved(ShootingPoint point, const Eigen::VectorXd& step) const;
-  double distance(const ShootingPoint& a, const ShootingPoint& b) const;
+  [[nodiscard]] std::optional<Shot> shoot(const ShootingPoint& point);
+  [[nodiscard]] ShootingPoint moved(ShootingPoint point, const Eigen::VectorXd& step) const;
+  [[nodiscard]] double distance(const ShootingPoint& a, const ShootingPoint& b) const;
 
  private:
   const ReturnFlow& flow_;
