@@ -75,14 +75,14 @@ class Tree {
 
  private:
   static constexpr std::size_t children = std::size_t{1} << Dim;
-  static constexpr std::size_t deepest = 48;   // bodies nearer than 2^-48 of the whole share a leaf
-  static constexpr std::uint32_t of_leaf = 8;  // so few are summed up faster than they are sorted
+  static constexpr std::size_t deepest = 48;   // levels: bodies nearer than 2^-48 of the root's edge share a leaf
+  static constexpr std::uint32_t of_leaf = 8;  // bodies: summing up so few is faster than another level
   struct Cell {
     V centre{};  // of mass
     Real mass{}, edge{};
     std::uint32_t first = 0, last = 0;  // of order_
     bool is_leaf = false;
-    std::array<std::uint32_t, children> child{};  // 0: none, the root is nobody's child
+    std::array<std::uint32_t, children> child{};  // 0: no child, for the root is the child of no cell
   };
 
   std::uint32_t build(const V& middle, Real edge, std::uint32_t first, std::uint32_t last, std::size_t depth) {

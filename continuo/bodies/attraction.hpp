@@ -1,6 +1,7 @@
 // continuo/bodies/attraction.hpp
-// Gravity between all pairs. Exactly, or by a tree whose distant cells act from their centre of mass (J. Barnes, P.
-// Hut, Nature 324 (1986) 446-449): a cell counts as one body where its edge is below `opening` times its distance.
+// Gravity between all pairs of bodies: by exact sums, or by a tree in which distant cells act from their centre of mass
+// (J. Barnes, P. Hut, Nature 324 (1986) 446-449): a cell counts as one body where its edge is below `opening` times its
+// distance.
 #pragma once
 #include <span>
 
@@ -8,7 +9,7 @@
 
 namespace continuo {
 
-/// force[i] += what the others do to body i at x[i].
+/// Adds to force[i] the attraction of body i, at x[i], by all other bodies.
 template <class Real, int Dim>
 void add_attraction(const World<Real, Dim>& world, std::span<const Vector<Real, Dim>> x,
                     std::span<Vector<Real, Dim>> force);

@@ -1,5 +1,5 @@
 // continuo/bodies/body.hpp
-// What one body is: plain data with defaults that make a ball.
+// The definition of a body: shape, initial state, mass and material, with defaults that make a ball.
 #pragma once
 #include <cstdint>
 #include <numbers>
@@ -10,16 +10,16 @@
 
 namespace continuo {
 
-/// A ball in space, a disc in the plane. Units are the user's, lengths in one and the same.
+/// A ball in space, a disc in the plane. You choose the units; all lengths must be in the same one.
 template <class Real>
 struct Sphere {
   Real radius = Real(0.5);
 };
-/// What a body may be. Boxes, capsules and hulls will join it.
+/// The shapes of bodies: spheres so far. Boxes, capsules and hulls are planned.
 template <class Real, int Dim>
 using Shape = std::variant<Sphere<Real>>;
 
-/// How a surface answers a contact. Two surfaces meet as the `CombineRule` of their world says.
+/// The contact parameters of a surface. The `CombineRule` of the world combines those of two surfaces in contact.
 template <class Real>
 struct Material {
   Real restitution = Real(0);         // e: speed of parting over speed of approach, 0 to 1
@@ -27,11 +27,12 @@ struct Material {
   Real rolling_resistance = Real(0);  // torque over normal force, a length in units of the radius
 };
 
-/// Of the numbers of two surfaces the one of their contact.
+/// How the value for a contact follows from the values of its two surfaces.
 enum class Combine : std::uint8_t { average, minimum, maximum, product, geometric_mean };
 
-/// How two surfaces meet. The geometric mean of frictions (one smooth surface makes a smooth contact), the greater
-/// restitution (a ball that bounces does so on any floor) and rolling resistance: what Box2D and most engines do.
+/// The rules that combine the materials of two surfaces. By default: the geometric mean of the frictions (one
+/// frictionless surface makes a frictionless contact), the greater restitution (a ball that bounces does so on any
+/// floor) and the greater rolling resistance, as in Box2D and most engines.
 struct CombineRule {
   Combine restitution = Combine::maximum, friction = Combine::geometric_mean, rolling_resistance = Combine::maximum;
   friend bool operator==(const CombineRule&, const CombineRule&) = default;
@@ -68,14 +69,15 @@ struct BodyDefinition {
   Vector<Real, Dim> position{}, velocity{};
   Orientation<Real, Dim> orientation = upright<Real, Dim>();
   Spin<Real, Dim> spin{};
-  std::optional<Real> mass{};  // without one: density times volume (area in the plane)
+  std::optional<Real> mass{};  // default: density times volume (area in the plane)
   Real density = Real(1);
   bool fixed = false;  // never moves, whatever meets it
   Material<Real> material{};
   std::uint32_t group = 0;  // below 32; see World::ignore
 };
 
-/// A body, for as long as it is there: a handle of one that was removed is known to be old.
+/// Identifies a body until it is removed. The generation tells the handle of a removed body from that of a later body
+/// in the same slot.
 struct BodyHandle {
   std::uint32_t slot = 0, generation = 0;
   friend bool operator==(const BodyHandle&, const BodyHandle&) = default;

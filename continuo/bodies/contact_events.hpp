@@ -1,5 +1,6 @@
 // continuo/bodies/contact_events.hpp
-// Who touched whom, where, when and how hard: what a motion notes while it advances, for the caller to read after it.
+// Contact events: the two bodies, the point, the time and the impulse. A motion records them while it advances; the
+// caller reads them afterwards.
 //
 //   ExactMotion motion(world, {.contact_events = 1000});
 //   motion.advance_to(1);
@@ -28,16 +29,16 @@ struct ContactEvent {
   static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
 
   ContactChange change = ContactChange::impact;
-  BodyHandle a{}, b{};                  // b means nothing where there is a wall
+  BodyHandle a{}, b{};                  // b is unused in a contact with a wall
   std::uint32_t wall = no_wall;         // its number in world.walls()
   Vector<Real, Dim> point{}, normal{};  // normal: from a to b, or into the wall
-  Real impulse{};                       // along the normal: of an impact; of a contact that ends, since it began
+  Real impulse{};                       // along the normal: of the impact; at `end`, of the whole contact
   Real time{};
 
   [[nodiscard]] bool with_wall() const { return wall != no_wall; }
 };
 
-/// The events of one call, the first `most`; those beyond are counted.
+/// The contact events of one call: the first `most` of them, and the number of the others.
 template <class Real, int Dim>
 class ContactLog {
  public:
@@ -55,7 +56,7 @@ class ContactLog {
       ++lost_;
     }
   }
-  /// Another's events take their places in the order of time; of bodies that have other names there.
+  /// Merges the events of another log in the order of time. `rename` gives the handle here for a handle there.
   template <class Rename>
   void take_over(ContactLog& other, Rename&& rename) {
     if (other.events_.empty()) return;

@@ -1,4 +1,4 @@
-// Chooses the engine of an exact motion, and hands calls on to it.
+// Chooses the engine of an exact motion, and forwards calls to it.
 #include <utility>
 
 #include <continuo/bodies/event_driven/exact_engine.hpp>

@@ -1,25 +1,29 @@
 // continuo/bodies/exact_motion.hpp
-// Spheres under gravity alone, or no force at all, from collision to collision: every path between is a parabola, every
-// collision time comes from a closed form, and energy and momentum hold to rounding. No step, no tolerance.
+// Moves spheres under gravity alone, or without forces, from collision to collision. Every path between two collisions
+// is a parabola; collision times come from closed forms or, where two bodies accelerate differently, from an isolated
+// root of a polynomial (collision_time.hpp); energy and momentum are conserved to rounding. There is no step and no
+// tolerance.
 //
-// Each body has a clock of its own and one next event, a collision or the crossing into another cell; an event moves
-// the bodies that take part and nobody else. A predicted collision whose partner has collided since is predicted again
-// when its time comes. B. Lubachevsky, "How to simulate billiards and similar systems", J. Comp. Phys. 94 (1991)
-// 255-283.
+// Each body has its own time and one next event: a collision, or the crossing into another cell of the grid. An event
+// moves only the bodies that take part in it. If the partner of a predicted collision has collided since the
+// prediction, the collision is predicted again when its time comes. B. Lubachevsky, "How to simulate billiards and
+// similar systems", J. Comp. Phys. 94 (1991) 255-283.
 //
-// Under other forces an error-controlled method (dop853) moves all bodies together between contacts, which are located
-// on its dense output to neighbouring times; impulses are as exact as before. What is approximate then is the path, by
-// `tolerance`. What these forces press together is held, see persistent_contacts.hpp; where flights become too short,
-// or no forces hold what friction jams, steps lead through, see contact_steps.hpp.
+// Under other forces an error-controlled method (dop853) moves all bodies together between contacts. Contacts are
+// located on its dense output to neighbouring floating-point numbers, and impulses are as exact as before; only the
+// path is approximate, to `tolerance`. Bodies that forces press together are constrained by contact forces, see
+// persistent_contacts.hpp. Where flights become too short, or friction jams bodies so that no consistent contact forces
+// exist, time steps of first order continue the motion, see contact_steps.hpp.
 //
-// Several collisions at one instant are resolved one after the other, pairs of lower numbers first, until nobody
-// approaches: Newton's cradle sends out as many as came in.
+// Several collisions at one instant are resolved one after the other, pairs of lower numbers first, until no two bodies
+// approach each other: from Newton's cradle as many balls leave as came in.
 //
-// Where energy is lost, collisions can pile up without end (inelastic collapse): see inelastic_collapse.hpp. Without
-// gravity, all that touch are struck together then. Under gravity a ball that would leave a wall for less than the
-// contact time stays on it; one that would leave a body for less than that moves on no parabola: the two, and whoever
-// comes near, go on as under other forces, until for some time they have not lain on each other. All others stay on
-// their parabolas, see islands.cpp.
+// Where collisions lose energy, they can follow one another without end (inelastic collapse, see
+// inelastic_collapse.hpp). Without gravity, all bodies in contact are then struck simultaneously. Under gravity, a ball
+// that would rebound from a wall for less than the contact time rests on it. Two bodies that would rebound from each
+// other for less than that have no parabolas: together with the bodies near them they form an island, which moves as
+// under other forces until its bodies have not touched each other for some time. All other bodies stay on their
+// parabolas, see islands.cpp.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -39,26 +43,26 @@ class ExactEngine;
 template <class Real, int Dim>
 class ExactMotion {
  public:
-  /// The world is moved; it must not be changed but through this, or `refresh` must follow.
+  /// Moves `world`. After any other change of the world, call `refresh`.
   explicit ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options = {});
-  /// The companions must live as long; what changes in them needs a `refresh`.
+  /// The companions must live as long as the motion. After changing them, call `refresh`.
   ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options, Companions<Real, Dim>& companions);
   ExactMotion(ExactMotion&&) noexcept;
   ExactMotion& operator=(ExactMotion&&) noexcept;
   ~ExactMotion();
 
-  /// Brings the world to time t, all its bodies to the same instant. Where it fails the world is at the time of
-  /// the last event.
+  /// Advances the world with all its bodies to time t. On failure the world is at the time of the last event.
   [[nodiscard]] Status advance_to(const Real& t);
-  /// Predicts everything again from the world as it is.
+  /// Predicts all events again from the present state of the world.
   void refresh();
 
   [[nodiscard]] const ExactStatistics& statistics() const;
-  /// What happened in the last call of advance_to, and how many more there were than `contact_events`.
+  /// The contact events of the last call of advance_to, and the number of those beyond `contact_events`, which are
+  /// dropped.
   [[nodiscard]] std::span<const ContactEvent<Real, Dim>> contact_events() const;
   [[nodiscard]] std::size_t lost_contact_events() const;
 
-  /// For snapshot.hpp: what is to be known beside the world to go on to the same bits.
+  /// For snapshot.hpp: the state beside the world from which the motion continues to the same bits.
   void save(ByteWriter& writer) const;
   void load(ByteReader& reader);
 

@@ -1,5 +1,6 @@
 // continuo/bodies/exact_options.hpp
-// What the exact motion is told, what moves beside its bodies, and what it counts: for its engines as for who calls it.
+// The options of the exact motion, the companions that it integrates with the bodies, and its statistics: for callers
+// and for the engines.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -13,9 +14,10 @@
 
 namespace continuo {
 
-/// Quantities beside the bodies with a rate of their own, such as the states of equations: they move together with the
-/// bodies, as one system, by the same method. The law adds to forces and torques and sets the rates. Where nothing
-/// twists, orientations, spins and torques are empty: spins are the world's between contacts.
+/// States beside the bodies with rates of their own, such as the states of equations. They are integrated with the
+/// bodies as one system, by the same method. The law adds to forces and torques and sets the rates. Where nothing
+/// exerts a torque, the spans of orientations, spins and torques are empty: between contacts the spins are then those
+/// of the world.
 template <class Real, int Dim>
 struct Companions {
   using V = Vector<Real, Dim>;
@@ -31,11 +33,11 @@ template <class Real>
 struct ExactOptions {
   std::optional<Real> contact_time{};     // without one: a hundred-thousandth of the time in which a body falls its
                                           // radius, or flies it where there is no gravity
-  std::size_t most_events = 100'000'000;  // in one call of advance_to, which then says so: some minutes
+  std::size_t most_events = 100'000'000;  // in one call of advance_to, which fails then: some minutes
   Real tolerance = Real(1e-10);    // of a path under other forces than gravity: relative, and in units of a radius
-  Real step = Real(0);             // greater than 0: such paths by the classical Runge-Kutta method in steps of this
-  std::size_t contact_events = 0;  // so many of a call are kept, see contact_events.hpp
-  const std::atomic<bool>* interrupt = nullptr;  // once it is true, advance_to ends early and says so
+  Real step = Real(0);             // > 0: such paths by the classical Runge-Kutta method in steps of this size
+  std::size_t contact_events = 0;  // at most so many of a call are recorded
+  const std::atomic<bool>* interrupt = nullptr;  // once it is true, advance_to ends as `interrupted`
 
   [[nodiscard]] bool is_interrupted() const { return interrupt != nullptr && interrupt->load(); }
 };

@@ -6,10 +6,10 @@
 //   FastMotion motion(world, {.step = 1.0 / 60});
 //   motion.advance();                                   // one step
 //
-// What is approximate: contacts that last are soft, a pile yields by some thousandths of a radius; friction and resting
-// are as good as the few iterations of a step. What is not: free flight follows its parabola, and an impact faster than
-// gravity acts in a substep happens at its instant, whatever the speed: nothing tunnels, a cradle's balls pass on
-// theirs.
+// Lasting contacts are approximate: they are soft, so that bodies in a pile overlap by some thousandths of a radius,
+// and friction and rest are as good as the few iterations of a step. Free flight under gravity follows its parabola
+// exactly, except with explicit Euler. An impact that is too fast for a soft contact (impacts.hpp) happens at its
+// instant, whatever the speed: no body tunnels, and the balls of a cradle transmit their momentum.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -26,13 +26,13 @@ namespace continuo {
 template <class Real>
 struct FastOptions {
   Real step = Real(1) / Real(60);
-  int substeps = 4;                // more are stiffer and cost as much more
-  Real hertz = Real(120);          // of a contact; a third of the rate of substeps at most
+  int substeps = 4;                // more make contacts stiffer, at proportional cost
+  Real hertz = Real(120);          // of a contact; at most a third of the rate of substeps is used
   Real damping = Real(10);         // ratio: 1 is critical; overdamped contacts do not jump
-  Real fastest_push = Real(4);     // with which overlapping bodies part, length per time
-  std::size_t contact_events = 0;  // so many of a step are kept, see contact_events.hpp
+  Real fastest_push = Real(4);     // greatest speed of separating an overlap, length per time
+  std::size_t contact_events = 0;  // at most so many of a step are recorded
   ForceIntegrator integrator = ForceIntegrator::semi_implicit_euler;  // of forces, see integrator.hpp
-  Real sleep_after = Real(0);     // so long slower than the next, bodies fall asleep, see sleep.hpp; 0: never
+  Real sleep_after = Real(0);     // bodies slower than sleep_speed for so long fall asleep; 0: never
   Real sleep_speed = Real(0.05);  // of centre and rim
   int threads = 1;                // at most; the results are the same to the last bit for any number
 };
@@ -44,29 +44,29 @@ struct FastStatistics {
 template <class Real, int Dim>
 class FastMotion {
  public:
-  /// The world is moved; what is changed in it between steps is seen, but bodies that come or go need a `refresh`,
-  /// which wakes all.
+  /// Moves `world`. Changes of the world between steps take effect in the next step; after adding or removing bodies
+  /// call `refresh`, which wakes all bodies.
   explicit FastMotion(World<Real, Dim>& world, const FastOptions<Real>& options = {});
   FastMotion(FastMotion&&) noexcept;
   FastMotion& operator=(FastMotion&&) noexcept;
   ~FastMotion();
 
-  /// One step. Where it fails the world is as it was before the step.
+  /// Advances by one step. On failure the world is as it was before the step.
   [[nodiscard]] Status advance();
   void refresh();
 
   /// The deepest overlap of two bodies, or of one and a wall, now.
   [[nodiscard]] Real deepest_overlap() const;
   [[nodiscard]] const FastStatistics& statistics() const;
-  /// What happened in the last step: impacts at their instants; what lasts begins and ends with a step, and its impulse
-  /// is that of the last substep times their number, summed over the steps. And how many more there were than asked
-  /// for.
+  /// The contact events of the last step, and the number of those beyond `contact_events`, which are dropped. Impacts
+  /// have their instants. A lasting contact begins and ends at the end of a step; its impulse is the sum over its steps
+  /// of the impulse in the last substep times the number of substeps.
   [[nodiscard]] std::span<const ContactEvent<Real, Dim>> contact_events() const;
   [[nodiscard]] std::size_t lost_contact_events() const;
-  /// Bytes held beside the world: bodies as contacts need them, pairs, contacts.
+  /// Bytes of memory beside the world: the bodies of the contact solver, pairs, contacts.
   [[nodiscard]] std::size_t memory() const;
 
-  /// For snapshot.hpp: what is to be known beside the world to go on to the same bits.
+  /// For snapshot.hpp: the state beside the world from which the motion continues to the same bits.
   void save(ByteWriter& writer) const;
   void load(ByteReader& reader);
 

@@ -11,7 +11,7 @@ namespace continuo {
 
 namespace {
 
-/// The two ends of a spring: a body, or a point that does not move.
+/// One end of a spring: a body, or a point that does not move.
 template <class Real, int Dim>
 struct End {
   Vector<Real, Dim> x{}, v{};
@@ -30,7 +30,7 @@ std::array<End<Real, Dim>, 2> ends_of(const World<Real, Dim>& world, const Sprin
   return {at_body(spring.a), End<Real, Dim>{std::get<Vector<Real, Dim>>(spring.b), {}, 0, false}};
 }
 
-/// A spring to a body that was removed pulls no more.
+/// Whether the bodies of a spring still exist: without one of them it exerts no force.
 template <class Real, int Dim>
 bool holds(const World<Real, Dim>& world, const Spring<Real, Dim>& spring) {
   const auto* other = std::get_if<BodyHandle>(&spring.b);

@@ -1,6 +1,5 @@
 // continuo/bodies/forces.hpp
-// The forces and torques of a world at any positions and velocities, not only the present ones: what integrators ask
-// for.
+// The forces and torques of a world at any positions and velocities, not only the present ones, for integrators.
 #pragma once
 #include <span>
 
@@ -14,7 +13,7 @@ template <class Real, int Dim>
 void forces(const World<Real, Dim>& world, Real t, std::span<const Vector<Real, Dim>> x,
             std::span<const Vector<Real, Dim>> v, std::span<Vector<Real, Dim>> force);
 
-/// torque[i] = the sum of all torques on body i, fixed bodies' too, which nothing turns.
+/// torque[i] = the sum of all torques on body i. Fixed bodies have torques too, although these turn nothing.
 template <class Real, int Dim>
 void torques(const World<Real, Dim>& world, Real t, const BodyStates<Real, Dim>& at, std::span<Spin<Real, Dim>> torque);
 

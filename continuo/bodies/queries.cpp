@@ -18,8 +18,8 @@ bool is_number(const Real& value) {
   return value - value == Real(0);
 }
 
-/// How far along the ray (of unit direction) the box begins; infinity where the ray misses it. Where rounding or
-/// overflow leaves it open, 0: nothing is left out.
+/// The distance along the ray (of unit direction) at which it enters the box; infinity where it misses the box. Where
+/// rounding or overflow leaves this undecided the result is 0, so that no hit is lost.
 template <class Real, int Dim>
 Real entry(const Ray<Real, Dim>& ray, const Vector<Real, Dim>& lower, const Vector<Real, Dim>& upper) {
   Real from(0), to = ray.reach;
@@ -35,12 +35,12 @@ Real entry(const Ray<Real, Dim>& ray, const Vector<Real, Dim>& lower, const Vect
     if (near > from) from = near;
     if (far < to) to = far;
   }
-  // Both ends are right to some ulps of themselves.
+  // Both ends have a relative error of some units in the last place.
   return from > to + 8 * std::numeric_limits<Real>::epsilon() * to ? std::numeric_limits<Real>::infinity() : from;
 }
 
-/// How far a ball's surface is along the ray; infinity where it misses. From the distance of the centre to the line,
-/// which keeps its digits however far away the ball is.
+/// The distance along the ray to the surface of a ball; infinity where the ray misses it. The formula uses the distance
+/// of the centre from the line, which loses no digits however far away the ball is.
 template <class Real, int Dim>
 Real distance_along(const Ray<Real, Dim>& ray, const Vector<Real, Dim>& centre, const Real& radius) {
   using std::sqrt;
@@ -63,7 +63,7 @@ Real distance_to_box(const Vector<Real, Dim>& x, const Vector<Real, Dim>& lower,
   return length(out);
 }
 
-/// Makes the direction a unit; says what is wrong with the ray.
+/// Normalizes the direction. Fails where the ray is invalid.
 template <class Real, int Dim>
 Status prepare(Ray<Real, Dim>& ray) {
   if (!is_finite(ray.origin) || !is_finite(ray.direction))
@@ -130,8 +130,9 @@ void Queries<Real, Dim>::build(std::size_t node, std::size_t first, std::size_t 
   build(2 * node + 2, middle, last);
 }
 
-/// visit(item) in the boxes that enter(box) lets in: it gives how soon they come, infinity for never. The sooner half
-/// comes first, and the other is asked again then.
+/// Calls visit(item) for the items of all boxes that enter(box) does not exclude. enter(box) gives the distance at
+/// which the box begins, infinity to exclude it. The nearer half of a box comes first; the other half is tested again
+/// after that, since a hit may have shortened the search.
 template <class Real, int Dim>
 template <class Enter, class Visit>
 void Queries<Real, Dim>::walk(Enter&& enter, Visit&& visit, std::size_t node, std::size_t first,

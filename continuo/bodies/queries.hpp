@@ -1,14 +1,14 @@
 // continuo/bodies/queries.hpp
-// What is where: rays, regions and neighbours in a world as it is when the index is built, in O(N log N); each question
-// then costs O(log N) where few bodies answer it.
+// Spatial queries: ray casts, regions and nearest neighbours. The index is built from the present state of the world in
+// O(N log N); a query then costs O(log N) where few bodies match it.
 //
 //   const Queries queries(world);
 //   const auto hit = queries.first_hit({.origin = {{0, 0, 10}}, .direction = {{0, 0, -1}}});
 //   if (!hit) std::cerr << describe(hit.status());  // the question made no sense
 //   else if (!hit.value.empty()) use(hit.value.front().body, hit.value.front().distance)
 //
-// Bodies lie in a tree of boxes, halved along the longest edge by the middle body; that bodies differ in size or some
-// are far away from all others costs nothing. Bodies whose place is not finite are nowhere.
+// The index is a tree of bounding boxes, each divided at the median body along its longest edge, so that bodies of very
+// different size, or far away from all others, cost nothing extra. Bodies whose position is not finite are left out.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -26,13 +26,13 @@ struct Ray {
   Real reach = std::numeric_limits<Real>::infinity();
 };
 
-/// What a question is about: bodies of the groups whose bit is set, and walls.
+/// Selects the objects of a query: bodies of the groups whose bit is set, and walls.
 struct QueryFilter {
   std::uint32_t groups = ~std::uint32_t{0};
   bool walls = true;
 };
 
-/// A body, or the wall of a number in world.walls().
+/// A hit on a body, or on a wall, whose number in world.walls() is `wall`.
 template <class Real, int Dim>
 struct RayHit {
   static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
@@ -61,7 +61,8 @@ class Queries {
 
   explicit Queries(const World<Real, Dim>& world);
 
-  // All fail where the question cannot be meant: it must be finite, a direction not 0, no region inside out.
+  // All queries fail for invalid arguments: numbers that are not finite, a direction of 0, a negative radius or reach,
+  // or a box whose lower corner is above its upper one.
 
   /// The nearest hit, if any: one element or none. Of equal distances bodies come before walls, lower numbers first.
   [[nodiscard]] Result<std::vector<RayHit<Real, Dim>>> first_hit(const Ray<Real, Dim>& ray,
@@ -69,7 +70,7 @@ class Queries {
   /// All of them, the nearest first.
   [[nodiscard]] Result<std::vector<RayHit<Real, Dim>>> all_hits(const Ray<Real, Dim>& ray,
                                                                 const QueryFilter& filter = {}) const;
-  /// What a ball, or a box with its faces along the axes, touches. In the order of the world.
+  /// The bodies and walls that a ball, or a box with its faces along the axes, touches, in the order of the world.
   [[nodiscard]] Result<Overlap> in_sphere(const V& centre, const Real& radius, const QueryFilter& filter = {}) const;
   [[nodiscard]] Result<Overlap> in_box(const V& lower, const V& upper, const QueryFilter& filter = {}) const;
   /// The `count` bodies whose surfaces are nearest, or as many as there are; the nearest first.
@@ -96,7 +97,7 @@ class Queries {
   void wall_hits(const Ray<Real, Dim>& ray, Take&& take) const;
 
   std::vector<Item> items_;
-  std::vector<Box> boxes_;  // of node k are 2 k + 1 and 2 k + 2 the halves
+  std::vector<Box> boxes_;  // the halves of node k are nodes 2 k + 1 and 2 k + 2
   std::vector<Wall<Real, Dim>> walls_;
 };
 

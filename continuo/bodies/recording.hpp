@@ -1,6 +1,7 @@
 // continuo/bodies/recording.hpp
-// A run as a file, to be played again: frames of places and orientations at instants of the caller's choice, and with
-// the first, and wherever bodies have come or gone since, the whole world as a snapshot.
+// A recording of a run, for playback from a file: frames of positions and orientations at instants of the caller's
+// choice. Before the first frame, and wherever bodies have been added or removed since, the file has a snapshot of the
+// whole world.
 //
 //   std::ofstream file("run.continuo", std::ios::binary);
 //   Recorder<double, 3> recorder(file);
@@ -11,8 +12,8 @@
 //   if (!recording) std::cerr << describe(recording.status());
 //   const auto frame = recording->frame(17);               // frame.time, frame.position[i]
 //
-// The last block is the index; a file that ends without it, because the run did not, is read as far as its blocks are
-// whole.
+// The last block is the index. A file without it, left by a run that was cut off, is read up to its last complete
+// block.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -32,7 +33,7 @@ namespace continuo {
 template <class Real, int Dim>
 struct Frame {
   Real time{};
-  std::uint64_t scene = 0;  // Recording::scenes[scene] is the world these are the bodies of, by index
+  std::uint64_t scene = 0;  // Recording::scenes[scene] is the world of these bodies, in the same order
   std::vector<Vector<Real, Dim>> position{};
   std::vector<Orientation<Real, Dim>> orientation{};
 
@@ -63,7 +64,7 @@ struct RecordingIndex {
 template <class Real, int Dim>
 class Recorder {
  public:
-  /// The stream must be binary and stay; whether writing went well is for the caller to ask of it.
+  /// The stream must be binary and outlive this object. The caller checks the stream for failed writes.
   explicit Recorder(std::ostream& out) : out_(out) {
     ByteWriter head;
     detail::recording_format.write(head);
@@ -99,18 +100,18 @@ class Recorder {
 
 template <class Real, int Dim>
 struct Recording {
-  bool is_whole = false;  // false where the run ended before its recording did
+  bool is_whole = false;  // false where the index is missing: the run was cut off
   std::vector<World<Real, Dim>> scenes{};
   std::vector<Frame<Real, Dim>> frames{};
 
   [[nodiscard]] const Frame<Real, Dim>& frame(std::size_t i) const { return frames[i]; }
-  /// The last frame not after t; the first where all are.
+  /// The last frame not after t; the first frame where all are after t.
   [[nodiscard]] const Frame<Real, Dim>& at(const Real& t) const {
     const auto after = std::ranges::upper_bound(frames, t, {}, &Frame<Real, Dim>::time);
     return after == frames.begin() ? frames.front() : *(after - 1);
   }
 
-  /// Unreadable where nothing can be played.
+  /// Fails as unreadable where there is not one frame to play.
   [[nodiscard]] static Result<Recording> read(std::span<const std::byte> bytes) {
     Recording recording;
     ByteReader file(bytes);

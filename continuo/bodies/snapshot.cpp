@@ -1,4 +1,4 @@
-// Writes a world and the memory of its motion as bytes, and reads them with every value checked.
+// Writes a world and the internal state of its motion as bytes, and reads them back with every value checked.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -19,7 +19,7 @@ template <class Real>
 bool is_number(const Real& value) {
   return value - value == Real(0);
 }
-/// Of inverse masses, 0 of what never moves.
+/// Whether this is a possible inverse of a mass or inertia, which is 0 for a fixed body.
 template <class Real>
 bool is_inverse(const Real& value) {
   return value >= Real(0) && is_number(value);
@@ -183,7 +183,7 @@ Status corrupt(std::string message) {
   return {.ending = Ending::unreadable, .message = std::move(message)};
 }
 
-/// read_motion(reader, of, world) sees the rest; then the world is handed over.
+/// Reads the head and the world; read_motion(reader, of, found) then reads the rest and gets the world that was read.
 template <class Real, int Dim, class ReadMotion>
 Status read(std::span<const std::byte> bytes, World<Real, Dim>& world, ReadMotion&& read_motion) {
   if (bytes.size() < sizeof(std::uint64_t)) return corrupt("byte 0: too short for a snapshot");

@@ -1,14 +1,14 @@
 // continuo/bodies/snapshot.hpp
-// A world as bytes, with what a motion remembers of it: restored, it goes on to the same bits.
+// A world as bytes, with the internal state of its motion: a restored run continues to the same bits.
 //
 //   const Bytes bytes = snapshot(world, motion);
 //   ...
 //   World<double, 3> again;  ExactMotion motion_again(again);
 //   if (const Status status = restore(bytes, again, motion_again); !status) std::cerr << describe(status);
 //
-// The bytes are the same on every machine. Not in them: options of motions and forces of the user's own, which are
-// code; the world and the motion that are restored must have been given the same. What is wrong with bytes is said with
-// the place where it is, and leaves world and motion as they were.
+// The bytes are the same on every machine. They contain neither the options of motions nor force and torque laws, which
+// are code: the restored world and motion must have the same ones. For invalid bytes the message gives the position of
+// the fault, and world and motion stay unchanged.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -25,16 +25,16 @@ inline constexpr std::uint32_t snapshot_version = 8;
 
 template <class Real, int Dim>
 [[nodiscard]] Bytes snapshot(const World<Real, Dim>& world);
-/// The motion must be of this world.
+/// The motion must move this world.
 template <class Real, int Dim>
 [[nodiscard]] Bytes snapshot(const World<Real, Dim>& world, const ExactMotion<Real, Dim>& motion);
 template <class Real, int Dim>
 [[nodiscard]] Bytes snapshot(const World<Real, Dim>& world, const FastMotion<Real, Dim>& motion);
 
-/// Of a snapshot with a motion or without.
+/// Accepts a snapshot with or without a motion.
 template <class Real, int Dim>
 [[nodiscard]] Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world);
-/// The motion must be of this world, and the snapshot of such a motion.
+/// The motion must move this world, and the snapshot must contain a motion of the same kind.
 template <class Real, int Dim>
 [[nodiscard]] Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, ExactMotion<Real, Dim>& motion);
 template <class Real, int Dim>

@@ -144,7 +144,7 @@ Status World<Real, Dim>::add_container(const V& lower, const V& upper, const Mat
 
 template <class Real, int Dim>
 Real kinetic_energy(const World<Real, Dim>& world) {
-  Real sum(0), rest(0);  // of very many bodies, rounding would look like a loss
+  Real sum(0), rest(0);  // compensated: over very many bodies, rounding would look like a loss
   for (std::size_t i = 0; i < world.size(); ++i) {
     if (world.is_fixed(i)) continue;
     detail::add_compensated(

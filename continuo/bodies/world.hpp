@@ -1,6 +1,6 @@
 // continuo/bodies/world.hpp
-// What there is and how it moves at this instant: bodies, walls, springs and other forces. A value: a copy is a
-// snapshot.
+// The state of a system of bodies at an instant: bodies, walls, springs and other forces. A world is a value, and a
+// copy of it is a snapshot.
 //
 //   World<double, 3> world;
 //   world.gravity = {{0, 0, -9.81}};
@@ -25,8 +25,8 @@
 
 namespace continuo {
 
-/// The points x with normal . x >= offset are free; a body touches where normal . x - radius = offset. A thin one has
-/// two sides: free are all points but those of the plane itself, and a body stays on the side where its centre is.
+/// The points x with normal . x >= offset are free; a body touches the wall where normal . x - radius = offset. A thin
+/// wall has two sides: all points off its plane are free, and a body stays on the side of its centre.
 template <class Real, int Dim>
 struct Wall {
   Vector<Real, Dim> normal = [] {
@@ -38,7 +38,7 @@ struct Wall {
   Material<Real> material{};
   bool thin = false;
 };
-/// The wall as one at x has it before it.
+/// The wall with its normal turned to the side of x.
 template <class Real, int Dim>
 [[nodiscard]] Wall<Real, Dim> facing(Wall<Real, Dim> wall, const Vector<Real, Dim>& x) {
   if (wall.thin && dot(wall.normal, x) < wall.offset) {
@@ -56,13 +56,14 @@ struct Spring {
   Real rest_length = Real(0), stiffness = Real(1), damping = Real(0);
 };
 
-/// Against the velocity of every body: linear * v + quadratic * |v| * v.
+/// A drag force against the velocity of every body: linear * v + quadratic * |v| * v.
 template <class Real>
 struct Drag {
   Real linear = Real(0), quadratic = Real(0);
 };
 
-/// Every pair attracts itself by constant * m1 * m2 * r / (r^2 + softening^2)^(3/2), fixed bodies too.
+/// The two bodies of every pair attract each other by constant * m1 * m2 * r / (r^2 + softening^2)^(3/2), fixed bodies
+/// included.
 template <class Real>
 struct Attraction {
   Real constant = Real(0), softening = Real(0);
@@ -72,23 +73,24 @@ struct Attraction {
 template <class Real, int Dim>
 class World;
 
-/// Forces of the user's own: adds to force[i], of body i at x[i], v[i]. Without a potential they are no part of energy.
+/// A user-defined force: adds to force[i], the force on body i at x[i], v[i]. It has no potential and is not part of
+/// the energy.
 template <class Real, int Dim>
 using ForceLaw = std::function<void(const World<Real, Dim>& world, Real t, std::span<const Vector<Real, Dim>> x,
                                     std::span<const Vector<Real, Dim>> v, std::span<Vector<Real, Dim>> force)>;
 
-/// Whether a surface can have these values.
+/// Fails where a value of the material is invalid.
 template <class Real>
 [[nodiscard]] Status check(const Material<Real>& material);
 
-/// How bodies are moved: of body i, x[i], v[i] and so on.
+/// The states of all bodies: body i has x[i], v[i], orientation[i], spin[i].
 template <class Real, int Dim>
 struct BodyStates {
   std::span<const Vector<Real, Dim>> x, v;
   std::span<const Orientation<Real, Dim>> orientation;
   std::span<const Spin<Real, Dim>> spin;
 };
-/// Torques of the user's own: adds to torque[i], of body i.
+/// A user-defined torque: adds to torque[i], the torque on body i.
 template <class Real, int Dim>
 using TorqueLaw = std::function<void(const World<Real, Dim>& world, Real t, const BodyStates<Real, Dim>& at,
                                      std::span<Spin<Real, Dim>> torque)>;
@@ -102,7 +104,7 @@ class World {
   using S = Spin<Real, Dim>;
   using O = Orientation<Real, Dim>;
 
-  // Forces; potential energy is known of all but the last three.
+  // Forces. All but the last three have a potential energy.
   V gravity{};
   std::vector<Spring<Real, Dim>> springs;
   Attraction<Real> attraction{};
@@ -112,30 +114,31 @@ class World {
   CombineRule combine_rule{};  // of the materials of any two surfaces
   Real time = Real(0);
 
-  /// Refuses a body without size or mass, or that is not finite, and says how to mend it. Amortised O(1).
+  /// Fails for a body without size or mass, or with a number that is not finite; the message says how to correct it.
+  /// Amortised O(1).
   Result<BodyHandle> add(const BodyDefinition<Real, Dim>& definition);
-  /// False where it was not there. O(1): the last body takes its place.
+  /// False where the world has no such body. O(1): the last body moves to the index that becomes free.
   bool remove(BodyHandle handle);
   [[nodiscard]] bool contains(BodyHandle handle) const {
     return handle.slot < slots_.size() && slots_[handle.slot].generation == handle.generation &&
            slots_[handle.slot].index != nowhere;
   }
-  /// The handle must be of a body that is there.
+  /// The world must contain the body.
   [[nodiscard]] std::size_t index(BodyHandle handle) const { return slots_[handle.slot].index; }
   [[nodiscard]] BodyHandle handle(std::size_t index) const {
     return {slot_of_[index], slots_[slot_of_[index]].generation};
   }
 
-  /// Some of the bodies, in this order, with all walls, under gravity alone.
+  /// A world of some of the bodies, in this order, with all walls, under gravity alone.
   [[nodiscard]] World part(std::span<const std::uint32_t> bodies) const;
 
-  /// Empty where it was added: the normal must be finite and not zero; it is made a unit.
+  /// Fails unless the normal is finite and not zero. The normal is scaled to length 1.
   [[nodiscard]] Status add_wall(Wall<Real, Dim> wall);
   /// The inside of a box with its faces along the axes.
   [[nodiscard]] Status add_container(const V& lower, const V& upper, const Material<Real>& material = {});
   [[nodiscard]] std::span<const Wall<Real, Dim>> walls() const { return walls_; }
 
-  /// Bodies of groups a and b pass through each other from here on.
+  /// From now on, bodies of groups a and b do not collide.
   void ignore(std::uint32_t a, std::uint32_t b) {
     ignored_[a] |= 1u << b;
     ignored_[b] |= 1u << a;
@@ -147,19 +150,19 @@ class World {
   }
 
   [[nodiscard]] std::size_t size() const { return position.size(); }
-  /// Room for so many bodies: without it, arrays that grow take up to twice what they hold.
+  /// Reserves memory for so many bodies. Without it, growing arrays occupy up to twice the memory that they need.
   void reserve(std::size_t bodies) {
     for_each_array(*this, [&](auto& array) { array.reserve(bodies); });
     slots_.reserve(bodies);
   }
-  /// Bytes held for bodies.
+  /// Bytes of memory for bodies.
   [[nodiscard]] std::size_t memory() const {
     std::size_t sum = slots_.capacity() * sizeof(Slot) + free_slots_.capacity() * sizeof(std::uint32_t);
     for_each_array(*this, [&](const auto& array) { sum += array.capacity() * sizeof(array[0]); });
     return sum;
   }
 
-  // By index: body i has position[i], ... . An index holds until a body is removed; a handle for ever.
+  // By index: body i has position[i] and so on. An index is valid until a body is removed, a handle for ever.
   std::vector<V> position, velocity, constant_force;
   std::vector<O> orientation;
   std::vector<S> spin;
@@ -193,7 +196,7 @@ class World {
 /// Sums over all bodies that move. Angular momentum is about the origin, spin included.
 template <class Real, int Dim>
 [[nodiscard]] Real kinetic_energy(const World<Real, Dim>& world);
-/// Of gravity, constant forces, springs and attraction.
+/// The potential energy of gravity, constant forces, springs and attraction.
 template <class Real, int Dim>
 [[nodiscard]] Real potential_energy(const World<Real, Dim>& world);
 template <class Real, int Dim>
@@ -201,8 +204,8 @@ template <class Real, int Dim>
 template <class Real, int Dim>
 [[nodiscard]] Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world);
 
-/// Of time and of every body's position, orientation, velocity and spin, to the last bit: two runs that are the same
-/// have the same (FNV-1a; G. Fowler, L. C. Noll, K.-P. Vo).
+/// A hash of the time and of every body's position, orientation, velocity and spin, to the last bit: equal runs have
+/// equal hashes (FNV-1a; G. Fowler, L. C. Noll, K.-P. Vo).
 template <class Real, int Dim>
 [[nodiscard]] std::uint64_t state_hash(const World<Real, Dim>& world);
 

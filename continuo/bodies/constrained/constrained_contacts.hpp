@@ -1,5 +1,5 @@
-// Which bodies touch under general forces, what they do to each other in an instant, and which contacts last: what
-// flights and steps through contacts have in common.
+// Contacts under general forces, for flights and for time steps through contacts: which bodies touch, the impacts of an
+// instant, and which contacts persist.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -28,12 +28,12 @@ template <class Real, int Dim>
   return greatest;
 }
 
-/// Where what happens at contacts is written down: the engine's own records.
+/// The records of the engine in which contacts are noted.
 template <class Real, int Dim>
 struct ContactJournal {
   ExactStatistics& statistics;
   ContactLog<Real, Dim>& log;
-  std::vector<Real>& together;  // when each body lay on another last
+  std::vector<Real>& together;  // the last time at which each body lay on another
 };
 
 /// A contact that persists, and its impulse so far.
@@ -59,10 +59,10 @@ class ConstrainedContacts {
   ConstrainedContacts(World<Real, Dim>& world, const Real& time_of_contact)
       : contact_time(time_of_contact), last(world.size(), -never), world_(world) {}
 
-  Real contact_time{};       // after a collision a body bounces no more for so long
-  Real allowance{};          // to which a gap may sink
-  Real left_by_steps{};      // gaps that steps through contacts leave of those that persist
-  std::vector<Real> last{};  // when each body collided last
+  Real contact_time{};       // for so long after a collision a body does not bounce
+  Real allowance{};          // bodies touch up to this gap, and may overlap by as much
+  Real left_by_steps{};      // persistent contacts touch up to this gap after time steps
+  std::vector<Real> last{};  // the time of the last collision of each body
   std::vector<Lasting> lasting{};
 
   /// The greatest acceleration by forces when `resolve` was called last.
@@ -79,10 +79,11 @@ class ConstrainedContacts {
     left_by_steps = std::max(left_by_steps, other.left_by_steps);
   }
 
-  /// Collisions of this instant among `near`, one after the other, until nobody approaches; what does not end so
-  /// bounces no more, and then moves as one. Gives the contacts that persist: where forces press two together that
-  /// hardly move (in the contact time by no more than the forces would move them) no collision happens, and their
-  /// normal and friction forces keep them together from here on.
+  /// Resolves the collisions of this instant among `near`, one after the other, until no two bodies approach each
+  /// other. Where this does not end, contacts that lose energy stop bouncing, and are struck together. Returns the
+  /// persistent contacts. They are the contacts that forces press together and whose bodies hardly move relative to
+  /// each other: by no more in the contact time than the forces would move them. Such bodies do not collide; normal and
+  /// friction forces keep them in contact from here on.
   [[nodiscard]] PersistentContacts<Real, Dim> resolve(std::span<const Touching> near, std::span<const V> force,
                                                       std::span<const S> torque, const Journal& journal) {
     const Real acceleration = greatest_acceleration(world_, force), slow = acceleration * contact_time;
@@ -109,24 +110,25 @@ class ConstrainedContacts {
       if (k < held.size() && held[k] == at) {
         ++k;
       } else {
-        strike(at, slow / 1'000'000, material_now(at, before, false), journal);  // what is less is rounding
+        strike(at, slow / 1'000'000, material_now(at, before, false), journal);  // smaller speeds are rounding
       }
     held.look_again();
     return held;
   }
 
-  /// What counts as touching: the digits of a place, and what a gap may sink.
+  /// Whether the two touch: the gap is at most the rounding of a position or the allowance, or, in a persistent
+  /// contact, the gap that time steps leave.
   [[nodiscard]] bool touches(const Touching& at) const {
     const Real size = length(world_.position[at.a]) + world_.radius[at.a];
     const Real least = Real(16 * std::numeric_limits<Real>::epsilon() * size), gap = gap_of(world_, at);
     return gap <= std::max(least, allowance) || (gap <= left_by_steps && find(lasting, at));
   }
-  /// By more than `slow`, and than rounding.
+  /// Whether the two approach each other faster than `slow`, and faster than rounding explains.
   [[nodiscard]] bool approaches(const Touching& at, const Real& slow) const {
     const V rate = (at.with_wall() ? V{} : world_.velocity[at.b]) - world_.velocity[at.a];
     return approach_of(world_, at) > std::max(slow, Real(8 * std::numeric_limits<Real>::epsilon() * length(rate)));
   }
-  /// False where they do not approach.
+  /// Applies the impulse of a collision. False where the two do not approach each other.
   bool strike(const Touching& at, const Real& slow, const Material<Real>& material, const Journal& journal) {
     if (!approaches(at, slow)) return false;
     V no_velocity{};
@@ -135,7 +137,8 @@ class ConstrainedContacts {
     has_struck(at, collide(mover(at.a), at.with_wall() ? wall : mover(at.b), normal_of(world_, at), material), journal);
     return true;
   }
-  /// What has collided within the contact time before this instant, or touched already, bounces no more.
+  /// The combined material of a pair. If a body has collided within the contact time before this instant, or the
+  /// contact persists already, the restitution is 0, unless it is 1.
   [[nodiscard]] Material<Real> material_now(const Touching& at, const std::vector<Real>& before,
                                             bool is_squeezed) const {
     const bool is_wall = at.with_wall();
@@ -149,7 +152,7 @@ class ConstrainedContacts {
     return material;
   }
 
-  /// Which contacts go on, which are new, and which have ended. `pairs` in order.
+  /// Updates the persistent contacts to `pairs`, which are sorted, and logs those that begin and those that end.
   template <class Pairs>
   void note_lasting(const Pairs& pairs, const Journal& journal) {
     std::vector<Lasting> now;
@@ -163,8 +166,8 @@ class ConstrainedContacts {
     lasting = std::move(now);
     note_together(world_.time, journal);
   }
-  /// At time t: which bodies lie on another, or on two walls of which one rubs, so that event_driven.cpp has no
-  /// parabola for them.
+  /// Notes time t for bodies that lie on another body, or on two walls of which one has friction: event_driven.cpp has
+  /// no parabola for them.
   void note_together(const Real& t, const Journal& journal) const {
     const auto friction = [&](const Touching& at) {
       return combined(world_.combine_rule.friction, world_.material[at.a].friction,
@@ -181,13 +184,14 @@ class ConstrainedContacts {
   }
 
  private:
-  /// Of contacts in order.
+  /// Finds a pair among sorted contacts.
   [[nodiscard]] static const Lasting* find(const std::vector<Lasting>& contacts, const Touching& pair) {
     const auto at = std::ranges::lower_bound(contacts, pair, {}, &Lasting::pair);
     return at != contacts.end() && at->pair == pair ? &*at : nullptr;
   }
 
-  /// What bounces, one after the other, and then what does not, all together. False where nobody approaches.
+  /// Resolves the contacts that bounce one after the other, and then all others together. False where no two bodies
+  /// approach each other.
   [[nodiscard]] bool strike_all(std::span<const Touching> touching, const Real& slow, const std::vector<Real>& before,
                                 bool is_squeezed, const Journal& journal) {
     bool is_any = false, is_plastic = false;

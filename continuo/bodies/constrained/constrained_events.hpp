@@ -1,5 +1,5 @@
-// What ends a flight under general forces: two bodies that come to touch, a contact that lets go or begins to slip, or
-// bodies that have gone further than the list of candidates is good for.
+// The events that end a flight under general forces: two bodies begin to touch, a contact opens or begins to slip, or a
+// body leaves the range for which the candidates were listed.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -13,17 +13,17 @@
 
 namespace continuo {
 
-/// Two that can meet before the candidates are listed anew.
+/// A pair that can begin to touch before the candidates are listed again.
 template <class Real>
 struct Candidate {
-  enum class Watched { gap, approach, nothing };  // approach: of two that overlap and part; nothing: in contact
+  enum class Watched { gap, approach, nothing };  // approach: the two overlap and separate; nothing: in contact
   Touching pair{};
   Watched watched = Watched::gap;
-  Real lowest{};  // to which the gap may fall
+  Real lowest{};  // the event is where the gap falls to this
 };
 
-/// Guards that fall through 0, each of which stops the flight: one of every candidate, three of every persistent
-/// contact, and last, how far bodies are from where the list ends.
+/// The guards of a flight: one for every candidate, three for every persistent contact, and last one for the range of
+/// the list of candidates. The flight stops where a guard falls through 0.
 template <class Real, int Dim>
 class ConstrainedEvents {
  public:
@@ -54,7 +54,7 @@ class ConstrainedEvents {
   }
   [[nodiscard]] Real next_time(std::size_t, Real, bool) const { return std::numeric_limits<Real>::infinity(); }
 
-  /// Of an instant that was asked for already they are known: each guard that is looked at more closely asks for all.
+  /// The values are cached by instant: the search for the root of each guard evaluates all guards.
   void guards(ConstrainedSystem<Real, Dim>& flow, Real t, const X& state, std::span<Real> values) {
     const auto same = [&](const Known& one) { return one.t == t && one.state == state; };
     if (const auto known = std::ranges::find_if(known_, same); known != known_.end()) {
@@ -62,7 +62,7 @@ class ConstrainedEvents {
       return;
     }
     find_guards(flow, t, state, values);
-    if (held_ == 0) return;  // nothing there that costs
+    if (held_ == 0) return;  // the guards of candidates are cheap
     if (known_.size() == most_known) known_.clear();
     known_.push_back({t, state, {values.begin(), values.end()}});
   }

@@ -1,5 +1,5 @@
-// The exact motion under forces of any kind: a machine of states (motion_states.hpp) with a function for each, from
-// contact to contact on whatever paths the forces make, or in steps through contacts where there are too many of them.
+// The exact motion under forces of any kind: a state machine (motion_states.hpp) with a function for each state. It
+// integrates the motion from contact to contact, or, where there are too many contacts, takes time steps through them.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -43,10 +43,10 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   ConstrainedMotion(World<Real, Dim>& world, const ExactOptions<Real>& options, Companions<Real, Dim>* companions)
       : ConstrainedMotion(world, options, companions, usual_contact_time_under_forces(world, companions)) {}
 
-  /// From state to state until a call ends. It begins in the state that is known from the last one.
+  /// Runs the state machine until the call ends, from the state in which the last call left the motion.
   Status advance_to(const Real& t) override {
     if (contact_state_.last.size() != world_.size()) return other_bodies();
-    resolved_.reset();  // a motion that is read from a snapshot has none
+    resolved_.reset();  // a motion restored from a snapshot has none
     Call call{.until = t};
     for (MotionState state = first_state(t); state != MotionState::ended;) state = next_state(state, act(state, call));
     return std::move(call.status);
@@ -72,7 +72,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
       if (to[i] != this->nowhere) together[to[i]] = from.together[i];
     contact_state_.take_over(from.contact_state_, to);
     steps_.take_over(from.steps_, to);
-    if (from.world_.size() <= greatest_before_) return;  // the lengths of steps are those of the greatest
+    if (from.world_.size() <= greatest_before_) return;  // the step sizes are those of the largest island
     greatest_before_ = from.world_.size();
     step_ = from.step_, lasted_ = from.lasted_, zeno_guard_ = from.zeno_guard_;
   }
@@ -120,7 +120,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     const Real by_force = pull > Real(0) && pull < never ? Real(1e-5) * sqrt(2 * smallest / pull) : Real(0);
     return std::max(by_force, usual_contact_time(world));
   }
-  /// What a snapshot has, in this order.
+  /// The contents of a snapshot, in this order.
   template <class Archive>
   void transfer(Archive& archive) {
     ConstrainedContacts<Real, Dim>& at = contact_state_;
@@ -158,7 +158,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     call.status = std::move(status);
     return MotionEvent::failed;
   }
-  /// What ends a call before its time, looked for between flights and between steps.
+  /// Whether the call ends before its time. Tested between flights and between steps.
   std::optional<MotionEvent> stops(Call& call) const {
     if (++call.events > options_.most_events) return fail(call, too_many_events());
     if (options_.is_interrupted()) return fail(call, interrupted());
@@ -166,7 +166,8 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     return {};
   }
 
-  /// The collisions of the present instant, unless the last flight ended with them, and who may meet from here on.
+  /// Resolves the collisions of the present instant, unless the last flight has done so, and lists the pairs that may
+  /// begin to touch from here on.
   MotionEvent impacts(Call& call) {
     if (const auto stop = stops(call)) return *stop;
     list_candidates();
@@ -190,7 +191,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     is_steady_ = rests(flow);
     return is_steady_ ? MotionEvent::nothing_moves : follow(call, std::move(flow));
   }
-  /// A step as far as the stride, or to an impact, or to the end.
+  /// A time step of the length `stride_`, or to the next impact or the end of the call where these are nearer.
   MotionEvent contact_steps(Call& call) {
     if (const auto stop = stops(call)) return *stop;
     resolved_.reset();
@@ -219,7 +220,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     if (is_steady_) return MotionEvent::nothing_moves;
     return zeno_guard_.is_in_steps() ? MotionEvent::stepped : MotionEvent::steps_made;
   }
-  /// But for what turns about itself: the same contacts carry the same to the end.
+  /// Only rotation goes on: the contact forces are the same to the end of the call.
   MotionEvent at_rest(Call& call) {
     if (const auto stop = stops(call)) return *stop;
     if (room_ < never) return MotionEvent::left_room;
@@ -248,7 +249,8 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     candidates_.clear();
     for (const Touching& pair : pairs_within(world_, reach_)) candidates_.push_back({.pair = pair});
   }
-  /// Two that overlap by more than half of what they may are to sink no deeper.
+  /// Chooses the guard of a candidate. Two bodies that overlap by more than half of the allowance may sink deeper by
+  /// half of it.
   void watch(Candidate<Real>& at) const {
     const Real gap = gap_of(world_, at.pair), allowance = contact_state_.allowance;
     const bool overlap = gap < -allowance / 2,
@@ -271,7 +273,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     how.max_steps = options_.most_events;
     how.interrupt = options_.interrupt;
     const std::size_t bodies = flow.size_of_bodies(), all = flow.pack().size();
-    if (all > bodies) {  // impulses of contacts need no control
+    if (all > bodies) {  // impulses of contacts need no error control
       how.rtol_each.assign(all, how.rtol);
       how.atol_each.assign(all, companions_ ? companions_->absolute_tolerance : how.atol);
       std::fill_n(how.atol_each.begin(), bodies, how.atol);
@@ -281,7 +283,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
       how.step = options_.step;
       return follow_by(Rk4{}, call, std::move(flow), how);
     }
-    // Where contacts cut flights short, a step many times as long would have many more of them to look for.
+    // Where contacts keep flights short, a first step many times as long would contain many more contacts to locate.
     how.first_step =
         std::min({step_, std::max(Real(16 * lasted_), Real(1e-3 * step_)), Real(call.until - world_.time)});
     return follow_by(Dop853{}, call, std::move(flow), how);
@@ -292,9 +294,10 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     ConstrainedEvents<Real, Dim> events(world_, candidates_, reach_, flow.held().size());
     Integrator integrator(std::move(flow), std::move(start), Interval<Real>{world_.time, call.until}, method, how,
                           std::move(events));
-    // The last step as its error wanted it: an impact jumps the state, not the forces that set the step.
+    // The next flight begins with the step size that error control proposed last: an impact changes the state abruptly,
+    // but not the forces, which determine the step size.
     int steps = 0;
-    const auto is_stuck = [&] {  // what slips slowly on much else turns its way so fast that steps are very short
+    const auto is_stuck = [&] {  // the direction of a slow slip turns so fast that steps are very short
       return ++steps >= 16 && integrator.system().held().rub() &&
              integrator.t() - world_.time < static_cast<Real>(steps) * stride_ / 8;
     };
@@ -319,7 +322,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     if (!(world_.time < call.until)) return MotionEvent::time_reached;
     return zeno_guard_.is_in_steps() ? MotionEvent::too_many_events : MotionEvent::contact_changes;
   }
-  /// The world at the end of a flight, with the collisions of that instant.
+  /// Writes the end of a flight into the world and resolves the collisions of that instant.
   void land(const Flow& flow, const X& state, const Real& t) {
     auto& lasting = contact_state_.lasting;
     for (std::size_t k = 0; k < lasting.size(); ++k) lasting[k].impulse += flow.impulse(state, k);
@@ -328,7 +331,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     contact_state_.note_together(world_.time, journal());
     resolved_ = resolve();
   }
-  /// Whether nothing moves or begins to, by the forces of contacts that last, but for rounding.
+  /// Whether all bodies are at rest and, under the forces of persistent contacts, stay so, to rounding.
   bool rests(Flow& flow) {
     const Real pull = contact_state_.pull(), least = Real(1e-3) * pull * contact_state_.contact_time;
     const auto moves = [&](const V& v) { return length(v) > least; };
@@ -349,17 +352,18 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     for (std::size_t k = 0; k < lasting.size(); ++k) lasting[k].press = flow.held().press(k);
     return true;
   }
-  /// Whether forces are the same where places and velocities are.
+  /// Whether forces depend on positions and velocities only.
   bool is_autonomous() const { return !companions_ && world_.force_laws.empty() && world_.torque_laws.empty(); }
 
   // Steps through contacts.
 
-  /// Not where equations move beside, nor where the steps are the user's: those of first order are not for them.
+  /// Whether time steps of first order may be used: not where equations are integrated with the bodies, and not where
+  /// the user has chosen the step.
   bool may_step() const {
     return stride_ > Real(0) && !(options_.step > Real(0)) && (!companions_ || companions_->state.empty());
   }
-  /// What bounces does so at its instant; what does not the step stops. Gives the pairs that do, of those that approach
-  /// by more than `slow`.
+  /// Resolves the bounces of this instant; the time step stops the bodies of all other contacts. Returns the pairs that
+  /// bounce, among those that approach faster than `slow`.
   std::vector<Touching> bounce(const Real& slow) {
     const std::vector<Real> before = contact_state_.last;
     std::vector<Touching> bouncing;
@@ -376,7 +380,7 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
     }
     return bouncing;
   }
-  /// From here to the next of these impacts, `most` at most.
+  /// The time to the next of these impacts, at most `most`.
   Real time_to_bounce(std::span<const Touching> bouncing, const Real& slow, std::span<const V> force,
                       const Real& most) const {
     Real h = most;
@@ -405,18 +409,18 @@ class ConstrainedMotion final : public ContactEngine<Real, Dim> {
   ExactOptions<Real> options_;
   ConstrainedContacts<Real, Dim> contact_state_;
 
-  Real step_{}, lasted_ = never;     // the last step of a flight as its error wanted it, and the last flight
-  Real stride_{};                    // of steps through contacts
-  std::size_t greatest_before_ = 0;  // bodies of the one whose lengths of steps were taken over
-  Real room_ = never;                // in which bodies keep round where they began
+  Real step_{}, lasted_ = never;     // step size proposed in the last flight; duration of that flight
+  Real stride_{};                    // the length of time steps through contacts
+  std::size_t greatest_before_ = 0;  // bodies of the island whose step sizes were taken over
+  Real room_ = never;                // a call ends where a body is half as far from begin_
   std::vector<V> begin_;
-  Real median_radius_{}, reach_{};           // of the flight; as far as a body may go until candidates are listed anew
-  std::vector<Candidate<Real>> candidates_;  // in order
+  Real median_radius_{}, reach_{};                         // reach_: a body's way until candidates are listed again
+  std::vector<Candidate<Real>> candidates_;                // sorted
   std::optional<PersistentContacts<Real, Dim>> resolved_;  // after the impacts of the present instant
   ZenoGuard zeno_guard_;
   ContactSteps<Real, Dim> steps_;
-  bool is_slow_ = false, is_steady_ = false;  // in the last step; for good
-  NearPairs<Real, Dim> near_;                 // of steps
+  bool is_slow_ = false, is_steady_ = false;  // is_slow_: in the last step; is_steady_: at rest for good
+  NearPairs<Real, Dim> near_;                 // for time steps
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The state that moves under general forces between contacts, as one system for an integrator.
+// The motion under general forces between contacts, as one system of differential equations for an integrator.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -79,14 +79,14 @@ class ConstrainedSystem {
     take(from, x), take(from, v);
   }
   [[nodiscard]] const PersistentContacts<Real, Dim>& held() const { return held_; }
-  /// Of the state: behind them stand impulses and companions.
+  /// The number of components of the bodies; those of impulses and companions follow.
   [[nodiscard]] std::size_t size_of_bodies() const {
     return x_.size() * (2 * V::size() + (turns_ ? O::size() + S::size() : 0));
   }
   [[nodiscard]] Real impulse(const X& state, std::size_t k) const {
     return *(state.end() - tail() + static_cast<std::ptrdiff_t>(k));
   }
-  /// The end of a flight of this duration.
+  /// Writes the state at the end of a flight of this duration into the world and the companions.
   void store(const X& state, World<Real, Dim>& world, Companions<Real, Dim>* companions, const Real& duration) const {
     auto from = state.begin();
     take(from, world.position), take(from, world.velocity);
@@ -99,7 +99,7 @@ class ConstrainedSystem {
     }
     if (companions) std::copy(from + static_cast<std::ptrdiff_t>(held_.size()), state.end(), companions->state.begin());
   }
-  /// Forces and torques, but for those of contacts, at the world as it is.
+  /// Forces and torques in the present state of the world, without those of contacts.
   [[nodiscard]] std::pair<std::span<const V>, std::span<const S>> loads(Real t) {
     all_forces(t, world_->position, world_->velocity,
                companions_ ? std::span<const Real>(companions_->state) : std::span<const Real>());
@@ -107,7 +107,7 @@ class ConstrainedSystem {
   }
 
  private:
-  /// Of what stands behind the bodies.
+  /// The number of components after those of the bodies.
   [[nodiscard]] std::ptrdiff_t tail() const { return static_cast<std::ptrdiff_t>(held_.size() + rate_.size()); }
   template <class Vectors>
   static void take(typename X::const_iterator& from, Vectors& vectors) {

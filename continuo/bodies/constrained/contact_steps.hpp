@@ -1,11 +1,12 @@
-// A step through contacts that come, slip and go too often to be followed one by one, or that no forces hold (bodies
-// jammed by friction): the impulses of all contacts over the step together, so that none sinks in, none pulls, and
-// friction stops the slip or rubs with all it has. J. J. Moreau, in "Nonsmooth Mechanics and Applications", CISM 302
-// (1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235-257. Of first order in the step.
+// A time step through contacts that begin, slip and end too often to be located one by one, or for which no consistent
+// forces exist (bodies jammed by friction). The impulses of all contacts over the step are found together, so that no
+// gap closes beyond zero, no impulse pulls, and friction either stops the slip or has the size of the Coulomb limit. J.
+// J. Moreau, in "Nonsmooth Mechanics and Applications", CISM 302 (1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177
+// (1999) 235-257. The method is of first order in the step.
 //
 // A gap s with the normal n may close by the end of the step and no further: s + h n . (v_b - v_a) >= 0. The distance
-// of two points on straight paths is convex, so that their gap then is no less than that: nothing overlaps. Bodies that
-// no contact pushes fall on their parabolas.
+// of two points on straight paths is a convex function of time, so that the gap at the end is no less than this linear
+// estimate, and nothing overlaps. Bodies without a contact impulse follow their parabolas.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,7 @@ class ContactSteps {
  public:
   using V = Vector<Real, Dim>;
   using S = Spin<Real, Dim>;
-  /// The mean force of a contact in the last step: the next one begins with it.
+  /// The mean force of a contact in the last step, from which the iteration of the next step starts.
   struct Pushed {
     Touching pair{};
     ContactImpulse<Real, Dim> force{};
@@ -41,7 +42,7 @@ class ContactSteps {
     Real pull{};                // the greatest acceleration by them
   };
 
-  /// Moves the world by h, all but its time. `pairs`, in order: those that may meet.
+  /// Advances the world by h, except for its time. `pairs`, which are sorted, are those that may touch.
   void advance(World<Real, Dim>& world, std::span<const Touching> pairs, const Loads& loads, const Real& h) {
     const std::size_t n = world.size();
     begin(world, loads, h);
@@ -71,7 +72,7 @@ class ContactSteps {
   }
 
   [[nodiscard]] std::span<const Pushed> pushed() const { return pushed_; }
-  /// What pushed other bodies, which have the numbers `to` here.
+  /// Takes over the contact forces of another engine, whose body i has the number to[i] here.
   void take_over(const ContactSteps& other, std::span<const std::uint32_t> to) {
     for (const Pushed& one : other.pushed_)
       if (const auto pair = one.pair.moved(to)) pushed_.push_back({*pair, one.force});
@@ -85,7 +86,7 @@ class ContactSteps {
   void transfer(Archive& archive) {
     archive(pushed_), archive(tolerance_);
   }
-  /// What was read makes sense, of this world.
+  /// Whether the values that were read are possible for this world.
   [[nodiscard]] bool is_of(const World<Real, Dim>& world) const {
     return tolerance_ > Real(0) && tolerance_ <= loosest &&
            std::ranges::all_of(pushed_, [&](const Pushed& one) { return one.pair.is_of(world); });
@@ -116,15 +117,16 @@ class ContactSteps {
       PersistentContact<Real, Dim> contact(world, pair);
       contact.place(world, world.position, world.velocity, world.spin);
       auto& row = sweeps_.add(contact, pair.a + 1, pair.with_wall() ? 0 : pair.b + 1);
-      // What overlaps by errors parts again in the time in which a body falls its radius.
+      // Two bodies that overlap by errors separate again in the time in which a body falls its radius.
       row.least = gap > Real(0) ? -gap / h : std::min(-gap, world.radius[pair.a]) * sqrt(pull / world.radius[pair.a]);
       while (known != pushed_.end() && known->pair < pair) ++known;
       if (known != pushed_.end() && known->pair == pair) row.begin_with(known->force * h);
       listed_.push_back(pair);
     }
   }
-  /// The impulses of all contacts, from the forces of the last step. Where those were of an impact they throw bodies
-  /// about, which so many sweeps may not take back: impulses of contacts cannot but lower the energy.
+  /// Finds the impulses of all contacts, starting from the forces of the last step. Impulses of contacts can only lower
+  /// the energy. Where the energy has grown, the start contained the force of an impact, and the sweeps did not correct
+  /// it: then more sweeps follow, and at last sweeps from impulses of 0.
   void find_impulses(const Real& change_by_forces) {
     const auto free = sweeps_.movers();
     Real weight(0);
@@ -143,7 +145,7 @@ class ContactSteps {
   std::vector<Touching> listed_;            // of the rows
   std::vector<Pushed> pushed_;
   Real fastest_{}, change_{};
-  Real tolerance_ = loosest;  // a tenth of what the last step changed, as a part of what forces change in a step
+  Real tolerance_ = loosest;  // a tenth of the last change, relative to the change by forces in a step
 };
 
 }  // namespace continuo

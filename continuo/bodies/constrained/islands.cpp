@@ -1,13 +1,14 @@
-// Under gravity most bodies fly on parabolas, or lie on walls, and some lie on each other. Those are islands: each in a
-// world of its own, moved by the engine of general forces (constrained_motion.cpp), as fast as its own contacts allow,
-// or not at all where nothing moves in it. All others go from event to event (event_driven.cpp), where a sphere stands
-// in place of each body of an island.
+// Under gravity most bodies fly on parabolas, or lie on walls, and some lie on each other. Bodies that lie on each
+// other form islands. Each island is a world of its own, which the engine of general forces (constrained_motion.cpp)
+// moves with steps as long as its own contacts allow, or not at all where nothing in it moves. All other bodies go from
+// event to event (event_driven.cpp), where a sphere at rest replaces each body of an island.
 //
-// An island is moved ahead, for a window of time in which none of its bodies leaves its sphere: what is outside of the
-// spheres cannot meet it. Where somebody comes to a sphere before the window ends, the island goes back to its
-// beginning and on to that instant, and takes in who came, with all whose spheres overlap then. At the end of a window
-// spheres are drawn anew; what they do not hold together are islands of their own, and what for some time has lain on
-// no other body flies on. So no two that could have met are ever moved apart from each other.
+// An island is moved ahead for a window of time in which none of its bodies leaves its sphere, so that no body outside
+// of the spheres can touch it. Where a body reaches a sphere before the window ends, the island returns to the
+// beginning of the window, advances to that instant, and merges with this body and with all others whose spheres then
+// overlap. At the end of a window the spheres are drawn again: groups of bodies whose spheres overlap become islands of
+// their own, and groups in which no body has lain on another for some time fly on. So no two bodies that could have
+// touched are ever moved independently of each other.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -107,26 +108,27 @@ class Islands final : public ExactEngine<Real, Dim> {
  private:
   static constexpr Real never = std::numeric_limits<Real>::infinity();
   static constexpr std::uint32_t nowhere = ContactEngine<Real, Dim>::nowhere;
-  static constexpr int strides_of_window = 64;  // longer ones would be in vain more often
-  static constexpr int strides_apart = 32;      // after which two that lay on each other fly
+  static constexpr int strides_of_window = 64;  // longer windows would be moved in vain more often
+  static constexpr int strides_apart = 32;      // bodies fly that have lain on no other for so long
 
   struct Island {
-    Numbers bodies;  // in order, with fixed ones that they may touch, each of which may be in several
+    Numbers bodies;  // sorted, with the fixed bodies that they may touch, which may be in several islands
     std::unique_ptr<World<Real, Dim>> world;
     std::unique_ptr<ContactEngine<Real, Dim>> engine;
     World<Real, Dim> begin;  // of the window
     std::unique_ptr<ContactEngine<Real, Dim>> engine_at_begin;
     Real end{};  // of the window; infinity: nothing moves
   };
-  /// Those that are shared out anew, to islands and to what flies.
+  /// Bodies that are being regrouped into islands and flying bodies.
   struct Pool {
-    Numbers bodies, parent;  // parent: of the tree of those that are together
+    Numbers bodies, parent;  // parent: in the disjoint sets of connected bodies
     std::vector<Island> from;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> at_fixed;  // a fixed body and one that may touch it
     Real room{};
   };
 
-  /// From a snapshot the motion goes on to the same bits: windows begin with each call, and nothing is left of earlier.
+  /// Begins new windows with each call. As no window outlasts a call, a motion that is restored from a snapshot
+  /// continues to the same bits.
   Status renew_all() {
     Numbers awake;
     for (const auto& [id, island] : islands_) {
@@ -151,7 +153,8 @@ class Islands final : public ExactEngine<Real, Dim> {
     harvest_gas();
     return status ? check_motion(world_) : status;
   }
-  /// Two that have come to lie on each other, one that is squeezed, or one that comes to an island.
+  /// Regroups where two bodies have come to lie on each other, a body is squeezed between others, or a body has reached
+  /// an island.
   Status meet(std::uint32_t a, std::uint32_t b) {
     Numbers ids, joining;
     for (const std::uint32_t i : {a, b}) {
@@ -180,7 +183,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     for (const std::uint32_t i : pool.bodies) pool_place_[i] = nowhere;
     Numbers founded;
     for (Numbers& group : share_out(pool)) founded.push_back(settle(pool, std::move(group)));
-    for (const std::uint32_t id : founded)  // one whose window is too small may take in another
+    for (const std::uint32_t id : founded)  // if its window is too small, one may take in another
       if (status && islands_.contains(id)) status = open(islands_.at(id), id, pool.room);
     return status;
   }
@@ -207,7 +210,8 @@ class Islands final : public ExactEngine<Real, Dim> {
     pool.parent.push_back(pool_place_[i]);
     pool.bodies.push_back(i);
   }
-  /// How far spheres reach beyond bodies: some steps at the present speeds at least, as where pairs are listed.
+  /// The distance from the surface of a body to that of its sphere: at least some steps at the present speeds, as for
+  /// the listing of pairs.
   Real room_for(const Pool& pool) const {
     using std::sqrt;
     Real fastest(0), smallest = never;
@@ -217,7 +221,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     }
     return std::max(Real(smallest / 4), Real(32 * stride_ * (sqrt(fastest) + 2 * length(world_.gravity) * stride_)));
   }
-  /// Draws the sphere of one, and takes in whom it overlaps.
+  /// Draws the sphere of a body, and adds the bodies and islands that it overlaps to the pool.
   void look_round(Pool& pool, std::size_t k, Status& status) {
     const std::uint32_t i = pool.bodies[k];
     gas_->replace_by_proxy(i, world_.position[i], world_.radius[i] + pool.room);
@@ -235,7 +239,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     while (pool.parent[k] != k) k = pool.parent[k] = pool.parent[pool.parent[k]];
     return k;
   }
-  /// Gives those who go on together; all others fly from here on.
+  /// Returns the groups that form islands; all other bodies fly from here on.
   std::vector<Numbers> share_out(Pool& pool) {
     std::map<std::uint32_t, Numbers> by_root;
     for (std::uint32_t k = 0; k < pool.bodies.size(); ++k) by_root[root(pool, k)].push_back(pool.bodies[k]);
@@ -248,7 +252,7 @@ class Islands final : public ExactEngine<Real, Dim> {
       if (is_island) groups.push_back(std::move(group));
     }
     std::ranges::sort(groups);
-    harvest_gas();  // what lay on a wall does so in an island later
+    harvest_gas();  // the log first ends contacts with walls that go on in an island
     for (Island& island : pool.from) {
       std::vector<bool> leaves;
       for (const std::uint32_t i : island.bodies) leaves.push_back(!world_.is_fixed(i) && island_of_[i] == nowhere);
@@ -272,7 +276,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     } else {
       island = found(std::move(bodies), gas_->now());
       for (const Island& one : pool.from) {
-        if (!one.engine) continue;  // it goes on as it was
+        if (!one.engine) continue;  // it goes on, unchanged, as another island
         Numbers to;
         for (const std::uint32_t i : one.bodies) to.push_back(place_in(island.bodies, i));
         island.engine->take_over(*one.engine, to);
@@ -286,7 +290,7 @@ class Islands final : public ExactEngine<Real, Dim> {
     island.world = std::make_unique<World<Real, Dim>>(world_.part(bodies));
     island.world->time = now;
     ExactOptions<Real> options = options_;
-    options.interrupt = nullptr;  // that is looked at between windows
+    options.interrupt = nullptr;  // it is tested between windows
     island.engine = constrained_motion<Real, Dim>(*island.world, options, nullptr);
     island.bodies = std::move(bodies);
     return island;
@@ -307,7 +311,7 @@ class Islands final : public ExactEngine<Real, Dim> {
            std::ranges::all_of(bodies, is_right);
   }
 
-  /// Moves it ahead through its next window.
+  /// Moves an island ahead through its next window.
   Status open(Island& island, std::uint32_t id, const Real& room) {
     if (island.engine->is_steady()) {
       replace_by_proxy(island);
@@ -325,12 +329,12 @@ class Islands final : public ExactEngine<Real, Dim> {
     if (status && farthest > room * room) return regroup({id}, {}, Real(4 * room));
     return status;
   }
-  /// Without spheres: it stands where it is in the world.
+  /// Replaces the bodies by spheres of their own size, at their positions in the world.
   void replace_by_proxy(const Island& island) {
     for (const std::uint32_t i : island.bodies)
       if (!world_.is_fixed(i)) gas_->replace_by_proxy(i, world_.position[i], world_.radius[i]);
   }
-  /// To a time in its window, or to any where it is at rest.
+  /// Brings an island to a time in its window, or to any later time where it is at rest.
   Status bring_to(Island& island, const Real& t) {
     if (island.world->time > t) {
       *island.world = std::move(island.begin);
@@ -350,7 +354,7 @@ class Islands final : public ExactEngine<Real, Dim> {
   void harvest_gas() {
     if (contacts.is_kept()) contacts.take_over(gas_->contacts, [](const BodyHandle& body) { return body; });
   }
-  /// What has happened in it for good.
+  /// Collects the statistics and contact events of an island once they are final.
   void harvest(Island& island) {
     statistics += std::exchange(island.engine->statistics, {});
     if (contacts.is_kept())
@@ -358,14 +362,14 @@ class Islands final : public ExactEngine<Real, Dim> {
                          [&](const BodyHandle& body) { return world_.handle(island.bodies[body.slot]); });
   }
 
-  World<Real, Dim>& world_;  // bodies of islands are there at the end of a call, or when they are shared out
+  World<Real, Dim>& world_;  // bodies of islands are up to date at the end of a call, or when regrouped
   ExactOptions<Real> options_;
   Real stride_{}, until_{};
   std::unique_ptr<ParabolicEngine<Real, Dim>> gas_;
   std::map<std::uint32_t, Island> islands_;
   std::uint32_t next_ = 0;
-  Numbers island_of_, pool_place_, near_;  // by number; of a search
-  std::vector<Real> together_;             // of a pool: when each lay on another last
+  Numbers island_of_, pool_place_, near_;  // by number; near_: found by a search
+  std::vector<Real> together_;             // for a pool: the last time at which each lay on another
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The exact motion under forces as a machine of states, and the one table of which event leads from which to which.
-// What is done in each is in constrained_motion.cpp, a function per state.
+// The state machine of the exact motion under forces: its states, its events, and the table of its transitions.
+// constrained_motion.cpp has a function for each state.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -18,12 +18,12 @@ enum class MotionState {
 enum class MotionEvent {
   no_contact,       // after the impacts of an instant no contact persists
   contacts_press,   // some persist
-  none_consistent,  // no set of them was found in which no contact pulls and none sinks in
-  contact_changes,  // two come to touch, a contact lets go or begins to slip, or the candidates are to be listed anew
+  none_consistent,  // no contact forces were found with which none pulls and none sinks in
+  contact_changes,  // two bodies begin to touch, a contact opens or begins to slip, or candidates are to be listed
   too_many_events,  // flights are shorter than steps, again and again: inelastic collapse
   stepped,          // a step was made, more are to follow
   steps_made,       // so many that flights are tried again
-  nothing_moves,    // nor begins to
+  nothing_moves,    // and nothing begins to move
   left_room,        // a body has gone as far as the caller allows, or nothing moves and the caller wants to know
   time_reached,
   failed  // with a message
@@ -69,7 +69,7 @@ inline constexpr auto motion_transitions = [] {
   });
 }();
 
-/// Where an event leads; an event that a state cannot have ends the call.
+/// The state that follows an event. An event that is impossible in a state ends the call.
 [[nodiscard]] constexpr MotionState next_state(MotionState state, MotionEvent event) {
   const auto is_meant = [&](const MotionTransition& one) { return one.from == state && one.event == event; };
   const auto found = std::ranges::find_if(motion_transitions, is_meant);

@@ -10,7 +10,7 @@
 
 namespace continuo {
 
-/// The longest way of a body from where it was before.
+/// The greatest distance of a body from its earlier position.
 template <class Real, int Dim>
 [[nodiscard]] Real farthest_way(const World<Real, Dim>& world, const std::vector<Vector<Real, Dim>>& before) {
   using std::sqrt;
@@ -23,7 +23,8 @@ template <class Real, int Dim>
 template <class Real, int Dim>
 class NearPairs {
  public:
-  /// For steps of at most `h` under accelerations of at most `pull`: makes the list anew where bodies may have left it.
+  /// Lists the pairs again where, in a step of at most `h` under accelerations of at most `pull`, a body may leave the
+  /// range of the list.
   void renew(const World<Real, Dim>& world, const Real& h, const Real& pull) {
     using std::sqrt;
     Real fastest(0);

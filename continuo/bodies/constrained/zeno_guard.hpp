@@ -1,13 +1,13 @@
-// When flights are so short, or cost so much, that steps through the contacts are the better way: the explicit rule
-// against inelastic collapse under forces of any kind.
+// The rule against inelastic collapse under forces of any kind: it decides when flights are so short, or so expensive,
+// that time steps through the contacts replace them.
 #pragma once
 #include <algorithm>
 #include <cstdint>
 
 namespace continuo {
 
-/// A flight shorter than a step counts one, a longer one takes back as many as it lasted steps. At `full` some steps
-/// follow; then flights are tried again, ever more rarely while that is in vain.
+/// A flight shorter than a step adds 1 to the count, a longer one subtracts its duration in steps. At `full` some steps
+/// follow, and then flights are tried again. Each time that this fails, twice as many steps follow.
 class ZenoGuard {
  public:
   [[nodiscard]] bool is_in_steps() const { return steps_ > 0; }

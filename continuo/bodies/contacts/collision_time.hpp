@@ -1,5 +1,6 @@
 // continuo/bodies/contacts/collision_time.hpp
-// When two things meet that move on known paths: closed forms, written so that no digits cancel.
+// Collision times of objects on known paths: closed forms, written so that no digits cancel, and isolated roots of a
+// polynomial where there is no closed form.
 #pragma once
 #include <array>
 #include <cmath>
@@ -13,8 +14,9 @@ namespace continuo {
 
 namespace detail {
 
-/// Whether two that touch approach: by more than rounding makes of a motion along each other, which would be found
-/// again and again. What is left out parts after b^2 / |rate|^2, less than an ulp of an ulp deeper.
+/// Whether two bodies in contact approach each other. By rounding, tangential motion can look like an approach, and
+/// would be found again and again: so an approach counts only beyond `tiny`. An approach that does not count lowers the
+/// squared distance by at most b^2 / |rate|^2, which is tiny^2 of it, before the two separate.
 template <class Real, int Dim>
 [[nodiscard]] bool approaches(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate) {
   constexpr Real tiny = 8 * std::numeric_limits<Real>::epsilon();
@@ -25,9 +27,9 @@ template <class Real, int Dim>
 }  // namespace detail
 
 /// The first t >= 0 at which a point that is `apart` and moves at `rate` comes within `reach` of the origin; infinity
-/// where it never does. What is within reach already collides at once if it approaches, and never if it parts: rounding
-/// that leaves two spheres an ulp inside each other does no harm (M. Bannerman, S. Strobl, A. Formella, T. Poschel,
-/// Comp. Part. Mech. 1 (2014) 191-198).
+/// where it never does. A point that is within reach already collides at once if it approaches, and never if it
+/// recedes, so that two spheres that rounding leaves an ulp inside each other do no harm (M. Bannerman, S. Strobl, A.
+/// Formella, T. Poschel, Comp. Part. Mech. 1 (2014) 191-198).
 template <class Real, int Dim>
 [[nodiscard]] Real time_to_touch(const Vector<Real, Dim>& apart, const Vector<Real, Dim>& rate, const Real& reach) {
   using std::sqrt;
@@ -49,7 +51,7 @@ template <class Real, int Dim>
   const auto gap = [&](const Real& t) {
     return squared(apart + rate * t + acceleration * (t * t / 2)) - reach * reach;
   };
-  // Narrows a touch down that lies between the two.
+  // Finds a root between the two times by bisection.
   const auto touch_between = [&](Real low, Real high) {
     for (int i = 0; i < 2 * std::numeric_limits<Real>::digits && low < high; ++i) {
       const Real middle = low + (high - low) / 2;
@@ -63,8 +65,8 @@ template <class Real, int Dim>
     // At rest on each other, and pressed together.
     const bool parts = detail::approaches(apart, Vector<Real, Dim>(-rate));
     if (!parts && dot(apart, acceleration) < Real(0)) return Real(0);
-    // Parts, and is pulled back after so short a flight perhaps that rounding hides it: then it touches where it comes
-    // as near again. To second order |apart|^2 changes by 2 b t + curve t^2.
+    // The point recedes and is pulled back, perhaps after so short a flight that rounding hides it. Then the contact is
+    // where the point has come as near again. To second order |apart|^2 changes by 2 b t + curve t^2.
     const Real curve = squared(rate) + dot(apart, acceleration);
     if (parts && curve < Real(0)) {
       const Real back = -2 * dot(apart, rate) / curve;

@@ -1,5 +1,6 @@
-// The linear equations of contacts that act together: how much each speed changes by a unit of each force. Two contacts
-// know of each other only through a body that both touch: of many the matrix is sparse. Few are solved as a dense one.
+// The linear system of contacts that act together. Its matrix has the change of every contact speed by a unit of every
+// contact force. Two contacts are coupled only through a body that both touch, so that the matrix of many contacts is
+// sparse. For few contacts it is solved as a dense matrix.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -32,7 +33,7 @@ struct ContactDirection {
   [[nodiscard]] std::span<const End> ends() const { return std::span(at).first(count); }
 };
 
-/// The speed in a direction that a unit in another makes.
+/// The change of the speed in one direction by a unit force in another.
 template <class Real, int Dim>
 [[nodiscard]] Real response(const World<Real, Dim>& world, const ContactDirection<Real, Dim>& of,
                             const ContactDirection<Real, Dim>& to) {
@@ -50,7 +51,8 @@ class ContactMatrix {
  public:
   using Directions = std::vector<ContactDirection<Real, Dim>>;
 
-  /// Of each row the change of speed that a unit of each column makes; both of the same contacts.
+  /// Sets the entries: the change of a row's speed by a unit of a column's force. Rows and columns belong to the same
+  /// contacts.
   void fill(const World<Real, Dim>& world, const Directions& rows, const Directions& columns) {
     if (!is_of(rows)) make_pattern(world, rows);
     for (std::size_t column = 0; column < columns.size(); ++column)
@@ -58,10 +60,11 @@ class ContactMatrix {
         values_[entry] = response(world, rows[pattern_.row(entry)], columns[column]);
   }
 
-  /// From the changes of speed that are wanted to the forces that make them; false where the matrix is singular. More
-  /// contacts than bodies need leave it so: of all forces that do, a small diagonal, 1e-5 of the greatest entry there,
-  /// takes the smallest. What that leaves wrong two more rounds take away: 1e-15, and no force is more than 3e5 times
-  /// what it should be for what cannot be.
+  /// Replaces the wanted changes of speed by the forces that cause them; false where the matrix is singular. More
+  /// contacts than bodies need would make it so. A small addition to the diagonal, 1e-5 of its greatest entry, then
+  /// selects the smallest of all forces that cause these changes. Two rounds of iterative refinement lower the error by
+  /// that addition to 1e-15. If no forces cause the wanted changes, the result is at most 3e5 times as large as for
+  /// possible ones.
   [[nodiscard]] bool solve(std::vector<Real>& wanted) {
     const std::size_t n = wanted.size();
     Real greatest(0);
@@ -82,7 +85,7 @@ class ContactMatrix {
   }
 
  private:
-  /// So few rows are solved sooner as a dense matrix: measured of square packings, both take as long at 55 rows.
+  /// Up to so many rows a dense matrix is faster. Measured with square packings: both take equally long at 55 rows.
   static constexpr std::size_t greatest_dense = 48;
   using Bodies = std::array<std::uint32_t, 2>;
 

@@ -19,7 +19,7 @@ template <class Real, int Dim>
     farthest = std::max(farthest, length(world.position[i]));
   }
   const Real g = length(world.gravity);
-  // A flight rises by g t^2 / 8, which the digits of a place must show.
+  // A flight of duration t rises by g t^2 / 8, which must exceed the rounding of a position.
   const Real visible = 16 * std::numeric_limits<Real>::epsilon() * farthest;
   if (g > Real(0)) return std::max(Real(1e-5) * sqrt(2 * smallest / g), sqrt(8 * visible / g));
   return fastest > Real(0) ? Real(1e-5) * smallest / fastest : Real(0);

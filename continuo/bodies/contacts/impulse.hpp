@@ -1,7 +1,7 @@
 // continuo/bodies/contacts/impulse.hpp
-// What two spheres, or a sphere and a wall, do to each other in an instant: normal impulse by Newton's restitution,
-// tangential impulse by Coulomb's friction, which never more than stops the slip at the contact. O. Walton, R. Braun,
-// J. Rheol. 30 (1986) 949-980, without tangential restitution.
+// The impulse of a collision between two spheres, or a sphere and a wall: the normal impulse by Newton's restitution,
+// the tangential impulse by Coulomb's friction, which at most stops the slip at the contact. O. Walton, R. Braun, J.
+// Rheol. 30 (1986) 949-980, without tangential restitution.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ template <class Real, int Dim>
   return rate - normal * dot(rate, normal);
 }
 
-/// Collides the two; gives the size of the normal impulse. They must approach. Equal masses exchange their normal
-/// speeds to the last bit where e = 1: no rounding of a quotient of masses comes in.
+/// Applies the impulse of a collision to both, which must approach each other; returns the normal impulse. With e = 1,
+/// equal masses exchange their normal speeds to the last bit, since no quotient of masses is rounded.
 template <class Real, int Dim>
 [[nodiscard]] Real collide(const Mover<Real, Dim>& a, const Mover<Real, Dim>& b, const Vector<Real, Dim>& normal,
                            const Material<Real>& material) {

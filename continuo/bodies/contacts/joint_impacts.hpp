@@ -1,7 +1,8 @@
-// What does not bounce, in an instant: the impulses of all contacts together, so that none of them is pushed apart by
-// what is taken from another a moment later. No two approach afterwards, no impulse pulls, one is only where the two
-// stay together, and friction stops the slip, or rubs with all it has (J. J. Moreau, in "Nonsmooth Mechanics and
-// Applications", CISM 302, 1988).
+// Simultaneous impacts without restitution. The impulses of all contacts are found together: if they were resolved one
+// after the other, an impulse that is corrected later could have separated another contact for good. Afterwards no two
+// bodies approach each other, no impulse pulls, only contacts that stay closed have an impulse, and friction either
+// stops the slip or has the size of the Coulomb limit (J. J. Moreau, in "Nonsmooth Mechanics and Applications", CISM
+// 302, 1988).
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -15,8 +16,8 @@
 
 namespace continuo {
 
-/// Changes the velocities and spins of the world until the sweeps change no speed by more than `least`, but no more
-/// often than some hundred times. Gives the normal impulses.
+/// Changes the velocities and spins of the world in up to 1000 sweeps, until these change no speed by more than
+/// `least`. Returns the normal impulses.
 template <class Real, int Dim>
 [[nodiscard]] std::vector<Real> strike_together(World<Real, Dim>& world, std::span<const Touching> touching,
                                                 const Real& least) {
@@ -34,7 +35,7 @@ template <class Real, int Dim>
   };
   for (const Touching& pair : touching) {
     PersistentContact<Real, Dim> contact(world, pair);
-    contact.roll.most = Real(0);  // a blow is over before anything rolls
+    contact.roll.most = Real(0);  // an impact is over before anything rolls
     contact.place(world, world.position, world.velocity, world.spin);
     sweeps.add(contact, place_of(pair.a), pair.with_wall() ? 0 : place_of(pair.b));
   }

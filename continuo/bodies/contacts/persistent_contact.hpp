@@ -1,5 +1,5 @@
-// One contact that lasts: who touches, how their surfaces move against each other, and what friction and rolling
-// resistance may do against it.
+// One persistent contact: the pair, the relative motion of its surfaces, and the limits of friction and rolling
+// resistance.
 #pragma once
 #include <array>
 #include <cmath>
@@ -13,14 +13,14 @@
 
 namespace continuo {
 
-/// What acts against a motion of two surfaces by no more than `most` times what presses them together, as Coulomb's
-/// friction does against slip: it holds where that is enough, and else acts with all of it. Rates and loads have the
-/// units of speeds and forces.
+/// Coulomb's law for the relative motion of two surfaces, slip or rolling: the load against it is at most `most` times
+/// the normal force. Where this suffices the contact sticks (`holds`); otherwise the load has this limit. Rates and
+/// loads have the units of speeds and forces.
 template <class Real, class W>
 struct Grip {
   Real most{};
-  bool holds = false, is_fast = false;  // fast: it moved at the start
-  W way_at_start{};                     // in which it moves, or would
+  bool holds = false, is_fast = false;  // is_fast: the surfaces moved at the start
+  W way_at_start{};                     // the direction of the motion, or of impending motion
   // At an instant:
   W rate{}, way{}, load{};  // load: on b
 
@@ -30,14 +30,15 @@ struct Grip {
     holds = most > Real(0) && !is_fast;
     if (is_fast) way_at_start = way = rate * (1 / speed);
   }
-  /// After impulses that may have turned it round: what acts along with the slip would drive it, unseen by the guard.
+  /// Updates the direction after impulses, which may have reversed the motion: a load along the motion would drive it,
+  /// and the guard would not detect that.
   void look_again(const Real& slow) {
     const Real speed = length(rate), along = dot(rate, way);
     if (!(most > Real(0)) || holds || !(speed > Real(0)) || along > (is_fast ? slow / 2 : -slow / 16)) return;
     is_fast = speed > slow / 2;
     way_at_start = way = rate * (1 / speed);
   }
-  /// It moves from here on, against the load that held it.
+  /// Ends sticking: the motion begins against the load.
   void let_go() {
     const Real size = length(load);
     holds = false;
@@ -46,14 +47,15 @@ struct Grip {
   [[nodiscard]] bool is_too_weak(const Real& press, const Real& rounding) const {
     return holds && !(length(load) < most * press + rounding);
   }
-  /// Against which it acts: where the surfaces move, and where they hardly do, where they will. Beyond the instant at
-  /// which they stop it stays the same, so that nothing jumps there, in steps that go too far.
+  /// The direction against which the load acts: that of the motion, or, where the surfaces hardly move, that of the
+  /// impending motion. It stays the same beyond the instant at which the motion stops, so that the load does not jump
+  /// within a step that goes too far.
   [[nodiscard]] W direction(const Real& slow) const {
     const Real along = dot(rate, way), speed = length(rate);
     const W ahead = rate + way * (std::abs(along) - along);
     return speed > slow ? ahead * (1 / speed) : (ahead + way * (slow - speed)) * (1 / slow);
   }
-  /// Falls through 0 where it begins to hold, or holds no more.
+  /// A guard that falls through 0 where sticking begins or ends.
   [[nodiscard]] Real guard(const Real& press, const Real& slow, const Real& rounding) const {
     if (!(most > Real(0))) return Real(1);
     if (holds) return most * press - length(load) + 2 * rounding;
@@ -85,12 +87,12 @@ struct PersistentContact {
 
   Touching pair{};
   Grip<Real, V> slip{};
-  Grip<Real, S> roll{};  // of the spins against each other, times `arm`; loads are torques over `arm`
+  Grip<Real, S> roll{};  // its rate is the relative spin times `arm`, its load a torque over `arm`
   Real arm{};            // the smaller radius
   bool is_pressed = true;
   int changes = 0;
   // At an instant:
-  V normal{}, bend{};  // from a to b, and its rate
+  V normal{}, bend{};  // normal: from a to b; bend: its rate of change
   Real parting{}, gap{}, press{};
 
   PersistentContact(const World<Real, Dim>& world, const Touching& touching) : pair(touching) {
@@ -108,8 +110,9 @@ struct PersistentContact {
       odd -= mobility;
     }
     if (!(both.friction > Real(0))) return;
-    // A torque `arm` times q against rolling asks friction for q arm |odd| / compliance, lest they slip. What is beyond
-    // friction acts like that limit, see rolling.hpp, and by a hair less.
+    // Under a torque `arm` times q against rolling, the surfaces slip unless friction is q arm |odd| / compliance. So a
+    // resistance that would need more than the greatest friction is reduced to that limit, see rolling.hpp, and
+    // slightly below it.
     const Real limit = both.friction * compliance * Real(1 - 1e-8), asked = arm * std::abs(odd);
     roll.most = both.rolling_resistance * asked > limit ? limit / asked : both.rolling_resistance;
   }
@@ -137,7 +140,7 @@ struct PersistentContact {
     }
     move(world, v, spin);
   }
-  /// Where they stay where they were placed.
+  /// Updates the rates for other velocities at the positions of the last `place`.
   void move(const World<Real, Dim>& world, std::span<const V> v, std::span<const S> spin) {
     const auto [a, b, w] = pair;
     V rate = pair.with_wall() ? -v[a] : V(v[b] - v[a]);
@@ -153,7 +156,7 @@ struct PersistentContact {
 
   [[nodiscard]] bool can_roll() const { return slip.holds && roll.most > Real(0); }
 
-  /// A force on b, from a, and a torque over `arm` beside it: what they do to the ends.
+  /// The forces and torques on both bodies that belong to a force on b and a torque over `arm`.
   [[nodiscard]] ContactDirection<Real, Dim> ends(const World<Real, Dim>& world, const V& force, const S& couple) const {
     ContactDirection<Real, Dim> all;
     const S twist = moment(normal, force);
@@ -164,7 +167,7 @@ struct PersistentContact {
   [[nodiscard]] V force() const { return normal * press + slip.load; }
 
  private:
-  /// A way across the normal, as the normal has turned.
+  /// A tangential direction, projected to be across the present normal.
   [[nodiscard]] V carried(const V& way) const {
     const V flat = way - normal * dot(way, normal);
     const Real size = length(flat);

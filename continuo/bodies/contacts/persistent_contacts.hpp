@@ -3,10 +3,10 @@
 // and acts against the slip where it cannot; so does rolling resistance against rolling, where nothing slips.
 //
 // With the relative velocity u = J v of the surfaces in contact, forces f change it by A f, A = J M^-1 J^T; they are
-// chosen so that u' = 0 in the directions held, no normal force pulls, and a normal force that vanishes lets go (a
-// linear complementarity problem; D. Baraff, "Fast contact force computation for nonpenetrating rigid bodies", SIGGRAPH
-// 1994). What gaps and speeds of integration errors come about is damped in the time in which a body falls its radius
-// (J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1-16).
+// chosen so that u' = 0 in the constrained directions, no normal force pulls, and a contact without normal force may
+// open (a linear complementarity problem; D. Baraff, "Fast contact force computation for nonpenetrating rigid bodies",
+// SIGGRAPH 1994). Gaps and speeds that arise from integration errors are damped in the time in which a body falls its
+// radius (J. Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1-16).
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -27,11 +27,12 @@ class PersistentContacts {
   using S = Spin<Real, Dim>;
   struct Loads {
     std::span<V> force;
-    std::span<S> torque;  // empty where nothing rubs
+    std::span<S> torque;  // empty without friction
   };
 
   PersistentContacts() = default;
-  /// Those of `touching` that are pressed together by forces and slower than `slow`, at the world as it is.
+  /// Keeps those of `touching` that forces press together in the present state of the world. Contacts that slip or roll
+  /// slower than `slow` may stick.
   PersistentContacts(const World<Real, Dim>& world, std::span<const Touching> touching, const Real& slow,
                      const Real& rate, std::span<const V> force, std::span<const S> torque)
       : world_(&world), slow_(slow), rate_(rate) {
@@ -43,14 +44,14 @@ class PersistentContacts {
     for (const Held& one : held_) rubs_ = rubs_ || one.slip.most > Real(0);
   }
 
-  /// False where no set of contacts was found in which all is right.
+  /// False where no consistent contact forces were found.
   [[nodiscard]] bool is_found() const { return is_found_; }
   [[nodiscard]] std::size_t size() const { return held_.size(); }
   const Touching& operator[](std::size_t k) const { return held_[k].pair; }
-  /// Whether spins change.
+  /// Whether a contact has friction, so that spins change.
   [[nodiscard]] bool rub() const { return rubs_; }
 
-  /// Adds to the loads what holds the contacts at x, v, spin under these loads.
+  /// Adds to the loads the contact forces and torques that they cause at x, v, spin.
   void hold(std::span<const V> x, std::span<const V> v, std::span<const S> spin, const Loads& loads) {
     place(x, v, spin);
     solve(spin, loads.force, loads.torque);
@@ -63,8 +64,8 @@ class PersistentContacts {
     }
   }
   [[nodiscard]] Real press(std::size_t k) const { return held_[k].press; }
-  /// Numbers of each contact that fall through 0 where it lets go, where it begins or ends to slip, and to roll. Of the
-  /// last call of `hold`.
+  /// The guards of each contact, from the last call of `hold`. They fall through 0 where the contact opens, where slip
+  /// begins or ends, and where rolling begins or ends.
   static constexpr std::size_t guards = 3;
   [[nodiscard]] Real guard(std::size_t k, std::size_t which) const {
     const Held& one = held_[k];
@@ -73,7 +74,7 @@ class PersistentContacts {
     return one.can_roll() ? one.roll.guard(one.press, slow_, rounding_) : Real(1);
   }
 
-  /// Takes away what speed they have in the directions held, by impulses.
+  /// Removes the relative speeds in the constrained directions by impulses.
   void settle(std::span<V> velocity, std::span<S> spin) {
     if (held_.empty()) return;
     place(world_->position, velocity, spin);
@@ -89,7 +90,7 @@ class PersistentContacts {
         spin[end.body] += end.torque * (impulse[r] * world_->inverse_inertia[end.body]);
       }
   }
-  /// To which side they slip and roll, after the last impulses.
+  /// Updates the directions of slip and rolling after impulses.
   void look_again() {
     for (Held& one : held_) {
       one.move(*world_, world_->velocity, world_->spin);
@@ -100,7 +101,7 @@ class PersistentContacts {
  private:
   using Held = PersistentContact<Real, Dim>;
   using Row = ContactDirection<Real, Dim>;
-  /// What a direction holds: the normal, slip, or rolling.
+  /// The relative motion that a row constrains: along the normal, slip, or rolling.
   enum class Holds { normal, slip, roll };
   struct RowOf {
     std::size_t held;
@@ -118,7 +119,7 @@ class PersistentContacts {
     return sum;
   }
 
-  /// In which directions contacts are held; with the slow ones also those in which they begin to move.
+  /// Lists the constrained directions; `with_slow` adds the directions in which motion only begins.
   void list_rows(bool with_slow) {
     rows_.clear(), of_row_.clear();
     const auto add = [&](const RowOf& of) {
@@ -143,7 +144,8 @@ class PersistentContacts {
       }
     }
   }
-  /// Of what presses a contact by 1, with what then acts against slip and rolling.
+  /// The forces and torques that belong to a normal force of 1, including the friction and rolling resistance of a
+  /// contact that slips or rolls.
   [[nodiscard]] Row column_of(const RowOf& of, const Row& row) const {
     const Held& one = held_[of.held];
     if (of.what != Holds::normal) return row;
@@ -154,8 +156,8 @@ class PersistentContacts {
     return one.ends(*world_, force, couple);
   }
 
-  /// The rate of change, in the direction of a row, of the speed of its contact: by loads, by what bends, and against
-  /// what has come about by errors.
+  /// The rate of change of a contact's speed in the direction of a row: by loads, by the turning of the normal, and by
+  /// the damping of errors.
   [[nodiscard]] Real free_rate(const RowOf& of, const Row& row, std::span<const S> spin, std::span<const V> force,
                                std::span<const S> torque) const {
     const Held& one = held_[of.held];
@@ -174,7 +176,7 @@ class PersistentContacts {
         sum -= dot(of.across, turning(spin[end.body], V(one.bend * world_->radius[end.body])));
       return sum + rate_ * dot(one.slip.rate, of.across);
     }
-    if constexpr (Dim == 3) {  // what the spins have along the normal, as it turns
+    if constexpr (Dim == 3) {  // the part of the spins along the normal, which turns
       const S between = one.pair.with_wall() ? S{} : S(spin[one.pair.b] - spin[one.pair.a]);
       sum -= dot(one.bend, of.about) * dot(between, one.normal) * one.arm;
     }
@@ -207,7 +209,7 @@ class PersistentContacts {
     }
   }
 
-  /// Which are pressed, and which of those stick.
+  /// Chooses the contacts that have a normal force, and those of them that stick.
   void choose(std::span<const V> force, std::span<const S> torque) {
     const World<Real, Dim>& world = *world_;
     place(world.position, world.velocity, world.spin);
@@ -223,13 +225,14 @@ class PersistentContacts {
     }
     is_found_ = false;
   }
-  /// Lets go what pulls, takes back what would sink in, lets move what friction cannot hold. False where all is right.
+  /// Opens contacts that pull, closes contacts that would sink in, and lets those slip or roll that friction cannot
+  /// keep at rest. False where all contacts are consistent.
   [[nodiscard]] bool change(std::span<const V> force, std::span<const S> torque) {
     bool is_other = false;
     Real greatest(0);
     for (const Held& one : held_) greatest = std::max(greatest, one.press);
     for (std::size_t k = 0; k < held_.size(); ++k) {
-      if (held_[k].changes > 8) {  // undecided: as it is, but that it sticks
+      if (held_[k].changes > 8) {  // undecided: it stays as it is, but sticks
         is_found_ = false;
         held_[k].slip.holds = held_[k].slip.most > Real(0) && !held_[k].slip.is_fast;
       } else if (change(k, greatest, force, torque)) {
@@ -240,7 +243,7 @@ class PersistentContacts {
   }
   [[nodiscard]] bool change(std::size_t k, const Real& greatest, std::span<const V> force, std::span<const S> torque) {
     Held& one = held_[k];
-    // Whether forces would bring the two together by more than rounding: in units of forces.
+    // Whether forces would bring the two together by more than rounding, which is given in units of forces.
     const auto returns = [&](const RowOf& of, const Real& least) {
       const Row row = one.ends(*world_, of.what == Holds::normal ? one.normal : of.across, of.about);
       return free_rate(of, row, world_->spin, force, torque) < -least * greatest * response(*world_, row, row);
@@ -255,7 +258,7 @@ class PersistentContacts {
       one.slip.let_go();
     } else if (begins_again(one.slip) &&
                returns({.held = k, .what = Holds::slip, .across = one.slip.way}, Real(1e-6))) {
-      one.slip.holds = true;  // once others slip it can
+      one.slip.holds = true;  // it can stick once others slip
     } else if (one.can_roll() && one.roll.is_too_weak(one.press, rounding_)) {
       one.roll.let_go();
     } else if (one.can_roll() && begins_again(one.roll) &&
@@ -269,10 +272,10 @@ class PersistentContacts {
 
   const World<Real, Dim>* world_ = nullptr;
   Real slow_{}, rate_{};
-  Real rounding_{};  // of forces: what none is far from, as between bodies side by side, pulls or slips only beyond it
+  Real rounding_{};  // of forces: a contact with hardly any force pulls or slips only beyond this
   bool rubs_ = false, is_found_ = true;
   std::vector<Held> held_;
-  // Of the directions in which they are held:
+  // Of the constrained directions:
   std::vector<RowOf> of_row_;
   std::vector<Row> rows_, columns_;
   std::vector<Real> size_;

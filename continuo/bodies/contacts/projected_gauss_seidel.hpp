@@ -1,13 +1,13 @@
 // The impulses of many contacts that act together, found in sweeps over them: the projected Gauss-Seidel iteration.
-// Each contact in turn has its whole impulse so far set right for what the others do; none pulls, and friction stops
-// the slip or rubs with all it has (J. J. Moreau, in "Nonsmooth Mechanics and Applications", CISM 302, 1988; M. Jean,
-// Comput. Methods Appl. Mech. Eng. 177 (1999) 235-257). Without friction each turn lowers the energy as far as its
-// contact can.
+// Each contact in turn has its total impulse corrected for the present impulses of all others; no impulse pulls, and
+// friction either stops the slip or has the size of the Coulomb limit (J. J. Moreau, in "Nonsmooth Mechanics and
+// Applications", CISM 302, 1988; M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235-257). Without friction each
+// correction lowers the energy as far as one contact can.
 //
-// Through a tall heap a push goes by one body a sweep, and what lies on much else comes to its end slowly. So every
-// second sweep, there and back, goes on in the direction in which the impulses change, as conjugate gradients do, until
-// the changes grow, when it begins anew: M. Silcowitz, S. Niebe, K. Erleben, "A nonsmooth nonlinear conjugate gradient
-// method for interactive contact force problems", The Visual Computer 26 (2010) 893-901.
+// Through a tall pile an impulse travels by one body per sweep, so that tall piles converge slowly. So after every two
+// sweeps, forward and back, the iteration extrapolates in the direction in which the impulses change, as the method of
+// conjugate gradients does. Where the changes grow, it restarts: M. Silcowitz, S. Niebe, K. Erleben, "A nonsmooth
+// nonlinear conjugate gradient method for interactive contact force problems", The Visual Computer 26 (2010) 893-901.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@
 
 namespace continuo {
 
-/// What a contact does to its second body, and back to the first.
+/// The impulse of a contact on its second body; the first one gets the opposite.
 template <class Real, int Dim>
 struct ContactImpulse {
   Real press{};             // along the normal
@@ -57,11 +57,11 @@ class ProjectedGaussSeidel {
     std::uint32_t a = 0, b = 0;  // places
     V normal{};
     Real friction{}, resistance{}, arm{};
-    Real of_normal{}, of_slip{}, of_roll{};  // speeds by impulses of 1
-    Real least{};                            // at which the two must part
+    Real of_normal{}, of_slip{}, of_roll{};  // changes of speed by impulses of 1
+    Real least{};                            // the least speed of separation
     Impulse impulse{};
 
-    /// An impulse that was found before the normal turned to what it is.
+    /// Starts with an earlier impulse, its tangential parts projected to be across the present normal.
     void begin_with(const Impulse& one) {
       impulse = one;
       impulse.rub -= normal * dot(one.rub, normal);
@@ -73,13 +73,13 @@ class ProjectedGaussSeidel {
     movers_.assign(1, {});
     rows_.clear();
   }
-  /// The place of body i.
+  /// Adds body i and returns its place.
   std::uint32_t add(const World<Real, Dim>& world, std::size_t i) {
     movers_.push_back({world.velocity[i], world.spin[i], world.inverse_mass[i],
                        world.radius[i] * world.inverse_inertia[i], world.radius[i]});
     return static_cast<std::uint32_t>(movers_.size() - 1);
   }
-  /// One that was placed, between two places: 0 for a wall.
+  /// Adds a contact, after its `place`, between the bodies at two places; place 0 is a wall.
   Row& add(const PersistentContact<Real, Dim>& contact, std::uint32_t at_a, std::uint32_t at_b) {
     Row row{.a = at_a,
             .b = at_b,
@@ -94,12 +94,13 @@ class ProjectedGaussSeidel {
     return rows_.emplace_back(row);
   }
 
-  /// Until a sweep changes no speed by more than `least`, but at most so many; from the impulses that rows have.
+  /// Applies the impulses of the rows, and sweeps until a sweep changes no speed by more than `least`, at most `most`
+  /// times.
   void begin_and_sweep(const Real& least, int most) {
     for (const Row& row : rows_) push(row, row.impulse);
     sweep(least, most);
   }
-  /// As often as that again.
+  /// Sweeps from the present state, until a sweep changes no speed by more than `least`, at most `most` times.
   void sweep(const Real& least, int most) {
     before_.resize(rows_.size()), way_.resize(rows_.size());
     Real size_before(0);  // of the changes by the last two sweeps
@@ -118,13 +119,13 @@ class ProjectedGaussSeidel {
   [[nodiscard]] Moving& mover(std::size_t place) { return movers_[place]; }
   [[nodiscard]] const Moving& mover(std::size_t place) const { return movers_[place]; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
-  /// Back to what the movers were, and no impulses.
+  /// Restores an earlier state of the movers and sets all impulses to 0.
   void restore(const std::vector<Moving>& movers) {
     movers_ = movers;
     for (Row& row : rows_) row.impulse = {};
   }
   [[nodiscard]] const std::vector<Moving>& movers() const { return movers_; }
-  /// Twice as much.
+  /// Twice the kinetic energy.
   [[nodiscard]] Real energy() const {
     Real sum(0);
     for (const Moving& one : movers_)
@@ -156,14 +157,15 @@ class ProjectedGaussSeidel {
     b.spin += by.roll * (row.arm * over(b));
   }
   [[nodiscard]] static Real square(const Real& value) { return value * value; }
-  /// The whole impulse of one contact, for what the others do. How much it changed, as a speed squared.
+  /// Corrects the total impulse of one contact for those of all others. Returns the square of the greatest change of
+  /// speed.
   [[nodiscard]] Real set_right(Row& row) {
     const Moving &a = movers_[row.a], &b = movers_[row.b];
     V rate = b.v - a.v;
     const Real parting = dot(rate, row.normal);
     Impulse change;
     const Real press = std::max(Real(0), Real(row.impulse.press + (row.least - parting) / row.of_normal));
-    if (press == Real(0) && row.impulse.press == Real(0)) return Real(0);  // as of most that are near, but apart
+    if (press == Real(0) && row.impulse.press == Real(0)) return Real(0);  // as for most pairs: near, but apart
     change.press = press - row.impulse.press;
     row.impulse.press = press;
     Real greatest = square(change.press * row.of_normal);
@@ -190,7 +192,8 @@ class ProjectedGaussSeidel {
     return size > most ? load * (most / size) : load;
   }
 
-  /// Farther along the way so far, by as much as the last two sweeps changed against those before. Gives their size.
+  /// Extrapolates along the search direction by the ratio of the changes in the last two sweeps to those in the two
+  /// before. Returns the size of the changes.
   [[nodiscard]] Real go_on(const Real& size_before) {
     Real size(0);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -217,9 +220,9 @@ class ProjectedGaussSeidel {
     return size;
   }
 
-  std::vector<Moving> movers_{1};  // first of all the place of walls, which no impulse moves
+  std::vector<Moving> movers_{1};  // place 0 belongs to walls, which no impulse moves
   std::vector<Row> rows_;
-  std::vector<Impulse> before_, way_;  // of rows: before the last two sweeps, and the way since the last beginning
+  std::vector<Impulse> before_, way_;  // of rows: before the last two sweeps; search direction
 };
 
 extern template class ProjectedGaussSeidel<float, 2>;

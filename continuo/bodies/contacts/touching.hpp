@@ -1,4 +1,5 @@
-// Two that touch or may: who they are, how far apart, and how fast they approach, in a world as it is.
+// Pairs that touch or may touch: two bodies, or a body and a wall, with their gap and speed of approach in the present
+// state of a world.
 #pragma once
 #include <algorithm>
 #include <compare>
@@ -15,7 +16,7 @@
 
 namespace continuo {
 
-/// In the order of the first, walls before bodies.
+/// A pair. Pairs are ordered by their first body, with walls before bodies.
 struct Touching {
   static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t a = 0, b = 0, wall = no_wall;
@@ -24,7 +25,7 @@ struct Touching {
   friend std::strong_ordering operator<=>(const Touching& one, const Touching& other) {
     return std::tuple(one.a, one.wall, one.b) <=> std::tuple(other.a, other.wall, other.b);
   }
-  /// Of bodies that have other numbers; nothing where one has none.
+  /// The pair with the body numbers `to`; nothing where a body has none.
   std::optional<Touching> moved(std::span<const std::uint32_t> to) const {
     constexpr auto nowhere = std::numeric_limits<std::uint32_t>::max();
     if (to[a] == nowhere || to[b] == nowhere) return {};
@@ -48,7 +49,7 @@ template <class Real, int Dim>
   }
   return length(world.position[at.b] - world.position[at.a]) - world.radius[at.a] - world.radius[at.b];
 }
-/// From a to b, or into the wall; along the first axis where two are at one place.
+/// The normal from a to b, or into the wall; along the first axis where two centres coincide.
 template <class Real, int Dim>
 [[nodiscard]] Vector<Real, Dim> normal_of(const World<Real, Dim>& world, const Touching& at) {
   if (at.with_wall()) return -facing(world.walls()[at.wall], world.position[at.a]).normal;
@@ -64,7 +65,7 @@ template <class Real, int Dim>
   return -dot(Vector<Real, Dim>(of_b - world.velocity[at.a]), normal_of(world, at));
 }
 
-/// What they do to each other, for the log of contacts.
+/// A contact event of the pair, for the log of contacts.
 template <class Real, int Dim>
 [[nodiscard]] ContactEvent<Real, Dim> event_of(const World<Real, Dim>& world, const Touching& at, const Real& time,
                                                ContactChange change, const Real& impulse) {
@@ -79,7 +80,7 @@ template <class Real, int Dim>
           .time = time};
 }
 
-/// In order, all pairs that are less apart than `reach` twice over: that can meet before one has moved by it.
+/// All pairs, sorted, with a gap below 2 `reach`: those that can touch before a body has moved by `reach`.
 template <class Real, int Dim>
 [[nodiscard]] std::vector<Touching> pairs_within(const World<Real, Dim>& world, const Real& reach) {
   std::vector<Touching> pairs;
@@ -87,7 +88,7 @@ template <class Real, int Dim>
   for (std::uint32_t i = 0; i < world.size(); ++i) {
     if (world.is_fixed(i)) continue;
     const auto near = queries.in_sphere(world.position[i], world.radius[i] + 2 * reach);
-    if (!near) continue;  // a body that is nowhere meets nobody; the motion ends for it
+    if (!near) continue;  // a body without a finite position touches nothing; the motion fails
     for (const std::uint32_t w : near->walls) pairs.push_back({.a = i, .b = i, .wall = w});
     for (const BodyHandle& body : near->bodies) {
       const auto j = static_cast<std::uint32_t>(world.index(body));
