@@ -132,7 +132,8 @@ class World {
   /// A world of some of the bodies, in this order, with all walls, under gravity alone.
   [[nodiscard]] World part(std::span<const std::uint32_t> bodies) const;
 
-  /// Fails unless the normal is finite and not zero. The normal is scaled to length 1.
+  /// Fails unless normal, offset and material are valid: the normal finite and not zero. The normal is scaled to length
+  /// 1.
   [[nodiscard]] Status add_wall(Wall<Real, Dim> wall);
   /// The inside of a box with its faces along the axes.
   [[nodiscard]] Status add_container(const V& lower, const V& upper, const Material<Real>& material = {});

@@ -78,7 +78,7 @@ class ContactSteps {
       if (const auto pair = one.pair.moved(to)) pushed_.push_back({*pair, one.force});
     std::ranges::sort(pushed_, {}, &Pushed::pair);
   }
-  /// Of the last step: the greatest speed, and the greatest change of a velocity or of a spin times the radius.
+  /// The greatest speed in the last step, and the greatest change of a velocity or of a spin times the radius.
   [[nodiscard]] Real fastest() const { return fastest_; }
   [[nodiscard]] Real greatest_change() const { return change_; }
 

@@ -24,7 +24,7 @@ enum class MotionEvent {
   stepped,          // a step was made, more are to follow
   steps_made,       // so many that flights are tried again
   nothing_moves,    // and nothing begins to move
-  left_room,        // a body has gone as far as the caller allows, or nothing moves and the caller wants to know
+  left_room,        // a body has left the range that the caller has set, or nothing moves within such a range
   time_reached,
   failed  // with a message
 };

@@ -13,7 +13,7 @@
 
 namespace continuo {
 
-/// Asks for a batch that is soon to come, and for the bodies of one that is: they lie where they lie.
+/// Prefetches a batch that comes soon; the next function prefetches its bodies, which are scattered in memory.
 template <class Batch>
 void prefetch_lines(const Batch& batch) {
   constexpr std::size_t line = 64;
@@ -29,7 +29,7 @@ void prefetch_bodies(const ContactBatch<Real, Dim>& batch, const SolverBodies<Re
     __builtin_prefetch(&bodies.place[batch.b[lane]]);
   }
 }
-/// number(i) for i = 0 ... count - 1 are those of batches.
+/// Calls `act` for the batches number(0) ... number(count - 1), and prefetches the coming ones.
 template <class Real, int Dim, class Number, class Act>
 void for_each_ahead(const ColouredBatches<Real, Dim>& batches, const SolverBodies<Real, Dim>& bodies, std::size_t count,
                     const Number& number, const Act& act) {
@@ -43,8 +43,8 @@ void for_each_ahead(const ColouredBatches<Real, Dim>& batches, const SolverBodie
     act(number(i));
   }
 }
-/// Those of a group in which the last sweep, or this one, disturbed anything. Batches of a colour share no body, so
-/// that which ones are meant can be seen before the first of them is solved; those of the shared one are few.
+/// Calls `act` for the batches of a group in which the last sweep or this one has disturbed a body. Batches of a colour
+/// share no body, so that they can be selected before the first of them is solved; the shared colour has few batches.
 template <class Real, int Dim, class Act>
 void for_each_disturbed(const ColouredBatches<Real, Dim>& batches, std::size_t group,
                         const SolverBodies<Real, Dim>& bodies, const Act& act) {
@@ -58,7 +58,7 @@ void for_each_disturbed(const ColouredBatches<Real, Dim>& batches, std::size_t g
       std::size_t count = 0;
       for (std::size_t p = from; p < to; ++p) {
         meant[count] = static_cast<std::uint32_t>(p);
-        count += (batches.bins[p] & bins) != 0;  // no branch: nobody could foresee it
+        count += (batches.bins[p] & bins) != 0;  // no branch: it would be unpredictable
       }
       for_each_ahead(batches, bodies, count, [&](std::size_t i) { return meant[i]; }, act);
     }

@@ -12,7 +12,7 @@
 
 namespace continuo {
 
-/// As many contacts as there are lanes. Of one of a body and a wall, b is the wall's stand-in.
+/// As many contacts as there are lanes. In a contact with a wall, b is the immovable body that represents the wall.
 template <class Real, int Dim>
 struct ContactBatch {
   using L = StoredLanes<Real>;
@@ -20,14 +20,15 @@ struct ContactBatch {
   Vector<L, Dim> normal{};  // from a to b
   L separation{};
 };
-/// What every pass over contacts changes lies apart from what it only reads, in a line of the cache.
+/// The values that every pass over contacts changes, separate from those that it only reads, and aligned to a cache
+/// line.
 template <class Real, int Dim>
 struct alignas(64) BatchImpulses {
   using L = StoredLanes<Real>;
   L normal{};
-  Vector<L, Dim> friction{};  // on b; in space what lies along the normal resists spinning
+  Vector<L, Dim> friction{};  // on b; in space its part along the normal resists spinning
 };
-/// What few worlds have: several materials, bounces, rolling resistance.
+/// Values that few worlds need: those of several materials, of restitution and of rolling resistance.
 template <class Real, int Dim>
 struct SpecialMaterialBatch {
   using L = StoredLanes<Real>;
@@ -35,7 +36,7 @@ struct SpecialMaterialBatch {
   Spin<L, Dim> rolling_impulse{};
 };
 
-/// What the batches of a step hand on to those of the next.
+/// The values that the batches of a step pass on to those of the next step.
 template <class Real, int Dim>
 struct StoredImpulses {
   LargeArray<BatchImpulses<Real, Dim>> impulses{};
@@ -62,12 +63,12 @@ struct ColouredBatches : StoredImpulses<Real, Dim> {
   StoredImpulses<Real, Dim> before{};  // those of the step before
   std::vector<std::uint64_t> bins{};   // of a batch's bodies, see contact_blocks.hpp
   std::vector<Group> groups{};
-  std::vector<std::array<std::uint32_t, most_colours>> count{};  // of each group's contacts, until there is room
+  std::vector<std::array<std::uint32_t, most_colours>> count{};  // contacts of each group and colour, before allocation
   std::size_t contacts = 0;
-  std::size_t colours = 0;  // of the group that has most
+  std::size_t colours = 0;  // in the group with the most
 
-  /// What more than 63 neighbours leave over goes to the last colour, one contact a batch: these do share bodies, and
-  /// are for one after the other.
+  /// Contacts for which 63 colours are not enough get the last colour, with one contact per batch: such batches may
+  /// share bodies, and are solved one after the other.
   [[nodiscard]] static bool is_shared(std::size_t colour) { return colour == most_colours - 1; }
 
   [[nodiscard]] SpecialMaterialBatch<Real, Dim>* special_material_of(std::size_t batch) {
@@ -78,7 +79,7 @@ struct ColouredBatches : StoredImpulses<Real, Dim> {
     groups.assign(number_of_groups, {});
     count.assign(number_of_groups, {});
   }
-  /// Room for what was counted; lanes that no contact will fill have stand-ins.
+  /// Allocates batches for the contacts that were counted. Lanes without a contact get stand-ins.
   void make_room(const ContactBlocks& blocks, const SolverBodies<Real, Dim>& bodies, bool has_special_material) {
     std::uint32_t total = 0;
     colours = contacts = 0;
@@ -93,7 +94,7 @@ struct ColouredBatches : StoredImpulses<Real, Dim> {
       groups[g].first[most_colours] = total;
     }
     std::swap<StoredImpulses<Real, Dim>>(*this, before);
-    // Nothing in them is needed, and half as much again would be a good part of all memory.
+    // The old contents are not needed, and growth by half would be a good part of all memory.
     if (batches.capacity() < total) {
       batches = {}, bins = {};
       batches.reserve(total + total / 64), bins.reserve(batches.capacity());

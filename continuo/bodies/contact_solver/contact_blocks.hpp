@@ -1,11 +1,12 @@
-// Which contacts are solved in a row, by one thread. Bodies are sorted by cells, layer by layer along the longest axis,
-// so what touches stands within little more than a layer in their order, which is cut into blocks of more than two.
-// First all blocks at once: of each the contacts within it, colour by colour. Then, at once again, those across the end
-// of each block: they lie between its middle and that of the next, so that they share no body either. What is neither,
-// where some bodies are much larger than the others, is left for one thread.
+// The division of contacts into groups that one thread solves in sequence. Bodies are sorted by cells, layer by layer
+// along the longest axis, so that two bodies in contact are at most a little more than a layer apart in this order,
+// which is divided into blocks of more than two layers. First, for all blocks at once, the contacts within each block
+// are solved, colour by colour. Then, again at once, those across the end of each block follow: they lie between its
+// middle and the middle of the next one, so that they share no body either. All other contacts, which exist where some
+// bodies are much larger than the others, are left to one thread.
 //
-// That needs a meeting of all threads after every one of these, not after every colour; and a block's bodies stay in
-// the cache until all its colours are done. The blocks are the same for any number of threads.
+// So threads have to synchronize only after each of these stages, not after every colour, and the bodies of a block
+// stay in the cache until all its colours are done. The blocks are the same for any number of threads.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -15,12 +16,13 @@
 namespace continuo {
 
 struct ContactBlocks {
-  std::uint32_t half = 1;  // as many places has half a block
+  std::uint32_t half = 1;  // the places in half a block
   std::uint32_t count = 1;
   std::uint32_t bin_shift = 0;  // a bin has 2^bin_shift places
 
-  /// Blocks for so many bodies, of which the fullest layer has `in_layer`: half a block is a layer and an eighth, for
-  /// the next row of cells. Multiples of four share out evenly. Fewer than 256 bodies are not worth a block.
+  /// Blocks for so many bodies, with `in_layer` bodies in the fullest layer. Half a block is at least a layer and an
+  /// eighth, where the eighth is for the next row of cells. A multiple of four blocks can be divided evenly among
+  /// threads. Fewer than 256 bodies are not worth a block.
   [[nodiscard]] static ContactBlocks of(std::size_t bodies, std::size_t in_layer) {
     const std::size_t smallest = std::max<std::size_t>({2 * (in_layer + in_layer / 8 + 1), 256, bodies / 4096});
     std::size_t count = std::max<std::size_t>(bodies / smallest, 1);
@@ -34,12 +36,13 @@ struct ContactBlocks {
   [[nodiscard]] std::size_t across(std::size_t block) const { return count + block; }
   [[nodiscard]] std::size_t rest() const { return 2 * std::size_t{count}; }
   [[nodiscard]] std::size_t groups() const { return rest() + 1; }
-  /// Of places a < b, counted from where a's block begins: no division, for every contact asks in every step.
+  /// The group of a contact between places a < b, which are counted from the beginning of a's block. It needs no
+  /// division, since it is called for every contact in every step.
   [[nodiscard]] std::size_t group_of(std::size_t block, std::uint32_t a, std::uint32_t b) const {
     if (b < 2 * half) return block;
     return a >= half && b < 3 * half ? across(block) : rest();
   }
-  /// The block whose stand-ins a group of any kind may use: no two that are solved at once have the same.
+  /// The block whose stand-ins a group of any kind may use: no two groups that are solved at once have the same.
   [[nodiscard]] std::size_t stand_ins_of(std::size_t group) const { return group % count; }
 
   /// Half a block's places fall into up to 32 bins; a group's into 64, those of its second half last.
@@ -48,7 +51,7 @@ struct ContactBlocks {
   [[nodiscard]] std::size_t first_half(std::size_t group) const {
     return group < count ? 2 * group : 2 * (group - count) + 1;
   }
-  /// Of a place that is counted from where the group's block begins.
+  /// The bit of a place, which is counted from the beginning of the group's block.
   [[nodiscard]] std::uint64_t bit_of(std::size_t group, std::uint32_t place) const {
     if (group == rest()) return ~std::uint64_t{0};
     const std::uint32_t in_group = group < count ? place : place - half;

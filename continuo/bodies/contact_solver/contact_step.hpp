@@ -33,18 +33,19 @@ template <class Real>
 struct ContactStep {
   Real h{};
   Softness<Real> soft{};
-  Real fastest_push{};           // with which an overlap is undone at most
-  bool may_strike = false;       // impacts are located in this substep: restitution.hpp leaves them their contacts
+  Real fastest_push{};           // greatest speed at which an overlap is undone
+  bool may_strike = false;       // impacts are located in this substep, see restitution.hpp
   Real greatest_acceleration{};  // by forces, where impacts are located
   Real friction{};               // where all have the same
-  Real disturbance{};            // a change of velocity is one that makes so long a way in a substep
-  std::uint8_t sweep = 1;        // of those that push; after the first only what was disturbed is pushed again
+  Real disturbance{};            // a change of velocity beyond this way per substep disturbs a body
+  std::uint8_t sweep = 1;        // number of a pushing sweep; those after the first solve only disturbed contacts
 };
 
-/// Undo overlaps; do so again where neighbours disturbed it; take out the velocity that this gave.
+/// push undoes overlaps, push_again does so again for disturbed contacts, and relax removes the velocity that this
+/// gave.
 enum class ContactPass { push, push_again, relax };
 
-/// What a contact may do: b a body that moves, one that is fixed, or a wall, whose normal stands.
+/// The kinds of contacts: b is a moving body, a fixed body, or a wall, whose normal is constant.
 enum class ContactKind { between_movers, with_fixed, with_wall };
 
 }  // namespace continuo

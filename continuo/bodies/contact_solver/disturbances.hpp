@@ -5,7 +5,7 @@
 // or already in s. To find these contacts without looking at all others, the places in each half of a block
 // (contact_blocks.hpp) fall into up to 32 bins, a bit each, and a half has two sets of bits: the bins with a body that
 // the last sweep disturbed, and those with one that this sweep has. A batch of contacts has the bits of its own bodies;
-// where the two have none in common, no contact in it is meant.
+// where the two have no bit in common, no contact in it has to be solved again.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -31,19 +31,20 @@ class Disturbances {
   }
   /// The last sweep that disturbed it; 0: none in this substep.
   [[nodiscard]] std::uint8_t sweep_of(std::uint32_t body) const { return sweep_[body]; }
-  /// Those of the last sweep and of this one among the bodies of a group, as `ContactBlocks::bit_of` has them.
+  /// The bins with bodies of a group that the last sweep or this one has disturbed, in the bits of
+  /// `ContactBlocks::bit_of`.
   [[nodiscard]] std::uint64_t bins(std::size_t group) const {
     if (group == blocks_.rest()) return ~std::uint64_t{0};
     const Half* half = &halves_[blocks_.first_half(group)];
     return half[0].any() | std::uint64_t{half[1].any()} << 32;
   }
 
-  /// The bodies of a block, at the start of a substep.
+  /// Clears the bodies of a block, at the start of a substep.
   void forget(std::size_t block, std::size_t bodies) {
     std::fill(sweep_.begin() + blocks_.first(block), sweep_.begin() + blocks_.last(block, bodies), std::uint8_t{0});
     for (std::size_t half = 2 * block; half < 2 * block + 2; ++half) halves_[half] = {};
   }
-  /// From here on what the present sweep disturbed in a block is what the last one did.
+  /// Begins the next sweep in a block: the bins of the present sweep become those of the last one.
   void begin_sweep(std::size_t block) {
     for (std::size_t half = 2 * block; half < 2 * block + 2; ++half) halves_[half] = {halves_[half].now, 0};
   }
@@ -51,7 +52,7 @@ class Disturbances {
   [[nodiscard]] bool any_now() const {
     return std::ranges::any_of(halves_, [](const Half& half) { return half.now != 0; });
   }
-  /// Whether there is anything in a half, or in the one behind it.
+  /// Whether there are disturbed bodies in a half of a block, or in the half after it.
   [[nodiscard]] bool any_from(std::size_t half) const {
     return halves_[half].any() != 0 || halves_[half + 1].any() != 0;
   }
@@ -67,7 +68,7 @@ class Disturbances {
 
   ContactBlocks blocks_{};
   std::vector<std::uint8_t> sweep_{};  // of each body
-  std::vector<Half> halves_{};         // of every block two, and one more behind the last
+  std::vector<Half> halves_{};         // two of every block, and one more after the last
 };
 
 }  // namespace continuo

@@ -1,5 +1,5 @@
-// What the impulse of a contact does to the velocities of its two bodies, several contacts at once, and the bounds of
-// such impulses.
+// Adds the impulses of contacts to the velocities of their two bodies, several contacts at once, and bounds such
+// impulses.
 //
 // Between spheres the arms lie along the normal n: a normal impulse turns nothing, and the mass that resists an impulse
 // across the normal is a number, 1 / (1/m_a + 1/m_b + r_a^2/J_a + r_b^2/J_b). An impulse p on b at the point of contact
@@ -18,7 +18,7 @@ template <class Real>
 }
 template <class Real>
 [[nodiscard]] ContactLanes<Real> smaller_radius(const ContactLanes<Real>& a, const ContactLanes<Real>& b) {
-  return select(b > ContactLanes<Real>(Real(0)), min(a, b), a);  // a wall has none
+  return select(b > ContactLanes<Real>(Real(0)), min(a, b), a);  // a wall has no radius
 }
 /// A wall has neither a radius nor a spin, and any radius will do.
 template <ContactKind kind, class Real>
@@ -26,7 +26,7 @@ template <ContactKind kind, class Real>
   return kind == ContactKind::with_wall ? radius_a : radius_b;
 }
 
-/// An impulse on b where it touches, its opposite on a; `across` is the part of it across the normal.
+/// Adds an impulse on b at the point of contact, and its opposite on a; `across` is its part across the normal.
 template <class Real, int Dim>
 void add_impulse(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const Vector<ContactLanes<Real>, Dim>& normal,
                  const Vector<ContactLanes<Real>, Dim>& impulse, const Vector<ContactLanes<Real>, Dim>& across) {
@@ -36,15 +36,15 @@ void add_impulse(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const Vec
   a.rim -= change * a.mobility;
   b.rim -= change * b.mobility;
 }
-/// A torque's impulse on b, its opposite on a: the rim moves by impulse r / J.
+/// Adds the impulse of a torque on b, and its opposite on a: the velocity of the rim changes by impulse r / J.
 template <class Real, int Dim>
 void add_roll(LaneMotions<Real, Dim>& a, LaneMotions<Real, Dim>& b, const ContactLanes<Real>& radius_a,
               const ContactLanes<Real>& radius_b, const Spin<ContactLanes<Real>, Dim>& impulse) {
   a.rim -= impulse * (a.mobility * inverse_or_zero<Real>(radius_a));
   b.rim += impulse * (b.mobility * inverse_or_zero<Real>(radius_b));
 }
-/// A torque's impulse about the normal, over the smaller radius, on b, its opposite on a: it turns a rim by that times
-/// the mobility times the smaller radius over its own.
+/// Adds the impulse of a torque about the normal on b, and its opposite on a. The impulse is given over the smaller
+/// radius: the velocity of a rim changes by the impulse times the mobility times the smaller radius over its own.
 template <class Real>
 void add_spin(LaneMotions<Real, 3>& a, LaneMotions<Real, 3>& b, const Vector<ContactLanes<Real>, 3>& normal,
               const ContactLanes<Real>& radius_a, const ContactLanes<Real>& radius_b,
@@ -61,8 +61,8 @@ template <class Number, int Size>
   const Number square = squared(impulse);
   return impulse * select(square > most * most, most / sqrt(square), Number(1));
 }
-/// `impulse`, its part across the normal no longer than `most`; what lies along that, in space, resists spinning, and
-/// stays.
+/// `impulse` with its part across the normal no longer than `most`. In space, its part along the normal resists
+/// spinning and is unchanged.
 template <class Real, int Dim>
 [[nodiscard]] Vector<ContactLanes<Real>, Dim> clamped_across(const Vector<ContactLanes<Real>, Dim>& impulse,
                                                              const Vector<ContactLanes<Real>, Dim>& normal,

@@ -44,7 +44,7 @@ namespace detail {
 template <class Real>
 using LaneBatch = xsimd::make_sized_batch_t<Real, lanes_at_once<Real>>;
 
-/// Rows become columns: two halves and again two halves for four, one for two.
+/// The transposed matrix: by two stages of interleaving for four rows, by one for two.
 template <class Batch>
 [[nodiscard]] std::array<Batch, 4> transposed(const std::array<Batch, 4>& a) {
   const Batch p = xsimd::zip_lo(a[0], a[2]), q = xsimd::zip_hi(a[0], a[2]);
@@ -58,7 +58,8 @@ template <class Batch>
 
 }  // namespace detail
 
-/// The four numbers of every lane's body, by number: `quad_of(i)` is where those of body i lie.
+/// Loads four numbers of the body of every lane; `quad_of(i)` is the place of those of body i in memory. Each result
+/// has one of the four numbers, of all bodies.
 template <class Real, class QuadOf>
 [[nodiscard]] std::array<ContactLanes<Real>, 4> load_quads(const LaneIndices<Real>& bodies, const QuadOf& quad_of) {
   constexpr std::size_t width = lanes_at_once<Real>;

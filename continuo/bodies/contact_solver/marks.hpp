@@ -1,5 +1,5 @@
-// What a pass that pushes notes of the bodies in a batch: whether a contact presses them, and whether it has disturbed
-// them (disturbances.hpp).
+// The marks that a pushing pass sets for the bodies of a batch: whether a contact has a normal impulse on them, and
+// whether it has disturbed them (disturbances.hpp).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,13 +12,13 @@
 
 namespace continuo {
 
-/// What a contact presses moves as its contacts allow, not on its parabola.
+/// Marks the bodies on which a contact has a normal impulse: they move as their contacts allow, not on their parabolas.
 template <ContactKind kind, class Real, int Dim>
 void mark_touched(const ContactBatch<Real, Dim>& batch, const BatchImpulses<Real, Dim>& impulses,
                   SolverBodies<Real, Dim>& bodies) {
   for (std::size_t lane = 0; lane < lanes_at_once<Real>; ++lane) {
     const auto is_pressed = static_cast<std::uint8_t>(impulses.normal.lane[lane] > Real(0));
-    bodies.touched[batch.a[lane]] |= is_pressed;  // no branch: nobody could foresee it
+    bodies.touched[batch.a[lane]] |= is_pressed;  // no branch: it would be unpredictable
     if (kind == ContactKind::between_movers) bodies.touched[batch.b[lane]] |= is_pressed;
   }
 }
@@ -34,7 +34,7 @@ template <class Real, int Dim>
         std::max(disturbances.sweep_of(batch.a[lane]), disturbances.sweep_of(batch.b[lane])) + 1 >= sweep);
   return is;
 }
-/// `change`: of the relative velocity.
+/// Marks the bodies of contacts whose relative velocity has changed by a lot; `change` is that change.
 template <ContactKind kind, class Real, int Dim>
 void mark_disturbed(const ContactBatch<Real, Dim>& batch, const ContactLanes<Real>& change,
                     SolverBodies<Real, Dim>& bodies, const ContactStep<Real>& step) {

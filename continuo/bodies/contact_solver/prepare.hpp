@@ -1,8 +1,9 @@
-// The first kernel of a substep: where the two of a contact are now.
+// The first kernel of a substep: the present normal and separation of every contact.
 //
 // From a to b the normal is n = (x_b - x_a) / |x_b - x_a|, and the separation s = |x_b - x_a| - r_a - r_b, below 0
-// where they overlap. A wall keeps its normal; its stand-in lies in its plane, so that s = n . (x_b - x_a) - r_a.
-// Within the substep s is that of its start plus n . (change of x_b - x_a): E. Catto, "Solver2D" (2024).
+// where they overlap. A wall keeps its normal; the body that represents it has its centre in the plane of the wall, so
+// that s = n . (x_b - x_a) - r_a. Within the substep s is that of its start plus n . (change of x_b - x_a): E. Catto,
+// "Solver2D" (2024).
 #pragma once
 #include <cmath>
 

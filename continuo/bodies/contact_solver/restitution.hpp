@@ -1,6 +1,7 @@
-// Restitution is no matter of a soft contact: a spring gives back what its damping leaves. What bounces, or is so fast
-// that it would go through, is an impact, located within the substep and reversed at its instant by u' = -e u
-// (impacts.hpp). This kernel says which contacts of a batch are left to these: they get no impulse here.
+// A soft contact cannot model restitution: its spring gives back the energy that its damping leaves. Contacts that
+// bounce, or are so fast that bodies would pass through each other, are impacts, located within the substep and
+// reversed at their instant by u' = -e u (impacts.hpp). This kernel selects the contacts of a batch that are left to
+// impacts: they get no impulse here.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,11 +12,13 @@
 
 namespace continuo {
 
-/// The lanes that are left to impacts. Too fast for a soft contact: it has struck in this substep and parts, or it will
-/// at the beginning of the next. What gravity alone brings about in a substep is no impact; nor is, without
-/// restitution, what moves it by less than half a radius; nor what comes about, while contacts are solved, between two
-/// that have touched since it began: in the end it may be slower than an impact is, and then nothing would hold them
-/// apart. What has struck begins so far behind where it did, perhaps, that it comes from the other side of the other.
+/// The lanes that are left to impacts: contacts that have had an impact in this substep and separate, and contacts that
+/// are too fast for a soft contact and will have one at the beginning of the next substep. An approach that gravity
+/// alone causes in a substep is no impact, nor, without restitution, one by less than half a radius per substep. Bodies
+/// that touched already at the beginning of the substep are left out as well: an approach between them may arise while
+/// contacts are solved, and may be slower in the end than that of an impact, and then nothing would keep them apart. A
+/// body that has had an impact begins the substep on its new path, perhaps so far back that it is on the other side of
+/// its partner: so `parts_in_the_end` counts too.
 template <class Real, int Dim>
 [[nodiscard]] typename ContactLanes<Real>::Mask is_for_impacts(
     const ContactBatch<Real, Dim>& batch, const ContactLanes<Real>& restitution, const SolverBodies<Real, Dim>& bodies,

@@ -1,12 +1,13 @@
-// The kernel that solves contacts, several at once, one pass after another: sequential impulses, each of which puts
-// right its own contact and sees what the others did before it.
+// The kernel that solves contacts, several at once, one pass after another: sequential impulses, each of which corrects
+// its own contact, with the velocities that the contacts before it have left.
 //
-// With s the separation and v the normal velocity, a substep of h wants v = -s / h where the two are apart: they may
-// close the gap and no more. Where they overlap, the impulse is that of a soft contact (contact_step.hpp), and when
-// bodies have moved, contacts `relax`: they are solved again with v = 0, which takes out the velocity that undoing the
-// overlap gave. A normal impulse is never below 0. Friction acts across the normal against the slip, by what stops it
-// or by the coefficient times the normal impulse so far (Coulomb); the normal velocity is the same before and after it,
-// so that both impulses are added at once. E. Catto, "Soft constraints" (GDC 2011), "Solver2D" (2024).
+// With the separation s and the normal velocity v, the goal of a substep of h is v = -s / h where the two bodies are
+// apart: they may close the gap and no more. Where they overlap, the impulse is that of a soft contact
+// (contact_step.hpp), and when bodies have moved, contacts `relax`: they are solved again with v = 0, which takes out
+// the velocity that undoing the overlap gave. A normal impulse is never below 0. Friction acts across the normal
+// against the slip, by the impulse that stops it, but at most by the coefficient times the normal impulse so far
+// (Coulomb); the normal velocity is the same before and after it, so that both impulses are added at once. E. Catto,
+// "Soft constraints" (GDC 2011), "Solver2D" (2024).
 #pragma once
 #include <cstddef>
 
@@ -19,14 +20,14 @@
 
 namespace continuo {
 
-/// The impulses of a batch as a pass leaves them, and what it adds to them.
+/// The impulses of a batch after a pass, and the parts that the pass has added.
 template <class Real, int Dim>
 struct SolvedImpulses {
   using L = ContactLanes<Real>;
   L normal, added_normal;
   Vector<L, Dim> friction, added_friction;
 
-  /// In these lanes nothing is added: the impulses are what they are to be instead.
+  /// In these lanes nothing is added, and the impulses become the given ones.
   void leave(const typename L::Mask& these, const L& normal_instead, const Vector<L, Dim>& friction_instead) {
     const L zero(Real(0));
     normal = select(these, normal_instead, normal);
@@ -102,7 +103,7 @@ void solve(ColouredBatches<Real, Dim>& batches, std::size_t p, SolverBodies<Real
   now.normal = normal_impulse<pass, Real>(so_far, speed, separation, inverse, step);
   now.added_normal = now.normal - so_far;
 
-  // Not where an impact takes the contact's place, or where nothing was disturbed.
+  // Contacts that are left to impacts, and contacts without a disturbed body, are not solved.
   if constexpr (!is_plain) {
     const L restitution = special ? L(special->restitution) : zero;
     const Vector<L, Dim> at_end = pass == ContactPass::relax ? apart : Vector<L, Dim>(apart + between * L(step.h));

@@ -1,5 +1,5 @@
-// Bodies as the fast motion holds them while it steps: what a contact reads and writes lies side by side, four numbers
-// at a time, so that lanes load and store it whole.
+// The layout of bodies in the fast motion: the numbers that a contact reads and writes are adjacent, four at a time, so
+// that lanes load and store them together.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -17,7 +17,8 @@ namespace continuo {
 template <class Real>
 using Quad = std::array<Real, 4>;
 
-/// How many contacts are solved at once: what a register of 16 bytes holds, which every machine of this family has.
+/// The number of contacts that are solved at once: as many as fit into a register of 16 bytes, which every machine of
+/// this family has.
 template <class Real>
 inline constexpr std::size_t lanes_at_once = 16 / sizeof(Real);
 
@@ -43,7 +44,7 @@ void put(const Vector<Real, Size>& v, Quad<Real>& quad) {
   for (std::size_t axis = 0; axis < v.size(); ++axis) quad[axis] = v[axis];
 }
 
-/// Behind the bodies stand the walls, as bodies that nothing moves, and then stand-ins for lanes without a contact.
+/// After the bodies come the walls, as immovable bodies, and then stand-ins for lanes without a contact.
 template <class Real, int Dim>
 struct SolverBodies {
   using V = Vector<Real, Dim>;
@@ -70,7 +71,7 @@ struct SolverBodies {
     place.assign(all, {});
   }
   [[nodiscard]] std::uint32_t wall(std::size_t number) const { return static_cast<std::uint32_t>(size() + number); }
-  /// Two for each lane of a batch, for each block; they are apart, have mass, and never move.
+  /// Two stand-ins for each lane of a batch, for each block. They are apart from each other, have mass, and never move.
   static constexpr std::size_t stand_ins = 2 * lanes_at_once<Real>;
   [[nodiscard]] std::uint32_t stand_in(std::size_t block, std::size_t number) const {
     return static_cast<std::uint32_t>(motion.size() - stand_ins * (block + 1) + number);

@@ -1,5 +1,5 @@
-// What resists turning where two spheres touch, several contacts at once: rolling resistance, and friction within the
-// patch in which they touch, which resists spinning about the normal. Each begins with the impulse of the last substep,
+// Torques against the rotation of two spheres in contact, several contacts at once: rolling resistance, and friction
+// within the contact patch, which resists spinning about the normal. Each begins with the impulse of the last substep,
 // as a contact does (warm_start.hpp).
 #pragma once
 #include <numbers>
@@ -26,9 +26,10 @@ void resist_rolling(SpecialMaterialBatch<Real, Dim>& special, const ContactLanes
 
 /// Soft spheres touch in a patch, which resists spinning about the normal by a torque of 3 pi / 16 friction times its
 /// radius times the normal force (Hertz's pressure; K. L. Johnson, "Contact Mechanics", 1985, 7.4). The radius is that
-/// of a sphere of radius r pressed in by 0.0025 r, as those within a pile are: sqrt(0.0025) r. Gives what it adds to
-/// the impulse of the last substep. If each substep began with none, what such a torque holds would turn a little in
-/// every one: a pile would creep by a millimetre in a second, and let go of a ball now and then for ever.
+/// of a sphere of radius r pressed in by 0.0025 r, as those within a pile are: sqrt(0.0025) r. Returns the addition to
+/// the impulse of the last substep. If each substep began without an impulse, bodies that such a torque keeps at rest
+/// would turn a little in every substep: a pile would creep by a millimetre per second, and lose a ball now and then
+/// for ever.
 template <class Real>
 [[nodiscard]] ContactLanes<Real> resist_spinning(const ContactLanes<Real>& before, const ContactLanes<Real>& force,
                                                  const Vector<ContactLanes<Real>, 3>& normal, LaneMotions<Real, 3>& a,

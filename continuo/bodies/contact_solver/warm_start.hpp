@@ -1,6 +1,6 @@
 // The second kernel of a substep: every contact begins with the impulses of the last one. In a pile at rest these are
-// right already, and each substep has to correct little (E. Catto, "Iterative dynamics with temporal coherence",
-// GDC 2005). All contacts do so before any is solved, for each must see what the others carry.
+// right already, and each substep has to correct little (E. Catto, "Iterative dynamics with temporal coherence", GDC
+// 2005). All contacts do so before any is solved, since the solution of each depends on the impulses of the others.
 #pragma once
 
 #include <continuo/bodies/contact_solver/contact_batches.hpp>
@@ -15,7 +15,8 @@ void warm_start(ColouredBatches<Real, Dim>& batches, std::size_t p, const Prepar
   using L = ContactLanes<Real>;
   const ContactBatch<Real, Dim>& batch = batches.batches[p];
   BatchImpulses<Real, Dim>& impulses = batches.impulses[p];
-  // What friction did along the normal of then is not along that of now: in space a little of it becomes a torque.
+  // The normal has turned since, so that the stored friction has a part along the present normal. In space that part
+  // acts as a torque.
   Vector<L, Dim> friction = loaded(impulses.friction);
   const L along = dot(friction, now.normal);
   friction -= now.normal * along;

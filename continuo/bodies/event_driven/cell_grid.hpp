@@ -1,7 +1,7 @@
 // continuo/bodies/event_driven/cell_grid.hpp
-// Which bodies are in which cell of a grid without borders: cells whose numbers agree modulo the size of the table
-// share a list, which costs a test of two bodies that are far apart and nothing else. The first bodies of a list lie in
-// the table itself, so that gathering those of many cells follows no chain and takes no branch that is hard to foresee.
+// The bodies in each cell of an unbounded grid, in a hash table: cells whose numbers agree modulo the size of the table
+// share a list, which costs only needless tests of bodies that are far apart. The first bodies of a list are in the
+// table itself, so that gathering those of many cells follows no chain and has no branch that is hard to predict.
 #pragma once
 #include <array>
 #include <cmath>
@@ -21,14 +21,14 @@ class CellGrid {
   using Cell = std::array<std::int64_t, static_cast<std::size_t>(Dim)>;
 
   CellGrid() = default;
-  /// Room for `bodies` at about one in a list of the table.
+  /// A table for so many bodies, with about one body per list.
   CellGrid(const Real& edge, std::size_t bodies) : edge_(edge) {
     while ((std::size_t{1} << (bits_ * Dim)) < bodies && bits_ < 20 / Dim + 2) ++bits_;
     lists_ = ShortLists(std::size_t{1} << (bits_ * Dim), bodies);
   }
 
   [[nodiscard]] Real edge() const { return edge_; }
-  /// Whether x is near enough to the origin for its digits to tell where in a cell it is.
+  /// Whether x is near enough to the origin for its digits to resolve a place within a cell.
   [[nodiscard]] bool has_cell(const Vector<Real, Dim>& x) const {
     using std::abs;
     for (std::size_t axis = 0; axis < x.size(); ++axis)
@@ -59,11 +59,11 @@ class CellGrid {
     return count;
   }
 
-  /// Of a cell and all its neighbours.
+  /// Gathers the bodies of a cell and all its neighbours.
   [[nodiscard]] std::size_t gather_around(const Cell& cell, std::vector<std::uint32_t>& found) const {
     return gather(shifted(cell, -1), shifted(cell, 1), found);
   }
-  /// Their lists lie in rows, each in a cache line or two.
+  /// Prefetches the lists of these cells, which lie in rows, each in a cache line or two.
   void ask_for_around(const Cell& cell) const {
     const Cell lower = shifted(cell, -1);
     Cell first = shifted(cell, 1);
@@ -71,7 +71,8 @@ class CellGrid {
     for_each_list(lower, first, [&](std::size_t list) { lists_.ask_for(list); });
   }
 
-  /// Which list of the table a cell has: sorted by it, neighbours in space are neighbours in memory.
+  /// The list of a cell in the table. Bodies that are sorted by it are neighbours in memory where they are neighbours
+  /// in space.
   [[nodiscard]] std::size_t list_of(const Cell& cell) const {
     std::size_t list = 0;
     for (const std::int64_t coordinate : cell) list = list << bits_ | part_of(coordinate);
@@ -102,7 +103,7 @@ class CellGrid {
   }
 
   Real edge_ = Real(1);
-  std::size_t bits_ = 2;  // of a cell's number that the table knows, by axis: four cells, so that neighbours differ
+  std::size_t bits_ = 2;  // used of a cell's number, per axis: at least four cells, so that neighbours differ
   ShortLists lists_;
 };
 

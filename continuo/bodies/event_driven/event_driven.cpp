@@ -96,12 +96,12 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   using ParabolicEngine<Real, Dim>::met;
 
  private:
-  /// By the usual contact time, the greatest speed at the start.
+  /// The greatest speed at the start, from the usual contact time.
   Real slow() const {
     if (is_heavy() || world_.size() == 0 || !(contact_time_ > Real(0))) return Real(0);
     return Real(1e-5) * std::ranges::min(world_.radius) / contact_time_;
   }
-  /// Nothing but places in memory changes.
+  /// Sorts the bodies in memory; the motion stays the same.
   void sort() {
     crossings_since_sort_ = 0;
     flights_.sort();
@@ -128,7 +128,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
   static S spin_at(const Turning<Real, Dim>& turning, const Real& t) {
     return turning.spin + turning.spin_rate * (t - turning.spun_since);
   }
-  /// Its orientation. A spin that changes evenly turns by its mean.
+  /// Advances the orientation of a body to time t. A spin that changes linearly turns the body by its mean.
   void turn_to(std::uint32_t i, const Real& t) {
     Turning<Real, Dim>& turning = flights_.turnings[i];
     const Real from = turning.spun_to;
@@ -162,7 +162,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
 
   void stop_at(std::uint32_t i, std::uint32_t j) { met = {flights_.plans[i].number, flights_.plans[j].number}; }
 
-  /// It slips no more, or rolls no more, or otherwise: on another path until the next time.
+  /// Continues a resting body on its next path, where slip or rolling has ended or must change its direction.
   void go_on(std::uint32_t i) {
     bring(i);
     ++flights_.collisions[i];
@@ -176,7 +176,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     Plan<Real, Dim>& plan = flights_.plans[i];
     flights_.grid.remove(i, plan.cell);
     flights_.move_to_now(i);
-    if (!flights_.grid.has_cell(flights_.paths[i].x)) {  // it has left where cells have numbers
+    if (!flights_.grid.has_cell(flights_.paths[i].x)) {  // it is beyond the range of cell numbers
       plan.is_large = true;
       flights_.large.push_back(i);
       return predict(i);
@@ -196,7 +196,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     return pile_up().is_caught(material, flights_.plans[i], flights_.now);
   }
   bool is_heavy() const { return world_.gravity != V{}; }
-  /// It lies where it is, carried by all round it, until something hits it.
+  /// Stops a body, which its neighbours support, until another body hits it.
   void freeze(std::uint32_t i) {
     if (flights_.acts[i] == Act::is_fixed) return;
     turn_to(i, flights_.now);
@@ -211,7 +211,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     return flights_.acts[i] == Act::is_fixed ||
            (flights_.acts[i] == Act::rests && flights_.plans[i].support_count == 0);
   }
-  /// Two that are caught go on as one, or not at all where one is held fast.
+  /// Two bodies that are caught continue with a common velocity, or stop where one of them cannot move.
   void stop(std::uint32_t i, std::uint32_t j) {
     const bool is_held_fast = is_still(i) || is_still(j);
     turn(i);
@@ -240,11 +240,12 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     turning.spin = spin_at(turning, flights_.now);
     turning.spun_since = flights_.now;
   }
-  /// For an event that may change how it turns, or may not: one that falls turns evenly, and then that can wait.
+  /// Brings a body to the present for an event. A falling body has a constant spin, so that its rotation can wait
+  /// unless friction changes it.
   void bring(std::uint32_t i, bool rubs) {
     rubs || flights_.acts[i] == Act::rests ? bring(i) : flights_.move_to_now(i);
   }
-  /// What does not rub needs to know nothing of how it turns.
+  /// Without friction, the rotation of a body is not needed.
   Mover<Real, Dim> mover(std::uint32_t i, bool rubs) {
     Path<Real, Dim>& path = flights_.paths[i];
     const Real inverse_mass = flights_.plans[i].inverse_mass;
@@ -288,7 +289,8 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     predict(j);
   }
 
-  /// All that touch, through others too, so that none approach afterwards. Whether that changed anything.
+  /// Strikes all bodies that are connected with these by contacts, so that no two approach each other afterwards.
+  /// Returns whether any motion has changed.
   bool strike_simultaneously(std::uint32_t i, std::uint32_t j) {
     const V& v = flights_.paths[i].v;
     const V rate = i == j ? v : V(flights_.paths[j].v - v);
@@ -308,8 +310,8 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     return !simultaneous_.struck().empty();
   }
 
-  /// Whether the two, having collided, would fly for less than the contact time: on a sphere nobody rests on a
-  /// parabola.
+  /// Whether the two, after a collision, would fly for less than the contact time. A body that rests on a sphere does
+  /// not move on a parabola.
   bool stays_on(std::uint32_t i, std::uint32_t j, const V& normal) const {
     const Real press = dot(flights_.plans[i].acceleration - flights_.plans[j].acceleration, normal);
     const Real parting = dot(flights_.paths[j].v - flights_.paths[i].v, normal);
@@ -341,7 +343,7 @@ class EventDriven final : public ParabolicEngine<Real, Dim> {
     predict(i);
   }
 
-  /// Its path is another one now; what it lay on it lies on no more, until it touches it again.
+  /// Notes that a body has a new path. It no longer rests on its supports, until it hits them again.
   void note_collision(std::uint32_t i, bool is_strike = false) {
     Plan<Real, Dim>& plan = flights_.plans[i];
     ++flights_.collisions[i];

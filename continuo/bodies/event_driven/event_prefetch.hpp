@@ -1,7 +1,8 @@
 // continuo/bodies/event_driven/event_prefetch.hpp
-// Many bodies do not fit into a core's cache, and each event would wait for memory again and again: for the body, then
-// its cells, then who is in them. The queue knows whose turn comes soon: what these will read is asked for some events
-// earlier, in that order, while others are handled. Nothing but time depends on it.
+// Prefetching for events. Many bodies do not fit into the cache of a core, and each event would wait for memory several
+// times: for the body, then for its cells, then for the bodies in them. The queue knows the bodies of the next events,
+// so that the data of these events is prefetched in that order, some events earlier, while others are processed. This
+// affects run time only.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +18,7 @@ class EventPrefetch {
  public:
   using Bodies = Flights<Real, Dim>;
 
-  /// What `queue` will do next to `flights` after this.
+  /// Prefetches the data in `flights` for the next events of `queue`.
   void look_ahead(const EventQueue<Real>& queue, const Bodies& flights) {
     const std::uint32_t present = queue.present_bucket();
     if (present < seen_) seen_ = 0;

@@ -1,12 +1,11 @@
 // continuo/bodies/event_driven/event_queue.hpp
-// The next event of each of N bodies, the earliest first, in O(1): the near future is cut into buckets, lists that a
-// body enters and leaves in a few writes; only the bodies of the present bucket, about one, are in order, in a heap.
-// What is further off waits apart until the buckets are used up, and is then shared out anew, with buckets of a width
-// that suits it. G. Paul, "A complexity O(1) priority queue for event driven molecular dynamics simulations", J. Comp.
-// Phys. 221 (2007) 615-625.
+// The next event of each of N bodies, the earliest first, in O(1): the near future is divided into buckets, lists that
+// a body enters and leaves with a few writes. Only the bodies of the present bucket, about one, are sorted, in a heap.
+// Later events wait in a list of their own until the buckets are used up, and are then distributed among new buckets of
+// a suitable width. G. Paul, "A complexity O(1) priority queue for event driven molecular dynamics simulations", J.
+// Comp. Phys. 221 (2007) 615-625.
 //
-// Equal times go by the numbers that bodies have for this, whatever the history: the order of events that happen at one
-// instant is that of the numbers.
+// Events at equal times are ordered by numbers that bodies have for this purpose, independently of the history.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -22,7 +21,7 @@ namespace continuo {
 template <class Real>
 class EventQueue {
  public:
-  /// Nobody has an event yet; numbers[body] decides between equal times.
+  /// No body has an event yet; numbers[body] decides between equal times.
   explicit EventQueue(std::vector<std::uint32_t> numbers = {})
       : nodes_(numbers.size()), buckets_(numbers.size() / 2 + 1, numbers.size()) {
     for (std::size_t i = 0; i < numbers.size(); ++i) nodes_[i].number = numbers[i];
@@ -46,8 +45,8 @@ class EventQueue {
   }
   [[nodiscard]] std::uint32_t first() const { return heap_.front().body; }
 
-  /// For what is wanted early. Buckets come one after the other, until they begin anew at 0; the bodies of one that is
-  /// still to come are the first of `found`, as many as is given back.
+  /// For prefetching. Buckets come one after the other, until they begin again at 0. `coming` writes the bodies of a
+  /// later bucket to the front of `found`, and returns their number.
   [[nodiscard]] std::uint32_t present_bucket() const { return present_; }
   [[nodiscard]] std::size_t coming(std::uint32_t bucket, std::vector<std::uint32_t>& found) const {
     if (bucket >= buckets_.size()) return 0;
@@ -58,7 +57,7 @@ class EventQueue {
 
  private:
   static constexpr Real never = std::numeric_limits<Real>::infinity();
-  // Where a body is: in a bucket, or at a place of the heap or of those that wait.
+  // The place of a body: in a bucket, in the heap, or in the list of waiting bodies.
   static constexpr std::uint32_t kind = 3u << 30, in_bucket = 0, in_heap = 1u << 30, later = 2u << 30, nowhere = kind;
   struct Node {
     Real time = never;
@@ -106,7 +105,7 @@ class EventQueue {
     return bucket < buckets_.size() ? (bucket < present_ ? in_heap : bucket) : later;
   }
 
-  /// The bodies of the next bucket that has any come into the heap. Buckets before `present_` are used up.
+  /// Moves the bodies of the next bucket that is not empty into the heap. Buckets before `present_` are used up.
   void fill_heap() {
     while (present_ < buckets_.size() && buckets_.is_empty(present_)) ++present_;
     if (present_ == buckets_.size()) return share_out();
@@ -114,7 +113,7 @@ class EventQueue {
     buckets_.clear(present_++);
     for (std::size_t i = 0; i < count; ++i) enter(waiting_[i], in_heap);
   }
-  /// Half of those that wait get into buckets, the first of all into the heap.
+  /// Distributes the earlier half of the waiting bodies among buckets, and the first of all into the heap.
   void share_out() {
     if (later_.empty()) return;
     waiting_.swap(later_);

@@ -1,6 +1,6 @@
 // continuo/bodies/event_driven/exact_engine.hpp
-// What the exact motion hands its work to: engines for parabolas, for whatever paths other forces make, and for worlds
-// under gravity, of which some parts need the one and some the other.
+// The engines of the exact motion: for parabolas, for paths under any forces, and for worlds under gravity of which
+// some parts need the one and some the other.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -51,26 +51,27 @@ class ExactEngine {
   ExactEngine& operator=(const ExactEngine&) = default;
 };
 
-/// Bodies on parabolas, by number, of which some can be set aside: then somebody else moves them, within a sphere that
-/// stands still for all others.
+/// Bodies on parabolas, given by their numbers in the world. Some of them can be replaced by proxies: another engine
+/// moves such a body within a sphere, which is at rest for all others.
 template <class Real, int Dim>
 class ParabolicEngine : public ExactEngine<Real, Dim> {
  public:
   using ExactEngine<Real, Dim>::ExactEngine;
-  /// No further than to where two come to lie on each other, or one meets such a sphere. Leaves the world as it is.
+  /// Advances to time t, or to the instant at which two bodies come to lie on each other, or a body reaches a proxy.
+  /// Does not change the world.
   [[nodiscard]] virtual Status run_to(const Real& t) = 0;
   [[nodiscard]] virtual Real now() const = 0;
-  /// All but what is set aside, in the world at time t, where nothing happens before.
+  /// Writes all bodies except proxies to the world at time t, before which no event may remain.
   virtual void synchronize(const Real& t) = 0;
-  /// One body in the world as it is now, and that it lies on no wall any more.
+  /// Writes one body to the world at the present time, and logs the end of its contacts with walls.
   virtual void bring_out(std::uint32_t number) = 0;
   virtual void replace_by_proxy(std::uint32_t number, const Vector<Real, Dim>& centre, const Real& radius) = 0;
-  /// On its parabola again, from where it is in the world.
+  /// Puts a body on a parabola again, from its state in the world.
   virtual void take_back(std::uint32_t number) = 0;
-  /// Those that overlap with a body, or the sphere in its place, and do not pass through it.
+  /// Finds the bodies that overlap a body, or its proxy, and can collide with it.
   virtual void find_overlapping(std::uint32_t number, std::vector<std::uint32_t>& found) = 0;
 
-  std::optional<std::array<std::uint32_t, 2>> met;  // at the end of run_to
+  std::optional<std::array<std::uint32_t, 2>> met;  // the two bodies at which run_to ended
 };
 
 /// Bodies that lie on each other, in a world of their own.
@@ -78,22 +79,22 @@ template <class Real, int Dim>
 class ContactEngine : public ExactEngine<Real, Dim> {
  public:
   using ExactEngine<Real, Dim>::ExactEngine;
-  /// As they are; the world stays the same one.
+  /// A copy of the engine for the same world.
   [[nodiscard]] virtual std::unique_ptr<ContactEngine> clone() const = 0;
-  /// From here on `advance_to` ends early where a body has gone half as far from its present place, or where nothing
-  /// moves any more: `is_steady`. Infinity: no more.
+  /// From now on `advance_to` ends early where a body is `room` / 2 away from its present position, or where nothing
+  /// moves any more (`is_steady`). With infinity it does not.
   virtual void keep_within(const Real& room) = 0;
   [[nodiscard]] virtual bool is_steady() const = 0;
-  /// What is known of contacts of other bodies: those that are here are at the places `to`; nowhere: not here.
+  /// Takes over the state of contacts from another engine, whose body i has the number to[i] here, or `nowhere`.
   static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
   virtual void take_over(const ContactEngine& other, std::span<const std::uint32_t> to) = 0;
-  /// Contacts that last end, of all bodies that leave.
+  /// Ends the lasting contacts of all bodies that leave.
   virtual void let_go(const std::vector<bool>& leaves) = 0;
 
-  std::vector<Real> together;  // when each body lay on another last
+  std::vector<Real> together;  // the last time at which each body lay on another
 };
 
-/// Whether parabolas are still within the numbers.
+/// Fails where a position or velocity is no longer finite.
 template <class Real, int Dim>
 [[nodiscard]] Status check_motion(const World<Real, Dim>& world) {
   for (std::size_t i = 0; i < world.size(); ++i)
@@ -102,18 +103,18 @@ template <class Real, int Dim>
   return {};
 }
 
-/// From event to event on parabolas: event_driven.cpp.
+/// The engine for parabolas, from event to event: event_driven.cpp.
 template <class Real, int Dim>
 [[nodiscard]] std::unique_ptr<ParabolicEngine<Real, Dim>> event_driven(World<Real, Dim>& world,
                                                                        const ExactOptions<Real>& options);
 
-/// From contact to contact on whatever paths forces make, by an error-controlled method: constrained_motion.cpp.
+/// The engine for any forces, from contact to contact by an error-controlled method: constrained_motion.cpp.
 template <class Real, int Dim>
 [[nodiscard]] std::unique_ptr<ContactEngine<Real, Dim>> constrained_motion(World<Real, Dim>& world,
                                                                            const ExactOptions<Real>& options,
                                                                            Companions<Real, Dim>* companions);
 
-/// The one, and of those that lie on each other the other: islands.cpp.
+/// The event-driven engine, with the constrained one for bodies that lie on each other: islands.cpp.
 template <class Real, int Dim>
 [[nodiscard]] std::unique_ptr<ExactEngine<Real, Dim>> islands(World<Real, Dim>& world,
                                                               const ExactOptions<Real>& options);

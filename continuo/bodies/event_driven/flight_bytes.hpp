@@ -1,5 +1,5 @@
 // continuo/bodies/event_driven/flight_bytes.hpp
-// Flights as bytes: what is not in the world. Partners are told by number, since places change.
+// Flights as bytes: their state that is not in the world. Partners are saved by number, since places change.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -28,7 +28,7 @@ void transfer_flight(Archive& archive, Flight<Real, Dim>& flight) {
   }
 }
 
-/// What is wrong with a flight that was read; nullptr where nothing is.
+/// The fault of a flight that was read; nullptr where it has none.
 template <class Real, int Dim>
 [[nodiscard]] const char* fault_of_flight(const World<Real, Dim>& world, const Flight<Real, Dim>& flight) {
   const auto& [path, plan, turning, collisions, act] = flight;
@@ -71,7 +71,7 @@ void save_flights(ByteWriter& writer, const Flights<Real, Dim>& flights) {
     transfer_flight(writer, flight);
   }
 }
-/// Into flights of the same world, that are to be sorted then. Whether they could be read.
+/// Reads into the flights of the same world, which must be sorted afterwards. Returns whether they could be read.
 template <class Real, int Dim>
 [[nodiscard]] bool load_flights(ByteReader& reader, Flights<Real, Dim>& flights) {
   Real edge{};

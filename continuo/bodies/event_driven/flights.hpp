@@ -1,10 +1,10 @@
 // continuo/bodies/event_driven/flights.hpp
-// Bodies on parabolas, each at a time of its own, and whom each meets next, were nobody else to change its path: what
-// the event-driven motion moves from one event to the next.
+// The state of the event-driven motion: bodies on parabolas, each at its own time, and the next predicted event of
+// each. A prediction assumes that no other event changes a path before.
 //
-// Bodies are kept in the order of their cells, so that those that meet lie near in memory: a `place` is where one is in
-// that order, its `number` where it is in the world. Of events at one instant, walls come before bodies and lower
-// numbers before higher, whatever the order in memory.
+// Bodies are kept in the order of their cells, so that those that meet lie near in memory: the `place` of a body is its
+// index in that order, its `number` its index in the world. Of events at one instant, walls come before bodies and
+// lower numbers before higher, whatever the order in memory.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@
 
 namespace continuo {
 
-/// Of cells that hold about one body and are wider than any but the few large ones.
+/// The edge of cells with about one body each, which are wider than all bodies except few large ones.
 template <class Real, int Dim>
 [[nodiscard]] Real edge_of_cells(const World<Real, Dim>& world) {
   const std::size_t n = world.size();
@@ -47,43 +47,43 @@ template <class Real, int Dim>
   }
   using std::pow;
   const Real spacing = Real(pow(room / static_cast<Real>(n), Real(1) / Real(Dim)));
-  // Spheres in place of bodies that are set aside are wider by a quarter, see islands.cpp.
+  // Proxies of bodies are wider than these by a quarter, see islands.cpp.
   const Real more = world.gravity == Vector<Real, Dim>{} ? Real(1) : Real(1.25);
   return std::max(2 * more * widest, std::min(spacing, 1000 * widest)) * Real(1.0001);
 }
 
-// Who the next collision is with: a body below first_wall, a wall from there on, nobody known yet.
+// The partner of the next collision: a body below first_wall, a wall from there on, or not known yet (look_again).
 inline constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max(), look_again = nobody - 1,
                                first_wall = std::uint32_t{1} << 31;
 
-// A body's flight is kept apart by who reads it, so that an event reads few cache lines: of the neighbours `Path`,
-// `Act` and, of the one that is met, the count of its collisions; of those that take part also `Plan`, and `Turning`
-// where they rub or rest. The sizes said here are those with doubles in space.
+// The flight of a body is divided into parts, so that an event reads few cache lines: of neighbours `Path` and `Act`,
+// of the partner also the count of its collisions, of bodies that take part also `Plan`, and `Turning` where they have
+// friction or rest. The sizes in the comments are those for double in space.
 
-/// What others look at who seek their next collision: a cache line.
+/// The data that is read when other bodies search for their next collision: a cache line.
 template <class Real, int Dim>
 struct alignas(sizeof(Real) * (Dim == 3 ? 8 : 2)) Path {
   Vector<Real, Dim> x{}, v{};  // at the time t of its own
   Real t{}, radius{};
 };
 
-/// How a body is accelerated. Set aside: somebody else moves it, see sphere_proxy.hpp.
+/// How a body is accelerated. is_proxy: another engine moves the body, see sphere_proxy.hpp.
 enum class Act : std::uint8_t { falls, rests, is_fixed, is_proxy };
 
-/// What every event of a body reads and writes: two cache lines, of which the first tells what comes next.
+/// The data that every event of a body reads and writes: two cache lines, of which the first has the next event.
 template <class Real, int Dim>
 struct alignas(sizeof(Real) * 16) Plan {
   static constexpr Real never = std::numeric_limits<Real>::infinity();
   Real collision_time = never, crossing_time = never;
-  Real path_end = never;  // when it is accelerated otherwise, though nothing hits it: see rolling.hpp
+  Real path_end = never;  // when its acceleration changes without a collision, see rolling.hpp
   typename CellGrid<Real, Dim>::Cell cell{};
   std::uint32_t partner = nobody, collisions_of_partner = 0;
   std::int8_t direction = 0;  // of the crossing, along the axis
   std::uint8_t axis = 0;
   bool is_large = false;
   std::uint8_t support_count = 0;
-  std::uint8_t strikes_at_once = 0;  // so many with all that touch, at the instant of the last collision
-  std::uint16_t in_a_row = 0;        // so many collisions before the last, each soon after the one before
+  std::uint8_t strikes_at_once = 0;  // simultaneous strikes at the instant of the last collision
+  std::uint16_t in_a_row = 0;        // collisions before the last, each soon after the one before
   std::uint32_t number = 0, material = 0;
   std::array<std::uint32_t, static_cast<std::size_t>(Dim)> supports{};  // the walls it rests on
   Vector<Real, Dim> acceleration{};
@@ -97,7 +97,7 @@ struct Turning {
   Real spun_to{}, spun_since{}, rests_since{}, inverse_inertia{};
 };
 
-/// All of it, of one body.
+/// The whole flight of one body.
 template <class Real, int Dim>
 struct Flight {
   Path<Real, Dim> path{};
@@ -132,13 +132,13 @@ class Flights {
 
   const World<Real, Dim>& world;
   Real now;
-  Real slow{};  // no speed below the last digits of this one counts where two touch
+  Real slow{};  // approaches within the rounding of this speed do not count as collisions
   std::vector<Path<Real, Dim>> paths;
   std::vector<Plan<Real, Dim>> plans;
   std::vector<Turning<Real, Dim>> turnings;
-  std::vector<std::uint32_t> collisions;  // so many changes of its path: a prediction holds for one of them
+  std::vector<std::uint32_t> collisions;  // changes of the path, by which a prediction is known to be outdated
   std::vector<Act> acts;
-  std::vector<std::uint32_t> large;  // too wide for the cells, or too far out: everybody's neighbours
+  std::vector<std::uint32_t> large;  // too wide for the cells, or too far out: neighbours of all bodies
   Grid grid;
 
   template <class Action>
@@ -151,7 +151,7 @@ class Flights {
   void set_flight(std::uint32_t i, const Flight<Real, Dim>& to) {
     paths[i] = to.path, plans[i] = to.plan, turnings[i] = to.turning, collisions[i] = to.collisions, acts[i] = to.act;
   }
-  /// Bytes that events go through.
+  /// The bytes of memory that events access.
   [[nodiscard]] std::size_t memory() const {
     return paths.size() * (sizeof(Path<Real, Dim>) + sizeof(Plan<Real, Dim>));
   }
@@ -203,7 +203,7 @@ class Flights {
     }
   }
 
-  /// When body i crosses into another cell and whom it meets first. Brings it to the present.
+  /// Predicts the next crossing of body i into another cell and its next collision. Brings the body to the present.
   void predict(std::uint32_t i) {
     Plan<Real, Dim>& plan = plans[i];
     plan.crossing_time = never;
@@ -218,14 +218,15 @@ class Flights {
     predict_pairs(i, count);
   }
 
-  /// Each that may touch body i, in the order of memory; perhaps itself too.
+  /// Calls `action` for each body that may touch body i, in the order of memory, perhaps for body i too.
   template <class Action>
   void for_each_near(std::uint32_t i, std::vector<std::uint32_t>& near, Action&& action) const {
     const std::size_t count = gather_near(i, near);
     for (std::size_t k = 0; k < count; ++k) action(near[k]);
   }
 
-  /// It has come to another cell: only the bodies of those that have come into sight are new.
+  /// Predicts the events of body i after it has crossed into another cell. New candidates are only the bodies in cells
+  /// that have become neighbours.
   void look_ahead(std::uint32_t i) {
     Plan<Real, Dim>& plan = plans[i];
     auto lower = plan.cell, upper = plan.cell;
@@ -304,7 +305,7 @@ class Flights {
     }
   }
 
-  /// Of the first `count` candidates, those that body i meets before all others.
+  /// Predicts the collisions of body i with the first `count` candidates.
   void predict_pairs(std::uint32_t i, std::size_t count) {
     const Path<Real, Dim> me = paths[i];
     curved_.resize(count);
@@ -326,13 +327,14 @@ class Flights {
       if (wait > Real(0) || !is_rounding(Real(-dot(apart, rate) / length(apart)), Real(length(me.v) + length(other.v))))
         meet(i, candidates_[k], wait);
     }
-    // How far ahead a meeting on a curved path is looked for depends on what was found before: always in one order.
+    // The time up to which a collision on a curved path is searched depends on the results before: so the order is
+    // fixed.
     curved_.resize(curved);
     std::ranges::sort(curved_, {}, [&](std::uint32_t j) { return plans[j].number; });
     for (const std::uint32_t j : curved_) predict_pair(i, j);
   }
-  /// Whether two that fall alike approach on lines that come within reach: most neighbours do not, in no order that a
-  /// processor could foresee, so that there is no branch here.
+  /// Whether two falling bodies approach each other on lines that come within reach. Most neighbours do not, in an
+  /// unpredictable order, so that there is no branch here.
   [[nodiscard]] unsigned may_touch(const Path<Real, Dim>& me, const Path<Real, Dim>& other) const {
     const Real dt = now - other.t;
     const V apart = other.x + other.v * dt + world.gravity * (dt * dt / 2) - me.x;
@@ -342,9 +344,9 @@ class Flights {
     return static_cast<unsigned>(b < Real(0)) & (overlap | hit);
   }
 
-  /// Whether two that touch approach so slowly that their velocities do not tell, or that it is as good as rest: how
-  /// those end that were struck together. They sink into each other by no more than the digits of places that are lost
-  /// on the way.
+  /// Whether the approach of two bodies in contact is within the rounding of their velocities, or as good as rest, as
+  /// after a simultaneous strike. Such bodies sink into each other by no more than the rounding of positions on the
+  /// way.
   [[nodiscard]] bool is_rounding(const Real& approach, const Real& speeds) const {
     return approach <= 8 * std::numeric_limits<Real>::epsilon() * std::max(speeds, slow);
   }
@@ -369,8 +371,8 @@ class Flights {
       plan.partner = look_again;
     }
   }
-  /// How far ahead a meeting on curved paths is looked for: until one of the two does something else, or for a time in
-  /// which they could have met.
+  /// The time up to which a collision on curved paths is searched: the next event of one of the two, or the end of a
+  /// time in which they could have collided.
   [[nodiscard]] Real horizon(const Plan<Real, Dim>& plan, const Plan<Real, Dim>& other, const V& apart, const V& rate,
                              const V& pull) const {
     Real end = std::min(plan.collision_time, plan.crossing_time);
@@ -390,12 +392,12 @@ class Flights {
     plan.partner = j;
     plan.collisions_of_partner = collisions[j];
   }
-  /// Of two partners at one instant the lower number comes first, walls before both.
+  /// Whether `partner` comes after j at the same instant: lower numbers come first, and walls before bodies.
   [[nodiscard]] bool gives_way(std::uint32_t partner, std::uint32_t j) const {
     return partner >= look_again || (partner < first_wall && plans[j].number < plans[partner].number);
   }
 
-  bool some_pass_ = false;                 // through each other: groups are to be asked
+  bool some_pass_ = false;                 // some groups do not collide with each other
   std::vector<Material<Real>> materials_;  // each but once
   std::vector<std::uint32_t> candidates_, curved_;
 };

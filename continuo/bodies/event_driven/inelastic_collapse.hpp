@@ -1,9 +1,10 @@
-// When collisions pile up without end: the explicit rule against inelastic collapse of the event-driven motion.
+// The rule of the event-driven motion against inelastic collapse, where collisions follow one another without end.
 //
-// Of those of a body that follow on one another within the contact time, the first few are as any other: a speed that
-// takes more than 32 / (1 - e) of them to die away would be less than exp(-32) by then. Without gravity, all that touch
-// are then struck together (see simultaneous_impacts.hpp); what that leaves, by rounding, is caught after so many
-// times. Under gravity two bounce no more then, and after as many again held contacts go on from there.
+// Collisions of a body are in a row where each follows the one before within the contact time. The first 32 / (1 - e)
+// of them are treated as any other, within bounds: by then a speed of approach has fallen to exp(-32) of itself. After
+// them, without gravity, all bodies in contact are struck simultaneously (see simultaneous_impacts.hpp); bodies that
+// rounding keeps approaching are caught after `most_strikes_at_once` strikes at one instant. Under gravity the two
+// bodies no longer bounce, and after as many collisions again they continue in persistent contact.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -26,13 +27,14 @@ class InelasticCollapse {
 
   InelasticCollapse(bool is_heavy, const Real& contact_time) : is_heavy_(is_heavy), contact_time_(contact_time) {}
 
-  /// After how many in a row it has piled up. What does not bounce at all is struck together sooner.
+  /// The number of collisions in a row after which they count as piled up. Without restitution, bodies are struck
+  /// simultaneously sooner.
   [[nodiscard]] int enough(const Material<Real>& material) const {
     if (!is_heavy_ && !(material.restitution > Real(0))) return 4;
     const Real lost = 1 - material.restitution;
     return lost * most_in_a_row > Real(32) ? std::max(fewest_in_a_row, static_cast<int>(32 / lost)) : most_in_a_row;
   }
-  /// With so many collisions in a row before this one.
+  /// Whether collisions have piled up with so many in a row before this one.
   [[nodiscard]] bool is_piled(const Material<Real>& material, int in_a_row) const {
     return loses(material) && in_a_row >= enough(material);
   }

@@ -1,6 +1,7 @@
 // continuo/bodies/event_driven/resting.hpp
-// When a body that bounces on walls lies still on them: a flight shorter than the contact time is none. From then on it
-// moves along the walls that carry it, accelerated by what they leave of gravity, until something hits it.
+// When a body that bounces on walls comes to rest on them: when its next flight would be shorter than the contact time.
+// From then on it moves along the walls that support it, accelerated by the part of gravity along them, until another
+// body hits it.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,7 +15,7 @@
 
 namespace continuo {
 
-/// Body i rests: how it goes on from here along what carries it. In a groove or a corner, on several walls without
+/// Sets the motion of the resting body i along its supports. In a groove or a corner, on several walls without
 /// friction, it slides.
 template <class Real, int Dim>
 void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& contact_time) {
@@ -31,11 +32,13 @@ void go_on_along(Flights<Real, Dim>& flights, std::uint32_t i, const Real& conta
              length(pull) > rounding ? pull : V{}, press, flights.now, contact_time);
 }
 
-/// What becomes of a body that has met a wall. In a groove, on several walls that rub, no parabola is known.
+/// The result of hitting a wall: the body flies, lies, or lies in a groove of several walls with friction, where it has
+/// no parabola.
 enum class Rest : std::uint8_t { flies, lies, lies_in_groove };
 
-/// Lets body i rest on wall `hit`, which it has just met, and on whatever others it touches, where it would leave none
-/// of them for `contact_time`. In a groove it only moves along them then.
+/// Lets body i rest on wall `hit`, which it has just hit, and on the other walls that it touches, if it would fly off
+/// each of them for less than `contact_time`. In a groove with friction, only its velocity is made tangential to the
+/// walls.
 template <class Real, int Dim>
 [[nodiscard]] Rest rest_on_walls(Flights<Real, Dim>& flights, std::uint32_t i, std::uint32_t hit,
                                  const Real& contact_time) {
@@ -45,7 +48,8 @@ template <class Real, int Dim>
   Plan<Real, Dim>& plan = flights.plans[i];
   const auto wall_at = [&](std::uint32_t w) { return facing(world.walls()[w], path.x); };
   const auto speed = [&](std::uint32_t w) { return dot(path.v, wall_at(w).normal); };
-  // Near enough to touch: what it could rise within the contact time, or what rounding makes of a place.
+  // A wall is touched up to the gap by which the body could rise within the contact time, or up to the rounding of a
+  // position.
   const auto touches = [&](std::uint32_t w, const Real& press) {
     const Wall<Real, Dim> wall = wall_at(w);
     const Real along = dot(wall.normal, path.x), gap = along - wall.offset - path.radius;
@@ -56,8 +60,8 @@ template <class Real, int Dim>
   const Real press_on_hit = -dot(world.gravity, wall_at(hit).normal);
   if (!(press_on_hit > Real(0)) || leaves(hit, press_on_hit)) return Rest::flies;
 
-  // One wall after the other, the one that gravity presses on most first: each takes its part of what is left of
-  // gravity across those before.
+  // One wall after the other, beginning with the one against which gravity presses the body most. Each removes from
+  // gravity and velocity the part along its normal, made orthogonal to the normals before.
   std::array<V, static_cast<std::size_t>(Dim)> across{};
   V pull = world.gravity;
   const Real least = length(world.gravity) * 16 * std::numeric_limits<Real>::epsilon();
@@ -76,7 +80,7 @@ template <class Real, int Dim>
     V direction = wall_at(next).normal;
     for (std::uint32_t k = 0; k < plan.support_count; ++k) direction -= across[k] * dot(direction, across[k]);
     const Real part = length(direction);
-    if (!(part > Real(1e-3))) break;  // as good as parallel to one it rests on
+    if (!(part > Real(1e-3))) break;  // nearly parallel to walls that support the body already
     direction *= 1 / part;
     across[plan.support_count] = direction;
     plan.supports[plan.support_count++] = next;
@@ -99,7 +103,8 @@ template <class Real, int Dim>
   return Rest::lies;
 }
 
-/// With which force each wall carries body i that rests: mass * (acceleration - gravity) = sum of forces along normals.
+/// The forces of the walls that support the resting body i: mass * (acceleration - gravity) = sum of forces along
+/// normals.
 template <class Real, int Dim>
 std::array<Real, static_cast<std::size_t>(Dim)> support_forces(const Flights<Real, Dim>& flights, std::uint32_t i) {
   constexpr auto size = static_cast<std::size_t>(Dim);

@@ -1,7 +1,7 @@
 // continuo/bodies/event_driven/rolling.hpp
-// How a sphere that rests on one wall moves along it: it slips, rubbed by Coulomb's friction, until it rolls; it rolls,
-// held back by rolling resistance, until it stops. Both are one equation, w' = pull - resistance * w / |w|, of the slip
-// or of the velocity: while w keeps its direction the path is a parabola, and the time at which w vanishes is known.
+// The motion of a sphere that rests on one wall: it slips, under Coulomb's friction, until it rolls; it rolls, under
+// rolling resistance, until it stops. Both follow one equation, w' = pull - resistance * w / |w|, of the slip or of the
+// velocity: while w keeps its direction the path is a parabola, and the time at which w vanishes is known.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,15 +11,16 @@
 
 namespace continuo {
 
-/// The direction of w for some time, and when it is to be asked for again.
+/// The direction of w, and the time for which it is valid.
 template <class Real, int Dim>
 struct Course {
   Vector<Real, Dim> direction{};
   Real duration = std::numeric_limits<Real>::infinity();
 };
 
-/// Of w' = pull - resistance * w / |w|, w not 0. Where the pull turns w (on a slope in space), the direction is that of
-/// the middle of a time in which it turns by no more than a thousandth: of second order, errors of 1e-7 a radian.
+/// The course for w' = pull - resistance * w / |w|, w not 0. Where the pull turns w (on a slope in space), the
+/// direction is that at the middle of a time in which it turns by no more than a thousandth: this is of second order,
+/// with errors of 1e-7 per radian.
 template <class Real, int Dim>
 [[nodiscard]] Course<Real, Dim> course_of(const Vector<Real, Dim>& w, const Vector<Real, Dim>& pull,
                                           const Real& resistance, const Real& shortest) {
@@ -35,8 +36,9 @@ template <class Real, int Dim>
   return course;
 }
 
-/// The motion of one that rests, until `path_end`: sets acceleration and spin rate. `press` is what the wall carries of
-/// gravity, `pull` what it leaves. Rolling resistance beyond what friction can transmit acts like that limit.
+/// Sets the acceleration and the spin rate of a resting sphere until `path_end`. `press` is the normal part of gravity,
+/// which the wall supports, `pull` the tangential part. Rolling resistance is limited to the torque that friction can
+/// transmit.
 template <class Real, int Dim>
 void move_along(Path<Real, Dim>& path, Plan<Real, Dim>& plan, Turning<Real, Dim>& rotation,
                 const Vector<Real, Dim>& normal, const Material<Real>& material, const Vector<Real, Dim>& pull,
@@ -68,9 +70,9 @@ void move_along(Path<Real, Dim>& path, Plan<Real, Dim>& plan, Turning<Real, Dim>
       acceleration -= drive * (drag / length(drive));
     } else if (drag > Real(0)) {
       path.v = acceleration = {};
-      rotation.spin -= moment(normal, turning(rotation.spin, normal));  // what is about the normal goes on
+      rotation.spin -= moment(normal, turning(rotation.spin, normal));  // the spin about the normal continues
     }
-    // Resistance at that limit asks for all of the friction, to rounding; without a pull nothing slips downhill.
+    // Resistance at that limit needs the greatest friction, to rounding; without a pull no sphere slips downhill.
     const Real most = rub * (1 + 16 * std::numeric_limits<Real>::epsilon());
     if (!(length(acceleration - pull) > most) || pull == V{}) {
       plan.acceleration = acceleration;
@@ -79,7 +81,7 @@ void move_along(Path<Real, Dim>& path, Plan<Real, Dim>& plan, Turning<Real, Dim>
       return;
     }
   }
-  // Where friction cannot hold one that rolls, it begins to slip downhill.
+  // Where friction is too small for rolling, the sphere begins to slip downhill.
   const Course<Real, Dim> course = course_of(rolls ? pull : slip, pull, rub_of_slip, shortest);
   plan.acceleration = pull - course.direction * rub;
   rotation.spin_rate = moment(normal, course.direction) * (rub / (shape * r));

@@ -1,5 +1,5 @@
-// Bodies on straight paths that touch one another: those between which collisions pile up without end, and that are
-// struck together then.
+// Simultaneous strikes of bodies on straight paths that are in contact with one another, where collisions between them
+// would pile up without end.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -20,8 +20,8 @@ class SimultaneousImpacts {
  public:
   using V = Vector<Real, Dim>;
 
-  /// Body i, and whoever touches it or one that does, at the present: whose gap is at most `reach`, or rounding. What
-  /// loses nothing where it collides comes to an end by itself, and is none of the pairs.
+  /// Gathers body i and all bodies that are connected with it at present by contacts, with gaps of at most `reach`, or
+  /// rounding. Pairs that lose no energy in a collision are left out, since their collisions end by themselves.
   void gather(const Flights<Real, Dim>& flights, std::uint32_t i, const Real& reach) {
     is_member_.resize(flights.paths.size());
     for (const std::uint32_t k : members_) is_member_[k] = false;
@@ -53,8 +53,8 @@ class SimultaneousImpacts {
     std::ranges::sort(pairs_);
   }
 
-  /// Impulses after which no two approach by more than `least`: those along the normals, pair by pair. The members are
-  /// to be at the present.
+  /// Applies impulses after which no two bodies approach each other by more than `least`. Returns the normal impulses,
+  /// pair by pair. The members must be at the present time.
   [[nodiscard]] std::vector<Real> strike(World<Real, Dim>& world, Flights<Real, Dim>& flights, const Real& least) {
     for (const std::uint32_t k : members_) {
       const std::uint32_t number = flights.plans[k].number;
@@ -74,11 +74,11 @@ class SimultaneousImpacts {
     return impulses;
   }
 
-  /// By places.
+  /// The members, by places.
   [[nodiscard]] std::span<const std::uint32_t> members() const { return members_; }
-  /// Those whose motion the last strike changed.
+  /// The members whose motion the last strike has changed.
   [[nodiscard]] std::span<const std::uint32_t> struck() const { return struck_; }
-  /// By numbers, in order.
+  /// The pairs, by numbers, sorted.
   [[nodiscard]] std::span<const Touching> pairs() const { return pairs_; }
 
  private:

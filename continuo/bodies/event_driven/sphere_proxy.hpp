@@ -1,5 +1,5 @@
 // continuo/bodies/event_driven/sphere_proxy.hpp
-// Bodies that somebody else moves while all others fly: for those a sphere that stands still is in the body's place.
+// Proxies for bodies that another engine moves: for all flying bodies, a sphere at rest replaces such a body.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace continuo {
 
-/// Body i elsewhere, with another radius perhaps, from now on: what has been predicted of it is void.
+/// Puts body i elsewhere, perhaps with another radius. All predictions for it become void.
 template <class Real, int Dim>
 void put(Flights<Real, Dim>& flights, std::uint32_t i, const Path<Real, Dim>& path, const Spin<Real, Dim>& spin,
          Act act) {
@@ -39,7 +39,7 @@ template <class Real, int Dim>
 void put_sphere(Flights<Real, Dim>& flights, std::uint32_t i, const Vector<Real, Dim>& centre, const Real& radius) {
   put(flights, i, {centre, {}, flights.now, radius}, {}, Act::is_proxy);
 }
-/// The body itself as it is in the world.
+/// Puts the body itself back, in its state in the world.
 template <class Real, int Dim>
 void put_body(Flights<Real, Dim>& flights, std::uint32_t i) {
   const World<Real, Dim>& world = flights.world;
@@ -47,7 +47,7 @@ void put_body(Flights<Real, Dim>& flights, std::uint32_t i) {
   put(flights, i, {world.position[k], world.velocity[k], flights.now, world.radius[k]}, world.spin[k], Act::falls);
 }
 
-/// Numbers of those that overlap with body i now, but for those that pass through it.
+/// Finds the numbers of the bodies that overlap body i now and can collide with it.
 template <class Real, int Dim>
 void find_overlapping(const Flights<Real, Dim>& flights, std::uint32_t i, std::vector<std::uint32_t>& found) {
   const Vector<Real, Dim> x = flights.place_now(i);

@@ -1,6 +1,7 @@
 // continuo/bodies/support/blocks.hpp
-// Files that grow while a run goes on: a head that names the format and its version, then blocks, each its kind, its
-// size, its bytes and their checksum. A file that ends within a block was cut off there, and holds what came before.
+// Files that grow while a run goes on: a head with the format and its version, then blocks, each with its kind, its
+// size, its bytes and their checksum. A file that ends within a block was cut off there; the blocks before it are
+// valid.
 //
 //   BlockWriter out(stream);
 //   ByteWriter head;
@@ -26,11 +27,11 @@
 
 namespace continuo {
 
-/// What a file begins with.
+/// The head of a file, and the messages for files with another one.
 struct FileFormat {
   std::array<char, 8> name;
   std::uint32_t version;
-  const char* no_such_file;   // what is wrong with a file of another name,
+  const char* no_such_file;   // the message for a file of another name,
   const char* other_version;  // of another version
 
   void write(ByteWriter& head) const { head(name), head(version); }
@@ -46,10 +47,10 @@ struct FileFormat {
 
 class BlockWriter {
  public:
-  /// The stream must be binary and stay; whether writing went well is for the caller to ask of it.
+  /// The stream must be binary and outlive this object. The caller checks the stream for failed writes.
   explicit BlockWriter(std::ostream& out) : out_(out) {}
 
-  /// As they are, without a checksum: the head of a file.
+  /// Writes bytes without a checksum: the head of a file.
   void write(const Bytes& bytes) {
     out_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     at_ += bytes.size();
@@ -64,7 +65,7 @@ class BlockWriter {
     write(tail.bytes());
   }
   void flush() { out_.flush(); }
-  /// How much has been written.
+  /// The number of bytes written so far.
   [[nodiscard]] std::uint64_t position() const { return at_; }
 
  private:
@@ -77,8 +78,8 @@ struct Block {
   Kind kind{};
   std::span<const std::byte> bytes;
 };
-/// None at the end, or where the file was cut off; where the block is another than was written, or of a kind after
-/// `last`, the reader says so.
+/// The next block; none at the end, or where the file was cut off. The reader fails where the checksum does not fit, or
+/// the kind of the block is after `last`.
 template <class Kind>
 [[nodiscard]] std::optional<Block<Kind>> next_block(ByteReader& file, Kind last) {
   if (!file.ok() || file.left() == 0) return std::nullopt;
@@ -98,11 +99,11 @@ template <class Kind>
   return block;
 }
 
-/// Something is wrong in the block that has just been taken from the file.
+/// Lets the reader of the file fail for a fault in the block that was read last.
 inline void fail_in_block(ByteReader& file, const std::string& why) {
   file.fail("the block before, " + why);
 }
-/// `read(reader)` takes all that is in the block.
+/// `read(reader)` must read all bytes of the block.
 template <class Read>
 void read_block(ByteReader& file, std::span<const std::byte> block, Read&& read) {
   ByteReader reader(block);

@@ -1,7 +1,7 @@
 // continuo/bodies/support/bytes.hpp
-// Values as bytes and back: little-endian on every machine, numbers by their bits. What is read is not trusted: a
-// reader that has met something wrong says where, gives zeros from then on, and never allocates more than the bytes
-// could hold.
+// Values as bytes and back: little-endian on every machine, numbers by their bits. Input is not trusted: after a fault
+// a reader has the position of the fault in its status, and returns only zeros; it never allocates more than the bytes
+// could contain.
 #pragma once
 #include <array>
 #include <bit>
@@ -29,7 +29,7 @@ using UnsignedOf = std::conditional_t<
     Size == 1, std::uint8_t,
     std::conditional_t<Size == 2, std::uint16_t, std::conditional_t<Size == 4, std::uint32_t, std::uint64_t>>>;
 
-/// A value of several parts says so by `template <class Archive> void transfer(Archive&)`, for both ways.
+/// A type with several parts has a member `template <class Archive> void transfer(Archive&)`, for writing and reading.
 template <class T, class Archive>
 concept Transferable = requires(T& value, Archive& archive) { value.transfer(archive); };
 
@@ -134,9 +134,9 @@ class ByteReader {
 
  private:
   [[nodiscard]] bool takes(std::uint64_t count);
-  /// Of the next bytes; 0 where there are none.
+  /// The number in the next bytes; 0 where too few are left.
   [[nodiscard]] std::uint64_t get(std::size_t size);
-  /// An element has one byte at least.
+  /// The size of a list: at most the number of bytes left, since an element has at least one byte.
   [[nodiscard]] std::uint64_t list_size();
 
   std::span<const std::byte> bytes_;
@@ -144,7 +144,7 @@ class ByteReader {
   std::string error_;
 };
 
-/// FNV-1a, 64 bits (G. Fowler, L. Noll, K.-P. Vo): finds what went wrong by accident.
+/// FNV-1a, 64 bits (G. Fowler, L. Noll, K.-P. Vo): detects accidental changes.
 [[nodiscard]] std::uint64_t checksum(std::span<const std::byte> bytes);
 
 }  // namespace continuo

@@ -1,6 +1,6 @@
-// Arrays of many megabytes that are read in the order of something else. Each access then needs a page that the
-// processor has not seen for long, and looking up where it lies costs as much as reading it; with pages of 2 MiB
-// instead of 4 KiB there are few enough to remember. The system gives such pages to who asks for them.
+// Arrays of many megabytes with random access. Each access needs a page that the processor has not used for long, so
+// that translating its address costs as much as reading the data. With pages of 2 MiB instead of 4 KiB, the address
+// cache of the processor (TLB) suffices. The system provides such pages on request.
 #pragma once
 #include <cstddef>
 #include <new>
@@ -28,7 +28,7 @@ struct LargePages {
     const std::size_t bytes = count * sizeof(T);
     void* memory = ::operator new(bytes, alignment(bytes));
 #ifdef __linux__
-    // A wish: where the system does not grant it, the memory is as good.
+    // Only a hint: where the system does not follow it, the memory is usable all the same.
     if (bytes >= smallest) static_cast<void>(madvise(memory, bytes / page * page, MADV_HUGEPAGE));
 #endif
     return static_cast<T*>(memory);

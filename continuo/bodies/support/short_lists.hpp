@@ -1,6 +1,7 @@
 // continuo/bodies/support/short_lists.hpp
-// Many lists of a few numbers each, in no order; a number is in one of them at most. The first two of a list lie in the
-// table itself, eight lists a cache line: reading those follows no chain and takes no branch that is hard to foresee.
+// Many lists of a few numbers each, in no order; a number is in one of them at most. The first two numbers of a list
+// are in the table itself, with eight lists in a cache line, so that reading them follows no chain and has no branch
+// that is hard to predict.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -51,8 +52,8 @@ class ShortLists {
     rest_[at] = none;
   }
 
-  /// Writes the numbers of a list behind the first `count` of `found`, which grows as needed and must have room for two
-  /// more; gives the new count.
+  /// Writes the numbers of a list after the first `count` of `found`, which grows as needed and must have room for two
+  /// more; returns the new count.
   [[nodiscard]] std::size_t append_to(std::vector<std::uint32_t>& found, std::size_t count, std::size_t at) const {
     const List list = lists_[at];
     found[count] = list.first & ~more;
@@ -75,7 +76,7 @@ class ShortLists {
   };
 
   std::vector<List> lists_;
-  std::vector<std::uint32_t> rest_, next_;  // what a list has beyond two, and its chain
+  std::vector<std::uint32_t> rest_, next_;  // the numbers of a list beyond two, and their chain
 };
 
 }  // namespace continuo

@@ -1,11 +1,11 @@
-// Loops whose turns may run at once. What a turn writes no other turn reads or writes, so the results are the same to
+// Parallel loops. No iteration reads or writes data that another iteration writes, so that the results are the same to
 // the last bit for any number of threads.
 //
 // A step has hundreds of loops of some microseconds, too short to begin and end a parallel loop of the library for
-// each. So the threads come once a step and take blocks of loop after loop from tickets, as in Box2D v3 (E. Catto,
-// "Simulation Islands", 2023). Each thread has a ticket of its own, for the same part of every loop: what it writes in
-// one loop lies in its cache in the next. Who has done its part takes from those of others, so that the caller can do
-// every block alone: nothing waits for a thread that never comes.
+// each. So the threads join once per step and take blocks of loop after loop from tickets, as in Box2D v3 (E. Catto,
+// "Simulation Islands", 2023). Each thread has a ticket of its own, for the same part of every loop, so that data
+// written in one loop is in its cache in the next. A thread that has done its part takes blocks from the tickets of
+// others. So the caller can do every block alone, and no loop waits for a thread that never joins.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -32,7 +32,7 @@ class ThreadTeam {
   [[nodiscard]] bool is_alone() const { return !arena_; }
   [[nodiscard]] std::size_t threads() const { return threads_; }
 
-  /// Loops within `act` are shared out.
+  /// Runs `act`, and distributes the loops within it among the threads.
   template <class Act>
   void run(Act&& act) {
     if (is_alone()) return act();
@@ -89,7 +89,7 @@ class ThreadTeam {
   }
 
  private:
-  /// Of a thread's part of a loop: the loop's number, where the blocks end, the next of them.
+  /// A thread's part of a loop, in one word: the number of the loop, the end of the blocks, and the next block.
   struct alignas(64) Ticket : std::atomic<std::uint64_t> {};
   struct Loop {
     void (*act)(const void* context, std::size_t block) = nullptr;
@@ -97,7 +97,8 @@ class ThreadTeam {
     std::size_t blocks = 0;
   };
 
-  /// A task that is handed on in sight of the thread sanitizer, which does not look into the library.
+  /// A task that is passed to another thread in a way that is visible to the thread sanitizer, which does not see the
+  /// synchronization within the library.
   class Helper {
    public:
     Helper(ThreadTeam& team, std::size_t number) : number_(number) { team_.store(&team, std::memory_order_release); }
@@ -113,14 +114,14 @@ class ThreadTeam {
     for (int idle = 0; is_open_.load(std::memory_order_acquire); ++idle)
       take_block(number) ? void(idle = 0) : wait(idle);
   }
-  /// The next block of the loop that is under way, from the thread's own part or another's; false where none is left.
+  /// Does the next block of the present loop, from the thread's own part or that of another; false where none is left.
   [[nodiscard]] bool take_block(std::size_t thread) {
     for (std::size_t i = 0; i < threads_; ++i)
       if (take_block_of(tickets_[(thread + i) % threads_])) return true;
     return false;
   }
-  /// Who has a block keeps its loop under way, so that what is read of it below is of this loop: the ticket carries its
-  /// number, and an old one is worth nothing.
+  /// A loop cannot end while a thread has one of its blocks, so that the data read below belongs to this loop. The
+  /// ticket contains the number of its loop, so that an old ticket is invalid.
   [[nodiscard]] bool take_block_of(Ticket& of_part) {
     std::uint64_t ticket = of_part.load(std::memory_order_acquire);
     const std::uint64_t end = ticket >> 16 & 0xffff, next = ticket & 0xffff;

@@ -1,6 +1,6 @@
 // continuo/bodies/support/vector.hpp
-// Vectors of two and three dimensions, and what turns: a spin is one number in the plane, three in space. Formulas that
-// hold in both are written once.
+// Vectors of two and three dimensions, spins and orientations. A spin is one number in the plane, three in space.
+// Formulas that are valid in both dimensions are written once.
 #pragma once
 #include <array>
 #include <cmath>
@@ -58,11 +58,12 @@ template <class Real, int Size>
   return sum == Real(0);
 }
 
-/// Of an angular velocity or momentum, a torque: about the axis out of the plane, or along an axis in space.
+/// An angular velocity, an angular momentum or a torque: one number about the axis out of the plane, or a vector in
+/// space.
 template <class Real, int Dim>
 using Spin = Vector<Real, Dim == 2 ? 1 : 3>;
 
-/// Velocity of the point `arm` away from the centre of what spins: spin x arm.
+/// The velocity of a point at `arm` from the centre of a rotating body: spin x arm.
 template <class Real>
 [[nodiscard]] constexpr Vector<Real, 2> turning(const Vector<Real, 1>& spin, const Vector<Real, 2>& arm) {
   return {{-spin[0] * arm[1], spin[0] * arm[0]}};

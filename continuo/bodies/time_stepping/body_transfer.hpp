@@ -1,4 +1,4 @@
-// Bodies from the world to where the fast motion steps them, in the order of its list of pairs, and back.
+// Copies bodies from the world to the arrays of the fast motion, in the order of its list of pairs, and back.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace continuo {
 
-/// act(k, i) for all places k and the bodies i of the world that stand there: in the world they have another order, so
-/// what is read or written of these arrays is asked for early.
+/// Calls act(k, i) for all places k, where i is the number in the world of the body at place k. As the world has
+/// another order, the elements of `arrays` are prefetched.
 template <class Act, class... Arrays>
 void for_each_in_order(ThreadTeam& team, const std::vector<std::uint32_t>& order, const Act& act,
                        const Arrays&... arrays) {
@@ -41,7 +41,7 @@ void load_bodies(ThreadTeam& team, const World<Real, Dim>& world, const std::vec
     place.x_and_radius[3] = radius;
     put(world.velocity[i], motion.linear);
     put(Spin<Real, Dim>(world.spin[i] * radius), motion.rim);
-    const bool is_asleep = sleep.is_asleep(i);  // then it is like a fixed one
+    const bool is_asleep = sleep.is_asleep(i);  // then it is treated as fixed
     motion.linear[3] = is_asleep ? Real(0) : world.inverse_mass[i];
     motion.rim[3] = is_asleep ? Real(0) : radius * radius * world.inverse_inertia[i];
   };

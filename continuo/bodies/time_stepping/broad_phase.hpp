@@ -1,6 +1,6 @@
-// The broad phase of the fast motion: which bodies may touch before they have moved further than they were listed for.
-// The list holds for as long (L. Verlet, Phys. Rev. 159 (1967) 98-103). Bodies are sorted by cells, so that neighbours
-// in space are neighbours in memory.
+// The broad phase of the fast motion: a list of the pairs that may touch, valid until a body has moved further than the
+// reach with which it was listed (L. Verlet, Phys. Rev. 159 (1967) 98-103). Bodies are sorted by cells, so that
+// neighbours in space are neighbours in memory.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -28,21 +28,21 @@ class BroadPhase {
   [[nodiscard]] Real median_radius() const { return median_; }
   [[nodiscard]] std::size_t lists() const { return lists_; }
 
-  /// That of the world, as long as nothing is listed.
+  /// Begins with the order of the world, until pairs are listed.
   void begin(const World<Real, Dim>& world) {
     blocks_ = ContactBlocks::of(world.size(), world.size());
     order_.resize(world.size());
     for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
   }
 
-  /// Whether a body may come further in the next step than the list is good for.
+  /// Whether a body may move beyond its reach in the next step, so that the list becomes invalid.
   [[nodiscard]] bool is_outdated(const Bodies& bodies, const Real& step) const {
     for (std::size_t k = 0; k < bodies.size(); ++k)
       if (!(length(bodies.x(k) - x_of_list_[k]) + step_reach(bodies, k, step) <= reach_[k])) return true;
     return false;
   }
 
-  /// Sorts the bodies anew; place_before[k] is where the one that is now at k was.
+  /// Sorts the bodies again; place_before[k] is the former place of the body that is now at place k.
   void sort(const World<Real, Dim>& world, std::vector<std::uint32_t>& place_before) {
     const std::size_t bodies = world.size();
     std::vector<std::uint32_t> place_of(bodies);
@@ -59,7 +59,7 @@ class BroadPhase {
     for (std::size_t k = 0; k < bodies; ++k) place_before[k] = place_of[order_[k]];
   }
 
-  /// Lists what may touch while body k moves by reach(k) at most.
+  /// Lists the pairs that may touch while body k moves by at most reach(k).
   template <class Reach>
   void list(ThreadTeam& team, const World<Real, Dim>& world, const Bodies& bodies, const Reach& reach,
             ContactRows& rows) {
@@ -90,7 +90,7 @@ class BroadPhase {
     rows.fit();
   }
 
-  /// visit(place) for the bodies that the one at place i may meet if it moves by `way` from where it is.
+  /// Calls visit(place) for the bodies that the body at place i may touch if it moves by `way`.
   template <class Visit>
   void for_each_neighbour(const World<Real, Dim>& world, const Bodies& bodies, std::uint32_t i, const Real& way,
                           Visit&& visit) const {
@@ -101,7 +101,7 @@ class BroadPhase {
     for (const std::uint32_t j : far_) meet(j);
   }
 
-  /// Where the body at place k was when it was listed, and how far it may go from there.
+  /// The position of the body at place k when pairs were listed, and how far it may move from there.
   [[nodiscard]] const std::vector<V>& x_of_list() const { return x_of_list_; }
   [[nodiscard]] const std::vector<Real>& reach_of_list() const { return reach_; }
 
@@ -111,8 +111,9 @@ class BroadPhase {
   }
 
  private:
-  /// What reaches far, larger than cells are made for or faster than nearly all others, looks for others itself and is
-  /// not looked for: the others' boxes need not be as large as its own, nor all pairs be listed anew when it has moved.
+  /// Finds the bodies with a far reach: those too large for the cells, and those faster than nearly all others. Such a
+  /// body searches for its partners itself and is not searched for, so that the search boxes of all others can stay
+  /// small.
   void find_far(const Bodies& bodies) {
     const auto is_fast = [&](std::size_t k) { return reach_[k] > Real(1.001) * skin(bodies.radius(k)); };
     std::size_t fast = 0;
@@ -131,7 +132,7 @@ class BroadPhase {
       }
     }
   }
-  /// Row k: with whom the pairs are that have one that reaches far and stand with the body at k.
+  /// Row k: the partners of the body at place k in its pairs with at least one body of far reach.
   [[nodiscard]] Rows<std::uint32_t> pairs_with_far(ThreadTeam& team, const World<Real, Dim>& world,
                                                    const Bodies& bodies) const {
     Rows<std::uint32_t> found, result;
@@ -144,7 +145,8 @@ class BroadPhase {
       for_each_usual(bodies, bodies.x(i), bodies.radius(i) + reach_[i], 0, consider);
       for (std::size_t g = f + 1; g < far_.size(); ++g) consider(far_[g]);
     });
-    // Of two that move the lower place has the pair, of one that is fixed the other.
+    // A pair of two moving bodies is in the row of the lower place, a pair with a fixed body in the row of the moving
+    // one.
     const auto row_of = [&](std::uint32_t i, std::uint32_t j) {
       return bodies.moves(i) && (i < j || !bodies.moves(j)) ? i : j;
     };
@@ -167,7 +169,7 @@ class BroadPhase {
     const Real near = bodies.radius(i) + reach_[i] + bodies.radius(j) + reach_[j];
     return squared(bodies.x(j) - bodies.x(i)) < near * near && (all_collide_ || world.collide(order_[i], order_[j]));
   }
-  /// visit(j) for those at places from `from` on that do not reach far, and may come within `out` of x.
+  /// Calls visit(j) for the bodies without far reach, at places from `from` on, that may come within `out` of x.
   template <class Visit>
   void for_each_usual(const Bodies& bodies, const V& x, const Real& out, std::uint32_t from, Visit&& visit) const {
     const Real near = out + usual_, most = near * near;
@@ -180,7 +182,7 @@ class BroadPhase {
         std::size_t count = 0;
         for (std::uint32_t j = at; j < end; ++j) {
           met[count] = j;
-          count += squared(bodies.x(j) - x) < most;  // no branch: nobody could foresee it
+          count += squared(bodies.x(j) - x) < most;  // no branch: it would be unpredictable
         }
         for (std::size_t i = 0; i < count; ++i)
           if (!is_far_[met[i]]) visit(met[i]);
@@ -188,7 +190,7 @@ class BroadPhase {
     });
   }
 
-  /// Of two that move the lower place looks for the other.
+  /// If both bodies of a pair move, the lower place searches for the other.
   void list_bodies(const World<Real, Dim>& world, const Bodies& bodies, bool all_move, std::uint32_t k,
                    ContactRows& part) const {
     for_each_usual(bodies, bodies.x(k), bodies.radius(k) + reach_[k], all_move ? k + 1 : 0, [&](std::uint32_t j) {

@@ -1,6 +1,6 @@
-// The contacts of a step: of the pairs that are listed those that may touch in it, coloured and put into batches. No
-// two contacts of a colour share a body that moves, so lanes and threads may solve them in any order, to the same bits.
-// Impulses outlive the step: they are kept by the places of the two bodies, and are the start of the next.
+// The contacts of a step: those listed pairs that may touch in it, coloured and put into batches. No two contacts of a
+// colour share a moving body, so that lanes and threads may solve them in any order, to the same bits. The impulses of
+// a step are the start of the next one: they are kept by the places of the two bodies.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -23,11 +23,12 @@
 
 namespace continuo {
 
-/// What a body may touch: another body's place, or that of a wall's stand-in. Rows are in rising order, walls last; a
-/// pair of two that move stands with the lower place, one with a fixed body with the other.
+/// The partner of a body in a pair that may touch: the place of another body, or of a wall. Rows are sorted, with walls
+/// last. A pair of two moving bodies is in the row of the lower place, a pair with a fixed body in the row of the
+/// moving one.
 struct ContactEntry {
   std::uint32_t other;
-  std::uint32_t lane = nowhere;  // in the batches of its kind, where it is solved
+  std::uint32_t lane = nowhere;  // the lane in the batches of its kind that solves it
 };
 using ContactRows = Rows<ContactEntry>;
 
@@ -47,19 +48,20 @@ class ContactList {
     const auto& first = between_movers.groups[blocks.rest()].first;
     return first.front() < first.back();
   }
-  /// act(kind, batches, group) for the contacts of a group of those between bodies that move, see contact_blocks.hpp.
+  /// Calls act(kind, batches, group) for a group of the contacts between moving bodies, see contact_blocks.hpp.
   template <class Act>
   void in_group(std::size_t group, Act&& act) {
     act_on<ContactKind::between_movers>(between_movers, group, act);
   }
-  /// The same for those that only a block's own bodies feel: with fixed ones and walls. Walls last, they yield least.
+  /// The same for the contacts of a block's bodies with fixed bodies and walls. Walls come last, since they yield
+  /// least.
   template <class Act>
   void at_border(std::size_t block, Act&& act) {
     act_on<ContactKind::with_fixed>(with_fixed, block, act);
     act_on<ContactKind::with_wall>(with_wall, block, act);
   }
 
-  /// Of two bodies, or of one and a wall, among those that are listed.
+  /// The deepest overlap of two bodies, or of a body and a wall, among the listed pairs.
   [[nodiscard]] Real deepest_overlap(const SolverBodies<Real, Dim>& bodies,
                                      std::span<const Wall<Real, Dim>> walls) const {
     Real deepest(0);
@@ -77,7 +79,7 @@ class ContactList {
     return deepest;
   }
 
-  /// Takes the impulses out of the batches, for the rows are to be others.
+  /// Saves the impulses of the batches before the rows change.
   void keep(ThreadTeam& team) {
     make_rows(team, rows.rows(), kept_, [&](std::uint32_t k, KeptImpulses<Real, Dim>& part) {
       for (const ContactEntry& entry : rows.row(k)) {
@@ -93,9 +95,10 @@ class ContactList {
     for (auto* batches : {&between_movers, &with_fixed, &with_wall}) batches->before = {};
   }
 
-  /// Puts into batches what may touch. combine_rule_of(a, b) is how the bodies or walls at two places meet, which is
-  /// asked for only where materials are special; place_before[k] is where the body at k was when impulses were kept, if
-  /// they were (empty: at k). reach_of[block] is how near those of a block must be.
+  /// Puts the contacts that may touch into batches. combine_rule_of(a, b) gives the combined material of the bodies or
+  /// walls at two places; it is called only where materials are special. place_before[k] is the place that the body at
+  /// k had when impulses were kept; if it is empty, places are the same. reach_of[block] says how near the pairs of a
+  /// block must be.
   template <class CombineRuleOf>
   void activate(ThreadTeam& team, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
                 const CombineRuleOf& combine_rule_of, bool has_special_material,
@@ -128,7 +131,7 @@ class ContactList {
     has_kept_ = false;
   }
 
-  /// What `keep` takes, to and fro.
+  /// Writes or reads the impulses that `keep` has saved.
   template <class Archive>
   void transfer_kept(Archive& archive) {
     archive(kept_);
@@ -138,7 +141,7 @@ class ContactList {
     return kept_.fits(bodies, bodies + world_walls);
   }
 
-  /// visit(k, other, is_wall, impulse) for the contacts that pressed in the last substep.
+  /// Calls visit(k, other, is_wall, impulse) for the contacts with a normal impulse in the last substep.
   template <class Visit>
   void for_each_touching(Visit&& visit) const {
     for (std::uint32_t k = 0; k < rows.rows(); ++k)
@@ -197,13 +200,13 @@ class ContactList {
     return sum * reach.step + reach.extra;
   }
 
-  // Until the batches have room, an entry's lane holds its colour and its number among those of that colour in its
-  // group.
+  // Until the batches are allocated, the lane of an entry encodes its colour and its number among the contacts of this
+  // colour in its group.
   static constexpr std::uint32_t colour_shift = 25;
   static constexpr std::uint32_t last_colour = ColouredBatches<Real, Dim>::most_colours - 1;
   static constexpr std::uint32_t chosen = nowhere - 1;  // but without a colour yet
 
-  /// The lowest colour that neither has.
+  /// The lowest colour that neither body of a contact has.
   [[nodiscard]] static std::uint32_t lowest_free(std::uint64_t used) {
     return std::min(static_cast<std::uint32_t>(std::countr_one(used)), last_colour);
   }
@@ -211,14 +214,15 @@ class ContactList {
                                             std::uint32_t colour) {
     return colour << colour_shift | batches.count[group][colour]++;
   }
-  /// `taken`: the colours of what has the body as one of two that move, in their group.
+  /// taken_by_a and taken_by_b are the colours of the contacts that each of the two moving bodies already has in this
+  /// group.
   [[nodiscard]] std::uint32_t number(std::size_t group, std::uint64_t& taken_by_a, std::uint64_t& taken_by_b) {
     const std::uint32_t free = lowest_free(taken_by_a | taken_by_b);
     taken_by_a |= std::uint64_t{1} << free;
     taken_by_b |= std::uint64_t{1} << free;
     return number(between_movers, group, free);
   }
-  /// Which entries of row k may touch: their lane is no longer `nowhere`.
+  /// Marks the entries of row k that may touch: their lane is no longer `nowhere`.
   template <class LaneBeforeOf>
   void choose(std::uint32_t k, const SolverBodies<Real, Dim>& bodies, std::span<const Wall<Real, Dim>> walls,
               const BlockSweptBounds<Real>& reach, const LaneBeforeOf& lane_before_of) {
@@ -238,7 +242,8 @@ class ContactList {
       entry.lane = may_touch ? chosen : nowhere;
     }
   }
-  /// Of the rows of a block; says whether contacts are left that are neither within it nor across its end.
+  /// Colours the contacts in the rows of a block. Returns whether there are others, neither within the block nor across
+  /// its end.
   [[nodiscard]] bool colour(std::size_t block, const SolverBodies<Real, Dim>& bodies) {
     const std::uint32_t begin = blocks.first(block), end = blocks.last(block, rows.rows());
     std::vector<std::uint64_t> within(2 * blocks.half, 0), across(2 * blocks.half, 0);
@@ -272,7 +277,7 @@ class ContactList {
           if (entry.lane == chosen) entry.lane = number(blocks.rest(), taken[k], taken[entry.other]);
   }
 
-  /// The lane of a numbered contact, filled but for the impulses and the normal.
+  /// Fills the lane of a numbered contact, except for the impulses and the normal, and returns it.
   template <class CombineRuleOf>
   [[nodiscard]] std::uint32_t fill(ColouredBatches<Real, Dim>& batches, std::size_t group, std::uint32_t numbered,
                                    std::uint32_t a, std::uint32_t b, const CombineRuleOf& combine_rule_of) {
@@ -290,7 +295,7 @@ class ContactList {
     }
     return p * lanes + lane;
   }
-  /// Of a contact that pressed.
+  /// The impulses of a contact that has a normal impulse.
   struct KeptContact {
     Real normal{};
     V friction{};
@@ -314,7 +319,7 @@ class ContactList {
     Real direction(1);
     std::size_t found = kept_.find(a, b);
     if (found == nowhere && was_sorted) {
-      direction = Real(-1);  // the other way round then
+      direction = Real(-1);  // the contact had the other direction then
       found = kept_.find(b, a);
     }
     if (found == nowhere) return {};
@@ -352,7 +357,7 @@ class ContactList {
   }
 
   KeptImpulses<Real, Dim> kept_;
-  bool has_kept_ = false;  // else the impulses are those of the batches of the step before
+  bool has_kept_ = false;  // false: the impulses are in the batches of the step before
 };
 
 }  // namespace continuo

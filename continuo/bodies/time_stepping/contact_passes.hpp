@@ -4,8 +4,9 @@
 //   again   those are solved again whose bodies the last sweep disturbed, until nothing is disturbed;
 //   relax   bodies move; contacts are solved without the velocity that undid overlaps.
 //
-// Each goes block by block (contact_blocks.hpp): what is done to a block's bodies before a pass, and what its border
-// does after the pass before, is done by the thread that has the block anyway.
+// Each pass goes block by block (contact_blocks.hpp). The thread that solves the contacts within a block also does the
+// work on its bodies before the pass, and solves the block's contacts with fixed bodies and walls that belong to the
+// pass before.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -28,12 +29,12 @@ class ContactPasses {
   ContactPasses(ThreadTeam& team, ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies)
       : team_(team), contacts_(contacts), bodies_(bodies), blocks_(contacts.blocks) {}
 
-  /// push_body(k) for all bodies, then contacts start warm and push.
+  /// Calls push_body(k) for all bodies, warm starts the contacts and runs the pass `push`.
   template <class Push>
   void push(const ContactStep<Real>& step, const Push& push_body) {
     run_pushing({starting(push_body), solve<ContactPass::push>(step)}, step);
   }
-  /// move_body(k) for all bodies, then contacts relax.
+  /// Calls move_body(k) for all bodies and runs the pass `relax`.
   template <class Move>
   void relax(const ContactStep<Real>& step, const Move& move_body) {
     run(std::array{relaxing(step, move_body)});
@@ -45,8 +46,8 @@ class ContactPasses {
   }
 
  private:
-  /// All contacts between bodies that move, group by group; before(block) comes before those within a block, and at
-  /// last comes what only a block's own bodies feel.
+  /// One pass over all contacts: before(block), then the contacts between moving bodies group by group, and at last
+  /// at_border(block), the contacts with fixed bodies and walls.
   struct Pass {
     std::function<void(std::size_t)> before, in_group, at_border;
   };
@@ -83,9 +84,10 @@ class ContactPasses {
     return pass;
   }
 
-  /// What is pushed again at first follows block by block, while the blocks are in the cache. Not where several threads
-  /// have chunks of them: each sweep more leaves more over at the ends of these; nor where sweeps wait for a rest, nor
-  /// where blocks are so few that they stay in the cache anyway.
+  /// Runs these passes together with the first sweeps that push again, block by block, while a block is in the cache.
+  /// That does not pay with several threads, since each further sweep leaves more blocks over at the ends of their
+  /// chunks; nor where sweeps wait for the contacts of the rest; nor where blocks are so few that they stay in the
+  /// cache anyway.
   void run_pushing(std::vector<Pass> passes, const ContactStep<Real>& step) {
     const bool pays = team_.is_alone() && !contacts_.has_rest() && blocks_.count >= 4;
     std::vector<ContactStep<Real>> again(pays ? 10 : 0, step);
@@ -124,14 +126,15 @@ class ContactPasses {
     for (std::uint32_t k = blocks_.first(block); k < blocks_.last(block, bodies_.size()); ++k) act(k);
   }
 
-  /// An impact on a ball that others hold takes many turns round all contacts until it has come through to what holds
-  /// them up, and the speed that is left after the last becomes overlap. Few contacts take part: those of bodies whose
-  /// velocities their contacts have just changed by a lot. These are pushed again until nothing is disturbed.
+  /// An impact on a ball in a pile needs many sweeps over all contacts until its impulse has reached the supports of
+  /// the pile, and the speed that remains after the last sweep becomes overlap. Only few contacts take part: those of
+  /// disturbed bodies, whose velocity a contact has just changed by a lot. These are pushed again until no body is
+  /// disturbed.
   void push_again(ContactStep<Real> step) {
-    constexpr std::uint8_t most_sweeps = 20;  // a bound: what is squeezed between others may never settle
+    constexpr std::uint8_t most_sweeps = 20;  // a bound: bodies squeezed between others may never settle
     const auto again = act_of<ContactPass::push_again>(step);
     Disturbances& disturbances = bodies_.disturbances;
-    const auto share = [&](std::size_t first_half, const auto& act) {  // of blocks in which there may be any
+    const auto share = [&](std::size_t first_half, const auto& act) {  // over blocks with disturbed bodies
       meant_.clear();
       for (std::size_t block = 0; block < blocks_.count; ++block)
         if (disturbances.any_from(2 * block + first_half)) meant_.push_back(block);

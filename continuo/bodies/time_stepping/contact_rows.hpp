@@ -1,4 +1,4 @@
-// For each body a row of something, all in one array; and how such rows are made by several threads.
+// Rows of entries, one row for each body, all in one array; several threads can make them together.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -35,7 +35,7 @@ struct Rows {
     entries.insert(entries.end(), more.entries.begin(), more.entries.end());
     for (std::size_t k = 1; k < more.first.size(); ++k) first.push_back(before + more.first[k]);
   }
-  /// What the doubling of a vector leaves over would be a good part of all memory.
+  /// Releases unused capacity, which after doubling would be a good part of all memory.
   void fit() {
     if (entries.capacity() > entries.size() + entries.size() / 16) entries.shrink_to_fit();
     if (first.capacity() > first.size() + first.size() / 16) first.shrink_to_fit();
@@ -45,7 +45,7 @@ struct Rows {
   }
 };
 
-/// make_row(k, result) appends what row k has.
+/// make_row(k, result) appends the entries of row k.
 template <class AnyRows, class MakeRow>
 void make_rows(ThreadTeam& team, std::size_t rows, AnyRows& result, MakeRow&& make_row) {
   const auto make = [&](std::size_t from, std::size_t to, AnyRows& part) {

@@ -49,7 +49,8 @@ class FastMotion<Real, Dim>::Stepper {
 
   [[nodiscard]] Real deepest_overlap() const { return contacts_.deepest_overlap(bodies_, world_.walls()); }
 
-  /// Whatever outlives a step and is not in the world. The list is made again, from where the bodies were then.
+  /// Saves the state that outlasts a step and is not in the world. The list of pairs is not saved but made again, from
+  /// the positions at which it was made.
   void save(ByteWriter& writer) const {
     const bool is_listed = list_.x_of_list().size() == world_.size() && list_.walls() == world_.walls().size();
     writer(is_listed);
@@ -140,7 +141,7 @@ class FastMotion<Real, Dim>::Stepper {
     return {};
   }
 
-  /// The bodies as the caller has left them; those that it changed wake.
+  /// Loads the bodies as the caller has left them. Bodies that the caller has changed wake.
   void load_changed() {
     if (world_.size() != bodies_.size() || world_.walls().size() != list_.walls()) refresh();
     is_other_at_rest_ |= sleep_.wake_changed(world_);
@@ -148,8 +149,8 @@ class FastMotion<Real, Dim>::Stepper {
   }
   void load() { load_bodies(team_, world_, list_.order(), list_.blocks(), sleep_, bodies_); }
 
-  /// Who may touch within some steps: anew where bodies have gone far since, or others are at rest. Wakes those that
-  /// one that is awake may touch.
+  /// Lists the pairs that may touch within some steps, if bodies have moved too far since the last list, or other
+  /// bodies sleep than then. Wakes the bodies that an awake body may touch.
   void list_pairs() {
     bool is_kept = std::exchange(is_restored_, false);
     const auto list_anew = [&] {
@@ -174,7 +175,7 @@ class FastMotion<Real, Dim>::Stepper {
     contacts_.blocks = list_.blocks();
   }
 
-  /// Of these pairs, who may touch within this step; with their materials and the impulses of the last one.
+  /// Chooses the pairs that may touch within this step, with their materials and the impulses of the last step.
   void choose_contacts() {
     const auto material_of = [this, &order = list_.order()](std::uint32_t k) -> const Material<Real>& {
       return k < order.size() ? world_.material[order[k]] : world_.walls()[k - order.size()].material;
@@ -199,7 +200,7 @@ class FastMotion<Real, Dim>::Stepper {
            std::ranges::any_of(world_.walls(), is, &Wall<Real, Dim>::material);
   }
 
-  /// The substeps; false where equations could not be solved.
+  /// Integrates the substeps. False where the equations of an implicit method could not be solved.
   [[nodiscard]] bool integrate() {
     const Real h = options_.step / static_cast<Real>(options_.substeps);
     log.clear();
@@ -242,8 +243,9 @@ class FastMotion<Real, Dim>::Stepper {
     return true;
   }
   [[nodiscard]] ContactStep<Real> contact_step(const Real& h) const {
-    // From 0.45 of the rate of substeps on, a column under a mass ten times its balls' never comes to rest. What is a
-    // disturbance was measured: it keeps the overlaps of a falling heap below a hundredth of the radius.
+    // At a frequency of 0.45 of the rate of substeps or more, a column of balls under a mass of ten balls never comes
+    // to rest. The threshold of a disturbance was found by measurement: it keeps the overlaps in a falling heap below a
+    // hundredth of the radius.
     return {.h = h,
             .soft = softness(std::min(options_.hertz, 1 / (3 * h)), options_.damping, h),
             .fastest_push = options_.fastest_push,
@@ -289,7 +291,7 @@ class FastMotion<Real, Dim>::Stepper {
   Real friction_ = Real(0);                  // of most contacts
   std::vector<std::uint32_t> place_before_;  // of each body in the last list, until contacts have its impulses
   Sleep<Real, Dim> sleep_;
-  bool is_other_at_rest_ = false;  // than when pairs were listed
+  bool is_other_at_rest_ = false;  // other bodies sleep than when pairs were listed
 };
 
 }  // namespace continuo

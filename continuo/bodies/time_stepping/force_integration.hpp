@@ -1,5 +1,5 @@
-// Forces beside gravity in the fast motion: the accelerations that they give at each substep, by one of the integrators
-// of integrator.hpp. Without such forces nothing here costs anything.
+// The accelerations by forces other than gravity at each substep of the fast motion, by one of the integrators of
+// integrator.hpp. Without such forces this costs nothing.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -20,20 +20,20 @@ class ForceIntegration {
 
   [[nodiscard]] bool acts() const { return acts_; }
 
-  /// At the start of a step; `order` says which body of the world stands at each place.
+  /// Begins a step. order[k] is the number in the world of the body at place k.
   void begin(const World<Real, Dim>& world, const std::vector<std::uint32_t>& order) {
     acts_ = !only_gravity(world);
     world_ = &world;
     order_ = &order;
   }
-  /// The accelerations by all forces in a substep of h from t on. False where the equations of those at its end could
-  /// not be solved.
+  /// Finds the accelerations by all forces in a substep of h from t on. False where the implicit equations for those at
+  /// its end could not be solved.
   [[nodiscard]] bool accelerate(Bodies& bodies, const IntegratorRule& rule, const Real& t, const Real& h) {
     if (!acts_) return true;
     return find(bodies, t, rule.solves_equations ? h : Real(0));
   }
-  /// The mean of the accelerations at the beginning and at the end of a substep that ends at t is what changed the
-  /// velocity.
+  /// Corrects the velocities at the end t of a substep, so that the mean of the accelerations at its beginning and its
+  /// end has changed them.
   void correct(Bodies& bodies, ThreadTeam& team, const Real& t, const Real& h) {
     const std::vector<V> before = bodies.accelerations;
     find(bodies, t, Real(0));
@@ -43,7 +43,7 @@ class ForceIntegration {
           put(V(bodies.v(k) + (bodies.accelerations[k] - before[k]) * (h / 2)), bodies.motion[k].linear);
     });
   }
-  /// Whether gravity and the constant force are all that acts on the body at place k.
+  /// Whether only gravity and the constant force act on the body at place k.
   [[nodiscard]] bool is_steady(const Bodies& bodies, std::size_t k) const {
     if (!acts_ || !bodies.moves(k)) return true;
     const std::size_t i = (*order_)[k];
@@ -56,7 +56,7 @@ class ForceIntegration {
   }
 
  private:
-  /// Accelerations at time t; with h, at the end of a step of that.
+  /// Finds the accelerations at time t, or, with h > 0, at the end of an implicit step of h from t.
   bool find(Bodies& bodies, const Real& t, const Real& h) {
     const std::vector<std::uint32_t>& order = *order_;
     x_.resize(bodies.size()), v_.resize(bodies.size()), force_.resize(bodies.size());

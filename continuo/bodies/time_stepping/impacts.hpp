@@ -1,6 +1,7 @@
-// Collisions too fast for a soft contact, or with restitution, each at its instant within a substep: a queue of what is
-// foreseen on parabolic paths, as the exact motion has, over the pairs that are listed. Both go to the place of the
-// impact, change their velocities, and go back along their new paths to the beginning, from where contacts take over.
+// Collisions too fast for a soft contact, or with restitution, each at its instant within a substep: as in the exact
+// motion, a queue has the collisions that are predicted on parabolic paths, here among the listed pairs. Both bodies
+// advance to the place of the impact, change their velocities, and go back along their new paths to the beginning of
+// the substep, from where the contact solver continues.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,10 +19,11 @@
 
 namespace continuo {
 
-/// Whether something may be too fast for a soft contact in a substep of h. Without restitution only what moves by half
-/// a radius in a substep strikes; most worlds at most times have neither. That is when two of a fifth meet, and gravity
-/// adds to it. With a tenth, and the `gain` of a step's gravity, no impact is to be expected within the step: without
-/// restitution nothing makes a body faster than the fastest.
+/// Whether a body may be too fast for a soft contact in a substep of h. Without restitution, an impact is an approach
+/// by half a radius in a substep. Two bodies that move by a fifth each do not reach that, even when gravity adds to it,
+/// and most worlds at most times have neither restitution nor such speeds. With a tenth, and the `gain` of speed by
+/// gravity in a step, no impact is to be expected within the whole step: without restitution nothing makes a body
+/// faster than the fastest one.
 template <class Real, int Dim>
 [[nodiscard]] bool may_strike(const SolverBodies<Real, Dim>& bodies, const Real& h, const Real& part_of_radius,
                               const Real& gain) {
@@ -35,14 +37,14 @@ template <class Real, int Dim>
   return fast != 0;
 }
 
-/// The world, its bodies and pairs are the stepper's.
+/// Makes the impacts of a substep, on the world, bodies and pairs of the stepper.
 template <class Real, int Dim>
 class Impacts {
  public:
   using V = Vector<Real, Dim>;
 
-  /// Of a substep from `begin` on, which it tells the greatest acceleration; paths of a step of `step` are looked at
-  /// beyond the list. Gives how many there were.
+  /// Makes the impacts of the substep that begins at `begin`, and sets its greatest acceleration. A body that an impact
+  /// has made faster searches for partners along its path in a whole `step`. Returns the number of impacts.
   [[nodiscard]] std::size_t make(const World<Real, Dim>& world, const BroadPhase<Real, Dim>& list,
                                  const ContactList<Real, Dim>& contacts, SolverBodies<Real, Dim>& bodies,
                                  ContactStep<Real>& substep, const Real& step, const Real& begin,
@@ -62,7 +64,7 @@ class Impacts {
         }
       }
     }
-    std::size_t struck = 0, left = 64 * bodies.size();  // a bound for what never ends: balls squeezed between others
+    std::size_t struck = 0, left = 64 * bodies.size();  // a bound: the impacts of squeezed balls never end
     for (; !queue_.empty() && left > 0; --left) {
       const Impact impact = queue_.top();
       queue_.pop();
@@ -95,7 +97,7 @@ class Impacts {
     }
   };
 
-  /// As is_for_impacts of restitution.hpp.
+  /// The same criterion as in is_for_impacts of restitution.hpp.
   [[nodiscard]] static bool counts(const Making& making, const Real& speed, const Real& restitution,
                                    const Real& radius) {
     const ContactStep<Real>& substep = making.substep;
@@ -129,7 +131,7 @@ class Impacts {
   void foresee_wall(const Making& making, std::uint32_t i, std::uint32_t w, const Real& from) {
     const auto& bodies = making.bodies;
     const V acceleration = bodies.acceleration(i);
-    // Where it really is: a body that has struck is kept where its new path began, which nothing has seen.
+    // The true position: a body that has had an impact is stored at the beginning of its new path, where it never was.
     const V x = bodies.x(i) + bodies.v(i) * from + acceleration * (from * from / 2);
     const Wall<Real, Dim> wall = facing(making.world.walls()[w], x);
     const Real pull = dot(acceleration, wall.normal), speed = dot(bodies.v(i), wall.normal) + pull * from;
@@ -183,7 +185,8 @@ class Impacts {
     }
     making.log.add(event);
   }
-  /// A body that an impact made faster may get further than its pairs were listed for: then it looks itself.
+  /// A body that an impact has made faster may move beyond its reach in the list of pairs: so it searches for partners
+  /// itself.
   void foresee_all(const Making& making, std::uint32_t i, const Real& from) {
     making.list.for_each_neighbour(making.world, making.bodies, i, Real(length(making.bodies.v(i)) * making.step),
                                    [&](std::uint32_t j) { foresee(making, std::min(i, j), std::max(i, j), from); });

@@ -24,7 +24,7 @@ namespace continuo {
 
 enum class ForceIntegrator { semi_implicit_euler, implicit_euler, central_difference, explicit_euler };
 
-/// Once the velocity is v0 + h a, the place is x0 + h (velocity - lag h a); steady_lag where a does not change.
+/// With the velocity v1 = v0 + h a the position is x0 + h (v1 - lag h a), with steady_lag where a is constant.
 struct IntegratorRule {
   double lag, steady_lag;
   bool ends_with_correction;  // v1 += h (a1 - a0) / 2
@@ -94,7 +94,7 @@ template <class Real, int Dim>
       for (std::size_t i = 0; i < near.size(); ++i) product[i] = (rest[i] - rest_near[i]) / apart;
     };
     gmres.solve(jacobian, change, left / 1000, 1000);
-    // Where the whole change leads away, a part of it does not.
+    // Where the whole Newton step increases the residual, a part of it decreases it.
     Real closest = left;
     for (Real part(1); part > Real(0.01); part /= 2) {
       for (std::size_t i = 0; i < u.size(); ++i) near[i] = u[i] + part * change[i];
@@ -103,7 +103,8 @@ template <class Real, int Dim>
       if (closest < left) break;
     }
     if (!(closest < left)) {
-      // No closer. What is left is rounding where it would move bodies by less than half of their digits.
+      // The residual decreases no further. It is rounding where the Newton step would change only the second half of
+      // the digits of positions.
       evaluate(u, rest);
       return h * length_of_all(change) <= sqrt(epsilon) * (extent + h * length_of_all(u));
     }

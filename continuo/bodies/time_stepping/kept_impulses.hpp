@@ -34,7 +34,7 @@ struct KeptImpulses : Rows<KeptImpulse<Real, Dim>> {
   void transfer(Archive& archive) {
     archive(this->first), archive(this->entries), archive(rolling);
   }
-  /// Of `bodies`, with others below `others`.
+  /// Whether these can be rows of so many bodies, with partners below `others`.
   [[nodiscard]] bool fits(std::size_t bodies, std::size_t others) const {
     const auto& starts = this->first;
     bool fits = !starts.empty() && starts.front() == 0 && starts.back() == this->entries.size() &&

@@ -1,6 +1,7 @@
-// Bodies at rest that are left alone: those that touch each other, or hang on each other by springs, fall asleep
-// together once all have been slow for a while, and wake together when one that is awake is about to touch them, or
-// their velocities, places or forces are changed. Asleep, a body is not moved and costs next to nothing.
+// Sleeping bodies. Bodies that touch each other, or are connected by springs, form an island. The bodies of an island
+// fall asleep together once all have been slow for a while. They wake together when an awake body is about to touch one
+// of them, or when one of their velocities, positions or forces has changed. A sleeping body is not moved and costs
+// next to nothing.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -29,7 +30,7 @@ class Sleep {
     asleep_ = 0;
   }
 
-  /// Wakes those that were changed since; says whether there are any.
+  /// Wakes the islands of bodies that have been changed since. Returns whether there are any.
   [[nodiscard]] bool wake_changed(const World<Real, Dim>& world) {
     if (asleep_ == 0) return false;
     const std::size_t before = asleep_;
@@ -49,7 +50,8 @@ class Sleep {
     return asleep_ != before;
   }
 
-  /// Wakes those that one that is awake may touch in a step of dt; says whether there are any. order: world's numbers.
+  /// Wakes the islands that an awake body may touch in a step of dt. Returns whether there are any. order[k] is the
+  /// number in the world of the body at place k.
   [[nodiscard]] bool wake_near(const SolverBodies<Real, Dim>& bodies, const ContactRows& rows,
                                const std::vector<std::uint32_t>& order, const Real& dt) {
     const std::size_t before = asleep_;
@@ -64,7 +66,8 @@ class Sleep {
     return asleep_ != before;
   }
 
-  /// After a step of dt: what has been slower than `speed` for `duration` falls asleep. Says whether anything did.
+  /// After a step of dt: islands whose bodies have been slower than `speed` for `duration` fall asleep. Returns whether
+  /// there are any.
   [[nodiscard]] bool settle(World<Real, Dim>& world, const ContactList<Real, Dim>& contacts,
                             const std::vector<std::uint32_t>& order, const Real& dt, const Real& duration,
                             const Real& speed) {
@@ -83,7 +86,7 @@ class Sleep {
       const auto* b = std::get_if<BodyHandle>(&spring.b);
       if (b && world.contains(spring.a) && world.contains(*b)) join(world, world.index(spring.a), world.index(*b));
     }
-    // The leader's rest is the shortest of its island.
+    // The leader of an island keeps the shortest time at rest of its bodies.
     for (std::size_t i = 0; i < bodies; ++i) {
       const std::size_t leader = leader_of(i);
       rested_[leader] = std::min(rested_[leader], rested_[i]);

@@ -40,7 +40,8 @@ class SortedCells {
     for (std::size_t i = 0; i < x.size(); ++i) order[next[cell[i]]++] = static_cast<std::uint32_t>(i);
   }
 
-  /// visit(first, last) for the places of bodies whose cells meet the box from `lower` to `upper`, row by row.
+  /// Calls visit(first, last) for the ranges of places of bodies whose cells overlap the box from `lower` to `upper`,
+  /// row by row.
   template <class Visit>
   void for_each_row(const V& lower, const V& upper, Visit&& visit) const {
     const auto from = coordinates(lower), to = coordinates(upper);
@@ -59,7 +60,7 @@ class SortedCells {
     }
   }
 
-  /// Of the layers across the longest axis, that which has most bodies.
+  /// The number of bodies in the fullest layer across the longest axis.
   [[nodiscard]] std::size_t most_in_layer() const {
     const std::size_t cells = total_ / count_[axes_.back()];
     std::size_t most = 0;

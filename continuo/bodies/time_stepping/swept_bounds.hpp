@@ -1,4 +1,5 @@
-// How far bodies may come: in a step, until their pairs are listed anew, and to what they may touch in a step.
+// Bounds for the motion of bodies: within a step, until pairs are listed again, and for the pairs that may touch in a
+// step.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -10,26 +11,27 @@
 
 namespace continuo {
 
-/// How far a body of some radius may go before its pairs are listed anew, if it moves like the others.
+/// How far a body of this radius may move before pairs are listed again, if it is no faster than the others.
 template <class Real>
 [[nodiscard]] Real skin(const Real& radius) {
   return Real(0.22) * radius;
 }
-/// So many of some bodies may look for others themselves before that costs more than it saves.
+/// Up to so many of these bodies may search for their own partners before that costs more than it saves.
 [[nodiscard]] inline std::size_t few(std::size_t bodies) {
   return static_cast<std::size_t>(std::sqrt(2 * static_cast<double>(bodies)));
 }
 
-/// How far the body at place k may come in one step.
+/// How far the body at place k may move in one step.
 template <class Real, int Dim>
 [[nodiscard]] Real step_reach(const SolverBodies<Real, Dim>& bodies, std::size_t k, const Real& step) {
   return length(bodies.v(k)) * step + length(bodies.acceleration(k)) * step * step / 2;
 }
 
-/// Pairs are listed for as long as nobody has come further than this. Where all move fast that is four steps, also
-/// while gravity makes them faster, if that is no long way, else not much more than one. Where few do, they reach as
-/// many steps ahead as leaves them few: else a ball that rolls over a heap at rest would have all pairs listed anew
-/// every other step.
+/// The reach of each body: a list of pairs is valid until a body has moved further than its reach. It is at least the
+/// skin. Where all bodies move fast, it is 4.5 present steps, enough for four while gravity makes them faster, but no
+/// more than 0.6 of the radius or 1.7 steps, whichever is greater. Where few bodies are fast, their reach is as many
+/// steps, up to 12, as leave only few bodies beyond their skin: otherwise a ball that rolls over a heap at rest would
+/// have all pairs listed again every other step.
 template <class Real>
 class SweptBounds {
  public:
@@ -58,15 +60,16 @@ class SweptBounds {
   std::vector<Real> reach_;
 };
 
-/// How near two must be to be solved in a step: as near as they may come.
+/// How near two bodies must be for their contact to be solved in a step: their gap is no more than they may approach.
 template <class Real>
 struct BlockSweptBounds {
   Real step{};   // of time
-  Real extra{};  // beside what their velocities say
+  Real extra{};  // beyond the approach by their velocities
 };
 
-/// That of every block: beside what the velocities of two say, they come nearer by what another gives them, which is no
-/// faster than the fastest of this block and the two beside it, and by what gravity does.
+/// The bounds of every block. Beyond the approach by their own velocities, two bodies may approach by gravity, and by
+/// the speed that a third one gives them, which is at most that of the fastest body in this block and its two
+/// neighbours.
 template <class Real, int Dim>
 [[nodiscard]] std::vector<BlockSweptBounds<Real>> swept_bounds_of_blocks(ThreadTeam& team,
                                                                          const SolverBodies<Real, Dim>& bodies,

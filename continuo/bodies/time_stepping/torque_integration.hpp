@@ -1,5 +1,5 @@
-// How torques turn bodies in the fast motion: as forces move them, by the same integrator, but for implicit Euler,
-// which takes torques as the semi-implicit one does. Without a law of torques nothing here costs anything.
+// Integrates torques in the fast motion by the integrator of forces. The exception is implicit Euler, which treats
+// torques as semi-implicit Euler does. Without a torque law this costs nothing.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,7 @@ class TorqueIntegration {
 
   [[nodiscard]] bool acts() const { return acts_; }
 
-  /// At the start of a step; `order` says which body of the world stands at each place.
+  /// Begins a step. order[k] is the number in the world of the body at place k.
   void begin(const World<Real, Dim>& world, const std::vector<std::uint32_t>& order) {
     acts_ = !world.torque_laws.empty();
     if (!acts_) return;
@@ -27,13 +27,13 @@ class TorqueIntegration {
     order_ = &order;
     orientation_ = world.orientation;
   }
-  /// The change of the spins by the torques at the start of a substep; x and v are the world's, by number.
+  /// Changes the spins by the torques at the start of a substep.
   void push(Bodies& bodies, const Real& t, const Real& h) {
     if (!acts_) return;
     find_rates(bodies, t, rate_);
     for (std::size_t k = 0; k < bodies.size(); ++k) add(bodies, k, rate_[k] * h);
   }
-  /// The orientations at its end.
+  /// Finds the orientations at the end of the substep.
   void turn(const Bodies& bodies, const IntegratorRule& rule, const Real& h) {
     if (!acts_) return;
     const Real lag = static_cast<Real>(rule.lag) * h;
@@ -45,7 +45,7 @@ class TorqueIntegration {
       orientation = turned(orientation, spin, h);
     }
   }
-  /// The mean of the rates at the beginning and at the end is what changed the spin.
+  /// Corrects the spins, so that the mean of the rates at the beginning and the end of the substep has changed them.
   void correct(Bodies& bodies, const Real& t, const Real& h) {
     if (!acts_) return;
     find_rates(bodies, t, rate_after_);

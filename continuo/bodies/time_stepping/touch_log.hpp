@@ -1,5 +1,5 @@
 // continuo/bodies/time_stepping/touch_log.hpp
-// Contacts that last, from step to step: which have begun, which have ended, and the impulse each has passed on since.
+// Lasting contacts from step to step: which have begun, which have ended, and the impulse of each since it began.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace continuo {
 template <class Real, int Dim>
 class TouchLog {
  public:
-  /// In any order, once a step for each contact, with the impulse of the step.
+  /// To be called once per step for each contact, in any order, with the impulse of the step.
   void touch(const ContactEvent<Real, Dim>& contact) { now_.push_back({key(contact), contact}); }
 
   /// The step ends at `time`.
@@ -74,8 +74,8 @@ class TouchLog {
   std::vector<Touch> before_, now_;
 };
 
-/// The contacts that pressed in the last of so many substeps, at the end of the step. `order` says which body of the
-/// world stands at each place.
+/// Notes, at the end of a step, the contacts with a normal impulse in the last of so many substeps. order[k] is the
+/// number in the world of the body at place k.
 template <class Real, int Dim>
 void note_touching(const World<Real, Dim>& world, const SolverBodies<Real, Dim>& bodies,
                    const std::vector<std::uint32_t>& order, const ContactList<Real, Dim>& contacts, int substeps,

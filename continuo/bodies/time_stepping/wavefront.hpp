@@ -1,12 +1,13 @@
-// Sweeps over blocks in a row, of which each only touches its neighbours, one sweep after another: a block goes through
-// as many of them as it can while it is in the cache, as time is skewed in stencils (M. Wolfe, "Loop skewing: the
+// Several sweeps over a row of blocks, each of which interacts only with its neighbours. A block goes through as many
+// sweeps as possible while it is in the cache, like stencil computations with skewed time (M. Wolfe, "Loop skewing: the
 // wavefront method revisited", 1986).
 //
-// A sweep acts within each block, and then across the end of each, on its block and the next. Within block b the next
-// sweep has to wait for what acts across either end of it, and no more. So one thread takes sweep i within block t - i
-// and across the end of block t - i - 1 at the t-th turn, i rising. Several threads do so each with a chunk of the
-// blocks, where what a sweep can do ends one block farther from another's chunk each time; what that leaves over
-// follows, sweep by sweep. What acts on a block does so in the same order for any number of threads.
+// A sweep acts within each block, and then across the end of each block, on this block and the next one. Within block
+// b, the next sweep has to wait only for the actions across both ends of b. So at turn t one thread executes sweep i
+// within block t - i and across the end of block t - i - 1, for rising i. Several threads do the same, each with a
+// chunk of the blocks. The range that a thread can do alone ends one block farther from the other chunks with every
+// sweep; the blocks that this leaves over follow at the end, sweep by sweep. The actions on a block have the same order
+// for any number of threads.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -21,18 +22,18 @@ namespace continuo {
 struct Sweep {
   std::function<void(std::size_t)> within{};  // a block
   std::function<void(std::size_t)> across{};  // the end of a block; none where nothing is to be done there
-  std::function<void()> rest{};               // what touches blocks farther apart, after all others; mostly none
+  std::function<void()> rest{};               // actions on blocks farther apart, after all others; usually none
 };
 
 namespace detail {
 
 struct BlockRange {
-  std::size_t first = 0, last = 0;  // without the last
+  std::size_t first = 0, last = 0;  // last is excluded
 
   [[nodiscard]] bool has(std::size_t block) const { return first <= block && block < last; }
 };
 
-/// Of a chunk, what sweep i can do without the others, within blocks or across their ends.
+/// The blocks of a chunk that a sweep can do without the other chunks, within blocks or across their ends.
 [[nodiscard]] inline BlockRange alone(const BlockRange& chunk, std::size_t blocks, std::size_t sweep, bool is_across) {
   const std::size_t first = chunk.first == 0 ? 0 : chunk.first + sweep;
   const std::size_t less = chunk.last == blocks ? 0 : sweep + (is_across ? 1 : 0);
@@ -54,7 +55,7 @@ inline void run_chunk(const BlockRange& chunk, std::size_t blocks, std::span<con
 
 }  // namespace detail
 
-/// As if each sweep went over all blocks before the next begins.
+/// Runs the sweeps, with the result as if each went over all blocks before the next begins.
 inline void run_sweeps(ThreadTeam& team, std::size_t blocks, std::span<const Sweep> sweeps) {
   if (sweeps.size() > 1 && std::ranges::any_of(sweeps, [](const Sweep& sweep) { return bool(sweep.rest); })) {
     for (const Sweep& sweep : sweeps) {
