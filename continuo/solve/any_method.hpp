@@ -1,5 +1,5 @@
-// A method whose type is forgotten, for one kind of system and state: who has it need not compile the method, which is
-// compiled wherever `any_method` is instantiated for it.
+// A type-erased method, for one type of system and state. Code that uses it does not compile the method; the method is
+// compiled where `any_method` is instantiated for it.
 //
 //   extern template AnyMethod<MySystem, X> any_method<Rk4, MySystem, X>();
 //   Integrator integrator(system, x0, {0, 10}, any_method<Rk4, MySystem, X>(), options);
@@ -18,7 +18,7 @@ struct AnyMethod {
   std::unique_ptr<Steps<System, X>> (*begin)(System, X x0, Real t0, Real forward, const Options<X>&);
 };
 
-/// The steps of M, ready to be taken.
+/// The steps of the method M, at the start of a run.
 template <class M, class System, State X>
 [[nodiscard]] std::unique_ptr<Steps<System, X>> begin_steps(System f, X x0, Scalar<X> t0, Scalar<X> forward,
                                                             const Options<X>& options) {

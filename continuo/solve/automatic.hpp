@@ -1,6 +1,6 @@
 // continuo/solve/automatic.hpp
-// `solve` without a method: one is chosen by tolerance, size and kind of system, and hands over to a stiff one where
-// that is due.
+// `solve` without a method: a method is chosen by the tolerance, the size and the kind of the system, and switches to a
+// stiff one where needed.
 //
 //   auto solution = solve(f, std::array{1.0, 0.0}, {0, 10}, {.rtol = 1e-7});
 #pragma once
@@ -18,7 +18,7 @@
 
 namespace continuo {
 
-/// What `choose_method` wants to know of a system and a state of it.
+/// The properties of a system, at a state, on which `choose_method` depends.
 template <class System, State X>
 [[nodiscard]] SystemTraits traits_of(System& system, const X& x, double rtol) {
   SystemTraits traits{.size = dimension(x), .rtol = rtol, .algebraic = has_mass<X>(system)};
@@ -44,7 +44,7 @@ template <class System, State X>
     if (method == DormandPrinceNystrom8Radau::name) return by(DormandPrinceNystrom8Radau{});
     if (method == DormandPrinceNystrom12Radau::name) return by(DormandPrinceNystrom12Radau{});
   }
-  // With algebraic equations each of these begins, and stays, with its stiff half.
+  // With algebraic equations, each of these uses its stiff half from the beginning to the end.
   if (method == Dop853Radau::name || method == Radau::name) return by(Dop853Radau{});
   if (method == Tsitouras5Bdf::name || method == Bdf::name) return by(Tsitouras5Bdf{});
   return by(Tsitouras5Rodas5P{});

@@ -1,22 +1,22 @@
 // continuo/solve/catalogue.hpp
-// What methods there are, by the names that models and the command line speak of them. <continuo/solve/with_method.hpp>
-// has the methods themselves by name.
+// The list of all methods, by the names that models and the command line use. <continuo/solve/with_method.hpp> gives
+// the methods themselves by name.
 #pragma once
 #include <string_view>
 #include <vector>
 
 namespace continuo {
 
-/// What there is to say of a method before using it.
+/// The properties of a method.
 struct MethodInfo {
   std::string_view name;
   int order;                 // the greatest, where it varies;
-  int order_of_fixed_steps;  // then this is what steps of a fixed size keep
+  int order_of_fixed_steps;  // then the order of steps of fixed size
   int error_order;           // 0: no error estimate, needs a step
   int dense_order;
   bool second_order;  // only for x'' = a(t, x)
   bool implicit;      // solves equations in each step: for stiff systems and algebraic equations
-  bool automatic;     // an explicit and a stiff method that hand over to each other
+  bool automatic;     // switches between an explicit and a stiff method
 };
 
 /// Other names of a method: `euler` for explicit_euler, `crank_nicolson` for trapezoidal.

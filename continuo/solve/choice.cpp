@@ -6,21 +6,22 @@ namespace continuo {
 
 namespace {
 
-// From here on a high order is the cheaper one: bench/ compares tsitouras5 with dop853, dprkn8 with dprkn12, and
+// Below this tolerance a high order is cheaper: bench/ compares tsitouras5 with dop853, dprkn8 with dprkn12, and
 // rodas5p with radau. The three meet between 1e-6 and 1e-7.
 constexpr double high_order_below = 1e-6;
-// rodas5p solves algebraic equations more closely than its tolerance asks, radau as closely as it has to: as long as
-// there is little between them, the former.
+// rodas5p solves algebraic equations more accurately than its tolerance requires, radau only as accurately as required.
+// As long as their costs hardly differ, rodas5p is chosen.
 constexpr double high_order_of_algebraic_below = 1e-8;
-// Above, decomposing a matrix dominates a stiff step, and one matrix for several steps is the fewest there can be.
+// Above this size the factorization of a matrix dominates the cost of a stiff step, so that one matrix should serve
+// several steps.
 constexpr std::size_t large = 100;
 
 }  // namespace
 
 Choice choose_method(const SystemTraits& system) {
   const bool strict = system.rtol < (system.algebraic ? high_order_of_algebraic_below : high_order_below);
-  // A sparse matrix costs little enough for the fewer steps of a high order to be worth it, a band less than the rest
-  // of a step.
+  // A sparse matrix is so cheap that the fewer steps of a high order pay; a banded matrix costs less than the rest of a
+  // step.
   const bool few_matrices = system.size > large && !system.banded && !(system.sparse && strict);
   if (system.algebraic && few_matrices)
     return {"bdf",

@@ -1,12 +1,12 @@
 // continuo/solve/choice.hpp
-// Which method to take where nobody names one, and why.
+// The choice of a method where none is named, with the reason.
 #pragma once
 #include <cstddef>
 #include <string_view>
 
 namespace continuo {
 
-/// What the choice depends on.
+/// The properties on which the choice depends.
 struct SystemTraits {
   std::size_t size = 0;
   double rtol = 1e-6;
@@ -20,7 +20,7 @@ struct Choice {
   std::string_view method, reason;
 };
 
-/// By tolerance, size and kind: every choice takes stiff systems as they come.
+/// Chooses by tolerance, size and kind. Every choice can solve stiff systems.
 [[nodiscard]] Choice choose_method(const SystemTraits& system);
 
 }  // namespace continuo

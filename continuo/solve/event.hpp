@@ -1,10 +1,10 @@
-// When something happens, and what. docs/events.md states the rules; in short:
+// Events: the instants at which something happens, and the actions there. docs/events.md states the rules; in short:
 //   1. A guard has a side, the sign of g, at every point of the motion and before and after every action. It fires
-//   where
-//      its side changes in the watched direction, whether the motion or an action changed it.
+//      where its side changes in the watched direction, whether the motion or an action has changed it.
 //   2. The state at an event lies on the far side of its root.
 //   3. Events of one instant fire in the order of declaration, each on the state that the one before has left; within
-//      one event `before` is the state from before it. What an action has carried across zero fires in the next round.
+//      one event `before` is the state from before it. Guards that an action has carried across zero fire in the next
+//      round.
 //
 //   auto floor = falls<X>("floor", [](double, const X& x) { return x[0]; },
 //                         [](auto& now) { now.x[0] = 0; now.x[1] = -0.9 * now.before[1]; });
@@ -24,7 +24,7 @@
 
 namespace continuo {
 
-/// What an action sees and may change.
+/// The data that an action reads and may change.
 template <State X>
 struct EventAction {
   Scalar<X> t;
@@ -76,20 +76,20 @@ template <State X>
   return {.name = std::move(name), .action = std::move(action), .period = period, .from = from};
 }
 
-/// What firing did.
+/// The effects of firing an event.
 struct EventResponse {
   bool stop = false;
-  bool restart = false;  // what f reads has changed: the motion begins anew
-  bool changed = false;  // something else has: a state that f does not read and that stands still between events
+  bool restart = false;  // data that f reads has changed: the motion begins again
+  bool changed = false;  // something else has changed: a state that f does not read and that is constant between events
 };
 
-/// The driver asks a source of events these things. `size()` counts guards and scheduled ones together, in the order
-/// of declaration.
+/// The functions of a source of events, which the driver calls. `size()` counts guards and scheduled events together,
+/// in the order of declaration.
 ///   name(i), direction(i), active(system, i)
 ///   is_guard(i); guards(system, t, x, span of size() values): g_i, anything for those not guards or not active
 ///   next_time(i, t, inclusive): the first scheduled time > t (>= t where inclusive), infinity where none
 ///   fire(system, i, t, before, x) -> EventResponse; x begins as `before`
-/// and, where it knows better than the default in brackets,
+/// and optionally, with the default in brackets,
 ///   can_restart(i) [true]: firing may change what f reads, or stop the run
 ///   can_assign(i) [can_restart(i)]: firing may change a state
 ///   carried(system, i, t, x, forward) [by differences]: the side to which the motion takes guard i from zero, if known
@@ -111,7 +111,7 @@ concept EventSource =
       { s.fire(system, std::size_t{}, Scalar<X>{}, before, x) } -> std::same_as<EventResponse>;
     };
 
-/// The source that a list of `Event` makes.
+/// A source of events that consists of a list of `Event`.
 template <State X>
 class EventList {
  public:
@@ -150,7 +150,7 @@ class EventList {
     if (event.period > 0 && ticks_[i].next(t, inclusive) < next) next = ticks_[i].next(t, inclusive);
     return next;
   }
-  /// Why the times of an event cannot be kept in a run that ends at `to`; empty where they can.
+  /// Why the numbers cannot represent the times of an event in a run that ends at `to`; empty where they can.
   [[nodiscard]] std::string schedule_problem(Real to) const {
     for (std::size_t i = 0; i < events_.size(); ++i)
       if (events_[i].period > 0 && !ticks_[i].advances(to))

@@ -1,5 +1,5 @@
 // continuo/solve/integrator.hpp
-// Integration step by step: what `solve`, the live view and co-simulation drive. A copy is a checkpoint.
+// Integration step by step, for `solve`, the live view and co-simulation. A copy of an integrator is a checkpoint.
 //
 //   Integrator integrator(f, x0, {0.0, 10.0}, Tsitouras5{}, {.rtol = 1e-9});
 //   while (integrator.advance()) use(integrator.t(), integrator.x());
@@ -21,8 +21,8 @@ class Integrator : public Driver<System, X, Events> {
  public:
   using Real = Scalar<X>;
 
-  /// Begins at interval.from. Input that cannot be run (not finite, wrong sizes, no step for a method without error
-  /// estimate) shows as the outcome of the first advance().
+  /// Begins at interval.from. For invalid input (not finite, wrong sizes, no step for a method without error estimate)
+  /// the first advance() ends the run with that outcome.
   Integrator(System f, X x0, Interval<std::type_identity_t<Real>> interval, M method,
              std::type_identity_t<Options<X>> options = {})
     requires std::same_as<Events, EventList<X>>

@@ -1,5 +1,5 @@
 // continuo/solve/observer.hpp
-// Who watches a run, step by step and event by event.
+// The interface of observers, which watch a run step by step and event by event.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace continuo {
 
-/// An event as it happened. The references hold during the call that gets it.
+/// An event that has happened. Its references are valid during the call that gets it.
 template <State X>
 struct Happening {
   Scalar<X> t;
@@ -17,8 +17,8 @@ struct Happening {
   const X& after;
 };
 
-/// Who watches a run: `on_segment(integrator, from, to)` for every piece of trajectory that stands (integrator.at(t, x)
-/// gives x there), `on_event(integrator, Happening)` at every event.
+/// An observer of a run. The run calls `on_segment(integrator, from, to)` for every piece of the trajectory that is
+/// final (integrator.at(t, x) gives x there), and `on_event(integrator, Happening)` at every event.
 struct NoObserver {
   template <class I, class Real>
   void on_segment(I&, Real, Real) {}

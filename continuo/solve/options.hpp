@@ -1,5 +1,5 @@
 // continuo/solve/options.hpp
-// What a run may be told, each with a good default: solve(f, x0, {0, 10}, Tsitouras5{}, {.rtol = 1e-9}).
+// The options of a run, each with a good default: solve(f, x0, {0, 10}, Tsitouras5{}, {.rtol = 1e-9}).
 #pragma once
 #include <atomic>
 #include <cmath>
@@ -15,13 +15,13 @@
 
 namespace continuo {
 
-/// From `from` to `to`, which may be the smaller one: then time runs backwards.
+/// The time span of a run. If `to` is less than `from`, time runs backwards.
 template <class Real>
 struct Interval {
   Real from, to;
 };
 
-/// What to keep.
+/// The states that a run keeps.
 template <State X>
 struct Save {
   using Real = Scalar<X>;
@@ -29,7 +29,7 @@ struct Save {
   Kind kind = Kind::steps;
   std::vector<Real> times{};                       // Kind::times, in the direction of time
   Real spacing{};                                  // Kind::grid: from, from + spacing, ...
-  std::function<void(Real, const X&)> callback{};  // sees every saved state; with it nothing is stored
+  std::function<void(Real, const X&)> callback{};  // gets every saved state; with it nothing is stored
 
   [[nodiscard]] static Save every_step() { return {}; }
   [[nodiscard]] static Save at(std::vector<Real> times) { return {.kind = Kind::times, .times = std::move(times)}; }

@@ -1,5 +1,5 @@
 // continuo/solve/outcome.hpp
-// How a run ended, and what it cost.
+// The outcome of a run, and its cost.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -16,7 +16,7 @@ struct Outcome {
   Real t{}, h{}, error{};
   std::string component{};  // the worst component by name; empty where none is to blame
   std::string event{};      // the event that stopped the run or accumulates
-  Real limit_time{};        // where accumulating events tend to
+  Real limit_time{};        // the limit of the times of accumulating events
   std::string hint{};       // what to try
 
   explicit operator bool() const { return succeeded(ending); }
@@ -25,13 +25,13 @@ struct Outcome {
 /// "half of the steps lie between t = 1 and t = 1.01".
 [[nodiscard]] std::string where_steps_lie(double from, double to);
 
-/// One sentence: what happened, where, why, what to try.
+/// One sentence: how the run ended, its place, the cause, and a remedy.
 [[nodiscard]] std::string describe(const Outcome<double>& outcome);
 
-/// The same as every other function of the library tells how it ended; the place is the time.
+/// The outcome as a Status, as other functions of the library return it; its place is the time.
 [[nodiscard]] Status status(const Outcome<double>& outcome);
 
-/// What a run cost.
+/// The cost of a run.
 struct Statistics {
   std::size_t steps = 0;                                             // accepted
   std::size_t rejected = 0;                                          // tried and not accepted

@@ -1,5 +1,5 @@
 // continuo/solve/solution.hpp
-// What a run leaves: states, dense output, events, statistics, outcome.
+// The result of a run: states, dense output, events, statistics, outcome.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ struct DenseSegment {
 template <State X>
 struct Solution {
   using Real = Scalar<X>;
-  std::vector<Real> t;  // where states were kept; an event that changes the state stands twice, before and after
+  std::vector<Real> t;  // the times of kept states; an event that changes the state has two, before and after it
   std::vector<X> x;
   std::vector<EventRecord<X>> events;
   std::vector<std::string> event_names;
@@ -47,7 +47,7 @@ struct Solution {
   Statistics statistics;
   Outcome<Real> outcome;
 
-  /// The last state that stands.
+  /// The last valid state.
   [[nodiscard]] const X& final_state() const { return x.back(); }
 
   /// x(t) anywhere in the run; needs Save::dense(). At an event: the state after it.

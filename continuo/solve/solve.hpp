@@ -17,7 +17,7 @@
 
 namespace continuo {
 
-/// Keeps of a run what `save` says.
+/// Records those states of a run that `save` selects.
 template <State X>
 class SolutionRecorder {
  public:
@@ -139,7 +139,7 @@ template <class System, State X, class Events>
   return solution;
 }
 
-/// Integrates dx/dt = f(t, x) from x(from) = x0. Never throws for what happens on the way: see Solution::outcome.
+/// Integrates dx/dt = f(t, x) from x(from) = x0. A failure on the way does not throw: see Solution::outcome.
 template <class System, State X, class M>
   requires Method<M, X> || std::same_as<M, AnyMethod<System, X>>
 [[nodiscard]] Solution<X> solve(System system, X x0, Interval<std::type_identity_t<Scalar<X>>> interval, M method,

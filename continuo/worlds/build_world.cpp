@@ -14,7 +14,8 @@ namespace {
 
 using model::NodeId;
 
-/// Asked for one after the other, computed together: bodies of a pattern share most of their expressions.
+/// Collects expressions one after the other and evaluates them together, since bodies of a pattern share most of their
+/// expressions.
 class Values {
  public:
   Values(const model::Model& model, std::span<const double> variables) : model_(model), variables_(variables) {}

@@ -1,5 +1,5 @@
 // continuo/worlds/build_world.hpp
-// A description with its parameters as they are, made into bodies.
+// Builds the bodies of a world from its description and the present values of its parameters.
 #pragma once
 #include <span>
 #include <string>
@@ -13,10 +13,11 @@ namespace continuo::worlds {
 template <int Dim>
 struct BuiltWorld {
   World<double, Dim> world;
-  Status status{};  // fails where a body or wall cannot be
+  Status status{};  // fails where a body or wall is invalid
 };
 
-/// Where bodies are and how they move comes from the states in `variables`. Bodies stand in the description's order.
+/// The positions and velocities of bodies come from the states in `variables`. Bodies have the order of the
+/// description.
 template <int Dim>
 [[nodiscard]] BuiltWorld<Dim> build_world(const model::Model& model, std::span<const double> variables);
 

@@ -1,5 +1,6 @@
 // continuo/worlds/coupled_equations.hpp
-// What the text of a model adds to its bodies: forces written as expressions, and equations with states of their own.
+// The equations that a model couples to its bodies: forces given by expressions, and differential equations with states
+// of their own.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 namespace continuo::worlds {
 
-/// The states of bodies as the model counts them: of one body x, x', y, y', ..., angle or spin.
+/// Writes the states of one body in the order of the model: x, x', y, y', ..., and those of its rotation.
 template <int Dim>
 void write_body(double* state, const Vector<double, Dim>& x, const Vector<double, Dim>& v,
                 const Orientation<double, Dim>& orientation, const Spin<double, Dim>& spin);
@@ -30,14 +31,14 @@ class CoupledEquations {
   [[nodiscard]] bool has_forces() const { return !forces_of_.empty(); }
   [[nodiscard]] bool has_torques() const { return !torques_of_.empty(); }
   [[nodiscard]] bool is_empty() const { return count_ == 0 && !has_forces() && !has_torques(); }
-  /// Where the states of the equations begin among the model's.
+  /// The index of the first state of the equations among the states of the model.
   [[nodiscard]] std::size_t first() const { return first_; }
   void set(std::uint32_t variable, double value);
   [[nodiscard]] std::size_t mode() const { return mode_; }
   void go(std::size_t mode) { mode_ = mode; }
 
-  /// Adds to forces and torques and gives the rates of the equations' states z; each may be left out by an empty span.
-  /// Without orientations and spins the world's hold, from its time on.
+  /// Adds to forces and torques and sets the rates of the equations' states z; an empty span leaves one of these out.
+  /// Without orientations and spins those of the world are used, continued from its time.
   void operator()(const World<double, Dim>& world, double t, const BodyStates<double, Dim>& at,
                   std::span<const double> z, std::span<V> force, std::span<Spin<double, Dim>> torque,
                   std::span<double> rate);

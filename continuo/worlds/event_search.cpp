@@ -1,4 +1,4 @@
-// Where, in a world without steps, the conditions of events are looked at between two looks.
+// The search for events between two samples of their conditions, in a world without steps.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -18,8 +18,8 @@ void WorldEvents::find_watched() {
   }
 }
 
-/// Back to just before the first contact of a body that conditions read, or to that contact from just before it: in
-/// between they are smooth. Where contacts are many this would take more time than it is worth.
+/// Moves the world back to just before the first contact of a body that conditions depend on, or, if it was there, to
+/// that contact: between contacts conditions are smooth. Where there are many contacts this is not worth its time.
 Status WorldEvents::look_at_first_contact(WorldRun& world, const Snapshot& saved) {
   constexpr std::size_t many = 16;
   const double just = 1e-9 * look_;
@@ -35,8 +35,8 @@ Status WorldEvents::look_at_first_contact(WorldRun& world, const Snapshot& saved
   return status ? world.advance_to(first - just > saved.time ? first - just : first) : status;
 }
 
-/// A condition that comes towards 0 at the last look and goes away from it now has turned in between. Whether it came
-/// through is seen where it turned; if so, the world is left there.
+/// A condition that approached 0 at the last sample and recedes from it now has a minimum of its distance in between.
+/// Its value there shows whether it has crossed 0; if so, the world is left there.
 Status WorldEvents::look_where_guards_turn(WorldRun& world, const Snapshot& saved, const X& before) {
   const double from = saved.time, to = world.time();
   for (std::size_t i = 0; i < events_.size(); ++i) {
@@ -54,7 +54,7 @@ Status WorldEvents::look_where_guards_turn(WorldRun& world, const Snapshot& save
       return sign * values_[i];
     };
     const auto is_through = [&] { return !status || any_passed() || !(sign * values_[i] > 0); };
-    // Its least value, by the golden section, to half of the digits: nearer by it changes no more.
+    // The minimum by golden section search, to half of the digits: nearer to the minimum the value does not change.
     constexpr double part = 0.381966011250105;
     double low = from, high = to, a = low + part * (high - low), b = high - part * (high - low);
     double at_a = value_at(a), at_b = is_through() ? at_a : value_at(b);
@@ -72,7 +72,7 @@ Status WorldEvents::look_where_guards_turn(WorldRun& world, const Snapshot& save
   return {};
 }
 
-/// How a guard changes in a moment, by the velocities there are.
+/// The change of a guard in a short time at the present velocities.
 double WorldEvents::slope(std::size_t i, double t, const X& state, double length) {
   const model::WorldDescription& text = *program_->model.world;
   const double moment = 1e-7 * length;

@@ -27,7 +27,7 @@ std::optional<double> number(const model::Model& model, NodeId node, const Plan&
   return node.valid() ? std::optional(evaluate(model, node, plan.variables)) : std::nullopt;
 }
 
-/// The mode of the world, or the method that the experiment names instead.
+/// Sets the method: that of the world's mode, or the one that the experiment names instead.
 bool set_method(Planner& planner, const WorldMode& mode, const Experiment& experiment) {
   Plan& plan = planner.plan();
   plan.method = experiment.method.value_or(mode.fast ? "fast" : "exact");
@@ -79,8 +79,8 @@ void set_motion(Planner& planner, const model::Model& model, const Experiment& e
   if (set_tolerance(planner, model, experiment)) set_step(planner, model, experiment);
 }
 
-/// A motion from collision to collision has no steps to show: rows at equal distances in time, unless the model names
-/// others.
+/// Sets rows at equal intervals of time, for a motion from collision to collision, which has no steps to show, unless
+/// the model names other rows.
 void set_usual_output(Plan& plan) {
   constexpr double usual_rows = 200;
   plan.output = model::OutputPlan::Kind::every;

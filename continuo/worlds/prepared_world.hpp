@@ -1,5 +1,5 @@
 // continuo/worlds/prepared_world.hpp
-// A world at the start of a run, and the plan of that run; or why there is none. Internal to worlds.
+// A world at the start of a run, with the plan of that run, or the reason why it cannot begin. Internal to worlds.
 #pragma once
 #include <cstddef>
 #include <memory>

@@ -1,4 +1,4 @@
-// Runs of worlds as files of blocks: what each part is made of, and in which order they come.
+// Runs of worlds as files of blocks: the contents of every part, and the order of parts.
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -14,7 +14,7 @@ constexpr FileFormat run_format{
     {'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'}, 1, "this is no recording of a run", "a recording of another version"};
 enum class Part : std::uint8_t { head, note, checkpoint, end };
 
-// What each part is made of, once for both ways.
+// The contents of every part, for writing and reading.
 
 template <class Archive, class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
@@ -150,7 +150,7 @@ RunLog::RunLog(std::ostream& out, const RunHead& head, std::size_t checkpoints) 
 void RunLog::add(const Note& note) {
   out_.write(Part::note, bytes_of(note));
 }
-/// A run that is killed keeps what came before.
+/// Flushes the file, so that a run that is killed keeps everything up to this checkpoint.
 void RunLog::add(const Checkpoint& checkpoint) {
   out_.write(Part::checkpoint, bytes_of(checkpoint));
   out_.flush();

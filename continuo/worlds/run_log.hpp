@@ -1,5 +1,5 @@
-// A run of a world as a file: what the run noted, one thing after the other, and every so often the world itself with
-// all it takes to go on from there to the same bits.
+// A run of a world as a file: the notes of the run one after the other, and from time to time a checkpoint of the
+// world, from which the run can continue to the same bits.
 //
 //   std::ofstream file("gas.run", std::ios::binary);
 //   RunLog log(file, {.file = "gas.sim", .text = text});
@@ -9,7 +9,7 @@
 //   replay_world(program, *recording);                             // the same run, without moving a body
 //   resume_world(program, *recording, recording->checkpoints.size() - 1, {.to = 20});
 //
-// A file that was cut off is read as far as its blocks are whole.
+// A file that was cut off is read up to its last complete block.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -28,15 +28,15 @@
 
 namespace continuo::worlds {
 
-/// What was run: the model's text, and what was asked of it.
+/// The head of a recording: the text of the model, and the experiment.
 struct RunHead {
   std::string file{}, text{};  // the folder of the file is where tables are
-  bool decides_size = false;   // the parameters are wanted when the text is read
-  bool as_written = true;      // checks are meant for this run
+  bool decides_size = false;   // the parameters are needed when the text is read
+  bool as_written = true;      // the checks of the model apply to this run
   model::Experiment experiment{};
 };
 
-/// What a run tells its recorder.
+/// A message of a run to its recorder.
 struct Note {
   enum class Kind : std::uint8_t { begin, arrival, contact, happening, finish };
   Kind kind{};
@@ -50,12 +50,12 @@ struct Note {
 };
 void tell(model::RunRecorder& recorder, const Note& note);
 
-/// Between two notes: the world, and how far its run is.
+/// A checkpoint between two notes: the world, and the progress of its run.
 struct Checkpoint {
   Snapshot world;
   std::uint64_t next_output = 0, next_sample = 0, contacts = 0;
   std::vector<std::uint64_t> stops{};
-  std::size_t notes = 0;  // so many came before
+  std::size_t notes = 0;  // the number of notes before it
 };
 
 /// How it ended.
@@ -67,13 +67,13 @@ struct RunEnd {
 
 class RunLog {
  public:
-  /// The stream must be binary and stay; whether writing went well is for the caller to ask of it.
+  /// The stream must be binary and outlive this object. The caller checks the stream for failed writes.
   RunLog(std::ostream& out, const RunHead& head, std::size_t checkpoints = 20);
 
   void add(const Note& note);
   void add(const Checkpoint& checkpoint);
   void add(const RunEnd& end);
-  /// So many checkpoints are wanted, evenly over the run, and more where that takes long; none for 0.
+  /// The number of checkpoints, evenly over the run; there are more where the run takes long, and none for 0.
   [[nodiscard]] std::size_t checkpoints() const { return checkpoints_; }
 
  private:
@@ -87,9 +87,9 @@ struct RunRecording {
   std::vector<Checkpoint> checkpoints{};
   std::optional<RunEnd> end{};  // none where the file was cut off
 
-  /// Unreadable where not one note of the run is there.
+  /// Fails as unreadable where the run has not one note.
   static Result<RunRecording> read(std::span<const std::byte> bytes);
-  /// The last checkpoint not after t; the first where all are.
+  /// The last checkpoint not after t; the first one where all are after t.
   [[nodiscard]] std::size_t checkpoint_at(double t) const;
 };
 

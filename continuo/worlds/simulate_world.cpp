@@ -23,16 +23,17 @@ namespace {
 using model::Diagnostic;
 using X = std::vector<double>;
 
-constexpr std::chrono::seconds checkpoint_of_clock{10};  // no more is lost where a long run is killed
+constexpr std::chrono::seconds checkpoint_of_clock{10};  // a long run that is killed loses no more than this
 constexpr std::size_t contacts_of_a_run = 100'000;
 
-/// Steps do not end at round times: rows are written when the time has come, with the time that it is.
+/// The plan of the recorder, which keeps every row that it gets. Steps do not end at round times, so that a row that is
+/// due is written at the end of a step, with the time of that end.
 model::Plan as_the_recorder_sees(model::Plan plan) {
   plan.output = model::OutputPlan::Kind::steps;
   return plan;
 }
 
-/// Why a run ended before its end.
+/// The diagnostic of a run that ended early.
 Diagnostic ending_of(const model::Model& model, const Outcome<double>& outcome, const std::string& error) {
   if (error.empty()) return failure(model, outcome);
   return model::error("E324", model.world->span,
@@ -41,7 +42,7 @@ Diagnostic ending_of(const model::Model& model, const Outcome<double>& outcome, 
 
 class Simulation {
  public:
-  /// `look`: between two looks at what a `when` asks.
+  /// `look` is the time between two samples of the conditions of `when`.
   Simulation(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
              model::Plan plan, std::unique_ptr<WorldRun> world, double look, RunLog* log)
       : program_(program),
@@ -69,7 +70,7 @@ class Simulation {
     stand();
   }
 
-  /// Fails where that checkpoint is none of this model.
+  /// Fails where the checkpoint does not belong to this model.
   Status resume(const RunRecording& recording, std::size_t checkpoint) {
     const Checkpoint& at = recording.checkpoints[checkpoint];
     if (at.stops.size() != events_.stops().size() || at.next_sample > recorder_.samples().size() ||
@@ -117,7 +118,7 @@ class Simulation {
     if (log_) log_->add(note);
     tell(recorder_, note);
   }
-  /// From here the run can go on, if it is time to note that: by the run's time or by the clock.
+  /// Writes a checkpoint, where one is due by the time of the run or by the clock.
   void stand(bool is_end = false) {
     const double t = world_->time();
     const auto now = std::chrono::steady_clock::now();
@@ -148,7 +149,7 @@ class Simulation {
     run_.outcome.hint = error_;
   }
 
-  /// To the next instant that somebody asks for.
+  /// Advances to the next instant with a row, a sample or an event.
   void advance() {
     if (is_interrupted()) {
       stand(true);
@@ -166,7 +167,7 @@ class Simulation {
     if (experiment_.progress) experiment_.progress(world_->time());
   }
 
-  /// Rows and samples whose time has come.
+  /// Notes the rows and samples that are due.
   void arrive() {
     const double t = world_->time() + slack();
     bool row = false;
@@ -229,7 +230,7 @@ double look_of(const model::Plan& plan) {
   return (plan.to - plan.from) / looks;
 }
 
-/// The model's states are in every note, or it is a note of another model.
+/// Whether a note can belong to this model: it has as many states.
 bool fits(const model::Model& model, const Note& note) {
   if (note.kind == Note::Kind::contact) return true;
   return note.x.size() == model.states.size() &&

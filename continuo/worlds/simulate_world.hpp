@@ -3,10 +3,11 @@
 //
 //   const model::Simulated simulated = worlds::simulate_world(program, {.method = "fast", .step = 0.01});
 //
-// Events are looked for between looks: in the exact mode a thousand in a run, every row, at contacts and where
-// conditions turn (event_search.cpp); there the instant is then found to neighbouring times, by moving a copy of the
-// world again. In the fast mode every step ends with a look, and an event happens there. Rows of the fast mode are the
-// first ends of steps that are not before the wanted times.
+// Conditions of events are sampled. In the exact mode there are a thousand samples in a run, and more at every row, at
+// contacts, and where conditions have a turning point (event_search.cpp). The instant of an event between two samples
+// is then located to rounding, by moving the world again from a snapshot. In the fast mode conditions are sampled at
+// the end of every step, and events happen there. Rows of the fast mode are the first ends of steps that are not before
+// the wanted times.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -19,22 +20,23 @@
 
 namespace continuo::worlds {
 
-/// With a log it is recorded as it goes.
+/// With a log, the run is recorded while it advances.
 [[nodiscard]] model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
                                               const model::Experiment& experiment = {}, RunLog* log = nullptr);
 
-/// The run that was recorded, told again. The program must be of its text; numbers that do not fit it are told (E325).
+/// Replays a recorded run. The program must be that of its text; a recording that does not fit the program is reported
+/// (E325).
 [[nodiscard]] model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& program,
                                             const RunRecording& recording);
 
-/// What of a run that goes on may be other than recorded.
+/// Those options of a resumed run that may differ from the recorded ones.
 struct GoOn {
   std::optional<double> to{};
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
 };
-/// The recorded run up to one of its checkpoints, and from there on simulated: to the end that it was to have, to the
-/// same bits as without a break, or to another.
+/// Replays a recorded run up to one of its checkpoints, and simulates it from there to its planned end, or to another.
+/// The results have the same bits as those without a break.
 [[nodiscard]] model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program,
                                             const RunRecording& recording, std::size_t checkpoint, const GoOn& how = {},
                                             RunLog* log = nullptr);

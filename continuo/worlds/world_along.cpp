@@ -17,7 +17,7 @@ namespace {
 
 using X = std::vector<double>;
 
-/// The two ends of a step, and what lies between.
+/// The states at the two ends of a step, and their interpolation.
 class Stretch {
  public:
   Stretch(const model::Model& model, std::span<const double> variables) : world_(*model.world) {
@@ -26,7 +26,7 @@ class Stretch {
   }
 
   void begin(double t, const X& x) { from_ = to_ = t, before_ = after_ = x; }
-  /// `contacts`: of this stretch.
+  /// `contacts` are those within the step.
   void end(double t, const X& x, std::span<const Contact> contacts) {
     to_ = t, after_ = x;
     met_.assign(world_.bodies.size(), 0);
@@ -67,8 +67,8 @@ class Stretch {
       x[place] = before_[place] + s * jump + s * (1 - s) * ((1 - s) * a + s * b);
     }
   }
-  /// True before the impact. Both parabolas bend alike, so they part along a straight line: they are nearest to each
-  /// other at s = -d0.(d1 - d0)/|d1 - d0|^2, with d their difference at both ends.
+  /// Follows the parabola before or after the impact; true before it. Both parabolas have the same acceleration, so
+  /// that their difference d is linear in s, from d0 to d1: it is least at s = -d0.(d1 - d0)/|d1 - d0|^2.
   bool follow_parabolas(std::size_t first, double s, X& x) const {
     const double h = to_ - from_;
     double along = 0, square = 0;
@@ -109,7 +109,7 @@ class Follower {
         rows_(plan_),
         stretch_(program->model, plan_.variables) {}
 
-  /// Empty, or what went wrong.
+  /// Moves the world and keeps the states at all wanted instants.
   Status follow() {
     const auto nobody = [](const WorldHappening&) {};
     if (Status status = events_.begin(world_, nobody); !status) return status;
@@ -148,7 +148,7 @@ class Follower {
     const double t = plan_.from + (plan_.to - plan_.from) / usual_rows * static_cast<double>(row);
     return static_cast<double>(row) <= usual_rows ? std::min(t, plan_.to) : none;
   }
-  /// A row at the very end of it shows what events have made of that.
+  /// Keeps the rows within the step. A row at its very end shows the state after the events there.
   void keep_rows_of_stretch() {
     for (double t = next_time(); t < world_.time(); t = next_time()) {
       made_.times.push_back(t);

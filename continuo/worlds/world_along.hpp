@@ -4,9 +4,9 @@
 //   const WorldAlong along = world_along(program, {.experiment = experiment, .times = {0.1, 0.2, 0.35}});
 //   if (along.diagnostics.empty()) ... along.states[2]
 //
-// Without steps they are those of these instants. With steps they are read off between the ends of one: of bodies that
-// met nobody meanwhile by the cubic through places and velocities, of the others by the parabola before the impact and
-// the one after it, which part where they cross; of equations along a straight line.
+// Without steps they are the states at these instants. With steps they are interpolated between the ends of a step: of
+// bodies without a contact in it by the cubic through positions and velocities, of other bodies by the parabola before
+// the impact and the one after it, with the change where these are nearest to each other, and of equations linearly.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -27,7 +27,7 @@ struct AlongRequest {
 };
 
 struct WorldAlong {
-  std::vector<double> times;                // so far as the run came
+  std::vector<double> times;                // as far as the run advanced
   std::vector<std::vector<double>> states;  // Model::states at each of them
   std::vector<double> variables;            // the register file at the start
   Outcome<double> outcome;

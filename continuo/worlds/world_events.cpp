@@ -17,12 +17,12 @@ constexpr double never = std::numeric_limits<double>::infinity();
 
 constexpr std::size_t most_rounds = 10'000;  // of an instant
 
-/// On its other side, or at zero on the way there.
+/// Whether a guard is on its other side, or at zero on the way there.
 bool has_passed(Direction direction, int side, double now) {
   return side != 0 && !(side * now > 0) && watches(direction, -side);
 }
 
-/// What is on this side of zero now, when it comes from `side`: zero belongs to the side that it leads to.
+/// The side of a guard that comes from `side`: zero belongs to the side to which it leads.
 int side_after(int side, double now) {
   return now == 0 ? -side : sign_of(now);
 }
@@ -54,7 +54,7 @@ Status WorldEvents::begin(WorldRun& world, const Sink& sink) {
   return status;
 }
 
-/// Guards without a past.
+/// Gives guards the sides of their present values, without a past.
 void WorldEvents::place_guards(WorldRun& world) {
   if (!any_guard_) return;
   read_guards(world, before_);
@@ -101,7 +101,7 @@ bool WorldEvents::any_passed() const {
   return false;
 }
 
-/// The first instant at which a guard has passed, on its far side.
+/// Moves the world to the first instant at which a guard has changed its side, on the far side.
 Status WorldEvents::go_back_to_event(WorldRun& world, const Snapshot& saved) {
   double low = saved.time, high = world.time();
   const auto move_to = [&](double t) {
@@ -133,7 +133,7 @@ Status WorldEvents::happen(WorldRun& world, const Sink& sink) {
   return {};
 }
 
-/// The guards that are on another side than at the last look; those whose events watch for that.
+/// Updates the sides of guards. Returns those that have changed their side in the direction that their events watch.
 std::vector<std::size_t> WorldEvents::take_passed() {
   std::vector<std::size_t> fired;
   for (std::size_t i = 0; any_guard_ && i < events_.size(); ++i) {
@@ -145,7 +145,7 @@ std::vector<std::size_t> WorldEvents::take_passed() {
   return fired;
 }
 
-/// What is scheduled for the next time up to `until`, which is over now.
+/// Returns the events of the next scheduled time up to `until`, which then counts as done.
 std::vector<std::size_t> WorldEvents::take_due(double until, bool inclusive) {
   std::vector<std::size_t> due;
   double next = never;
@@ -174,7 +174,7 @@ Status WorldEvents::happen_rounds(WorldRun& world, std::vector<std::size_t> fire
   return {};
 }
 
-/// Those that fire in the next round.
+/// Fires the events of a round. Returns the events of the next round.
 Result<std::vector<std::size_t>> WorldEvents::happen_round(WorldRun& world, const std::vector<std::size_t>& fired,
                                                            const Sink& sink) {
   const X before = world.state();
@@ -202,7 +202,7 @@ Result<std::vector<std::size_t>> WorldEvents::happen_round(WorldRun& world, cons
   return next;
 }
 
-/// An action has left this state: guards that are on their other side now.
+/// Adds to `next` the guards that an action, which has left this state, has carried to their other side.
 void WorldEvents::carry_over(double t, const X& state, std::vector<std::size_t>& next) {
   events_.guards(system_, t, state, values_);
   for (std::size_t i = 0; i < events_.size(); ++i) {
@@ -217,13 +217,13 @@ void WorldEvents::carry_over(double t, const X& state, std::vector<std::size_t>&
 }
 
 void WorldEvents::go_on(WorldRun& world, std::span<const double> variables, std::span<const std::size_t> stops) {
-  const std::vector<std::size_t> counts(stops.begin(), stops.end());  // before what they may be part of is made anew
+  const std::vector<std::size_t> counts(stops.begin(), stops.end());  // a copy, since they may belong to events_
   system_.set_all(variables);
   system_.go(world.mode());
   events_ = model::ModelEvents(*program_, variables, events_.begin());
   events_.resume(world.time(), counts);
   names_.restart();
-  scheduled_after_ = world.time() + slack_of(world);  // up to there it has happened
+  scheduled_after_ = world.time() + slack_of(world);  // events up to there have happened
   stopped_ = false;
   stopped_by_.clear();
   place_guards(world);

@@ -1,7 +1,7 @@
 // continuo/worlds/world_events.hpp
-// The events of a model's text while its bodies move. A `when` is looked for at every step; without steps every so
-// often, at contacts of the bodies that it reads, and where it turns in between; and then located; `at`, `every`,
-// `initially` and the steps of inputs happen when their time has come.
+// The events of a model while its bodies move. The condition of a `when` is sampled at every step; without steps it is
+// sampled at regular times, at contacts of the bodies that it depends on, and where it has a turning point in between,
+// and its events are located. `at`, `every`, `initially` and the steps of inputs happen at their times.
 //
 //   WorldEvents events(program, plan.variables, plan.from, look);
 //   events.begin(world, sink);
@@ -21,7 +21,7 @@
 
 namespace continuo::worlds {
 
-/// At what a `when` asks, in a run of a world without steps.
+/// The number of samples of a `when` in a run of a world without steps.
 inline constexpr double looks = 1000;
 
 /// With steps, how much earlier than due the end of a step may be.
@@ -30,7 +30,7 @@ inline constexpr double looks = 1000;
 /// Events of one instant; the world is as they left it.
 struct WorldHappening {
   double t;
-  const std::vector<model::EventName>& names;  // empty: the step of an input, which is nobody's event
+  const std::vector<model::EventName>& names;  // empty for the step of an input, which is no event
   const std::vector<double>& before;
 };
 
@@ -39,27 +39,29 @@ class WorldEvents {
   using X = std::vector<double>;
   using Sink = std::function<void(const WorldHappening&)>;
 
-  /// `look`: between two looks at what a `when` asks, of a world without steps.
+  /// `look` is the time between two samples of a `when` in a world without steps.
   WorldEvents(const std::shared_ptr<const model::ModelProgram>& program, std::span<const double> variables, double from,
               double look);
 
-  /// What happens at the very beginning. Empty, or why the run cannot go on; so with `happen`.
+  /// Fires the events at the very beginning. Fails, like `happen`, where the run cannot continue.
   Status begin(WorldRun& world, const Sink& sink);
-  /// How far it may be advanced at once.
+  /// The time to which the world may be advanced at once.
   [[nodiscard]] double next(const WorldRun& world) const;
-  /// To the first end of a step that is not before `to`; to the first instant of an event where one comes before.
+  /// Advances to the first end of a step that is not before `to`, or to the first instant of an event where that is
+  /// earlier.
   Status advance(WorldRun& world, double to);
-  /// What is due now, in the order of the text, each on what the one before has left; then, round by round, what these
-  /// actions carry to its other side (docs/events.md).
+  /// Fires the events that are due now, in the order of the text, each on the state that the one before has left; then,
+  /// round by round, the events whose guards these actions have carried to their other side (docs/events.md).
   Status happen(WorldRun& world, const Sink& sink);
 
-  /// A `stop` has been reached: by which event, and what it says.
+  /// Whether a `stop` has been reached, by which event, and its text.
   [[nodiscard]] bool stopped() const { return stopped_; }
   [[nodiscard]] const std::string& stopped_by() const { return stopped_by_; }
   [[nodiscard]] const std::string& stop_text() const { return events_.stop_text(); }
   [[nodiscard]] std::span<const std::size_t> stops() const { return events_.stops(); }
 
-  /// The world has been put elsewhere, or its variables changed: what was scheduled for this very instant is over.
+  /// Continues after the state of the world or its variables have been set. Events scheduled for this very instant
+  /// count as done.
   void go_on(WorldRun& world, std::span<const double> variables, std::span<const std::size_t> stops);
 
  private:
@@ -83,8 +85,8 @@ class WorldEvents {
   std::shared_ptr<const model::ModelProgram> program_;
   model::ModelSystem system_;  // its guards, actions and modes
   model::ModelEvents events_;
-  std::vector<double> values_, before_;  // of guards: now, and at the last look
-  std::vector<int> sides_;         // of guards, at the last look and after each action; 0: at zero since the start
+  std::vector<double> values_, before_;  // of guards: now, and at the last sample
+  std::vector<int> sides_;         // of guards, at the last sample and after each action; 0: at zero since the start
   std::set<std::size_t> watched_;  // bodies that they read
   model::EventNames names_;
   double scheduled_after_, look_;

@@ -56,7 +56,7 @@ class Moving final : public WorldRun {
                              std::span<double> rate) { coupled_(world_, t, at, z_now, force, torque, rate); };
   }
 
-  /// Empty, or why the world cannot be as its parameters say. Bodies keep their places.
+  /// Builds the world from its parameters, and fails where these are invalid. Existing bodies keep their states.
   Status build() {
     BuiltWorld<Dim> built = build_world<Dim>(model(), variables_);
     if (!built.status) return built.status;
@@ -78,7 +78,7 @@ class Moving final : public WorldRun {
   Status advance_to(double t) override {
     contacts_.clear();
     if (is_free()) return t > world_.time ? exact_advance(t) : Status{};
-    // A step more only where it brings more than rounding.
+    // Takes no further step where only rounding would remain of it.
     while (world_.time < t - 1e-9 * options_.step) {
       if (options_.interrupt != nullptr && options_.interrupt->load())
         return {.ending = Ending::interrupted, .message = "interrupted"};
@@ -134,7 +134,7 @@ class Moving final : public WorldRun {
       }
       Orientation<double, Dim> orientation;
       for (std::size_t k = 0; k < orientation.size(); ++k) orientation[k] = *at++;
-      // An action may have changed a part of a quaternion: what is left of it is a direction.
+      // An action may have changed a component of the quaternion, so it is normalized.
       if (Dim == 2 || length(orientation) > 0) world_.orientation[i] = turned(orientation, {}, 0.0);
       for (std::size_t k = 0; k < world_.spin[i].size(); ++k) world_.spin[i][k] = *at++;
     }
@@ -290,7 +290,7 @@ class Moving final : public WorldRun {
     if (exact_) exact_->refresh();
   }
 
-  /// No steps of its own: it can end anywhere.
+  /// Whether the method has no steps of its own, so that an advance can end at any time.
   bool is_free() const { return options_.method == "exact" || options_.method == "dop853"; }
 
   Status exact_advance(double t) {
@@ -311,7 +311,7 @@ class Moving final : public WorldRun {
     note(*fast_);
     return move_equations(from + options_.step / 2, world_.time);
   }
-  /// With the bodies where they are.
+  /// Integrates the equations, with the bodies fixed in their states.
   Status move_equations(double from, double to) {
     if (companions_.state.empty()) return {};
     using Others = std::vector<double>;
@@ -343,7 +343,7 @@ class Moving final : public WorldRun {
                            .time = event.time});
     }
   }
-  /// Since the world began, whatever motions have moved it.
+  /// The number of collisions since the start of the world, in all motions.
   std::size_t collisions() const { return counted() + collisions_apart_; }
   std::size_t counted() const {
     if (exact_) return exact_->statistics().collisions + exact_->statistics().wall_collisions;
@@ -361,7 +361,7 @@ class Moving final : public WorldRun {
   std::optional<FastMotion<double, Dim>> fast_;
   double start_;                      // of the steps
   std::uint64_t steps_ = 0;           // since then
-  std::size_t collisions_apart_ = 0;  // to be added to what the motion has counted
+  std::size_t collisions_apart_ = 0;  // collisions that earlier motions have counted
   Shapes shapes_;
   std::vector<Contact> contacts_;
   std::vector<double> state_;

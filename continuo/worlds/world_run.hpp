@@ -1,5 +1,5 @@
 // continuo/worlds/world_run.hpp
-// The world of a model in motion: advanced as far as wanted, looked at, pushed, saved. One type for both dimensions and
+// The world of a model in motion, which can be advanced, read, changed and saved. One type serves both dimensions and
 // all modes.
 //
 //   auto started = start_world(program, {.method = "exact"}, start_values(program->model));
@@ -8,9 +8,9 @@
 //   if (const Status status = run.advance_to(1.5); !status) ...
 //   for (std::size_t i = 0; i < run.bodies().size(); ++i) draw(run.position(i), run.bodies()[i].radius);
 //
-// Equations beside the bodies move with them. In the exact mode all is one system, integrated by one method. In the
-// fast mode they take turns: half a step of the equations with the bodies where they are, a step of the bodies with the
-// equations' states as they are, half a step of the equations (G. Strang, "On the construction and comparison of
+// Equations beside the bodies are integrated with them. In the exact mode all is one system, integrated by one method.
+// In the fast mode the steps alternate: half a step of the equations with the bodies fixed, a step of the bodies with
+// the states of the equations fixed, half a step of the equations (G. Strang, "On the construction and comparison of
 // difference schemes", SIAM J. Num. Anal. 5 (1968)). That is of order 2 where the bodies are moved by the central
 // difference, of order 1 by the Euler methods.
 #pragma once
@@ -39,7 +39,7 @@ using Point = std::array<double, 3>;
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// What does not change while it moves.
+/// The constant data of a body.
 struct BodyShape {
   std::string name;
   double radius, mass;
@@ -57,13 +57,13 @@ struct SpringShape {
   Point point;
 };
 
-/// Two that met, or parted after a contact that lasted.
+/// An impact, or the beginning or end of a lasting contact.
 struct Contact {
   ContactChange change;
   std::size_t a, b;  // bodies; b is model::no_body where it was a wall
-  std::size_t wall;  // which, then
+  std::size_t wall;  // the number of the wall, in that case
   Point point;
-  double impulse;  // along the normal; of a contact that lasted at its end
+  double impulse;  // along the normal; of a lasting contact the whole impulse, at its end
   double time;
 };
 
@@ -71,12 +71,12 @@ struct WorldOptions {
   std::string method = "exact";                  // one of model::world_methods()
   double step = 0;                               // of methods with steps
   double tolerance = 1e-10;                      // of paths under forces, exact
-  const std::atomic<bool>* interrupt = nullptr;  // once it is true, an advance ends early and says so
-  std::size_t most_contacts = 0;                 // so many of one advance are kept
+  const std::atomic<bool>* interrupt = nullptr;  // once it is true, an advance ends as `interrupted`
+  std::size_t most_contacts = 0;                 // at most so many of one advance are kept
 };
 [[nodiscard]] WorldOptions options_of(const model::Plan& plan);
 
-/// A world at an instant, with all that is needed to go on to the same bits.
+/// A world at an instant, with all data that a run needs to continue to the same bits.
 struct Snapshot {
   Bytes bodies;
   std::vector<double> equations, variables;
@@ -97,7 +97,8 @@ class WorldRun {
 
   [[nodiscard]] virtual int dimension() const = 0;
   [[nodiscard]] virtual double time() const = 0;
-  /// Where it fails the world is where it got to. With steps, to the first end of a step that is not before t.
+  /// Advances to t; with steps, to the first end of a step that is not before t. On failure the world stays at the time
+  /// that it has reached.
   virtual Status advance_to(double t) = 0;
   /// 0 without steps.
   [[nodiscard]] virtual double step() const = 0;
@@ -108,44 +109,44 @@ class WorldRun {
 
   [[nodiscard]] virtual Point position(std::size_t body) const = 0;
   [[nodiscard]] virtual Point velocity(std::size_t body) const = 0;
-  /// About the axes; in the plane its third component.
+  /// The spin about the axes; in the plane it is the third component.
   [[nodiscard]] virtual Point spin(std::size_t body) const = 0;
   /// A unit quaternion (w, x, y, z).
   [[nodiscard]] virtual std::array<double, 4> orientation(std::size_t body) const = 0;
   [[nodiscard]] virtual double kinetic_energy() const = 0;
   [[nodiscard]] virtual double potential_energy() const = 0;
-  /// Of the last advance, the first `most_contacts`.
+  /// The contacts of the last advance, the first `most_contacts` of them.
   [[nodiscard]] virtual const std::vector<Contact>& contacts() const = 0;
   /// "ball meets floor", "ball leaves floor".
   [[nodiscard]] std::string name_of(const Contact& contact) const;
 
   /// The model's states: of bodies, of equations, measures of the world.
   virtual const std::vector<double>& state() = 0;
-  /// Bodies and equations are put where it says; measures are ignored.
+  /// Sets the states of bodies and equations; measures are ignored.
   virtual void set_state(std::span<const double> state) = 0;
-  /// Begins anew from another instant, of whatever run of this model. What a motion remembers besides, contacts and the
-  /// like, it finds out again.
+  /// Begins again from another instant, of any run of this model. The motion finds the rest of its internal state, such
+  /// as contacts, again.
   virtual void place(double t, std::span<const double> state) = 0;
-  /// Puts one body elsewhere: dragged by a hand.
+  /// Moves one body elsewhere, for example where a user drags it.
   virtual void set_body(std::size_t body, const Point& position, const Point& velocity) = 0;
-  /// A parameter or an input, by its place in the flat space (`Parameter::variable`); what follows from it follows.
-  /// Fails where the world cannot be so; it is then as before.
+  /// Sets a parameter or an input, by its place in the flat space (`Parameter::variable`), with all values that depend
+  /// on it. Fails where the world would be invalid, and then leaves it unchanged.
   virtual Status set(std::uint32_t variable, double value) = 0;
   /// The register file: t, states, parameters, inputs.
   virtual std::span<const double> variables() = 0;
-  /// Of the equations.
+  /// The mode of the equations.
   [[nodiscard]] virtual std::size_t mode() const = 0;
   virtual void go(std::size_t mode) = 0;
 
   [[nodiscard]] virtual Snapshot snapshot() const = 0;
-  /// Whether this run can go on from a snapshot that was read from a file, which may say anything.
+  /// Whether this run can continue from a snapshot that was read from a file, which may contain anything.
   virtual Status check(const Snapshot& snapshot) const = 0;
-  /// Goes on from a snapshot of a run by the same method and step.
+  /// Continues from a snapshot of a run with the same method and step.
   virtual Status restore(const Snapshot& snapshot) = 0;
 };
 
-/// `variables` is a register file as `start_values` gives it. The program must have a world. Fails
-/// where the world cannot begin as its values say.
+/// `variables` is a register file as `start_values` gives it. The program must have a world. Fails where the world
+/// cannot begin with these values.
 Result<std::unique_ptr<WorldRun>> start_world(std::shared_ptr<const model::ModelProgram> program,
                                               const WorldOptions& options, std::span<const double> variables);
 

@@ -1,5 +1,4 @@
-// What there is to see of a world: names, sizes and places of its bodies, walls and springs, as far as they do not
-// move.
+// The shapes of a world for display: names, sizes and constant positions of its bodies, walls and springs.
 #pragma once
 #include <cstddef>
 #include <variant>
@@ -24,7 +23,7 @@ template <int Dim>
   return point;
 }
 
-/// `text` is what the world was built from, whose names are in its order.
+/// `text` is the description from which the world was built; its names have the order of the world.
 template <int Dim>
 [[nodiscard]] Shapes shapes_of(const World<double, Dim>& world, const model::WorldDescription& text) {
   Shapes shapes;

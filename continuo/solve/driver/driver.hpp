@@ -1,5 +1,5 @@
-// The loop of a run: step by step, past the events of each. It knows the steps of a method only as `Steps`, so that it
-// is compiled once for a system and not once for each method; `Integrator` gives it a method.
+// The loop of a run: step by step, with the events of each step. It uses the steps of a method only through the base
+// class `Steps`, so that it is compiled once for a system and not once for each method; `Integrator` adds the method.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -25,8 +25,8 @@ class Driver {
  public:
   using Real = Scalar<X>;
 
-  /// Takes one step, cut short at an event that changes what f reads, never beyond interval.to. True while there is
-  /// more.
+  /// Takes one step, shortened at an event that changes data which f reads, never beyond interval.to. True while the
+  /// run has not ended.
   template <class Observer = NoObserver>
   bool advance(Observer&& observer = {}) {
     if (!started_) start(observer);
@@ -37,8 +37,8 @@ class Driver {
     if (statistics().steps + statistics().rejected >= options_.max_steps)
       return end(Ending::too_many_steps, hint_of_too_many());
     const Real limit = logic_.next_restart(t_, interval_.to);
-    // An event that restarts the motion could change everything; without one it is no use to go on to the limit of
-    // steps.
+    // A guard whose event restarts the motion could change the course of the run. Without one, a run that needs far too
+    // many steps ends now, since continuing to the limit of steps would be useless.
     if (const Real needed = logic_.any_turning_guard() ? Real(0) : steps().endless(limit, options_); needed > 0)
         [[unlikely]]
       return end(Ending::too_many_steps, hint_of_endless(needed));
@@ -62,8 +62,8 @@ class Driver {
   [[nodiscard]] const Interval<Real>& interval() const { return interval_; }
   [[nodiscard]] const Options<X>& options() const { return options_; }
 
-  /// x at a time of the last step, on the dense output, the unknowns of algebraic equations solved for; at an event
-  /// what was before it, but for t().
+  /// x at a time of the last step, from the dense output, with the unknowns of algebraic equations solved for. At an
+  /// event it is the state before it, except at t().
   void at(Real t, X& x) {
     if (t == t_) {
       x = x_;
@@ -77,7 +77,7 @@ class Driver {
   }
 
   /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant. Unknowns of algebraic
-  /// equations are not solved for: they are as near as the method's polynomial.
+  /// equations are not solved for: they are as accurate as the polynomial of the method.
   [[nodiscard]] std::span<const X> dense_output() {
     const std::span<const X> output = steps().dense_output();
     if (shifted_.empty()) return output;
@@ -91,12 +91,12 @@ class Driver {
   [[nodiscard]] Real step_begin() const { return steps().begin(); }
   [[nodiscard]] Real step_size() const { return steps().size(); }
 
-  /// Somebody else changed the state (a hand on the mouse): the run goes on from here.
+  /// Sets the state from outside, for example where a user drags a body: the run continues from here.
   void set_state(const X& x) {
     x_ = x;
     restart();
   }
-  /// Somebody changes the system (a parameter, an input): `change` gets it by reference.
+  /// Changes the system from outside, for example a parameter or an input: `change` gets it by reference.
   template <class Change>
   void change_system(Change&& change) {
     change(steps().system());
@@ -131,7 +131,8 @@ class Driver {
       "the system is stiff: stability, not accuracy, holds the steps of this method; name no method, or take rodas5p, "
       "radau or bdf";
 
-  /// A component that f does not read and that stands still has been changed by an event: the steps know nothing of it.
+  /// The new value of a component that an event has changed, that f does not read and that is constant between events.
+  /// The steps do not have this change.
   struct Shift {
     bool earlier;  // than the present step
     Real t;
@@ -144,7 +145,7 @@ class Driver {
     return abs(interval.to - interval.from);
   }
 
-  /// Where the steps went, and what can be done about it.
+  /// The hint for a run with too many steps: where they lie, and remedies.
   [[nodiscard]] std::string hint_of_too_many() {
     const std::size_t all = statistics().steps + statistics().rejected;
     const auto crowd = marks_.crowd();
@@ -207,7 +208,7 @@ class Driver {
     shifts_end_ = true;
   }
 
-  // Unknowns of algebraic equations follow the rest of the state wherever a run begins anew. True where there are any.
+  // Solves for the unknowns of algebraic equations wherever a run starts again. True where there are any.
   bool settle_algebraic() {
     if constexpr (HasMassDiagonal<System, X>) {
       if (!has_mass<X>(system())) return false;
@@ -218,8 +219,8 @@ class Driver {
     }
     return false;
   }
-  // Between steps: what the polynomial gives for the unknowns is only where the search for them begins. Where it does
-  // not lead to them, the polynomial stands.
+  // Within a step, the polynomial gives only the first guess for the unknowns. If Newton's iteration does not converge
+  // from there, the values of the polynomial remain.
   void solve_unknowns(Real t, X& x) {
     if constexpr (HasMassDiagonal<System, X>) {
       if (!has_mass<X>(system())) return;
@@ -242,7 +243,7 @@ class Driver {
     shifts_ = shifted_;
   }
 
-  // The events of the step that was just taken, in the order of time.
+  // Processes the events of the last step, in the order of time.
   template <class Observer>
   void pass_events(Observer& observer) {
     using std::abs;
@@ -304,12 +305,12 @@ class Driver {
     if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
     logic_.begin_instant(t_);
     if (logic_.fired().empty()) return;
-    steps().dense_output();  // while the state and f are those of the step: `at` promises it
+    steps().dense_output();  // computed while the state and f are those of the step, for `at`
     logic_.arrive(steps(), t_, x_, nullptr);
     fire(observer);
   }
 
-  // Whether there is an event at a crossing, and not only a guard that leaves a zero it began at.
+  // Whether a crossing is an event, and not only a guard that leaves the zero at which it began.
   [[nodiscard]] bool is_event(const Crossing<Real>& found, Real length) {
     if (!logic_.leaves_first_zero(found)) return true;
     state_at(found.offset, length, before_);
@@ -332,7 +333,7 @@ class Driver {
     logic_.look_at(steps(), crossing, values, steps().begin() + later, before_);
   }
 
-  // x at an offset into the last step: by theta, which keeps what is lost in begin + offset.
+  // x at an offset into the last step, computed by theta, which keeps the digits that begin + offset would lose.
   void state_at(Real offset, Real length, X& x) {
     if (offset == length) {
       x = steps().x_end();
@@ -348,14 +349,14 @@ class Driver {
     for (const Shift& one : shifted_) x.data()[one.component] = one.value;
   }
 
-  // The polynomial of a stiff step leaves the slow path between its ends: where an event begins the motion anew, a step
-  // of the method is taken to it, and the instant follows that step's end. The offset of the event; none where the
-  // equations of no step can be solved any more.
+  // The polynomial of a stiff step leaves the slow solution between its ends. So for an event that restarts the motion,
+  // this function takes a step of the method to the event, and the end of that step becomes the instant of the event.
+  // Returns the offset of the event; none where the equations of no step can be solved any more.
   [[nodiscard]] std::optional<Real> land(const Crossing<Real>& crossing, Real length) {
     using std::abs;
     const Real place = crossing.offset;
     const bool restarts = std::ranges::any_of(crossing.guards, [this](std::size_t i) { return logic_.can_restart(i); });
-    // Within some roundings of t from its beginning no step is to be had, and the polynomial has not left it.
+    // Within some roundings of t from the beginning no step is possible, and the polynomial has not left the solution.
     const Real nothing = 1000 * std::numeric_limits<Real>::epsilon() * abs(steps().begin());
     if (!restarts || place == length || !steps().lands() || abs(place) <= nothing) return place;
     const std::size_t guard = crossing.guards.front();
@@ -363,7 +364,8 @@ class Driver {
     // The slope of the guard by a difference over a thousandth of the step.
     const Real apart = length / 1000, before = guards_at(place - apart, length, later_values_)[guard];
     const Real slope = (guards_at(place, length, guard_values_)[guard] - before) / apart;
-    // One part of a condition may hold it at zero until another leaves: as of a jump, there is only the side to go by.
+    // One part of a condition may keep it at zero until another part leaves zero. Then, as with a jump, only the side
+    // is known.
     if (abs(before) <= std::numeric_limits<Real>::min()) return land_beyond_jump(guard, place, length);
     Real h = place, best = place, taken = length, least = std::numeric_limits<Real>::infinity();
     for (int tries = 0; tries < 4 && steps().retake(h, options_); ++tries) {
@@ -381,7 +383,7 @@ class Driver {
     if (taken != best && !steps().retake(best, options_)) return stay(place, length);
     return steps().end() - steps().begin();
   }
-  // The step as it was, with the event on its dense output.
+  // Restores the original step, with the event on its dense output.
   [[nodiscard]] std::optional<Real> stay(Real place, Real length) {
     return steps().retake(length, options_) ? std::optional<Real>(place) : std::nullopt;
   }
@@ -392,8 +394,8 @@ class Driver {
     end(Ending::nonlinear_solve_failed,
         "Newton's iteration does not converge on a step to the event: take smaller steps");
   }
-  // Of a guard that jumps there is nothing but its side: the first step, some units in the last place longer, that ends
-  // beyond.
+  // Of a guard that jumps only the side is known. Finds the first step that ends beyond the jump, among steps that are
+  // longer by some units in the last place.
   [[nodiscard]] std::optional<Real> land_beyond_jump(std::size_t guard, Real place, Real length) {
     using std::abs;
     const int far = sign_of(guards_at(place, length, guard_values_)[guard]);
@@ -407,7 +409,8 @@ class Driver {
     }
     return stay(place, length);
   }
-  // At the end of the step, and wherever rounding may leave the unknowns when they are solved for once more.
+  // Whether the guard is on this side at the end of the step, and at all states that rounding may give when the
+  // unknowns are solved for again.
   [[nodiscard]] bool is_surely_on(int side, std::size_t guard) {
     events_guards(steps().end(), steps().x_end());
     if (sign_of(guard_values_[guard]) != side) return false;
@@ -454,7 +457,7 @@ class Driver {
     return restarted;
   }
 
-  // One event, and where its firings accumulate what it does at the limit.
+  // Fires one event, or, where its firings accumulate, its action at the limit.
   template <class Observer>
   [[nodiscard]] EventResponse act(std::size_t i, Observer& observer, bool at_limit) {
     before_ = x_;

@@ -1,4 +1,4 @@
-// Where the steps of a run went, for a run that has too many of them.
+// Where in time the steps of a run lie, for the message of a run with too many of them.
 #pragma once
 #include <array>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace continuo {
 
-/// The time at every so many steps, at most 64 of them: when all are taken, every other one is dropped, and half as
-/// many are taken from then on.
+/// The times after every so many steps, at most 64 of them. When there are 64, every other one is dropped, and the
+/// distance doubles.
 template <class Real>
 class StepMarks {
  public:
@@ -21,7 +21,7 @@ class StepMarks {
     next_ = steps + every_;
   }
 
-  /// Between these times lie half of the steps, where that is a tenth of the way at most.
+  /// The times between which half of the steps lie, if their distance is at most a tenth of the way.
   [[nodiscard]] std::optional<std::pair<Real, Real>> crowd() const {
     if (count_ < least) return std::nullopt;
     const std::size_t half = count_ / 2;

@@ -1,5 +1,5 @@
 // Events that accumulate: a ball whose bounces shrink to nothing (Zeno), a relay that flips at every instant
-// (chattering). Both would keep a simulator busy for ever at one time; here they are found and named.
+// (chattering). Both would occupy a simulator for ever at one time; they are detected and reported here.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace continuo {
 
-/// Follows the times of each event by itself: that different events happen at one instant says nothing.
+/// Tracks the times of each event separately: different events at one instant are no accumulation.
 template <class Real>
 class AccumulationWatch {
  public:
@@ -39,7 +39,7 @@ class AccumulationWatch {
     return t + forward * rest;
   }
 
-  /// The accumulation of event i has been dealt with: its count begins anew.
+  /// Resets the count of event i, after its accumulation has been handled.
   void forget(std::size_t i) { tracks_[i] = {}; }
 
  private:

@@ -2,12 +2,14 @@
 //
 // The side of a guard is kept by the driver (GuardState). Zero belongs to the side it was reached from, so that a root
 // on a step's end is found by one of the two steps, once. A guard that is at zero after an event has the side to which
-// the motion carries it; until it has left the band around zero, which is the rounding of g, it crosses where it leaves
-// the band by the other side: a bounce too small for the number format does not pass.
+// the motion carries it; until it has left the band around zero, whose width is the rounding of g, it crosses where it
+// leaves the band on the other side: so a ball whose bounces are too small for the number format does not fall through
+// its floor.
 //
 // Guards that can be enclosed over parts of a step (a model's) are searched by proof (numerics/root_isolation.hpp): no
-// root of the dense output is missed. Others are sampled, and so is what enclosures leave undecided: nine points, more
-// where these do not resolve g; two roots nearer than a polynomial of degree eight over a part can show are missed.
+// root of the dense output is missed. Other guards are sampled, and so are the parts that enclosures leave undecided:
+// at nine points, and at more where these do not resolve g. Two roots are missed where they are nearer to each other
+// than a polynomial of degree eight over a part can show.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -36,20 +38,20 @@ template <class Real>
   return direction == Direction::crosses || (direction == Direction::falls) == (side < 0);
 }
 
-/// What is remembered of one guard.
+/// The state of one guard.
 template <class Real>
 struct GuardState {
   int side = 0;          // 0: g has been zero since the run began
   bool at_zero = false;  // within `band` of zero since its last event, or since the run began
   bool active = true;
   Real band{};
-  int returns = 0;  // crossings in a row out of the band, to the far side, without having left it by the other
+  int returns = 0;  // crossings in a row out of the band to the far side, without leaving it to the other
 
-  /// What g has to pass for the side to change.
+  /// The value that g has to pass for its side to change.
   [[nodiscard]] Real level() const { return at_zero && side != 0 ? -Real(side) * band : Real(0); }
 };
 
-/// Where the first crossing of a stretch lies and which guards take part.
+/// The first crossing of a segment, and the guards that take part in it.
 template <class Real>
 struct Crossing {
   Real offset;                      // on the far side of all of them
@@ -69,7 +71,7 @@ struct EnclosedStep {
 
   [[nodiscard]] bool has(std::size_t i) const { return events.is_enclosed(i); }
   void enclose_all(Real from, Real to) { events.enclose_all(from / size, to / size); }
-  /// Whether guard i stays on its side all the way: beyond zero, or in the band that it begins in.
+  /// Whether guard i stays on its side over the whole step: beyond zero, or in the band in which it begins.
   [[nodiscard]] bool stays(std::size_t i, const GuardState<Real>& state) const {
     const auto& whole = events.whole(i);
     if (state.side > 0 ? whole.lo > 0 : whole.hi < 0) return true;
@@ -77,9 +79,9 @@ struct EnclosedStep {
   }
 };
 
-/// The guards of one run. Places are offsets s from the start of the step: there the numbers lie denser than at t, and
-/// a ball at t = 1000 is found on the floor, not a hundred thousand roundings of h below it. `evaluate(s, span)` gives
-/// all guards at a place of the current stretch.
+/// The guards of one run. Places are offsets s from the start of the step: these numbers are denser than those at t, so
+/// that a ball at t = 1000 is located on the floor, not a hundred thousand roundings of h below it. `evaluate(s, span)`
+/// gives all guards at a place of the present segment.
 template <class Real>
 class EventLocator {
  public:
@@ -102,7 +104,7 @@ class EventLocator {
 
   /// The first crossing on from..to (negative when time runs backwards), or null. `direction(i)` says which crossings
   /// of guard i count; the others only move its side. Crossings less than `instant` apart are one. `known` are the
-  /// guards at `from`, empty where nobody has looked at them there.
+  /// guards at `from`, empty where they have not been evaluated there.
   template <class Evaluate, class DirectionOf, class Enclosed>
   [[nodiscard]] const Crossing<Real>* first_crossing(Real from, Real to, Real instant, std::span<const Real> known,
                                                      Evaluate&& evaluate, DirectionOf&& direction, Enclosed enclosed) {
@@ -129,7 +131,7 @@ class EventLocator {
     return found ? gather(from, to, instant) : nullptr;
   }
 
-  /// After a stretch without an event: the guards as they stand at its end.
+  /// After a segment without an event: updates the guards to their values at its end.
   void settle(std::span<const Real> g) {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       GuardState<Real>& state = states_[i];
@@ -141,7 +143,7 @@ class EventLocator {
 
  private:
   struct Scan {
-    GuardState<Real> state;  // moves along the stretch
+    GuardState<Real> state;  // advances along the segment
     std::size_t guard;
     Direction direction;
     Real crossing = std::numeric_limits<Real>::quiet_NaN();
@@ -186,7 +188,7 @@ class EventLocator {
     }
   }
 
-  // By proof; what remains undecided is sampled.
+  // Searches by proof, and samples the parts that remain undecided.
   template <class Evaluate, class Enclosed>
   void isolate(Scan& scan, Real from, Real to, Evaluate& evaluate, Enclosed& enclosed) {
     if constexpr (!std::is_same_v<Enclosed, NotEnclosed>) {
@@ -199,7 +201,7 @@ class EventLocator {
           [&](double a) { return enclosed.events.value_enclosure(scan.guard, a); },
           [&](double a, double b, int side, bool from_band) {
             if (!from_band) scan.state.at_zero = false;
-            if (b == last) return cross(scan, offset(a), to, evaluate);  // by what the next stretch begins with
+            if (b == last) return cross(scan, offset(a), to, evaluate);  // by the first value of the next segment
             return side != scan.state.side &&
                    arrive_beyond(scan, side, offset(a), offset(b), guard_at(scan.guard, offset(b), evaluate), evaluate);
           },
@@ -208,8 +210,8 @@ class EventLocator {
     }
   }
 
-  // A guard far from zero by all nine samples: its distance from zero exceeds what it could move between them, taken
-  // as its whole range over the step.
+  // Whether a guard is far from zero by all nine samples: its distance from zero exceeds its possible change between
+  // them, which is taken as its whole range over the step.
   [[nodiscard]] bool cheap_no(const Scan& scan) const {
     if (scan.state.side == 0) return false;
     Real least = samples_[0][scan.guard], greatest = least;
@@ -222,18 +224,18 @@ class EventLocator {
     return scan.state.side > 0 ? least > range : greatest < -range;
   }
 
-  // Searches one stretch whose samples stand in samples_; halves it where nine points do not resolve g near zero.
+  // Searches one segment, whose samples are in samples_; halves it where nine points do not resolve g near zero.
   template <class Evaluate>
   bool search(Scan& scan, Real from, Real to, Evaluate& evaluate, int depth) {
     if (scan.state.side == 0) return leave_zero(scan, from, to, evaluate, depth);
     auto value = values(scan);
-    // Zero belongs to the side it was reached from, and so does what lies within the band.
+    // Zero belongs to the side from which it was reached, and so do values within the band.
     if (!(value[0] * scan.state.side > 0)) value[0] = scan.state.side * std::numeric_limits<double>::min();
     const auto b = bernstein::from_values(value);
     const double error = bernstein::interpolation_error(value);
     double largest = 0, nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < bernstein::count; ++k) {
-      // Comparisons that pass over what is no number, as fmax and fmin do, which are calls.
+      // These comparisons ignore NaN, as fmax and fmin do, which would be function calls.
       if (const double size = std::abs(value[k]); size > largest) largest = size;
       if (const double distance = b[k] * scan.state.side; distance < nearest) nearest = distance;
     }
@@ -244,7 +246,7 @@ class EventLocator {
     };
     const bool smooth = error <= 0.1 * largest;
     if (smooth ? bernstein::isolate_sign_changes(b, visit) : between_samples(value, visit)) return true;
-    // The last net: whatever the polynomial said, a guard that ends on the other side has crossed.
+    // The last check: whatever the polynomial shows, a guard that ends on the other side has crossed.
     return cross(scan, from, to, evaluate);
   }
 

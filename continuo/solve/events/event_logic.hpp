@@ -1,5 +1,5 @@
-// What fires, and when: the sides of guards from event to event, and the schedule. docs/events.md states the rules. The
-// driver moves the state; what stands here only reads it.
+// Decides which events fire, and when: the sides of guards from event to event, and the schedule. docs/events.md states
+// the rules. The driver changes the state; this class only reads it.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ class EventLogic {
   [[nodiscard]] const Events& events() const { return events_; }
   [[nodiscard]] Events& events() { return events_; }
   [[nodiscard]] bool any_guard() const { return any_guard_; }
-  /// One that can change the motion.
+  /// Whether there is a guard whose event can change the motion.
   [[nodiscard]] bool any_turning_guard() const { return any_turning_guard_; }
   [[nodiscard]] AccumulationWatch<Real>& accumulation() { return accumulation_; }
 
@@ -67,20 +67,19 @@ class EventLogic {
   }
 
   // ---- the schedule
-  // --------------------------------------------------------------------------------------------------
 
   /// The first scheduled time after t of an event that can change the motion, at most `to`: a step ends there.
   [[nodiscard]] Real next_restart(Real t, Real to) const {
     return next_scheduled(t, to, [&](std::size_t i) { return can_restart(i); });
   }
-  /// Of the others, which happen within steps; infinity where there is none up to `to`.
+  /// The first scheduled time after t of the other events, which happen within steps; none where it is beyond `to`.
   [[nodiscard]] std::optional<Real> next_quiet(Real t, Real to) const {
     const Real none = forward_ * std::numeric_limits<Real>::infinity();
     const Real next = next_scheduled(t, none, [&](std::size_t i) { return !can_restart(i); });
     return forward_ * (next - to) <= 0 ? std::optional<Real>(next) : std::nullopt;
   }
 
-  /// Begins the list of an instant: what is scheduled for t and has not happened yet.
+  /// Begins the list of an instant with the events that are scheduled for t and have not happened yet.
   void begin_instant(Real t) {
     fired_.clear();
     if (!any_scheduled_ || scheduled_at_ == t) return;
@@ -91,7 +90,6 @@ class EventLogic {
   [[nodiscard]] std::span<const std::size_t> fired() const { return fired_; }
 
   // ---- guards over a step
-  // --------------------------------------------------------------------------------------------
 
   /// The first crossing on offsets from..to of the present step; evaluate(offset, values) gives the guards. `from_here`
   /// says that the search begins where the guards were settled, armed or fired last: there they are known.
@@ -107,7 +105,7 @@ class EventLogic {
       return watch_.first_crossing(from, to, instant, known, evaluate, direction, NotEnclosed{});
     }
   }
-  /// The step that is to be searched, by its dense output.
+  /// Gives the source of events the dense output of the step that is to be searched.
   void take_step(StepsOf& steps, std::span<const X> dense_output) {
     size_ = steps.size();
     if constexpr (has_enclosures) events_.take_step(steps.system(), steps.begin(), size_, dense_output);
@@ -116,18 +114,18 @@ class EventLogic {
     events.take_step(system, Real{}, Real{}, coefficients);
   };
 
-  /// No event up to the offset that was searched last: the sides there, where the guards are as at (t, x).
+  /// Updates the sides at (t, x), the end of the segment that was searched last, in which there is no event.
   void settle(StepsOf& steps, Real t, const X& x) {
     evaluate(steps, t, x, g_);
     watch_.settle(g_);
   }
 
   // ---- an instant
-  // ----------------------------------------------------------------------------------------------------
 
-  /// The run begins, or somebody has changed the state: every guard gets its side. One at zero, which the motion takes
-  /// to the side that its event watches, is no crossing, unless the event would turn the motion back: a ball that lies
-  /// on the floor does not fall through it. Those are added to the list of the instant.
+  /// Gives every guard its side, at the beginning of a run or after a change of the state from outside. A guard at zero
+  /// that the motion carries to the side that its event watches is no crossing, unless the event would turn the motion
+  /// back: a ball that lies on the floor does not fall through it. The events of such guards are added to the list of
+  /// the instant.
   void arm(StepsOf& steps, Real t, const X& x) {
     if (!any_guard_) return;
     std::ranges::fill(slack_, Real(0));
@@ -144,9 +142,9 @@ class EventLogic {
     std::sort(fired_.begin(), fired_.end());
   }
 
-  /// Looks at located crossings on the dense output: `values` are the guards there, `later` a millionth of the step
-  /// later, at `later_t` and `later_x`. What g still is at its far side is less than it becomes until then, or
-  /// rounding, but where g jumps.
+  /// Tests whether guards jump at a crossing that was located on the dense output. `values` are the guards there;
+  /// later_t and later_x belong to a place a millionth of the step later. Unless g jumps, its value on the far side is
+  /// less than its change up to the later place, or is rounding.
   void look_at(StepsOf& steps, const Crossing<Real>& crossing, std::span<const Real> values, Real later_t,
                const X& later_x) {
     using std::abs;
@@ -169,7 +167,8 @@ class EventLogic {
         return true;
     return false;
   }
-  /// The guards half way to a crossing: of those that take no part in it, what is beyond its band has left zero.
+  /// Updates guards by their values half way to a crossing: a guard that takes no part in it and is beyond its band has
+  /// left zero.
   void leave_zero(const Crossing<Real>& crossing, std::span<const Real> values) {
     using std::abs;
     for (std::size_t i = 0; i < events_.size(); ++i) {
@@ -178,20 +177,20 @@ class EventLogic {
       if (std::ranges::find(crossing.guards, i) == crossing.guards.end()) state.at_zero = false;
     }
   }
-  /// A step was taken to the instant, whose state is off by the tolerance: guards may be off by as much as that makes.
+  /// Finds the error of guards after a step to the instant, whose state has an error of the size of the tolerance.
   void allow_for(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance) {
     using std::min;
     const Real few(2), many(1 << 10);
     evaluate(steps, t, x, g_);
     changes_by_tolerance(steps, t, x, tolerance, few, slack_);
-    // A jump nearby changes a guard by as much over a longer way, which is no inaccuracy.
+    // Near a jump a guard changes by as much over a longer way: that is no inaccuracy.
     changes_by_tolerance(steps, t, x, tolerance, many, wide_);
     for (std::size_t i = 0; i < events_.size(); ++i) slack_[i] = min(slack_[i], wide_[i] / (many / (2 * few)));
   }
   /// Whether guard i of the crossing that was looked at jumps across zero.
   [[nodiscard]] bool jumps(std::size_t i) const { return jumps_[i] != 0; }
-  /// The motion has come to the instant t, before any action: guards that cross here are added to the list. `crossing`
-  /// are those that were located, null where the instant is a scheduled one.
+  /// Adds the guards that cross at the instant t to its list, before any action. `crossing` has the guards that were
+  /// located; it is null where the instant is a scheduled one.
   void arrive(StepsOf& steps, Real t, const X& x, const Crossing<Real>* crossing) {
     if (!any_guard_) return;
     evaluate(steps, t, x, g_);
@@ -212,8 +211,8 @@ class EventLogic {
   [[nodiscard]] bool leaves_first_zero(const Crossing<Real>& crossing) const {
     return std::ranges::any_of(crossing.guards, [this](std::size_t i) { return watch_.states()[i].side == 0; });
   }
-  /// Takes out of the crossing that was found last those guards that leave a zero they had from the start of the run
-  /// and whose events would not turn the motion back: these only get their side. False where no guard is left.
+  /// Removes from the last crossing the guards that leave a zero that they had from the start of the run, and whose
+  /// events would not turn the motion back: these only get their side. False where no guard is left.
   [[nodiscard]] bool keep_true_crossings(StepsOf& steps, Real t, const X& x) {
     std::vector<std::size_t>& guards = watch_.crossing().guards;
     std::erase_if(guards, [&](std::size_t i) {
@@ -225,14 +224,14 @@ class EventLogic {
     return !guards.empty();
   }
 
-  /// A round of the instant begins: `fired()` are to act, one after the other.
+  /// Begins a round of the instant, in which the events of `fired()` act one after the other.
   void begin_round() {
     next_.clear();
     std::ranges::fill(marks_, char{0});
     for (const std::size_t i : fired_) marks_[i] = pending;
     jumped_ = restarted_ = false;
   }
-  /// Event i has acted and left x.
+  /// Updates the guards after event i has acted and has left x.
   void acted(StepsOf& steps, std::size_t i, const EventResponse& response, Real t, const X& x) {
     marks_[i] = response.restart ? turned : done;
     restarted_ = restarted_ || response.restart;
@@ -249,8 +248,8 @@ class EventLogic {
       jump(k);
     }
   }
-  /// Every event of the round has acted. What is at zero now goes where the motion takes it; then `fired()` is the next
-  /// round's list.
+  /// Ends a round, in which every event has acted. Guards at zero get the side to which the motion carries them;
+  /// `fired()` becomes the list of the next round.
   void end_round(StepsOf& steps, Real t, const X& x) {
     std::ranges::fill(held_, char{0});
     if (any_guard_ && jumped_) {
@@ -262,10 +261,10 @@ class EventLogic {
     std::swap(fired_, next_);
     std::sort(fired_.begin(), fired_.end());
   }
-  /// Event i fires since the motion, not turned back, would leave zero by the far side at once: a ball without
-  /// restitution on its floor. If its action changes nothing either, it would fire for ever.
+  /// Whether event i fires because the motion, which was not turned back, would leave zero at once by the far side: a
+  /// ball without restitution on its floor. If the action changes nothing either, the event would fire for ever.
   [[nodiscard]] bool is_held(std::size_t i) const { return held_[i] != 0; }
-  /// Event i has fired too often without its guard having left zero in between: the motion stays there.
+  /// Whether event i has fired too often without its guard leaving zero in between, so that the motion stays there.
   [[nodiscard]] bool stays(std::size_t i) const { return watch_.states()[i].returns >= most_returns; }
   void clear() { fired_.clear(); }
 
@@ -280,7 +279,7 @@ class EventLogic {
 
   [[nodiscard]] bool watched(std::size_t i) const { return events_.is_guard(i); }
 
-  /// A guard that was made of a condition: its sign at zero itself says whether the condition holds.
+  /// Whether a guard was made of a condition: its sign, even at zero, tells whether the condition is true.
   [[nodiscard]] bool is_condition(std::size_t i) const {
     if constexpr (requires { events_.is_condition(i); }) {
       return events_.is_condition(i);
@@ -289,8 +288,9 @@ class EventLogic {
     }
   }
 
-  /// The guard of a jump of the equations, which only the motion crosses: where an action changes the state, the source
-  /// settles the jumps by itself. Firing gives the guard another meaning: it has the side that it then has.
+  /// Whether a guard belongs to a jump of the equations, which only the motion crosses: where an action changes the
+  /// state, the source settles the jumps itself. Firing gives such a guard another meaning, and it gets the side of its
+  /// new values.
   [[nodiscard]] bool renews_guard(std::size_t i) const {
     if constexpr (requires { events_.renews_guard(i); }) {
       return events_.renews_guard(i);
@@ -324,7 +324,7 @@ class EventLogic {
     bool any = false;
     for (std::size_t i = 0; i < events_.size() && !any; ++i) any = is_near(i);
     if (!any) return;
-    // A jump nearby changes a guard by as much over a longer way, which is no rounding.
+    // Near a jump a guard changes by as much over a longer way: that is no rounding.
     largest_changes(steps, t, x, many, wide_);
     for (std::size_t i = 0; i < events_.size(); ++i)
       if (is_near(i)) rounding_[i] = min(rounding_[i], wide_[i] / (many / (2 * few)));
@@ -358,7 +358,7 @@ class EventLogic {
     if constexpr (requires { events_.carried(steps.system(), i, t, x, forward_); }) {
       if (const std::optional<Carried> known = events_.carried(steps.system(), i, t, x, forward_)) {
         if (known->order != 1 || known->surely) return *known;
-        // What may be off by more than rounding, since a jump of the equations is near, shows by differences.
+        // Near a jump of the equations the derivative may have an error beyond rounding, which differences show.
         const Carried seen = carried_to_first_orders(steps, i, t, x);
         return seen.surely ? seen : *known;
       }
@@ -366,9 +366,9 @@ class EventLogic {
     return carried_to_first_orders(steps, i, t, x);
   }
 
-  // Where the motion takes a guard at zero. Of a condition that only a step's inaccuracy keeps from zero, derivatives
-  // say which way the part of it goes that is nearest, not whether the condition comes to hold: `x > 1 and x < 1` rises
-  // until x = 1 and falls from there on. That shows where the motion has left the inaccuracy behind.
+  // The side to which the motion carries a guard at zero. If only the inaccuracy of a step keeps a condition from zero,
+  // derivatives show the direction of its nearest part, not whether the condition becomes true: `x > 1 and x < 1` rises
+  // until x = 1 and falls from there on. So the sign is taken where the motion has left the range of the inaccuracy.
   [[nodiscard]] Carried way_from_zero(StepsOf& steps, std::size_t i, Real t, const X& x) {
     using std::abs;
     if (is_condition(i) && abs(g_[i]) > rounding_[i])
@@ -390,8 +390,8 @@ class EventLogic {
         });
   }
 
-  // Of a condition at zero that no derivative carries away: one part of it may stay at zero for good, and its sign
-  // there says whether it holds, while others leave. Which it is shows a little later.
+  // The sign, a little later, of a condition at zero that no derivative carries away from zero: one part of it may stay
+  // at zero for good, where its sign tells whether it is true, while other parts leave zero.
   [[nodiscard]] int sign_a_little_later(StepsOf& steps, std::size_t i, Real t, const X& x) {
     sign_beyond(steps, i, t, x, rounding_[i]);
     return sign_of(scratch_[i]);
@@ -410,7 +410,7 @@ class EventLogic {
     return 0;
   }
 
-  /// How far the motion may be followed without coming to what happens next.
+  /// How far the motion may be followed without reaching the next event.
   [[nodiscard]] Real length_to_follow(const StepsOf& steps, Real t) const {
     using std::abs, std::max, std::min;
     const Real length = min(max(abs(steps.size()), longest_ / Real(1e6)), longest_);  // a step to an event is short
@@ -425,8 +425,8 @@ class EventLogic {
     }
   }
 
-  /// What g can be off by at the present instant. A surface of the equations that has not been come to is where the
-  /// system says that it is.
+  /// The possible error of g at the present instant. The place of a jump of the equations that the motion has not
+  /// reached is defined by the system, to rounding.
   [[nodiscard]] Real inaccuracy(std::size_t i) const {
     return renews_guard(i) ? rounding_[i] : std::max(rounding_[i], slack_[i]);
   }
@@ -435,14 +435,14 @@ class EventLogic {
     return !(abs(g_[i]) > inaccuracy(i));
   }
 
-  /// The same, or in the band that it has not left since its last event.
+  /// Whether guard i is at zero, or in the band that it has not left since its last event.
   [[nodiscard]] bool is_still_zero(std::size_t i) const {
     using std::abs;
     const GuardState<Real>& state = watch_.states()[i];
     return at_zero(i) || (state.at_zero && abs(g_[i]) <= state.band);
   }
 
-  // A guard as it is found, without a past. False where it is not watched now.
+  // Sets the state of a guard from its present value, without a past. False where it is not watched now.
   bool place(StepsOf& steps, std::size_t i, Real t, const X& x) {
     GuardState<Real>& state = watch_.states()[i];
     state = {};
@@ -455,7 +455,8 @@ class EventLogic {
     return true;
   }
 
-  // A located crossing. A step taken to the instant may leave g a little on either side of zero: that is zero.
+  // Processes a located crossing. A step to the instant may leave g a little on either side of zero, which counts as
+  // zero.
   void cross(std::size_t i) {
     using std::abs, std::max;
     GuardState<Real>& state = watch_.states()[i];
@@ -468,8 +469,8 @@ class EventLogic {
     add(fired_, i);
   }
 
-  // Any other guard at an instant, before the actions: by now it may have moved to its other side, unwatched, or be at
-  // zero on its way there.
+  // Processes any other guard at an instant, before the actions: it may have moved to its other side, unwatched, or be
+  // at zero on its way there.
   void pass(StepsOf& steps, std::size_t i, Real t, const X& x) {
     using std::abs;
     GuardState<Real>& state = watch_.states()[i];
@@ -486,7 +487,7 @@ class EventLogic {
     if (watches(events_.direction(i), side)) add(fired_, i);
   }
 
-  // After an action: a guard that is on the other side of zero now, beyond what rounding does.
+  // After an action: processes a guard that is on the other side of zero now, beyond rounding.
   void jump(std::size_t i) {
     if (is_still_zero(i)) return;
     GuardState<Real>& state = watch_.states()[i];
@@ -498,7 +499,7 @@ class EventLogic {
     if (watches(direction, side) && !(from_zero && direction == Direction::crosses)) add(next_, i);
   }
 
-  // At the end of a round: guards at zero go where the motion takes them.
+  // At the end of a round: gives a guard at zero the side to which the motion carries it.
   void carry(StepsOf& steps, std::size_t i, Real t, const X& x) {
     using std::abs, std::max;
     GuardState<Real>& state = watch_.states()[i];
@@ -520,7 +521,7 @@ class EventLogic {
     marks_[i] == turned ? turn(steps, i, way, t, x) : take(steps, i, way, t, x);
   }
 
-  // A guard that the present mode watches and the one before did not.
+  // Processes a guard that the present mode watches and the previous one did not.
   void enter(StepsOf& steps, std::size_t i, Real t, const X& x) {
     const Direction direction = events_.direction(i);
     place(steps, i, t, x);
@@ -529,7 +530,7 @@ class EventLogic {
       add(next_, i);
   }
 
-  // The guard of an event that has acted and is at zero.
+  // Processes a guard at zero whose event has acted.
   void turn(StepsOf& steps, std::size_t i, const Carried& way, Real t, const X& x) {
     using std::abs;
     GuardState<Real>& state = watch_.states()[i];
@@ -537,12 +538,12 @@ class EventLogic {
       if (way.side != 0) state.side = way.side;
     } else if (way.side == 0 && is_condition(i)) {
       state.side = sign_a_little_later(steps, i, t, x);
-      // A part of the condition stays at zero for good. That it has not left zero since the event before shows no
-      // chatter, unless hardly any time has passed.
+      // A part of the condition stays at zero for good. So the guard has not left zero since the previous event, which
+      // is no chattering unless hardly any time has passed.
       if (!last_event_ || abs(t - *last_event_) > longest_ * Real(chatter)) state.returns = 0;
     } else if (way.side != state.side) {
-      // Turned back, which an event that watches both directions sees as well, or held at zero. What it is beyond zero
-      // already is all that it may be.
+      // The motion was turned back, which is a crossing too for an event that watches both directions, or it stays at
+      // zero. The guard may be no further beyond zero than it is now.
       state.side = -state.side;
       state.band = abs(g_[i]) + rounding_[i];
       if (way.side != 0 && watches(events_.direction(i), state.side)) add(next_, i);
@@ -551,7 +552,7 @@ class EventLogic {
       add(next_, i);
     }
   }
-  // Any other guard at zero.
+  // Processes any other guard at zero.
   void take(StepsOf& steps, std::size_t i, const Carried& way, Real t, const X& x) {
     GuardState<Real>& state = watch_.states()[i];
     const int side = way.side != 0 ? way.side : is_condition(i) ? sign_a_little_later(steps, i, t, x) : 0;
@@ -563,8 +564,8 @@ class EventLogic {
     if (watches(direction, side) && !(from_zero && direction == Direction::crosses)) add(next_, i);
   }
 
-  // Whether the event of guard i, which the motion carries from zero to the far side, would turn it back: tried on
-  // copies, a little beyond zero.
+  // Whether the event of guard i, which the motion carries from zero to the far side, would turn the motion back. It is
+  // tried on copies, a little beyond zero.
   [[nodiscard]] bool restores(StepsOf& steps, std::size_t i, Real t, const X& x, int near) {
     if constexpr (requires { events_.can_assign(i); }) {
       if (!events_.can_assign(i)) return false;

@@ -1,4 +1,4 @@
-// Where the motion takes a guard that is zero now: for guards of which only values are known.
+// The side to which the motion carries a guard that is zero now, for guards of which only values are known.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace continuo {
 
 /// The side to which the motion carries a guard from zero, by its first derivative along the motion that is not zero
-/// (to rounding), and the order of that derivative. Side 0: up to the third all are, or nobody knows.
+/// (to rounding), and the order of that derivative. Side 0: all derivatives up to the third are zero, or none is known.
 struct Carried {
   int side = 0;
   int order = 0;
@@ -20,8 +20,8 @@ struct Carried {
 };
 
 /// Three moves of t and of every component by `units` units in the last place, in different directions, since equal
-/// relative moves leave a difference of equals unchanged: the largest change of a guard over them is what it can be off
-/// by rounding. `g_at(t, x)` looks at the guard; `moved` is scratch.
+/// relative moves leave a difference of equals unchanged: the largest change of a guard over them is its possible
+/// rounding error. `g_at(t, x)` evaluates the guard; `moved` is scratch.
 template <class Real, class X, class GuardAt>
 void for_each_rounded(Real t, const X& x, X& moved, GuardAt&& g_at, Real units = 4) {
   const Real unit = units * std::numeric_limits<Real>::epsilon();
@@ -36,8 +36,8 @@ void for_each_rounded(Real t, const X& x, X& moved, GuardAt&& g_at, Real units =
 
 namespace detail {
 
-/// By differences over the way dt, twice, along the parabola x + s f + s^2/2 f', where f' is a difference of f as well.
-/// `first` is f(t, x), g0 the guard there.
+/// Finds the side by differences over the ways dt and 2 dt, along the parabola x + s f + s^2/2 f', where f' is a
+/// difference of f as well. `first` is f(t, x), g0 the guard there.
 template <class Real, class X, class GuardAt, class SlopeAt>
 [[nodiscard]] Carried carried_over(Real t, const X& x, Real dt, Real rounding, const X& first, Real g0, X& second,
                                    X& moved, GuardAt& g_at, SlopeAt& slope_at) {
@@ -50,9 +50,9 @@ template <class Real, class X, class GuardAt, class SlopeAt>
     return g_at(t + s, moved);
   };
   const Real g1 = g_after(dt), g2 = g_after(2 * dt);
-  // Three values are a parabola: its slope and its bend at s = 0, each times the way dt.
+  // Three values determine a parabola: its slope times dt and its second derivative times dt^2 at s = 0.
   const Real slope = (4 * g1 - g2 - 3 * g0) / 2, bend = g0 - 2 * g1 + g2;
-  // The third derivative, which is not looked at, stays below a thousandth of the second at so short a way.
+  // The third derivative is not evaluated; over so short a way its part stays below a thousandth of that of the second.
   if (abs(slope) > 8 * rounding && abs(slope) > abs(bend) / 1000)
     return {sign_of(slope), 1, abs(slope) > Real(Carried::far_beyond) * rounding};
   if (abs(bend) > 8 * rounding) return {sign_of(bend), 2, false};
@@ -61,9 +61,9 @@ template <class Real, class X, class GuardAt, class SlopeAt>
 
 }  // namespace detail
 
-/// By differences. `length` is how far the motion may be followed: less than the flight to the next event. The shortest
-/// way over which g changes far beyond its `rounding` counts: over a longer one it may have turned. g_at(t, x) is the
-/// guard, g0 what it is at (t, x), slope_at(t, x, out) writes x'; first, second and moved are scratch.
+/// Finds the side by differences. `length` is how far the motion may be followed: less than the flight to the next
+/// event. The shortest way over which g changes far beyond its `rounding` counts: over a longer one it may have turned.
+/// g_at(t, x) is the guard, g0 its value at (t, x), slope_at(t, x, out) writes x'; first, second and moved are scratch.
 template <class Real, class X, class GuardAt, class SlopeAt>
 [[nodiscard]] Carried carried_by_differences(Real t, const X& x, Real g0, Real length, Real rounding, X& first,
                                              X& second, X& moved, GuardAt&& g_at, SlopeAt&& slope_at) {

@@ -1,5 +1,5 @@
 // continuo/solve/steps/check_input.hpp
-// What a run cannot begin with.
+// The check of a run's input.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace continuo {
 
-/// What decides whether a method can begin a run.
+/// The properties of a method that decide whether it can begin a run.
 struct MethodNeeds {
   std::string_view name;
   bool implicit, estimates_error;
   std::string_view
-      unsupported_reason;  // what it has against the system, to be read after its name; empty where nothing
+      unsupported_reason;  // why it does not support the system, to be read after its name; empty if it does
 };
 
 template <class M, class System, State X>

@@ -29,7 +29,7 @@ struct Consistency {
   explicit operator bool() const { return result == Result::consistent; }
 };
 
-/// What is wrong where there are no consistent values.
+/// The hint where there are no consistent values.
 [[nodiscard]] constexpr const char* hint_of(const Consistency& found) {
   return found.result == Consistency::Result::singular
              ? "the algebraic equations do not determine their unknowns here: an unknown appears in no equation, two "
@@ -38,8 +38,8 @@ struct Consistency {
                "contradiction in the equations";
 }
 
-/// How far unknowns are solved for. For guards, which are looked at here and there in a step: to rounding, so that they
-/// have no other noise.
+/// How accurately unknowns are solved for. For guards, which are evaluated at many places of a step, they are solved
+/// for to rounding, so that guards have no other noise.
 enum class SolvedTo { tolerance, rounding };
 
 /// Solves for the unknowns without mass, the other components stay. Newton's iteration; a correction is halved until
@@ -66,8 +66,8 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
     ++found.evaluations;
     for (std::size_t k = 0; k < m; ++k) g[k] = f.data()[unknown[k]];
   };
-  // By the scale of the iterate: one that changed with what a correction leads to would call a correction towards zero
-  // longer than it is.
+  // The scale is that of the iterate. A scale that changed with the result of a correction would make a correction
+  // towards zero seem longer than it is.
   const auto take_scale = [&] {
     for (std::size_t k = 0; k < m; ++k) {
       const Real& value = x.data()[unknown[k]];
@@ -89,13 +89,13 @@ Consistency make_consistent(F& system, const Scalar<X>& t, X& x, const Tolerance
     for (std::size_t k = 0; k < m; ++k) x.data()[unknown[k]] += step[k];
   };
 
-  // A hundredth of the tolerance: the run's own errors shall be the larger ones.
+  // A hundredth of the tolerance, so that the errors of the run itself are larger.
   const Real target = Real(1) / Real(100);
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     residual(correction);
     found.evaluations += evaluate_jacobian(
         system, t, x, f, moved, slope,
-        // Of a guess that is zero the size is unknown: the increment of Hairer & Wanner's RADAU5 for it.
+        // The magnitude of an unknown with the guess 0 is not known: the increment is that of Hairer & Wanner's RADAU5.
         [](std::size_t) { return Real(sqrt(std::numeric_limits<Real>::epsilon() / Real(100000))); },
         std::span<Real>(rows));
     for (std::size_t i = 0; i < m; ++i)

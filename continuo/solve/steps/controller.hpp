@@ -12,8 +12,8 @@ namespace continuo {
 /// A step controller is three exponents and the bounds of one change.
 struct Controller {
   double beta1, beta2, beta3;
-  /// How far below the greatest step that would pass the next one aims. A rejected step of a method with many stages is
-  /// dear, and bench/ found 0.7 to 0.8 the cheapest at equal true error for every pair of orders 5 to 9.
+  /// The ratio of the next step to the greatest one that would be accepted. A rejected step of a method with many
+  /// stages is expensive, and bench/ found 0.7 to 0.8 the cheapest at equal true error for every pair of orders 5 to 9.
   double safety = 0.75;
   double least_factor = 0.2, greatest_factor = 10;
 };
@@ -30,10 +30,10 @@ inline constexpr Controller PID{0.58, -0.21, 0.1};
 
 namespace detail {
 
-/// log2 of a positive finite number and 2^x, to 0.001: a step size needs no more, and between one small step and the
-/// next the library's functions are the longest wait. Exponents are taken from the bits; the cubics have the least
-/// greatest error that leaves no jump from one power of two to the next, and are summed in pairs of terms, to be ready
-/// sooner.
+/// log2 of a positive finite number and 2^x, to 0.001: a step size needs no more, and the functions of the library
+/// would take the longest time between one small step and the next. Exponents are taken from the bits. The cubics have
+/// the smallest maximum error among those without a jump from one power of two to the next, and are summed in pairs of
+/// terms, which shortens the chain of operations.
 [[nodiscard]] inline float quick_log2(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   const float m = std::bit_cast<float>((bits & 0x007fffffU) | 0x3f800000U);
@@ -52,8 +52,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// The memory of a controller: the logarithms of the last two errors, squared. A jump of the state clears it. Errors
-/// come squared, as the mean of squares is found: the next step would have to wait for the root.
+/// The memory of a controller: the logarithms of the last two squared errors. A jump of the state clears it. Errors are
+/// given as squares, which the mean of squares provides: the next step would have to wait for the root.
 struct ErrorHistory {
   float last = 0, before_last = 0;
 
@@ -65,7 +65,7 @@ struct ErrorHistory {
         static_cast<float>(controller.beta2) * last + static_cast<float>(controller.beta3) * before_last;
     before_last = last;
     last = here;
-    // The rest of this line was known before `here`, for which the next step waits.
+    // All other terms are known before `here`, for which the next step waits.
     const float factor = static_cast<float>(controller.safety) *
                          detail::quick_exp2(-exponent * older - exponent * static_cast<float>(controller.beta1) * here);
     return std::clamp(factor, static_cast<float>(controller.least_factor),

@@ -27,7 +27,7 @@ template <State X, class System>
   const Real steepest = max(slope, bend);
   Real h1 = steepest <= Real(1e-15) ? max(Real(1e-6), h0 * Real(1e-3))
                                     : pow(Real(0.01) / steepest, Real(1) / Real(order + 1));
-  if (!(h1 > 0)) h1 = h0 * Real(1e-3);  // f is not finite nearby: begin small, the driver sees to the rest
+  if (!(h1 > 0)) h1 = h0 * Real(1e-3);  // f is not finite nearby: begin small, and leave the rest to step control
   return min(min(100 * h0, h1), longest);
 }
 

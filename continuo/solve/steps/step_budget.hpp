@@ -1,5 +1,5 @@
 // continuo/solve/steps/step_budget.hpp
-// How far the steps of a run get it, for a run that stiffness holds: whether it can end within its limit of steps.
+// The progress of a run whose step size stiffness limits: whether the run can end within its limit of steps.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace continuo {
 template <class Real>
 class StepBudget {
  public:
-  /// At the end of a step that stiffness holds, every now and then; `steps` so far, of at most `most`.
+  /// Notes the progress now and then, at the end of a step that stiffness limits: `steps` so far, of at most `most`.
   void mark(std::size_t steps, std::size_t most, const Real& t) {
     using std::abs;
     if (!begun_) {
@@ -28,11 +28,11 @@ class StepBudget {
       t_ = t;
     }
   }
-  /// Stiffness does not hold the steps, or something changed.
+  /// Starts again where stiffness does not limit the steps, or something has changed.
   void forget() { *this = {}; }
 
   [[nodiscard]] bool steady() const { return steady_; }
-  /// Steps for what is left of the way.
+  /// The steps that the rest of the way needs.
   [[nodiscard]] Real steps_for(const Real& way) const {
     using std::abs;
     return abs(way) / per_step_;
@@ -42,7 +42,7 @@ class StepBudget {
 
  private:
   static constexpr std::size_t parts = 100;
-  static constexpr double longest_growth = 1.01;  // what steps at the boundary of stability vary by without growing
+  static constexpr double longest_growth = 1.01;  // the variation of steps at the limit of stability that do not grow
 
   Real t_{}, per_step_{};
   std::size_t steps_ = 0;

@@ -1,4 +1,5 @@
-// Takes accepted steps: tries, measures the error, rejects, shrinks, grows. Knows nothing of events.
+// Takes the steps of a run: attempts a step, measures its error, accepts or rejects it, and adapts the step size. The
+// driver handles events.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -94,7 +95,7 @@ class StepControl final : public Steps<System, X> {
     }
   }
 
-  /// What a step of size h can be measured by.
+  /// The tolerance by which the error of a step of size h is measured.
   [[nodiscard]] Tolerance<Real> tolerance_of_step(const Real& h, const Options<X>& options) const {
     using std::abs, std::max, std::min;
     constexpr double times_rounded = 4;
@@ -107,7 +108,7 @@ class StepControl final : public Steps<System, X> {
     return weights;
   }
 
-  /// The square of M::error_norm, without its root where the method has it so.
+  /// The square of M::error_norm, without computing its root where the method provides that.
   [[nodiscard]] Real error_square(const Tolerance<Real>& weights) const {
     if constexpr (requires { M::error_square(work_, h_, x_begin_, x_end_, weights); }) {
       return M::error_square(work_, h_, x_begin_, x_end_, weights);
@@ -159,7 +160,7 @@ class StepControl final : public Steps<System, X> {
     if (const Real longest = longest_step(limit, options); abs(h) > longest) [[unlikely]]
       h = forward_ * longest;
     for (std::size_t rejects = 0;; ++rejects) {
-      // A step that would leave a crumb before the limit takes it along.
+      // A remainder below 1 % of h before the limit is absorbed into this step.
       const bool last = forward_ * (Real(1.01) * h - room) >= 0;
       if (last) [[unlikely]] {
         attempt(room, options);
@@ -169,18 +170,18 @@ class StepControl final : public Steps<System, X> {
       weights = tolerance_of_step(h_, options);
       const bool solved = detail::status_of<M>(work_) == StepStatus::done;
       const Real square = solved ? error_square(weights) : std::numeric_limits<Real>::infinity();
-      // Neither true nor false of a number that is none: it is one where x_end_ is not finite.
+      // Also false where `square` is NaN, which it is where x_end_ is not finite.
       const bool finite = square < std::numeric_limits<Real>::infinity();
       if (finite && square <= 1) {
         const Real factor = factor_after(static_cast<float>(square), was_rejected, weights, options);
         if (last) [[unlikely]] {
-          // A step cut short by the limit says little about the next: never below what was planned.
+          // A step that was shortened by the limit says little about the next one, which is no shorter than planned.
           next_ = forward_ * max(abs(h), abs(h_) * factor);
           end_ = limit;
           carried_ = 0;
         } else {
           next_ = h_ * factor;
-          // What the sum loses is carried to the next (W. Kahan): a million steps do not drift.
+          // The rounding error of the sum is carried to the next step (W. Kahan), so that a million steps do not drift.
           const Real wanted = h_ + carried_;
           end_ = begin_ + wanted;
           carried_ = wanted - (end_ - begin_);
@@ -208,8 +209,9 @@ class StepControl final : public Steps<System, X> {
     }
   }
 
-  // An unknown that the step before has left off its equation is an error that no h makes smaller: where a diode begins
-  // to conduct, an estimate may have missed it. The unknowns alone are solved for once more, from the state as it is.
+  // Solves for the unknowns of algebraic equations again, at the start of the step. Where the previous step has ended
+  // with an unknown that does not satisfy its equation, no h makes the error smaller; where a diode begins to conduct,
+  // an error estimate may have missed this.
   void settle_unknowns(const Tolerance<Real>& weights) {
     if (!has_mass<X>(system_)) return;
     X settled = x_begin_;
@@ -218,14 +220,14 @@ class StepControl final : public Steps<System, X> {
     if (!found) return;
     std::swap(x_begin_, settled);
     for (std::size_t i = 0; i < dimension(settled); ++i) settled.data()[i] -= x_begin_.data()[i];
-    // A method begins anew where its start was off, and only there.
+    // The method restarts only where its initial values were wrong.
     jumped_ = jumped_ || weighted_norm(settled, x_begin_, x_begin_, weights) > least_off;
   }
 
-  // What f does at a later time shows in no step before it, if f is known to hang on the time (a model says so, a
-  // function alone does not): beside a solution at rest steps would grow until one of
-  // them takes a whole pulse of the input between its stages. A fiftieth of the run so far known is what somebody sees
-  // who looks at a plot of it.
+  // The longest step of a system that is known to depend on time (a model tells this, a function alone does not). No
+  // step shows how f depends on later times: while the solution is at rest, steps would grow until one of them has a
+  // whole pulse of an input between its stages. So steps are at most a fiftieth of the run as far as it is known, the
+  // resolution of a plot of it.
   [[nodiscard]] Real longest_step(Real limit, const Options<X>& options) {
     using std::abs, std::max, std::min;
     if (!is_known_to_depend_on_time(system_)) return options.max_step;
@@ -275,7 +277,7 @@ class StepControl final : public Steps<System, X> {
 
   typename M::template Workspace<X> work_;
   Interpolant<X, M::dense_degree> interpolant_;
-  Real origin_, reach_{};   // the start of the run, and how far from it limits have been
+  Real origin_, reach_{};   // the start of the run, and the greatest distance of a limit from it
   bool began_anew_ = true;  // the last step: nothing was kept from before it
 };
 

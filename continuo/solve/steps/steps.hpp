@@ -1,5 +1,5 @@
-// What there is of the steps of a run whatever the method: where the last one lies, what the next one needs, how a run
-// fails. The method's part is in step_control.hpp.
+// The part of a run's steps that is independent of the method: the place of the last step, the data for the next one,
+// and failures. The part of the method is in step_control.hpp.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,8 @@
 
 namespace continuo {
 
-/// The last accepted step and what the next one needs. Steps run from begin() to end(); the state at end() is where
-/// the next begins unless jump() says otherwise.
+/// The last accepted step and the data for the next one. A step goes from begin() to end(); the next one begins with
+/// the state at end(), unless jump() has set another.
 template <class System, State X>
 class Steps {
  public:
@@ -34,21 +34,22 @@ class Steps {
   [[nodiscard]] virtual std::unique_ptr<Steps> clone() const = 0;
 
   [[nodiscard]] virtual MethodNeeds needs(const X& x) const = 0;
-  /// One accepted step from end(), not beyond limit. False: failed, and outcome says how.
+  /// Takes one accepted step from end(), not beyond limit. After a failure it returns false, and `outcome` tells the
+  /// reason.
   [[nodiscard]] virtual bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) = 0;
   /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant.
   virtual std::span<const X> dense_output() = 0;
   virtual void at_part(Real theta, X& x) = 0;
-  /// Whether the state between the ends of a step is to be found by a shorter step, not on the dense output: the
-  /// polynomial of an implicit method leaves the slow path of a stiff system.
+  /// Whether the state within a step must be found by a shorter step, not from the dense output: the polynomial of an
+  /// implicit method leaves the slow solution of a stiff system.
   [[nodiscard]] virtual bool lands() const = 0;
-  /// The last step once more, from its beginning and of this size. False where its equations could not be solved: then
-  /// the step is to be taken again at another size.
+  /// Takes the last step again from its beginning, with this size. False where its equations could not be solved: then
+  /// the step must be taken again with another size.
   [[nodiscard]] virtual bool retake(Real size, const Options<X>& options) = 0;
 
   [[nodiscard]] System& system() { return system_; }
   [[nodiscard]] const System& system() const { return system_; }
-  /// Of the last step, whatever has jumped since.
+  /// The last step, whatever has jumped since.
   [[nodiscard]] Real begin() const { return step_begin_; }
   [[nodiscard]] Real end() const { return end_; }
   [[nodiscard]] Real size() const { return h_; }
@@ -57,7 +58,7 @@ class Steps {
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
   [[nodiscard]] Statistics& statistics() { return statistics_; }
 
-  /// The trajectory goes on from another state (or with another f): step size and history begin anew.
+  /// Continues the trajectory from another state, or with another f: step size and history are reset.
   void jump(Real t, const X& x, const Options<X>& options) {
     begin_ = end_ = grid_ = t;
     carried_ = 0;
@@ -77,10 +78,10 @@ class Steps {
     return slope_;
   }
 
-  /// Whether stability held most of the steps of an explicit method (of a run of some length).
+  /// Whether stability has limited most steps of an explicit method, in a run of some length.
   [[nodiscard]] bool stiff() const { return probes_ >= least_probes && 2 * stiff_probes_ > probes_; }
 
-  /// The steps that a run to `limit` would need, where stiffness holds them and they are far too many; else 0.
+  /// The steps that a run to `limit` would need, where stiffness limits them and they are far too many; otherwise 0.
   [[nodiscard]] Real endless(Real limit, const Options<X>& options) const {
     if (!step_budget_.steady()) [[likely]]
       return 0;
@@ -127,7 +128,7 @@ class Steps {
     return options.interrupt && options.interrupt->load(std::memory_order_relaxed);
   }
 
-  // x_begin_ is the start of the step from here on; after a failure the start is all that stands.
+  // From here on x_begin_ is the start of the step; after a failure only the start is valid.
   [[nodiscard]] bool fail(Ending ending, Real error, std::string component, std::string hint, Outcome<Real>& outcome) {
     outcome = {ending, begin_, h_, error, std::move(component), {}, {}, std::move(hint)};
     end_ = begin_;
@@ -151,7 +152,8 @@ class Steps {
     return fail(Ending::nonlinear_solve_failed, 0, {}, hint, outcome);
   }
 
-  // The equations of a step spread what is not finite over all components: which it comes from f knows.
+  // The equations of a step spread values that are not finite over all components. An evaluation of f shows the
+  // component from which they come.
   [[nodiscard]] bool fail_not_finite(Outcome<Real>& outcome) {
     std::string component = first_not_finite(slope(begin_ + h_, x_begin_));
     if (!component.empty())
@@ -166,8 +168,8 @@ class Steps {
         outcome);
   }
 
-  /// For a step that did not move t, and only some part of what is carried: a few may be, at the start of a fast
-  /// motion.
+  /// For a step that has not changed t but only the carried rounding error; true after too many of them. Some may occur
+  /// at the start of a fast motion.
   [[nodiscard]] bool stands_still() {
     constexpr std::size_t most = 1000;
     if (stood_at_ != begin_) stood_at_ = begin_, standing_ = 0;
@@ -208,7 +210,7 @@ class Steps {
     return true;
   }
 
-  // Kept out of line: the loop of short steps has no room for it.
+  // Not inlined, to keep the loop of short steps small.
   [[gnu::noinline]] void probe_stiffness(const X& slope_begin, const Tolerance<Real>& weights, std::size_t max_steps) {
     if (!stiffness_) stiffness_.emplace(x_begin_);
     stiffness_->probe(system_, begin_, x_begin_, slope_begin, weights);
@@ -223,10 +225,10 @@ class Steps {
   System system_;
   Real forward_, begin_, end_, h_{}, next_{};  // begin_: of the next step, once there was a jump
   Real step_begin_ = begin_;
-  Real carried_{};  // of adaptive steps: what end_ lacks
+  Real carried_{};  // of adaptive steps: the rounding error of end_
   Real grid_;       // fixed steps are counted from here
   std::size_t grid_steps_ = 0, standing_ = 0;
-  Real stood_at_{};  // where the last steps stood, while t did not move
+  Real stood_at_{};  // the time of the last steps that did not change t
   bool jumped_ = true, interpolated_ = false;
   ErrorHistory errors_;
   X x_begin_, x_end_, scratch_, slope_;
