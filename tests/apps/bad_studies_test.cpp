@@ -1,4 +1,5 @@
-// What every study says of a question that has no answer: each bad question is put to every verb it can be put to.
+// Questions without an answer: every verb that studies a model is given each bad question and must refuse it with its
+// reason.
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,4 +1,4 @@
-// A run that fails says why by name, exits with 3, and leaves the rows it had.
+// A run that fails names its failure, exits with 3, and writes the rows computed before it.
 #include <sstream>
 #include <string>
 

@@ -1,4 +1,4 @@
-// sense and fit: what they print, what they write, and what they say of wrong data.
+// The verbs sense and fit: their output, their files, and their messages on wrong data.
 #include <cmath>
 #include <string>
 

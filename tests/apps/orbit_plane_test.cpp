@@ -1,4 +1,4 @@
-// `orbit --and`: what happens to orbits, in the plane of two parameters.
+// `orbit --and`: bifurcations of periodic orbits in the plane of two parameters.
 #include <cmath>
 #include <string>
 

@@ -1,4 +1,4 @@
-// Files that are written: never over one that is read, and none that is cut off without a word. And options that count.
+// Output files: an input file is never overwritten, a truncated file is always reported. Also options that are counts.
 #include <string>
 
 #include <gmock/gmock.h>

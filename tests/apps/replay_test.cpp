@@ -1,4 +1,4 @@
-// continuo run --record, replay, resume: as somebody uses them.
+// continuo run --record, replay and resume, as a user calls them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tests/apps/shell.hpp>

@@ -1,4 +1,4 @@
-// What `run`, `compare` and `verify` leave behind.
+// The output and the files of `run`, `compare` and `verify`.
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -1,4 +1,5 @@
-// The verbs that study a model's equations, and boundary values by `run`: what they say of good and of bad questions.
+// The verbs that study a model's equations, and boundary-value problems by `run`: their output, and their refusals of
+// bad questions.
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-// `--and`: where something happens, in the plane of two parameters.
+// `--and`: bifurcations of equilibria in the plane of two parameters.
 #include <cmath>
 #include <string>
 

@@ -1,4 +1,4 @@
-// Wrong words, help, and verbs that compute nothing.
+// Wrong command lines, help, and the verbs that compute nothing.
 #include <sstream>
 #include <string>
 

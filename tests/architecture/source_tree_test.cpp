@@ -1,4 +1,4 @@
-// The judge of the order, judged: small trees that keep it, and such that do not.
+// Tests of the architecture test: small trees that keep the order of modules, and trees that violate it.
 #include <filesystem>
 #include <fstream>
 #include <string>

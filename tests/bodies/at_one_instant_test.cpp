@@ -1,4 +1,4 @@
-// Several collisions at one instant under gravity lose as much as they would one after the other.
+// Several collisions at one instant under gravity lose the same energy as if they happened one after the other.
 #include <cstddef>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// How often the fast motion lists pairs anew.
+// How often the fast motion rebuilds its lists of pairs.
 #include <cstddef>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// When two meet on curved paths, against closed forms.
+// The times of collisions on parabolas, against closed forms.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-// Exact collisions under forces that make no parabolas, against closed forms and against the motion on parabolas.
+// Exact collisions under forces whose paths are no parabolas, against closed forms and against the motion on parabolas.
 #include <cmath>
 #include <cstddef>
 #include <random>

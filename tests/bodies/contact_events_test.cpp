@@ -1,4 +1,4 @@
-// What motions report of contacts against what mechanics says they must add up to.
+// The contact events of both motions, against the laws of mechanics: sums of impulses, weights, times.
 #include <cmath>
 #include <cstddef>
 #include <limits>

@@ -1,4 +1,4 @@
-// Which contacts are solved again: the three balls of docs/contact_solver.md, and blocks beside each other.
+// The contacts that the fast motion solves again: the three balls of docs/contact_solver.md, and neighbouring blocks.
 #include <cstdint>
 
 #include <gtest/gtest.h>

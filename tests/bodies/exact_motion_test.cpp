@@ -1,4 +1,4 @@
-// Spheres from collision to collision against what mechanics says of them.
+// The exact motion of spheres, against closed forms and conservation laws.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

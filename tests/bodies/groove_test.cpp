@@ -1,4 +1,4 @@
-// A body in a groove or a corner, on several walls that rub, against closed forms.
+// A body in a groove or a corner, in contact with several rough walls, against closed forms.
 #include <cmath>
 #include <numbers>
 

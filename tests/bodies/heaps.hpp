@@ -1,4 +1,4 @@
-// Heaps that the fast motion is tested with, and that it moves them alike by any number of threads.
+// Heaps for tests of the fast motion, and a test that any number of threads moves them identically.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Where nothing but collisions changes the motion and they lose energy, they may pile up without end: each one counts
-// as it should, and what never ends is ended by impulses to all that touch.
+// Inelastic collapse: without forces, dissipative collisions may accumulate without end. Each one counts, and an
+// endless sequence is ended by simultaneous impulses at all touching contacts.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Bodies that lie on each other under gravity move in islands: as each would alone, beside all that flies.
+// Islands of bodies in contact under gravity: each moves as it would alone, whatever else moves.
 #include <algorithm>
 #include <array>
 #include <cmath>

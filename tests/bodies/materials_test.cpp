@@ -1,4 +1,4 @@
-// Two materials meet by the rule of their world: rebounds, slips and rolls in closed form, in every motion.
+// Materials combined by the rule of their world: rebounding, slipping and rolling in closed form, in every motion.
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// The table of the exact motion under forces: which states lead where.
+// The state machine of the exact motion under forces: its table of transitions.
 #include <algorithm>
 #include <set>
 

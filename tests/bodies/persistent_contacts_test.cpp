@@ -1,4 +1,4 @@
-// Contacts that last under general forces: held with the forces that it takes, against closed forms.
+// Persistent contacts under general forces: constraint forces and motions against closed forms.
 #include <cmath>
 #include <cstddef>
 #include <vector>

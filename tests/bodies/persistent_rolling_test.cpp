@@ -1,4 +1,4 @@
-// Rolling resistance of contacts that are held under general forces: the law of rolling.hpp, by closed forms.
+// Rolling resistance of persistent contacts under general forces: the law of rolling.hpp, by closed forms.
 #include <array>
 #include <cmath>
 #include <cstddef>

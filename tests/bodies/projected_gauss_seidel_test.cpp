@@ -1,4 +1,4 @@
-// The impulses of contacts that act together: closed forms, and the laws of contact and friction in a random heap.
+// The impulses of coupled contacts: closed forms, and the laws of contact and friction in a random heap.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Questions to a world, answered by the index and by looking at everybody.
+// Queries of a world: the answers of the index against a search through all bodies.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

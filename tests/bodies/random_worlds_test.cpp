@@ -1,5 +1,4 @@
-// Worlds that nobody would make on purpose: refused with a reason, or moved to something finite, or stopped with a
-// reason.
+// Random worlds with absurd numbers: refused with a reason, or moved to finite states, or stopped with a reason.
 #include <array>
 #include <cmath>
 #include <cstddef>

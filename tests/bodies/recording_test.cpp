@@ -1,4 +1,4 @@
-// Runs as files: what is read is what was seen, and files that are wrong or cut off are told.
+// Recordings of runs: they are read back exactly as written, and wrong or truncated files are reported.
 #include <cstddef>
 #include <random>
 #include <sstream>

@@ -1,5 +1,5 @@
-// Bodies that come to lie on each other under gravity alone, at the default settings, against closed forms. How little
-// a heap at rest costs is told by `most_events`: so many flights and steps a call may take.
+// Bodies that come to rest on each other under gravity alone, at the default settings, against closed forms.
+// `most_events` bounds the flights and steps of a call, and so the cost of a heap at rest.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,5 @@
-// A sphere that lies on a floor or a slope: it slips until it rolls, and rolls until it stops. Closed forms of H.
-// Moyse, G.-G. Coriolis (Theorie mathematique des effets du jeu de billard, 1835), of J / (m r^2) = c: 2/5 of a ball,
-// 1/2 of a disc.
+// A sphere on a floor or a slope: it slips until it rolls, and rolls until it stops. Closed forms of H. Moyse, G.-G.
+// Coriolis (Theorie mathematique des effets du jeu de billard, 1835), of J / (m r^2) = c: 2/5 of a ball, 1/2 of a disc.
 #include <array>
 #include <cmath>
 

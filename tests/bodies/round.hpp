@@ -1,4 +1,4 @@
-// What rolls, in the plane and in space, for typed tests.
+// Rolling bodies, in the plane and in space, for typed tests.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What rests falls asleep, and wakes when something comes to it.
+// Bodies at rest fall asleep, and wake when another body comes near.
 #include <cmath>
 #include <cstddef>
 

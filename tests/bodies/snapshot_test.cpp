@@ -1,4 +1,4 @@
-// Worlds as bytes: what goes on from them goes on to the same bits, and bytes that are wrong are said to be.
+// Worlds as bytes: a restored world moves on to the same bits, and wrong bytes are refused.
 #include <cstddef>
 #include <cstdint>
 #include <fstream>

@@ -1,4 +1,4 @@
-// What resists spinning about the normal of a contact in the fast motion: the torque of a patch.
+// The torque that resists spinning about the normal of a contact in the fast motion, as of a contact patch.
 #include <cmath>
 #include <numbers>
 

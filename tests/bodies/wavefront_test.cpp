@@ -1,4 +1,4 @@
-// Sweeps over blocks that follow each other in a wavefront act on each block as sweeps one after another do.
+// Sweeps over blocks in a wavefront change each block as consecutive sweeps do.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What is said of a solution's error, against the closed form: of random linear problems, of ones that determine their
-// solution hardly or not at all, and where f jumps or has no value.
+// The error estimates of boundary-value problems, against closed forms: random linear problems, nearly singular ones,
+// and right-hand sides with jumps or without a value.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

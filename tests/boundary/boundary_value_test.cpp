@@ -1,4 +1,4 @@
-// Problems of which the solution is known: in closed form, or to many digits from the literature.
+// Boundary-value problems with known solutions, in closed form or to many digits from the literature.
 #include <cmath>
 #include <numbers>
 #include <vector>

@@ -1,4 +1,4 @@
-// What several tests of boundary values begin with.
+// Conditions and guesses shared by tests of boundary values.
 #pragma once
 #include <memory>
 #include <span>

@@ -1,6 +1,5 @@
-// Every ```console block shows commands after `$ ` and what they print. The commands are run, in one folder per
-// document and in order, and must print what is shown. `exit=2` on the fence states the exit code of the block's last
-// command.
+// Every ```console block shows commands after `$ ` and their output. The commands are run in order, in one folder per
+// document, and must print the output shown. `exit=2` on the fence states the exit code of the block's last command.
 #include <cstdlib>
 #include <sstream>
 

@@ -1,4 +1,4 @@
-// A link or picture of the documentation that names a file of this repository names one that is there.
+// Every link or picture in the documentation that names a file of this repository names an existing one.
 #include <regex>
 #include <string>
 

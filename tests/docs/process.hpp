@@ -1,5 +1,5 @@
 // tests/docs/process.hpp
-// Runs a shell command in a folder and gives back its exit code and what it printed.
+// Runs a shell command in a folder and returns its exit code and its output.
 #pragma once
 #include <filesystem>
 #include <string>

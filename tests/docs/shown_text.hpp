@@ -1,6 +1,6 @@
 // tests/docs/shown_text.hpp
-// Whether a page still shows what a command prints: the same words, and numbers that say the same. The last digits of
-// a number, how long a run took and the hash of a manifest differ from machine to machine; a reader does not mind.
+// Compares the text shown on a page with the output of a command: the same words, and numbers equal but for their last
+// digits. Run times and hashes of manifests may differ, since they do so from machine to machine.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-// The judge of the pages, judged.
+// Tests of the comparison between pages and output.
 #include <gtest/gtest.h>
 #include <tests/docs/shown_text.hpp>
 

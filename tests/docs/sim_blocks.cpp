@@ -1,5 +1,5 @@
-// Every ```sim block of the documentation is a model that `continuo verify` accepts; one marked `error=E201` is a
-// model that it refuses with this code. `file=NAME` names the file (the block can then be read by a later one).
+// Every ```sim block of the documentation is a model that `continuo verify` accepts; one marked `error=E201` is a model
+// that it refuses with this code. `file=NAME` names the file, so that later blocks can read it.
 #include <fstream>
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Any bytes as a model: read, shown, written back, and checked where they make a tree.
+// Any bytes as a model: parsed, printed, formatted, and checked where the parser returns a tree.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The models whose recorded runs the fuzzer of recordings starts from.
+// The models of the recorded runs that are initial inputs of the fuzzer of recordings.
 #pragma once
 #include <array>
 

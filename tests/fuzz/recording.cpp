@@ -1,6 +1,6 @@
-// Any bytes as a recording: of bodies, played to its end, or of a run, told again and gone on with. The checksums are
-// put right first, or hardly any bytes would get beyond them. A run is one of the models below, whatever text stands in
-// it: texts are another target's.
+// Any bytes as a recording: of bodies, played to its end, or of a run, replayed and resumed. The checksums are
+// corrected first, or hardly any input would pass them. A run is always one of the models below, whatever its text:
+// texts are tested by another target.
 #include <algorithm>
 #include <array>
 #include <atomic>

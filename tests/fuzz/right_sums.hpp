@@ -1,4 +1,4 @@
-// Recordings that somebody changed, with the checksums put right: what reads them gets to see more than those.
+// Corrects the checksums of a changed recording, so that the reader is tested beyond them.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Any bytes as a snapshot: refused with the place of the fault, or restored to a world that saves to the same bytes and
-// moves on or says why not. The checksum at the end is put right first, or hardly any bytes would get beyond it.
+// Any bytes as a snapshot: refused with the place of the error, or restored to a world that saves to the same bytes and
+// moves on or refuses with a reason. The checksum at the end is corrected first, or hardly any input would pass it.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,6 @@
 // Balls inside curved and moving boundaries: falling through is the classic failure of simulators. Two hundred random
-// boundaries, restitution from 0 to 1, ten seconds: none passes. Where the impacts pile up the run says so, or rests.
+// boundaries, restitution from 0 to 1, ten seconds: no ball passes. Where impacts accumulate the run ends with that
+// reason, or the ball rests.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // tests/hybrid/brute_force.hpp
-// A second referee, as simple as can be: the written equations and guards themselves in steps of a thousandth in long
-// double; what has changed after a step is closed in on by halving the step. It is less exact (an error of 1e-8 in
-// times) and cannot slide; it shares neither the closed forms nor the derivatives with the first.
+// A second referee, as simple as possible: the equations and guards as written, in steps of a thousandth in long
+// double; a change within a step is located by halving the step. It is less exact (an error of 1e-8 in times) and
+// cannot slide; it shares neither the closed forms nor the derivatives with the first.
 #pragma once
 #include <tests/hybrid/hybrid_model.hpp>
 #include <tests/hybrid/referee.hpp>

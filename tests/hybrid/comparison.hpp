@@ -1,5 +1,5 @@
 // tests/hybrid/comparison.hpp
-// The library against the referee, on one model.
+// Compares library and referee on one model.
 #pragma once
 #include <map>
 #include <span>

@@ -1,6 +1,6 @@
 // tests/hybrid/flow.hpp
-// The motion between two instants at which something changes, in closed form: every state is a polynomial, an
-// exponential and a sinusoid of the time since the first of them.
+// The motion between two changes in closed form: every state is a polynomial, an exponential and a sinusoid of the time
+// since the first of them.
 #pragma once
 #include <array>
 #include <span>

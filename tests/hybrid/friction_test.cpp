@@ -1,6 +1,6 @@
-// Dry friction by `sign` and `if` in the equations: bodies stick and slip. The motion is held to the sliding solution
-// (A. F. Filippov, "Differential Equations with Discontinuous Righthand Sides", 1988), found here in tiny steps of long
-// double from contact to contact.
+// Dry friction by `sign` and `if` in the equations: bodies stick and slip. The motion is compared with the sliding
+// solution (A. F. Filippov, "Differential Equations with Discontinuous Righthand Sides", 1988), computed here in tiny
+// steps of long double from contact to contact.
 #include <algorithm>
 #include <array>
 #include <cmath>

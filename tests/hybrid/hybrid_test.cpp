@@ -1,5 +1,5 @@
-// A thousand random hybrid systems against the referee: every event at its time and no other. `hybrid_attack` asks as
-// many as one likes.
+// A thousand random hybrid systems against the referee: every event at its time and no other. `hybrid_attack` tests any
+// number.
 #include <ostream>
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // tests/hybrid/random.hpp
-// Numbers from the generator's bits alone: the distributions of the standard differ between libraries.
+// Random numbers from the generator's bits alone, since the distributions of the standard differ between libraries.
 #pragma once
 #include <cmath>
 #include <cstdint>

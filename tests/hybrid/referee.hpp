@@ -1,6 +1,6 @@
 // tests/hybrid/referee.hpp
-// What a hybrid model does, worked out slowly and from the rules of events alone: closed forms between the events,
-// roots by dense samples and bisection in long double. It shares nothing with the library.
+// The expected motion of a hybrid model, computed slowly and from the rules of events alone: closed forms between the
+// events, roots by dense samples and bisection in long double. It shares no code with the library.
 //
 // The rules:
 // - A guard has a side. At an instant it is the side just after it: of the value, or where that is zero of the first

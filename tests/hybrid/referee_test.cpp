@@ -1,5 +1,5 @@
-// The referee itself: against a second one that shares nothing with it but the rules, against itself with ten times as
-// many samples, and against motions that are known.
+// Tests of the referee: against a second one that shares only the rules with it, against itself with ten times as many
+// samples, and against known motions.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

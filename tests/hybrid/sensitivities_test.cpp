@@ -1,5 +1,5 @@
 // Derivatives through events, jumps of the equations and sliding, of random hybrid systems, against differences of the
-// referee's closed forms. `sensitivity_attack` asks as many as one likes.
+// referee's closed forms. `sensitivity_attack` tests any number.
 #include <numeric>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // tests/hybrid/shrink.hpp
-// A smaller model with the same fault, so that a person can read it.
+// Reduces a failing model to a smaller one with the same failure, so that a person can read it.
 #pragma once
 #include <functional>
 

@@ -1,4 +1,4 @@
-// Every model of the gallery passes every check without a word.
+// Every model of the gallery passes every check without a message.
 #include <filesystem>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // tests/language/check_helpers.hpp
-// Models from texts, and what the checks say about them.
+// Models from texts, and the messages of their checks.
 #pragma once
 #include <algorithm>
 #include <string>

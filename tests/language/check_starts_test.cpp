@@ -1,4 +1,4 @@
-// Starts by other starts, against a direct evaluation.
+// Initial values computed from other initial values, against a direct evaluation.
 #include <cmath>
 #include <numeric>
 #include <random>

@@ -1,4 +1,4 @@
-// Units: what each subexpression measures, what is converted, what is refused.
+// Units: the unit of each subexpression, conversions, and refusals.
 #include <cmath>
 #include <numbers>
 

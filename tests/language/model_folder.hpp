@@ -1,4 +1,4 @@
-// The models of a folder, each a case of a test that is run for every one of them.
+// The models of a folder, each as a case of a parameterized test.
 #pragma once
 #include <algorithm>
 #include <filesystem>

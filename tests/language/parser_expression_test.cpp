@@ -1,4 +1,4 @@
-// How expressions are read, seen in the one spelling each tree is written back to.
+// How expressions are parsed, tested by the canonical text that each tree is formatted to.
 #include <gtest/gtest.h>
 
 #include <continuo/language/syntax/format.hpp>

@@ -1,5 +1,5 @@
-// No text makes the parser slow, deep, or throw: slow is counted, in tokens and looks at them, never timed. The stack
-// is the machine's usual one of 8 MB.
+// No text makes the parser slow, recurse deeply, or throw. Its work is counted in tokens and accesses to them, never
+// timed. The stack is the machine's usual one of 8 MB.
 #include <algorithm>
 #include <random>
 

@@ -1,4 +1,4 @@
-// Every form of statement, and what it becomes.
+// Every form of statement, and its syntax tree.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Wrong models and what is said about them: each NAME.sim of tests/language/wrong has its messages in NAME.txt beside
-// it, as they are shown, with line and column. See the README there.
+// Wrong models and their messages: each NAME.sim of tests/language/wrong has its messages in NAME.txt, as they are
+// shown, with line and column. See the README there.
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Who is let in.
+// The origins and hosts from which the server accepts requests.
 #include <string>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// The server under malicious clients. Sockets by hand: a library would not send what is sent here.
+// The server under malicious clients. The sockets are written by hand, since a library would not send such requests.
 #include <atomic>
 #include <chrono>
 #include <memory>

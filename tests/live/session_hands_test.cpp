@@ -1,4 +1,4 @@
-// What hands do to a session: parameters, inputs, methods, the mouse, the text.
+// Interaction with a session: parameters, inputs, methods, the mouse, the text.
 #include <filesystem>
 #include <fstream>
 

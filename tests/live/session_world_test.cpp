@@ -1,4 +1,4 @@
-// Bodies in a session.
+// Sessions with a world of bodies.
 #include <tests/live/spectator.hpp>
 
 #include <continuo/live/motion/world_track.hpp>

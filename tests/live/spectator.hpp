@@ -1,5 +1,5 @@
 // tests/live/spectator.hpp
-// A session without threads: the test is the clock and the audience.
+// A session without threads: the test provides the clock and the audience.
 #pragma once
 #include <cmath>
 #include <memory>

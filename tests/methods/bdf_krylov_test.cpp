@@ -1,4 +1,5 @@
-// Backward differentiation without a matrix: the same answers as with one, and systems no matrix would fit.
+// Backward differentiation without a matrix: the same results as with one, and systems whose matrix would not fit into
+// memory.
 #include <array>
 #include <cmath>
 #include <cstddef>

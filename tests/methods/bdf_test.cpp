@@ -1,4 +1,4 @@
-// Backward differentiation: its formulas on powers of time, its promises on the stiff problems.
+// Backward differentiation: its formulas on powers of time, its accuracy on the stiff problems.
 #include <array>
 #include <cmath>
 #include <vector>

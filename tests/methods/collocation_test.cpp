@@ -1,4 +1,4 @@
-// The numbers of the collocation methods, derived when compiling, against what defines such methods.
+// The coefficients of the collocation methods, derived at compile time, against the definition of such methods.
 #include <array>
 #include <cmath>
 #include <cstddef>

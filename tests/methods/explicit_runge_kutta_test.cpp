@@ -1,5 +1,5 @@
-// What continuo/methods/explicit_rk/explicit_runge_kutta.hpp promises of the stepper; the numbers of each tableau have
-// tests of their own.
+// The stepper of continuo/methods/explicit_rk/explicit_runge_kutta.hpp, by its documentation; the coefficients of each
+// tableau have tests of their own.
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// What can go wrong in a step that solves equations, for every family of methods: the run goes on if it can, else ends
-// with the outcome of that name, a hint, and everything that was computed before.
+// Failures in a step of an implicit method, for every family: the run continues if it can, else ends with the outcome
+// of that name, a hint, and everything that was computed before.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Radau IIA of orders 5, 9, 13 and of variable order: promises on the stiff problems. The orders are measured in
-// stiff_order_test.cpp, what long double and 113 bits are used for in precision_test.cpp.
+// Radau IIA of orders 5, 9, 13 and of variable order: accuracy on the stiff problems. The orders are measured in
+// stiff_order_test.cpp, the uses of long double and 113 bits are tested in precision_test.cpp.
 #include <array>
 #include <cmath>
 #include <vector>

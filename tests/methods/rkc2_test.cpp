@@ -1,4 +1,4 @@
-// Runge-Kutta-Chebyshev: its order, how far its stability reaches, the heat equation without a linear system.
+// Runge-Kutta-Chebyshev: its order, the extent of its stability region, the heat equation without a linear system.
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What the methods for q'' = a(t, q, v) promise; their orders are measured in order_test.cpp.
+// The methods for q'' = a(t, q, v), by their documentation; their orders are measured in order_test.cpp.
 #include <array>
 #include <cmath>
 #include <cstddef>

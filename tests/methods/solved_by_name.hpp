@@ -1,4 +1,4 @@
-// A problem solved by the methods as the studies have them: compiled once for all problems.
+// A problem solved by a method selected by name, as in studies; compiled once for all problems.
 #pragma once
 #include <algorithm>
 #include <span>

@@ -1,6 +1,6 @@
-// The orders that docs/methods.md states for the methods that solve equations are those that are measured: on a plain
-// problem, on that of Prothero and Robinson, where stages of low order cost order, and on a system of index 1, each
-// component by itself; of the states and of the dense output.
+// The orders that docs/methods.md states for implicit methods are measured: on a nonstiff problem, on that of Prothero
+// and Robinson, where a low stage order reduces the order, and on a system of index 1, each component by itself; of the
+// states and of the dense output.
 #include <algorithm>
 #include <array>
 #include <cmath>

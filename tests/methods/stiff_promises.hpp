@@ -1,4 +1,4 @@
-// What every adaptive stiff method promises, written once for all of them.
+// Properties of every adaptive stiff method, tested by the same code for all of them.
 #pragma once
 #include <algorithm>
 #include <array>

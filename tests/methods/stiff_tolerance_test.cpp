@@ -1,7 +1,7 @@
-// What a run of a stiff method ends with is within 30 tolerances of the truth, for rtol = 1e-3 ... 1e-11 and the
-// problems of bench/stiff: Robertson to 1e11, HIRES, Oregonator, van der Pol in both forms, pollution, and the
-// Brusselator on a line. bench/stiff prints the whole table (docs/benchmarks_stiff.md); the tests take of it what runs
-// in seconds.
+// The error at the end of a run by a stiff method is within 30 tolerances, for rtol = 1e-3 ... 1e-11 and the problems
+// of bench/stiff: Robertson to 1e11, HIRES, Oregonator, van der Pol in both forms, pollution, and the Brusselator on a
+// line. bench/stiff prints the whole table (docs/benchmarks_stiff.md); the tests include the part of it that runs in
+// seconds.
 #include <algorithm>
 #include <cmath>
 #include <concepts>

@@ -1,4 +1,4 @@
-// The pair of an explicit and a stiff method: it finds out by itself which one the system needs, and when.
+// The pair of an explicit and a stiff method: it detects by itself which of the two the system needs, and when.
 #include <array>
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// The symplectic compositions: their order conditions, the energy of a planet over a hundred thousand orbits, the way
-// back.
+// The symplectic compositions: their order conditions, the energy of a planet over a hundred thousand orbits,
+// reversibility.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,6 @@
-// Every tableau keeps the order its method claims: shown by all order conditions, in 50-digit arithmetic, to 1e-24. The
-// bound: DOP853 is printed to 30 digits, and its conditions of order 8 multiply those errors by up to 1e5.
+// Every tableau satisfies all conditions of the order that its method states, in 50-digit arithmetic, to 1e-24. The
+// bound follows from DOP853, which is printed to 30 digits and whose conditions of order 8 multiply those errors by up
+// to 1e5.
 #include <algorithm>
 #include <string>
 #include <type_traits>

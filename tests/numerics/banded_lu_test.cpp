@@ -1,4 +1,4 @@
-// Banded LU against solutions that are known because the right-hand side was made from them.
+// Banded LU factorization against known solutions, from which the right-hand sides are computed.
 #include <algorithm>
 #include <array>
 #include <cstddef>

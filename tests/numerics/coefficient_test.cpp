@@ -1,4 +1,4 @@
-// What continuo/numerics/coefficient.hpp promises.
+// The coefficients of continuo/numerics/coefficient.hpp, by its documentation.
 #include <array>
 #include <cmath>
 #include <cstdint>

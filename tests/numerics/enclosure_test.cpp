@@ -1,4 +1,5 @@
-// Whatever numbers the operands hold, the result holds what they give: by long double, which has eleven bits more.
+// For all numbers in the operands, the result contains the exact value: tested in long double, which has eleven bits
+// more.
 #include <algorithm>
 #include <cmath>
 #include <limits>

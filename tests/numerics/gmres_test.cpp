@@ -1,4 +1,4 @@
-// Solutions are made first and their right-hand sides computed from them.
+// GMRES against known solutions, from which the right-hand sides are computed.
 #include <array>
 #include <cmath>
 #include <cstddef>

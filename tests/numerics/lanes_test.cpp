@@ -1,4 +1,4 @@
-// What continuo/numerics/lanes.hpp promises.
+// The lanes of continuo/numerics/lanes.hpp, by its documentation.
 #include <array>
 #include <bit>
 #include <cmath>

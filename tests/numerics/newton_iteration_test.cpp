@@ -1,4 +1,4 @@
-// Newton's iteration: that it ends where it has converged, and says how it ended elsewhere.
+// Newton's iteration ends where it has converged, and reports how it ended elsewhere.
 #include <algorithm>
 #include <cmath>
 #include <vector>

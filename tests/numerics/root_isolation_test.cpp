@@ -1,4 +1,4 @@
-// Changes of side that are proved, against known roots and against dense samples in long double.
+// Proved changes of sign, against known roots and against dense samples in long double.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-// The test problems of bench/problems: their derivatives, what they conserve, and the states they say are exact.
+// The test problems of bench/problems: their derivatives, their invariants, and their reference states.
 #include <algorithm>
 #include <array>
 #include <cmath>

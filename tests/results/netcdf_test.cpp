@@ -1,4 +1,4 @@
-// netCDF files, read back by the library that others read them with.
+// NetCDF files, read back by the netCDF library itself.
 #include <cstring>
 #include <filesystem>
 #include <vector>

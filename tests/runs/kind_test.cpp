@@ -1,4 +1,4 @@
-// What is promised of each kind of run, and the methods that can be named for it.
+// The properties of each kind of run, and the methods that can be named for it.
 #include <algorithm>
 #include <string>
 

@@ -1,4 +1,4 @@
-// Whatever a model needs, one function runs it: to the same bits as the module that can.
+// One function runs any model, with results bitwise equal to those of the module that can run it.
 #include <algorithm>
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
-// A run without a method is right: on equations with unknowns, on fast oscillations, on pulses of an input
-// (bench/choice, where the whole table is). And index-1 systems by every method that claims them.
+// Runs by the default method are accurate: equations with unknowns, fast oscillations, pulses of an input (bench/choice
+// has the whole table). Also index-1 systems by every method that claims to solve them.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What a run says of itself: that its motion multiplies errors, and that it stands at a jump of its equations.
+// The doubts that a run reports: that its motion amplifies errors, and that it is at a jump of its equations.
 #include <cmath>
 #include <random>
 #include <string>

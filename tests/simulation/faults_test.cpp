@@ -1,5 +1,5 @@
-// Models in which a simulator goes wrong without a word: each NAME.sim of tests/simulation/faults runs and its checks
-// hold. See the README there.
+// Models that tempt a simulator into silent errors: each NAME.sim of tests/simulation/faults runs and its checks hold.
+// See the README there.
 #include <filesystem>
 #include <string>
 

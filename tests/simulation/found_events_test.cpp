@@ -1,5 +1,5 @@
-// Models that random search has found events missed in, or found twice (tests/hybrid, whose referee gives the times),
-// made small. Each names what was wrong.
+// Models in which random search found missed or doubled events (tests/hybrid, whose referee gives the times), reduced
+// to a small size. Each test names the error.
 #include <cmath>
 #include <cstddef>
 #include <ostream>

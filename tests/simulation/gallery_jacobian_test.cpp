@@ -1,5 +1,5 @@
-// The Jacobian of every model of the gallery four ways: from the graph, by duals through the tape, by differences of
-// coloured groups of columns as the methods take them, and by the differences that know their error.
+// The Jacobian of every model of the gallery computed in four ways: from the graph, by dual numbers through the tape,
+// by differences of coloured groups of columns as in the methods, and by differences with an estimate of their error.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

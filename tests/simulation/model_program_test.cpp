@@ -1,4 +1,4 @@
-// What a compiled model knows of itself.
+// The properties of a compiled model.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Models run: closed forms for motion, events, inputs and checks, and plain words where a run is impossible.
+// Runs of models: closed forms for motion, events, inputs and checks, and plain messages where a run is impossible.
 #include <cmath>
 #include <string>
 #include <vector>

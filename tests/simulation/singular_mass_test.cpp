@@ -1,4 +1,4 @@
-// A mass matrix that is singular is called that.
+// A singular mass matrix is reported as such.
 #include <tests/language/check_helpers.hpp>
 
 #include <continuo/simulation/experiment.hpp>

@@ -1,4 +1,4 @@
-// Guards of a model enclosed over the steps of a method: nothing of what the scalar evaluation gives lies outside.
+// Guards of a model enclosed over the steps of a method: every value of the scalar evaluation lies within.
 #include <cmath>
 #include <memory>
 #include <numbers>

@@ -1,4 +1,4 @@
-// Which unknowns an expression hangs on, and the equations that determine them.
+// The unknowns on which an expression depends, and the equations that determine them.
 #include <string>
 #include <vector>
 

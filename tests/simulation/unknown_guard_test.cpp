@@ -1,4 +1,4 @@
-// Guards of unknowns: enclosed as the run sees them, solved for between the steps, and found where they are narrow.
+// Guards on unknowns: enclosed as in the run, solved for between the steps, and found where they are narrow.
 #include <cmath>
 #include <memory>
 #include <random>

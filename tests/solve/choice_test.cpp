@@ -1,4 +1,4 @@
-// Which method is taken where nobody names one.
+// The method that is chosen where none is named.
 #include <array>
 #include <cstddef>
 #include <string_view>

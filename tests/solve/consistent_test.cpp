@@ -1,4 +1,5 @@
-// Systems with algebraic equations begin and go on at consistent values, or say which equation does not hold.
+// Systems with algebraic equations start and continue at consistent values, or the failure names the equation that is
+// not satisfied.
 #include <array>
 #include <cmath>
 

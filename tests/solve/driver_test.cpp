@@ -1,4 +1,4 @@
-// The driver on systems with closed forms: tolerances met, orders kept, output where it was asked for.
+// The driver on systems with closed forms: tolerances met, orders kept, output at the requested times.
 #include <cmath>
 
 #include <gtest/gtest.h>

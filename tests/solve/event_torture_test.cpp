@@ -1,4 +1,4 @@
-// Events that other systems are known to miss, double or hang on; each test names the complaint.
+// Events that other systems are known to miss, to find twice or to hang on; each test cites the complaint.
 #include <array>
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-// Every way a run can end, with what was computed kept.
+// Every way in which a run can end, with the results computed before its end.
 #include <array>
 #include <atomic>
 #include <cmath>

@@ -1,4 +1,4 @@
-// An explicit method on a stiff system says so; on others it does not.
+// An explicit method on a stiff system reports the stiffness; on other systems it does not.
 #include <array>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// How operations say that they failed: endings with their words, a status as text, a value or a status.
+// Reports of failures: endings and their descriptions, a status as text, a value or a status.
 #include <memory>
 #include <set>
 #include <string>

@@ -1,9 +1,9 @@
-// Homoclinic orbits of saddle-nodes: of a driven pendulum with friction, phi'' = I - sin phi - alpha phi', laid round a
-// circle, in random other coordinates, in both directions of time. Its rest is a saddle-node at I = 1; where alpha is
-// large a rotation comes to it along the centre, below some alpha an orbit of the saddle is left, for smaller I (M.
-// Levi, F. C. Hoppensteadt, W. L. Miranker, "Dynamics of the Josephson junction", Quart. Appl. Math. 36 (1978)
-// 167-198). The referee solves dy/dphi = (I - sin phi) / y - alpha, y = phi', from both ends of the orbit to the
-// middle.
+// Homoclinic orbits of saddle-nodes: of a driven pendulum with friction, phi'' = I - sin phi - alpha phi', wrapped
+// round a circle, in random other coordinates, in both directions of time. Its equilibrium is a saddle-node at I = 1.
+// For large alpha a rotation approaches it along the centre manifold; below some alpha the homoclinic orbit is that of
+// a saddle, at smaller I (M. Levi, F. C. Hoppensteadt, W. L. Miranker, "Dynamics of the Josephson junction", Quart.
+// Appl. Math. 36 (1978) 167-198). The referee solves dy/dphi = (I - sin phi) / y - alpha, y = phi', from both ends of
+// the orbit to the middle.
 #include <algorithm>
 #include <array>
 #include <cmath>

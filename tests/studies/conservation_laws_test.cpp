@@ -1,4 +1,4 @@
-// Laws that are found, against those of random networks; what is held, against closed forms.
+// Conservation laws found in random networks, and their use where they hold, against closed forms.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

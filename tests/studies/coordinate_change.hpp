@@ -1,6 +1,6 @@
 // tests/studies/coordinate_change.hpp
 // Systems in other coordinates: x = o + S(A y), S adding to each component a square of the one before, and constants m
-// = R (p - p0). What happens, and where, is that of the system in y and m; its shape is not.
+// = R (p - p0). Their bifurcations are those of the system in y and m; their equations look different.
 #pragma once
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
-// Degenerate homoclinic orbits in three constants: of Sandstede's system, in which they lie on surfaces that are known
-// in closed form, in random other coordinates of the states and of the constants. B. Sandstede, "Constructing dynamical
-// systems having homoclinic bifurcation points of codimension two", J. Dyn. Diff. Eq. 9 (1997) 269-288.
+// Degenerate homoclinic orbits in three constants: of Sandstede's system, in which they lie on surfaces known in closed
+// form, in random other coordinates of the states and of the constants. B. Sandstede, "Constructing dynamical systems
+// having homoclinic bifurcation points of codimension two", J. Dyn. Diff. Eq. 9 (1997) 269-288.
 #include <algorithm>
 #include <array>
 #include <cmath>

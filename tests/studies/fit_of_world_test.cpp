@@ -1,5 +1,5 @@
-// Sensitivities and fits of worlds: against closed forms, in both modes, with intervals that hold what they promise,
-// and refused where no interval could.
+// Sensitivities and fits of worlds: against closed forms, in both modes, with intervals of the stated coverage, and
+// refused where no interval is possible.
 #include <array>
 #include <cmath>
 #include <random>

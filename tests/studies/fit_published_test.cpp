@@ -1,4 +1,4 @@
-// Fits of differential equations that the literature has solved.
+// Fits of differential equations with published solutions.
 #include <cmath>
 #include <string>
 #include <vector>

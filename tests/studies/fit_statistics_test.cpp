@@ -1,4 +1,4 @@
-// What a fit says of its own result, on straight lines, whose statistics are closed forms.
+// The statistics of a fit, on straight lines, for which they are closed forms.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
-// Curves of homoclinic orbits: of a system in which one is known in closed form, with flips of both kinds, in random
-// other coordinates. B. Sandstede, "Constructing dynamical systems having homoclinic bifurcation points of codimension
-// two", J. Dyn. Diff. Eq. 9 (1997) 269-288.
+// Curves of homoclinic orbits: of a system with one known in closed form, with flips of both kinds, in random other
+// coordinates. B. Sandstede, "Constructing dynamical systems having homoclinic bifurcation points of codimension two",
+// J. Dyn. Diff. Eq. 9 (1997) 269-288.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Branches of closed orbits through events, maps and forces over time: where they bend, double and end, against closed
-// forms.
+// Branches of closed orbits through events, maps and time-dependent forces: their folds, period doublings and ends,
+// against closed forms.
 #include <algorithm>
 #include <cmath>
 #include <complex>

@@ -1,5 +1,5 @@
-// Multipliers and exponents of random piecewise linear maps and flows against closed forms: what is found is right,
-// what is not found says why.
+// Multipliers and exponents of random piecewise linear maps and flows against closed forms: an orbit that is found is
+// right, a failure states its reason.
 #include <algorithm>
 #include <cmath>
 #include <complex>

@@ -1,5 +1,5 @@
-// Closed orbits and multipliers through events, jumps of the equations and forces over time, against closed forms; what
-// has none is refused by name.
+// Closed orbits and multipliers through events, jumps of the equations and time-dependent forces, against closed forms;
+// models without an orbit are refused by name.
 #include <algorithm>
 #include <cmath>
 #include <complex>

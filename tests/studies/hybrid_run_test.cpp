@@ -1,4 +1,4 @@
-// Exponents and sections of models in which something happens, against closed forms; what other studies do not see.
+// Exponents and sections of models with events, against closed forms, and features that other studies ignore.
 #include <cmath>
 #include <memory>
 #include <numbers>

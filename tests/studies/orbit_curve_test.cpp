@@ -1,5 +1,5 @@
-// Curves of folds, period doublings and tori of orbits in two constants: circles whose neighbours do what normal forms
-// say, in random other coordinates.
+// Curves of folds, period doublings and tori of orbits in two constants: circular orbits with neighbours as in the
+// normal forms, in random other coordinates.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

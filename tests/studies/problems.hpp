@@ -1,5 +1,5 @@
 // tests/studies/problems.hpp
-// What several tests of studies begin with: systems known from the literature, models from text and of the gallery.
+// Systems shared by tests of studies: known from the literature, or models from text and from the gallery.
 #pragma once
 #include <memory>
 #include <span>

@@ -1,5 +1,5 @@
-// Random piecewise linear flows of two modes, and what their closed orbits are by closed forms: exponentials of the
-// matrices between events, saltation at them.
+// Random piecewise linear flows of two modes, and their closed orbits in closed form: exponentials of the matrices
+// between events, saltation at them.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>

@@ -1,4 +1,4 @@
-// Orbits that come back but for whole turns of angles: rotations, with periods and multipliers in closed form.
+// Orbits that return up to whole turns of angles: rotations, with periods and multipliers in closed form.
 #include <cmath>
 #include <numbers>
 #include <vector>

@@ -1,4 +1,5 @@
-// Regions of absolute stability against their polynomials, the largest stable steps against closed forms and runs.
+// Regions of absolute stability against the stability polynomials, the largest stable steps against closed forms and
+// runs.
 #include <cmath>
 #include <complex>
 #include <memory>

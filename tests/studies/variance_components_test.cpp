@@ -1,4 +1,5 @@
-// Deviations of columns, and how sure they leave the unknowns: closed forms, and restricted likelihood by a grid.
+// Deviations of columns, and the resulting uncertainty of the unknowns: closed forms, and restricted likelihood by a
+// grid.
 #include <Eigen/Dense>
 #include <cmath>
 #include <random>

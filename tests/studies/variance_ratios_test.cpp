@@ -1,4 +1,4 @@
-// Intervals where the ratio of two variances is not known: against integrals in plain sums.
+// Intervals with an unknown ratio of two variances, against integrals by plain sums.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Derivatives: exact, held against the limit they are defined by.
+// Derivatives are exact: compared with the limit that defines them.
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Expressions: equal ones are one node, simplification keeps values, printing reads back as it was meant.
+// Expressions: equal ones are one node, simplification preserves values, printed text parses to the same expression.
 #include <cmath>
 #include <limits>
 #include <string>

@@ -1,4 +1,4 @@
-// Tables: what lies between the points, and messages that name the line.
+// Tables: values between the points, and messages that name the line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

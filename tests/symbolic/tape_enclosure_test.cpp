@@ -1,4 +1,4 @@
-// Expressions of random shape enclosed over random intervals: values and quotients of differences are held.
+// Random expressions enclosed over random intervals: values and difference quotients lie within.
 #include <algorithm>
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-// Families on the tape: the equations of a grid become loops over neighbouring registers, and compute what they say.
+// Families on the tape: the equations of a grid become loops over neighbouring registers and compute the same values.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The tape computes what the expressions say, whatever it does for speed.
+// The tape computes the values of its expressions, with all optimizations.
 #include <cmath>
 #include <random>
 #include <span>

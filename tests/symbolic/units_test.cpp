@@ -1,4 +1,4 @@
-// Units: what the text means, how results are named, and that nothing is mixed silently.
+// Units: the meaning of their text, the names of results, and no silent mixing.
 #include <numbers>
 #include <string>
 

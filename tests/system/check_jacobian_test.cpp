@@ -1,4 +1,4 @@
-// A wrong derivative is found and named; a right one passes, however badly scaled its system.
+// A wrong derivative is found and named; a right one passes, however badly its system is scaled.
 #include <array>
 #include <cmath>
 #include <span>

@@ -1,4 +1,4 @@
-// The Jacobian by duals, the one written by hand and the one by differences are the same.
+// The Jacobians by dual numbers, by hand and by differences agree.
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What continuo/system/second_order.hpp promises.
+// Second-order systems, by the documentation of continuo/system/second_order.hpp.
 #include <array>
 #include <cstddef>
 #include <span>

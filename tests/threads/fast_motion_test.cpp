@@ -1,5 +1,5 @@
-// The fast motion by more threads than there are processors: no two touch the same without waiting for each other, and
-// the results are those of one.
+// The fast motion by more threads than there are processors: no two access the same data without synchronization, and
+// the results are those of one thread.
 #include <gtest/gtest.h>
 #include <tests/bodies/heaps.hpp>
 

@@ -1,4 +1,4 @@
-// Conditions of events that come through 0 and back between two of the thousand looks of a run.
+// Conditions of events that cross 0 and return between two of the thousand samples of a run.
 #include <cmath>
 #include <string>
 #include <vector>

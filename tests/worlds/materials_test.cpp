@@ -1,4 +1,4 @@
-// `combine` in a world: what it says reaches the motion, in every mode.
+// `combine` in a world: its rule applies to the motion, in every mode.
 #include <string>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// What is where, asked in a model's text: closed forms, the answers of the bodies' own index, and events by a sensor.
+// Queries in the text of a model: closed forms, the answers of the index of bodies, and events by a sensor.
 #include <cmath>
 #include <random>
 #include <string>

@@ -1,5 +1,5 @@
-// Recorded runs: told again they are the same runs, gone on with they come to the same bits, cut off or changed they
-// are as much as is whole, or refused.
+// Recorded runs: replayed they are the same runs, resumed they reach the same bits; truncated or changed ones give
+// their intact part or are refused.
 #include <cmath>
 #include <random>
 #include <sstream>

@@ -1,4 +1,4 @@
-// Worlds in the language: runs, events, equations beside the bodies.
+// Worlds in the language: runs, events, equations coupled to the bodies.
 #include <atomic>
 #include <chrono>
 #include <cmath>

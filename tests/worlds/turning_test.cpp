@@ -1,4 +1,4 @@
-// How bodies stand and turn, and walls with two sides, in the language.
+// Orientations and rotation of bodies, and walls with two sides, in the language.
 #include <cmath>
 #include <numbers>
 

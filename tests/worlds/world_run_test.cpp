@@ -1,4 +1,4 @@
-// A world that is driven step by step: what the live view and co-simulation hold in their hands.
+// A world that is advanced step by step: the interface of the live view and of co-simulation.
 #include <cmath>
 
 #include <gmock/gmock.h>

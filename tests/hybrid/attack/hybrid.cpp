@@ -1,6 +1,6 @@
 // tests/hybrid/attack/main.cpp
-// hybrid_attack COUNT SEED [METHOD]: as many random hybrid models as one likes, by one method or by each, and the first
-// that the library and the referee see differently.
+// hybrid_attack COUNT SEED [METHOD]: tests any number of random hybrid models, by one method or by each, up to the
+// first on which library and referee differ.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

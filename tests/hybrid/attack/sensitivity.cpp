@@ -1,5 +1,5 @@
-// sensitivity_attack COUNT SEED: as many derivatives of random hybrid models as one likes, and the first that the
-// library and the referee see differently.
+// sensitivity_attack COUNT SEED: tests any number of derivatives of random hybrid models, up to the first on which
+// library and referee differ.
 #include <cstdint>
 #include <cstdlib>
 
