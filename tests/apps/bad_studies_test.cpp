@@ -34,7 +34,7 @@ std::string asked(std::string study, const std::string& model, const std::string
   return study + " " + more;
 }
 
-/// A folder with a good model, data of it, and what is to be put in their place.
+/// A folder with a good model and its data, for which the tests substitute bad ones.
 struct Folder : Shell {
   Folder() {
     write("good.sim", "param k = 4 in 0..9\nx'' = -k*x\nx(0) = 1; x'(0) = 0\nrun 0..2 output 0.5\n");
@@ -148,7 +148,7 @@ TEST(BadStudies, AJacobianThatIsNoneOrSingular) {
   EXPECT_EQ(kink.exit, 3);
   EXPECT_THAT(kink.err, HasSubstr("kink.sim:4: the equation of `x` has no derivative by `x`"));
   folder.write("line.sim",
-               "x' = -x + y\ny' = (x - y)*(1 + x^2)\nx(0) = 1\ny(0) = 0\nrun 0..1\n");  // all of x = y rests
+               "x' = -x + y\ny' = (x - y)*(1 + x^2)\nx(0) = 1\ny(0) = 0\nrun 0..1\n");  // all x = y are equilibria
   const Result line = folder.run("steady line.sim");
   EXPECT_THAT(line.out, HasSubstr("not isolated")) << line.err;
 }
@@ -204,7 +204,7 @@ TEST(BadStudies, ConvergeOfWhatHasNoReference) {
   EXPECT_THAT(result.err, HasSubstr("there is no reference run"));
 }
 
-/// Commands that cannot be meant, each with what is said of it.
+/// Commands that contradict themselves, each with the message that refuses it.
 void expect_refused(const Shell& shell, const std::vector<std::pair<std::string, std::string>>& commands) {
   for (const auto& [command, said] : commands) {
     const Result result = shell.run(command);
@@ -290,7 +290,7 @@ TEST(Fit, CtrlCKeepsWhatWasFound) {
   const Result result = folder.run("fit long.sim a.csv b.csv --param k,c --starts 100000",
                                    "timeout --foreground --preserve-status --signal INT 3");
   EXPECT_EQ(result.exit, 130) << result.err;
-  // How many of the starts were done by then is the machine's matter.
+  // The number of starts completed by then depends on the machine.
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("k "), HasSubstr("c "), HasSubstr("interrupted: the best there was until then")));
 }

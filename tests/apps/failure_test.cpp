@@ -16,7 +16,7 @@ using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A method of each family of those that solve equations; the last is none: what is chosen for the model.
+/// A method of each implicit family; the last name is empty: the method chosen for the model.
 constexpr const char* methods[] = {"--method rodas5p", "--method kvaerno5", "--method radau", "--method bdf", ""};
 
 double last_time(const std::string& csv) {
@@ -27,7 +27,7 @@ double last_time(const std::string& csv) {
   return std::stod(last);
 }
 
-/// Runs the model by each method; gives what was said to `judge`, with the time of the last row.
+/// Runs the model by each method; passes the message to `judge`, with the time of the last row.
 template <class Judge>
 void by_each_method(const std::string& model, Judge&& judge) {
   const Shell shell;
@@ -47,7 +47,7 @@ void by_each_method(const std::string& model, Judge&& judge) {
 TEST(FailedRun, WhereTheSolutionOfAnEquationEndsItIsSaid) {
   by_each_method("unknown z = 1\nx' = z\n0 = z^2 + t - 1\nx(0) = 0\nrun 0..2 output 0.1\n",
                  [](const std::string& said, double last) {
-                   // Newton's iteration first, or what estimates the error.
+                   // Newton's iteration fails first, or the error estimate.
                    EXPECT_THAT(said, AnyOf(HasSubstr("error[E305]"), HasSubstr("error[E302]")));
                    EXPECT_THAT(said, HasSubstr("the solution may be singular"));
                    EXPECT_NEAR(last, 1, 1e-3);
@@ -72,7 +72,7 @@ TEST(FailedRun, EquationsThatDoNotDetermineTheirUnknownAreNamed) {
                  });
 }
 
-// sqrt(x) of a falling x: at 0 there is no more.
+// sqrt(x) of a falling x: beyond x = 0 it has no value.
 TEST(FailedRun, NoNumberIsNamedWithItsState) {
   by_each_method("y' = -y\nx' = -1 - sqrt(x)\ny(0) = 1; x(0) = 1\nrun 0..2 output 0.1\n",
                  [](const std::string& said, double last) {

@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 constexpr const char* fading = "param a = 1 in 0..5\nx' = -a*x\nx(0) = 1\nrun 0..2 output 1\n";
 constexpr const char* fading_rows = "t,x\n0,1\n1,0.1353352832366127\n2,0.01831563888873418\n";  // a = 2
 
-/// What the loader maps for a program or a library. Of the C library some parts hold nothing any more, and only the
-/// sanitizers ask for them: these are left out.
+/// The libraries that the loader maps for a program or a library. Some parts of the C library are empty today, and only
+/// the sanitizers still link them: these are left out.
 std::vector<std::string> libraries_of(const fs::path& file) {
   std::vector<std::string> libraries = lines_of(Shell().call("ldd '" + file.string() + "'").out);
   const std::regex empty_ones(R"(^\s*lib(pthread|rt|dl|resolv)\.so)");

@@ -44,8 +44,8 @@ TEST(OutputFiles, AFullDiskUnderStandardOutputIsTold) {
   EXPECT_THAT(result.err, HasSubstr("standard output could not be written"));
 }
 
-// A shell's limit on the size of files stands for the disk: gnuplot ends without its last lines. The signal that comes
-// with the limit is left aside, as a full disk sends none.
+// The shell's limit on file sizes simulates a full disk: gnuplot ends without its last lines. The signal of that limit
+// is ignored, since a full disk sends none.
 TEST(OutputFiles, APictureThatIsCutOffIsTold) {
   const Shell shell;
   shell.write("decay.sim", plain_decay);
@@ -101,7 +101,7 @@ TEST(Options, OfAFitThatContradictEachOtherAreRefused) {
   EXPECT_THAT(twice.err, HasSubstr("./data.csv is given twice"));
 }
 
-// gnuplot says nothing of a full disk and ends well: /dev/full stands where it writes a picture.
+// gnuplot reports no error on a full disk: /dev/full is its output file here.
 TEST(OutputFiles, PicturesThatDoNotFitOnTheDiskAreNoPictures) {
   const Shell shell;
   shell.write("ball.sim", "h'' = -9.81\nh(0) = 1; h'(0) = 0\nrun 0..0.4 output 0.1\n");
@@ -115,7 +115,7 @@ TEST(OutputFiles, PicturesThatDoNotFitOnTheDiskAreNoPictures) {
   EXPECT_THAT(full.err,
               HasSubstr("cannot write p/00002.png whole: the disk may be full; those up to 00001.png are there"));
   EXPECT_EQ(shell.read("p/00001.png"), first);
-  EXPECT_EQ(shell.read("p/00002.png"), second);  // what was there is not lost
+  EXPECT_EQ(shell.read("p/00002.png"), second);  // the older picture is not lost
   EXPECT_EQ(shell.call("ls p/*.part").out, "");
 }
 

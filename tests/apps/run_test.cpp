@@ -219,7 +219,7 @@ TEST(Run, AFailedCheckIsExitCodeFourForTheModelAsWritten) {
   EXPECT_EQ(result.exit, 4);
   EXPECT_THAT(result.err, HasSubstr("check x(2) = 0 within 1e-9 does not hold: it is -0.65"));
   const Result other = shell.run("run wrong.sim --set k=5");
-  EXPECT_EQ(other.exit, 0);  // the check was not meant for it
+  EXPECT_EQ(other.exit, 0);  // checks judge only the model as written
   EXPECT_THAT(other.out, HasSubstr("0 of 1 hold; they judge the model as written in its file"));
   EXPECT_THAT(other.out, HasSubstr("check x(2) = 0 within 1e-9 does not hold: it is -0.23"));  // cos(2 sqrt(5))
 }
@@ -241,7 +241,7 @@ TEST(Compare, EveryPairHasItsLine) {
   shell.write("spring.sim", spring);
   const Result result = shell.run("compare spring.sim --methods euler,rk4,dop853 --step 0.1,0.05");
   EXPECT_EQ(result.exit, 0);
-  EXPECT_THAT(lines_of(result.out), SizeIs(1u + 6u + 1u));  // heading, pairs, what the errors are
+  EXPECT_THAT(lines_of(result.out), SizeIs(1u + 6u + 1u));  // heading, pairs, the note on the errors
   EXPECT_THAT(result.out, HasSubstr("energy drift"));
   EXPECT_EQ(shell.run("compare spring.sim --methods euler,rk5 --step 0.1").exit, 1);
 }

@@ -33,7 +33,7 @@ class Shell {
   Shell& operator=(const Shell&) = delete;
   ~Shell() { std::filesystem::remove_all(folder_); }
 
-  /// `before` stands before the command: variables, `timeout`.
+  /// `before` precedes the command: variables, `timeout`.
   Result run(const std::string& arguments, const std::string& before = "") const {
     return call(before + " '" CONTINUO_COMMAND "' " + arguments);
   }

@@ -212,7 +212,7 @@ TEST(Orbit, PeriodSectionAndExponents) {
   const std::string oscillator = "orbit " + gallery("van_der_pol_stiff") + " --set mu=10";
   EXPECT_THAT(shell.run(oscillator).out, HasSubstr("period 19.07836957"));
   EXPECT_NEAR(nlohmann::json::parse(shell.run(oscillator + " --json").out)["period"], 19.07836957, 1e-8);
-  // A period forty times as long as the model's run is looked for by itself.
+  // The search also finds a period forty times as long as the model's run.
   shell.write("relax.sim", "param mu = 1000\nx'' = mu*(1 - x^2)*x' - x\nx(0) = 2; x'(0) = 0\nrun 0..40\n");
   EXPECT_THAT(shell.run("orbit relax.sim").out, HasSubstr("period 1614.40"));
   const Result section = shell.run("orbit " + gallery("lorenz") + " --section z=27 --duration 10");
@@ -289,7 +289,7 @@ TEST(Orbit, ABranchWithItsTableAndPicture) {
   ASSERT_EQ(as_json["branches"].size(), 1u);
   EXPECT_NEAR(as_json["branches"][0]["bifurcations"][0]["mu"], -0.25, 1e-8);
   EXPECT_EQ(as_json["branches"][0]["ends"][1]["mu"], 1);
-  // From the start the motion comes to rest; the orbits begin elsewhere.
+  // From the initial values the motion tends to an equilibrium; the orbits begin elsewhere.
   const Result fallback = shell.run("orbit bautin.sim --along mu=-1..1 --set mu=-0.5");
   EXPECT_EQ(fallback.exit, 0);
   EXPECT_THAT(fallback.err, HasSubstr("trying the Hopf points of equilibria"));
@@ -465,7 +465,7 @@ TEST(Explore, SaysWhatIsThereAndWhatIsOpen) {
   EXPECT_THAT(shell.read("page.svg"), HasSubstr("<svg"));
 }
 
-// An orbit is looked for with all that happens: of the force, and through the event; for as long as the model's run is.
+// The search for an orbit includes the time-dependent force and the events, for as long as the model's run.
 TEST(Explore, LooksForNothingWhereItCannotSee) {
   const Shell shell;
   shell.write("forced.sim", "param c = 0.2\nx'' = -x - c*x' + cos(t)\nx(0) = 0; x'(0) = 0\nrun 0..20\n");

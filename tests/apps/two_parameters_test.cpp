@@ -15,8 +15,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// A. D. Bazykin's predator and prey. At rest y = (1 - x/100)(1 + alpha x) and delta y = x/(1 + alpha x) - 1; that the
-// trace and the determinant vanish are then two equations for x and alpha, whose solutions stand here.
+// A. D. Bazykin's predator and prey. At equilibrium y = (1 - x/100)(1 + alpha x) and delta y = x/(1 + alpha x) - 1.
+// Trace and determinant zero are then two equations for x and alpha, whose solutions are used here.
 TEST(SteadyPlane, FoldsAndHopfPointsOfBazykin) {
   const Shell shell;
   shell.write("bazykin.sim",

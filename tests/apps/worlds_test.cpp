@@ -82,7 +82,7 @@ TEST(Worlds, AreComparedByTheirMotions) {
       shell.run("compare spring.sim --methods exact,central_difference,explicit_euler,rk4 --step 0.02,0.01");
   EXPECT_EQ(result.exit, 0) << result.err;
   const auto lines = lines_of(result.out);
-  ASSERT_EQ(lines.size(), 9u) << result.out;  // heading, exact once, the others twice, what errors are against
+  ASSERT_EQ(lines.size(), 9u) << result.out;  // heading, exact once, the others twice, the note on the errors
   EXPECT_THAT(lines[0], HasSubstr("collisions"));
   const auto largest = [&](std::size_t line) {
     std::istringstream words(lines[line].substr(36));

@@ -36,10 +36,10 @@ class SourceTree {
   /// or folder that CMake does not name. Public headers themselves, and their sources, may use all of their module.
   std::vector<std::string> upward_includes() const;
 
-  /// Folders with more subjects (a header with its source is one), or more files, than a reader can take in.
+  /// Folders with too many subjects (a header with its source is one) or files for a reader to survey.
   std::vector<std::string> crowded_folders(std::size_t most_subjects, std::size_t most_files) const;
 
-  /// The .cpp files that do not begin with a comment, or with one that has no line but their own path.
+  /// The .cpp files without a comment at their top, or with one that contains only their own path.
   std::vector<std::string> sources_without_purpose() const;
 
  private:

@@ -8,8 +8,8 @@
 namespace continuo::at_one_instant_test {
 namespace {
 
-// A column without restitution stays where it lands: what the floor stops stops what comes behind it. What is left of
-// the speed after so many halvings is below rounding, and held contacts bring that to rest.
+// A column without restitution stays where it lands: each ball stops the one above it. After so many halvings the
+// remaining speed is below rounding, and persistent contacts bring it to zero.
 template <int Dim>
 void lands_and_stays(std::size_t count, double friction) {
   World<double, Dim> world;

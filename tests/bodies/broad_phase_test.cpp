@@ -8,9 +8,9 @@
 namespace continuo::broad_phase_test {
 namespace {
 
-// One that is fast among many at rest looks for the others itself: all pairs are not listed anew for it alone, which at
-// 6 a second and a skin of 0.11 they would be every other step. What it flies past stays at rest, what it meets does
-// not.
+// A single fast ball among many at rest searches for neighbours by itself. All pairs are not listed anew on its
+// account, which at a speed of 6 and a skin of 0.11 would be every other step. Balls that it passes stay at rest; the
+// ball that it hits does not.
 TEST(FastMotion, ListsPairsAnewForFewThatAreFastNoOftenerThanTheyReach) {
   for (const bool is_last : {false, true}) {  // it finds the others on either side of its place
     World<double, 3> world;

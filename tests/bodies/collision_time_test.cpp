@@ -12,9 +12,9 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-// Thrown straight up at v from what it touches, it is back after 2 v / g. An ulp of the distance, of which rounding
-// makes a few, is passed in ulp / v; where that is longer than the flight, only that it comes back at all can be asked,
-// and that it takes no more than twice the time.
+// A body thrown straight up at v from a contact returns after 2 v / g. It crosses an ulp of the distance, of which
+// rounding makes a few, in ulp / v. Where that is longer than the flight, the test only demands that it returns within
+// twice the time.
 TEST(CollisionTime, ComesBackFromAFlightOfAnyLength) {
   constexpr double g = 9.81;
   for (const double inside : {0.0, epsilon / 2})
@@ -25,7 +25,7 @@ TEST(CollisionTime, ComesBackFromAFlightOfAnyLength) {
       EXPECT_NEAR(wait, flight, std::min(flight, 8 * epsilon / v) + 8 * epsilon * flight) << v;
     }
 }
-// Beside a ball, at the height of its centre: whatever falls does not come back.
+// A body that falls beside a ball, from the height of its centre, does not return.
 TEST(CollisionTime, LeavesForGoodWherePathsPart) {
   const double wait =
       time_to_touch(Vector<double, 2>{{1, 0}}, Vector<double, 2>{{1e-9, 0}}, Vector<double, 2>{{0, -9.81}}, 1.0, 0.5);

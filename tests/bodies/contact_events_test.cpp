@@ -42,7 +42,7 @@ TEST(ContactEvents, ImpulsesAreTheChangeOfMomentum) {
     EXPECT_GT(event.impulse, 0);
     gained[world.index(event.a)] -= event.normal * event.impulse;
     if (!event.with_wall()) gained[world.index(event.b)] += event.normal * event.impulse;
-    // A wall is touched where it is: here, in a face of the box.
+    // A contact with a wall is in its surface: here, in a face of the box.
     if (event.with_wall()) {
       EXPECT_NEAR(dot(world.walls()[event.wall].normal, event.point), world.walls()[event.wall].offset, 20 * epsilon);
     }
@@ -69,7 +69,7 @@ TEST(ContactEvents, RestBeginsAndEndsWithTheWeight) {
     if (event.change == ContactChange::end && ended < 0) ended = event.time, impulse = event.impulse;
   }
   EXPECT_EQ(begun, 0);
-  EXPECT_NEAR(ended, 4, 1e-4);  // the other one flies a little, as long as it bounces
+  EXPECT_NEAR(ended, 4, 1e-4);  // the other ball bounces until then
   EXPECT_NEAR(impulse, 3 * 10 * ended, 1e-9);
 }
 
@@ -95,9 +95,8 @@ TEST(ContactEvents, OfTheFastMotionTellOfImpacts) {
   for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], 1 + 2 * static_cast<double>(i), 1e-9);
 }
 
-// Two balls, one on the other: as long as they lie, each contact passes on the weight of what is above. The soft
-// contacts settle in the first tenth of a second; what they overshoot there is given back, but for the momentum of the
-// end.
+// Two balls, one on the other: while they rest, the impulse of each contact is that of the weight above it. The soft
+// contacts settle in the first tenth of a second; their overshoot there cancels, but for the momentum at the end.
 TEST(ContactEvents, OfTheFastMotionTellOfWeight) {
   World<double, 3> world;
   world.gravity = {{0, 0, -10}};
@@ -111,7 +110,7 @@ TEST(ContactEvents, OfTheFastMotionTellOfWeight) {
     for (const auto& event : motion.contact_events()) begun += event.change == ContactChange::begin ? 1 : 0;
   }
   EXPECT_EQ(begun, 2);
-  world.velocity[world.index(*low)] = {{0, 100, 0}};  // pulled away from below, and both lifted
+  world.velocity[world.index(*low)] = {{0, 100, 0}};  // the lower one is pulled away, and both are lifted
   world.velocity[world.index(*high)] = {{0, 0, 100}};
   world.position[world.index(*low)][2] += 0.1;
   world.position[world.index(*high)][2] += 1;
@@ -123,7 +122,7 @@ TEST(ContactEvents, OfTheFastMotionTellOfWeight) {
   }
 }
 
-// A ball rolls off one that is fixed: a contact that lasts begins once and ends once, however long a call takes.
+// A ball rolls off a fixed one: a persistent contact has one begin and one end, however many calls it spans.
 TEST(ContactEvents, OfAnIslandBeginAndEndOnce) {
   double when = 0;
   for (const int calls : {1, 300}) {
@@ -158,7 +157,7 @@ TEST(ContactEvents, AreBounded) {
   ASSERT_TRUE(motion.advance_to(10));
   EXPECT_EQ(motion.contact_events().size(), 3u);
   EXPECT_EQ(motion.lost_contact_events() + 3, motion.statistics().wall_collisions);
-  ASSERT_TRUE(motion.advance_to(10));  // of each call its own
+  ASSERT_TRUE(motion.advance_to(10));  // each call has its own events
   EXPECT_TRUE(motion.contact_events().empty());
 }
 

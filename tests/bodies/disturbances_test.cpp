@@ -16,7 +16,7 @@ TEST(Disturbances, OfThreeBallsEachHasABit) {
   EXPECT_EQ(blocks.bit_of(0, 2), std::uint64_t{1} << 32);
 }
 
-// Sweeps 2 to 5 of the example: the contact of balls 1 and 2 is meant to the end, that of ball 2 with a ball 3 until
+// Sweeps 2 to 5 of the example: the contact of balls 1 and 2 stays disturbed to the end, that of balls 2 and 3 until
 // sweep 3.
 TEST(Disturbances, AreThoseOfTheLastSweepAndOfThisOne) {
   const ContactBlocks blocks = ContactBlocks::of(3, 1);
@@ -40,7 +40,7 @@ TEST(Disturbances, AreThoseOfTheLastSweepAndOfThisOne) {
   EXPECT_EQ(disturbances.bins(0), 0u);
 }
 
-// A body in the second half of block 0 is met by contacts within block 0 and across its end, by no others.
+// A body in the second half of block 0 takes part in contacts within block 0 and across its end, and in no others.
 TEST(Disturbances, ReachTheGroupsThatMeetTheirHalf) {
   const ContactBlocks blocks = ContactBlocks::of(1000, 10);
   ASSERT_GE(blocks.count, 3u);
@@ -52,7 +52,7 @@ TEST(Disturbances, ReachTheGroupsThatMeetTheirHalf) {
   EXPECT_EQ(disturbances.bins(blocks.across(0)), blocks.bit_of(blocks.across(0), body));
   EXPECT_EQ(disturbances.bins(1), 0u);
   EXPECT_EQ(disturbances.bins(blocks.across(1)), 0u);
-  EXPECT_EQ(disturbances.bins(blocks.rest()), ~std::uint64_t{0});  // few: looked at one by one
+  EXPECT_EQ(disturbances.bins(blocks.rest()), ~std::uint64_t{0});  // few bins: each is tested by itself
   EXPECT_TRUE(disturbances.any_from(0));
   EXPECT_TRUE(disturbances.any_from(1));
   EXPECT_FALSE(disturbances.any_from(2));

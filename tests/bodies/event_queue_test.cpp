@@ -17,8 +17,8 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// Takes the first event again and again, moves it and some others on by what `wait` says; each must be the least of
-/// all by time and then number.
+/// Repeatedly takes the first event and postpones it and some others by `wait`. Each must be the least of all by time,
+/// then by number.
 template <class Wait>
 void gives_the_least(std::uint32_t count, int events, Wait&& wait) {
   std::mt19937 engine(3);

@@ -98,7 +98,7 @@ TEST(ExactMotion, KeepsMomentumAndAngularMomentum) {
 template <int Dim>
 double enskog_rate(double count, double free) {
   const double n = count / std::pow(free, Dim), pi = std::numbers::pi;
-  const double bulk = count / std::pow(free + 1, Dim);  // what crowds a ball: volume over all room
+  const double bulk = count / std::pow(free + 1, Dim);  // packing fraction without walls
   if (Dim == 3) {
     const double packing = pi / 6 * bulk, g = (1 - packing / 2) / std::pow(1 - packing, 3);
     return 4 * std::sqrt(pi) * n * g * (1 - 3 * 0.5 / free + 3 * 2 / (3 * pi) / (free * free));
@@ -177,8 +177,8 @@ TEST(ExactMotion, ADampedBallComesToRest) {
   EXPECT_LT(motion.statistics().wall_collisions, 40u);
 }
 
-// On a slope of 45 degrees without friction, what is left of gravity is g sin: after the bounces it slides as on a
-// rail, and at the foot it comes to lie in the corner of slope and wall, where it stays.
+// On a smooth slope of 45 degrees the component of gravity along the slope is g sin(45): after the bounces the ball
+// slides as on a rail, and at the foot it comes to rest in the corner of slope and wall.
 TEST(ExactMotion, ABallSlidesDownASlopeAndRestsInTheCorner) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
@@ -217,8 +217,8 @@ TEST(ExactMotion, NewtonsCradleSendsOutAsManyAsCameIn) {
   }
 }
 
-// A ball that bounces about on a fixed sphere and the floor under gravity: roots of a polynomial of degree 4. Energy
-// says whether each was right.
+// A ball bounces on a fixed sphere and the floor under gravity, so that times of impact are roots of polynomials of
+// degree 4. The energy shows whether each root was right.
 TEST(ExactMotion, FindsFixedSpheresOnCurvedPaths) {
   World<double, 3> world;
   world.gravity = {{0, 0, -9.81}};
@@ -237,8 +237,8 @@ TEST(ExactMotion, FindsFixedSpheresOnCurvedPaths) {
   EXPECT_GT(motion.statistics().collisions, 10u);
 }
 
-// What lies in memory where makes no difference: the bodies of one world in another order move to the same bits, as
-// long as no two events coincide.
+// The order in memory does not matter: the same bodies in another order move identically, as long as no two events
+// coincide.
 TEST(ExactMotion, TheOrderOfBodiesDoesNotMatter) {
   World<double, 3> a = gas<3>(200, 12, elastic), b;
   ASSERT_TRUE(b.add_container({}, {{12, 12, 12}}, elastic));
@@ -250,7 +250,7 @@ TEST(ExactMotion, TheOrderOfBodiesDoesNotMatter) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT(length(a.position[i] - b.position[a.size() - 1 - i]), 1e-6) << i;
 }
 
-// A ball that is set down on a fixed one stays on it, but for what a body falls in the contact time.
+// A ball placed on a fixed one stays there, up to the distance that a body falls in the contact time.
 TEST(ExactMotion, ABallLiesOnAFixedSphere) {
   World<double, 2> world;
   world.gravity = {{0, -10}};
@@ -264,7 +264,7 @@ TEST(ExactMotion, ABallLiesOnAFixedSphere) {
   EXPECT_LT(motion.statistics().collisions, 10u);
 }
 
-// Where one looks makes no difference to where one gets: advance_to leaves the prediction alone.
+// Output does not change the motion: advance_to leaves the predicted events alone.
 TEST(ExactMotion, LookingDoesNotDisturb) {
   World<double, 3> a = gas<3>(200, 12, elastic), b = a;
   ExactMotion once(a), often(b);
@@ -274,8 +274,8 @@ TEST(ExactMotion, LookingDoesNotDisturb) {
   EXPECT_EQ(a.velocity, b.velocity);
 }
 
-// What is dropped into a narrow box slides over what lies on its floor. What lasts may sink by what a body falls in the
-// contact time, a hundred-thousandth of the time for its radius: 2e-10 of that.
+// Balls dropped into a narrow box slide over those on its floor. A persistent contact may overlap by the distance that
+// a body falls in the contact time, which is 1e-5 of the time to fall its radius: 2e-10 of the radius.
 TEST(ExactMotion, ABallDoesNotSinkIntoOneThatLies) {
   const Material<double> slack{.restitution = 0, .friction = 0};
   World<double, 3> world;
@@ -296,7 +296,7 @@ TEST(ExactMotion, ABallDoesNotSinkIntoOneThatLies) {
   }
 }
 
-// Where bodies do not fit into the cache, it looks ahead at what comes next: that decides nothing.
+// A world too large for the cache is prefetched ahead of its next events, which must not change the results.
 TEST(ExactMotion, LooksAheadInAGasTooLargeForTheCache) {
   constexpr std::size_t count = 25000;
   World<double, 3> world = gas<3>(count, 36, elastic), looked_at = world;

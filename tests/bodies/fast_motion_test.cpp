@@ -25,8 +25,8 @@ void run(World<Real, Dim>& world, Real duration, const FastOptions<Real>& option
   for (int i = 0; i < steps; ++i) ASSERT_TRUE(motion.advance());
 }
 
-// Flight and impacts are exact but for rounding; the peak lies within half a step of an instant that is looked at:
-// g (1/120)^2 / 2 = 3.4e-4 below it at most.
+// Flight and impacts are exact but for rounding. The peak is within half a step of a sample, so the highest sample is
+// below it by g (1/120)^2 / 2 = 3.4e-4 at most.
 TEST(FastMotion, AnElasticBallReachesItsHeightAgain) {
   World<double, 2> world;
   world.gravity = {{0, -9.81}};
@@ -95,8 +95,8 @@ TEST(FastMotion, SlidesUntilItRolls) {
   slides_until_it_rolls<2>(2.0 / 3);
 }
 
-// 10,000 balls at 1 km/s, which come 4 m in a substep, against one of a centimetre that is fixed, and against walls,
-// from everywhere: none comes out behind. Half of them bounce.
+// 10,000 balls at 1 km/s, 4 m in a substep, against a fixed ball of a centimetre and against walls, from all
+// directions: none passes through. Half of them bounce.
 TEST(FastMotion, NothingPassesThrough) {
   std::mt19937 engine(3);
   std::normal_distribution<double> normal;
@@ -115,8 +115,8 @@ TEST(FastMotion, NothingPassesThrough) {
                            .velocity = direction * 1000.0,
                            .material = material}));
     run(world, 0.05);
-    // What is left is turned away by twice the angle of incidence, or without restitution goes along the surface, but
-    // for the speed with which a soft contact parts the two at most, `fastest_push`.
+    // The velocity is deflected by twice the angle of incidence, or without restitution becomes tangential, up to
+    // `fastest_push`, the largest speed with which a soft contact separates two bodies.
     const double sine = length(aside) / 0.02, expected = shot % 2 ? 2 * sine * sine - 1 : sine * sine;
     EXPECT_NEAR(dot(world.velocity[1], direction), 1000 * expected, shot % 2 ? 1e-6 : 4.0) << shot;
   }
@@ -158,8 +158,8 @@ TEST(FastMotion, KeepsMomentumAndAngularMomentum) {
   EXPECT_LT(length(momentum(world) - p), 1e-11);
 }
 
-// A heap comes to rest without sinking in: 200 balls, the deepest overlap of all steps a hundredth of a radius,
-// although balls fall on others, at up to 4 m/s, that the floor holds.
+// A heap of 200 balls comes to rest. The deepest overlap of all steps is a hundredth of a radius, although balls fall
+// at up to 4 m/s on others that rest on the floor.
 TEST(FastMotion, AHeapComesToRest) {
   World<double, 3> world = heap<double>(200, 5, 5);
   FastMotion<double, 3> motion(world);
@@ -172,8 +172,8 @@ TEST(FastMotion, AHeapComesToRest) {
   EXPECT_LT(kinetic_energy(world), 0.05);
 }
 
-// A ball ten times as heavy hits a column at 22 m/s, without restitution: what it has pressed in comes out no faster
-// than such contacts part at most, `fastest_push`.
+// A ball ten times as heavy hits a column at 22 m/s, without restitution: compressed contacts separate with at most
+// `fastest_push`.
 TEST(FastMotion, AHitColumnDoesNotSpringUp) {
   World<double, 3> world;
   world.gravity = {{0, 0, -9.81}};
@@ -188,14 +188,14 @@ TEST(FastMotion, AHitColumnDoesNotSpringUp) {
     for (const auto& v : world.velocity) fastest = std::max(fastest, v[2]);
   }
   EXPECT_LT(fastest, options.fastest_push);
-  EXPECT_LT(kinetic_energy(world), 1e-9);  // it has come to rest, as far as rounding goes
+  EXPECT_LT(kinetic_energy(world), 1e-9);  // at rest, but for rounding
   EXPECT_NEAR(world.position[3][2], 3.5, 0.01);
 }
 
-// Between balls that touch and can bounce, a contact left what came about while contacts were solved to an impact that
-// never came: piles sank into each other by a tenth of a ball, and columns of four without end. What soft contacts are
-// pressed in by is load / (mass w^2), w = 2 pi 60 / s at the lowest here: ten balls above make it 0.0007, an impact
-// some times that. The field's heap allows 0.005.
+// Contacts of balls that touch and can bounce once left approach velocities from the solver to an impact that never
+// came: heaps overlapped by a tenth of a ball, and columns of four without limit. A soft contact is compressed by load
+// / (mass w^2), with w = 2 pi 60 / s at the lowest here: ten balls above give 0.0007, an impact a few times that. The
+// limit 0.005 is that of the published heap.
 TEST(FastMotion, WhatCanBounceDoesNotSink) {
   for (const double dt : {1.0 / 60, 1.0 / 240}) {
     for (const double restitution : {0.1, 0.3, 0.5}) {
@@ -221,9 +221,9 @@ TEST(FastMotion, AMixedHeapIsTheSameForAnyNumberOfThreads) {
   expect_the_same_for_any_number_of_threads(mixed(heap<float>(4000, 20, 1)), {}, 60);
 }
 
-// Every build moves a world the same way: debug and release, g++ and clang, on any machine without instructions that
-// round less often (fused multiply-add, which only -march=native asks for). The numbers are what all of these gave.
-// Orientations are left out: they come from the sines of the system's library.
+// Every build gives the same bits: debug and release, g++ and clang, on any machine, unless fused multiply-add is
+// enabled (by -march=native only), which rounds less often. The expected numbers are those of all these builds.
+// Orientations are left out, since they depend on the sines of the system's library.
 template <class Real, int Dim>
 std::uint64_t hash_without_orientation(World<Real, Dim> world) {
   std::ranges::fill(world.orientation, upright<Real, Dim>());
@@ -256,9 +256,9 @@ TEST(FastMotion, IsTheSameInEveryBuild) {
   EXPECT_EQ(hash_without_orientation(exact), 0xde9af8e8070e42d2u);
 }
 
-// A wall without thickness, through the middle of a box: balls shot at it from both sides stay on theirs, moved exactly
-// and fast. Exactly, a place is right to rounding; without restitution contacts are soft, and one that is driven into
-// the wedge between two walls yields, but never to its centre.
+// A wall without thickness through the middle of a box: balls shot at it from both sides stay on their side, by the
+// exact and the fast motion. In the exact motion positions are right to rounding. In the fast motion contacts without
+// restitution are soft: a ball driven into the wedge between two walls overlaps, but never with its centre.
 TEST(FastMotion, NothingPassesThroughAThinWall) {
   std::mt19937 engine(5);
   std::normal_distribution<double> normal;
@@ -286,7 +286,7 @@ TEST(FastMotion, NothingPassesThroughAThinWall) {
   }
 }
 
-// World and motion together, while balls lie on each other.
+// Snapshots of world and motion together, while balls rest on each other.
 TEST(FastMotion, HoldsAtMost400BytesASphere) {
   const int count = 4000;
   World<float, 3> world = heap<float>(count, 20, 1);
@@ -318,8 +318,8 @@ TEST(FastMotion, RollingResistanceSlowsDown) {
   rolls_ever_slower<2>(1.5);
 }
 
-// More small balls round a large one than there are colours, and a large one that is fixed: they fall on it from all
-// sides, drawn by a force towards its centre, and come to rest on it.
+// More small balls round a large, fixed one than there are colours: a force towards its centre draws them from all
+// sides until they rest on it.
 TEST(FastMotion, ManyTouchOne) {
   for (const bool is_fixed : {true, false}) {
     World<float, 3> world;

@@ -26,8 +26,9 @@ World<double, 2> spinning_in_a_corner(double friction, double spin) {
   return world;
 }
 
-// Both walls rub with all they have, while it stays where it is: N_1 + N_2 = sqrt(2) m g / (1 + mu^2), as mu N acts
-// along each wall, against the spin. That begins within the contact time, 3e-6 s, in which it slows by 7e-5 at most.
+// Both walls exert their full friction while the disc stays in place: N_1 + N_2 = sqrt(2) m g / (1 + mu^2), as mu N
+// acts along each wall, against the spin. That begins within the contact time, 3e-6 s, in which the spin falls by 7e-5
+// at most.
 TEST(Groove, RubsADiscUntilItStands) {
   for (const double friction : {0.1, 0.5}) {
     World<double, 2> world = spinning_in_a_corner(friction, 30);
@@ -43,7 +44,7 @@ TEST(Groove, RubsADiscUntilItStands) {
     EXPECT_NEAR(world.spin[0][0], 0, 1e-9) << friction;
     EXPECT_NEAR(world.position[0][1], 0.5 * std::numbers::sqrt2, 1e-9) << friction;
     EXPECT_NEAR(length(world.velocity[0]), 0, 1e-9) << friction;
-    ExactMotion on(world, {.most_events = 100});  // at rest it costs nothing
+    ExactMotion on(world, {.most_events = 100});  // at rest there are no events
     EXPECT_TRUE(on.advance_to(1e6)) << friction;
   }
 }

@@ -15,7 +15,7 @@
 namespace continuo::inelastic_collapse_test {
 namespace {
 
-/// One ball comes in at speed 1, to `count` - 1 others that are so far apart, the last of which leaves.
+/// One ball approaches at speed 1 a row of `count` - 1 others with gaps of `gap`; the last one leaves.
 template <int Dim>
 World<double, Dim> cradle(std::size_t count, double restitution, double gap) {
   World<double, Dim> world;
@@ -28,7 +28,7 @@ World<double, Dim> cradle(std::size_t count, double restitution, double gap) {
   return world;
 }
 
-// Each ball hands on (1 + e)/2 of what it gets, touching or not.
+// Each ball passes on (1 + e)/2 of the speed it receives, touching or not.
 TEST(InelasticCollapse, ACradleThatLosesEnergySendsOutWhatOneAfterAnotherHandOn) {
   for (const double restitution : {0.9, 0.6})
     for (const double gap : {0.0, 1e-12, 1e-9, 1e-6, 1e-3}) {
@@ -44,7 +44,7 @@ TEST(InelasticCollapse, ACradleThatLosesEnergySendsOutWhatOneAfterAnotherHandOn)
   EXPECT_NEAR(world.velocity[11][0], std::pow(0.95, 11), 1e-13);
 }
 
-// Nothing bounces: all go on as one, with the momentum that came in.
+// Without restitution all move on together, with the initial momentum.
 TEST(InelasticCollapse, WhatDoesNotBounceGoesOnTogether) {
   for (const double gap : {0.0, 1e-9, 1e-3}) {
     auto world = cradle<2>(10, 0, gap);
@@ -69,8 +69,8 @@ World<double, 2> row(std::size_t count, double restitution, double gap) {
   return world;
 }
 
-// What the wall stops stops what comes behind it: nothing comes back from it, where the last used to with all its
-// speed.
+// Each ball stops the one behind it: none returns from the wall. In an earlier version the last one returned with its
+// full speed.
 TEST(InelasticCollapse, WhatFliesIntoAWallTogetherWithoutRestitutionStopsThere) {
   for (const std::size_t count : {2u, 3u, 20u})
     for (const double gap : {0.0, 1e-7}) {
@@ -84,8 +84,8 @@ TEST(InelasticCollapse, WhatFliesIntoAWallTogetherWithoutRestitutionStopsThere) 
     }
 }
 
-// Two hundred and more collisions of a ball in one instant are as any other: beside them, the same velocities by
-// collisions one after the other until nobody approaches, wall first, then the lowest pair.
+// More than two hundred collisions of a ball at one instant are computed like any others: the same velocities result
+// from consecutive collisions until no pair approaches, wall first, then the lowest pair.
 TEST(InelasticCollapse, ManyCollisionsAtOneInstantAreEachAsAnyOther) {
   constexpr std::size_t count = 20;
   constexpr double restitution = 0.9;
@@ -127,9 +127,10 @@ World<double, Dim> implosion(std::size_t count, Material<double> material) {
   return world;
 }
 
-// It collapses into a clump, and what was is kept: the momentum, the angular momentum, and nothing overlaps; the energy
-// only falls. Friction acts on two at the rims of both, though their gap is as wide as they may fly in the contact
-// time, a hundred-thousandth of what they fly their radius in at the greatest speed of all: that gap is a lever.
+// The balls collapse into a cluster. Momentum and angular momentum are conserved, nothing overlaps, and the energy only
+// falls. Friction acts on each ball at its own surface although the two are a gap apart: up to the distance of flight
+// in the contact time, 1e-5 of the radius at the greatest speed of all. That gap is the lever in the bound on the
+// angular momentum.
 template <int Dim>
 void collapses(std::size_t count, Material<double> material) {
   auto world = implosion<Dim>(count, material);

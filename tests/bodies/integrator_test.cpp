@@ -59,8 +59,8 @@ double greatest_swing(ForceIntegrator integrator, double h, int steps) {
   return greatest;
 }
 
-// Below h = 2 / omega the swing is bounded: the quadratic form that the methods keep, x^2 - h x v + v^2 / omega^2 or
-// x^2 (1 - (h omega)^2 / 4) + v^2 / omega^2, bounds it by 0.5 / sqrt(1 - (h omega / 2)^2). Above, it grows.
+// Below h = 2 / omega the oscillation is bounded: the quadratic form that the methods conserve, x^2 - h x v + v^2 /
+// omega^2 or x^2 (1 - (h omega)^2 / 4) + v^2 / omega^2, bounds it by 0.5 / sqrt(1 - (h omega / 2)^2). Above, it grows.
 TEST(ForceIntegrator, IsStableUpToTwoOverOmega) {
   for (const ForceIntegrator integrator : {ForceIntegrator::semi_implicit_euler, ForceIntegrator::central_difference}) {
     for (const double part : {0.5, 0.9, 0.97}) {
@@ -114,7 +114,8 @@ TEST(ForceIntegrator, ImplicitEulerHasNoLimit) {
   }
 }
 
-// Throws and constant forces are followed exactly, by all but explicit Euler, which is late by h a / 2.
+// Parabolas of constant forces are exact by all integrators but explicit Euler, whose error is that of a delay of h /
+// 2.
 TEST(ForceIntegrator, FollowsParabolas) {
   for (const ForceIntegrator integrator : {ForceIntegrator::semi_implicit_euler, ForceIntegrator::implicit_euler,
                                            ForceIntegrator::central_difference, ForceIntegrator::explicit_euler}) {

@@ -23,8 +23,8 @@ const Material<double> smooth{.restitution = 0, .friction = 0}, rough{.restituti
     elastic{.restitution = 1, .friction = 0};
 
 using Group = std::vector<BodyDefinition<double, 2>>;
-/// Groups that never meet: a pyramid that falls apart, one that stands, a column that is dropped, a ball that rolls
-/// down another one, a ball in a groove, and one that bounces for ever.
+/// Groups that never meet: a pyramid that collapses, one that is stable, a falling column, a ball that rolls down
+/// another one, a ball in a groove, and one that bounces for ever.
 std::array<Group, 6> groups() {
   const double up = 0.5 + std::sqrt(0.75);
   const Material<double> slippery{.restitution = 0, .friction = 0.1};
@@ -52,8 +52,8 @@ Flat world_of(const Group& group) {
   return world;
 }
 
-// The radii are the same, and so are contact times and strides: what is left are the digits of places further out, of
-// which motions here multiply an error by some hundreds.
+// The radii are the same, and so are contact times and strides. The remaining difference is the rounding of larger
+// coordinates, which the motions here amplify by some hundreds.
 TEST(Islands, MoveAsAlone) {
   Group all;
   const auto parts = groups();
@@ -119,8 +119,8 @@ TEST(Islands, AreWokenByWhatHitsThem) {
   }
 }
 
-// A ball slides down a fixed one, and another comes to it on its way, now early and now late: as if all moved by forces
-// that are not known to be gravity, of which each step has an error of 1e-10.
+// A ball slides down a fixed one and another one hits it on its way, early or late: as if both moved by general forces,
+// with an error of 1e-10 in each step.
 TEST(Islands, GoBackToWhenSomebodyComes) {
   for (int k = 0; k < 8; ++k) {
     Flat world;
@@ -141,8 +141,8 @@ TEST(Islands, GoBackToWhenSomebodyComes) {
   }
 }
 
-// Balls that lose nothing, in a box with one that lies on two others: the gas keeps its energy to rounding, which steps
-// of first order do not.
+// Elastic balls in a box with one that rests on two others: the gas conserves its energy to rounding, which steps of
+// first order would not.
 TEST(Islands, LeaveWhatFliesOnItsParabolas) {
   Space world;
   world.gravity = {{0, 0, -10}};
@@ -197,8 +197,8 @@ World<double, Dim> battle(unsigned seed) {
   for (int i = 0; i < 6; ++i) add(4.5 + 5 * (i % 2), 1 + 1.2 * i, 16 * uniform(engine) - 8);
   return world;
 }
-// Nobody passes through anybody, no energy comes from nowhere, and in the middle of it a snapshot goes on to the same
-// bits; bounds as of one heap, see resting_heaps_test.cpp.
+// No ball passes through another, no energy is created, and a snapshot taken on the way resumes to the same bits. The
+// bounds are those of one heap, see resting_heaps_test.cpp.
 template <int Dim>
 void fights(unsigned seed) {
   World<double, Dim> world = battle<Dim>(seed), other;

@@ -15,7 +15,7 @@ constexpr double g = 9.81;
 constexpr std::array every_way{Combine::average, Combine::minimum, Combine::maximum, Combine::product,
                                Combine::geometric_mean};
 
-/// Of 4 c and c: what the words mean, written out.
+/// The combination of 4 c and c by each rule, written out.
 double by_hand(Combine how, double c) {
   switch (how) {
     case Combine::average:
@@ -56,7 +56,7 @@ World<double, 2> over_a_floor(const CombineRule& combine_rule, const Material<do
   return world;
 }
 
-// From a height h above the floor it comes back to e^2 h: its energy says to which height it will.
+// From a height h above the floor it rebounds to e^2 h, computed from its energy.
 TEST(Materials, ABallReboundsByTheRuleOfItsWorld) {
   for (const Combine how : every_way) {
     for (const Motion motion : {Motion::exact, Motion::forced, Motion::fast}) {
@@ -105,7 +105,7 @@ TEST(Materials, ADiscSlipsByTheRuleOfItsWorld) {
   }
 }
 
-// Materials that are all the same are no special case, though the fast motion takes them at once.
+// Identical materials give the same results, although the fast motion has a separate path for them.
 TEST(Materials, SoDoAllOfOneMaterial) {
   for (const auto& [how, mu] :
        {std::pair(Combine::product, 0.25), {Combine::geometric_mean, 0.5}, {Combine::average, 0.5}}) {

@@ -13,7 +13,7 @@ namespace {
 
 const Material<double> smooth{.restitution = 0, .friction = 0};
 
-/// Forces that are zero, but not known to be.
+/// A force law of zero, which prevents the motion on parabolas.
 template <int Dim>
 void disguise(World<double, Dim>& world) {
   world.force_laws.emplace_back([](const auto&, double, auto, auto, auto) {});
@@ -34,8 +34,8 @@ TEST(PersistentContacts, SlideWithDragWithoutLeavingTheFloor) {
   EXPECT_EQ(motion.contact_events()[0].change, ContactChange::begin);
 }
 
-// A ball that is let go on top of a smooth fixed one leaves it where its height has fallen by a third of the distance
-// of the centres (energy, and the force that the bend takes: cos = 2/3), whatever it began with, if that was little.
+// A ball released near the top of a smooth fixed one leaves it at cos = 2/3, where its height has fallen by a third of
+// the distance of the centres (by energy and the centripetal force), for any small initial angle.
 TEST(PersistentContacts, LetGoWhereABallLeavesAnother) {
   World<double, 3> world;
   world.gravity = {{0, 0, -10}};
@@ -65,7 +65,7 @@ TEST(PersistentContacts, SlipUntilTheyRoll) {
   ASSERT_TRUE(motion.advance_to(0.4));
   EXPECT_NEAR(world.velocity[0][0], 7 - 0.25 * 10 * 0.4, 1e-9);
   ASSERT_TRUE(motion.advance_to(2));
-  // Slip ends at 0.8 s, early by what moves 1e-5 of a fall's speed: errors of 1e-5 squared.
+  // Slip ends at 0.8 s, too early by the speed gained within 1e-5 of a fall: an error of 1e-5 squared.
   EXPECT_NEAR(world.velocity[0][0], 5, 1e-8);
   EXPECT_NEAR(world.spin[0][1], 5 / 0.5, 1e-8);
   EXPECT_NEAR(world.position[0][0], 7 * 0.8 - 1.25 * 0.8 * 0.8 + 5 * 1.2, 1e-8);
@@ -89,9 +89,9 @@ TEST(PersistentContacts, RollDownASlopeOrSlip) {
   }
 }
 
-// Twenty discs in rows that touch, all drawn to a point by springs: more contacts than are needed, and no end to them
-// where each would bounce. The springs pull together as one on the centre of mass, which swings with drag as if alone:
-// X'' = -10 X - X', whatever the contacts do.
+// Twenty discs in touching rows, all drawn to a point by springs: more contacts than are needed, and an endless
+// sequence of bounces if each were computed. The springs act as one on the centre of mass, which oscillates with drag
+// as if alone: X'' = -10 X - X', independent of the contacts.
 TEST(PersistentContacts, HoldAHeapThatForcesPressTogether) {
   for (const double friction : {0.0, 0.5}) {
     World<double, 2> world;
@@ -139,7 +139,7 @@ TEST(PersistentContacts, AreStruckTogetherWhereNothingBounces) {
   EXPECT_NEAR(world.velocity[0][1], 0, 5e-5);
 }
 
-// A row that touches, struck at its end without bouncing, goes on as one.
+// A touching row, struck at its end without restitution, moves on together.
 TEST(PersistentContacts, MoveOnAsOneWhereARowIsStruck) {
   World<double, 3> world;
   world.drag.linear = 1e-9;
@@ -147,11 +147,11 @@ TEST(PersistentContacts, MoveOnAsOneWhereARowIsStruck) {
     ASSERT_TRUE(world.add({.position = {{i + 0.0, 0, 0}}, .velocity = {{i == 0 ? 8.0 : 0, 0, 0}}, .material = smooth}));
   ExactMotion motion(world);
   ASSERT_TRUE(motion.advance_to(1e-6));
-  // What drag of 1e-9 moves within the contact time counts as nothing, and far less than rounding of speeds of 8.
+  // The effect of a drag of 1e-9 within the contact time is negligible, far less than the rounding of speeds of 8.
   for (const auto& v : world.velocity) EXPECT_NEAR(v[0], 1, 1e-8);
 }
 
-// What lies between two walls is carried by both, and the impulses say how much.
+// A ball between two walls rests on both, and the impulses of the contacts add up to its weight.
 TEST(PersistentContacts, TellTheImpulseThatCarried) {
   World<double, 2> world;
   disguise(world);
@@ -176,8 +176,8 @@ TEST(PersistentContacts, TellTheImpulseThatCarried) {
   }
 }
 
-// Between discs that lie side by side nothing presses, nothing pulls and nothing rubs: what rounding makes of these
-// forces lets none go. At rest one flight leads to the end, of few steps: 12 evaluations each, and three to begin.
+// Between neighbouring discs in a row there is neither pressure nor friction, and the rounding of these forces must not
+// release contacts. At rest one flight of few steps leads to the end: 12 evaluations each, and three at the start.
 TEST(PersistentContacts, LieSideBySideInOneFlight) {
   for (const double friction : {0.0, 0.5}) {
     World<double, 2> world;

@@ -11,13 +11,13 @@
 namespace continuo::persistent_rolling_test {
 namespace {
 
-/// Forces that are zero, but not known to be.
+/// A force law of zero, which prevents the motion on parabolas.
 template <int Dim>
 void disguise(World<double, Dim>& world) {
   world.force_laws.emplace_back([](const auto&, double, auto, auto, auto) {});
 }
 
-/// What rolls on the floor z = 0 (or y = 0) at `speed` along x.
+/// A body that rolls on the floor z = 0 (or y = 0) at `speed` along x.
 template <int Dim>
 void add_rolling(World<double, Dim>& world, double speed, const Material<double>& material) {
   Vector<double, Dim> position{}, velocity{};
@@ -95,8 +95,8 @@ TYPED_TEST(HeldRolling, BeginsWhereASlopeIsSteeperThanTheResistance) {
   }
 }
 
-// A spring pulls what rolls: (1 + c) m x'' = -k x - rho m g sign(x'). Each swing ends 2 rho m g / k lower than it
-// began, until the spring is too weak: from 1 by 0.3 each, x = 1, -0.7, 0.4, -0.1, where k x < rho m g.
+// A spring pulls a rolling body: (1 + c) m x'' = -k x - rho m g sign(x'). Each half oscillation ends 2 rho m g / k
+// closer to 0, until the spring is too weak: from 1 by 0.3 each, x = 1, -0.7, 0.4, -0.1, where k x < rho m g.
 TYPED_TEST(HeldRolling, SwingsOnASpringUntilResistanceHoldsIt) {
   constexpr int dim = TypeParam::dim;
   World<double, dim> world;
@@ -113,12 +113,12 @@ TYPED_TEST(HeldRolling, SwingsOnASpringUntilResistanceHoldsIt) {
   const std::array<double, 6> turns{1, -0.7, 0.4, -0.1, -0.1, -0.1};
   for (std::size_t k = 0; k < turns.size(); ++k) {
     ASSERT_TRUE(motion.advance_to(static_cast<double>(k) * half));
-    // It turns where it stands still: what 1e-5 s of a force moves is of second order there.
+    // At a turning point the velocity is zero, so an error of 1e-5 s has an effect of second order.
     EXPECT_NEAR(world.position_of(*body)[0], turns[k], 1e-7) << k;
   }
 }
 
-// Resistance beyond what friction can transmit acts like that limit, to the hair of 1e-8 that keeps it from slipping.
+// Rolling resistance beyond the limit of friction acts like that limit, less 1e-8 so that the body does not slip.
 TYPED_TEST(HeldRolling, IsHeldBackByNoMoreThanFriction) {
   constexpr int dim = TypeParam::dim;
   World<double, dim> world;

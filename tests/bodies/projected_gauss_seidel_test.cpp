@@ -51,8 +51,9 @@ TEST(ProjectedGaussSeidel, StopATowerByGoingOnInTheirDirection) {
   }
 }
 
-// Whatever the way there, what is found obeys the laws: balls of many masses, packed and thrown at a floor, or pressed
-// into a box. No speed is wrong by more than the last sweep changed it, times the some hundred sweeps still to come.
+// The result satisfies the laws of contact for balls of many masses, packed and thrown at a floor, or pressed into a
+// box. The error of a velocity is at most its change in the last sweep, times the number of further sweeps to
+// convergence, some hundreds.
 template <int Dim>
 void expect_laws(unsigned seed, bool in_box, const Material<double>& material) {
   std::mt19937 random(seed);
@@ -99,13 +100,13 @@ void expect_laws(unsigned seed, bool in_box, const Material<double>& material) {
     if (rub < most * (1 - 1e-9)) {
       EXPECT_LE(speed, wrong) << "it slips though friction could hold it";
       ++hold;
-    } else if (speed > 1e-3) {  // the way of the slip is known
+    } else if (speed > 1e-3) {  // the direction of the slip is known
       EXPECT_NEAR(dot(rate, row.impulse.rub), -speed * rub, wrong * rub);
       if (press > 0) ++slip;
     }
   }
   EXPECT_GT(hold, 0);
-  if (in_box) return;  // nothing there can get away
+  if (in_box) return;  // no body can leave the box
   EXPECT_GT(slip, 0);
   EXPECT_GT(part_ways, 0);
 }

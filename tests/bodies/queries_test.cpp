@@ -53,7 +53,7 @@ void rays_hit_what_they_should(unsigned seed) {
     if (k % 3 == 0) ray.reach = 5;
     const QueryFilter filter{.groups = k % 2 == 0 ? ~0u : 0b0101u, .walls = k % 4 < 2};
     const auto unit = ray.direction * (1 / length(ray.direction));
-    // Every body on the way, by its nearest point to the line. Rays within rounding of a tangent are left out of count.
+    // Every body along the ray, by its nearest point to the line. Rays within rounding of a tangent are not counted.
     std::vector<double> expected;
     bool is_doubtful = false;
     for (std::size_t i = 0; i < world.size(); ++i) {

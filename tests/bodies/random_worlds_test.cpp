@@ -16,7 +16,7 @@
 namespace continuo::random_worlds_test {
 namespace {
 
-/// Numbers of all sizes, and now and then one that is none.
+/// Numbers of all magnitudes, and sometimes NaN or infinity.
 template <class Real>
 class Numbers {
  public:
@@ -127,7 +127,7 @@ TEST(RandomWorlds, MoveOrSayWhyNot) {
     try_one<float, 3>(seed + 2, tally);
     try_one<float, 2>(seed + 3, tally);
   }
-  // Each kind of end is met, or this were no test.
+  // Each kind of ending occurs, or the test would prove nothing.
   EXPECT_GT(tally.refused, 100u);
   EXPECT_GT(tally.moved, 500u);
   EXPECT_GT(tally.stopped, 10u);

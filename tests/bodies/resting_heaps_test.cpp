@@ -17,7 +17,7 @@
 namespace continuo::resting_heaps_test {
 namespace {
 
-// A column that is dropped ball on ball comes to stand, and stands: another 1000 s take hardly an event.
+// A column of dropped balls comes to rest and remains standing: another 1000 s take hardly any events.
 TEST(RestingHeaps, AColumnStands) {
   for (const double restitution : {0.0, 0.5})
     for (const double friction : {0.0, 0.5}) {
@@ -28,7 +28,8 @@ TEST(RestingHeaps, AColumnStands) {
       for (int i = 0; i < 8; ++i) ASSERT_TRUE(world.add({.position = {{0, 0, 0.5 + 1.1 * i}}, .material = material}));
       ExactMotion motion(world);
       ASSERT_TRUE(motion.advance_to(10));
-      // Each contact may sink by what a body falls in the contact time, 1e-10, or in steps in a stride, 1e-6.
+      // Each contact may overlap by the distance that a body falls in the contact time, 1e-10, or in a stride of
+      // several steps, 1e-6.
       for (int i = 0; i < 8; ++i)
         EXPECT_NEAR(world.position[static_cast<std::size_t>(i)][2], 0.5 + i, 8e-6) << restitution << ' ' << friction;
       const std::size_t collisions = motion.statistics().collisions;
@@ -39,9 +40,9 @@ TEST(RestingHeaps, AColumnStands) {
     }
 }
 
-// Three equal discs, two on the floor side by side and one on both: as moments and forces balance, friction between
-// discs must be tan 15 degrees of what presses them, and the floor less. Beyond that the pyramid stands, below it
-// falls.
+// Three equal discs, two on the floor side by side and one on both: by the balance of moments and forces, friction
+// between discs must be at least tan 15 degrees of the normal force, and less at the floor. Above that the pyramid is
+// stable, below it collapses.
 TEST(RestingHeaps, APyramidStandsByFriction) {
   const double enough = std::tan(std::acos(-1.0) / 12);
   for (const double part : {0.9, 0.98, 1.02, 1.5}) {
@@ -61,7 +62,7 @@ TEST(RestingHeaps, APyramidStandsByFriction) {
   }
 }
 
-// Smooth ones stand between walls, and lie just as under forces that are not known to be gravity.
+// Smooth discs are supported by walls, and rest exactly as under general forces.
 TEST(RestingHeaps, APyramidStandsBetweenWalls) {
   const Material<double> material{.restitution = 0.5, .friction = 0};
   World<double, 2> world;
@@ -146,8 +147,9 @@ World<double, Dim> random_heap(unsigned seed) {
   return world;
 }
 
-// Whatever falls together: nothing overlaps by more than a few falls of a stride, a millionth of the radius (and 200
-// sweeps leave an impulse that wrong), energy never rises by more than lifting that apart takes, and it ends in time.
+// Random falling heaps: overlaps stay below a millionth of the radius, a few falls of a stride (200 sweeps leave
+// impulses as inexact as that); the energy never rises by more than the work of separating these overlaps; and the
+// computation ends in time.
 template <int Dim>
 void falls_together(unsigned seed) {
   World<double, Dim> world = random_heap<Dim>(seed);
@@ -170,8 +172,8 @@ TEST(RestingHeaps, FallTogetherWithoutOverlapOrEnergyFromNowhere) {
   }
 }
 
-// In the middle of it, a snapshot goes on to the same bits; and every contact that begins ends before it begins again,
-// whichever engine moves it.
+// A snapshot taken on the way resumes to the same bits, and every contact that begins ends before it begins again, in
+// every part of the motion.
 TEST(RestingHeaps, GoOnFromASnapshotAndTellWhoTouches) {
   World<double, 3> world = random_heap<3>(13);
   ExactMotion motion(world, {.contact_events = 1'000'000});

@@ -35,7 +35,7 @@ template <class T>
 class Rolling : public testing::Test {};
 TYPED_TEST_SUITE(Rolling, round::DiscAndBall);
 
-// Rolling resistance beyond what friction can transmit holds back like that limit, by mu g.
+// Rolling resistance beyond the limit of friction decelerates like that limit, by mu g.
 TYPED_TEST(Rolling, ResistanceBeyondFrictionStopsLikeFriction) {
   constexpr int dim = TypeParam::dim;
   constexpr double v0 = 3, stops = v0 / (mu * g);
@@ -54,7 +54,7 @@ TYPED_TEST(Rolling, ResistanceBeyondFrictionStopsLikeFriction) {
   EXPECT_EQ(world.velocity[0][0], 0);
 }
 
-// Slip v0 at first, which friction eats at mu g (1 + 1/c); what is left of the speed is v0 / (1 + c).
+// The slip is v0 at first and decreases at mu g (1 + 1/c); when it ends the speed is v0 / (1 + c).
 TYPED_TEST(Rolling, FrictionTurnsSlidingIntoRolling) {
   constexpr int dim = TypeParam::dim;
   constexpr double c = TypeParam::inertia, v0 = 7, begins = v0 / (mu * g * (1 + 1 / c));
@@ -182,7 +182,7 @@ TEST(RollingInSpace, TheFollowShotOfBilliards) {
   ASSERT_TRUE(world.add({.position = {{3, 0, r}}, .material = ivory}));
   ExactMotion motion(world);
   ASSERT_TRUE(motion.advance_to(20));
-  // What friction of 1e-9 can do to a ball of 7 m/s, some times over.
+  // A few times the effect of a friction of 1e-9 on a ball of 7 m/s.
   EXPECT_NEAR(world.velocity[0][0], 2, 1e-7);
   EXPECT_NEAR(world.velocity[1][0], 5, 1e-7);
 }
@@ -203,7 +203,7 @@ TEST(RollingInSpace, ASnapshotInTheMiddleOfASlideGoesOnToTheSameBits) {
   EXPECT_EQ(state_hash(world), state_hash(again));
 }
 
-// Looking on changes nothing: however often it is asked where it is, it goes the same way, to the last bit.
+// Output does not change the motion: any number of calls gives the same bits.
 TEST(RollingInSpace, PlacesDoNotDependOnHowOftenOneLooks) {
   auto seldom = table<3>(), often = table<3>();
   for (auto* world : {&seldom, &often})

@@ -43,7 +43,7 @@ TEST(Sleep, NothingSleepsUnlessAsked) {
   EXPECT_EQ(motion.statistics().asleep, 0u);
 }
 
-// Neither does what swings: a pendulum is slow at its ends, but not for long.
+// An oscillating body does not fall asleep either: a pendulum is slow at its turning points, but not for long.
 TEST(Sleep, WhatSwingsStaysAwake) {
   World<double, 3> world;
   const auto ball = world.add({.position = {{2, 0, 0}}, .mass = 1});
@@ -54,7 +54,7 @@ TEST(Sleep, WhatSwingsStaysAwake) {
   EXPECT_NEAR(kinetic_energy(world) + potential_energy(world), 0.5, 0.01);
 }
 
-// The one that hits a sleeping one hands on its momentum as if that were awake: with equal masses, all of it.
+// A ball that hits a sleeping one transfers its momentum as to an awake one: with equal masses, all of it.
 TEST(Sleep, AHitWakes) {
   World<double, 3> world;
   const Material<double> elastic{.restitution = 1, .friction = 0};

@@ -73,7 +73,7 @@ void exact_goes_on() {
   EXPECT_GT(motion.contact_events().size(), 10u);
   for (std::size_t i = 0; i < motion.contact_events().size(); ++i)
     EXPECT_EQ(motion.contact_events()[i].impulse, motion_again.contact_events()[i].impulse);
-  // What would have been, had nothing been saved.
+  // The motion without a snapshot, for comparison.
   World<Real, Dim> undisturbed = crowd<Real, Dim>(5, false);
   ExactMotion<Real, Dim> alone(undisturbed, {.contact_time = Real(1e-3)});
   ASSERT_TRUE(alone.advance_to(1));
@@ -143,8 +143,8 @@ TEST(Snapshot, SaysWhatIsWrongAndLeavesTheWorldAlone) {
   EXPECT_EQ(snapshot(world), before);
 }
 
-// Any byte changed, and any part cut off, is found; with the checksum put right again nothing crashes, and what is
-// taken moves or says why not.
+// Every changed byte and every truncation is detected. With a corrected checksum nothing crashes: a restored world
+// moves, or refuses with a reason.
 TEST(Snapshot, CorruptBytesAreRefused) {
   World<double, 2> world = crowd<double, 2>(8, false);
   ExactMotion motion(world, {.contact_time = 1e-3});
@@ -173,7 +173,7 @@ TEST(Snapshot, CorruptBytesAreRefused) {
   }
 }
 
-// Every byte of a spring's two ends says something: what is read is written as it was.
+// Every byte of a spring's two ends is significant: a restored snapshot is written again as it was read.
 TEST(Snapshot, OfSpringsHasNoBytesThatMeanNothing) {
   World<double, 2> world;
   const auto ball = world.add({}), other = world.add({.position = {{3, 0}}});
@@ -181,7 +181,7 @@ TEST(Snapshot, OfSpringsHasNoBytesThatMeanNothing) {
   world.springs.push_back({.a = *ball, .b = Vector<double, 2>{{1, 2}}});
   const Bytes bytes = snapshot(world);
   std::size_t taken = 0;
-  for (std::size_t at = 15; at + 8 < bytes.size(); ++at) {  // behind whose snapshot it is
+  for (std::size_t at = 15; at + 8 < bytes.size(); ++at) {  // after the header
     Bytes wrong(bytes.begin(), bytes.end() - 8);
     wrong[at] ^= std::byte{1};
     ByteWriter sum;
@@ -192,10 +192,11 @@ TEST(Snapshot, OfSpringsHasNoBytesThatMeanNothing) {
     ++taken;
     EXPECT_EQ(snapshot(again), wrong) << at;
   }
-  EXPECT_GT(taken, 100u);  // of most numbers
+  EXPECT_GT(taken, 100u);  // most changes are accepted
 }
 
-// What the fuzzer starts from is of the format as it is, or it would get no further than the version.
+// The initial inputs of the fuzzer have the current version of the format; others would be refused at the version
+// number.
 TEST(Snapshot, TheFuzzersInputsAreOfThisVersion) {
   const auto input = [](const std::string& name) {
     std::ifstream file(CONTINUO_SOURCE_DIR "/tests/fuzz/snapshot/" + name, std::ios::binary);

@@ -10,7 +10,7 @@ namespace continuo::spinning_friction_test {
 namespace {
 
 constexpr double friction = 0.5, radius = 0.5, g = 9.81;
-constexpr double arm = 3 * std::numbers::pi / 16 * 0.05 * radius;  // the torque is this times friction times the force
+constexpr double arm = 3 * std::numbers::pi / 16 * 0.05 * radius;  // torque = arm * friction * force
 
 void run(FastMotion<double, 3>& motion, double duration) {
   for (int i = 0; i < std::lround(60 * duration); ++i) ASSERT_TRUE(motion.advance());

@@ -1,4 +1,4 @@
-// Conditions and guesses shared by tests of boundary values.
+// Conditions at both ends and models from text, shared by tests of boundary values.
 #pragma once
 #include <memory>
 #include <span>
