@@ -61,7 +61,7 @@ struct Linear {
   }
 };
 
-/// The greatest error of each component over the mesh and between, against what the solution says of itself.
+/// The greatest error of each component at points on and between the mesh, compared with the solution's own estimate.
 void expect_the_error_is_what_it_says(const Linear& linear, const BoundaryValueSolution& solution, double tolerance) {
   const std::size_t n = solution.size;
   X greatest(n), size(n);
@@ -78,14 +78,14 @@ void expect_the_error_is_what_it_says(const Linear& linear, const BoundaryValueS
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
-    // Estimated at the collocation points, to first order: between them it may be half as large again. The closed form
-    // itself is known to rounding, times the condition of V.
+    // The estimate is of first order and at the collocation points: between them the error may be half as large again.
+    // The closed form itself has the error of rounding times the condition of V.
     EXPECT_LE(greatest[i], 2 * solution.error[i] + 1e-13 * size[i]);
     EXPECT_LE(solution.error[i], tolerance * size[i] * (1 + 1e-6));
   }
 }
 
-/// As many conditions at each end as there are motions that decay from there.
+/// As many conditions at each end as there are components that decay from there.
 TEST(BoundaryAccuracy, OfRandomLinearProblemsWithSeparatedConditions) {
   std::mt19937 random(20260101);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -93,7 +93,7 @@ TEST(BoundaryAccuracy, OfRandomLinearProblemsWithSeparatedConditions) {
     const Eigen::Index n = 2 + sample % 4;
     const Linear linear(random, n);
     Matrix rows = Matrix::NullaryExpr(n, n, [&] { return unit(random); });
-    // Rows that see what they are to determine: those of V^-1, disturbed.
+    // Rows that determine the component of their end: those of V^-1, perturbed.
     rows = linear.V.inverse() + 0.2 * rows;
     const Vector first = linear.at(0), last = linear.at(1);
     const auto conditions = [=](Values x, Values, std::span<double> g) {
@@ -110,7 +110,7 @@ TEST(BoundaryAccuracy, OfRandomLinearProblemsWithSeparatedConditions) {
   }
 }
 
-/// B0 x(0) + B1 x(1) = c with random matrices, which may be badly conditioned: then there may be a refusal by name.
+/// B0 x(0) + B1 x(1) = c with random matrices, which may be ill-conditioned: then a refusal by name is allowed.
 TEST(BoundaryAccuracy, OfRandomLinearProblemsWithConditionsThatJoinTheEnds) {
   std::mt19937 random(20260102);
   std::uniform_real_distribution<double> unit(-1, 1);

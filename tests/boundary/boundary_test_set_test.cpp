@@ -21,8 +21,8 @@ std::string said(const model::Simulated& simulated) {
 
 const std::string burgers = "y'' = (y - y*y')/eps\n";  // problems 25 to 30, by their values at the ends
 
-/// Problem 30: left of a shock y = t - 7/6, right of it y = t + 1/2, both exact; it stands where these are opposite, at
-/// 1/3, and is some eps wide.
+/// Problem 30: y = t - 7/6 left of a shock and y = t + 1/2 right of it, both exact; the shock is where these are
+/// opposite, at 1/3, and has a width of some eps.
 TEST(BoundaryTestSet, AShockIsFoundByItself) {
   const auto run = solved("param eps = 1e-3\n" + burgers + "y(0) = -7/6; y(1) = 3/2\nrun 0..1\n", 1e-6);
   ASSERT_TRUE(run.run) << said(run);
@@ -46,7 +46,8 @@ TEST(BoundaryTestSet, ACornerIsFoundAlongAParameter) {
   }
 }
 
-/// Two ways to one solution: from an easy value of the parameter, and by the search itself; and from its own table.
+/// Three ways to one solution: continuation from an easy value of the parameter, the search itself, and the table of an
+/// earlier run.
 TEST(BoundaryTestSet, AlongAParameterAndFromATableItIsTheSame) {
   const std::string text =
       "param eps = 1e-3\nlet A = 1 + t^2, dA = 2*t\n"  // problem 24: a shock in a nozzle

@@ -13,7 +13,7 @@ namespace {
 
 using X = std::vector<double>;
 
-/// The residual measured anew, at points that the solver does not look at.
+/// The residual, measured at points other than those of the solver.
 double residual_of(const BoundaryValueProblem& problem, const BoundaryValueSolution& solution) {
   double worst = 0;
   X x(problem.system.size), slope(problem.system.size), f(problem.system.size);

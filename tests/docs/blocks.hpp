@@ -25,7 +25,7 @@ struct Block {
 /// Every fenced block of one file, in order. Throws std::runtime_error where a fence is never closed.
 std::vector<Block> blocks_of(const std::filesystem::path& file);
 
-/// What is no code: the text outside of blocks, without `code` in lines.
+/// The text outside of code: without blocks, and without `code` in lines.
 std::string prose_of(const std::filesystem::path& file);
 
 /// Every block of one language in README.md, models/README.md and docs/*.md.

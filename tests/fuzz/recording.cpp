@@ -67,7 +67,8 @@ class Timer {
   std::jthread thread_;
 };
 
-/// What of an experiment decides how long it takes; the rest of it may be anything.
+/// Whether an experiment is short enough to be run, by the settings that determine its duration; the others may be
+/// arbitrary.
 bool is_short(const model::Experiment& e, double from) {
   return e.step.value_or(0.01) >= 1e-3 && e.rtol.value_or(1e-6) >= 1e-12 && e.output.value_or(1) >= 1e-3 &&
          e.to.value_or(1) - from < 2 && e.from.value_or(0) > -10;
@@ -87,7 +88,7 @@ void tell_and_go_on(const std::shared_ptr<const model::ModelProgram>& program, c
                                            {.to = from + 0.05, .interrupt = &enough}, &log);
   if (!on.run && on.diagnostics.empty()) std::abort();
   if (!on.run) return;
-  // What it wrote is in order whatever it went on from.
+  // The recording of the resumed run must be readable, whatever the input was.
   const std::string text = file.str();
   if (!RunRecording::read(std::as_bytes(std::span(text)))) std::abort();
 }

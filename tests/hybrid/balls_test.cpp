@@ -153,7 +153,7 @@ TEST_P(Balls, StayInsideOfTheirBoundary) {
     if (run.outcome.ending == Ending::events_accumulate) {
       EXPECT_FALSE(run.outcome.event.empty()) << text;
       EXPECT_GE(run.outcome.limit_time, run.final_time() - 1e-9) << text;
-      // Without loss at a boundary that stands still there is nothing to pile up.
+      // Without loss at a fixed boundary, impacts cannot accumulate.
       EXPECT_TRUE(e < 1 || b.moves) << describe(run.outcome) << "\n" << text;
     } else {
       EXPECT_EQ(run.outcome.ending, Ending::reached_end) << describe(run.outcome) << "\n" << text;

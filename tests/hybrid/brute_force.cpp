@@ -262,7 +262,7 @@ class BruteForce {
     return model_.events[event].in_mode == none || model_.events[event].in_mode == mode_;
   }
 
-  /// To `until`, or to just beyond the first change on the way.
+  /// Moves to `until`, or to just after the first change before it.
   void step(Real until) {
     const std::vector<long> branches = branches_soon();
     // Of each comparison on its own: a window narrower than the step opens and closes within it.
@@ -272,7 +272,7 @@ class BruteForce {
       return truths(t_ + h, x) != truths_ || signs(t_ + h, x) != signs_before ||
              reading(t_ + h, x).branches() != branches;
     };
-    // What is at zero now and has just left it need not be told from rounding.
+    // A function that is zero now and has just left zero need not be distinguished from rounding.
     Real least = std::min(soon, until - t_), most = until - t_;
     bool changed = false;
     for (int part = 1; part <= parts && !changed; ++part) {

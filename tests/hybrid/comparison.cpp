@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view refusal = "the text is refused";
 
-/// The events that mark themselves: sliding and the like are told without a mark.
+/// The events with a mark of their own; sliding and the like are reported without one.
 std::vector<model::Happened> marked(const model::Run& run) {
   std::vector<model::Happened> found;
   for (const model::Happened& event : run.events) {
@@ -72,7 +72,7 @@ std::string different_run(const HybridModel& abstract, const Expected& expected,
     const bool is_input = std::ranges::any_of(
         abstract.blocks, [&](const Block& b) { return b.is_input && b.state == static_cast<int>(i); });
     if (is_input) continue;
-    // The columns stand in an order of their own.
+    // The columns are in an order of their own.
     const auto column = std::ranges::find(run.motion.columns, abstract.names[i], &model::Column::name);
     if (column == run.motion.columns.end()) return abstract.names[i] + " is no column\n";
     const double found_value = last[static_cast<std::size_t>(column - run.motion.columns.begin())];
@@ -98,7 +98,7 @@ std::span<const Asked> asked_methods() {
 
 namespace {
 
-/// Inputs step by tables in files, which stand beside the text in a folder of this process.
+/// Inputs are step functions from tables, whose files are written beside the text in a folder of this process.
 model::Loaded loaded_from_files(const HybridModel& abstract) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / fmt::format("continuo_hybrid_{}", ::getpid());

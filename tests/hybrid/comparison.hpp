@@ -13,7 +13,7 @@
 
 namespace continuo::hybrid {
 
-/// How a method is asked, so that its own error is well below what is allowed of times and ends.
+/// The method and its settings, such that its own error is well below the errors allowed for times and final states.
 struct Asked {
   std::string_view method;  // empty: the default one
   double tolerance = 1e-12;
@@ -24,7 +24,7 @@ struct Asked {
 
 std::span<const Asked> asked_methods();
 
-/// What the library does otherwise than the referee, with both lists of events; empty where it does the same.
+/// The differences between library and referee, with both lists of events; empty where they agree.
 std::string difference(const HybridModel& model, const Expected& expected, const Asked& asked);
 
 /// Many models by one method.
@@ -34,7 +34,7 @@ struct Attack {
   std::size_t failed = 0;
   std::vector<std::string> failures{};  // the first of them, shrunk: text, expected and found
 };
-/// Asks `count` models that the referee accepts.
+/// Compares library and referee on `count` models that the referee accepts.
 Attack attack(const Asked& asked, std::size_t count, std::uint64_t seed, std::size_t failures_to_tell);
 
 }  // namespace continuo::hybrid

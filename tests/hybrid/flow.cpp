@@ -125,7 +125,7 @@ int sign_just_after(const Jet& g, std::string& doubt) {
 Flow::Flow(const HybridModel& model, int mode, Real t, std::span<const Real> x)
     : model_(model), mode_(mode), t0_(t), closed_(x.size()) {
   for (const Block& block : model.blocks) start(block, x);
-  // Of these the switching ones read only what does not switch, which stands by now.
+  // Switching blocks read only blocks that do not switch, which are complete by now.
   Quantities now;
   now.time.c = {t0_, 1, 0, 0};
   for (const Closed& state : closed_) now.states.push_back(state.at(0));
@@ -253,7 +253,7 @@ void Flow::start_relay(const Block& block, std::span<const Real> x, const Quanti
     } else if (sign(evaluate(beyond_below, now)) < 0) {
       side = -1;
     }
-    // What an event hardly lets leave may be back before the next sample.
+    // A state that leaves its surface slowly after an event may return before the next sample.
     constexpr Real little = 0.02L;
     const Real speed = side == 0 ? 0 : std::fabs(evaluate(side > 0 ? beyond_above : beyond_below, now).value());
     if (speed > value_margin.zero && speed < little) doubt_ = "a relay that hardly leaves its surface";

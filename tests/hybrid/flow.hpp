@@ -21,8 +21,8 @@ struct Closed {
   Real value(Real s) const;
 };
 
-/// Below `zero` a value is a zero that carries the rounding of a root; up to `clear` nobody can say, and a model where
-/// this matters is left out.
+/// A value below `zero` is a zero with the rounding of a root. Between `zero` and `clear` it is undecided, and a model
+/// in which this matters is left out.
 struct Margin {
   Real zero, clear;
 };
@@ -49,14 +49,14 @@ class Flow {
  public:
   Flow(const HybridModel& model, int mode, Real t, std::span<const Real> x);
 
-  /// Why the form just after t cannot be told; empty where it can.
+  /// The reason why the form just after t is undecided; empty where it is decided.
   const std::string& doubt() const { return doubt_; }
   Real begin() const { return t0_; }
   Quantities at(Real t) const;
   std::vector<Real> states_at(Real t) const;
   /// Where one of these changes sign the form may change.
   std::span<const Surface> surfaces() const { return surfaces_; }
-  /// How many relays slide.
+  /// The number of sliding relays.
   int sliding() const { return sliding_; }
 
  private:
@@ -76,8 +76,8 @@ class Flow {
   int sliding_ = 0;
 };
 
-/// The sign just after now: of the value, and where that is zero of the first derivative that is not; 0 where all are.
-/// Where a margin is not kept `doubt` says so.
+/// The sign just after now: of the value, or if that is zero, of the first nonzero derivative; 0 if all are zero.
+/// `doubt` reports values within a margin.
 int sign_just_after(const Jet& g, std::string& doubt);
 
 }  // namespace continuo::hybrid

@@ -38,7 +38,7 @@ Real dot(const Vector& a, const Vector& b) {
   return sum;
 }
 
-/// Steps of a thousandth by the classical method of Runge and Kutta; what changes within one is closed in on.
+/// Steps of a thousandth by the classical Runge-Kutta method; changes within a step are located by bisection.
 class Reference {
  public:
   Reference(Sliding system, Vector x) : system_(std::move(system)), x_(std::move(x)) {
@@ -119,7 +119,7 @@ class Reference {
     return x;
   }
 
-  /// A surface is reached, or one that holds is asked for more than it has.
+  /// Whether a body reaches its surface, or sticking needs more than the greatest force of friction.
   bool changes(Real t, const Vector& x) const {
     const Vector force = forces(t, x);
     for (std::size_t j = 0; j < sides_.size(); ++j) {
@@ -148,7 +148,7 @@ class Reference {
     release();
   }
 
-  /// Lets go of the surface that is asked for most too much, until all hold what they are asked for.
+  /// Releases the surface whose limit of friction is exceeded most, until none is exceeded.
   void release() {
     for (std::size_t again = 0; again < sides_.size(); ++again) {
       const Vector force = forces(t_, x_);
@@ -317,7 +317,7 @@ TEST(Relay, OfTwoStatesHoldsBothAtOnce) {
 // ---- chains ----
 
 TEST(DryFriction, OfAChainOfThreeBlocksOnTheGround) {
-  // The first is pulled to and fro; each rubs on the ground, and some or all stand still at times.
+  // The first block is pulled to and fro; each rubs on the ground, and some or all stick at times.
   expect_sliding_solution({{"x[1]", "x[2]", "x[3]", "v[1]", "v[2]", "v[3]"},
                            "param k = 4\n"
                            "for i in 1..3 { x[i]' = v[i]; x[i](0) = 0; v[i](0) = 0 }\n"
@@ -327,7 +327,7 @@ TEST(DryFriction, OfAChainOfThreeBlocksOnTheGround) {
                            "run 0..12\n",
                            12,
                            {[](Real t, const Vector& s) {
-                              // The table's order is that of the text: x[1], v[1] would be told by the columns.
+                              // States are in the order of the names above: x[1], x[2], x[3], v[1], v[2], v[3].
                               const Real *x = s.data(), *v = s.data() + 3;
                               return Vector{v[0],
                                             v[1],

@@ -94,7 +94,7 @@ class Generator {
     model_.blocks.push_back(b);
   }
 
-  /// What may push an equation.
+  /// The state of an input or flag that drives an equation.
   int any_push() { return !inputs_.empty() && (flags_.empty() || chance(0.6)) ? inputs_[0] : any_of(flags_); }
   bool has_push() const { return !flags_.empty() || !inputs_.empty(); }
 
@@ -134,7 +134,7 @@ class Generator {
     return p;
   }
 
-  /// Reads time and plain blocks only, so that no surface depends on what it switches.
+  /// Reads only time and blocks without switching, so that no surface depends on the block that it switches.
   void switching_block() {
     using Kind = Block::Kind;
     Block b;
@@ -274,7 +274,7 @@ class Generator {
     return static_cast<int>(model_.comparisons.size()) - 1;
   }
 
-  /// A value that the expression takes along the motion from the start as if nothing happened on the way.
+  /// A value of the expression along the motion from the start, without its events.
   double level_of(const Expression& e) {
     std::vector<Real> x(model_.initial.begin(), model_.initial.end());
     const Flow flow(model_, 0, 0, x);
@@ -356,7 +356,7 @@ class Generator {
     const std::vector<Kind> all{Kind::less, Kind::greater, Kind::less_equal, Kind::greater_equal};
     Kind kind = any_of(all);
     if (strict) kind = chance(0.5) ? Kind::less : Kind::greater;
-    // What a directed guard watches as well turns both at one instant.
+    // A condition on the function of a directed guard fires at the same instant.
     const bool shared = !directed_.empty() && chance(0.12);
     return {.kind = kind, .comparison = shared ? any_of(directed_) : add(comparison())};
   }
@@ -427,7 +427,7 @@ class Generator {
     model_.events.push_back(e);
   }
 
-  /// Each falls because the one before has fallen, all at one instant; written down in any order.
+  /// Each event is caused by the one before, all at one instant; they are written in any order.
   void dominoes() {
     const int n = any_of(counters_), count = whole_int(3, 6);
     std::vector<Event> row;
@@ -453,7 +453,7 @@ class Generator {
     std::vector<Action> list;
     assigned_.clear();
     const int count = whole_int(0, 3);
-    // A ball that bounces, or what goes round between two levels, is what users write.
+    // Users often write bouncing balls and oscillations between two levels.
     if (e.comparison != none && chance(0.4)) add_to(list, reset(e));
     // Two numbers change places.
     if (chance(0.08) && plain_.size() > 1) {
@@ -464,7 +464,7 @@ class Generator {
     return list;
   }
 
-  /// Unless it assigns once more what the event has assigned, which the language refuses.
+  /// Adds the action, unless the event has already assigned its target: the language refuses a second assignment.
   bool add_to(std::vector<Action>& list, Action action) {
     std::set<int> targets;
     gather_targets(action, targets);

@@ -7,7 +7,7 @@
 
 namespace continuo::hybrid {
 
-/// What a method can be asked.
+/// The kinds of models that a method can solve.
 struct Ability {
   bool algebraic = false;  // unknowns
   bool stiff = false;      // decays of 1e3 to 1e5 on a slow path

@@ -9,7 +9,7 @@ namespace continuo::hybrid {
 
 inline constexpr int none = -1;
 
-/// What guards, actions and algebraic equations are made of.
+/// The expressions of guards, actions and algebraic equations.
 struct Expression {
   enum class Kind { number, time, state, unknown, sum, difference, product, sine };
   Kind kind = Kind::number;
@@ -108,7 +108,7 @@ struct Block {
   double width = 1, level = 0;
   bool with_position = false;  // of a relay
   int variant = 0;             // of the ways to write it
-  bool is_input = false;       // a discrete one that steps by the table of a file, in place of an equation
+  bool is_input = false;       // a discrete block whose value is a step function from a file
   bool constructed = false;    // its start and rates make things happen at one instant
 
   const Parameters& parameters(int mode) const {
@@ -139,9 +139,9 @@ struct HybridModel {
   double end_time() const { return static_cast<double>(end) / 1000; }
 };
 
-/// Where the table of an input is read from, beside the model.
+/// The file of an input's table, in the folder of the model.
 std::string input_file(const HybridModel& model, const Block& block);
-/// What stands in it.
+/// The content of that file.
 std::string input_table(const HybridModel& model, const Block& block);
 
 /// The text of the model. Each event marks itself: `mark "e2"` is that of events[2].

@@ -20,7 +20,7 @@ TEST_P(HybridSystems, HaveEveryEventAtItsTimeAndNoOther) {
   const Attack result = attack(GetParam(), 200, 1, 3);
   EXPECT_EQ(result.failed, 0u) << "of " << result.asked;
   for (const std::string& failure : result.failures) ADD_FAILURE() << failure;
-  // What is left out is less than half, and every class is among the rest.
+  // Fewer than half of the models are left out, and every class occurs among the others.
   EXPECT_LT(result.rejected, result.asked);
   EXPECT_GE(result.events, 5 * result.asked);
   EXPECT_GE(result.with_slides, result.asked / 20);

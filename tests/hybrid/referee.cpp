@@ -12,7 +12,7 @@
 namespace continuo::hybrid {
 namespace {
 
-constexpr Real apart = 1e-6L;     // what is nearer to each other has to be one instant by construction
+constexpr Real apart = 1e-6L;     // two events closer than this must coincide by construction
 constexpr Real touching = 1e-4L;  // of the value at an extremum
 constexpr Real flat = 0.05L;      // of the slope at a root: an error of 3e-11 moves it by 6e-10
 constexpr std::size_t many_events = 80, many_rounds = 8;
@@ -109,7 +109,7 @@ class Referee {
       if (watched_[c] && jets_[c].value() == 0) at_start[c] = 0;
     }
     for (const Event& e : model_.events) {
-      // False at the start and true at once: an event, or one that was true from the start?
+      // A condition that is false at the start and true just after it: the rules do not define whether it fires.
       if (e.kind == Event::Kind::condition && holds(e.condition, at_start) != holds(e.condition, signs_))
         reject("a condition at its threshold at the start");
     }
@@ -181,7 +181,7 @@ class Referee {
     return next;
   }
 
-  /// To the next instant at which something happens, and what happens there.
+  /// Advances to the next event and performs its actions.
   void advance() {
     const long tick = next_tick();
     const Real tick_time = static_cast<double>(tick) / 1000;
@@ -240,7 +240,7 @@ class Referee {
     }
   }
 
-  /// What the actions of these make fire.
+  /// Performs the actions of these events; returns the events that they cause.
   std::vector<std::size_t> act_one_round(const std::vector<std::size_t>& due) {
     const std::vector<int> before = sides_, signs_before = signs_;
     const int mode_before = mode_;
@@ -263,7 +263,7 @@ class Referee {
     reject_lasting_zeros(signs_before);
     std::vector<std::size_t> next;
     for (std::size_t f = 0; f < sides_.size(); ++f) {
-      // Where an event of the round undoes what another did, the rules may be read in two ways.
+      // Where one event of a round undoes the change of another, the rules are ambiguous.
       if (changed[f] != fires(f, before[f], sides_[f])) reject("a guard that turned and turned back within a round");
       if (mode_ != mode_before && model_.events[f].in_mode != none) {
         if (changed[f]) reject("a guard that turns while its mode begins or ends");
@@ -289,8 +289,8 @@ class Referee {
     return std::ranges::any_of(e.parts, [&](const Expression& part) { return reads_assigned(part); });
   }
 
-  /// A guard set to zero on the side where it has been: whether "it is at zero and moves in the watched direction" is a
-  /// crossing once more is a question that no model here asks.
+  /// A guard set to zero on the side where it was: whether this is another crossing, since it is at zero and moves in
+  /// the watched direction, is tested by no model here.
   void reject_lasting_zeros(std::span<const int> signs_before) {
     for (std::size_t c = 0; c < watched_.size(); ++c) {
       const Comparison& sides = model_.comparisons[c];
@@ -301,16 +301,15 @@ class Referee {
     }
   }
 
-  /// A guard that no action has set is on its other side: the motion, turned by an action, takes it back over the jump
-  /// at which it stands. It has not moved yet, and no rounding tells where it stands, so the rules may be read in two
-  /// ways.
+  /// A guard that no action has set has changed its side: the motion, reversed by an action, returns over the jump at
+  /// which the guard is. It has not moved yet, and its side is within rounding, so the rules are ambiguous.
   void reject_turned_jumps(std::span<const int> signs_before) {
     using Form = Comparison::Form;
     for (std::size_t c = 0; c < watched_.size(); ++c) {
       const Comparison& sides = model_.comparisons[c];
       const bool jumps = sides.form == Form::steps || sides.form == Form::square || sides.form == Form::modulo;
       if (!jumps || !watched_[c] || signs_[c] == signs_before[c]) continue;
-      // Nor has one that was set to where it stood.
+      // The same is true of a guard that was set to the value it had.
       if (!reads_assigned(sides.left) || std::fabs(jets_[c].value()) <= value_margin.zero)
         return reject("a jump that turns where it stands");
     }
@@ -358,7 +357,7 @@ class Referee {
   }
   Jet function(std::size_t f, Real t) const { return function(f, flow_->at(t)); }
 
-  /// How far the next sample is: a part of the shortest period, and of the age of what decays faster.
+  /// The distance to the next sample: a part of the shortest period, and of the time since the start of a faster decay.
   Real sampling_step(Real t) const {
     Real rate = std::max(1.0, model_.fastest), decay = 0;
     for (const Block& b : model_.blocks) {
@@ -409,7 +408,7 @@ class Referee {
     return {};
   }
 
-  /// A root that comes just after t, before which none was found, is not told from one at t.
+  /// Whether a root lies so close after t that it cannot be distinguished from one at t.
   bool is_near_root(Real t) {
     std::vector<std::size_t> functions;
     std::vector<int> signs;
@@ -436,11 +435,11 @@ class Referee {
     }
   }
 
-  /// Samples lie so close that the function has one extremum between them at most.
+  /// Between two neighbouring samples the function has at most one extremum.
   std::optional<Real> root_between(std::size_t f, int sign, Real begin, Real end, const Jet& a, const Jet& b) {
     const auto s = static_cast<Real>(sign);
     if (s * b.value() <= 0) return bisect(begin, end, [&](Real t) { return s * function(f, t).value() > 0; });
-    // What begins at zero has just left it.
+    // A function that is zero at the first sample has just left zero.
     if (std::fabs(a.value()) <= value_margin.zero || s * a.slope() >= 0 || s * b.slope() <= 0) return {};
     const Real extremum = bisect(begin, end, [&](Real t) { return s * function(f, t).slope() < 0; });
     const Real least = s * function(f, extremum).value();
@@ -473,8 +472,8 @@ class Referee {
   Expected expected_{};
 };
 
-/// Every start and rate moved by about `size` of itself, always in the same way. What stands exactly at a threshold by
-/// construction still does.
+/// Changes every initial value and rate by about `size`, relatively, always in the same way. A state that is at a
+/// threshold by construction remains there.
 HybridModel moved(HybridModel model, double size) {
   // A decay through an unknown has its rate in two places.
   const auto is_constructed = [](const Block& b) {

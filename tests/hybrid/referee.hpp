@@ -33,11 +33,11 @@ struct Expected {
   std::size_t most_rounds = 0, slides = 0, simultaneous = 0;
 };
 
-/// `refinement`: how many times as many samples as the rates of the model ask for.
+/// `refinement` multiplies the number of samples that the rates of the model require.
 Expected referee(const HybridModel& model, int refinement = 1);
 
-/// The same, and rejects models whose events move by more than `factor` times what their starts and rates are moved by:
-/// those that no finite precision can answer.
+/// The same, but rejects models whose events move by more than `factor` times a change of initial values and rates:
+/// they cannot be solved in finite precision.
 Expected referee_of_well_conditioned(const HybridModel& model, Real factor = 20);
 
 }  // namespace continuo::hybrid

@@ -24,7 +24,7 @@ bool touches(const HybridModel& model) {
   return std::ranges::any_of(model.comparisons, [](const Comparison& c) { return c.contact; });
 }
 
-/// What is looked at is far above the rounding of double.
+/// Converts to double: the values compared are far above its rounding.
 double seen(Real value) {
   return static_cast<double>(value);
 }
@@ -48,7 +48,7 @@ TEST(Referee, AgreesWithTheWrittenEquationsInTinySteps) {
     if (slides(model) || touches(model)) continue;
     const Expected expected = referee_of_well_conditioned(model);
     if (!expected.rejected.empty()) continue;
-    // "Soon" moves a root by 1e-8, and what follows by up to twenty times that at each event.
+    // `soon` moves a root by 1e-8, and later ones by up to twenty times that at each event.
     expect_same(model, expected, brute_force(model), 1e-6);
     ++compared;
   }
@@ -63,12 +63,12 @@ TEST(Referee, FindsNoMoreInTenTimesAsManySamples) {
   }
 }
 
-/// Friction by Moreau's step, which needs no cases: the velocity that the drive alone would give, drawn towards the
-/// surface by what friction can do at most.
+/// Friction by Moreau's time-stepping, without case distinctions: the velocity due to the drive alone, moved towards
+/// the surface by the greatest impulse of friction.
 Real velocity_by_moreau(const HybridModel& model, const Block& block, Real end) {
   const Block::Parameters& p = block.in_mode.front();
   const std::vector<Real> start(model.initial.begin(), model.initial.end());
-  const Flow flow(model, 0, 0, start);  // of what drives the block: it does not switch
+  const Flow flow(model, 0, 0, start);  // of the block's drive, which does not switch
   const Real constant = p.c + (block.flag == none ? 0 : p.b * start[static_cast<std::size_t>(block.flag)]);
   Real v = start[static_cast<std::size_t>(block.state)];
   constexpr Real h = 2e-5L;

@@ -66,8 +66,8 @@ struct Differences {
   std::vector<double> slope, doubt;
 };
 
-/// By central differences over two distances, whose difference says how far they can be trusted. None where the motion
-/// has not the same events on both sides, or bends between them.
+/// Derivatives by central differences over two distances, whose difference estimates their error. None where the events
+/// differ between the two sides, or the derivative changes between them.
 std::optional<Differences> differences(const HybridModel& model, const Place& place, const Expected& here) {
   std::vector<std::vector<double>> slopes;
   for (const double by : {1e-5, 2e-5}) {
@@ -134,7 +134,7 @@ SensitivityAttack attack_sensitivities(std::size_t count, std::uint64_t seed, st
       const std::size_t state = model::find_state(program->model, model.names[i]);
       const double found = run.sensitivity(run.rows() - 1, state, 0), wanted = expected->slope[i];
       any = any || wanted != 0;
-      // What the referee's differences are off by, and the tolerance, which events multiply.
+      // The error of the referee's differences, and the tolerance, amplified by events.
       const double allowed = 1e-6 * (1 + std::abs(wanted)) + expected->doubt[i];
       if (!(std::abs(found - wanted) <= allowed))
         wrong += fmt::format("d {} / d q is {} in place of {}\n", model.names[i], found, wanted);

@@ -53,7 +53,7 @@ struct Said {
   int line, column;
 };
 
-/// The message of this code; the test fails where it is not among those said.
+/// The message with this code; the test fails if there is none.
 inline Said said(std::string text, std::string_view code, const CheckOptions& options = {}) {
   const Loaded loaded = load_text(std::move(text), options);
   for (const Diagnostic& d : loaded.diagnostics) {

@@ -74,7 +74,7 @@ TEST(CheckNames, NumbersAndConditionsAreTwoThings) {
 }
 
 TEST(CheckNames, DerivativesAreThereUpToTheOrder) {
-  EXPECT_EQ(value_of(good("output a = x'\n" + decay), "a"), -1);  // what the equation says
+  EXPECT_EQ(value_of(good("output a = x'\n" + decay), "a"), -1);  // from the equation
   EXPECT_EQ(place(said("output a = x''\n" + decay, "E218")), "1:12");
   EXPECT_EQ(place(said("param k = 1\noutput a = k'\n" + decay, "E218")), "2:12");
 }

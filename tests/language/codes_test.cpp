@@ -20,7 +20,7 @@ std::vector<Code> all_codes() {
   return all;
 }
 
-/// Codes that stand as texts in the sources, but for the register itself.
+/// The codes that occur as texts in the sources, except in the register itself.
 std::set<std::string> raised_codes() {
   std::set<std::string> raised;
   const std::regex code("\"(E[0-9]{3})\"");

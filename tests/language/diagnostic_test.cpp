@@ -17,7 +17,7 @@ Diagnostic units_do_not_match() {
                "did you mean c*x' ?");
 }
 
-// The block is the one of the language's description, character by character.
+// The expected text is that of the language's description, character by character.
 TEST(Diagnostics, AMessageShowsCodePlaceLineCaretsAndFix) {
   const Source source("spring.sim", sprung);
   EXPECT_EQ(render(units_do_not_match(), source), R"(error[E201]: units do not match

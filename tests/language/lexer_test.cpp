@@ -76,7 +76,7 @@ TEST(Lexing, TheHeadingIsTheFirstBlockOfComments) {
   EXPECT_EQ(heading_of(""), "");
 }
 
-// Unicode 15, table 3-7: what is no well-formed UTF-8.
+// sequences that are not well-formed UTF-8
 TEST(Lexing, IllFormedUtf8IsFoundAtItsByte) {
   EXPECT_EQ(first_invalid_byte("abc"), std::nullopt);
   EXPECT_EQ(first_invalid_byte("\xF0\x9D\x94\xB8"), std::nullopt);

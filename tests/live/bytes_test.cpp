@@ -40,7 +40,7 @@ Slice slice_at(double t, std::vector<double> rows) {
   return slice;
 }
 
-// Written down by hand from docs/protocol.md: IEEE 754, little endian.
+// The expected bytes are written by hand from docs/protocol.md: IEEE 754, little endian.
 TEST(LiveFrames, AreTheBytesOfTheProtocol) {
   const Slice slice = slice_at(1.5, {1.5});
   EXPECT_EQ(hex(frame_of(slice, {slice.row_t, slice.rows, {}}, false)),

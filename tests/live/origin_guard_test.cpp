@@ -42,7 +42,8 @@ TEST(OriginGuard, KeepsOtherPagesOut) {
   }
 }
 
-// A name server of somebody's own leads evil.example to 127.0.0.1: then its page and our server are of one origin.
+// DNS rebinding: an attacker's name server resolves evil.example to 127.0.0.1, so that its page and our server have the
+// same origin.
 TEST(OriginGuard, GoesByItsOwnNameAlone) {
   const OriginGuard origin_guard(token, "127.0.0.1", 4000);
   const std::string page = "/?token=" + token;
@@ -53,7 +54,7 @@ TEST(OriginGuard, GoesByItsOwnNameAlone) {
   }
   request.host = "localhost:4000";
   EXPECT_EQ(origin_guard.judge(request), Verdict::page);
-  const OriginGuard open(token, "0.0.0.0", 4000);  // asked for: it goes by whatever the network calls it
+  const OriginGuard open(token, "0.0.0.0", 4000);  // an open address: any host name is accepted
   request.host = "lecture.example:4000";
   EXPECT_EQ(open.judge(request), Verdict::page);
 }

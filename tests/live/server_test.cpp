@@ -46,7 +46,7 @@ class Wire {
     }
     return true;
   }
-  /// What comes until there are so many bytes, or the other side has closed.
+  /// Receives until there are that many bytes, or the other side has closed the connection.
   std::string receive(std::size_t count = 1 << 20) {
     std::string all;
     while (all.size() < count) {

@@ -58,7 +58,7 @@ TEST(LiveHands, AParameterThatDecidesHowManyEquationsThereAre) {
 }
 
 TEST(LiveHands, AKeyDrivesTheCar) {
-  Stage stage("car");  // in a run its pedals follow a file; here they are a hand's
+  Stage stage("car");  // in a run its pedals follow a file; here the user moves them
   stage.play(1);
   EXPECT_NEAR(stage.state("v"), 0, 1e-12);
   stage.session->move_input("throttle", 1);
@@ -115,14 +115,14 @@ TEST(LiveDrag, MovesTheMassAndTheEnergyShowsTheWork) {
   stage.session->release();
   stage.run(1);
   EXPECT_GT(std::abs(stage.state("x'")), 0.1);
-  EXPECT_NEAR(stage.shown("energy"), there, 1e-5);  // no hand, no work
+  EXPECT_NEAR(stage.shown("energy"), there, 1e-5);  // without a drag no work is done
 }
 
 TEST(LiveDrag, TurnsAPendulum) {
   Stage stage("pendulum");
   const std::vector<double> to = {1.2, -1.6};  // twice too far out, in the direction of atan(3/4)
   stage.session->drag(1, to);
-  EXPECT_NEAR(stage.state("theta"), std::atan2(0.6, 0.8), 1e-6);  // the square of that is what it is found by
+  EXPECT_NEAR(stage.state("theta"), std::atan2(0.6, 0.8), 1e-6);  // the search minimizes the square of the distance
   EXPECT_EQ(stage.state("theta'"), 0);
 }
 
@@ -139,7 +139,7 @@ TEST(LiveDrag, AHandDoesNotPushThroughTheFloor) {
   stage.run(2);
   EXPECT_GE(stage.state("h"), -1e-12);
   const std::vector<double> up = {0, 5};
-  stage.session->drag(1, up);  // it rests: a hand takes it out of that
+  stage.session->drag(1, up);  // at rest: a drag makes it move again
   stage.session->release();
   stage.run(0.5);
   EXPECT_LT(stage.state("h"), 5 - 9.8 * 0.1);
@@ -162,7 +162,7 @@ TEST(LiveText, AnotherTextRunsInPlace) {
   stage.run(0.1);
   EXPECT_GT(stage.audience.slices.back()->run, run);
   EXPECT_EQ(stage.session->shown().columns[0].name, "y");
-  stage.session->run_text("y' = \n");  // wrong: what runs goes on
+  stage.session->run_text("y' = \n");  // a wrong text: the running model continues
   EXPECT_EQ(stage.audience.said("message").back()["line"], 1);
   EXPECT_EQ(stage.session->shown().columns[0].name, "y");
 }

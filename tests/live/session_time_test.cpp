@@ -15,7 +15,7 @@ TEST(LiveTime, IsThatOfTheWall) {
   EXPECT_NEAR(stage.session->shown_time(), stage.wall - begin, 1e-9);
   EXPECT_NEAR(stage.session->clock().reached_speed(), 1, 1e-6);
   EXPECT_FALSE(stage.session->clock().slow());
-  // Shown where it is, whatever the steps are: within the tolerance of the run.
+  // The displayed position is within the tolerance of the run, at any step size.
   EXPECT_NEAR(stage.state("x"), std::cos(stage.session->shown_time()), 1e-6);
 }
 
@@ -47,7 +47,8 @@ TEST(LiveTime, ADebtIsDroppedNotPaid) {
   EXPECT_LT(stage.session->shown_time(), before + 1 + 2 * PacedClock::largest_debt);
 }
 
-// A step of 1e-4 and the clock looked at every 8 steps: with 8 ms for each look, simulated time passes at a tenth.
+// A step of 1e-4, with the clock read every 8 steps: at a cost of 8 ms for each reading, simulated time passes at a
+// tenth of wall time.
 TEST(LiveTime, ATooSlowMachineSlowsDownEvenlyAndSaysSo) {
   Stage stage("x'' = -x\nx(0) = 1;  x'(0) = 0\nrun 0..10 method rk4 step 1e-4\n");
   stage.cost = 8e-3;
@@ -59,8 +60,8 @@ TEST(LiveTime, ATooSlowMachineSlowsDownEvenlyAndSaysSo) {
     longest = std::max(longest, stage.wall - begin);
   }
   EXPECT_TRUE(stage.session->clock().slow());
-  EXPECT_NEAR(stage.session->clock().reached_speed(), 0.1, 0.05);  // looks besides those between steps cost as well
-  EXPECT_LT(longest, 0.1);                                         // a hand is answered that soon
+  EXPECT_NEAR(stage.session->clock().reached_speed(), 0.1, 0.05);  // other readings of the clock cost time as well
+  EXPECT_LT(longest, 0.1);                                         // the response time to the user
   const auto states = stage.audience.said("state");
   EXPECT_TRUE(states.back()["slow"].get<bool>());
   stage.cost = 0;

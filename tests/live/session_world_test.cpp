@@ -56,11 +56,11 @@ TEST(LiveWorld, ABodyStaysInTheHand) {
   stage.session->drag_body(0, up);
   stage.run(0.3);
   EXPECT_NEAR(stage.state("ball.y"), 4, 1e-9);
-  stage.session->drag_body(0, down);  // the floor is in the way
+  stage.session->drag_body(0, down);  // the floor blocks the way
   stage.run(0.3);
   EXPECT_NEAR(stage.state("ball.y"), 0.5, 1e-3);
   stage.session->drag_body(0, {std::vector<double>{0, 2}});
-  stage.session->drag_body(0, right);  // the stone is
+  stage.session->drag_body(0, right);  // the stone blocks the way
   stage.run(0.3);
   EXPECT_NEAR(stage.state("ball.x"), 2, 1e-3);
   stage.session->release();

@@ -67,7 +67,7 @@ class Stage {
     ADD_FAILURE() << "no column " << name;
     return 0;
   }
-  /// Of the moment that stands last in the history, in double.
+  /// Of the last moment in the history, in double.
   double state(const std::string& name) const { return session->history().back().main.x[column(name)]; }
   /// As a client gets it, of the newest row.
   double shown(const std::string& name) const {
@@ -79,7 +79,7 @@ class Stage {
   }
 
   Spectator audience;
-  double wall = 100, cost = 0;  // cost: seconds that pass whenever somebody looks at the clock
+  double wall = 100, cost = 0;  // cost: seconds that each reading of the clock takes
   std::unique_ptr<Session> session;
 
  private:

@@ -29,7 +29,7 @@ bool write(const std::filesystem::path& path, std::span<const std::byte> bytes) 
   return static_cast<bool>(file);
 }
 
-/// A few balls of all kinds over a floor: one that does not move, a spring, groups, a gap among the handles.
+/// A few balls over a floor: a fixed one, a spring, groups, and an unused handle.
 template <class Real, int Dim>
 World<Real, Dim> few(bool has_spring) {
   World<Real, Dim> world;

@@ -17,7 +17,7 @@ int main() {
       std::abs(solution.final_state()[0] - exact) < 1e-8 && std::abs(simulated.run->final_state()[0] - exact) < 1e-8;
   if (!same) return 2;
 
-  // What the command loads when it is asked for, a program that links the library has in it.
+  // The modules that the command loads on demand are linked into a program that uses the library.
   const auto found = continuo::studies::least_squares(
       {.start = {1},
        .residuals = 1,
