@@ -14,8 +14,8 @@ namespace {
 
 using namespace continuo::model;
 
-/// Families, sums over large ranges and patterns of many bodies are legal and slow; the fuzzer keeps to numbers of one
-/// digit beside them.
+/// Families, sums over large ranges and patterns of many bodies are legal but slow, so the fuzzer uses only numbers of
+/// one digit in them.
 bool stays_small(const std::string& text) {
   if (text.find("..") == std::string::npos && text.find("bodies") == std::string::npos) return true;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };

@@ -244,7 +244,7 @@ TEST_F(LiveServer, HalfOpenSocketsAreClosed) {
   const auto begin = std::chrono::steady_clock::now();
   silent.receive();
   half.receive();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));  // patience: 1 s; for ever without it
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));  // the time limit is 1 s
   expect_alive();
 }
 

@@ -75,7 +75,7 @@ TEST(LiveHands, TheMethodChangesOnTheWay) {
   stage.session->take_method({.name = "explicit_euler", .step = 0.1});
   stage.run(10);
   EXPECT_GT(stage.shown("energy"), 0.5 * 1.5);  // (1 + h^2)^100 = 2.7
-  stage.session->take_method({.name = "rk4"});  // no step: refused, and the run goes on
+  stage.session->take_method({.name = "rk4"});  // without a step: refused, and the run continues
   EXPECT_EQ(stage.audience.said("message").back()["code"], "E331");
   const double t = stage.session->shown_time();
   stage.run(1);
@@ -212,7 +212,7 @@ TEST(LiveHands, InputsAreUndoneAndRestored) {
   const auto input = [&](const char* name) {
     return nlohmann::json::parse(stage.session->state_json())["inputs"][name].get<double>();
   };
-  const auto wait = [&] { stage.wall += 2; };  // two changes, not one slider that moves
+  const auto wait = [&] { stage.wall += 2; };  // two changes, not one continuous movement of a slider
   stage.session->move_input("push", 1);
   wait();
   stage.session->move_input("push", 1.5);

@@ -157,7 +157,7 @@ TEST(LiveHistory, GoesBackAndOnFromThere) {
   EXPECT_LT(stage.session->shown_time(), then);
   stage.session->step();
   EXPECT_DOUBLE_EQ(stage.session->shown_time(), then);
-  EXPECT_DOUBLE_EQ(stage.session->history().last_time(), last);  // nothing is lost by looking
+  EXPECT_DOUBLE_EQ(stage.session->history().last_time(), last);  // looking back loses nothing
   stage.play(1);
   EXPECT_NEAR(stage.session->shown_time(), then + 1, 1e-9);
   EXPECT_NEAR(stage.state("x"), std::cos(then + 1), 1e-6);
@@ -308,7 +308,7 @@ TEST(LiveHistory, ThinsWhatIsLongAgoWhereMemoryIsShort) {
     EXPECT_LE(gap, 1 + age) << before;
     before = gap;
   }
-  // The last ones are all there: of the newer half none goes.
+  // All of the last moments are kept: none of the newer half is deleted.
   for (std::size_t i = 0; i < 40; ++i)
     EXPECT_EQ(history[history.size() - 1 - i].main.t, 9999.0 - static_cast<double>(i));
 }

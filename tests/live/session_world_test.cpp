@@ -160,7 +160,7 @@ TEST(LiveWorld, ThePastKnowsHowBodiesStood) {
   ASSERT_TRUE(slice.looking_back);
   ASSERT_EQ(slice.bodies->orientation.size(), 4U);
   EXPECT_NEAR(turn_of(*slice.bodies), slice.t, 1e-3);
-  stage.session->take_method({.name = "exact"});  // goes on from there, standing as it stood
+  stage.session->take_method({.name = "exact"});  // continues from there, with the same orientation
   stage.play(0.2);
   EXPECT_NEAR(turn_of(*stage.audience.slices.back()->bodies), stage.session->shown_time(), 1e-3);
 }
@@ -224,7 +224,7 @@ TEST(LiveWorld, ABodyFliesOnAsFastAsTheHandWent) {
   stage.run(0.1);
   EXPECT_NEAR(stage.state("ball.x'"), 3, 1e-6);
   move(3, 20);
-  move(0, 20);  // who holds still before letting go throws nothing
+  move(0, 20);  // a pause before the release means no throw
   stage.session->release();
   stage.run(0.1);
   EXPECT_NEAR(stage.state("ball.x'"), 0, 1e-12);

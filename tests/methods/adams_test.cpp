@@ -102,7 +102,8 @@ TEST(Adams, NeedsFewerEvaluationsThanARungeKuttaMethodOfOrderEight) {
 
 TEST(Adams, EvaluatesTwiceAStep) {
   const auto solution = solve(bench::Kepler{}, bench::Kepler::start(), {0.0, 50.0}, Adams{}, {.rtol = 1e-8});
-  // Two more for the first step; one that is rejected repeats its prediction, at the start of the run also f there.
+  // Two more evaluations for the first step. A rejected step repeats its prediction, and at the start of the run also f
+  // there.
   EXPECT_LE(solution.statistics.evaluations, 2 * (solution.statistics.steps + solution.statistics.rejected + 1));
 }
 
@@ -124,7 +125,7 @@ TEST(Adams, StepsFollowTheSolution) {
 }
 
 TEST(Adams, AJumpForgetsThePast) {
-  // A ball that bounces without loss: v^2/2 + 9.81 y stays what it is through twenty jumps of the velocity.
+  // An elastic ball: v^2/2 + 9.81 y is constant through twenty jumps of the velocity.
   using X = std::array<double, 2>;
   const auto ball = [](double, const X& x) { return X{x[1], -9.81}; };
   Options<X> options{.rtol = 1e-9, .atol = 1e-9};

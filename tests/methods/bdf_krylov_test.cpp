@@ -122,7 +122,7 @@ TEST(BdfKrylov, MeetsItsToleranceOnSmallStiffProblems) {
   }
 }
 
-/// The heat equation on a line, which knows its Jacobian's action and solves c - J exactly (three diagonals).
+/// The heat equation on a line, with the action of its Jacobian and an exact solver of c - J (three diagonals).
 struct Line {
   std::size_t nodes;
   double c = 0;

@@ -71,7 +71,7 @@ TEST(Bdf, DenseOutputMeetsTheTolerance) {
     EXPECT_LT(promises::dense_error_in_tolerances<Bdf>(problem, 10, tolerance, exact), 30) << tolerance;
 }
 
-// Order 2 from the second step on; what the first, of order 1, leaves is of the size of h^2 too.
+// Order 2 from the second step on; the error of the first step, of order 1, is of the size of h^2 too.
 TEST(Bdf, FixedStepsHaveOrderTwo) {
   using X = std::array<double, 1>;
   const auto logistic = [](double, const X& x) { return X{x[0] * (1 - x[0])}; };

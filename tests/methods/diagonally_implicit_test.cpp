@@ -181,8 +181,9 @@ TYPED_TEST(DiagonalMethod, TheInterpolantHasTheStatedOrder) {
   EXPECT_GT(testing::measured_order(algebraic, 32), TypeParam::dense_order + 0.7);
 }
 
-// lambda = -1e6: what is left is the order of the stages, 2 (1 for implicit Euler), over lambda where the last stage is
-// the end of the step (E. Hairer, G. Wanner II, IV.15). The implicit midpoint rule has no such stage.
+// lambda = -1e6: the observed order is that of the stages, 2 (1 for implicit Euler), and the error is divided by lambda
+// where the last stage is the end of the step (E. Hairer, G. Wanner II, IV.15). The implicit midpoint rule has no such
+// stage.
 TYPED_TEST(DiagonalMethod, LosesThatMuchOrderOnProtheroRobinson) {
   const auto error = [](int n) { return testing::error_of_steps<TypeParam>(testing::ProtheroRobinson{}, n); };
   EXPECT_NEAR(testing::measured_order(error, 32), TypeParam::order == 1 ? 1 : 2, 0.25);

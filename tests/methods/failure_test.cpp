@@ -41,14 +41,14 @@ class Failure : public ::testing::Test {
   static constexpr bool adaptive = M::error_order > 0;
   static constexpr double step = 1e-3;  // of the others
   static constexpr bool without_matrix = std::same_as<M, BdfKrylov>;
-  // Stable for every stiff equation, but what it should damp at once rings on.
+  // Stable for every stiff equation, but fast components are not damped.
   static constexpr bool rings = std::same_as<M, Gauss4>;
 
-  // Of order 1, as many steps as 1 / rtol: the tolerance is one that can be asked for.
+  // A method of order 1 takes 1 / rtol steps, so its tolerance is lower here.
   static constexpr double rtol = M::order == 1 ? 1e-3 : 1e-6;
 
-  /// Each step errs by no more than the tolerance, and these equations let no error grow: they add up. An error
-  /// estimate is off by some factor; 30 tolerances are what these tests allow everywhere. Of a fixed step: h/2, as of
+  /// The error of each step is at most the tolerance, and these equations amplify no error, so errors add up. Error
+  /// estimates are inexact by some factor: these tests allow 30 tolerances everywhere. With a fixed step: h/2, as for
   /// Euler.
   static double allowed(const Solution<X>& solution) {
     return adaptive ? rtol * std::max(30.0, static_cast<double>(solution.statistics.steps)) : step / 2;
@@ -188,8 +188,8 @@ TYPED_TEST(Failure, ABlowUpEndsAtItsSingularity) {
       << describe(solution.outcome);
   EXPECT_THAT(solution.outcome.hint,
               AnyOf(HasSubstr("singular"), HasSubstr("without bound"), HasSubstr("smaller step")));
-  // The singularity of what is computed is that of a solution within the tolerance: a relative error of x is as large
-  // an error of the distance to it, and errors add up over the steps, of which implicit Euler takes the most.
+  // The computed singularity is that of a solution within the tolerance: a relative error of x is an equal relative
+  // error of the distance to the singularity, and errors add up over the steps, of which implicit Euler takes the most.
   EXPECT_NEAR(solution.outcome.t, 1,
               TestFixture::adaptive ? std::max(1e-3, 30 * TestFixture::rtol) : 5 * TestFixture::step);
   EXPECT_GT(solution.final_state()[0], 100);

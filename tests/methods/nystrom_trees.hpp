@@ -3,8 +3,8 @@
 //
 // A tree is an acceleration with a multiset of branches, each a derivative of a with respect to q: either q' (a leaf:
 // c_i at stage i, theta along the exact solution) or another acceleration (sum_j a_ij phi_j, or its double integral).
-// Time is a position whose velocity is 1, so a(t, q) asks for nothing more. Along the exact solution a tree of degree n
-// is exact * theta^n; so the weights of velocity must give exact / (n+1), those of position exact / ((n+1)(n+2)).
+// Time is a position whose velocity is 1, so a(t, q) needs no further trees. Along the exact solution a tree of degree
+// n is exact * theta^n; so the weights of velocity must give exact / (n+1), those of position exact / ((n+1)(n+2)).
 #pragma once
 #include <algorithm>
 #include <cstddef>

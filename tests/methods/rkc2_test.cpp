@@ -106,7 +106,8 @@ TEST(Rkc2, SolvesTheHeatEquationToItsTolerance) {
     const auto exact = heat.exact(0.3);
     for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(solution.final_state()[i], exact[i], 30 * tolerance);
     // An explicit method of two stages needs 0.3 * 4 * 201^2 / 2 = 24241 steps of two evaluations for its stability
-    // alone. At the strictest tolerance here it is accuracy that asks for steps, as many as 1 / sqrt(tolerance).
+    // alone. At the strictest tolerance here accuracy determines the number of steps, in proportion to 1 /
+    // sqrt(tolerance).
     EXPECT_LT(solution.statistics.evaluations, tolerance < 1e-6 ? 2 * 24241U : 7000U);
   }
 }

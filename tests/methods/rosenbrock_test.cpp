@@ -167,7 +167,7 @@ TYPED_TEST(Rosenbrock, HasItsOrderInTheUnknownOfAnAlgebraicEquation) {
 TYPED_TEST(Rosenbrock, TheInterpolantHasTheStatedOrder) {
   const auto forced = [](int n) { return testing::dense_error<TypeParam>(testing::Forced{}, n); };
   EXPECT_NEAR(testing::measured_order(forced, 8), TypeParam::dense_order + 1, 0.3);
-  // What an algebraic equation determines is not integrated: one power of h less inside a step, as many over a run.
+  // Algebraic variables are not integrated: one power of h less inside a step, the same order over a run.
   const auto algebraic = [](int n) { return testing::dense_error<TypeParam>(testing::Circle{}, n); };
   EXPECT_GT(testing::measured_order(algebraic, 8), TypeParam::dense_order - 0.3);
 }
@@ -186,7 +186,7 @@ TYPED_TEST(Rosenbrock, MeetsTheToleranceOnRobertson) {
   using Problem = bench::Robertson<double>;
   const auto reference = bench::end_of<Problem>();
   for (const double rtol : {1e-3, 1e-5, 1e-7}) {
-    if (rtol == 1e-7 && TypeParam::order == 2) continue;  // 1e5 steps: not what it is for
+    if (rtol == 1e-7 && TypeParam::order == 2) continue;  // 1e5 steps: the method is not meant for this
     const auto solution = solve(Problem{}, Problem::start(), {0.0, Problem::duration}, TypeParam{},
                                 {.rtol = rtol, .atol = rtol * 1e-8, .save = Save<Problem::State>::only_end()});
     ASSERT_EQ(solution.outcome.ending, Ending::reached_end);
@@ -233,7 +233,7 @@ TYPED_TEST(Rosenbrock, FailuresHaveTheirOutcome) {
   EXPECT_NE(lost.outcome.hint.find("singular"), std::string::npos) << lost.outcome.hint;
   const auto wall = solve(testing::NotANumberBeyond{}, x0, {0.0, 1.0}, TypeParam{});
   EXPECT_EQ(wall.outcome.ending, Ending::not_finite);
-  EXPECT_NEAR(wall.outcome.t, 0.5, 1e-8);  // df/dt by a difference looks sqrt(epsilon) t ahead
+  EXPECT_NEAR(wall.outcome.t, 0.5, 1e-8);  // df/dt by a difference evaluates f sqrt(epsilon) t ahead
   const auto bad = solve(testing::NotANumberInJacobian{}, x0, {0.0, 1.0}, TypeParam{});
   EXPECT_EQ(bad.outcome.ending, Ending::not_finite);
 }
@@ -250,8 +250,8 @@ TEST(RosenbrockMethod, ASystemThatSaysSoIsSpentNoEvaluationForTime) {
   EXPECT_EQ(known.final_state(), unknown.final_state());
 }
 
-// 700,000 steps, in which the third amount creeps towards 1: what each of them loses by rounding adds up to 2e-13
-// unless it is carried along. The amounts add up to 1 then, to the rounding of the three.
+// 700,000 steps, in which the third amount slowly approaches 1: without compensated sums the rounding of the steps adds
+// up to 2e-13. With them the amounts add up to 1 within the rounding of the three.
 TEST(Rosenbrock23, RoundingIsNotAddedUp) {
   const auto solution = solve(bench::Robertson<>{}, bench::Robertson<>::start(), {0.0, 1e11}, Rosenbrock23{},
                               {.rtol = 1e-8, .atol = 1e-18, .save = Save<std::array<double, 3>>::only_end()});

@@ -65,7 +65,7 @@ TEST(VelocityVerlet, RunsBackTheWayItCame) {
   const X x{2, 0.5};
   const X there = after<VelocityVerlet>(pendulum, x, 0.1, 1000);
   const X back = after<VelocityVerlet>(pendulum, there, -0.1, 1000);
-  // Each of two thousand steps rounds at the size of the state, and what is rounded drifts on along the orbit.
+  // Each of two thousand steps rounds at the size of the state, and these errors grow linearly along the orbit.
   EXPECT_NEAR(back[0], x[0], 1e-10);
   EXPECT_NEAR(back[1], x[1], 1e-10);
 }

@@ -32,7 +32,7 @@ template <class M>
 using RealOf = std::conditional_t<(M::order > 8), Quad, long double>;
 using testing::Forced;
 
-/// D_0 = at(0), D_1 = at(0) - at(1), ...: the backward differences of what `at` gives for each step back.
+/// D_0 = at(0), D_1 = at(0) - at(1), ...: the backward differences of `at`, a function of the number of steps back.
 template <class Differences, class At>
 void set_differences(Differences& D, const At& at) {
   for (std::size_t j = 0; j < D.size(); ++j) D[j] = at(static_cast<int>(j));
@@ -58,8 +58,8 @@ struct Ndf : Bdf {
   }
 };
 
-/// The formulas of `adams` that predict from k values and are of order k + 1 when they have corrected, up to an order
-/// that says in which numbers they can be measured; fed in the same way.
+/// The formulas of `adams` that predict from k values and have order k + 1 after correction, up to the order that can
+/// be measured in the given numbers; with the same inputs.
 template <int greatest>
 struct AdamsMoulton : Adams {
   static constexpr int order = greatest;
@@ -84,7 +84,7 @@ struct AdamsMoulton : Adams {
   }
 };
 
-/// What a method of variable order steps by, at one of its orders.
+/// One formula of a method of variable order, at one of its orders.
 template <class M>
 constexpr bool formula = std::derived_from<M, Bdf> || std::derived_from<M, Adams>;
 /// A method whose first step needs others before it has no dense output of its own in it.
@@ -145,7 +145,8 @@ RealOf<M> of_solved_equations(const ErrorBy& error_by) {
   return error;
 }
 
-/// A workspace for steps of h from t on, where the state is exact, and so is what formula k of several steps is given.
+/// A workspace for steps of h from t on, with the exact state and, for formula k of a multistep method, exact earlier
+/// values.
 template <class M, class Problem, class Real>
 auto work_at(std::size_t k, const Problem& problem, const Real& t, const Real& h) {
   const auto x = problem.exact(t);
@@ -184,7 +185,7 @@ RealOf<M> error_within_step(std::size_t k, int n, std::size_t component, const a
   using Real = RealOf<M>;
   using std::abs;
   Problem problem;
-  // Formulas look back over many steps: neither sine nor cosine shall be near zero there.
+  // Formulas use values of many earlier steps: neither sine nor cosine may be near zero there.
   const Real t(formula<M> ? 1 : 0.25), h = Real(1) / n;
   auto x = Problem::exact(t), x_new = x, value = x;
   auto work = work_at<M>(k, problem, t, h);
@@ -200,7 +201,7 @@ RealOf<M> error_within_step(std::size_t k, int n, std::size_t component, const a
   return worst;
 }
 
-/// log2 of the ratio of the last two errors, each of half the step of the one before, that are above rounding.
+/// log2 of the ratio of the last two errors above rounding, each of half the step of the one before.
 template <class Error>
 std::optional<double> order_of(const Error& error) {
   using Real = decltype(error(1));

@@ -89,7 +89,7 @@ double dense_error_in_tolerances(const System& system, double end, double tolera
   return worst / tolerance;
 }
 
-/// f is not a number beyond t = 1: the run ends there, by name, and keeps what it had.
+/// f is NaN beyond t = 1: the run ends there with the ending of that name, and keeps its results.
 template <class M>
 void expect_not_finite_ends_by_name() {
   const auto broken = [](double t, const std::array<double, 2>& x) {
@@ -98,7 +98,7 @@ void expect_not_finite_ends_by_name() {
   const auto solution = solve(broken, std::array{1.0, 1.0}, {0.0, 2.0}, M{}, {.rtol = 1e-6, .atol = 1e-9});
   EXPECT_EQ(solution.outcome.ending, Ending::not_finite) << describe(solution.outcome);
   EXPECT_NEAR(solution.outcome.t, 1, 1e-9);
-  // The tolerance adds up over the steps; 30 is what this suite allows everywhere.
+  // The errors of the steps add up; this suite allows 30 tolerances everywhere.
   EXPECT_NEAR(solution.final_state()[0], std::exp(-solution.outcome.t), 30e-6);
 }
 

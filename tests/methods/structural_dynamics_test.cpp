@@ -63,7 +63,7 @@ TEST(Newmark, ModesOfAChainMoveAtTheFrequencyOfTheClosedForm) {
       EXPECT_NEAR(solution.final_state()[i], x[i] * std::cos(discrete * end), 1e-9) << "mode " << mode;
     EXPECT_EQ(solution.statistics.jacobians, 1U);
     EXPECT_EQ(solution.statistics.factorizations, 1U);
-    // The system is linear: the second iteration of a step mends what differences leave wrong in the Jacobian.
+    // The system is linear: the second iteration of a step corrects the errors of the Jacobian by differences.
     EXPECT_LE(solution.statistics.linear_solves, 400U);
   }
 }
@@ -91,8 +91,8 @@ TEST(Newmark, DampsNoFrequency) {
   }
 }
 
-// At h w -> infinity three eigenvalues of the step come together at -Rho: powers grow by a polynomial of degree 2
-// beside Rho^n, so from step 500 to 1000 the mean factor is off by at most 4^(1/500) = 1.003.
+// For h w -> infinity three eigenvalues of the step coincide at -Rho: powers grow by a polynomial of degree 2 besides
+// Rho^n, so from step 500 to 1000 the mean factor is off by at most 4^(1/500) = 1.003.
 template <double Rho>
 void expect_damping_at_infinity() {
   const auto amplitude = amplitudes<GeneralizedAlphaWith<Rho>>(1e5, 1, 1000);

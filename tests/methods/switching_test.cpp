@@ -93,14 +93,15 @@ TEST(Switching, ASpringThatCouldOscillateAndDoesNotIsStiff) {
   for (const double tolerance : {1e-4, 1e-8}) {
     const auto solution = solve(spring, start, {0.0, 30.0}, {.rtol = tolerance, .atol = tolerance});
     ASSERT_TRUE(solution.outcome);
-    // At the strict one the first steps have set off more than a tolerance of it, which is resolved until it is less.
+    // At the strict tolerance the first steps excite an oscillation above the tolerance, which is resolved until it has
+    // decayed.
     EXPECT_LT(solution.statistics.steps, tolerance > 1e-6 ? 3'000U : 20'000U) << tolerance;
     EXPECT_GT(solution.statistics.factorizations, 0U);
     EXPECT_NEAR(solution.final_state()[0], std::cos(30.0) / (1 - 1e-8), 30 * tolerance);
   }
 }
 
-// One that does is not: the stiff half is never used, or a few times to see that it helps nothing.
+// A spring that oscillates is not stiff: the stiff half is never used, or a few times to find that it does not help.
 TEST(Switching, AnOscillationStaysWithTheNystromMethod) {
   const auto spring = second_order([](double, const std::array<double, 1>& q) { return std::array{-1e8 * q[0]}; });
   const auto run = [&](auto method) {

@@ -33,7 +33,7 @@ class Symplectic : public ::testing::Test {};
 using Compositions = ::testing::Types<McLachlanAtela4, Yoshida6, KahanLi8>;
 TYPED_TEST_SUITE(Symplectic, Compositions);
 
-/// Kicks and drifts as a Runge-Kutta-Nystrom method: what kick j adds to the velocity is there from c_j on.
+/// Kicks and drifts as a Runge-Kutta-Nystrom method: the velocity has the increment of kick j from c_j on.
 template <class M>
 NystromNumbers<Quad> numbers() {
   constexpr std::size_t stages = M::tableau.stages;
@@ -128,18 +128,18 @@ TYPED_TEST(Symplectic, EnergyDoesNotDriftInAThousandOrbits) {
   EXPECT_NEAR(swung.last / swung.first, 1, 0.01);
 }
 
-// What rounding leaves: kahan_li8 with 200 steps swings by 1e-13. With compensated sums only the rounding of the
-// accelerations is left, two ulps of kicks h |a| of up to 0.1 in each of 17 stages: a walk of 1e-17 a step, 1e-14 after
-// a million steps. Plain sums would lose an ulp of q and v in each stage, ten times as much.
+// Rounding alone: the energy error of kahan_li8 with 200 steps is 1e-13. With compensated sums only the rounding of the
+// accelerations remains, two ulps of kicks h |a| of up to 0.1 in each of 17 stages: a random walk of 1e-17 a step,
+// 1e-14 after a million steps. Plain sums would lose an ulp of q and v in each stage, ten times as much.
 TEST(Symplectic, RoundingIsNotAddedUp) {
   const Swing swung = swing<KahanLi8>(3000, 200);
   EXPECT_LT(swung.last, 3e-13);
   EXPECT_NEAR(swung.mean_last, swung.mean_first, 1e-14);
 }
 
-// Without forces nothing is left but the sum of h drift_i v. The drifts add up to 1 but for the rounding of each, up to
-// 17 of them of a size of up to 2: 4e-15 of the way of 1/3. What each of a million sums loses, up to 1e-16 and always
-// about the same, would come to 1e-12 at the least.
+// Without forces a step is the sum of h drift_i v. The drifts add up to 1 but for the rounding of each, up to 17 of
+// them of a size of up to 2: 4e-15 of the distance of 1/3. Without compensation each of a million sums would lose up to
+// 1e-16, always about the same, 1e-12 in all.
 TYPED_TEST(Symplectic, AFreeBodyKeepsItsWay) {
   auto free = second_order([](double, const auto&) { return std::array{0.0}; });
   constexpr int steps = 100'000;

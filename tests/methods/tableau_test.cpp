@@ -28,7 +28,8 @@ Row row(const Coefficient (&from)[N], std::size_t size) {
   return result;
 }
 
-/// The matrix of all that the interpolant knows: the stages, f at the end (whose argument is x_new), the extra stages.
+/// The matrix of all slopes that the interpolant uses: the stages, f at the end (whose argument is x_new), the extra
+/// stages.
 template <class M>
 std::vector<Row> matrix() {
   constexpr auto& tableau = M::tableau;
@@ -156,8 +157,8 @@ TYPED_TEST(TableauOf, TheInterpolantHasNoHigherOrderThanStated) {
   EXPECT_GT(worst, Real("1e-9"));
 }
 
-/// What is written down for Verner's pairs is x + h sum_ij weights[i][j] theta^(j+1) k_i; its division by theta^2 (1 -
-/// theta)^2 must leave no rest, or the interpolant would not meet values and slopes at the ends.
+/// The published interpolant of Verner's pairs is x + h sum_ij weights[i][j] theta^(j+1) k_i; its division by theta^2
+/// (1 - theta)^2 must have no remainder, or the interpolant would not match values and slopes at the ends.
 template <class M, std::size_t Known, std::size_t Degree>
 void expect_no_rest(const Coefficient (&published)[Known][Degree]) {
   for (const Real& theta : {Real("0.3"), Real("0.9")}) {

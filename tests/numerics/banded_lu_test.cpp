@@ -49,10 +49,10 @@ double residual(const std::vector<std::vector<Number>>& rows, const std::vector<
 }
 
 /// The greatest residual of the solution, relative to the greatest component of the solution times the entries of a
-/// row, all below 1.5, or 1.5 times the shift: what elimination with pivots keeps at some roundings per entry of a row,
+/// row, all below 1.5, or 1.5 times the shift. Elimination with pivots bounds it by some roundings per entry of a row,
 /// whatever the condition of the matrix (N. J. Higham, "Accuracy and Stability of Numerical Algorithms", 9.3; growth
-/// stays small in practice). c is a random number of size `shift` and M a random diagonal: a great one leaves every row
-/// where it is.
+/// stays small in practice). c is a random number of size `shift` and M a random diagonal: with a large shift no rows
+/// are exchanged.
 template <class Number>
 double residual_of_random_system(std::size_t n, std::size_t lower, std::size_t upper, unsigned seed, double shift = 1) {
   using Real = typename BandedLU<Number>::Real;
@@ -115,7 +115,7 @@ TEST(BandedLU, SolvesRandomSystemsThatNeedPivots) {
   }
 }
 
-// Factors of a matrix that needed pivots must leave nothing behind for one that does not.
+// The factorization of a matrix with pivots must not affect that of a later matrix without them.
 TEST(BandedLU, CanBeFilledAgain) {
   Band<double> lu(3, 1, 1);
   for (int round = 0; round < 2; ++round) {

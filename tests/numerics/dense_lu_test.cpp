@@ -141,7 +141,7 @@ TEST(DenseLU, ReportsSingularSparseMatricesAndGoesOn) {
   DenseLU<double, N> lu(N);
   std::array<double, N * N> matrix{};
   for (std::size_t i = 0; i < N; ++i) matrix[i * N + i] = 2, matrix[i * N] = 1;
-  for (int round = 0; round < 300; ++round) {  // whatever is tried how often
+  for (int round = 0; round < 300; ++round) {  // any number of failures
     matrix[5 * N + 5] = 0;
     lu.matrix() = matrix;
     ASSERT_FALSE(lu.factor());

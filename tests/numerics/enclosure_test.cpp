@@ -128,7 +128,8 @@ TEST(Enclosure, HoldsRemaindersOfBothSigns) {
   }
 }
 
-// A function of a single number is known to a few units in the last place: what is asked of libm, twice.
+// The enclosure of a function at a single number is as wide as a few units in the last place: twice the error allowed
+// for libm.
 TEST(Enclosure, IsTightOnSingleNumbers) {
   constexpr double units = 10 * std::numeric_limits<double>::epsilon();
   RandomNumbers random(4);
@@ -143,7 +144,7 @@ TEST(Enclosure, IsTightOnSingleNumbers) {
   }
 }
 
-// Between the sampled extremes of sine and cosine and the computed ones lies what a thousand samples leave out.
+// The computed extremes of sine and cosine exceed the sampled ones by no more than a thousand samples can miss.
 TEST(Enclosure, WavesAreTightOnIntervals) {
   RandomNumbers random(5);
   for (int trial = 0; trial < 500; ++trial) {

@@ -68,9 +68,9 @@ TEST(Gmres, SaysWhenItDoesNotArrive) {
   EXPECT_FALSE(result.converged);
   auto product = b;
   multiply(b, product);
-  EXPECT_LT(distance(product, right), distance(right, std::vector<double>(200, 0)));  // and gives what it has
+  EXPECT_LT(distance(product, right), distance(right, std::vector<double>(200, 0)));  // its best approximation
 
-  // A singular matrix and a right-hand side it cannot reach.
+  // A singular matrix and a right-hand side outside of its range.
   std::array<double, 2> c{1, 1};
   Gmres<std::array<double, 2>> small(c, 5);
   const auto project = [](const auto& v, auto& image) { image = {v[0], 0}; };

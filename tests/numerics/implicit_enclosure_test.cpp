@@ -43,7 +43,7 @@ struct Equations {
   }
 };
 
-/// Diagonally dominant, so that there is one solution for every theta.
+/// Diagonally dominant, so that the solution is unique for every theta.
 Equations random_equations(std::mt19937& random, std::size_t size, bool is_linear) {
   Equations made{size, {}, {}, {}, {}};
   for (std::size_t i = 0; i < size; ++i) {

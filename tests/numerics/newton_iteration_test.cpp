@@ -23,7 +23,7 @@ TEST(NewtonIteration, EndsBehindTheCorrectionAfterWhichNoneIsNeeded) {
   EXPECT_NEAR(z, std::sqrt(2.0), 1e-15);
 }
 
-// Corrections that fall no more below what counts as rounding are all that there is; above it they lead nowhere.
+// Corrections that no longer decrease count as convergence below the level of rounding, and as failure above it.
 TEST(NewtonIteration, TakesWhatRoundingLeavesAsConverged) {
   for (const double noise : {1e-7, 1e-5}) {
     double size = 1;

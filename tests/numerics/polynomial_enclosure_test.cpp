@@ -35,7 +35,7 @@ Enclosure<double> whole(const std::vector<double>& c) {
   return enclose_whole_polynomial<double>(c.size(), [&](std::size_t j) { return c[j]; });
 }
 
-/// Coefficients of a step of a smooth motion: each smaller than the one before, beside an offset that may be large.
+/// Coefficients of a step of a smooth motion: each smaller than the one before, besides a possibly large constant.
 std::vector<double> random_polynomial(std::mt19937& random, std::size_t degree) {
   std::vector<double> c(degree + 1);
   double size = 1;

@@ -131,7 +131,8 @@ TEST(RootIsolation, KinksAndJumpsAreCrossed) {
   expect_roots(isolate([](const Curve& t) { return Curve(1.0) / (t - Curve(3.3)); }, 0, 10, -1), {3.3});
 }
 
-// From each jump down it grows through zero again, steadily: who looks only at slopes and ends of pieces sees nothing.
+// After each jump down the function grows steadily through zero again: slopes and ends of pieces alone do not reveal
+// the jumps.
 TEST(RootIsolation, JumpsBackAreCrossingsOfTheirOwn) {
   for (const double height : {0.5, 1e-3, 1e-9}) {
     const auto teeth = [&](const Curve& t) { return mod(t, Curve(0.7)) - Curve(height); };
@@ -154,7 +155,7 @@ TEST(RootIsolation, ZeroBelongsToTheSideItWasReachedFrom) {
   const auto from_zero = [](const Curve& t) { return t; };
   expect_roots(isolate(from_zero, 0, 10, 1), {});
   expect_roots(isolate(from_zero, 0, 10, -1), {0});
-  EXPECT_EQ(isolate(from_zero, 0, 10, 0).end.side, 1);  // on no side before, so it crosses nothing
+  EXPECT_EQ(isolate(from_zero, 0, 10, 0).end.side, 1);  // without a side before, so it is no crossing
   expect_roots(isolate(from_zero, 0, 10, 0), {});
 }
 

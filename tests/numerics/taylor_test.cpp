@@ -139,7 +139,7 @@ TEST(Taylor, BoundsItsRounding) {
   }
 }
 
-// What goes in with a rounding: the true arguments may lie anywhere within it.
+// Arguments with a rounding error: the true ones may lie anywhere within it.
 TEST(Taylor, BoundsWhatTheRoundingOfItsArgumentsDoes) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> within(-1e-10, 1e-10);
@@ -214,13 +214,13 @@ TEST(Taylor, LeavesZeroAsItsLeadingTermDoes) {
   EXPECT_EQ(root.c[1], 2);
   EXPECT_EQ(root.c[2], 1);
   EXPECT_TRUE(std::isnan(root.c[3]));
-  // Through the corner (0, 0): |s| of the way (3, 4) s.
+  // At the corner (0, 0), along (3, 4) s: |s| times 5.
   EXPECT_EQ(hypot(Series(0, 3), Series(0, -4)).c[1], 5);
   EXPECT_EQ(hypot(Series(0, 3), Series(0, -4)).c[2], 0);
   EXPECT_EQ(atan2(Series(0, -1), Series(0, -1)).c[0], -3 * std::numbers::pi / 4);
   EXPECT_EQ(atan2(Series(0, -1), Series(-1)).c[0], -std::numbers::pi);
   EXPECT_EQ(atan2(Series(0, 1), Series(-1)).c[0], std::numbers::pi);
-  // Steeper than any line; beyond, nothing is known.
+  // The slope is infinite there, and no later coefficient exists.
   EXPECT_EQ(sqrt(Series(0, 1)).c[1], std::numeric_limits<double>::infinity());
   EXPECT_TRUE(std::isnan(sqrt(Series(0, 1)).c[2]));
   EXPECT_EQ(pow(Series(0, 4), Series(1.5)).c[1], 0);

@@ -36,7 +36,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
                                            boost::multiprecision::et_off>;
 
-/// A state none of whose components is special, near x.
+/// A state near x, without special values in its components.
 template <class X>
 X moved(X x) {
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = x[i] * 1.25 + 0.01 * static_cast<double>(i + 1);
@@ -129,7 +129,7 @@ TEST(Problems, TheirClosedFormsAreSolutions) {
   }
 }
 
-/// What is conserved has on every reference state the value it has at the start, to the 28 digits that are kept.
+/// A conserved quantity has at every reference state its value at the start, to 28 digits.
 template <class Problem, class Conserved>
 void expect_conserved(const Conserved& conserved, double within) {
   const Quad start = conserved(Problem::start());

@@ -65,9 +65,9 @@ TEST(BodiesPanel, ShowsBodiesAsLargeAsTheyAreAndTheirWays) {
   ASSERT_EQ(discs.discs.size(), 4u);
   EXPECT_EQ(discs.discs[0].radius, 0.5);
   EXPECT_EQ(discs.discs[1].radius, 0.25);
-  EXPECT_EQ(discs.discs[1].color, discs.discs[2].color);  // what is fixed is grey, whoever it is
+  EXPECT_EQ(discs.discs[1].color, discs.discs[2].color);  // all fixed bodies are grey
   EXPECT_NE(discs.discs[0].color, discs.discs[3].color);
-  EXPECT_THAT(panel.curves[0].x, ElementsAre(1, 2));  // the way of the ball
+  EXPECT_THAT(panel.curves[0].x, ElementsAre(1, 2));  // the path of the ball
   // The floor y = 3/2, from the least to the greatest x with a fiftieth of that on both sides; the other is far away.
   const Curve& floor = panel.curves[3];
   EXPECT_THAT(floor.y, ElementsAre(1.5, 1.5));
@@ -78,7 +78,8 @@ TEST(BodiesPanel, ShowsBodiesAsLargeAsTheyAreAndTheirWays) {
   EXPECT_EQ(panel.curves[5].label, "other");
 }
 
-// Along (-1, -1, -1) a large body hides a small one behind it, and not the one beside. Two far ones make the picture.
+// Seen along (-1, -1, -1) a large body hides a small one behind it, but not the one beside it. Two distant bodies
+// determine the extent of the picture.
 TEST(BodiesPanel, InSpaceLeavesOutWhatIsHidden) {
   const model::Model model = model_of(
       "world { dimension 3\nbody hidden at (-5, -5, -5) radius 0.5\nbody beside at (-5, -5, 0) radius 0.5\n"

@@ -199,8 +199,7 @@ TEST(Plots, AnAreaThatGoesOnForeverLeavesTheAxesToTheOthers) {
   EXPECT_THAT(script, Not(HasSubstr("\n9 ")));  // it is cut to them
 }
 
-// gnuplot warns of an axis without extent, and ends where a panel has no point. What it has to say goes to standard
-// error.
+// gnuplot warns on standard error of an axis without extent, and fails where a panel has no point.
 TEST(Plots, WhatHasNoExtentIsDrawnWithoutAWord) {
   constexpr double huge = 1.7e308, tiny = 4e-324;
   const std::vector<std::vector<double>> values = {{3, 3},        {0, 0},       {-5, -5},    {1, 1 + 4e-16},

@@ -17,7 +17,7 @@
 namespace continuo::model {
 namespace {
 
-constexpr double most_tolerances = 30;  // what this suite allows everywhere
+constexpr double most_tolerances = 30;  // allowed everywhere in this suite
 
 /// The greatest error of a state at the end, in units of the tolerance.
 void expect_right(const bench::ChoiceProblem& problem, double tolerance, const std::string& method) {
@@ -49,18 +49,18 @@ void expect_right_of_kind(std::string_view kind) {
   EXPECT_GT(tried, 2U);
 }
 
-// A solution at rest on its states may have an unknown that moves: steps go by it.
+// Even if all states are at rest, an unknown may change: the step size must follow it.
 TEST(DefaultChoice, KeepsItsToleranceWithUnknowns) {
   expect_right_of_kind("dae");
 }
 
-// Errors of an oscillation add up, and one that is not there must not be set off.
+// Errors in an oscillation add up, and a fast oscillation must not be excited where the solution has none.
 TEST(DefaultChoice, KeepsItsToleranceOnFastOscillations) {
   expect_right_of_kind("oscillator");
 }
 
-// The probe of an oscillation moves x by more than a strict tolerance, or rounding is all it sees: in all components by
-// the same number of tolerances, at every phase, or the oscillation is not known for one.
+// The probe for oscillations perturbs x by more than a strict tolerance, or it would measure only rounding: all
+// components by the same number of tolerances, at every phase, or the oscillation is not recognized.
 TEST(DefaultChoice, KeepsAStrictToleranceOverAHundredThousand) {
   const bench::ChoiceProblem problem{"harmonic oscillator",
                                      "oscillator",
@@ -74,8 +74,8 @@ TEST(DefaultChoice, JumpsOverNoPulseOfTheInput) {
   expect_right_of_kind("pulse");
 }
 
-// What an iteration leaves of an algebraic equation no later step makes smaller: it must be solved closely enough, with
-// a matrix of here.
+// No later step reduces the residual of an algebraic equation: it must be solved accurately enough, with a matrix
+// evaluated nearby.
 TEST(IndexOne, IsSolvedByEveryMethodThatClaimsIt) {
   std::size_t methods = 0;
   for (const MethodInfo& method : method_catalogue()) {
@@ -83,7 +83,8 @@ TEST(IndexOne, IsSolvedByEveryMethodThatClaimsIt) {
       continue;  // of order 1: a million steps
     ++methods;
     for (const auto& problem : bench::choice_problems()) {
-      // The errors of some methods drift off what the pendulum's equations were differentiated from.
+      // With some methods the solution drifts off the constraints from which the pendulum's equations were
+      // differentiated.
       if (problem.kind != "dae" || problem.name == "pendulum, index 1") continue;
       // A tolerance above the second concentration lets it become negative, and Robertson's reaction explode.
       const bool explosive = problem.name == "Robertson, mass conserved";

@@ -21,8 +21,8 @@ Simulated run(const std::string& text, const Experiment& experiment) {
   return loaded ? simulate(*loaded.model, experiment) : Simulated{};
 }
 
-// x' = r (x - cos(w t)) - w sin(w t) has the solution cos(w t), and multiplies what is off by exp(r t). The second run
-// has less than half of the error of the first: what is said and what is true differ by less than a factor of two.
+// x' = r (x - cos(w t)) - w sin(w t) has the solution cos(w t), and amplifies errors by exp(r t). The second run has
+// less than half of the error of the first, so the reported error is right within a factor of two.
 TEST(Doubt, IsSaidWhereErrorsHaveGrownBeyondThirtyTolerances) {
   std::mt19937 random(1);
   int silent = 0, said = 0;

@@ -26,7 +26,7 @@ TEST_P(Faults, AreMended) {
   ASSERT_TRUE(simulated.run) << render(simulated.diagnostics, loaded.source);
   const auto& run = *simulated.run;
   if (run.outcome.ending == Ending::events_accumulate && text.find("May end in E310") != std::string::npos) {
-    // The check of such a model is a lower bound for all times, which holds up to the end that the run has come to.
+    // The check of such a model is a lower bound for all times, and so holds up to the end of the run.
     for (const CheckResult& check : run.checks) EXPECT_GT(check.value, check.expected) << check.text;
     return;
   }

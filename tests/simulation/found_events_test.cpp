@@ -55,7 +55,7 @@ when (t > 1.057 and t < 1.058) or (t > 1.054 and t < 1.055) { mark "e" }
 run 0..1.2
 )";
 
-// One part of the condition stays at zero for good, on the side where it does not hold, while the other leaves.
+// One part of the condition remains at zero for ever, on the side where it is false, while the other leaves zero.
 const char* const lasting_zero = R"(
 n' = 0
 x'' = -46.131264*(x + 1.771)
@@ -64,7 +64,7 @@ when n > 2 or exp(-((x + 3.955)/0.097)^2) < 0.5 { x' := -1.191; mark "e" }
 run 0..0.06
 )";
 
-// The guard falls, which nobody watches, and is carried back by an event of another.
+// The guard falls, which is not a watched direction, and the action of another event takes it back.
 const char* const carried_back = R"(
 x'' = 9.777
 x(0) = -1.912;  x'(0) = 1.616
@@ -73,7 +73,7 @@ when x > 6.812 { x := -0.337*x; mark "e1" }
 run 0..1.2
 )";
 
-// The event of another mode has the guard of the one that leaves it.
+// An event of the new mode has the same guard as the one that leaves the old mode.
 const char* const other_mode = R"(
 x'' = -0.165649*(x - 0.155)
 mode m0 { y' = 1 }
@@ -84,7 +84,7 @@ when sin(1.872*x') falls through -0.266 in m0 { mark "e1" }
 run 0..2.1
 )";
 
-// A window of a thousandth, while the equations slide: differences of the guard over a longer way pass it.
+// A window of a thousandth while the equations slide: difference quotients over a longer distance miss it.
 const char* const window_while_sliding = R"(
 n' = 0
 x'' = -4.997
@@ -114,7 +114,7 @@ when not (mod(t, 1.338) > 0.642 and not (y' <= -0.914) and n == 2) { x := -1.489
 run 0..1.4
 )";
 
-// A step to an event leaves the state off by the tolerance, on the wrong side of the surface that it slides along.
+// After a step to an event the state is off by the tolerance, on the wrong side of the surface along which it slides.
 const char* const event_while_sliding = R"(
 x'' = -4.259
 y' = -1.06*sin(6.808*t) - 1.727*sign(y)
@@ -141,9 +141,9 @@ when exp(-((x + 0.501)/0.01)^2) <= 0.5 or n > 3 { y := -0.956*y - 0.71*x; mark "
 run 0..0.01
 )";
 
-// The counter stands at its threshold: of the two parts that is the greater while the other does not hold, and the
-// guard is zero there. It came back from the event's band to that zero, by a jump, and was taken for one that had not
-// left.
+// The counter is at its threshold: it is the greater of the two parts while the other condition is false, and the guard
+// is zero there. The guard jumped back from the event's tolerance band to that zero, and was taken for one that had not
+// left the band.
 const char* const counter_at_its_threshold = R"(
 n' = 0
 x'' = -5.943*5.943*(x - 1.384)
@@ -152,7 +152,7 @@ when mod(x', 1.146) <= 0.69 or n > 1 { mark "e" }
 run 0.455..0.6
 )";
 
-// The same in time alone: one step holds a window that a jump closes and another that a jump opens.
+// The same in time alone: one step contains a window that a jump closes and another that a jump opens.
 const char* const counter_and_windows = R"(
 let w = if mod(t, 0.488) < 0.111 then 1 else 0
 n' = 0
@@ -161,8 +161,8 @@ when not (w >= 0.5 or n > 2 or mod(t, 1.035) < 0.546) { n := n + 1; mark "e" }
 run 0..2.1
 )";
 
-// Two events at one instant, of which one only passes: where the rest of its condition is a zero for good, no
-// derivative says that it does.
+// Two events at one instant, one of which only passes through: where the rest of its condition is identically zero, no
+// derivative shows it.
 const char* const counter_at_another_event = R"(
 n' = 0
 x' = 1
@@ -172,7 +172,7 @@ when n > 2 or mod(x, 1.035) < 0.546 { n := 2 }
 run 0..5
 )";
 
-// The event sets off a slide at its own instant, by which its guard, a rounding short of zero, seemed to turn back.
+// The event starts a slide at its own instant; its guard, short of zero by rounding, then seemed to turn back.
 const char* const slide_at_an_event = R"(
 n' = 0
 x' = 1.674*cos(4.447*t) - 0.625
@@ -182,7 +182,7 @@ when not (x >= -0.893) { y := 0.363*y; n := n + 1; mark "e" }
 run 0..5
 )";
 
-// The state is solved for anew after the event, and rounding takes the unknown back over its jump.
+// The unknowns are solved for again after the event, and rounding takes the unknown back over its jump.
 const char* const jump_of_an_unknown = R"(
 unknown u = 0
 x' = -1.612
@@ -193,7 +193,7 @@ when floor(u/0.805) falls through 0.5 { x := -0.86*x; mark "e" }
 run 0..0.3
 )";
 
-// The unknown passes zero, where its tolerance is far less than what the states that it hangs on are solved to: the
+// The unknown passes zero, where its tolerance is far smaller than the accuracy of the states on which it depends: the
 // steps of bdf shrank to nothing there.
 const char* const unknown_near_zero = R"(
 unknown u = 0

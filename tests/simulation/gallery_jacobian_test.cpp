@@ -44,7 +44,8 @@ std::vector<GalleryModel> all_models() {
   return all;
 }
 
-/// Bodies have no equations. By a look at the lines, as each test of this program comes by here before it starts.
+/// Models with bodies have no equations. They are recognized by their text alone, since every test of this program
+/// calls this before it starts.
 bool seems_to_have_world(const GalleryModel& model) {
   std::ifstream file(model.path);
   for (std::string line; std::getline(file, line);)
@@ -86,7 +87,7 @@ std::vector<double> by_duals(const Tape& tape, const Layout& layout, std::vector
   return rows;
 }
 
-/// A model that says its pattern and nothing more.
+/// A model with its sparsity pattern but no derivatives.
 struct OnlyPattern {
   ModelSystem& system;
   void operator()(double t, const X& x, X& dxdt) { system(t, x, dxdt); }
@@ -158,7 +159,7 @@ class GalleryJacobian : public testing::TestWithParam<GalleryModel> {
     return rows;
   }
 
-  /// The greatest that entry (i, j) can be for row i to be what it is along the run.
+  /// The greatest value of entry (i, j) that is compatible with row i along the run: the scale for its error.
   double part_of_row(const std::vector<double>& rows, std::size_t i, std::size_t j) const {
     double greatest = rates_[i];
     for (std::size_t k = 0; k < size_; ++k) greatest = std::max(greatest, std::abs(rows[i * size_ + k]) * sizes_[k]);
@@ -183,7 +184,7 @@ class GalleryJacobian : public testing::TestWithParam<GalleryModel> {
   X sizes_, rates_;  // the largest of each state and of its derivative
 };
 
-// Both are exact but for rounding, of some hundred operations each.
+// Both Jacobians are exact but for the rounding of some hundred operations.
 TEST_P(GalleryJacobian, OfTheGraphIsThatOfDuals) {
   at_moments([&](ModelSystem& system, double t, const X& x) {
     std::vector<double> variables = run_.plan.variables;
@@ -200,8 +201,8 @@ TEST_P(GalleryJacobian, OfTheGraphIsThatOfDuals) {
   });
 }
 
-// The difference over [x, x + d] is the mean of the derivative there, so it is off by no more than the derivative
-// changes over it, and by what rounding of f makes, some roundings of its terms over d.
+// The difference quotient over [x, x + d] is the mean of the derivative there. Its error is at most the change of the
+// derivative over it, plus the rounding of f: some roundings of its terms over d.
 TEST_P(GalleryJacobian, OfTheGraphIsThatOfColouredDifferences) {
   ModelSystem first(program_, run_.plan.variables);
   const SparsePattern pattern = first.jacobian_pattern();

@@ -117,7 +117,7 @@ run 0..1
   EXPECT_EQ(carried(first_motion(text, 0, {0.3, 0.7, 0.09, 0.4200001}, -1)), -1);
 }
 
-// On a circle by its own forces: g = x^2 + y^2 - 1 stays zero, and all there is of it is rounding.
+// A motion on a circle: g = x^2 + y^2 - 1 remains zero, so all its coefficients are rounding.
 TEST(MotionSeries, CallsRoundingRounding) {
   constexpr const char* text = R"(model Circle
 x' = -w*y
@@ -160,13 +160,13 @@ run 0..1
   const double z = 2 * std::sqrt(x);  // 2 e^(-t/2)
   expect_near(first_motion(root, 0, {x, z}), {z - 1, -z / 2, z / 8, -z / 48});
   expect_near(first_motion(root, 0, {x, z}, -1), {z - 1, z / 2, z / 8, z / 48});
-  // An unknown whose equation does not hold is no better known than that.
+  // An unknown is only as accurate as its equation is satisfied.
   EXPECT_GT(first_motion(root, 0, {x, z + 1e-6}).rounding[0], 1e-6);
-  // At z = 0 the equation does not say where z goes.
+  // At z = 0 the equation does not determine the derivative of z.
   expect_unknown_from(first_motion(root, 0, {0, 0}), 1);
 }
 
-// Two unknowns that hang on each other, and states that hang on them: y + z = x, y - z = sin(x), x' = y - 2 z.
+// Two coupled unknowns, and states that depend on them: y + z = x, y - z = sin(x), x' = y - 2 z.
 TEST(MotionSeries, SolvesForUnknownsThatDriveTheStates) {
   constexpr const char* text = R"(model Coupled
 x' = y - 2*z
@@ -207,7 +207,7 @@ run 0..3
   EXPECT_EQ(at(2, 1), (std::array<double, 4>{0, -4, 0, 0}));
   EXPECT_EQ(at(2, -1), (std::array<double, 4>{0, 4, -3, 0}));
   EXPECT_EQ(at(0, -1), (std::array<double, 4>{0, 0, 0, 0}));
-  // Within the rounding of t beside the corner either piece may be the one.
+  // Within the rounding of t at the corner the function may return either piece.
   const GuardMotion beside = motions(*program, std::nextafter(1.0, 0.0), {1})[0];
   EXPECT_EQ(carried(beside), 1);
   EXPECT_TRUE(std::isinf(beside.rounding[2]));
@@ -228,11 +228,11 @@ TEST(MotionSeries, LeavesAKinkOnTheSideThatComes) {
   EXPECT_EQ(first_motion(guard("mod(x, 1) - 0.5"), 0, {3, 2}).c[0], -0.5);
   EXPECT_EQ(first_motion(guard("(if x > 1 then 5*x else x) - 1"), 0, {1, 1}).c[1], 5);
   EXPECT_EQ(first_motion(guard("(if x > 1 then 5*x else x) - 1"), 0, {1, -1}).c[1], -1);
-  // Beside the kink, within the rounding of x: nobody knows.
+  // Within the rounding of x at the kink the direction is undecided.
   EXPECT_EQ(carried(first_motion(guard("abs(x - 1)"), 0, {std::nextafter(1.0, 2.0), 1})), 0);
-  // But where both sides rise, it rises.
+  // But where the function rises on both sides of the kink, it rises.
   EXPECT_EQ(carried(first_motion(guard("max(x - 1, 3*(x - 1))"), 0, {std::nextafter(1.0, 2.0), 1})), 1);
-  // Steeper than any line.
+  // The slope of -sqrt(x) at 0 is infinite.
   EXPECT_EQ(carried(first_motion(guard("-sqrt(x)"), 0, {0, 1})), -1);
 }
 

@@ -53,7 +53,7 @@ TEST(Simulate, ImpactsOfABouncingBallAreExactToTwelveDigits) {
   EXPECT_NEAR(run.events[1].t, first * (1 + 2 * 0.7), 1e-12);
   EXPECT_NEAR(run.events[2].t, first * (1 + 2 * 0.7 + 2 * 0.49), 1e-12);
   for (std::size_t i = 0; i < run.motion.rows(); ++i) EXPECT_GE(run.motion.state(i)[0], -1e-12);
-  // Both sides of an impact stand in the rows.
+  // The event contains the state before and after an impact.
   EXPECT_LT(run.events[0].before[1], 0);
   EXPECT_NEAR(run.events[0].after[1], 0.7 * 9.81 * first, 1e-11);
 }
@@ -134,13 +134,13 @@ every 0.5 from 1 { n := n + 1 }
 run 0..4
 )");
   EXPECT_THAT(times(run), testing::ElementsAre(0, 1, 1.5, 2, 2.5, 3, 3, 3.5, 4));
-  // At 3 the two actions read n = 14, a = 1; the tick counts on from what they have left, 1.
+  // At 3 the two actions read n = 14, a = 1; then the periodic event continues to count from 1.
   EXPECT_EQ(run.final_state()[0], 4);
   EXPECT_EQ(run.final_state()[1], 14);
 }
 
 TEST(Simulate, EventsOfOneInstantActInTheOrderOfTheText) {
-  // Both guards pass zero at t = 1, where y is 2; the second event copies what the first has left.
+  // Both guards pass zero at t = 1, where y is 2; the second event copies the value assigned by the first.
   const auto run = run_of(R"(
 x' = 1
 y' = 2
@@ -246,7 +246,7 @@ TEST(Simulate, RowsStandAtTheTimesAskedFor) {
   const auto logarithmic = run_of(text + "run 0..1 output log 1 per decade from 0.01\n");
   ASSERT_EQ(logarithmic.motion.rows(), 4u);  // 0, 0.01, 0.1, 1
   EXPECT_NEAR(logarithmic.motion.time(2), 0.1, 1e-15);
-  EXPECT_GT(OutputTimes(logarithmic.plan)[1'000'000], 1);  // beyond what numbers can tell, and so no row
+  EXPECT_GT(OutputTimes(logarithmic.plan)[1'000'000], 1);  // beyond the end of the run, and so no row
   EXPECT_GT(run_of(text + "run 0..1\n").motion.rows(), 4u);
 }
 
@@ -330,8 +330,8 @@ TEST(Simulate, SettingsAreReadAsTheLanguageReadsThem) {
   EXPECT_FALSE(parse_setting(model, "k=", problems));
 }
 
-// What counts the members of a family is a number, so a length divided by it is a length, and becomes kilometres where
-// those are asked for: 2 m / 5 in a second.
+// The number of members of a family is dimensionless, so a length divided by it is a length, and is converted to
+// kilometres: 2 m / 5 in a second.
 TEST(Simulate, ALengthDividedByACountIsALength) {
   const Simulated simulated = simulate(
       model_of("param N = 4, L = 2 [m]\nlet dx = L/(N + 1)\nfor i in 1..N { u[i]' = dx/(1 [s])\nu[i](0) = 0 [km] }\n"
@@ -365,7 +365,7 @@ TEST(Simulate, AlgebraicEquationsAreSolved) {
   ASSERT_TRUE(simulated.passed());
   const Motion& motion = simulated.run->motion;
   EXPECT_EQ(motion.columns[5].name, "T");
-  EXPECT_NEAR(motion.state(0)[4], 0, 1e-10);  // the guess of 5 gave way to what the equation says
+  EXPECT_NEAR(motion.state(0)[4], 0, 1e-10);  // from the equation, not from the guess of 5
   for (std::size_t row = 0; row < motion.rows(); ++row) {
     const auto x = motion.state(row);
     EXPECT_NEAR(x[4], -3 * 9.81 * x[2], 1e-4);  // the circle is only kept by its second derivative: it drifts

@@ -135,7 +135,7 @@ TEST(UnknownGuards, NothingIsProvedWhereTheEquationsAreSingular) {
       [&](double a, double b, int, bool) { return found.push_back((a + b) / 2), b - a > 0.1; },
       [&](double a, double b) { return undecided.emplace_back(a, b), false; });
   EXPECT_FALSE(end.proved);
-  ASSERT_EQ(undecided.size(), 2u);  // beside x = 0, where the halving of the step ends
+  ASSERT_EQ(undecided.size(), 2u);  // next to x = 0, where the bisection of the step ends
   EXPECT_NEAR(undecided[0].first, 0.5, 0.1);
   EXPECT_NEAR(undecided[1].second, 0.5, 0.1);
   EXPECT_EQ(end.side, 1);
@@ -160,7 +160,7 @@ std::string number(double value) {
 
 const char* const methods[] = {"", "rodas5p", "radau", "bdf"};
 
-/// Once, at instant(width), u comes into a window from `low` on, by every method.
+/// u enters a window that begins at `low` once, at instant(width); every method must find it.
 template <class Instant>
 void expect_windows_found(const std::string& equations, double low, Instant&& instant, double error) {
   for (const double width : {1e-3, 1e-5, 1e-7}) {

@@ -48,8 +48,8 @@ TEST(BouncingBall, ImpactsMatchTheClosedForm) {
   EXPECT_GE(lowest(solution), -1e-12);
 }
 
-// An observer that looks only after a step sees the step, also where its end was an impact, or a kick at a set time
-// that no guard has looked at.
+// An observer that reads the dense output after a step gets that of the step, also where it ended with an impact, or
+// with a scheduled kick without a guard.
 TEST(BouncingBall, TheDenseOutputOfAStepOutlivesTheEventAtItsEnd) {
   for (const bool kicked : {false, true}) {
     Options<X> options{.rtol = 1e-10, .atol = 1e-12};

@@ -25,7 +25,7 @@ struct Cubic {
 TEST(Consistency, UnknownsAreFoundFromAPoorGuess) {
   for (const double guess : {0.0, 1.0, 50.0, -50.0}) {
     Integrator integrator(Cubic{}, X{5, guess}, {0.0, 1.0}, Bdf{}, {.rtol = 1e-10, .atol = 1e-10});
-    // A hundredth of the tolerance is what is asked of Newton's last correction, which converges quadratically.
+    // Newton's last correction must be below a hundredth of the tolerance, and convergence is quadratic.
     EXPECT_NEAR(integrator.x()[1], 2, 1e-11) << guess;
     EXPECT_EQ(integrator.x()[0], 5);
   }
@@ -57,8 +57,8 @@ TEST(Consistency, IsKeptAlongTheRunAndAfterAnEvent) {
   EXPECT_TRUE(refilled);
 }
 
-// 0 = p - z - Is (exp(z / 0.05) - 1): a source p = x and a diode. Where p jumps from -3 to 10, z comes from -3 to 0.8,
-// and what a correction is measured by, 1 + |z|, becomes less on the way.
+// 0 = p - z - Is (exp(z / 0.05) - 1): a source p = x and a diode. Where p jumps from -3 to 10, z goes from -3 to 0.8,
+// and the scale of a correction, 1 + |z|, decreases on the way.
 TEST(Consistency, ADiodeIsSwitchedOnFromFarBelow) {
   struct Diode : Cubic {
     static double current(double z) { return 1e-6 * (std::exp(z / 0.05) - 1); }

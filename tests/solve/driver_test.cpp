@@ -85,7 +85,7 @@ TEST(Driver, ACallbackSeesWhatWouldBeSaved) {
   EXPECT_TRUE(solution.t.empty());
 }
 
-// OrdinaryDiffEq.jl#1972: a copy taken in the middle goes on bit for bit.
+// OrdinaryDiffEq.jl#1972: a copy taken during a run continues to the same bits.
 TEST(Driver, ACopyOfAnIntegratorIsACheckpoint) {
   Integrator integrator(Oscillator{}, X{1, 0}, {0, 10}, Dop853{}, {.rtol = 1e-9});
   for (int i = 0; i < 5; ++i) integrator.advance();

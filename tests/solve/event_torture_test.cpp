@@ -228,7 +228,7 @@ TEST(Events, AnEventOnARejectedStepDoesNotFire) {
   EXPECT_TRUE(solution.events.empty());
 }
 
-// A particle that slows at a boundary but goes on through it fires once; one that is turned back fires each time.
+// A particle that crosses a boundary while it slows down fires once; one that is reflected fires each time.
 TEST(Events, PassingThroughIsNotTurningBack) {
   const Slope<X2> f = [](double, const X2& x) { return X2{x[1], 0}; };
   const auto border = rises<X2>(
@@ -303,7 +303,7 @@ TEST(Events, ABallWithoutRestitutionDoesNotPassATable) {
   }
 }
 
-// What the event says for the limit happens there, and the run goes on.
+// The action of the event for its limit is performed there, and the run continues.
 TEST(Events, AccumulationGoesOnWhereTheEventSaysHow) {
   bool rests = false;
   const Slope<X2> f = [&rests](double, const X2& x) { return rests ? X2{0, 0} : X2{x[1], -10}; };
@@ -316,10 +316,10 @@ TEST(Events, AccumulationGoesOnWhereTheEventSaysHow) {
   const auto solution = solve(f, X2{5, 0}, {0, 10}, Dop853{}, {.rtol = 1e-10, .events = {floor}});
   EXPECT_EQ(solution.outcome.ending, Ending::reached_end);
   EXPECT_EQ(solution.final_state(), (X2{0, 0}));
-  EXPECT_NEAR(solution.events.back().t, 3, 1e-7);  // 1 + 2 (1/2 + 1/4 + ...), less what is left at the limit
+  EXPECT_NEAR(solution.events.back().t, 3, 1e-7);  // 1 + 2 (1/2 + 1/4 + ...), less the rest at the limit
 }
 
-// A hundred flights of one step each are no motion that stays at zero.
+// A hundred flights of one step each are not a state that remains at zero.
 TEST(Events, AHundredBouncesOfOneStepEachAreAllSeen) {
   const Slope<X2> f = [](double, const X2& x) { return X2{x[1], -10}; };
   const auto floor = falls<X2>(

@@ -114,7 +114,7 @@ TEST(Outcome, NoiseEndsInsteadOfLoopingForEver) {
   EXPECT_FALSE(solution.outcome);
 }
 
-// DifferentialEquations.jl#924: a crumb before the end is not an underflow.
+// DifferentialEquations.jl#924: a tiny last step before the end is not an underflow.
 TEST(Outcome, AnIntervalOfNoLengthAndACrumbAreFine) {
   const Slope f = [](double, const X& x) { return x; };
   EXPECT_EQ(solve(f, X{1}, {1, 1}, Tsitouras5{}).outcome.ending, Ending::reached_end);

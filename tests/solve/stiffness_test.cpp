@@ -67,7 +67,7 @@ TEST(Stiffness, AnEndlessRunIsNotGoneOnWith) {
   EXPECT_NE(solution.outcome.hint.find("1e1"), std::string::npos) << solution.outcome.hint;
 }
 
-// An event that only takes note cannot change that, one that acts could.
+// An event without effect on the state cannot end the stiffness; one with an effect could.
 TEST(Stiffness, AnEndlessRunGoesOnWhereAnEventCouldChangeIt) {
   using X = std::array<double, 3>;
   const auto steps = [](Action<X> action) {

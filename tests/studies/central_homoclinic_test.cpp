@@ -22,7 +22,8 @@ namespace {
 constexpr double pi = std::numbers::pi, round = 2 * pi;
 constexpr double radius = 3, usual_friction = 1.2;  // where the constants m are zero, beside I = 1
 
-/// By how much the motion that leaves the rest is faster, half-way round, than the one that comes back to it.
+/// The difference in velocity, half-way round, between the motion that leaves the equilibrium and the one that returns
+/// to it.
 double mismatch(double drive, double friction) {
   const double k = std::sqrt(std::max(0.0, 1 - drive * drive)), at = std::numbers::pi - std::asin(drive);
   const auto integrated = [&](double s, double y) {  // to s = pi, by the classical method
@@ -59,7 +60,7 @@ double least_friction() {
   return (low + high) / 2;
 }
 
-/// phi and phi' laid round a circle, r = 3 + phi', and z that goes away or comes at a rate of its own.
+/// phi and phi' wrapped round a circle, r = 3 + phi', and z that grows or decays at a rate of its own.
 template <class Y, class T>
 Y flow_of(const Y& v, const T& drive, const T& friction, double rate, double direction) {
   using std::sqrt;

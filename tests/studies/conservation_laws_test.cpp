@@ -37,7 +37,7 @@ struct Network {
       rates.push_back(rate(random));
     }
   }
-  /// Reactions that take the same molecules are one in f: what they do together is all that is seen of them.
+  /// Reactions that consume the same molecules are one term of f: only their total change is visible.
   Eigen::MatrixXd seen() const {
     Eigen::MatrixXd columns(change.rows(), change.cols());
     int count = 0;
@@ -97,8 +97,8 @@ TEST(ConservationLaws, AreThoseOfRandomNetworks) {
   EXPECT_GE(with_laws, 50);
 }
 
-// Reactions of first order, forth and back, on graphs of several parts: in each part the total stays, and the rest is
-// the one solution of K x = 0 with that total. Stable, and alone.
+// Reversible reactions of first order, on graphs of several parts: in each part the total is conserved, and the
+// equilibrium is the unique solution of K x = 0 with that total. It is stable and the only one.
 TEST(ConservationLaws, HeldGiveTheRestThatTheMotionComesTo) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> rate(0.2, 5);
@@ -145,7 +145,7 @@ TEST(ConservationLaws, HeldGiveTheRestThatTheMotionComesTo) {
   }
 }
 
-/// x + z = u stays; x, y come to the circle of radius r, r^2 = p, and go round it with the period 2 pi / (1 + u).
+/// x + z = u is conserved; x, y tend to the circle of radius r, r^2 = p, with the period 2 pi / (1 + u).
 struct Circles {
   ParametricSystem held;
   PeriodicOrbit orbit;
@@ -190,7 +190,7 @@ TEST(ConservationLaws, HeldLeaveOneBranchOfOrbits) {  // on each the multiplier 
   }
 }
 
-// The total is the constant that moves: a + b = p, a' = b - 2 a, at rest at a = p / 3.
+// The continuation parameter is the total: a + b = p, a' = b - 2 a, at equilibrium a = p / 3.
 TEST(ConservationLaws, MoveWithTheStart) {
   const auto free = parametric_system(2,
                                       [](double, Values x, Values, std::span<double> out) {

@@ -62,8 +62,8 @@ TEST(Continuation, AFoldIsRounded) {  // 0 = p - x^2: both branches, the fold at
   EXPECT_GE(high, 1.9);
 }
 
-// Normal forms in other coordinates, x = c + S(A y) with A a matrix and S adding squares: places, kinds and
-// coefficients of what happens are those of the normal form.
+// Normal forms in other coordinates, x = c + S(A y) with A a matrix and S adding squares: the places, kinds and
+// coefficients of bifurcations are those of the normal form.
 template <class T>
 using Three = std::array<T, 3>;
 
@@ -157,7 +157,7 @@ TEST(NormalForms, FoldsHaveTheirCoefficient) {  // y1' = p - 0.3 + b y1^2: in un
     const auto folds = of_kind(branch, Bifurcation::fold);
     ASSERT_EQ(folds.size(), 1u) << seed;
     EXPECT_NEAR(folds[0].at.constant, 0.3, 1e-10);
-    // In x what f has of rounding, 1e-16, stands for its root.
+    // The error of x is the square root of the rounding of f, 1e-16.
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(folds[0].at.x[i], disguise.origin[i], 1e-6);
     ASSERT_TRUE(folds[0].coefficient);
     EXPECT_NEAR(std::abs(*folds[0].coefficient), b / disguise.length(0), 1e-5);
@@ -220,8 +220,8 @@ TEST(NormalForms, HopfPointsHaveTheirLyapunovCoefficient) {
   }
 }
 
-// A Hopf point at p0 beside a pair that stays on the axis whatever p is, as something conserved keeps one there: the
-// one is found, alone, also where the branch begins just there; without it nothing is.
+// A Hopf point at p0 besides a pair that is on the imaginary axis for all p, as with a conserved quantity: only the
+// Hopf point is found, also where the branch begins there; without it, nothing is found.
 TEST(Continuation, HopfPointsBesideAPairThatStaysOnTheAxis) {
   for (unsigned seed = 1; seed <= 120; ++seed) {
     const CoordinateChange<5> change(seed);

@@ -46,8 +46,8 @@ ConvergenceProblem logistic() {
   return problem;
 }
 
-// With fixed steps the methods of variable order keep one: Adams' starts with order 1, whose first steps leave order 3
-// (adams.hpp); Radau's stays at the order it begins with, BDF rises to 2.
+// With fixed steps the methods of variable order use a constant order: Adams has 3, since its first steps are of order
+// 1 (adams.hpp); Radau keeps its initial order, BDF rises to 2.
 TEST(Converge, OfMethodsOfVariableOrderTheOneThatFixedStepsKeepIsClaimed) {
   const std::map<std::string_view, int> kept{{"adams", 3}, {"radau", 5}, {"bdf", 2}};
   for (const MethodInfo& method : method_catalogue()) {
@@ -97,11 +97,11 @@ TEST(Converge, ConsistencyAloneIsNoConvergence) {  // of a method of order 1 and
   }
 }
 
-/// Whether a floor lies where the balance of the method's error with rounding puts it. Steps are sqrt(2) apart: two of
-/// them above. Below, steps four times shorter only double what rounds at random, which counts as no loss. The error is
-/// at most what is left where all roundings go one way, and at least a quarter of that at random: that the worst of
-/// eight stations, of which three or more have errors of their own, is below a quarter of its deviation happens with
-/// 0.2^3 = 1/125. A method that sums its steps with compensation rounds less than that.
+/// Whether the smallest error is where the error of the method and rounding balance. Steps are a factor of sqrt(2)
+/// apart: it may be two steps above. Below, steps four times shorter only double the random rounding errors, which
+/// counts as no loss. The error is at most that of roundings all in one direction, and at least a quarter of that of
+/// random ones: the probability that the worst of eight stations, of which three or more have independent errors, is
+/// below a quarter of its deviation is 0.2^3 = 1/125. A method with compensated sums has less rounding than predicted.
 void expect_predicted(const ErrorCurve& observed, const FloorPrediction& predicted, bool compensated) {
   EXPECT_LT(observed.least_error, predicted.at_worst.error);
   EXPECT_LT(observed.best_step, predicted.at_worst.step * 2);
@@ -141,7 +141,7 @@ TEST(Converge, DifferencesHaveTheirOrdersAndTheirFloor) {
   for (const DifferenceErrors& errors : study) {
     EXPECT_NEAR(errors.of_double.order, errors.scheme.order, 0.15) << errors.scheme.name;
     EXPECT_TRUE(errors.of_double.floor_reached) << errors.scheme.name;
-    // Steps are powers of 2, and rounding is what is predicted or, by chance, less: then smaller steps still gain.
+    // Steps are powers of 2, and rounding may by chance be less than predicted: then smaller steps are still better.
     EXPECT_GT(errors.of_double.best_step, errors.predicted.step / 8) << errors.scheme.name;
     EXPECT_LT(errors.of_double.best_step, errors.predicted.step * 4) << errors.scheme.name;
     EXPECT_LT(errors.of_double.least_error, 2 * errors.predicted.error) << errors.scheme.name;

@@ -70,7 +70,7 @@ class CoordinateChange {
     for (std::size_t i = 0; i < N; ++i) out[i] = dz[i] + (i > 0 ? 2 * shear_[i] * z[i - 1] * dz[i - 1] : T(0));
     return out;
   }
-  /// Of the image of the k-th axis of y at the origin.
+  /// The length of the image of the k-th axis of y at the origin.
   double length(std::size_t k) const {
     double sum = 0;
     for (std::size_t i = 0; i < N; ++i) sum += a_[i][k] * a_[i][k];

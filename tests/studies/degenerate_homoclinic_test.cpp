@@ -67,7 +67,8 @@ struct Space {
   }
 };
 
-/// The orbit at rest nearly, once round. With y = x sigma, x = 1 - sigma^2: sigma' = -(1 - sigma^2) (a sigma + b) / 2.
+/// One turn of the orbit, which is nearly at rest at its ends. With y = x sigma, x = 1 - sigma^2: sigma' = -(1 -
+/// sigma^2) (a sigma + b) / 2.
 OrbitMark start_of(const Space& space, const Flow& flow, double first_constant, double duration) {
   constexpr std::size_t intervals = 60, degree = detail::OrbitCollocation::degree;
   OrbitMark mark{.kind = OrbitBifurcation::homoclinic, .at = {}};
@@ -153,7 +154,7 @@ TEST(DegenerateHomoclinic, InclinationFlips) {
     return Flow{.a = 0.25 * k, .b = k, .c = -2 * k, .alpha = 1.1 + m[0], .beta = 1, .mu = 0, .nu = m[1]};
   };
   const auto curves = curves_from(space, flow, {-0.1, 0, 0}, 0.8, {-0.3, 0.3});
-  ASSERT_EQ(curves.size(), 2u);  // and at another one, of which nothing is printed
+  ASSERT_EQ(curves.size(), 2u);  // and at another one, with no published value
   std::size_t printed = 0;
   for (const auto& curve : curves) {
     EXPECT_EQ(curve.kind, OrbitDegeneracy::inclination_flip_stable);

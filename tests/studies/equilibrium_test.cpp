@@ -118,7 +118,7 @@ TEST(Equilibrium, WhatAlgebraicEquationsLeaveOpenIsNamed) {  // 0 = x - 1 - z^2 
   ParametricSystem system = parametric_system(3, f);
   system.algebraic = 2;
   system.names = {"x", "z", "w"};
-  // z stands first among the unknowns, its equation last.
+  // z is the first unknown, its equation the last.
   const auto rest = describe_equilibrium(system, {1, 0, 3}, {});
   EXPECT_EQ(rest.undetermined.unknowns, std::vector<std::size_t>{0});
   EXPECT_EQ(rest.undetermined.equations, std::vector<std::size_t>{1});
@@ -147,8 +147,8 @@ TEST(Modes, MassSpringDamper) {  // lambda = -c/2m +- i sqrt(k/m - (c/2m)^2)
   EXPECT_NEAR(modes[0].time_constant, 2 * m / c, 1e-6);
 }
 
-// x' = s x^n at 0, in random sizes: the linear part is zero, whatever rounding leaves of it; x' = s x is decided
-// however small s is.
+// x' = s x^n at 0, in random scales: the linear part is zero up to rounding, which must not decide the stability. That
+// of x' = s x is decided for any small s.
 TEST(Equilibrium, WhatRoundingLeavesOfTheLinearPartDecidesNothing) {
   for (const double s : {-1e3, -1.0, -1e-3, 1e-3, 1.0, 1e3}) {
     for (const int n : {2, 3, 4}) {

@@ -138,8 +138,8 @@ TEST(FitOfWorld, IntervalsOfGravityAndRestitutionHoldWhatTheyPromise) {
   }
 }
 
-/// Fits to the model's own places with other parameters, without noise: what comes out is limited by the search (1e-10)
-/// and by the tolerance of the world (1e-10 a step).
+/// Fits to positions computed by the model with other parameters, without noise: the result is limited by the search
+/// (1e-10) and by the tolerance of the world (1e-10 a step).
 TEST(FitOfWorld, FindsFrictionMassesAndSprings) {
   struct Case {
     const char* text;
@@ -199,8 +199,8 @@ TEST(FitOfWorld, RefusesWhatJumpsAtImpacts) {
   }
 }
 
-// Thirty discs after hundreds of collisions: what changes by 1e-6 moves them by metres. Even beginning at the truth no
-// interval is given.
+// Thirty discs after hundreds of collisions: a change of 1e-6 in a parameter moves them by metres. No interval is
+// given, even from the true values.
 TEST(FitOfWorld, RefusesIntervalsInChaos) {
   const auto program = program_of(
       "param e = 0.8\nworld { container box (0, 0) to (10, 10); material restitution e friction 0\n"

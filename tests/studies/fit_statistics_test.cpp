@@ -65,7 +65,7 @@ Straight straight(const std::vector<double>& t, const std::vector<double>& y, do
   return result;
 }
 
-// Linear problems are solved in one step: what is left is the rounding of sums.
+// Linear problems are solved in one step, up to the rounding of sums.
 TEST(FitStatistics, OfAStraightLineAreThoseOfTheTextbooks) {
   std::mt19937_64 random(1);
   for (const std::size_t rows : {3U, 5U, 20U, 100U}) {
@@ -121,8 +121,8 @@ TEST(FitStatistics, EveryColumnHasADeviationOfItsOwn) {
   EXPECT_NEAR(found.columns[0].degrees, 48, 0.1);
 }
 
-// A first row that was copied from the model has no noise; three values are left, of which one goes to the unknown.
-// Alone, the one value of the first column would be met exactly and have all the weight.
+// A first row copied from the model has no noise. Of the other three values one determines the unknown. With a
+// deviation of its own, the single value of the first column would be met exactly and have all the weight.
 TEST(FitStatistics, ShortColumnsShareADeviation) {
   const char* fading = "param a = 1\nx' = -a*x\nx(0) = 1\noutput y = 100*x\nrun 0..2\n";
   const Fit found =
@@ -340,8 +340,8 @@ TEST(FitStatistics, BandsMixTheRatiosOfTwoDeviationsAsIntervalsDo) {
   const std::vector<FitCurve> curves = curves_of(request, found, 4);
   for (std::size_t i = 0; i < 4; ++i) {
     const double half = curves[0].high[i] - curves[0].y[i];
-    // A tenth of a percent is what 48 places of a smooth density leave, and what Kenward and Roger add to a deviation
-    // that is not known cancels.
+    // The quadrature of a smooth density with 48 points has an error of a tenth of a percent; the increase of the
+    // deviation by Kenward and Roger's correction cancels.
     EXPECT_NEAR(probability_of_measurement(t, y, found.estimates[0].value, curves[0].t[i], curves[0].y[i], half), 0.95,
                 1.5e-3)
         << curves[0].t[i];

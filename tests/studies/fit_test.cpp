@@ -99,7 +99,7 @@ TEST(Fit, RobustLossesForgiveOutliers) {
     request.options.loss = loss;
     const Fit robust = fit(request);
     ASSERT_TRUE(robust.found());
-    // 0.05 sqrt(2/100) over the slope of x by k, about 0.3, is 0.02: four of it, with what outliers leave of pull.
+    // 0.05 sqrt(2/100) over dx/dk, about 0.3, is 0.02: four of it, plus the remaining influence of the outliers.
     EXPECT_NEAR(robust.least.p[0], 4, 0.1) << static_cast<int>(loss);
     EXPECT_LT(std::abs(robust.least.p[0] - 4), std::abs(plain.least.p[0] - 4) / 3);
   }

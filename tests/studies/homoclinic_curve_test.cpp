@@ -148,8 +148,8 @@ TEST(HomoclinicCurve, OrbitFlip) {
 }
 
 /// The plane of Sandstede's system with alpha = 0, whose orbit is known, drives two more components: the homoclinic
-/// orbit stays where nu = 0, and the eigenvalues are a + b, a - b and those of (c 1; q c), c +- root q. Time runs
-/// backwards where `reversed`: what was stable is unstable then.
+/// orbit exists at nu = 0, and the eigenvalues are a + b, a - b and those of (c 1; q c), c +- root q. `reversed`
+/// reverses time, which exchanges stable and unstable.
 struct Driven {
   double a = 0, c = 0, q = 0;
   bool reversed = false;
@@ -256,8 +256,8 @@ TEST(HomoclinicCurve, TripleLeadingEigenvalues) {
     }
 }
 
-/// phi'' = I - sin phi - friction phi', from the saddle over the top to the next one: (phi, phi') at even times, from
-/// the unstable manifold on the way there and from the stable one on the way back, and how far these are apart.
+/// phi'' = I - sin phi - friction phi', from one saddle over the top to the next: (phi, phi') at equidistant times, on
+/// the unstable manifold of the first (`there`) and on the stable one of the second (`back`), and their distance.
 struct Turn {
   std::vector<std::array<double, 2>> there{}, back{};
   double apart = 0;

@@ -172,8 +172,8 @@ TEST(HybridContinuation, OfABallOnAShakingTable) {
   }
 }
 
-// Each step of a wheel without a rim keeps the part cos(2 alpha) of its speed, whatever the slope is: w^2 before the
-// step is 4 sin(gamma) sin(alpha)/(1 - cos(2 alpha)^2). It is not forced: its period is solved for.
+// At each step of a rimless wheel the speed is multiplied by cos(2 alpha), at any slope: w^2 before the step is 4
+// sin(gamma) sin(alpha)/(1 - cos(2 alpha)^2). There is no forcing, so its period is an unknown.
 TEST(HybridContinuation, OfARimlessWheel) {
   const Followed followed = along(
       "param gamma = 0.1\nlet alpha = 0.3\na' = w\nw' = sin(a)\na(0) = -0.2; w(0) = 0.5\n"
@@ -191,8 +191,9 @@ TEST(HybridContinuation, OfARimlessWheel) {
   EXPECT_EQ(followed.branch.ends[1].ending, OrbitEnding::bound) << followed.branch.ends[1].reason;
 }
 
-// Duffing's oscillator in one of its two wells: bent to lower forces, with two folds, until its period doubles, again
-// and again. The distances of doublings come to fall by 4.669 (M. J. Feigenbaum, J. Stat. Phys. 19 (1978) 25-52).
+// Duffing's oscillator in one of its two wells: the branch bends towards lower forces, with two folds, and its period
+// doubles repeatedly. The distances between doublings decrease by a factor of 4.669 in the limit (M. J. Feigenbaum, J.
+// Stat. Phys. 19 (1978) 25-52).
 TEST(HybridContinuation, DuffingsPeriodDoublesAsFeigenbaumSays) {
   Followed followed = along("param F = 0.2\nx'' = -0.2*x' + x - x^3 + F*cos(t)\nx(0) = 1\nx'(0) = 0\nrun 0..300\n", 0.1,
                             0.4, {.settle = 300, .duration = 300});

@@ -75,7 +75,7 @@ struct Cycle {
   RealMatrix product;
 };
 
-/// Where the map comes to after a long way, if that repeats within `most` steps.
+/// The cycle that the map reaches after many iterations, if it repeats within `most` steps.
 std::optional<Cycle> cycle_of(const RandomMap& map, std::size_t most) {
   const Eigen::Index n = map.b[0].size();
   RealVector x = RealVector::Constant(n, 0.1L);
@@ -118,7 +118,7 @@ TEST(RandomPiecewiseLinearMaps, HaveTheMultipliersAndExponentsOfTheirCycles) {
     ++found_cycles;
     const auto multipliers = sorted_eigenvalues(expected->product);
     expect_same(found.multipliers, multipliers, 1e-6, text);
-    // The averages over 100 periods end within a cycle, so that at most what one cycle does is left.
+    // The averages over 100 periods end within a cycle, so that the error is at most the contribution of one cycle.
     const LyapunovExponents exponents = lyapunov_exponents(program, {}, {.duration = 100, .settle = 100});
     ASSERT_EQ(exponents.exponents.size(), multipliers.size());
     std::vector<double> logarithms;
@@ -158,8 +158,9 @@ TEST(RandomPiecewiseLinearFlows, HaveTheMultipliersOfTheirClosedForms) {
   EXPECT_EQ(refused, 0);
 }
 
-// Over whole periods each exponent is the logarithm of a multiplier's size by the period, but for what the directions
-// are not orthogonal: that is bounded by the condition number of the eigenvectors, whatever the number of periods.
+// Over whole periods each exponent is the logarithm of a multiplier's absolute value divided by the period, up to an
+// error since the directions are not orthogonal. It is bounded by the condition number of the eigenvectors, for any
+// number of periods.
 TEST(RandomPiecewiseLinearFlows, HaveTheExponentsOfTheirClosedForms) {
   std::mt19937_64 random(31);
   int cycles = 0;

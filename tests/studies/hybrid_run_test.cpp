@@ -34,7 +34,7 @@ TEST(HybridExponents, OfTheLogisticMapIsLnTwo) {
   EXPECT_NEAR(found[0], std::numbers::ln2, 4 * 1.8 / std::sqrt(2000.0));
 }
 
-// x' = a x, multiplied by c every T: a + ln|c| / T, whatever is chosen.
+// x' = a x, with x multiplied by c every T: the exponent is a + ln|c| / T.
 TEST(HybridExponents, OfLinearPiecesAndKicksAreThoseOfTheirLogarithms) {
   std::mt19937 random(7);
   for (int k = 0; k < 40; ++k) {
@@ -54,8 +54,8 @@ TEST(HybridExponents, OfLinearPiecesAndKicksAreThoseOfTheirLogarithms) {
   }
 }
 
-// At a wall that stands still neighbours dx become dx v+/v- and dv become dv dv+/dv- = -e dv: what a bounce makes of
-// areas of the plane is e |v+/v-|, and the mean of its logarithms is the sum of the exponents.
+// At a fixed wall perturbations dx become dx v+/v- and dv become dv dv+/dv- = -e dv: a bounce multiplies areas of the
+// plane by e |v+/v-|, and the mean of its logarithms is the sum of the exponents.
 TEST(HybridExponents, OfABounceSumToWhatItMakesOfAreas) {
   const std::string text =
       "param e = 0.8\nx' = v\nv' = -0.5\nx(0) = 0.2\nv(0) = 1\n"

@@ -17,7 +17,8 @@ TEST(Lyapunov, OfALinearSystemTheyAreTheRealParts) {  // eigenvalues -0.1 +- 2i 
   };
   const auto found = lyapunov_exponents(parametric_system(3, f), {1, 0, 1}, {.duration = 200, .settle = 10});
   ASSERT_TRUE(found.outcome) << describe(found.outcome);
-  // What is left of the start's direction after the settling is spread over the duration: exp(-29)/200 and less.
+  // The initial direction has decayed to exp(-29) after the settling; averaged over the duration, its error is at most
+  // 1/200 of that.
   EXPECT_NEAR(found.exponents[0], -0.1, 2e-2 / 20);
   EXPECT_NEAR(found.exponents[1], -0.1, 2e-2 / 20);
   EXPECT_NEAR(found.exponents[2], -3, 2e-2);

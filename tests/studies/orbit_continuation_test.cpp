@@ -175,11 +175,11 @@ TEST(OrbitContinuation, CanardsAreFollowed) {
     const OrbitPoint& point = branch.points[k];
     EXPECT_TRUE(point.stable);
     EXPECT_GE(point.multipliers[0].real(), 0);
-    EXPECT_GE(point.high[0], branch.points[k - 1].high[0] - 1e-3);  // each goes round the one before, until they jump
+    EXPECT_GE(point.high[0], branch.points[k - 1].high[0] - 1e-3);  // encloses the orbit before, until they jump
     EXPECT_LE(point.low[0], branch.points[k - 1].low[0] + 1e-3);
     least = std::min(least, point.multipliers[0].real());
   }
-  // The one that takes longest follows the repelling branch to its end.
+  // The orbit with the longest period follows the repelling branch to its end.
   const OrbitPoint& longest = *std::ranges::max_element(branch.points, {}, &OrbitPoint::period);
   EXPECT_NEAR(longest.constant, canard, 10 * std::pow(eps, 4));
   EXPECT_GT(longest.period, 1.3 * branch.points.back().period);
@@ -242,8 +242,8 @@ TEST(OrbitContinuation, MultipliersOfAllSizesKeepTheirDigits) {
   }
 }
 
-// C. Roessler's system with a = b = 0.2: the first doubling of its cascade stands near c = 2.83. Two tolerances agree,
-// and beyond it the orbit of twice the period is what motions come to.
+// C. Roessler's system with a = b = 0.2: the first period doubling of its cascade is near c = 2.83. Two tolerances
+// agree, and beyond it motions tend to the orbit of twice the period.
 TEST(OrbitContinuation, RoesslerDoublesItsPeriod) {
   const auto roessler = [](double c) {
     const auto f = [](double, Values x, Values p, std::span<double> out) {

@@ -53,8 +53,9 @@ TEST(PeriodicOrbit, VanDerPol) {
   }
 }
 
-// Jumps a million times shorter than the period: found whatever it looks first, and to eight digits by a section at
-// another place and another tolerance. What attracts so strongly leaves nothing of a neighbour's distance.
+// An orbit with jumps a million times shorter than its period is found from any start of the search, to eight digits of
+// the period by a section at another place with another tolerance. The attraction is so strong that perturbations
+// vanish.
 TEST(PeriodicOrbit, ARelaxationOscillation) {
   const auto section =
       poincare_section(van_der_pol(1000), {2, 0}, 0, {.level = 1.5, .settle = 3000, .duration = 4000, .rtol = 1e-11});
@@ -73,7 +74,7 @@ TEST(PeriodicOrbit, ARelaxationOscillation) {
   }
 }
 
-// Every orbit of a pendulum comes back, and none stands by itself.
+// All orbits of a pendulum are periodic, and none is isolated.
 TEST(PeriodicOrbit, AFamilyIsNoOrbit) {
   const auto pendulum = [](double, Values x, Values, std::span<double> out) {
     out[0] = x[1], out[1] = -std::sin(x[0]);

@@ -21,7 +21,7 @@ using Real = long double;
 using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;  // without the heap
 using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1, 0, 4, 1>;
 
-/// More of them than in the suite, for a longer look: CONTINUO_RANDOM_ORBITS=2000.
+/// A larger number than in the suite, on request: CONTINUO_RANDOM_ORBITS=2000.
 inline int members(int usual) {
   const char* asked = std::getenv("CONTINUO_RANDOM_ORBITS");
   return asked != nullptr ? std::max(usual, std::atoi(asked)) : usual;
@@ -43,7 +43,7 @@ inline double crookedness(const RealMatrix& m) {
   return static_cast<double>(std::log(svd.singularValues()[0] / svd.singularValues()[m.rows() - 1]));
 }
 
-/// exp(h [[A, b], [0, 0]]) by its series, after halving: what x' = A x + b does in a time of h.
+/// exp(h [[A, b], [0, 0]]) by its series, after halving: the flow of x' = A x + b over a time of h.
 struct LinearFlow {
   RealMatrix a;
   RealVector b;

@@ -41,8 +41,8 @@ TEST(Rotation, IsFoundThoughItNeverComesBack) {
   }
 }
 
-// A spring between two rotors keeps their angles from turning alone: f is the same only where both have turned. What
-// parts them comes to an end by exp(-2 k T).
+// Two rotors coupled by a spring cannot turn independently: f is the same only when both have turned. Their difference
+// decays by exp(-2 k T).
 TEST(Rotation, OfTwoThatAreCoupledIsOneOfBoth) {
   constexpr double w = 1.3, k = 0.2;
   const auto f = [](double, Values x, Values, std::span<double> dxdt) {
@@ -78,7 +78,7 @@ TEST(Rotation, IsFollowedAsItSlowsDown) {
   }
 }
 
-// A Moebius band round the circle of theta' = 1 + 0.3 cos(theta): what stands across it, xi, has turned by half when
+// A Moebius band round the circle of theta' = 1 + 0.3 cos(theta): the transverse vector, xi, has turned by half when
 // theta has turned once, so that the multipliers are -exp(T (p - q^2)) and -exp(-T). With xi_0' = (p - q^2) xi_0 -
 // xi_0^3 an orbit of two turns and amplitude sqrt(p - q^2) is born at p = q^2.
 TEST(Rotation, DoublesItsPeriodToTwoTurns) {

@@ -18,8 +18,8 @@
 namespace continuo::studies::sensitivity_gallery_test {
 namespace {
 
-/// Ends before chaos or many orbits have made a difference of 1e-3 in a parameter a large one, and large models short
-/// of what a test may take. The others run to their own end, but at most ten units of their time.
+/// Ends of runs for models in which, by chaos or many orbits, a difference of 1e-3 in a parameter would become large,
+/// and for large models with long runs. All others run to their own end, but at most ten units of their time.
 const std::map<std::string, double> ends = {
     {"arenstorf", 3},       {"beam", 1e-3},          {"double_pendulum", 2},
     {"galaxy", 0.05},       {"kepler", 5},           {"lorenz", 1},
@@ -42,7 +42,7 @@ struct Case {
   }
   SensitivityRequest request(double value, double rtol = 1e-11) const {
     SensitivityRequest request{.experiment = {.rtol = rtol}};
-    // An end that moves would be another problem where conditions stand there.
+    // With conditions at the end, another end would be another problem.
     if (!program->model.needs_boundary_solver()) request.experiment.to = end;
     if (influence.kind == Influence::Kind::initial) {
       request.initial = {{influence.index, value}};
@@ -51,8 +51,8 @@ struct Case {
     }
     return request;
   }
-  /// Where the state is compared: at the start where conditions stand at several times, for what is free there says
-  /// most, else at the end.
+  /// The row at which states are compared: the first with conditions at several times, since free components are most
+  /// sensitive there, else the last.
   std::size_t row(std::size_t rows) const { return program->model.needs_boundary_solver() ? 0 : rows - 1; }
   /// The state there, by the run of the model alone where a parameter moves.
   std::vector<double> state(double value, double rtol = 1e-11) const {
@@ -72,9 +72,9 @@ struct Case {
   }
 };
 
-// Central differences with h, h/2, h/4 and Richardson's extrapolation in h^2: the last correction bounds the error of
-// cutting off, that of the runs is e/h with weights that add up to less than 8. What the runs err is seen where two
-// computations of the same state differ, or one of a tenth of the accuracy; so is what the sensitivities err.
+// Central differences with h, h/2, h/4 and Richardson's extrapolation in h^2. The last correction bounds the truncation
+// error; the error e of the runs contributes e/h with weights whose sum is below 8. The errors of runs and of
+// sensitivities are estimated from two computations of the same quantity, or from one with a tenth of the accuracy.
 void compare(const Case& of, const std::string& name) {
   const SensitivityRun run = SensitivityStudy(of.program, {of.influence}).run(of.request(of.value()));
   ASSERT_TRUE(run.good()) << name << ": " << describe(run.status);

@@ -63,8 +63,9 @@ TEST(Stability, OfTheLeapfrogASegment) {
   EXPECT_NEAR(imaginary_limit("central_difference"), 2, limit_error);
   EXPECT_NEAR(imaginary_limit("velocity_verlet"), 2, limit_error);
   EXPECT_NEAR(imaginary_limit("semi_implicit_euler"), 2, limit_error);
-  // As a scheme of two steps, x_(n+1) = x_(n-1) + 2 h f(x_n), to 1: there velocities stand between the positions, two
-  // steps of its make one of the others. Any sequence of states will do for a method: this one is not of the suite.
+  // As a two-step scheme, x_(n+1) = x_(n-1) + 2 h f(x_n), its limit is 1: velocities are then between the positions,
+  // and two of its steps correspond to one of the others. A method may be any sequence of states: this one is not of
+  // the suite.
   const StepSequence leapfrog = [](Complex z, std::size_t steps) {
     std::vector<Complex> y{1, 1.0 + z};
     while (y.size() <= steps) y.push_back(y[y.size() - 2] + 2.0 * z * y.back());
@@ -101,9 +102,9 @@ TEST(Stability, EveryMethodOfTheSuiteHasAnAnswer) {
   }
 }
 
-/// Predicted and observed largest step agree within 1 %: what is bounded with 0.99 times the one predicted grows with
-/// 1.01 times. `fixed` are all explicit methods of fixed steps that have a largest step on this model: none is left
-/// out.
+/// Predicted and observed largest step agree within 1 %: the motion is bounded with 0.99 times the predicted step and
+/// grows with 1.01 times. `fixed` are all explicit methods of fixed steps that have a largest step on this model: none
+/// is left out.
 void expect_confirmed(const std::string& name, const model::Overrides& parameters, const std::set<std::string>& fixed) {
   const auto program = gallery(name);
   const ParametricSystem system = of_model(program, {.parameters = parameters});
@@ -119,8 +120,8 @@ void expect_confirmed(const std::string& name, const model::Overrides& parameter
     // Some adaptive methods leave |R| = 1 so slowly that a million steps would not tell.
     if (below == Fate::no_run && method.error_order > 0) continue;
     EXPECT_EQ(below, Fate::bounded) << method.name << " below " << limit.step;
-    // It takes as many stages as its own estimate of the spectral radius asks for, which is above the true one where
-    // the matrix is not normal, as that of a damped mass: its steps depend on more than z.
+    // The number of stages follows the method's own estimate of the spectral radius, which is too large for matrices
+    // that are not normal, as that of a damped mass: its steps depend on more than z.
     if (method.name == "rkc2") continue;
     EXPECT_EQ(fate_of(method.name, system, pairing, 0, start, 1.01 * limit.step, limit.beyond), Fate::grows)
         << method.name << " above " << limit.step;

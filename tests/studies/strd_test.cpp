@@ -128,10 +128,10 @@ FitRequest request_of(const Regression& regression, const Certified& certified, 
 
 class Strd : public testing::TestWithParam<Regression> {};
 
-// Certified are eleven digits. The search ends where the sum of squares stands still to fourteen, which leaves six of
-// the unknowns or of their deviations; of the deviations four were asked. Lanczos1 has residuals of 1e-13, the rounding
-// of its data, and so has every one that fits it: its sum of squares and deviations are of numbers that no double tells
-// apart.
+// The certified values have eleven digits. The search ends when the sum of squares is constant to fourteen, which
+// determines unknowns and deviations to six; of deviations four are tested. Lanczos1 has residuals of 1e-13, the
+// rounding of its data, and so has every close fit: its sum of squares and deviations are below the resolution of
+// doubles.
 TEST_P(Strd, IsFoundFromBothStarts) {
   const Certified certified = read(GetParam().name);
   ASSERT_FALSE(certified.values.empty());

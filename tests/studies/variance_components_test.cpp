@@ -84,7 +84,7 @@ TEST(VarianceComponents, OfOneColumnAreThatOfTheTextbooks) {
   EXPECT_NEAR(sure.group_degrees[0], 10, 1e-9);
 }
 
-// The referee knows nothing of leverages: it looks at the restricted likelihood itself all around.
+// The referee does not use leverages: it evaluates the restricted likelihood itself on a grid.
 TEST(VarianceComponents, OfTwoColumnsAreTheLeastOfRestrictedLikelihood) {
   for (const auto& [n1, n2, seed] : {std::tuple{5, 5, 2U}, {6, 40, 3U}, {30, 5, 4U}, {100, 7, 5U}}) {
     const Line line(static_cast<std::size_t>(n1), static_cast<std::size_t>(n2), 0.2, 3, seed);

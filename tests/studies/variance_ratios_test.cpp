@@ -96,12 +96,12 @@ TEST(VarianceRatios, AreIntegratedOver) {
                                              {1e-6, 1e-3, 1.0, 1e3, 1e6},
                                              {1e-9, 1e-9, 1.0, 1.0, 1e9}}) {
     const Constant constant(factors);
-    // A tenth of a percent is what 48 places of a smooth density leave.
+    // The quadrature of a smooth density with 48 points has an error of a tenth of a percent.
     EXPECT_NEAR(probability(factors, constant.mean(), half_width(constant)), 0.95, 1e-3);
   }
 }
 
-// Where one of the two is known and next to nothing, the other one is all there is: Student's t again.
+// Where one of the two variances is known and negligible, only the other one matters: Student's t again.
 TEST(VarianceRatios, AreWhereTheLikelihoodIsThoughOneVarianceIsKnownToBeTiny) {
   for (const double known : {1e-120, 1e-24, 1e-12, 1e-6}) {
     Constant constant({1, 1, 1, 1, 1});
@@ -115,7 +115,7 @@ TEST(VarianceRatios, AreWhereTheLikelihoodIsThoughOneVarianceIsKnownToBeTiny) {
   }
 }
 
-// Where no ratio is likely at all, factors stay what they were, and that is said.
+// Where no ratio has any likelihood, the factors remain unchanged, and this is reported.
 TEST(VarianceRatios, SayWhereTheyCannotBeIntegratedOver) {
   Constant constant({0.2, 0.5, 1, 2, 5});
   const std::vector<double> sizes{1};

@@ -144,7 +144,7 @@ TEST(TapeEnclosure, HoldsValuesAndQuotientsOfDifferencesOfRandomExpressions) {
         EXPECT_TRUE(ranges[i].holds(at_a[i])) << what;
         EXPECT_TRUE(with_slopes[i].value.holds(at_a[i])) << what;
         if (!with_slopes[i].slope.is_bounded()) continue;
-        // What the values are rounded by is at most the width of an enclosure at a point.
+        // The rounding of the values is at most the width of an enclosure at a point.
         const double rounding = 2 * (widths_at(tape, motion, a)[i] + widths_at(tape, motion, b)[i]) + 1e-300;
         const double change = at_b[i] - at_a[i];
         EXPECT_GE(change, with_slopes[i].slope.lo * (b - a) - rounding) << what;

@@ -183,7 +183,8 @@ TEST(TapeFamily, LanesGoTheSameWay) {
 }
 
 TEST(TapeFamily, SteadyVariablesAreReadWhereTheyAre) {
-  // The families are of parameters: what hangs on them is prepared, before anything could be copied.
+  // The families contain parameters: expressions that depend only on them are computed in advance, before anything
+  // could be copied.
   Graph g;
   constexpr std::uint32_t n = 40;
   std::vector<std::uint32_t> numbers(2 + 2 * n);

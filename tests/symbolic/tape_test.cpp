@@ -26,7 +26,7 @@ std::vector<Real> run(const Tape& tape, const std::vector<double>& values) {
   return outputs;
 }
 
-/// Sums, products and functions of random shape; what they compute stays of order one.
+/// Random expressions of sums, products and functions, with values of order one.
 class RandomExpressions {
  public:
   explicit RandomExpressions(unsigned seed) : random_(seed) {
@@ -280,7 +280,7 @@ TEST(Tape, LanesReadTablesOneByOne) {
   for (std::size_t lane = 0; lane < 4; ++lane) EXPECT_EQ(out[0][lane], 0.5 * static_cast<double>(lane));
 }
 
-/// A number and its derivative: what a type for automatic differentiation has to bring to be evaluated with.
+/// A dual number: the least that a type for automatic differentiation must provide.
 struct Dual {
   double value = 0, slope = 0;
   Dual() = default;

@@ -189,7 +189,8 @@ TEST(CheckJacobian, WhereFIsNotFiniteNothingIsDecidedAndNoNumberPassesForANumber
   EXPECT_FALSE(check_jacobian(root, 0.0, Pair{1, 1}).agrees());
 }
 
-/// The Jacobians written by hand and those by duals, at the start and at states whose components differ by ten orders.
+/// The Jacobians written by hand and those by dual numbers, at the start and at states whose components differ by ten
+/// orders of magnitude.
 template <class Problem>
 void expect_right(const Problem& problem) {
   for (const double size : {1.0, 1e-5}) {

@@ -34,9 +34,9 @@ std::vector<Scalar<X>> by_differences(auto f, const X& x) {
   return rows;
 }
 
-/// Duals against the hand: some tens of roundings of the greatest entry of a row. Differences: the increment is 1.5e-8
-/// of a component, and so is the error of a quadratic f against its greatest entry; 1e-5 leaves room for a component
-/// that is small beside its row.
+/// Dual numbers agree with the Jacobian written by hand to some tens of roundings of the greatest entry of a row.
+/// Differences: the increment is 1.5e-8 of a component, and so is the error of a quadratic f relative to its greatest
+/// entry; the bound of 1e-5 allows for a component that is small in its row.
 template <class Problem>
 void expect_agreement(const Problem& problem) {
   const auto x = moved(problem.start());

@@ -10,7 +10,7 @@ TEST(Threads, ShareAHeap) {
   expect_the_same_for_any_number_of_threads(heap<float>(1000, 8, 1), {}, 45);
 }
 
-// With contacts that are told of, and bodies that sleep.
+// With contact events, and with bodies that fall asleep.
 TEST(Threads, ShareAMixedHeap) {
   FastOptions<float> options;
   options.sleep_after = 0.3f;

@@ -16,8 +16,9 @@ std::vector<double> times_of(const model::Run& run, const std::string& mark) {
   return times;
 }
 
-// y = 5 t - 5 t^2 has its top of 1.25 at t = 0.5, and is above 1.25 - 1e-8 for 4e-5 to both sides: much less than a
-// look, a hundredth. Both crossings are found, to what the digits of y leave of t: 1e-16/(10*4e-5).
+// y = 5 t - 5 t^2 has its maximum of 1.25 at t = 0.5 and is above 1.25 - 1e-8 for 4e-5 on both sides: much less than
+// the distance of samples, a hundredth. Both crossings are found, with the error of t due to the rounding of y:
+// 1e-16/(10*4e-5).
 TEST(Looks, FindATopThatIsShort) {
   const model::Run run = run_of(R"(
 world { gravity (0, -10); body ball at (0, 0) velocity (0, 5) }
@@ -33,7 +34,8 @@ run 0..10
   EXPECT_EQ(run.events[1].mark, "down");
 }
 
-// A ball at 1 m/s between walls 1e-3 apart, each crossing of the middle, ten in each of the thousand looks.
+// A ball at 1 m/s between walls 1e-3 apart: each crossing of the middle is found, ten between two of the thousand
+// samples.
 TEST(Looks, SeeEveryWayBetweenTwoContacts) {
   const model::Run run = run_of(R"(
 world {

@@ -146,7 +146,7 @@ TEST(QueriesInText, AreSensorsOfEvents) {
     for (const model::Happened& event : run.events)
       if (!event.mark.empty()) marks.push_back(event);
     ASSERT_EQ(marks.size(), 2U) << mode;
-    // The stone's edge, 1 below its centre, comes to the beam at y = 1 from 6 by 2 m/s: after 2 s.
+    // The edge of the stone, 1 below its centre, falls from y = 6 at 2 m/s to the beam at y = 1: an event after 2 s.
     EXPECT_EQ(marks[0].mark, "sees the stone");
     EXPECT_GE(marks[0].t, 2 - 1e-12);
     EXPECT_LE(marks[0].t, 2 + step) << mode;

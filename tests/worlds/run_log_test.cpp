@@ -127,7 +127,7 @@ TEST(RunLog, GoesOnToTheSameBits) {
       const std::string what = each.name + (" from checkpoint " + std::to_string(k));
       ASSERT_TRUE(on.run) << what;
       expect_same(made.run, *on.run, what);
-      // What it has recorded is a whole run, too.
+      // The recording of the resumed run is a complete run, too.
       const Result<RunRecording> longer = RunRecording::read(bytes_of(file.str()));
       ASSERT_TRUE(longer) << describe(longer.status());
       EXPECT_GE(longer->checkpoints.size(), recording->checkpoints.size()) << what;
@@ -150,7 +150,7 @@ TEST(RunLog, GoesOnBeyondItsEnd) {
   EXPECT_EQ(recording->checkpoint_at(100), recording->checkpoints.size() - 1);
 }
 
-// What is cut off anywhere is a shorter run, or none, and can be gone on with to the end as it was.
+// A recording truncated anywhere is a shorter run, or none, and can be resumed to the original end.
 TEST(RunLog, MayBeCutOffAnywhere) {
   const Recorded made = recorded(cases()[0].text, 5);
   std::size_t usable = 0;
@@ -191,7 +191,7 @@ TEST(RunLog, IsRefusedWhereItIsWrong) {
     std::string wrong = made.file;
     const bool is_mended = k % 2 == 1;
     for (int n = 0; n < 1 + k % 3; ++n) {
-      // Half of them where sizes and kinds stand: at the beginning.
+      // Half of the changes are near the beginning, where sizes and kinds are.
       const std::size_t at = engine() % (k % 4 < 2 ? wrong.size() : std::min<std::size_t>(wrong.size(), 4000));
       wrong[at] = static_cast<char>(static_cast<unsigned char>(wrong[at]) ^ (1 + engine() % 255));
     }
@@ -204,7 +204,7 @@ TEST(RunLog, IsRefusedWhereItIsWrong) {
       continue;
     }
     ++taken;
-    EXPECT_TRUE(is_mended || !recording->end) << "a changed byte was not seen";  // a changed size looks cut off
+    EXPECT_TRUE(is_mended || !recording->end) << "a changed byte was not seen";  // a changed size looks truncated
     for (const model::Simulated& simulated :
          {replay_world(made.program, *recording),
           recording->checkpoints.empty()
@@ -227,8 +227,8 @@ TEST(RunLog, OfAnotherModelIsRefused) {
   }
 }
 
-// What a file may say with all its checksums right: more bodies than the model has (their states were written beyond
-// the end of the array), steps that began so early that no number of them comes to the end.
+// Wrong contents with right checksums: more bodies than the model has (their states were once written beyond the end of
+// the array), and steps that began so early that no number of them reaches the end.
 TEST(RunLog, DoesNotGoOnFromPlacesThatAreNoneOfItsRun) {
   const Recorded made = recorded(cases()[2].text, 5);
   const Result<RunRecording> recording = RunRecording::read(bytes_of(made.file));
