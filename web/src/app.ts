@@ -83,7 +83,7 @@ export class App {
       } }, words);
       tabs.append(button);
     }
-    const handle = make("div", { class: "handle", role: "separator", tabindex: 0, "aria-orientation": "horizontal", "aria-label": "Room of the plots", "aria-valuemin": 12, "aria-valuemax": 85, "aria-valuenow": 40, title: "Drag to share the room between scene and plots" });
+    const handle = make("div", { class: "handle", role: "separator", tabindex: 0, "aria-orientation": "horizontal", "aria-label": "Size of the plots", "aria-valuemin": 12, "aria-valuemax": 85, "aria-valuenow": 40, title: "Drag to resize scene and plots" });
     const middle = make("main", { class: "middle" }, this.heading, this.scene.element, handle, this.plots.element);
     this.makeHandle(handle, middle);
     const parts = this.embedded ? [top, this.messages.element, this.scene.element] : [top, this.messages.element, this.editor.element, middle, tabs, this.controls.element];
@@ -133,7 +133,7 @@ export class App {
     this.root.classList.toggle("bare", this.scene.empty);
     if (!this.scene.stage.surface.works && !this.toldNoPicture) {
       this.toldNoPicture = true;
-      this.session.said({ say: "message", severity: "warning", code: null, text: "This browser draws no scenes: it has no WebGL.", hint: "The plots and values are all here.", line: null, column: null });
+      this.session.said({ say: "message", severity: "warning", code: null, text: "This browser cannot draw scenes, since it has no WebGL.", hint: "Plots and values are available.", line: null, column: null });
     }
     this.root.classList.toggle("small-gallery", model.gallery.length === 0);
     if (!this.hashDone) {
@@ -191,7 +191,7 @@ export class App {
 
   private async share(): Promise<void> {
     await navigator.clipboard?.writeText(location.href).catch(() => undefined);
-    this.session.said({ say: "message", severity: "note", code: null, text: "The address of this page is copied: it carries the parameters and the view.", hint: null, line: null, column: null });
+    this.session.said({ say: "message", severity: "note", code: null, text: "The address of this page has been copied, with its parameters and view.", hint: null, line: null, column: null });
   }
 
   private saveScene(): void {
@@ -259,9 +259,9 @@ export class App {
       turn("ArrowRight", 0.1, 0),
       turn("ArrowUp", 0, 0.1),
       turn("ArrowDown", 0, -0.1),
-      { keys: ["v"], words: "the camera goes with what is selected, or stays", group: "Scene", run: () => this.scene.toggleFollow() },
-      { keys: ["d"], words: "select the next thing that can be dragged, or the next body", group: "Scene", run: () => void hand.selectNext() },
-      { ...arrow("ArrowUp", 0, 1, "drag what is selected", "Scene"), also: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"] },
+      { keys: ["v"], words: "the camera follows the selected body, or stays", group: "Scene", run: () => this.scene.toggleFollow() },
+      { keys: ["d"], words: "select the next movable object, or the next body", group: "Scene", run: () => void hand.selectNext() },
+      { ...arrow("ArrowUp", 0, 1, "drag the selected object", "Scene"), also: ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"] },
       arrow("ArrowDown", 0, -1, "", "Scene"),
       { keys: ["x"], words: "the grid", group: "Scene", run: () => {
         this.scene.gridShown = !this.scene.gridShown;
@@ -270,9 +270,9 @@ export class App {
       { keys: ["u"], words: "undo the last change", group: "Page", run: send("undo") },
       { keys: ["p"], words: "parameters as in the file", group: "Page", run: send("restore") },
       { keys: ["c"], words: "to the sliders", group: "Page", run: () => this.controls.focusFirstSlider() },
-      { keys: ["m"], words: "to the choice of the method", group: "Page", run: () => this.controls.focusMethod() },
+      { keys: ["m"], words: "go to the list of methods", group: "Page", run: () => this.controls.focusMethod() },
       { keys: ["h"], words: "ghost: a second method beside the first", group: "Page", run: () => this.controls.toggleGhost() },
-      { keys: ["e"], words: "the model's text (Ctrl-Enter runs it, Esc leaves it)", group: "Page", run: () => this.toggleEditor() },
+      { keys: ["e"], words: "the text of the model (Ctrl-Enter runs it, Esc leaves the editor)", group: "Page", run: () => this.toggleEditor() },
       { keys: ["g"], words: "the gallery", group: "Page", run: () => openGallery(session) },
       { keys: ["b"], words: "larger letters", group: "Page", run: () => this.toggleBig() },
       { keys: ["s"], words: "present: the whole screen, larger letters, no controls; and back", group: "Page", run: () => this.present() },

@@ -31,7 +31,7 @@ export function openGallery(session: Session): void {
   search.addEventListener("keydown", (event) => {
     if (event.key === "Enter") cards.find((card) => !card.hidden)?.click();
   });
-  const empty = models.length === 0 ? make("p", {}, "This page knows no other models.") : null;
+  const empty = models.length === 0 ? make("p", {}, "No other models are available.") : null;
   close = openDialog("Gallery", make("div", { class: "gallery" }, search, empty, make("div", { class: "gallery-cards" }, ...cards)), "wide");
   search.focus();
 }

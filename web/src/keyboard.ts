@@ -79,10 +79,10 @@ export function openHelp(actions: readonly Action[], modelKeys: readonly { key: 
     content.append(group(title, actions.filter((action) => action.group === title && action.words).map(({ keys, words, also }) => row(also ?? keys, words))));
   }
   content.append(
-    group("Mouse and finger", [
-      row(["drag"], "what is marked for dragging; elsewhere the picture moves, in space it turns"),
+    group("Mouse and touch", [
+      row(["drag"], "move objects that can be dragged; elsewhere move the picture, or rotate it in space"),
       row(["wheel", "pinch"], "zoom"),
-      row(["click"], "a body: its state"),
+      row(["click"], "show the state of a body"),
       row(["double click"], "the whole scene; on a slider: the value in the file"),
       row(["drag in a plot"], "look back to that time"),
     ]),

@@ -23,7 +23,7 @@ export class Messages {
     session.on("link", (link) => {
       this.clear("link");
       if (link === "lost") {
-        this.add({ say: "message", severity: "warning", code: null, text: "The simulator does not answer.", hint: "The page connects again as soon as it does.", line: null, column: null }, goTo, "link");
+        this.add({ say: "message", severity: "warning", code: null, text: "The simulator does not answer.", hint: "The page will reconnect as soon as possible.", line: null, column: null }, goTo, "link");
       }
     });
   }

@@ -12,7 +12,7 @@ export class Transport {
   private readonly pause: HTMLButtonElement;
   private readonly time = make("output", { class: "time", "aria-label": "Time" });
   private readonly speed = make("select", { "aria-label": "Speed, times real time", title: "Speed, times real time ([ slower, ] faster)" });
-  private readonly reached = make("span", { class: "reached", title: "The speed that is reached" });
+  private readonly reached = make("span", { class: "reached", title: "The speed reached" });
   private readonly slow = make("span", { class: "slow", role: "status", hidden: true });
   private readonly line = make("input", { type: "range", class: "timeline", min: 0, max: 1, step: "any", value: 0, "aria-label": "Time in the history" });
   private scrubbing = false;

@@ -27,15 +27,15 @@ export class MethodChoice {
     this.shown = optional ? null : { method: experiment.method, step: experiment.step, rtol: experiment.rtol };
     const group = (title: string, fixed: boolean): HTMLOptGroupElement =>
       make("optgroup", { label: title }, ...methods.filter((method) => method.fixed === fixed).map(({ name, title: text }) => make("option", { value: name, title: text }, readable(name, text))));
-    this.list = make("select", { "aria-label": optional ? "Method of the ghost" : "Method" }, optional ? make("option", { value: "" }, "none") : null, group("with a fixed step", true), group("that choose their steps", false));
+    this.list = make("select", { "aria-label": optional ? "Method of the ghost" : "Method" }, optional ? make("option", { value: "" }, "none") : null, group("with a fixed step", true), group("with adaptive steps", false));
     this.list.addEventListener("change", () => this.choose());
     this.number.addEventListener("change", () => this.choose());
     this.what.addEventListener("change", () => {
       this.displayNumber(this.byStep ? this.shown?.step : this.shown?.rtol);
       this.choose();
     });
-    const halve = make("button", { type: "button", class: "small", title: "Half of it", "aria-label": "Half", onclick: () => this.scale(0.5) }, "÷2");
-    const double = make("button", { type: "button", class: "small", title: "Twice as much", "aria-label": "Twice", onclick: () => this.scale(2) }, "×2");
+    const halve = make("button", { type: "button", class: "small", title: "Halve the value", "aria-label": "Half", onclick: () => this.scale(0.5) }, "÷2");
+    const double = make("button", { type: "button", class: "small", title: "Double the value", "aria-label": "Twice", onclick: () => this.scale(2) }, "×2");
     this.row = make("div", { class: "method-number" }, this.what, this.number, halve, double);
     this.element.append(this.list, this.row);
     this.display();

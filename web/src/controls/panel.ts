@@ -58,7 +58,7 @@ export class ControlPanel {
     if (!session.live) parts.push(make("p", { class: "frozen-note" }, "A recording: play it, look back. To change something, run the model in Continuo."));
     if (model.inputs.length > 0) {
       const rows = model.inputs.map((input) => {
-        const hold = input.key ? make("button", { type: "button", class: "key", title: `Hold ${input.key}, with Shift the other way`, "aria-label": `Hold: ${input.name}` }, input.key) : null;
+        const hold = input.key ? make("button", { type: "button", class: "key", title: `Hold ${input.key}; with Shift for the opposite direction`, "aria-label": `Hold: ${input.name}` }, input.key) : null;
         const row = new QuantityRow(input, (value) => session.send({ do: "input", name: input.name, value }), hold);
         hold?.addEventListener("pointerdown", (event) => {
           hold.setPointerCapture(event.pointerId);
@@ -76,7 +76,7 @@ export class ControlPanel {
       const folded = plain.length > 5 ? make("details", { class: "more" }, make("summary", {}, `${plain.length} without a range`)) : null;
       const rows: HTMLElement[] = [];
       for (const parameter of model.parameters) {
-        const again = parameter.structural ? make("small", { title: "The run begins anew where this changes" }, " ↻") : null;
+        const again = parameter.structural ? make("small", { title: "A change of this parameter restarts the run" }, " ↻") : null;
         const row = new QuantityRow(parameter, (value) => session.send({ do: "set", parameter: parameter.name, value }), again);
         this.parameters.set(parameter.name, row);
         if (folded && plain.includes(parameter)) folded.append(row.element);

@@ -155,7 +155,7 @@ export class PlotPanel {
 
   private logButton(spec: PlotSpec): HTMLButtonElement {
     const on = this.logs.has(spec.id);
-    const button = make("button", { type: "button", class: "small log", title: "Powers of ten upward, of the size of the values", "aria-label": `Logarithmic axis of “${spec.title}”`, "aria-pressed": String(on), onclick: () => {
+    const button = make("button", { type: "button", class: "small log", title: "Logarithmic axis, for the absolute values", "aria-label": `Logarithmic axis of “${spec.title}”`, "aria-pressed": String(on), onclick: () => {
       if (on) this.logs.delete(spec.id);
       else this.logs.add(spec.id);
       this.rebuild();

@@ -298,7 +298,7 @@ export class SceneView {
     const row = (what: string, value: string): HTMLElement => make("tr", {}, make("th", { scope: "row" }, formatName(what)), make("td", {}, value));
     const rows = bodyOrder(Object.keys(values)).map((key) => row(key, formatSteady(values[key]!, 5)));
     const title = name ? `${name} · ${body + 1}` : `Body ${body + 1}`;
-    this.card.replaceChildren(make("b", {}, title), make("table", {}, make("tbody", {}, row("t", formatSteady(t, 5)), ...rows)), make("small", {}, "v: the camera goes with it"));
+    this.card.replaceChildren(make("b", {}, title), make("table", {}, make("tbody", {}, row("t", formatSteady(t, 5)), ...rows)), make("small", {}, "v: the camera follows it"));
   }
 
   /** Pictures drawn so far: tests and the measurement of the rate read it. */
