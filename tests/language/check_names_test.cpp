@@ -116,7 +116,7 @@ std::string places(const std::string& in_world) {
   return told;
 }
 
-/// Where bodies stand is looked at silently first, for the unit of length.
+/// Positions of bodies are evaluated first for the unit of length, without messages.
 TEST(CheckNames, AMistakeInADefinitionIsSaidWhoeverNeedsItFirst) {
   EXPECT_EQ(place(said("let a = 1 + foo\nworld { body ball at (a, 0) }\nrun 0..1\n", "E210")), "1:13");
   EXPECT_EQ(place(said("let a = ball.radius\nworld { body ball at (a, 0) }\nrun 0..1\n", "E224")), "1:9");

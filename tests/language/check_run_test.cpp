@@ -75,7 +75,7 @@ TEST(CheckRun, ChecksReadTheMotion) {
   EXPECT_EQ(model.checks[3].measure, Measure::end_time);
 }
 
-/// x'' = -x begins at -1, wherever it stands beside a value at a time, and as such a value.
+/// x'' = -x is -1 at the start, on either side of a value at a time, and as such a value.
 TEST(CheckRun, ChecksReadHighestDerivatives) {
   const std::string oscillator = "x'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..2\n";
   for (const char* check : {"check x'' + x(1) = 1 within 9\n", "check x(1) + x'' = 1 within 9\n"}) {
@@ -107,7 +107,7 @@ TEST(CheckRun, PlotsAndDrawingsAreKept) {
   EXPECT_EQ(model.graph.value(model.drawing[4].arguments[0].numbers[0]), 3);
 }
 
-// A picture has one unit, that of its first point.
+// A drawing has one unit, that of its first point.
 TEST(CheckRun, WhatIsDrawnIsConverted) {
   const Model model = good(
       "param r = 28 [mm]\nx' = 1 [m/s]\nx(0) = 2 [m]\nrun 0..1 [s]\n"

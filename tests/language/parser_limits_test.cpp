@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::size_t ten_megabytes = 10'000'000, hundred_kilobytes = 100'000;
 
-/// A token is compared with the words that may begin a statement (20) and the operators that may follow (20), each
-/// time it is met; 10 looks are the most that these texts need. What reads again what it has read exceeds any constant.
+/// Each time a token is visited it is compared with the words that may begin a statement (20) and the operators that
+/// may follow (20); these texts need at most 10 visits of each. A parser that repeatedly reads the same tokens exceeds
+/// any constant.
 constexpr std::size_t most_looks_per_token = 40;
 constexpr std::size_t most_tokens = 1'000'000;
 

@@ -119,8 +119,8 @@ TEST(LiveTime, RowsStandOnBothSidesOfAnEvent) {
   EXPECT_EQ(seen, 1);
 }
 
-// An event ends a step, and its actions begin another: what is shown of the first is still the first. A float of 10 is
-// right to 5e-7, one of 98 to 4e-6.
+// An event ends a step, and its actions begin another: displayed rows of the first step must not change. A float of 10
+// is right to 5e-7, one of 98 to 4e-6.
 TEST(LiveTime, RowsBeforeAnEventLieOnThePathThatLedThere) {
   const auto worst = [](Stage& stage, const std::string& name, double end, auto&& truth) {
     double found = 0;
@@ -238,7 +238,7 @@ const std::string circling =
 struct Trail {
   std::vector<double> t, x, y;
   std::size_t frames = 0;
-  /// How far the chords between its points come into the circle that they are on.
+  /// The greatest distance of the chords between its points from the unit circle on which they lie.
   double deepest() const {
     double least = 1;
     for (std::size_t i = 1; i < t.size(); ++i)
@@ -268,12 +268,13 @@ Trail trail_at(double speed, const std::string& method) {
 
 TEST(LiveRows, AreDenserWhereACurveBends) {
   for (const std::string method : {" method dop853 tol 1e-10\n", " method rk4 step 0.02\n"}) {
-    // A radian for each picture: its chord comes 1 - cos(1/2) = 0.12 into the circle. With points where a line would
-    // miss one by a 500th of the width 2, and a step's eighth or a picture's 64th more until that is seen, it is less
-    // than three times that.
+    // At a radian for each picture a chord is 1 - cos(1/2) = 0.12 inside of the circle. Points are added where a line
+    // would be off by a 500th of the width 2. With the eighths of steps or 64ths of pictures needed to detect it, the
+    // error is less than three times that.
     const Trail fast = trail_at(60, method);
     EXPECT_LT(fast.deepest(), 3 * 2.0 / 500);
-    // A hundredth of a radian bends by 1e-5: a picture each is enough, once the curve is so long that this is little.
+    // A hundredth of a radian deviates by 1e-5: one row for each picture is enough, once the curve is long compared
+    // with that.
     const Trail slow = trail_at(0.6, method);
     const auto late = std::ranges::count_if(slow.t, [](double t) { return t > 0.2; });
     EXPECT_LE(late, static_cast<std::ptrdiff_t>(slow.frames));

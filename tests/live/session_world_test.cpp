@@ -133,7 +133,7 @@ TEST(LiveWorld, GoesOnByAnotherMethodWhereItIs) {
   const double t = stage.session->shown_time();
   EXPECT_NEAR(t, before + 0.2, 0.02);
   EXPECT_NEAR(stage.state("ball.y"), 2 - 9.81 * t * t / 2, 9.81 * 0.001 * 0.2);  // of order 1: h*g*t/2
-  // From a moment before the change on, which only the other method could restore.
+  // Seeks a moment before the change of the method, which only the other method could restore.
   stage.session->seek(0.1);
   const double then = stage.session->shown_time();
   stage.play(0.1);
@@ -175,7 +175,8 @@ const std::string watched =
 TEST(LiveWorld, EventsOfTheTextHappen) {
   Stage stage(watched);
   stage.play(2);
-  // From rest 1.25 m down take 0.5 s; thrown up at 8 m/s it turns 0.8 s later, 3.2 m higher. Double rounding is all.
+  // A fall of 1.25 m from rest takes 0.5 s; thrown up at 8 m/s the ball turns 0.8 s later, 3.2 m higher. The only error
+  // is rounding in double.
   std::vector<LiveEvent> events;
   for (const auto& seen : stage.audience.slices) events.insert(events.end(), seen->events.begin(), seen->events.end());
   ASSERT_EQ(events.size(), 2U);

@@ -18,7 +18,7 @@ class Spectator final : public Audience {
   void see(std::shared_ptr<const Slice> slice) override { slices.push_back(std::move(slice)); }
   void hear(Topic, std::string json) override { texts.push_back(nlohmann::json::parse(json)); }
 
-  /// The texts that say this.
+  /// The messages of this kind.
   std::vector<nlohmann::json> said(const std::string& what) const {
     std::vector<nlohmann::json> found;
     for (const auto& text : texts) {
@@ -45,7 +45,7 @@ class Stage {
     EXPECT_TRUE(loaded.model) << loaded.text();
   }
 
-  /// Turns at 60 pictures a second for so long on the wall.
+  /// Runs the session at 60 pictures a second for this wall time.
   void run(double seconds) {
     for (const double end = wall + seconds; wall < end - 1e-9;) {
       const double due = wall + 1.0 / 60;

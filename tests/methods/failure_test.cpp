@@ -59,7 +59,7 @@ class Failure : public ::testing::Test {
     Options<X> options{.rtol = rtol, .atol = rtol * 1e-3, .max_steps = max_steps};
     if (!adaptive) options.step = step;
     const Solution<X> solution = solve(system, start, {0.0, end}, M{}, options);
-    // Nothing is lost, and nothing that is no number is kept.
+    // Every step is saved, and no state is NaN or infinite.
     EXPECT_EQ(solution.t.size(), solution.statistics.steps + 1);
     EXPECT_EQ(solution.t.back(), solution.outcome.t);
     for (const X& x : solution.x) EXPECT_TRUE(std::isfinite(x[0]) && std::isfinite(x[1]));
@@ -100,8 +100,9 @@ TYPED_TEST(Failure, NewtonDivergesWhereTheSolutionEnds) {
   EXPECT_FALSE(solution.outcome);
   if (TestFixture::rings) return;  // its algebraic components are not those of the equations (docs/methods.md)
   const bool newton = solution.outcome.ending == Ending::nonlinear_solve_failed;
-  // The estimate may forbid a step before its iteration fails: that of a predictor, that of Rosenbrock's methods, which
-  // do not iterate, and any where z is so near 0 that a unit in the last place of t moves it by more than a tolerance.
+  // The error estimate may reject a step before its iteration fails: that of a predictor, that of Rosenbrock's methods,
+  // which do not iterate, and any where z is so near 0 that a unit in the last place of t moves it by more than a
+  // tolerance.
   EXPECT_TRUE(newton || (TestFixture::adaptive && solution.outcome.ending == Ending::step_too_small))
       << describe(solution.outcome);
   EXPECT_THAT(solution.outcome.hint, AnyOf(HasSubstr("Newton's iteration does not converge"), HasSubstr("singular")));

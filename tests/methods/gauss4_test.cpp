@@ -96,7 +96,7 @@ TEST(Gauss4, EnergyDoesNotDrift) {
   EXPECT_LT(early, 1e-4);
 }
 
-// With a rejection in mind: half a unit of energy, a closed orbit, the tolerance of the suite.
+// A tolerance at which steps are rejected: half a unit of energy, a closed orbit, the tolerance of the suite.
 TEST(Gauss4, MeetsItsToleranceWithStepControl) {
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
     const auto solution =

@@ -43,12 +43,12 @@ void expect_tolerance_kept_by(int loosest_power, int strictest_power, const Run&
   }
 }
 
-/// The default choice takes this pair for tolerances below 1e-6 alone; at 1e-4 the phase of a relaxation is 38 of them
-/// off.
+/// The default method uses this pair only for tolerances below 1e-6; at 1e-4 its error in the phase of a relaxation
+/// oscillation is 38 tolerances.
 template <class M>
 constexpr int loosest_power = std::same_as<M, Dop853Radau> ? 5 : 0;
 
-/// By the methods as the studies have them, compiled once for all systems.
+/// With the methods selected by name, as in studies, compiled once for all systems.
 template <class M, class Problem>
 void expect_tolerance_kept(int strictest_power) {
   expect_tolerance_kept_by<Problem>(loosest_power<M>, strictest_power, solved_by_name<M, Problem>);
@@ -82,8 +82,8 @@ template <class M>
 class StiffTolerance : public ::testing::Test {};
 TYPED_TEST_SUITE_P(StiffTolerance);
 
-// A Jacobian of the jump, kept while steps grew again, made methods believe that they had solved their equations: they
-// went on along a line, thousands of tolerances away.
+// With a Jacobian evaluated in the jump and kept while steps grew again, the iteration seemed to converge: the solution
+// continued along a line, thousands of tolerances away.
 TYPED_TEST_P(StiffTolerance, IsKeptOnAnOrbitWithJumps) {
   expect_tolerance_kept<TypeParam, bench::VanDerPol<>>(TypeParam::order == 1 ? 3 : 5);
 }

@@ -158,7 +158,7 @@ TYPED_TEST(Structural, TheInterpolantHasTheStatedOrderInsideAStep) {
   EXPECT_NEAR(std::log2(error(0.02) / error(0.01)), TypeParam::dense_order + 1, 0.2);
 }
 
-/// Two masses with M = {{2, 1}, {1, 3}} and K = {{3, -1}, {-1, 2}}: M given, or divided by.
+/// Two masses with M = {{2, 1}, {1, 3}} and K = {{3, -1}, {-1, 2}}: with M as the mass matrix, or f divided by M.
 struct Coupled {
   bool divided = false;
 

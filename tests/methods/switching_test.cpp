@@ -32,7 +32,7 @@ TEST(Switching, StaysWithTheExplicitMethodWhereNothingIsStiff) {
   const auto pair = solve(bench::LotkaVolterra<>{}, bench::LotkaVolterra<>::start(), {0.0, 100.0}, Pair{}, {});
   const auto alone = solve(bench::LotkaVolterra<>{}, bench::LotkaVolterra<>::start(), {0.0, 100.0}, Tsitouras5{}, {});
   EXPECT_EQ(pair.statistics.jacobians, 0U);
-  // Of an orbit the pair holds errors down that add up: at the end they are the smaller ones.
+  // On an orbit errors add up, and the pair limits them: its errors at the end are the smaller ones.
   const auto exact = solve(bench::LotkaVolterra<>{}, bench::LotkaVolterra<>::start(), {0.0, 100.0}, Dop853{},
                            {.rtol = 1e-13, .atol = 1e-13});
   for (std::size_t i = 0; i < 2; ++i) {
@@ -72,8 +72,8 @@ TEST(Switching, SolvesAlgebraicEquationsByTheStiffMethodAlone) {
   EXPECT_LT(promises::error_of_algebraic_decay<Pair>(1e-6), 30);
 }
 
-// An explicit method of high order with a strict tolerance steps well inside its region of stability, and is held by
-// stiffness all the same: dop853 alone takes more than 10,000 steps here.
+// With a strict tolerance an explicit method of high order takes steps well inside its region of stability, and is
+// still limited by stiffness: dop853 alone takes more than 10,000 steps here.
 TEST(Switching, HandsOverWhereAStrictToleranceKeepsStepsOffTheBoundary) {
   const auto run = [](auto method) {
     return solve(bench::Oregonator<>{}, bench::Oregonator<>::start(), {0.0, 360.0}, method,

@@ -115,8 +115,8 @@ Swing swing(int orbits, int steps_an_orbit) {
   return result;
 }
 
-// Eccentricity 1/2. The energy swings within each orbit by the error of the method, the envelope stays: the steps meet
-// the ellipse at ever other places, so it is seen to a part in a hundred.
+// Eccentricity 1/2. The energy error oscillates within each orbit, with a constant envelope. Steps fall on different
+// places of the ellipse in each orbit, so that the envelope is measured to one per cent.
 TEST(SymplecticHuge, EnergyDoesNotDriftInAHundredThousandOrbits) {
   const Swing swung = swing<Yoshida6>(100'000, 60);
   EXPECT_LT(swung.first, 1e-4);

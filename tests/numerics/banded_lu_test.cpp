@@ -15,7 +15,7 @@
 namespace continuo::banded_lu_test {
 namespace {
 
-/// A band that is filled entry by entry, and decomposed as it is: BandedLU decomposes c M - J.
+/// A band that is filled entry by entry, and factorized as it is: BandedLU factorizes c M - J.
 template <class Number>
 class Band {
  public:
@@ -94,7 +94,7 @@ TEST(BandedLU, SolvesRandomSystemsThatNeedPivots) {
              {30, 2, 0},
              {40, 5, 7},
              {6, 5, 5},
-             // from both ends, with and without a row in the middle that neither sees
+             // from both ends, with and without a row that is left over in the middle
              {32, 1, 1},
              {33, 1, 1},
              {32, 2, 2},
@@ -107,7 +107,7 @@ TEST(BandedLU, SolvesRandomSystemsThatNeedPivots) {
       EXPECT_LT(residual_of_random_system<double>(n, lower, upper, seed), bound) << n << ' ' << lower << ' ' << upper;
       EXPECT_LT(residual_of_random_system<ComplexNumber<double>>(n, lower, upper, seed), bound)
           << n << ' ' << lower << ' ' << upper;
-      // as it is where the steps are short
+      // with a dominant diagonal, as for short steps
       EXPECT_LT(residual_of_random_system<double>(n, lower, upper, seed, 1000), bound)
           << n << ' ' << lower << ' ' << upper;
       EXPECT_LT(residual_of_random_system<ComplexNumber<double>>(n, lower, upper, seed, 1000), bound);
@@ -134,7 +134,7 @@ TEST(BandedLU, CanBeFilledAgain) {
   }
 }
 
-// Two rows that are the same, wherever they are: near the ends, in the middle, among those both ends have left over.
+// Two equal rows, at any place: near the ends, in the middle, and among those left over by both ends.
 TEST(BandedLU, FindsASingularMatrixAnywhere) {
   for (const std::size_t n : {std::size_t{40}, std::size_t{41}}) {
     for (std::size_t row = 0; row + 1 < n; ++row) {

@@ -91,12 +91,12 @@ double residual(DenseLU<Number, N>& lu, const std::array<Number, N * N>& matrix)
   return worst / (1.5 * static_cast<double>(N) * greatest);
 }
 
-// With partial pivoting the residual is some roundings; where old pivots are kept, factors may reach 100 instead of 1,
-// and entries grow by as much in each of the few eliminations that one of them goes through: 1e4 is two in a row.
+// With partial pivoting the residual is a few roundings. Where old pivots are kept, factors may reach 100 instead of 1,
+// and entries grow by that factor in each of the few eliminations in which they take part: 1e4 is two in a row.
 constexpr double listed_bound = 1e4 * std::numeric_limits<double>::epsilon();
 
-// Other numbers at the same places, more than its pivots can bear: sometimes they are kept, sometimes found anew, and
-// sometimes done without a list.
+// Other numbers at the same places, of any size: the old pivots are sometimes kept, sometimes chosen again, and
+// sometimes the list is not used.
 template <class Number>
 void solve_sparse_systems_of_one_pattern(unsigned seed) {
   constexpr std::size_t N = 20;
@@ -154,7 +154,7 @@ TEST(DenseLU, ReportsSingularSparseMatricesAndGoesOn) {
   }
 }
 
-// An arrow that points to the corner where elimination would begin: in order every entry fills, in the other order
+// An arrow matrix with its full row and column first: elimination in that order fills every entry, in the reverse order
 // none.
 TEST(EliminationList, LeavesZeros) {
   constexpr std::size_t N = 15;

@@ -16,7 +16,7 @@ namespace {
 
 template <class L>
 class LanesOf : public testing::Test {};
-/// One register, two of them, a register of floats, odd widths, and a type no register holds.
+/// One register, two registers, a register of floats, odd widths, and a type without registers.
 using Widths = testing::Types<Lanes<double, 2>, Lanes<double, 4>, Lanes<double, 8>, Lanes<float, 4>, Lanes<double, 1>,
                               Lanes<double, 3>, Lanes<long double, 4>>;
 TYPED_TEST_SUITE(LanesOf, Widths);

@@ -49,7 +49,7 @@ TEST(NewtonIteration, SaysWhyItFails) {
   EXPECT_EQ(newton_iteration({}, fine, [] { return false; }).ending, NewtonEnding::diverged);
 }
 
-// The arc tangent, from where full steps swing ever farther.
+// The arc tangent, from a start at which full Newton steps diverge.
 TEST(DampedNewton, ComesFromWhereFullStepsDiverge) {
   double z = 3, step = 0;
   const auto correct = [&]() -> NewtonCorrection {

@@ -34,7 +34,7 @@ Found isolate(const F& f, double from, double to, int side, const IsolationLimit
   return found;
 }
 
-/// Each root in a stretch of its own, and no stretch without a root.
+/// Each root is in an interval of its own, and no interval is without a root.
 void expect_roots(const Found& found, const std::vector<double>& roots, double rounding = 1e-14) {
   EXPECT_TRUE(found.end.proved);
   ASSERT_EQ(found.crossings.size(), roots.size());
@@ -184,7 +184,7 @@ TEST(RootIsolation, WhatCannotBeDecidedIsSaidWithinTheBudget) {
   EXPECT_LE(isolate(nowhere, 0, 10, 1).end.evaluations, 100u);
 }
 
-// The logarithm has no values up to 3.3; the root behind that is found nevertheless.
+// The logarithm has no value up to 3.3; the root after that is still found.
 TEST(RootIsolation, WhatIsUndefinedSomewhereIsDecidedElsewhere) {
   const Found found = isolate([](const Curve& t) { return log(t - Curve(3.3)); }, 0, 10, -1);
   EXPECT_FALSE(found.end.proved);

@@ -52,7 +52,8 @@ TEST(SparseLU, AgreesWithTheDenseOneForManyMatricesOfOnePattern) {
     ASSERT_TRUE(lu.factor());
     std::vector<double> b = right_hand_side();
     lu.solve(b.data());
-    // Pivots kept from another matrix may cost the ten digits that `least_pivot_growth` allows, seen are far fewer.
+    // Pivots kept from another matrix may cost the ten digits that `least_pivot_growth` allows; in fact they cost far
+    // fewer.
     for (std::size_t i = 0; i < size; ++i) EXPECT_NEAR(b[i], expected[i], 1e-6 * (1 + std::abs(expected[i])));
   }
 }

@@ -47,7 +47,8 @@ TEST_P(FoundEvents, AreFoundOnce) {
   for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], found.times[i], 1e-9) << i;
 }
 
-// One step holds both windows; the search of the first takes the second's start, zero by rounding, for its end.
+// One step contains both windows; the search for the first one takes the start of the second, zero by rounding, for its
+// end.
 const char* const two_windows = R"(
 x'' = -1.034289*(x - 1.296)
 x(0) = -0.324;  x'(0) = -0.487
@@ -94,7 +95,7 @@ when x > -1.579 and x < -1.578 { n := n + 1; mark "e" }
 run 0..2.3
 )";
 
-// A jump of the guard where a step of the method ends by chance.
+// A jump of the guard at a time where by chance a step ends.
 const char* const jump_at_the_end_of_a_step = R"(
 let w = if mod(x, 0.515) < 0.202 then 1 else 0
 x' = -1.17
@@ -103,7 +104,8 @@ when w rises through 0.5 { x := -0.058*x; mark "e" }
 run 0..0.4
 )";
 
-// Counters that tick at the time of a jump, and a condition of three: rounding of t carries the guard over its jump.
+// Counters that change at the time of a jump, and a condition of three parts: the rounding of t carries the guard over
+// its jump.
 const char* const jump_in_time = R"(
 n' = 0
 x' = -2.101*(x + 1.419*cos(2.386*t)) - 1.525
@@ -123,7 +125,7 @@ when 2*x'^2 > 191.366 { y := -0.679*y; mark "e" }
 run 0..2.3
 )";
 
-// A step to an event was taken again and again, each time of a lower order.
+// A step to an event was repeated, each time with a lower order.
 const char* const order_kept = R"(
 x'' = -29.648025*(x + 1.733)
 x(0) = 1.689;  x'(0) = 0.315
@@ -131,7 +133,7 @@ when sin(0.846*x') rises through -0.46 { x := 0.509; mark "e" }
 run 0..0.2
 )";
 
-// Another part of the condition holds the guard at zero before the event: no slope leads to it.
+// Another part of the condition keeps the guard at zero before the event: no slope indicates the crossing.
 const char* const held_at_zero = R"(
 n' = 0
 x' = -10000*(x - 0.517*cos(2.112*t))
@@ -204,7 +206,8 @@ every 0.3 { x := -0.962*x + 0.511*x' - 0.026; mark "e" }
 run 0..1.6
 )";
 
-// The event leaves a mode while y slides, and y goes on sliding in the other: between the two the guard seemed to turn.
+// The event changes the mode while y slides, and y continues to slide in the new one: between the two the guard seemed
+// to turn.
 const char* const mode_left_while_sliding = R"(
 let w = if mod(t, 1.199) < 1.059 then 1 else 0
 n' = 0
@@ -219,7 +222,7 @@ when x' + 1.164*y crosses through 1.073 { go m0; mark "e" }
 run 0..1.8
 )";
 
-// At the event of another, the part of the condition that is nearest to zero rises; the condition never holds.
+// At another event, the part of the condition that is nearest to zero rises; the condition is never true.
 const char* const never = R"(
 x' = 2 - x;  y' = -1000*(y - x*z);  z' = 0
 x(0) = 0;  y(0) = 0;  z(0) = 1
@@ -228,8 +231,8 @@ when x > 1 and x < 1 { mark "never" }
 run 0..2
 )";
 
-// One part of the condition stays at zero, so that its guard never leaves zero between events, of which there are more
-// than chatter may have.
+// One part of the condition remains at zero, so that its guard never leaves zero between events, and there are more
+// events than the limit for chattering.
 const char* const held_by_another_part = R"(
 x' = 1;  n' = 0
 x(0) = 0;  n(0) = 1

@@ -116,7 +116,8 @@ class GalleryJacobian : public testing::TestWithParam<GalleryModel> {
     });
   }
 
-  /// The model's own; of a boundary-value problem any: the derivatives are those of f wherever f is asked.
+  /// The run of the model; for a boundary-value problem an arbitrary motion, since derivatives of f can be tested
+  /// anywhere.
   model::Run motion() const {
     if (!program_->model.needs_boundary_solver()) {
       auto simulated = simulate(program_, {.output_steps = true, .max_steps = 2000});
@@ -136,7 +137,7 @@ class GalleryJacobian : public testing::TestWithParam<GalleryModel> {
     });
   }
 
-  /// Some rows of the run, in every mode: the derivatives are those of f wherever f is asked.
+  /// Visits some rows of the run, in every mode, since derivatives of f can be tested anywhere.
   template <class Visit>
   void at_moments(Visit&& visit) {
     constexpr std::size_t most = 12;
@@ -166,7 +167,7 @@ class GalleryJacobian : public testing::TestWithParam<GalleryModel> {
     return sizes_[j] > 0 ? greatest / sizes_[j] : greatest;
   }
 
-  /// A band is filled with the same entries, and nothing else in it is written.
+  /// The band gets the same entries, and no other entry of it is written.
   static void expect_same_in_band(ModelSystem& system, double t, const X& x, std::span<const double> values) {
     const SparsePattern& pattern = system.jacobian_pattern();
     if (!pattern.is_banded()) return;
@@ -256,7 +257,7 @@ TEST_P(GalleryJacobian, OfTheGraphAndByTimeAreThoseOfDifferencesToTheirLastTrust
   EXPECT_TRUE(report->kinks.empty());
   EXPECT_TRUE(report->undecided.empty());
   ASSERT_TRUE(report->furthest);
-  EXPECT_LT(report->furthest->apart, 1e-9);  // the differences are worth something
+  EXPECT_LT(report->furthest->apart, 1e-9);  // the differences are accurate
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, GalleryJacobian, testing::ValuesIn(gallery()),

@@ -51,8 +51,8 @@ TEST(IndexOne, AnUnknownFollowsTimeToTheLastDigits) {
   }
 }
 
-// Each jump of p sets off a transient of 1e-4 s, on which two unknowns hang: x = p + (x0 - p) exp(-r t), where the
-// unknowns are y = (x + p)/2 and z = y - z^3.
+// Each jump of p starts a transient of 1e-4 s, on which two unknowns depend: x = p + (x0 - p) exp(-r t), with the
+// unknowns y = (x + p)/2 and z = y - z^3.
 TEST(IndexOne, UnknownsFollowATransientAfterEachJump) {
   const std::string text = R"(unknown y = 0
 unknown z = 0
@@ -82,7 +82,8 @@ run 0..1 [s]
   }
 }
 
-// Also that of a diode that a step of backward differentiation once took for solved 1.5 V beyond where it conducts.
+// Among them is a diode whose unknown a step of backward differentiation once accepted 1.5 V beyond the voltage at
+// which it conducts.
 TEST(IndexOne, UnknownsAreSolvedForBetweenSteps) {
   for (const auto& problem : bench::choice_problems()) {
     if (problem.kind != "dae") continue;

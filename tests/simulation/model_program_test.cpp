@@ -51,7 +51,7 @@ run 0..1
   EXPECT_EQ(values.at(block.actions[0].expression), -0.75);
 }
 
-// Somebody holds one of them: its row is zero, in the order of the pattern and in the band.
+// The row of a held state is zero, in the order of the pattern and in the band.
 TEST(ModelSystem, AHeldStateHasNoDerivativesInABandEither) {
   const auto program = compile(good(R"(model Line
 param N = 30

@@ -249,7 +249,7 @@ run 0..1
   EXPECT_EQ(first_motion(text, 0, {0, 1}, -1).c, (std::array<double, 4>{0, -1, 0.5, 0}));
 }
 
-// Both sides lead back: there is no motion that leaves, and no coefficient is made up.
+// Both sides lead back to the surface: no motion leaves it, and no coefficient is invented.
 TEST(MotionSeries, DoesNotInventAMotionWhereBothSidesLeadBack) {
   constexpr const char* text = R"(model Stuck
 v' = 0.5 - sign(v)

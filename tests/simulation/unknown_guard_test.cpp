@@ -47,7 +47,7 @@ struct OneStep {
   }
   Step step() const { return {0, 1, coefficients}; }
 
-  /// As the run solves for it.
+  /// The guard with the unknown solved for as in a run.
   double guard(double theta) {
     X x(coefficients[0].size());
     for (std::size_t j = coefficients.size(); j-- > 0;)
@@ -113,7 +113,7 @@ TEST(UnknownGuards, TheEnclosureHoldsTheSolutionOnEveryPart) {
   }
 }
 
-// x u = x^2: u = x, but at x = 0, where any u will do.
+// x u = x^2: u = x, except at x = 0, where u is arbitrary.
 const std::string pole = R"(
 unknown u = 0
 x' = 1
@@ -200,7 +200,7 @@ TEST(UnknownGuards, TwoRootsABillionthApartAreBothFound) {
   }
 }
 
-// Each mode has residuals of its own, and one of them a jump that is held on either side.
+// Each mode has residuals of its own, and those of one mode contain a jump, which is kept on either side.
 TEST(UnknownGuards, TheResidualsAreThoseOfTheModeAndOfItsSwitches) {
   const std::string text = R"(
 unknown u = 0

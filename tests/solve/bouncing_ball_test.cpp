@@ -98,7 +98,7 @@ TEST(BouncingBall, NeverFallsThroughTheFloorWithTinySteps) {
   EXPECT_GE(lowest(solution), -1e-12);
 }
 
-// The action forgets to put the ball back on the floor, and the ball never comes back with e = 0.
+// The action does not set the ball back onto the floor, and with e = 0 it never returns.
 TEST(BouncingBall, AnActionThatOnlyTurnsTheVelocityIsEnough) {
   for (const double e : {0.9, 0.5, 0.0}) {
     const Event<X> floor = falls<X>(

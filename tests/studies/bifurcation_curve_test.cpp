@@ -151,7 +151,7 @@ TEST(BifurcationCurve, TheFirstLyapunovCoefficientVanishesAtAGeneralisedHopfPoin
 }
 
 // z' = (m0 + i w) z - z |z|^2, y' = m1 - y^2: Hopf points at m0 = 0, y^2 = m1, folds at m1 = 0; both at the origin. l1
-// has the sign of -1 on both sides, for z does not feel y.
+// has the sign of -1 on both sides, since z does not depend on y.
 TEST(BifurcationCurve, FoldsAndHopfPointsTouchAtAZeroHopfPoint) {
   for (unsigned seed = 1; seed <= members; ++seed) {
     const CoordinateChange<3> change(seed);

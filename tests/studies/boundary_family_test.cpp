@@ -67,7 +67,7 @@ TEST(BoundaryFamily, FollowsBratuRoundItsFold) {
   EXPECT_NEAR(families[0].points.front().constant + families[0].points.back().constant, 0.2, 1e-9);
 }
 
-// A rod that bends under a load P: straight until n^2 pi^2, then P = (2 n K(sin(a/2)))^2 where its end turns by a.
+// A rod that buckles under a load P: straight until n^2 pi^2, then P = (2 n K(sin(a/2)))^2 with the angle a at its end.
 TEST(BoundaryFamily, BendsTheElastica) {
   const auto problem = two_ends([](double x, double p) { return -p * std::sin(x); }, 5, true);
   const auto families = follow_families(problem, {nought}, {.low = 5, .high = 100});

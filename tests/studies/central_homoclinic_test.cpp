@@ -31,7 +31,7 @@ double mismatch(double drive, double friction) {
     constexpr int steps = 20000;
     const double h = (pi - s) / steps;
     for (int n = 0; n < steps; ++n, s += h) {
-      if (!(y > 0)) return 0.0;  // it has stopped before
+      if (!(y > 0)) return 0.0;  // the motion stopped earlier
       const double k1 = slope(s, y), k2 = slope(s + h / 2, y + h / 2 * k1), k3 = slope(s + h / 2, y + h / 2 * k2),
                    k4 = slope(s + h, y + h * k3);
       y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);

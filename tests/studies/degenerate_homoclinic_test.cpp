@@ -96,8 +96,8 @@ OrbitMark start_of(const Space& space, const Flow& flow, double first_constant, 
   return mark;
 }
 
-/// All that is marked on the curve in the first two constants through m, followed in three. `longer`: than usual, the
-/// first steps of all curves.
+/// The marks on the curve in the first two constants through m, continued in three constants. `longer` scales the first
+/// steps of all curves.
 template <class F>
 std::vector<DegenerateHomoclinicCurve> curves_from(const Space& space, F flow, const Triple& m, double size,
                                                    const std::array<double, 2>& third, double longer = 1) {
@@ -145,8 +145,8 @@ TEST(DegenerateHomoclinic, NeutralSaddlesAndSaddleNodes) {
   EXPECT_EQ(nodes, 2u);
 }
 
-// AUTO's demo san: for a = 0.25, b = 1, c = -2 the stable manifold comes back turned at alpha = 1.23086; with all rates
-// k times as large, at k times that.
+// AUTO's demo san: for a = 0.25, b = 1, c = -2 an inclination flip of the stable manifold is at alpha = 1.23086; with
+// all rates k times as large, at k times that.
 TEST(DegenerateHomoclinic, InclinationFlips) {
   const Space space(1);
   const auto flow = [](const Triple& m) {
@@ -173,7 +173,7 @@ TEST(DegenerateHomoclinic, InclinationFlips) {
   EXPECT_EQ(printed, 1u);
 }
 
-// c = -2 is nearer to zero than a - b: an orbit in the plane z = 0, as there is where mu = 0, does not come along the
+// c = -2 is nearer to zero than a - b: an orbit in the plane z = 0, which exists at mu = 0, does not return along the
 // leading direction.
 TEST(DegenerateHomoclinic, OrbitFlips) {
   const Space space(1);

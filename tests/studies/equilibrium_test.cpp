@@ -124,7 +124,7 @@ TEST(Equilibrium, WhatAlgebraicEquationsLeaveOpenIsNamed) {  // 0 = x - 1 - z^2 
   EXPECT_EQ(rest.undetermined.equations, std::vector<std::size_t>{1});
   EXPECT_TRUE(rest.eigenvalues.empty());
   EXPECT_EQ(rest.stability, Stability::undecided);
-  // Twice the same equation, in other units: either may be left out.
+  // The same equation twice, in different units: either may be left out.
   const std::vector<double> square{1, 2, 1e9, 2e9};
   EXPECT_EQ(undetermined_by(square, 2).equations.size(), 1u);
   EXPECT_TRUE(undetermined_by(std::vector<double>{1e-12}, 1).equations.empty());  // a matter of units

@@ -192,7 +192,7 @@ TEST(FitOfWorld, RefusesWhatJumpsAtImpacts) {
     const Fit found = fit(request);
     EXPECT_FALSE(found.found());
     EXPECT_THAT(found.status.message, HasSubstr("jumps where bodies meet")) << quantity;
-    // Before anything meets it is a quantity like others.
+    // Before the first contact it is a quantity like any other.
     request.data.clear();
     request.data.push_back(data_of({0.1, 0.3, 0.5}, {"ball.y'"}, {{-0.981, -2.943, -4.905}}));
     EXPECT_NEAR(fit(request).least.p.at(0), 9.81, 1e-6);

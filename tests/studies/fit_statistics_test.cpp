@@ -117,7 +117,7 @@ TEST(FitStatistics, EveryColumnHasADeviationOfItsOwn) {
   EXPECT_NEAR(found.columns[1].met, 2, 0.8);
   EXPECT_NEAR(found.columns[2].met, 30, 4 * 30 / std::sqrt(12));
   EXPECT_NEAR(found.columns[0].degrees + found.columns[1].degrees + found.columns[2].degrees, 106 - 2, 1e-9);
-  // The best column alone pays for the unknowns, since it alone determines them.
+  // Only the best column loses degrees of freedom to the unknowns, since it alone determines them.
   EXPECT_NEAR(found.columns[0].degrees, 48, 0.1);
 }
 
@@ -199,7 +199,7 @@ TEST(FitStatistics, ProfilesOfAStraightLineAreItsIntervals) {
   }
 }
 
-// y = a/(a + t) at one far place sees little of a large a: it has a least value and no greatest one.
+// y = a/(a + t) hardly depends on a if a is large: the profile has a lower limit and no upper one.
 TEST(FitStatistics, AProfileMayHaveNoLimit) {
   const char* saturation = "param a = 50\ns' = 0\ns(0) = 0\noutput y = a/(a + t)\nrun 0..10\n";
   FitRequest request = request_of(saturation, {"a"}, {data_of("y", {1, 2, 3}, {0.99, 0.97, 0.98})});
@@ -272,7 +272,7 @@ TEST(FitStatistics, RefusesValuesThatTheirErrorsMakeImpossible) {
   request.data[0].columns[0].error = ErrorModel::poisson;
   EXPECT_THAT(fit(request).status.message, HasSubstr("y.csv:3: -1 in column `y` is no count"));
   request.data[0].columns[0].error = ErrorModel::constant;
-  // Their squares are infinite or zero: a fit of them would say that the data do not determine a.
+  // The squares of these values are infinite or zero: a fit would report that the data do not determine a.
   for (const double size : {1e200, 1e-200}) {
     request.data[0].measurements.values[0] = {size, 2 * size};
     EXPECT_THAT(fit(request).status.message, HasSubstr("to be squared: give it in another unit"));
@@ -365,8 +365,8 @@ TEST(FitStatistics, RobustIntervalsHoldTheTruthAsOftenAsTheySay) {
   }
 }
 
-/// How many of so many intervals of a and b and bands of y and z hold the truth, of y = a + b t and z = 10 y in rows of
-/// two deviations each.
+/// The number of intervals of a and b and of bands of y and z that contain the true value, for y = a + b t and z = 10 y
+/// in rows of two deviations each.
 std::array<int, 4> held_by_two_columns(std::size_t rows, int fits) {
   std::mt19937_64 random(12);
   std::normal_distribution<double> normal(0, 1);

@@ -87,7 +87,7 @@ TEST(Fit, FindsInitialValuesToo) {
   EXPECT_NEAR(result.least.p[3], 0, 1e-6);
 }
 
-// One value of ten is off by 3, sixty deviations, towards where a larger k would have it.
+// One of ten values has an error of 3, sixty deviations, in the direction of a larger k.
 TEST(Fit, RobustLossesForgiveOutliers) {
   std::mt19937_64 random(4);
   FitRequest request = spring_request(100, 0.05, random);

@@ -32,7 +32,8 @@ Y flow_of(const Sandstede& s, const Y& v, const T& a, const T& alpha, const T& m
            s.c * z + mu * x + s.gamma * x * z + alpha * s.beta * (x * x * (1.0 - x) - y * y)};
 }
 
-/// The orbit at rest nearly, once round. With y = x sigma, x = 1 - sigma^2: sigma' = -(1 - sigma^2) (a sigma + b) / 2.
+/// One turn of the orbit, which is nearly at rest at its ends. With y = x sigma, x = 1 - sigma^2: sigma' = -(1 -
+/// sigma^2) (a sigma + b) / 2.
 OrbitMark mark_of(const CoordinateChange<3>& change, const Sandstede& s, double first_constant, double duration) {
   constexpr std::size_t intervals = 60, degree = detail::OrbitCollocation::degree, steps = 20;
   OrbitMark mark{.kind = OrbitBifurcation::homoclinic, .at = {}};
@@ -79,7 +80,7 @@ std::vector<OrbitDegeneracy> kinds_of(const OrbitCurve& curve) {
   return kinds;
 }
 
-// Along a the eigenvalues are a + 1, a - 1 and -2: the saddle is neutral at 0, and none any more at 1.
+// The eigenvalues are a + 1, a - 1 and -2: the saddle is neutral at a = 0, and no longer a saddle at a = 1.
 TEST(HomoclinicCurve, NeutralSaddleAndItsEnd) {
   for (unsigned seed = 1; seed < members; ++seed) {  // towards the end the orbit comes ever more slowly
     const CoordinateChange<3> change(seed);
@@ -112,7 +113,7 @@ TEST(HomoclinicCurve, NeutralSaddleAndItsEnd) {
   }
 }
 
-// AUTO's demo san: for a = 0.25 the stable manifold comes back turned at alpha = 1.23086.
+// AUTO's demo san: for a = 0.25 an inclination flip of the stable manifold is at alpha = 1.23086.
 TEST(HomoclinicCurve, InclinationFlip) {
   for (unsigned seed = 1; seed <= members; ++seed) {
     const CoordinateChange<3> change(seed);
@@ -130,8 +131,8 @@ TEST(HomoclinicCurve, InclinationFlip) {
   }
 }
 
-// c = -2 is nearer to zero than a - b = -2.5: an orbit in the plane z = 0, as there is at mu = 0, does not come along
-// the leading direction.
+// c = -2 is nearer to zero than a - b = -2.5: an orbit in the plane z = 0, which exists at mu = 0, does not return
+// along the leading direction.
 TEST(HomoclinicCurve, OrbitFlip) {
   for (unsigned seed = 1; seed <= members; ++seed) {
     const CoordinateChange<3> change(seed);
@@ -304,8 +305,9 @@ double drive_of(double friction) {
   return low;
 }
 
-// A pendulum with friction under a constant torque I turns over once from its saddle to the next one, which is the
-// same, where I is 4/pi times a little friction (V. K. Melnikov), and at larger ones where the manifolds meet.
+// A pendulum with friction under a constant torque I turns over once from its saddle to the next one, which is the same
+// point. For little friction that is at I = 4/pi times the friction (V. K. Melnikov), for more friction where the
+// manifolds meet.
 TEST(HomoclinicCurve, OfARotation) {
   constexpr double begin = 0.2;
   const double drive = drive_of(begin), h = 0.0005;
@@ -313,7 +315,7 @@ TEST(HomoclinicCurve, OfARotation) {
   Turn turn = turn_of(begin, drive, h);
   std::vector<std::array<double, 2>> orbit = turn.there;
   orbit.insert(orbit.end(), turn.back.rbegin() + 1, turn.back.rend());
-  // Other coordinates, in which every component goes on: u = phi + phi'/2, v = phi' - 0.3 phi.
+  // Other coordinates, in which every component increases from turn to turn: u = phi + phi'/2, v = phi' - 0.3 phi.
   auto system = parametric_system(2,
                                   [](double, Values x, Values p, std::span<double> out) {
                                     const double phi = (x[0] - x[1] / 2) / 1.15, speed = x[1] + 0.3 * phi;

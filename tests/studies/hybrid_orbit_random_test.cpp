@@ -20,7 +20,7 @@
 namespace continuo::studies {
 namespace {
 
-/// Each of the expected ones is among the found ones; of nearly equal ones the digits are those of a double root.
+/// Each expected value is among those found; nearly equal ones have only the accuracy of a double root.
 void expect_same(std::vector<std::complex<double>> found, const std::vector<std::complex<double>>& expected,
                  double accuracy, const std::string& text) {
   ASSERT_EQ(found.size(), expected.size()) << text;
@@ -87,7 +87,7 @@ std::optional<Cycle> cycle_of(const RandomMap& map, std::size_t most) {
   const RealVector begin = x;
   Cycle cycle{0, RealMatrix::Identity(n, n)};
   while (cycle.length < most) {
-    if (std::abs(x[0] - map.level) < 1e-5L) return std::nullopt;  // as good as a corner
+    if (std::abs(x[0] - map.level) < 1e-5L) return std::nullopt;  // too close to the corner
     const int side = x[0] > map.level ? 1 : 0;
     cycle.product = map.a[side] * cycle.product;
     step(side);

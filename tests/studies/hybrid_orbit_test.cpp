@@ -48,7 +48,7 @@ TEST(HybridOrbit, OfAnIntegrateAndFireNeuronHasItsPeriod) {
   EXPECT_NEAR(found.period_by[0], -0.5, 1e-8);
 }
 
-// Each bounce gives back e v + k: v = k/(1 - e) on the orbit, neighbours' speeds come nearer by e.
+// Each bounce returns the speed e v + k: v = k/(1 - e) on the orbit, and differences of speeds are multiplied by e.
 TEST(HybridOrbit, OfABallThatIsKickedHasTheMultiplierE) {
   const HybridOrbit found =
       orbit_of("h' = v\nv' = -9.81\nh(0) = 1\nv(0) = 0\nwhen h falls through 0 { v := -0.7*v + 2 }\nrun 0..60\n");
@@ -59,8 +59,8 @@ TEST(HybridOrbit, OfABallThatIsKickedHasTheMultiplierE) {
   EXPECT_EQ(found.events[0].name, "h falls through 0");
 }
 
-// T. McGeer, "Passive dynamic walking", Int. J. Robotics Res. 9 (1990): a step keeps cos(2 alpha) of the speed, and the
-// square of the speed comes nearer by cos^2(2 alpha).
+// T. McGeer, "Passive dynamic walking", Int. J. Robotics Res. 9 (1990): a step multiplies the speed by cos(2 alpha),
+// and differences of its square by cos^2(2 alpha).
 TEST(HybridOrbit, OfTheRimlessWheelHasItsMultiplier) {
   const HybridOrbit found = orbit_of(
       "param alpha = 0.3, gamma = 0.1\na' = w\nw' = sin(a)\na(0) = -0.2\nw(0) = 0.5\n"
@@ -94,7 +94,8 @@ TEST(HybridOrbit, OfARelayOscillatorPassesJumpsOfTheEquations) {
   EXPECT_NEAR(found.high[0], (1 + q) / (1 - q), 1e-8);
 }
 
-// The clock m comes back after three turns, n never does and nothing hangs on it; y is halved every third second.
+// The counter m repeats after three turns, the counter n never does, but no equation depends on n; y is halved every
+// third second.
 TEST(HybridOrbit, CountersThatComeBackMakeItLonger) {
   const HybridOrbit found = orbit_of(
       "x' = 1\nn' = 0\nm' = 0\ny' = 1 - 0.3*y\nx(0) = 0\nn(0) = 0\nm(0) = 0\ny(0) = 1\n"
@@ -104,8 +105,8 @@ TEST(HybridOrbit, CountersThatComeBackMakeItLonger) {
   EXPECT_EQ(found.aside[0], 1u);
 }
 
-// A block that a belt drags (stick and slip): while it sticks the motion slides along v = 1, so that nothing of a
-// neighbour's distance is left.
+// A block dragged by a belt (stick and slip): while it sticks the motion slides along v = 1, so that perturbations
+// vanish.
 TEST(HybridOrbit, OfABlockThatSticksHasAMultiplierOfZero) {
   const HybridOrbit found = orbit_of(
       "x' = v\nv' = -x + (if v < 1 then 1/(1 + abs(v - 1)) else -1/(1 + abs(v - 1)))\nx(0) = 0\nv(0) = 0.5\n"
@@ -126,9 +127,9 @@ TEST(HybridOrbit, OfABallWithoutLossIsOneOfAFamily) {
   EXPECT_EQ(found.neighbours, Neighbours::undecided);
 }
 
-// E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", eq. II.0.1: the ship is back after
-// 17.0652165601579625..., and since the energy in the turning frame is conserved, there is a second multiplier of 1;
-// the other two are each other's inverse.
+// E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", eq. II.0.1: the period is
+// 17.0652165601579625... Since the energy in the rotating frame is conserved, there is a second multiplier of 1; the
+// other two are each other's inverse.
 TEST(HybridOrbit, OfArenstorfsShipHasItsPairs) {
   const HybridOrbit found = find_hybrid_orbit(gallery("arenstorf"), {}, {.settle = 0, .duration = 20});
   ASSERT_TRUE(found.outcome) << found.outcome.hint;
@@ -182,7 +183,7 @@ TEST(HybridOrbit, OfMeissnersEquationAtRestHasItsMultipliers) {
   EXPECT_NEAR(std::abs(found.multipliers[0]), 1, 1e-9);
 }
 
-// The two clocks reach 1 together; z is halved before it grows, or after.
+// The two clocks reach 1 at the same time, and the order of their actions on z matters.
 TEST(HybridOrbit, OfTwoEventsAtOnceIsRefused) {
   const HybridOrbit found = orbit_of(
       "x' = 1\ny' = 1\nz' = 0\nx(0) = 0\ny(0) = 0\nz(0) = 1\nwhen x rises through 1 { x := 0; z := 0.5*z }\n"
@@ -194,7 +195,7 @@ TEST(HybridOrbit, OfTwoEventsAtOnceIsRefused) {
   }
 }
 
-// A switch in the surface of another: each whole number of turns `mod` jumps, and the comparison with it.
+// A discontinuity on the surface of another: at each whole period `mod` jumps, and so does the comparison with it.
 TEST(SwitchedMotion, OfASquareWaveHasItsMean) {
   const model::Simulated simulated =
       model::simulate(program_of("x' = if mod(t, 2) < 0.7 then 1 else -0.25\nx(0) = 0\nrun 0..10\n"), {.rtol = 1e-10});
@@ -202,7 +203,7 @@ TEST(SwitchedMotion, OfASquareWaveHasItsMean) {
   EXPECT_NEAR(simulated.run->final_state()[0], 5 * (0.7 - 0.25 * 1.3), 1e-8);
 }
 
-// x = cos(t) touches 1, where it would be thrown back.
+// x = cos(t) touches the event's surface at 1 without crossing it.
 TEST(HybridOrbit, ThatOnlyTouchesAnEventIsRefused) {
   const HybridOrbit found = orbit_of(
       "param mu = 1\nx' = -y + mu*x*(1 - x^2 - y^2)\ny' = x + mu*y*(1 - x^2 - y^2)\nx(0) = 0.5\ny(0) = 0\n"

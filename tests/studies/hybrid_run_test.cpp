@@ -75,7 +75,7 @@ TEST(HybridExponents, OfABounceSumToWhatItMakesOfAreas) {
   EXPECT_NEAR(found[0] + found[1], sum / 200, 2 * std::log(2.0) / 200 + 1e-3);
 }
 
-// The relay reaches its surface and slides: neighbours merge.
+// The relay reaches its surface and slides, so that neighbouring motions merge.
 TEST(HybridExponents, OfNeighboursThatMergeAreFarBelowZero) {
   const auto found =
       exponents_of("x' = if x > 0 then -1 else 1\nx(0) = 0.5\nrun 0..5\n", {.duration = 20, .settle = 5});

@@ -152,10 +152,9 @@ TEST(OrbitContinuation, LorenzFromTheHopfPointToTheHomoclinicOrbit) {
 }
 
 // A canard: the orbit of x' = (y - x^3/3 + x) / eps, y' = a - x explodes within exp(-1/eps) of a = 1 - eps/8 - 3
-// eps^2/32
-// - 173 eps^3/1024 - O(eps^4) (A. K. Zvonkin, M. A. Shubin, "Non-standard analysis and singular perturbations of
-// ordinary differential equations", Russ. Math. Surv. 39 (1984)), from a small one to the relaxation oscillation, all
-// of it stable: in the plane a multiplier is exp of the integral of the divergence, never below 0.
+// eps^2/32 - 173 eps^3/1024 - O(eps^4) (A. K. Zvonkin, M. A. Shubin, "Non-standard analysis and singular perturbations
+// of ordinary differential equations", Russ. Math. Surv. 39 (1984)), from a small one to the relaxation oscillation.
+// All orbits are stable: in the plane a multiplier is exp of the integral of the divergence, never below 0.
 TEST(OrbitContinuation, CanardsAreFollowed) {
   const double eps = 0.02;
   const auto f = [=](double, Values x, Values p, std::span<double> out) {
@@ -186,8 +185,8 @@ TEST(OrbitContinuation, CanardsAreFollowed) {
   EXPECT_LT(least, 1e-60);
 }
 
-/// y' = g(y) in other coordinates: x = A y with two more terms of second order, whose inverse is as plain. g is a
-/// circle of radius sqrt(mu), and beside it what decays fast and what grows fast: multipliers exp(-2 mu T), exp(-20 T),
+/// y' = g(y) in other coordinates: x = A y with two terms of second order added, whose inverse is equally simple. g has
+/// a circle of radius sqrt(mu), with fast decaying and fast growing directions: multipliers exp(-2 mu T), exp(-20 T),
 /// exp(8 T), of sizes from 1e-55 to 1e22.
 ParametricSystem disguised_circle(double mu, double seed) {
   const auto f = [=](double, Values x, Values p, std::span<double> out) {
@@ -196,7 +195,8 @@ ParametricSystem disguised_circle(double mu, double seed) {
       for (std::size_t j = 0; j < 4; ++j)
         a[i * 4 + j] = (i == j ? 1 : 0) + 0.3 * std::sin(seed * static_cast<double>(1 + i * 4 + j));
     const double shear = std::cos(seed), other = std::sin(3 * seed);
-    // Back: first the shears, then the matrix, by elimination without pivots, for it is near the identity.
+    // The inverse: first of the shears, then of the matrix, by elimination without pivots, since it is near the
+    // identity.
     std::array<double, 4> z{x[0], x[1], x[2] - shear * x[0] * x[0], x[3] - other * x[0] * x[1]}, y(z);
     auto m = a;
     for (std::size_t k = 0; k < 4; ++k)
@@ -271,8 +271,8 @@ TEST(OrbitContinuation, RoesslerDoublesItsPeriod) {
   EXPECT_NEAR(after.period / before.period, 2, 0.02);
 }
 
-// Two rotations: r' = r (1 - r^2) with angular speed 1, and beside it a spiral u' = (mu - r) u + i omega u that is made
-// to feel the first: the multipliers of the circle r = 1 are exp(-4 pi) and exp(2 pi (mu - 1 +- i omega)).
+// Two rotations: r' = r (1 - r^2) with angular velocity 1, and a spiral u' = (mu - r) u + i omega u that depends on the
+// first: the multipliers of the circle r = 1 are exp(-4 pi) and exp(2 pi (mu - 1 +- i omega)).
 TEST(OrbitContinuation, ATorusIsBorn) {
   const double omega = 0.3;
   const auto f = [=](double, Values x, Values p, std::span<double> out) {

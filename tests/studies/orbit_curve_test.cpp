@@ -17,8 +17,8 @@ namespace {
 constexpr unsigned members = 2;  // of each kind; a hundred have been run
 constexpr double pi = std::numbers::pi, turn_rate = 3;
 
-// A circle of radius 1 in the plane of y0, y1, run through at a constant rate; u = (radius - 1, y2) is how far a motion
-// is from it, and u' = flow(u, cosine, sine of the angle).
+// A circle of radius 1 in the plane of y0, y1, with a constant angular velocity; u = (radius - 1, y2) is the deviation
+// of a motion from it, with u' = flow(u, cosine, sine of the angle).
 template <class Flow>
 auto round_a_circle(Flow flow) {
   return [flow](const auto& y, const auto& m) {
@@ -183,8 +183,8 @@ TEST(OrbitCurve, DoublingsAndToriMeetAtAOneToTwoResonance) {
   }
 }
 
-// r' = r (m0 + m1 r^2 - r^4): two circles meet where m0 = -m1^2 / 4, m1 > 0, at r^2 = m1 / 2. At the origin, a
-// generalised Hopf point, they are gone.
+// r' = r (m0 + m1 r^2 - r^4): a fold of circles at m0 = -m1^2 / 4, m1 > 0, with r^2 = m1 / 2. It ends at the origin, a
+// generalised Hopf point.
 TEST(OrbitCurve, FoldsOfOrbitsEndAtAGeneralisedHopfPoint) {
   for (unsigned seed = 1; seed <= members; ++seed) {
     const CoordinateChange<3> change(seed);

@@ -21,7 +21,8 @@ TEST(PhasePortrait, SeparatricesOfThePendulumHaveItsEnergy) {  // v^2 / 2 - cos 
   ASSERT_EQ(portrait.separatrices.size(), 8u);
   for (const PlaneCurve& curve : portrait.separatrices) {
     EXPECT_GT(curve.size(), 10u);
-    // It begins 1e-4 of the plane beside the saddle, where the energy is off by the square of that; rtol adds the rest.
+    // The separatrix begins 1e-4 of the plane from the saddle, where the energy is off by the square of that; rtol adds
+    // the rest.
     for (const auto& [x, v] : curve) EXPECT_NEAR(v * v / 2 - std::cos(x), 1, 1e-5);
   }
 }
@@ -55,7 +56,7 @@ TEST(PhasePortrait, MotionsEndWhereTheyLeave) {  // x' = x, y' = 0
   for (const auto& point : portrait.motions[0]) EXPECT_LE(std::abs(point[0]), 1.03);
 }
 
-// Two hundred turns in the time of the picture: at even times there would be four points to a turn.
+// Two hundred turns within the time of the picture: at equidistant times there would be four points to a turn.
 TEST(PhasePortrait, FastMotionsAreRound) {
   const double w = 400 * std::numbers::pi;
   const auto turning =

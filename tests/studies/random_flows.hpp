@@ -66,8 +66,8 @@ struct LinearFlow {
   }
 };
 
-/// Two modes; at c x = level, risen through in the first and fallen through in the second, the other one's turn comes,
-/// after x := R x + r.
+/// Two modes: when c x rises through `level` in the first mode or falls through it in the second, x := R x + r and the
+/// other mode begins.
 struct RandomFlow {
   LinearFlow flow[2];
   RealVector c;
@@ -134,8 +134,8 @@ struct Turn {
 
 inline constexpr Real short_time = 0.01L;
 
-/// From just behind the jump into `mode` to just behind the next; nothing where there is none within a time of 50.
-/// `step` is the exponential of a short time. The product is asked for only where the turn is to be differentiated.
+/// From just after the jump into `mode` to just after the next one; empty if there is none within a time of 50. `step`
+/// is the exponential of a short time. The product is computed only if derivatives are needed.
 inline std::optional<Turn> half_turn(const RandomFlow& system, int mode, const RealMatrix& step,
                                      const RealVector& begin, bool differentiated) {
   const LinearFlow& flow = system.flow[mode];
@@ -181,8 +181,8 @@ struct FlowCycle {
   RealMatrix product;
 };
 
-/// After many turns, if these repeat within `most`. `bounded`: whether it stays where it began, near the levels; far
-/// from them it switches ever faster.
+/// The cycle after many turns, if they repeat within `most`. `bounded`: whether the motion remains near the levels,
+/// where it began; far from them it switches ever faster.
 inline std::optional<FlowCycle> cycle_of(const RandomFlow& system, std::size_t most, bool& bounded) {
   const Eigen::Index n = system.c.size();
   RealVector x = RealVector::Zero(n);

@@ -14,8 +14,7 @@ namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
 
-// theta' = w + sin(theta) turns over in 2 pi / sqrt(w^2 - 1); z follows it, and a neighbour's z comes nearer by
-// exp(-T).
+// theta' = w + sin(theta) has the period 2 pi / sqrt(w^2 - 1); z follows it, and differences of z decay by exp(-T).
 ParametricSystem rotor(double w) {
   const auto f = [](double, Values x, Values p, std::span<double> dxdt) {
     dxdt[0] = p[0] + std::sin(x[0]);
@@ -56,7 +55,7 @@ TEST(Rotation, OfTwoThatAreCoupledIsOneOfBoth) {
   EXPECT_NEAR(found.multipliers[1].real(), std::exp(-2 * k * found.period), 1e-7);
 }
 
-// Where f is another after a turn, nothing repeats itself.
+// If f differs after a turn, there is no periodic motion.
 TEST(Rotation, NeedsEquationsThatRepeatThemselves) {
   const auto f = [](double, Values x, Values, std::span<double> dxdt) {
     dxdt[0] = 1.5 + std::sin(1.1 * x[0]);

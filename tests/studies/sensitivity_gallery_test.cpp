@@ -54,7 +54,7 @@ struct Case {
   /// The row at which states are compared: the first with conditions at several times, since free components are most
   /// sensitive there, else the last.
   std::size_t row(std::size_t rows) const { return program->model.needs_boundary_solver() ? 0 : rows - 1; }
-  /// The state there, by the run of the model alone where a parameter moves.
+  /// The state in that row, by a plain run of the model if the influence is a parameter.
   std::vector<double> state(double value, double rtol = 1e-11) const {
     const SensitivityRequest asked = request(value, rtol);
     if (influence.kind == Influence::Kind::initial) {
@@ -88,7 +88,7 @@ void compare(const Case& of, const std::string& name) {
     std::vector<double>& difference = differences.emplace_back();
     for (std::size_t i = 0; i < run.states; ++i) difference.push_back((high[i] - low[i]) / (2 * step));
   }
-  // Members of a family (x[1], x[2], ...) err alike, each by chance more or less: the largest counts for all.
+  // Members of a family (x[1], x[2], ...) have errors of the same size, but for chance: the largest is used for all.
   const auto family = [&](std::size_t i) {
     const model::State& state = of.program->model.states[i];
     return state.base.substr(0, state.base.find('[')) + std::string(static_cast<std::size_t>(state.primes), '\'');
@@ -100,7 +100,7 @@ void compare(const Case& of, const std::string& name) {
     const double first = (4 * differences[1][i] - differences[0][i]) / 3;
     const double second = (4 * differences[2][i] - differences[1][i]) / 3;
     expected[i] = (16 * second - first) / 15;
-    // The hundred: rounding of that many steps.
+    // The factor of 100 is for the rounding of that many steps.
     const double rounding = 100 * std::numeric_limits<double>::epsilon() * std::abs(middle[i]);
     const double error_of_run = std::abs(middle[i] - run.value(here, i)) + std::abs(middle[i] - coarse[i]) + rounding;
     const double error_of_s = std::abs(run.sensitivity(here, i, 0) - loose.sensitivity(of.row(loose.rows()), i, 0));

@@ -82,7 +82,7 @@ TEST(Sensitivity, FollowsParametersThroughOthersAndIntoInitialValues) {
   };
   EXPECT_NEAR(of({parameter(*program, "a")})[1], 2 * (2 / b - 1) * x, 1e-9);
   EXPECT_NEAR(of({parameter(*program, "b")})[1], (2 / b - 1) * x, 1e-9);
-  // b moves by itself, so a moves nothing.
+  // b is varied or set by itself here, so nothing depends on a.
   EXPECT_EQ(of({parameter(*program, "a"), parameter(*program, "b")})[1], 0);
   EXPECT_EQ(of({parameter(*program, "a")}, {{"b", 1.0}})[1], 0);
   EXPECT_NEAR(of({initial(*program, "x")})[1], std::exp(-b), 1e-9);
@@ -112,7 +112,7 @@ TEST(Sensitivity, KnowsAStartThatMoves) {
   EXPECT_NEAR(final_row(SensitivityStudy(program, {parameter(*program, "a")}).run())[1], -std::exp(0.75), 1e-8);
 }
 
-// y is reset by the event that x sets off, and w by the jump of y at the same instant: x = a t reaches 1 at 1/a.
+// x = a t reaches 1 at 1/a and fires an event that resets y; the jump of y resets w at the same instant.
 TEST(Sensitivity, FollowsOneEventThatSetsOffAnother) {
   const auto program = program_of(
       "param a = 2\nx' = a\ny' = 1\nw' = 3\nx(0) = 0; y(0) = 0; w(0) = 0\n"
@@ -124,7 +124,7 @@ TEST(Sensitivity, FollowsOneEventThatSetsOffAnother) {
   EXPECT_NEAR(end[5], -1.0 / 4, 1e-10);
 }
 
-// Two balls that land in the same instant move by their own times: y2 = 1 - b t^2/2.
+// Two balls that land at the same instant, each with a derivative of its own time: y2 = 1 - b t^2/2.
 TEST(Sensitivity, TellsEventsOfOneInstantApart) {
   const auto program = program_of(
       "param a = 2, b = 2\nx'' = -a\ny'' = -b\nx(0) = 1; x'(0) = 0; y(0) = 1; y'(0) = 0\n"

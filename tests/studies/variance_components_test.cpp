@@ -112,7 +112,7 @@ TEST(VarianceComponents, KnownOnesStayAndLeaveNoDoubt) {
   EXPECT_NEAR(sure.covariance[3], expected(1, 1), 1e-9 * expected(1, 1));
 }
 
-// Two unknowns of which only the sum is seen, and one beside them that is seen well.
+// Two unknowns of which the data determine only the sum, and one that is well determined.
 TEST(VarianceComponents, WhatIsNotDeterminedHidesNothingElse) {
   const Line line(10, 0, 0.1, 1, 7);
   VarianceComponents noise = line.noise(0.01, 1);

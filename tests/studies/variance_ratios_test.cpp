@@ -80,7 +80,7 @@ double probability(const std::vector<double>& factors, double middle, double hal
   return within / all;
 }
 
-// Rows that are all alike tell nothing of the ratio, and need not: the mean of five values by the textbook.
+// Rows with equal factors contain no information on the ratio, and need none: the mean of five values as in textbooks.
 TEST(VarianceRatios, AreNothingWhereAllRowsAreAlike) {
   const Constant constant({1, 1, 1, 1, 1});
   double squares = 0;

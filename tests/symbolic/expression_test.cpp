@@ -110,7 +110,7 @@ TEST_F(Expression, DeepChainsDoNotExhaustTheStack) {
 }
 
 TEST_F(Expression, LinearInGivesCoefficientAndRemainder) {
-  // m*a + c*v - F = 0 for a: the way a highest derivative is found.
+  // m*a + c*v - F = 0 solved for a, as for a highest derivative.
   const NodeId equation = g.subtract(g.add(g.multiply(k, x), g.multiply(g.apply(Op::sine, y), t)), number(3));
   const auto linear = linear_in(g, equation, 1);
   ASSERT_TRUE(linear);

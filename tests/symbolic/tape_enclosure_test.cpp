@@ -75,7 +75,7 @@ class RandomExpressions {
   std::mt19937 random_;
 };
 
-/// Straight motions of the variables, each by its own rate, the parameters at rest.
+/// Linear motions of the variables, each with its own rate; the parameters are constant.
 struct Motion {
   std::vector<double> from, rate;
 
@@ -152,7 +152,7 @@ TEST(TapeEnclosure, HoldsValuesAndQuotientsOfDifferencesOfRandomExpressions) {
       }
     }
   }
-  EXPECT_GT(bounded, checked / 2);  // the entire line would hold everything
+  EXPECT_GT(bounded, checked / 2);  // an unbounded enclosure would contain everything
 }
 
 TEST(TapeEnclosure, TablesHaveTheRangeOfAllTheirPieces) {

@@ -19,8 +19,7 @@
 namespace continuo::model {
 namespace {
 
-/// Families whose members take turns: of `count` families member i of family f is variable 1 + i*count + f. Then come
-/// the parameters.
+/// Interleaved families: of `count` families member i of family f is variable 1 + i*count + f. The parameters follow.
 struct Grid {
   std::uint32_t count, points, parameters = 2;
 
@@ -96,8 +95,8 @@ TEST(TapeFamily, TheOrderOfTheLoopsChangesNoDigit) {
   EXPECT_EQ(run<long double>(families, grid.size()), run<long double>(plain, grid.size()));
 }
 
-/// A few formulas over points of random families near i, repeated for all i: at the ends with other operands, or not
-/// at all.
+/// A few formulas over points of random families near i, repeated for all i; at the ends with other operands, or
+/// absent.
 struct RandomGrid {
   explicit RandomGrid(unsigned seed) : random(seed), grid{.count = 1 + below(3), .points = 10 + below(120)} {
     struct Term {
@@ -206,7 +205,7 @@ TEST(TapeFamily, SteadyVariablesAreReadWhereTheyAre) {
   }
 }
 
-// States that lie elsewhere, and outputs wanted elsewhere: the same numbers, and nothing else is written.
+// States and outputs at other places: the same values, and nothing else is written.
 TEST(TapeFamily, StatesAndOutputsMayLieElsewhere) {
   constexpr std::uint32_t n = 40;
   for (const bool reads_t : {false, true}) {

@@ -20,7 +20,7 @@ namespace {
 
 using Pair = std::array<double, 2>;
 
-/// Predator and prey with a growth that follows the seasons; each derivative as its test wants it.
+/// Predator and prey with seasonal growth; each test supplies its own derivative.
 struct Prey {
   double slope_of_prey = 1, slope_of_time = 1;
   std::string_view component_name(std::size_t i) const { return i == 0 ? "hare" : "lynx"; }
@@ -122,7 +122,7 @@ TEST(CheckJacobian, AnEntryOutsideThePatternIsFoundWithAndWithoutValues) {
   EXPECT_EQ(check_jacobian(doubled, 0.0, x).wrong.size(), 8U + 7U + 7U);
 }
 
-/// Its action is right, its matrix is not.
+/// A system whose Jacobian action is right and whose matrix is wrong.
 struct TwoWays {
   void operator()(double, const Pair& x, Pair& dxdt) const { dxdt = {x[1], -x[0]}; }
   void jacobian(double, const Pair&, std::span<double> rows) const {
@@ -166,7 +166,7 @@ TEST(CheckJacobian, WhereThereIsNoDerivativeAValueBetweenTheSlopesPassesAndIsSai
   }
   friction.slope = 1.5;
   EXPECT_FALSE(check_jacobian(friction, 0.0, Pair{1, 0}).agrees());
-  // Beside the kink there is one slope, and only it will do.
+  // Next to the kink the derivative is unique, and only that is accepted.
   friction.slope = -1;
   EXPECT_TRUE(check_jacobian(friction, 0.0, Pair{1, 1e-3}).agrees());
   friction.slope = 1;

@@ -18,7 +18,7 @@
 namespace continuo::differentiable_test {
 namespace {
 
-/// A state near x none of whose components is special.
+/// A state near x, without special values in its components.
 template <class X>
 X moved(X x) {
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = x[i] * 1.25 + 0.01 * static_cast<double>(i + 1);

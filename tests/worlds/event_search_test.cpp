@@ -50,8 +50,8 @@ run 0..1 output 0.1
   EXPECT_EQ(times_of(run, "middle").size(), 1000u);  // 0.0008 after the start, then every 0.001
 }
 
-// With drag, x = 1 - exp(-t), up to a wall at 0.6 that turns it back with 0.4: it is above 0.6 - 1e-7 for 5e-7. The
-// path is followed to 1e-10.
+// With drag, x = 1 - exp(-t), up to a wall at 0.6 that reflects it with 0.4: it is above 0.6 - 1e-7 for 5e-7. The path
+// is computed to 1e-10.
 TEST(Looks, SeeWhatABounceTurnsBack) {
   const model::Run run = run_of(R"(
 world {

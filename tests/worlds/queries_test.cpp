@@ -109,8 +109,8 @@ run 0..1
     };
     const auto hit = queries.first_hit({.origin = origin, .direction = direction, .reach = 40});
     ASSERT_TRUE(hit) << hit.status().message;
-    // Both solve the same quadratic, in other orders: to 1e-16 of its numbers, of up to 50^2, over twice a root that is
-    // not small but where a ray grazes; to half of the digits there.
+    // Both solve the same quadratic, in different orders of operations: they agree to 1e-16 of its terms, of up to
+    // 50^2, over twice a root that is small only for a grazing ray; there, to half of the digits.
     EXPECT_NEAR(asked("way"), hit->empty() ? 40 : hit->front().distance, 1e-6) << k;
     hits += !hit->empty() && !hit->front().is_wall() ? 1 : 0;
     EXPECT_NEAR(asked("gap"), queries.nearest(origin, 1)->front().distance, 1e-13) << k;
@@ -122,8 +122,8 @@ run 0..1
   EXPECT_GT(crowded, 100U);
 }
 
-/// A car at 5 m/s sees a wall 20 m ahead, and brakes when it is 4 m away; a stone that rolls into the beam is seen,
-/// too.
+/// A car at 5 m/s has a sensor, detects a wall 20 m ahead, and brakes at a distance of 4 m; a stone that rolls into the
+/// beam is detected, too.
 std::string car(const std::string& mode) {
   return R"(
 world {
@@ -146,7 +146,8 @@ TEST(QueriesInText, AreSensorsOfEvents) {
     for (const model::Happened& event : run.events)
       if (!event.mark.empty()) marks.push_back(event);
     ASSERT_EQ(marks.size(), 2U) << mode;
-    // The edge of the stone, 1 below its centre, falls from y = 6 at 2 m/s to the beam at y = 1: an event after 2 s.
+    // The stone, with its centre at y = 6 and a radius of 1, moves down at 2 m/s: its edge reaches the beam at y = 1
+    // after 2 s.
     EXPECT_EQ(marks[0].mark, "sees the stone");
     EXPECT_GE(marks[0].t, 2 - 1e-12);
     EXPECT_LE(marks[0].t, 2 + step) << mode;

@@ -19,7 +19,7 @@ Bytes bytes_of(const std::string& text) {
   return {first, first + text.size()};
 }
 
-/// Discs in a box, equations beside them, events of every kind: all that a run remembers.
+/// Discs in a box, with equations and events of every kind: the complete state of a run.
 const std::string scene = R"(
 param g = 10
 world {
@@ -80,7 +80,7 @@ Recorded recorded(const std::string& text, std::size_t checkpoints = 10) {
   return made;
 }
 
-/// But for the time it took, to the last bit.
+/// Equal to the last bit, except for the run time.
 void expect_same(const model::Run& a, const model::Run& b, const std::string& what) {
   EXPECT_EQ(a.motion.values, b.motion.values) << what;
   EXPECT_EQ(a.total_energy, b.total_energy) << what;
@@ -104,7 +104,7 @@ TEST(RunLog, IsTheSameRunAgain) {
   for (const Case& each : cases()) {
     const Recorded made = recorded(each.text);
     EXPECT_GT(made.run.events.size(), 3U) << each.name;
-    expect_same(made.run, run_of(each.text), each.name);  // being recorded changes nothing
+    expect_same(made.run, run_of(each.text), each.name);  // recording does not change the run
     const Result<RunRecording> recording = RunRecording::read(bytes_of(made.file));
     ASSERT_TRUE(recording) << describe(recording.status());
     EXPECT_EQ(recording->head.text, each.text);

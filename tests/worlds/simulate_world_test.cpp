@@ -105,7 +105,7 @@ check ball.x at end = 0.5*(1 + 2 + 3 + 4) within 1e-14
   EXPECT_EQ(run.events.size(), 6u);  // initially, at 0.5, 1, 1.25, 1.5, 2
 }
 
-/// x'' = -k (x - y), y' = x - y, the ball's and the same as equations.
+/// x'' = -k (x - y), y' = x - y: with x as the coordinate of a ball, and as equations alone.
 TEST(SimulateWorld, MovesEquationsAndBodiesAsOneSystemInTheExactMode) {
   const char* text = R"(
 param k = 4
@@ -159,7 +159,7 @@ TEST(SimulateWorld, EstimatesItsErrorByAStricterRun) {
     double omega;
     model::Experiment experiment;
   };
-  // The exact path begins anew at each row, every 0.05: only a fast swing has steps that the tolerance decides.
+  // The exact path restarts at each row, every 0.05: only a fast oscillation has steps limited by the tolerance.
   for (const auto& [omega, experiment] :
        {Case{100, {.rtol = 1e-6, .estimate_error = true}},
         Case{2, {.method = "central_difference", .step = 0.01, .estimate_error = true}}}) {
@@ -169,7 +169,8 @@ TEST(SimulateWorld, EstimatesItsErrorByAStricterRun) {
     ASSERT_TRUE(run.error);
     ASSERT_EQ(run.error->message, "");
     const double error = std::abs(last(run, "ball.x") - std::cos(10 * omega));
-    // Against a tolerance of a hundredth it is the error to some per cent, against half a step 3/4 of it.
+    // Compared with a run of a hundredth of the tolerance, the estimate is the error to some per cent; compared with
+    // half the step, 3/4 of it.
     EXPECT_GT(run.error->at_end[0], error / 2);
     EXPECT_LT(run.error->at_end[0], error * 1.1);
     EXPECT_EQ(run.error->largest.size(), run.motion.states);
@@ -260,7 +261,7 @@ TEST(SimulateWorld, KeepsWhatWasComputedWhenItIsInterrupted) {
   EXPECT_EQ(simulated.diagnostics[0].code, "E307");
 }
 
-/// A heap in the exact mode is very many small flights: one row can take minutes.
+/// A heap in the exact mode consists of very many short flights: one row can take minutes.
 TEST(SimulateWorld, IsInterruptedWithinARow) {
   for (const char* mode : {"mode exact", "mode exact\ndrag linear 0.001", "mode fast step 1e-7"}) {
     const auto program =

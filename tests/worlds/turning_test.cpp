@@ -38,8 +38,8 @@ TEST(Turning, TorquesTurnDiscs) {
       "");
 }
 
-// A torque (W x L) makes the spin of a ball precess about W; the state of an equation, of constant rate, is its angle.
-// Of the painted pole, the axis z of the ball, the height is 1 - 2 (q_x^2 + q_y^2).
+// A torque (W x L) makes the spin of a ball precess about W; the state of an equation with a constant rate is the
+// angle. The height of the painted pole, the z axis of the ball, is 1 - 2 (q_x^2 + q_y^2).
 TEST(Turning, TorquesAndEquationsMoveTogetherInSpace) {
   const model::Run run = run_of(R"(
 param W = 1.5
@@ -109,7 +109,7 @@ run 0..5 [s]
     EXPECT_NEAR(last(run, "left.x"), -3, 1e-9) << method;  // 2.5 there, 2.5 back
     EXPECT_NEAR(last(run, "right.x"), 3, 1e-9) << method;
   }
-  EXPECT_GT(last(run_of(thick), "left.x"), 0);  // it was inside of the wall, and left it
+  EXPECT_GT(last(run_of(thick), "left.x"), 0);  // it started inside of the wall, and left it
 }
 
 }  // namespace
