@@ -3,7 +3,7 @@
 #
 #   ./continuo.sh run models/bouncing_ball.sim --plot ball.svg
 #
-# Works from any folder. What it has to say goes to standard error; standard output belongs to the command.
+# Works from any folder. Its own messages go to standard error; standard output is that of the command.
 set -euo pipefail
 
 self=${BASH_SOURCE[0]}
@@ -15,7 +15,7 @@ stamp=$build/.built
 web=$root/web
 if [[ ! -d $web ]]; then web=$root/cmake; fi  # a clone without the page
 
-# Nothing newer than the last build: hand over at once. A folder's own time changes when a file comes or goes.
+# If nothing is newer than the last build, run the command at once. A folder's time changes when files are added or removed.
 if [[ ! -x $build/continuo || ! -e $stamp ]] ||
    [[ -n $(find "$root/continuo" "$root/apps" "$root/cmake" "$root/CMakeLists.txt" "$root/CMakePresets.json" \
              "$web" -name node_modules -prune -o -newer "$stamp" ! -name '*.md' -print -quit) ]]; then

@@ -11,7 +11,7 @@ cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")"
 root=$PWD
 source cmake/setup.sh
 
-# All that the results depend on, as one number; nothing where this is no checkout of git.
+# A hash of everything on which the results depend; empty if this is no checkout of git.
 state_of_checkout() {
   git rev-parse --is-inside-work-tree >/dev/null 2>&1 || return 0
   { git ls-files -co --exclude-standard -z | xargs -0 sha256sum 2>/dev/null

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# usage: format.sh CLANG_FORMAT FOLDER: fails on a source that is not laid out as .clang-format says.
+# usage: format.sh CLANG_FORMAT FOLDER: fails on a source that is not formatted according to .clang-format.
 set -euo pipefail
 cd "$2"
 find continuo apps tests bench -name '*.[ch]pp' -print0 | xargs -0 "$1" --dry-run --Werror

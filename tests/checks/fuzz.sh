@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# usage: fuzz.sh TARGET FOLDER SECONDS: starts from the gallery and the wrong models, keeps what it finds to itself
-# and prints the input that breaks the target.
+# usage: fuzz.sh TARGET FOLDER SECONDS: starts from the gallery and the wrong models, does not store the inputs that
+# it finds, and prints the input on which the target fails.
 set -euo pipefail
 target=$1 folder=$2 seconds=$3
 found=$(mktemp -d)

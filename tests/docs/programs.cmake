@@ -1,5 +1,5 @@
-# continuo_document_programs(FILE): each ```cpp block of a Markdown file becomes a program that is compiled, run, and, where
-# the next block is ```output, must print just that. A block is a whole program, with its main.
+# continuo_document_programs(FILE): each ```cpp block of a Markdown file becomes a program that is compiled and run. If the
+# next block is ```output, the program must print exactly that. A block is a whole program, with its main.
 function(continuo_document_programs file)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(READ ${file} rest)

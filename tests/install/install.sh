@@ -7,7 +7,7 @@ prefix=$(mktemp -d)
 trap 'rm -rf "$prefix"' EXIT
 
 "$cmake" --install "$build" --prefix "$prefix" >/dev/null
-# Public headers lie directly in a module; of the others only those come along that one of these includes.
+# Public headers are directly in a module; of the others only those that they include are installed.
 (cd "$prefix/include" && ls continuo/*.hpp continuo/*/*.hpp) >"$prefix/headers"
 mkdir "$prefix/consumer"
 sed 's/.*/#include <&>/' "$prefix/headers" >"$prefix/consumer/public_headers.cpp"
@@ -22,8 +22,8 @@ cd "$prefix"
 consumer/consumer
 if [[ ! -x bin/continuo ]]; then exit 0; fi
 
-# The parts that the command loads lie in another folder than beside it, as they did where it was built; and all of them
-# can be moved, and be called through a link.
+# After installation the parts that the command loads are in another folder, unlike in the build folder. The whole
+# installation can be moved, and the command can be called through a link.
 mkdir moved
 mv bin lib* moved/
 ln -s moved/bin/continuo command

@@ -41,8 +41,8 @@ class Viewed:
 
 
 def pixels_of(path, wanted):
-    """The colours of a PNG of eight bits and three channels, not interlaced (ISO/IEC 15948, 9: the five filters), as far
-    down as it takes to have the wanted ones and some more."""
+    """The colours of a PNG of eight bits and three channels, not interlaced (ISO/IEC 15948, 9: the five filters). It is
+    read from the top only until the wanted colours and a few more have been found."""
     with open(path, "rb") as file:
         data = file.read()
     at, packed, wide = 8, b"", 0
@@ -74,7 +74,7 @@ def state(message):
 
 
 def rows_of(view, wanted, seconds=10):
-    """The first row that is as wanted."""
+    """The first row that satisfies the condition `wanted`."""
     found = []
 
     def has(message):
@@ -95,7 +95,7 @@ class Protocol(unittest.TestCase):
             self.assertEqual(model["columns"][-1]["kind"], "distance")
             self.assertTrue(any(item["drag"] for item in model["drawing"]))
             self.assertIn("pendulum", [other["name"] for other in model["gallery"]])
-            first = view.until(lambda m: isinstance(m, Frame) and m.t > 0)  # it plays as soon as somebody looks
+            first = view.until(lambda m: isinstance(m, Frame) and m.t > 0)  # it plays as soon as a client connects
             self.assertTrue(all(math.isfinite(value) for value in first.scene))
             ball = next(i for i, item in enumerate(model["drawing"]) if item["drag"])
             view.say("drag", item=ball, to=[1.5, -2])
@@ -130,11 +130,11 @@ class Protocol(unittest.TestCase):
             view = View(viewed.address)
             end = view.until(lambda m: isinstance(m, Frame) and m.t > 0.2)
             off = []
-            for _ in range(10):  # where the machine is too busy the motion slows down: it keeps time when it can
+            for _ in range(10):  # on a busy machine the motion slows down; one interval in real time is enough
                 begin, wall = end, time.monotonic()
                 end = view.until(lambda m: isinstance(m, Frame) and m.t > begin.t + 1)
                 off.append(end.t - begin.t - (time.monotonic() - wall))
-                if abs(off[-1]) < 0.1:  # two pictures of 17 ms, and what keeps a process waiting
+                if abs(off[-1]) < 0.1:  # two pictures of 17 ms, and the delays of a waiting process
                     break
             self.assertLess(min(map(abs, off)), 0.1)
             view.close()
@@ -312,7 +312,7 @@ class Protocol(unittest.TestCase):
                 except OSError:
                     break
             self.assertIsNone(view.until(lambda m: False))
-            View(viewed.address).close()  # others are let in
+            View(viewed.address).close()  # other clients are accepted
 
 
 if __name__ == "__main__":

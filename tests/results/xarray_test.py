@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What xarray makes of the netCDF files that `continuo run -o` writes. Without xarray it says so and ends with 77."""
+"""The netCDF files of `continuo run -o`, read by xarray. Without xarray it prints a message and exits with 77."""
 import pathlib
 import subprocess
 import sys
@@ -21,7 +21,7 @@ def data_of(model, *options):
         path = pathlib.Path(folder) / "run.nc"
         subprocess.run([continuo, "run", str(models / model), "-o", str(path), *options], check=True, stdout=subprocess.DEVNULL)
         with warnings.catch_warnings():
-            warnings.filterwarnings("error", module="xarray")  # nothing in the file may need a decision
+            warnings.filterwarnings("error", module="xarray")  # reading the file must cause no warning
             with xarray.open_dataset(path) as data:
                 return data.load()
 

@@ -12,7 +12,7 @@ if [[ $what == unit ]]; then
   npm test --silent
 else
   export CONTINUO_COMMAND=$build/continuo CONTINUO_ROOT=$source CONTINUO_PICTURES=$build/pictures
-  folder=test/browser_$4  # of its own: `unit` may be at work beside it
+  folder=test/browser_$4  # a separate folder, since `unit` may run at the same time
   rm -rf "$folder"
   cp -r "$source/web/test/browser" "$folder"
   node --test "$folder/$4.test.mjs"
