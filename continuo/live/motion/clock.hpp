@@ -5,8 +5,8 @@
 //   clock.start(wall, t);
 //   clock.forgive(wall, t);  advance_to(clock.target(wall));  clock.reached(wall, t);
 //
-// A computer that is too slow falls behind by `largest_debt` at most: what is owed beyond is dropped, so that the
-// motion slows down evenly instead of hurrying after a target that runs away.
+// A computer that is too slow falls behind by `largest_debt` at most: any further delay is dropped, so that the motion
+// slows down evenly instead of pursuing a target that it cannot reach.
 #pragma once
 #include <deque>
 #include <functional>

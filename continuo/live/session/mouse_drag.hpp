@@ -34,9 +34,9 @@ class MouseDrag {
   void move(std::size_t item, std::span<const double> to);
   /// A body, as near to `to` as others leave it room.
   void move_body(std::size_t body, std::span<const double> to);
-  /// What is held goes on as fast as the hand went, or `still`.
+  /// Releases the held object, which continues with the velocity of the mouse, or at rest if `still`.
   void release(bool still);
-  /// Where what is held has come to, at each turn.
+  /// Records the position of the held object, at each turn.
   void watch(double wall);
 
  private:

@@ -1,5 +1,5 @@
-// What is critical in a matrix A of a linear part: a simple zero eigenvalue (fold), or a pair of eigenvalues whose sum
-// is zero (Hopf point, or neutral saddle). Internal to bifurcation_curve.
+// The critical eigenvalues and their invariant subspace of a matrix A of a linear part: a simple zero eigenvalue
+// (fold), or a pair of eigenvalues whose sum is zero (Hopf point, or neutral saddle). Internal to bifurcation_curve.
 //
 // A fold's test is the scalar g of the bordered system A v + g w0 = 0, v0 . v = 1, which is zero where A is singular
 // and smooth wherever the zero is of geometric multiplicity one, through a double zero too. A pair's test is the trace

@@ -1,5 +1,6 @@
-// What the terms of higher order say where the linear part decides nothing: the coefficients of the normal forms of
-// folds and Hopf points. Yu. A. Kuznetsov, "Elements of Applied Bifurcation Theory", 2nd edition, 5.4.
+// Stability and direction of bifurcations from the terms of higher order, where the linear part does not determine
+// them: the coefficients of the normal forms of folds and Hopf points. Yu. A. Kuznetsov, "Elements of Applied
+// Bifurcation Theory", 2nd edition, 5.4.
 #pragma once
 #include <complex>
 #include <optional>

@@ -175,7 +175,8 @@ FitStatistics statistics_of(const FitRequest& request, const FitProblem& problem
   estimate_variances(noise, off, rows, Loss::squares, Likelihood::plain);
   double sum = 0, counted = 0;
   for (std::size_t i = 0; i < problem.measured().size(); ++i) {
-    // What has no noise says nothing of how large it is; where that is known, it is a measurement like others.
+    // A measurement without noise contains no information on the size of the noise; if that is known, it is a
+    // measurement like any other.
     if (!noise.rows[i].counts && !is_known(noise, i)) continue;
     counted += 1;
     const double variance = noise.variance(i);

@@ -187,7 +187,7 @@ void SensitiveEvents::act(std::size_t fired, SensitiveSystem& system, double t, 
 }
 
 EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x) {
-  // Everything that hangs on the equations as they have been until now comes first.
+  // Evaluate everything that depends on the equations before the event first.
   if (t != instant_t_) instant_.clear();
   instant_t_ = t;
   Acting acting{.set_off_by = set_off_by(system, fired, t), .values = {}, .rates = X(before.size())};

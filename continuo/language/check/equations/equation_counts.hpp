@@ -1,5 +1,6 @@
 // continuo/language/check/equations/equation_counts.hpp
-// As many equations as there are highest derivatives, each with something to say: the messages where that fails.
+// The messages where there are not as many equations as highest derivatives, or where an equation determines none of
+// them.
 #pragma once
 #include <cstdint>
 #include <string>
