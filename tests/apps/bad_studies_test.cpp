@@ -140,7 +140,7 @@ TEST(BadStudies, WhereNothingRestsTheEquationIsNamedWithItsLine) {
   EXPECT_EQ(folder.run("orbit fall.sim").exit, 3);
 }
 
-// df/dx = -1/(2 sqrt(x)) is infinite at x = 0; d(x^2 + y)/dx = 0 at the only place of rest of the other.
+// df/dx = -1/(2 sqrt(x)) is infinite at x = 0; d(x^2 + y)/dx = 0 at the only equilibrium of the other model.
 TEST(BadStudies, AJacobianThatIsNoneOrSingular) {
   const Folder folder;
   folder.write("kink.sim", "y' = -y\nx' = -sqrt(x)\ny(0) = 1\nx(0) = 0\nrun 0..1\n");
@@ -281,7 +281,7 @@ TEST(BadStudies, WhatHasNoPartIsRefusedAndNotPassedOver) {
 
 TEST(Fit, CtrlCKeepsWhatWasFound) {
   const Folder folder;
-  // Two sets with deviations of their own, many starts, and runs of thousands of swings: it takes minutes.
+  // Two data sets with deviations of their own, many starts, and runs of thousands of oscillations: it takes minutes.
   folder.write("long.sim",
                "param k = 4 in 0..9, c = 0.001 in 0..1\nx'' = -k*x - c*x'\nx(0) = 1; x'(0) = 0\n"
                "output v = x'\nrun 0..2000\n");

@@ -96,7 +96,7 @@ TEST(FailedRun, AJumpIsNone) {
   for (const char* method : methods) {
     const json result = json::parse(shell.run(std::string("run jump.sim --json ") + method).out);
     EXPECT_EQ(result["outcome"], "reached end") << method;
-    EXPECT_NEAR(result["state"]["x"], -1, 30e-6) << method;  // exp(-500) of the way remains
+    EXPECT_NEAR(result["state"]["x"], -1, 30e-6) << method;  // exp(-500) of the distance remains
   }
 }
 

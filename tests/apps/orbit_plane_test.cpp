@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// Two circles meet where mu = -nu^2 / 4; they are born at the generalised Hopf point mu = nu = 0.
+// A fold of circles is at mu = -nu^2 / 4; its curve begins at the generalised Hopf point mu = nu = 0.
 TEST(OrbitPlane, FoldsOfOrbitsAsTableAndJson) {
   const Shell shell;
   shell.write("bautin.sim",

@@ -156,7 +156,7 @@ TEST(Steady, ModelsWithAlgebraicEquations) {
   const Shell shell;
   const Result diode = shell.run("steady " + gallery("rc_diode"));
   EXPECT_EQ(diode.exit, 0) << diode.err;
-  // Full, the diode is a resistor of Vt/Is beside R: one eigenvalue, -1/((R + Vt/Is) C).
+  // With a full capacitor the diode is a resistor of Vt/Is in series with R: one eigenvalue, -1/((R + Vt/Is) C).
   EXPECT_THAT(diode.out, AllOf(HasSubstr("stable"), HasSubstr("u = 5 V"), HasSubstr("eigenvalues -3.868")));
   shell.write("fold.sim",
               "unknown z = 0\nunknown w = 1\nx' = 1 + z - x\n0 = w - 3*x\n0 = x - 1 - z^2\nx(0) = 1\nrun 0..1\n");
@@ -168,7 +168,8 @@ TEST(Steady, ModelsWithAlgebraicEquations) {
   EXPECT_EQ(along.exit, 0) << along.err;
 }
 
-// AUTO's demo pp2: no prey crosses prey alone at p = 3/5, prey alone crosses the two together where prey is 1/3.
+// AUTO's demo pp2: the branches without prey and with prey alone cross at p = 3/5, those of prey alone and of both
+// where the prey is 1/3.
 TEST(Steady, BranchesThatCrossAsTableAndJson) {
   const Shell shell;
   shell.write("pp2.sim",

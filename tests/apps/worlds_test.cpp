@@ -115,7 +115,7 @@ TEST(Worlds, ConvergeToTheirExactMotion) {
     double claimed = 0, measured = 0;
     words >> method >> claimed >> measured;
     EXPECT_EQ(claimed, orders[i]) << lines[i + 1];
-    // Between the two shortest of these steps the next term of the error is a hundredth of the first at most.
+    // Between the two shortest of these steps the next term of the error is at most a hundredth of the first one.
     EXPECT_NEAR(measured, orders[i], 0.05) << lines[i + 1];
   }
   EXPECT_THAT(lines[5], HasSubstr("it has no step to make smaller"));

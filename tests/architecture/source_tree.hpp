@@ -47,7 +47,7 @@ class SourceTree {
     std::size_t module;  // its number
     std::string folder;  // within that; empty: public
   };
-  /// Empty where CMake knows no such module.
+  /// Empty if CMake has no such module.
   std::vector<Place> place_of(const std::string& file) const;
   std::size_t number_of(const Place& place) const;
   void follow(const std::string& file, const std::string& from, const Place& own, std::vector<std::string>& seen,

@@ -160,7 +160,7 @@ TEST(ExactMotion, AnElasticBallReachesItsHeightAgain) {
   }
 }
 
-// Heights fall by e^2 a bounce, and after the last, at fall (1 + e) / (1 - e), the ball lies still.
+// Heights decrease by e^2 in each bounce, and after the last one, at fall (1 + e) / (1 - e), the ball is at rest.
 TEST(ExactMotion, ADampedBallComesToRest) {
   World<double, 3> world;
   world.gravity = {{0, 0, -10}};
@@ -310,7 +310,7 @@ TEST(ExactMotion, LooksAheadInAGasTooLargeForTheCache) {
   EXPECT_NEAR(kinetic_energy(world) / energy, 1, 2 * epsilon * collisions_of_each);
 }
 
-// Fast, small, far apart: a ball at 1 km/s meets one of a centimetre, and a light ball one of 1e12 times its mass.
+// Extreme ratios: a ball at 1 km/s hits one of a centimetre, and a light ball one of 1e12 times its mass.
 TEST(ExactMotion, NothingPassesThrough) {
   World<double, 3> world;
   ASSERT_TRUE(world.add(

@@ -29,7 +29,7 @@ World<Real, 3> heap(int count, int side, std::uint32_t seed) {
   return world;
 }
 
-/// Bounces, rolling resistance, a fixed ball and a force take the ways that a plain heap does not.
+/// Restitution, rolling resistance, a fixed ball and a force, whose code a plain heap does not run.
 inline World<float, 3> mixed(World<float, 3> world) {
   world.material[17] = {.restitution = 0.5f, .friction = 0.3f, .rolling_resistance = 0.1f};
   EXPECT_TRUE(world.add({.shape = Sphere<float>{2.0f}, .position = {{5, 5, 2}}, .fixed = true}));

@@ -71,7 +71,7 @@ TEST(ForceIntegrator, IsStableUpToTwoOverOmega) {
   }
 }
 
-// Explicit Euler multiplies the swing by sqrt(1 + (h omega)^2) in each step, implicit Euler divides it by as much.
+// Explicit Euler multiplies the amplitude by sqrt(1 + (h omega)^2) in each step, implicit Euler divides it by as much.
 TEST(ForceIntegrator, EulersGrowAndDamp) {
   for (const double h : {0.05, 0.5, 5.0}) {
     const int steps = h < 0.1 ? 20 : 3;

@@ -31,8 +31,9 @@ template <class T>
 class HeldRolling : public testing::Test {};
 TYPED_TEST_SUITE(HeldRolling, round::DiscAndBall);
 
-// v' = -rho g / (1 + c) until it stops, as the motion under gravity alone has it to rounding. It is let be at half a
-// speed of what 1e-5 of the time of a fall of its radius gives, 1e-5 m/s: places differ by v^2 / 2a, 1e-10 m.
+// v' = -rho g / (1 + c) until the body stops, exact to rounding in the motion under gravity alone. It is stopped at
+// half of the speed gained within 1e-5 of the time of a fall of its radius, 1e-5 m/s: places differ by v^2 / 2a, 1e-10
+// m.
 TYPED_TEST(HeldRolling, EndsByResistanceAsUnderGravityAlone) {
   constexpr int dim = TypeParam::dim;
   World<double, dim> world;

@@ -27,9 +27,9 @@ ProjectedGaussSeidel<double, Dim> all_that_touch(const World<double, Dim>& world
   return sweeps;
 }
 
-// A hundred balls fall on a floor as one. The k-th from above stops what lies above it: k masses times the speed.
-// Numbered at random, a push goes by a few balls a sweep, and sweeps alone would come nearer by some (pi/200)^2 each:
-// after 4000 a tenth of the error would be left.
+// A hundred balls fall on a floor together. The k-th contact from above stops the k masses above it. With balls
+// numbered at random, a sweep passes an impulse on by a few balls, and sweeps alone would reduce the error by some
+// (pi/200)^2 each: after 4000 a tenth of it would be left.
 TEST(ProjectedGaussSeidel, StopATowerByGoingOnInTheirDirection) {
   constexpr std::size_t n = 100;
   std::vector<std::size_t> floor_of(n);
@@ -91,7 +91,7 @@ void expect_laws(unsigned seed, bool in_box, const Material<double>& material) {
     const double parting = dot(rate, row.normal), press = row.impulse.press;
     EXPECT_GE(press, 0);
     EXPECT_GE(parting, -wrong);
-    EXPECT_LE(std::min(press, parting), wrong);  // one of the two is nothing
+    EXPECT_LE(std::min(press, parting), wrong);  // one of the two is zero
     if (press == 0) ++part_ways;
     rate -= row.normal * parting + turning(a.spin, Vector<double, Dim>(row.normal * a.radius)) +
             turning(b.spin, Vector<double, Dim>(row.normal * b.radius));

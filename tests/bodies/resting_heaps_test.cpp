@@ -99,7 +99,7 @@ TEST(RestingHeaps, ABallLiesInAGroove) {
   }
 }
 
-/// Let go at an angle of 0.1 on a fixed ball: the cosine of the angle at which it leaves it.
+/// A ball released at an angle of 0.1 on a fixed ball: the cosine of the angle at which it leaves it.
 double cosine_of_leaving(double friction) {
   const Material<double> material{.restitution = 0, .friction = friction};
   World<double, 3> world;
@@ -114,9 +114,9 @@ double cosine_of_leaving(double friction) {
   }
   return 0;
 }
-// By energy, and by the force that the bend of the path takes: 2/3 of the first cosine if it slides without friction,
-// 10/17 if it rolls. Shortly before it leaves, the floor presses too little for friction f to hold (2/7) m g sin: it
-// slips there, within 2 / (17 f) of the cosine.
+// By energy and the centripetal force: 2/3 of the first cosine if it slides without friction, 10/17 if it rolls.
+// Shortly before it leaves, the normal force is too small for friction f to supply (2/7) m g sin: it slips there,
+// within 2 / (17 f) of the cosine.
 TEST(RestingHeaps, ABallLeavesAnotherAtTheKnownAngle) {
   EXPECT_NEAR(cosine_of_leaving(0), std::cos(0.1) * 2 / 3, 1e-8);
   EXPECT_NEAR(cosine_of_leaving(1e4), std::cos(0.1) * 10 / 17, 2 * 2 / (17 * 1e4));

@@ -72,7 +72,7 @@ TYPED_TEST(Rolling, FrictionTurnsSlidingIntoRolling) {
   EXPECT_NEAR(world.position[0][0], v0 * begins - mu * g * begins * begins / 2 + 3 * rolls, 1e-11);
   EXPECT_NEAR(length(world.spin[0]), rolls / r, 1e-11);
   EXPECT_NEAR(world.position[0][dim - 1], r, 1e-14);
-  // Clockwise, about the axis to the right of the way.
+  // Clockwise, about the axis to the right of the direction of motion.
   EXPECT_LT(dim == 2 ? world.spin[0][0] : -world.spin[0][1 % world.spin[0].size()], 0);
 }
 
@@ -98,8 +98,8 @@ TYPED_TEST(Rolling, RollingResistanceStopsIt) {
   EXPECT_LT(motion.statistics().collisions + motion.statistics().outdated, 20u);
 }
 
-// Up a slope and down again: g sin / (1 + c) while friction can hold it, tan <= mu (1 + 1/c); else it slips, at
-// g (sin - mu cos).
+// Up a slope and down again: g sin / (1 + c) while friction is sufficient, tan <= mu (1 + 1/c); else it slips, at g
+// (sin - mu cos).
 TYPED_TEST(Rolling, OnASlopeItRollsOrSlips) {
   constexpr int dim = TypeParam::dim;
   constexpr double c = TypeParam::inertia;

@@ -63,7 +63,7 @@ TEST(Sleep, AHitWakes) {
   run(motion, 1);
   ASSERT_EQ(motion.statistics().asleep, 1u);
   ASSERT_TRUE(world.add({.position = {{-10, 0, 0}}, .velocity = {{5, 0, 0}}, .material = elastic}));
-  run(motion, 1);  // the new one wakes all; it falls asleep again before it is hit
+  run(motion, 1);  // the new body wakes all; it falls asleep again before it is hit
   EXPECT_EQ(motion.statistics().asleep, 1u);
   run(motion, 2);
   EXPECT_EQ(motion.statistics().asleep, 1u);  // now it is the other

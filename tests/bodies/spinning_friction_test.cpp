@@ -16,7 +16,7 @@ void run(FastMotion<double, 3>& motion, double duration) {
   for (int i = 0; i < std::lround(60 * duration); ++i) ASSERT_TRUE(motion.advance());
 }
 
-// friction m g arm slows what has the inertia 2/5 m r^2 by 0.7 a second each second, until it stands.
+// The torque friction m g arm slows a spin with the inertia 2/5 m r^2 by 0.7 a second each second, until it ends.
 TEST(SpinningFriction, SlowsABallOnTheFloorAtAConstantRate) {
   World<double, 3> world;
   world.gravity = {{0, 0, -g}};

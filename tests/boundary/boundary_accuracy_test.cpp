@@ -20,8 +20,8 @@ using X = std::vector<double>;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// x' = A x + sin(w t) u with A = V diag(rates) V^-1: what grows is 1 at the end, what decays at the start, so that x
-/// is of size 1. The forcing adds sin(w t) a + cos(w t) b with w a = A b, -w b = A a + u.
+/// x' = A x + sin(w t) u with A = V diag(rates) V^-1: growing components are 1 at the end, decaying ones at the start,
+/// so that x is of size 1. The forcing adds sin(w t) a + cos(w t) b with w a = A b, -w b = A a + u.
 struct Linear {
   Matrix A, V;
   Vector rates, amplitudes, u, a, b;

@@ -17,8 +17,8 @@
 namespace continuo::hybrid {
 namespace {
 
-/// Free is where g(x, y, t) > 0. With the gradient and the rate of g written out, the velocity is reflected along the
-/// gradient, relative to the boundary: v - (1 + e) (dg/dt) grad g/|grad g|^2.
+/// The ball is free where g(x, y, t) > 0. Gradient and rate of g are written out, and the velocity is reflected along
+/// the gradient, relative to the boundary: v - (1 + e) (dg/dt) grad g/|grad g|^2.
 struct Boundary {
   std::string name, g, gx, gy, gt;
   double (*value)(double x, double y, double t, const double* p);      // g
@@ -107,7 +107,7 @@ Boundary boundary(Random& random) {
   }
 }
 
-/// A quarter each loses nothing and everything at an impact.
+/// A quarter of the cases is elastic, and a quarter is without restitution.
 double restitution(Random& random) {
   if (random.chance(0.25)) return 1;
   return random.chance(0.33) ? 0 : random.decimal(0.05, 0.98);

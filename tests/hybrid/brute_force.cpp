@@ -12,7 +12,7 @@ namespace {
 
 using State = std::vector<Real>;
 
-/// The text's meaning, as numbers at one instant.
+/// The values of expressions and conditions at one instant.
 class Reading {
  public:
   Reading(const HybridModel& model, int mode, Real t, const State& x) : model_(model), mode_(mode), t_(t), x_(x) {}
@@ -265,7 +265,8 @@ class BruteForce {
   /// Moves to `until`, or to just after the first change before it.
   void step(Real until) {
     const std::vector<long> branches = branches_soon();
-    // Of each comparison on its own: a window narrower than the step opens and closes within it.
+    // The sign of each comparison is tested by itself, since a window narrower than the step opens and closes within
+    // it.
     const std::vector<bool> signs_before = signs(t_ + soon, moved(soon, branches));
     const auto changed_after = [&](Real h) {
       const State x = moved(h, branches);

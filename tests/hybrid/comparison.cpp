@@ -127,7 +127,8 @@ std::string whole_text(const HybridModel& abstract) {
   return text;
 }
 
-/// Whether the referee sees the same by samples that lie closer. Where they may not, the library is not to blame.
+/// Whether the referee gives the same result with denser samples. If it does not, the difference is no error of the
+/// library.
 bool is_resolved(const HybridModel& model, const Expected& expected) {
   constexpr int closer = 32;
   const Expected finer = referee(model, closer);

@@ -247,7 +247,7 @@ void Flow::start_relay(const Block& block, std::span<const Real> x, const Quanti
   int side = std::fabs(distance) > value_margin.zero ? (distance > 0 ? 1 : -1) : 0;
   if (side != 0 && std::fabs(distance) < value_margin.clear) doubt_ = "a relay near its surface";
   if (side == 0) {
-    // On the surface the drive decides: it holds the motion as long as it is weaker than the friction.
+    // On the surface the drive determines the motion: it sticks as long as the drive is weaker than the friction.
     if (sign(evaluate(beyond_above, now)) > 0) {
       side = 1;
     } else if (sign(evaluate(beyond_below, now)) < 0) {

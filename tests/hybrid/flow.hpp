@@ -31,7 +31,7 @@ inline constexpr Margin value_margin{1e-12L, 1e-6L}, derivative_margin{1e-11L, 1
 /// A function whose sign decides between two forms of the equations.
 struct Surface {
   Expression function{};
-  bool floors = false;  // its sign counts for nothing: the whole numbers below on its two sides do
+  bool floors = false;  // its sign is irrelevant: the whole numbers below the values on its two sides matter
 };
 
 /// States, unknowns and time as jets, for expressions.

@@ -143,7 +143,7 @@ class Reference {
     x_ = moved(after);
     t_ += after;
     for (std::size_t j = 0; j < sides_.size(); ++j) {
-      if (sides_[j] * distance(j, x_) < 0) sides_[j] = 0;  // until it is found not to hold
+      if (sides_[j] * distance(j, x_) < 0) sides_[j] = 0;  // it sticks, until release() finds that it does not
     }
     release();
   }
@@ -249,7 +249,7 @@ TEST(DryFriction, OfAPushedMassByIf) {
 }
 
 TEST(DryFriction, HoldsWhatIsAtRest) {
-  // The push is weaker than the friction all the time: nothing moves, and nothing is to be done.
+  // The push is always weaker than the friction: nothing moves.
   expect_sliding_solution(
       {{"v"},
        "v' = 0.2*sin(3*t) - 0.3*sign(v)\nv(0) = 0\nrun 0..50\n",

@@ -74,7 +74,7 @@ class Generator {
     for (int relays = 0; relays < 2 && chance(0.25); ++relays) relay_block(relays);
   }
 
-  /// By the table of a file, at times that no tick has.
+  /// A step function from a file, with steps at times without scheduled events.
   void stepping_input() {
     Block b;
     b.is_input = true;
@@ -160,7 +160,7 @@ class Generator {
     model_.blocks.push_back(b);
   }
 
-  /// Time, or a state that runs straight.
+  /// Time, or a state with a constant rate.
   Expression ramp() {
     for (const Block& b : model_.blocks) {
       if (b.kind == Block::Kind::drift && chance(0.6)) return state(b.state);

@@ -221,7 +221,7 @@ class Writer {
       return fmt::format("{}' = if {} > 0 and {} > 0 then {} else {}\n", x, s, written(b.also), p.a, p.c);
     if (b.variant == 0) return fmt::format("{}' = if {} > 0 then {} else {}\n", x, s, p.a, p.c);
     if (b.variant == 1) return fmt::format("{}' = if not ({} > 0) then {} else {}\n", x, s, p.c, p.a);
-    // The mean of the two and half their difference, written out: sums of decimals that are exact enough.
+    // The mean of the two and half their difference, written out: sums of decimals that are sufficiently exact.
     return fmt::format("{}' = ({} + {})/2 + ({} - {})/2*sign({})\n", x, p.a, p.c, p.a, p.c, s);
   }
 

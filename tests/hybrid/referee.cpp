@@ -210,7 +210,8 @@ class Referee {
     now_ = root.t;
     if (root.function >= watched_.size()) {
       restart();
-      // The equations may turn a guard that is at zero right there: that would be two things at one instant.
+      // A change of the equations may reverse a guard that is zero at the same instant: that would be two events at
+      // once.
       if (signs_now() != signs_) reject("a guard that turns where the equations switch");
       return;
     }
@@ -368,7 +369,7 @@ class Referee {
     return step / refinement_;
   }
 
-  /// The first root before `limit`, and that no other is near.
+  /// The first root before `limit`, if no other one is near.
   std::optional<Root> first_root(Real limit) {
     std::vector<std::size_t> functions;
     std::vector<int> signs;
@@ -392,7 +393,7 @@ class Referee {
         if (!first || *root < first->t) first = Root{*root, functions[i]};
       }
       if (first) {
-        // The function itself and the others once more, a little later: all are on the sides that this root leaves.
+        // Shortly after the root the signs of all functions must be those that follow from this root alone.
         const Quantities later = flow_->at(first->t + apart);
         for (std::size_t i = 0; i < functions.size(); ++i) {
           const Real g = function(functions[i], later).value();
@@ -448,7 +449,7 @@ class Referee {
     return {};
   }
 
-  /// Where `still` ends to hold.
+  /// The place at which `still` becomes false.
   template <class Still>
   static Real bisect(Real begin, Real end, const Still& still) {
     for (int i = 0; i < 80; ++i) {

@@ -27,7 +27,7 @@ struct Occurrence {
 };
 
 struct Expected {
-  std::string rejected{};  // why the model is no fair question; empty where it is one
+  std::string rejected{};  // why the model is ambiguous; empty where it is not
   std::vector<Occurrence> events{};
   std::vector<Real> end{};  // the states at the end of the run
   std::size_t most_rounds = 0, slides = 0, simultaneous = 0;

@@ -17,7 +17,7 @@ namespace {
 
 using Place = std::function<double&(HybridModel&)>;
 
-/// The numbers of a model that its motion depends on smoothly.
+/// The numbers of a model on which its motion depends smoothly.
 std::vector<Place> places(const HybridModel& model) {
   std::vector<Place> all;
   for (std::size_t i = 0; i < model.initial.size(); ++i)

@@ -30,7 +30,7 @@ void each_index(std::vector<Action>& actions, Expression::Kind kind, const Visit
   }
 }
 
-/// All but those of the block or unknown that is to go.
+/// All indices but those of the block or unknown to be removed.
 template <class Visit>
 void each_index(HybridModel& model, Expression::Kind kind, const Visit& visit) {
   for (Block& block : model.blocks) {
@@ -72,7 +72,7 @@ void each_comparison(HybridModel& model, const Visit& visit) {
   }
 }
 
-/// Comparisons that nothing reads any more would keep states alive.
+/// Comparisons that are no longer read would keep states in the model.
 void drop_unread_comparisons(HybridModel& model) {
   std::vector<int> place(model.comparisons.size(), none);
   std::vector<Comparison> kept;

@@ -7,7 +7,7 @@
 
 namespace continuo::hybrid {
 
-/// Leaves out events, actions, comparisons, equations and time for as long as `fails` holds.
+/// Removes events, actions, comparisons, equations and time as long as `fails` is true.
 HybridModel shrink(HybridModel model, const std::function<bool(const HybridModel&)>& fails);
 
 }  // namespace continuo::hybrid

@@ -1,4 +1,4 @@
-// tests/hybrid/attack/main.cpp
+// tests/hybrid/attack/hybrid.cpp
 // hybrid_attack COUNT SEED [METHOD]: tests any number of random hybrid models, by one method or by each, up to the
 // first on which library and referee differ.
 #include <cstdint>
