@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds everything and runs every test; the last lines are ctest's own summary. Arguments go to ctest:
+# Builds the command, the library and the tests, and runs the tests; the last lines are ctest's own summary.
 #
-#   ./test.sh                 all of it: unit tests, models, sanitizers, fuzzing, both compilers, format, install
-#   ./test.sh -R architecture only the tests whose name matches
+#   ./test.sh                 unit tests, models, documentation, page, installation, format
+#   ./test.sh --all           also the long tests: the second compiler with sanitizers, fuzzing, large inputs, long runs
+#   ./test.sh -R architecture the tests whose name matches; arguments go to ctest
 #
-# Where no file and no compiler has changed since all tests passed, only those that take a minute together run again;
-# `./test.sh --all` runs every test all the same.
+# If no file and no compiler has changed since the tests passed, `./test.sh` repeats only those that take a minute together.
 set -euo pipefail
 cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")"
 root=$PWD
@@ -18,9 +18,9 @@ state_of_checkout() {
     c++ --version; clang++-19 --version; cmake --version; } | sha256sum
 }
 
-again=
+all=
 if [[ ${1-} == --all ]]; then
-  again=yes
+  all=yes
   shift
 fi
 setup_packages test
@@ -33,10 +33,14 @@ mv build/.built.began build/.built  # continuo.sh finds the command fresh
 tests=(ctest --test-dir build --output-on-failure --parallel "$(nproc)")
 if (($#)); then exec "${tests[@]}" "$@"; fi
 state=$(state_of_checkout)
-if [[ -z $again && -n $state && -e build/.tested && $(<build/.tested) == "$state" ]]; then
-  say "nothing has changed since all tests passed: only the short ones run again (all of them: ./test.sh --all)"
+if [[ -z $all && -n $state && -e build/.tested && $(<build/.tested) == "$state" ]]; then
+  say "nothing has changed since the tests passed: only the short ones run again (all of them: ./test.sh --all)"
   exec "${tests[@]}" -R '^(architecture|boundary|docs|gallery|language|numerics|results|runs|solve|status|symbolic|system|worlds)'
 fi
 rm -f build/.tested
+if [[ -z $all ]]; then
+  say "without the long tests (all of them: ./test.sh --all)"
+  tests+=(--label-exclude long --exclude-regex "$(<build/long_tests.txt)")
+fi
 "${tests[@]}"
 printf '%s\n' "$state" >build/.tested
