@@ -126,7 +126,7 @@ std::string run_json(const model::Run& run) {
   Json state = Json::object(), events = Json::array();
   const auto values = run.final_state();
   for (std::size_t i = 0; i < values.size(); ++i) state[run.motion.columns[1 + i].name] = values[i];
-  for (const model::Happened& event : run.events) {
+  for (const model::RecordedEvent& event : run.events) {
     events.push_back({{"name", event.name}, {"t", event.t}});
     if (event.impulse) events.back()["impulse"] = *event.impulse;
   }

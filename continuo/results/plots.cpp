@@ -35,7 +35,7 @@ bool deserves_equal_scale(const PlotData& plot, const Panel& panel) {
 
 std::vector<double> event_times(const model::Run& run) {
   std::vector<double> times;
-  for (const model::Happened& event : run.events) {
+  for (const model::RecordedEvent& event : run.events) {
     if (event.is_contact()) continue;
     if (times.empty() || times.back() != event.t) times.push_back(event.t);
   }

@@ -20,9 +20,9 @@ Status write_motion(const model::Run& run, const std::string& path, std::string_
 }
 
 Status write_events(const model::Run& run, const std::string& path, std::string_view manifest_hash) {
-  const bool contacts = std::ranges::any_of(run.events, &model::Happened::is_contact);
+  const bool contacts = std::ranges::any_of(run.events, &model::RecordedEvent::is_contact);
   // Of a contact the states are not kept: where nothing else happened, there are no columns for them.
-  const bool states = run.events.empty() || !std::ranges::all_of(run.events, &model::Happened::is_contact);
+  const bool states = run.events.empty() || !std::ranges::all_of(run.events, &model::RecordedEvent::is_contact);
   std::vector<std::string> names{"event", "t"};
   if (contacts) names.emplace_back("impulse");
   for (const char* side : {"before ", "after "}) {
@@ -31,7 +31,7 @@ Status write_events(const model::Run& run, const std::string& path, std::string_
   OutputFile out(path);
   CsvWriter csv(out, manifest_hash, names);
   std::vector<double> values;
-  for (const model::Happened& event : run.events) {
+  for (const model::RecordedEvent& event : run.events) {
     values.assign(1, event.t);
     if (contacts) values.push_back(event.impulse.value_or(std::nan("")));
     values.insert(values.end(), event.before.begin(), event.before.end());

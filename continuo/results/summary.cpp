@@ -65,7 +65,7 @@ struct EventCount {
 };
 
 /// Of contacts between many bodies: `gas meets wall`, not each of its members.
-std::string shown_name(const model::Happened& event) {
+std::string shown_name(const model::RecordedEvent& event) {
   std::string name;
   bool inside = false;
   for (const char c : event.name) {
@@ -78,7 +78,7 @@ std::string shown_name(const model::Happened& event) {
 /// In the order of their first firing.
 std::vector<EventCount> count_events(const model::Run& run) {
   std::vector<EventCount> counts;
-  for (const model::Happened& event : run.events) {
+  for (const model::RecordedEvent& event : run.events) {
     std::string name = shown_name(event);
     const auto found = std::ranges::find(counts, name, &EventCount::name);
     if (found == counts.end()) {

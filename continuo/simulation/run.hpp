@@ -31,8 +31,8 @@ struct Motion {
   [[nodiscard]] std::span<const double> state(std::size_t i) const { return row(i).subspan(1, states); }
 };
 
-/// An event of the model as it happened.
-struct Happened {
+/// One event of the model that has occurred, as the recorder keeps it.
+struct RecordedEvent {
   std::string name;
   std::string mark;  // the text of a `mark` among its actions; empty for none
   double t;
@@ -69,7 +69,7 @@ struct Run {
   Plan plan;
   Motion motion;
   std::vector<double> total_energy;  // at each row, if the model declares energies
-  std::vector<Happened> events;
+  std::vector<RecordedEvent> events;
   std::string stop_text;  // of the `stop` that ended the run
   Outcome<double> outcome;
   Statistics statistics;

@@ -46,7 +46,7 @@ class StepWatcher {
  public:
   virtual ~StepWatcher() = default;
   virtual void on_segment(Stepping& run, double to) = 0;
-  virtual void on_event(Stepping& run, const Happening<ModelSystem::X>& now) = 0;
+  virtual void on_event(Stepping& run, const EventOccurrence<ModelSystem::X>& now) = 0;
 };
 
 class Stepping {

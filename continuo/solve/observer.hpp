@@ -8,9 +8,9 @@
 
 namespace continuo {
 
-/// An event that has happened. Its references are valid during the call that gets it.
+/// The events of one instant. The references are valid during the call that gets it.
 template <State X>
-struct Happening {
+struct EventOccurrence {
   Scalar<X> t;
   std::span<const std::size_t> events;  // by number, in order of declaration
   const X& before;
@@ -18,12 +18,12 @@ struct Happening {
 };
 
 /// An observer of a run. The run calls `on_segment(integrator, from, to)` for every piece of the trajectory that is
-/// final (integrator.at(t, x) gives x there), and `on_event(integrator, Happening)` at every event.
+/// final (integrator.at(t, x) gives x there), and `on_event(integrator, EventOccurrence)` at every event.
 struct NoObserver {
   template <class I, class Real>
   void on_segment(I&, Real, Real) {}
-  template <class I, class H>
-  void on_event(I&, const H&) {}
+  template <class I, class Occurrence>
+  void on_event(I&, const Occurrence&) {}
 };
 
 }  // namespace continuo

@@ -14,7 +14,7 @@
 
 namespace continuo {
 
-/// One event as it happened, with the state on both sides of it.
+/// One event that has occurred, with the state on both sides of it.
 template <State X>
 struct EventRecord {
   std::size_t event;  // its number; Solution::event_names has the name

@@ -60,7 +60,7 @@ class SolutionRecorder {
   }
 
   template <class I>
-  void on_event(I&, const Happening<X>& now) {
+  void on_event(I&, const EventOccurrence<X>& now) {
     for (const std::size_t event : now.events) solution_.events.push_back({event, now.t, now.before, now.after});
     if (save_.kind == Save<X>::Kind::end) return;
     if (!kept_at(now.t)) keep(now.t, now.before);

@@ -134,7 +134,7 @@ void tell(model::RunRecorder& recorder, const Note& note) {
                             }});
     case Note::Kind::contact:
       return recorder.contact(note.t, note.name, note.impulse);
-    case Note::Kind::happening:
+    case Note::Kind::event:
       return recorder.on_event(note.t, note.names, note.before, note.x);
     case Note::Kind::finish:
       return recorder.finish(note.t, note.x);

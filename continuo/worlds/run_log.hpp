@@ -38,15 +38,15 @@ struct RunHead {
 
 /// A message of a run to its recorder.
 struct Note {
-  enum class Kind : std::uint8_t { begin, arrival, contact, happening, finish };
+  enum class Kind : std::uint8_t { begin, arrival, contact, event, finish };
   Kind kind{};
   double t = 0;
-  std::vector<double> x{}, before{};        // before: of a happening
+  std::vector<double> x{}, before{};        // before: of an event
   bool is_row = false, is_sampled = false;  // of an arrival,
   double until = 0;                         // samples up to here
   std::string name{};                       // of a contact
   double impulse = 0;                       //
-  std::vector<model::EventName> names{};    // of a happening
+  std::vector<model::EventName> names{};    // of an event
 };
 void tell(model::RunRecorder& recorder, const Note& note);
 

@@ -161,7 +161,7 @@ class Simulation {
     note_contacts();
     arrive();
     if (!status && is_interrupted()) return end(Ending::interrupted);
-    if (status) status = events_.happen(*world_, sink());
+    if (status) status = events_.fire_due(*world_, sink());
     if (!status) return fail(std::move(status));
     end_where_stopped();
     if (experiment_.progress) experiment_.progress(world_->time());
@@ -196,8 +196,8 @@ class Simulation {
   }
 
   WorldEvents::Sink sink() {
-    return [this](const WorldHappening& now) {
-      note({.kind = Note::Kind::happening, .t = now.t, .x = world_->state(), .before = now.before, .names = now.names});
+    return [this](const WorldEventOccurrence& now) {
+      note({.kind = Note::Kind::event, .t = now.t, .x = world_->state(), .before = now.before, .names = now.names});
     };
   }
   void end_where_stopped() {
@@ -234,7 +234,7 @@ double look_of(const model::Plan& plan) {
 bool fits(const model::Model& model, const Note& note) {
   if (note.kind == Note::Kind::contact) return true;
   return note.x.size() == model.states.size() &&
-         (note.kind != Note::Kind::happening || note.before.size() == model.states.size());
+         (note.kind != Note::Kind::event || note.before.size() == model.states.size());
 }
 Diagnostic does_not_fit(const model::Model& model, std::string_view why) {
   return model::error("E325", model.world->span, "the recording does not fit its model", std::string(why));

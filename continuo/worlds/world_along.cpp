@@ -111,7 +111,7 @@ class Follower {
 
   /// Moves the world and keeps the states at all wanted instants.
   Status follow() {
-    const auto nobody = [](const WorldHappening&) {};
+    const auto nobody = [](const WorldEventOccurrence&) {};
     if (Status status = events_.begin(world_, nobody); !status) return status;
     stretch_.begin(world_.time(), world_.state());
     while (true) {
@@ -131,7 +131,7 @@ class Follower {
       if (Status status = events_.advance(world_, to); !status) return status;
       stretch_.end(world_.time(), world_.state(), world_.contacts());
       keep_rows_of_stretch();
-      if (Status status = events_.happen(world_, nobody); !status) return status;
+      if (Status status = events_.fire_due(world_, nobody); !status) return status;
       stretch_.begin(world_.time(), world_.state());
       if (request_.experiment.progress) request_.experiment.progress(world_.time());
     }

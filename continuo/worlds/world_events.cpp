@@ -49,7 +49,7 @@ WorldEvents::WorldEvents(const std::shared_ptr<const model::ModelProgram>& progr
 
 Status WorldEvents::begin(WorldRun& world, const Sink& sink) {
   place_guards(world);
-  Status status = happen_rounds(world, take_due(world.time() + slack_of(world), true), sink);
+  Status status = fire_rounds(world, take_due(world.time() + slack_of(world), true), sink);
   if (any_guard_) read_guards(world, before_);
   return status;
 }
@@ -119,14 +119,14 @@ Status WorldEvents::go_back_to_event(WorldRun& world, const Snapshot& saved) {
   return move_to(high);
 }
 
-Status WorldEvents::happen(WorldRun& world, const Sink& sink) {
+Status WorldEvents::fire_due(WorldRun& world, const Sink& sink) {
   const double until = world.time() + slack_of(world);
   std::vector<std::size_t> fired = take_passed();
   do {
     const std::vector<std::size_t> due = take_due(until, false);
     fired.insert(fired.end(), due.begin(), due.end());
     std::ranges::sort(fired);
-    if (Status status = happen_rounds(world, std::move(fired), sink); !status) return status;
+    if (Status status = fire_rounds(world, std::move(fired), sink); !status) return status;
     fired.clear();
   } while (!stopped_ && next_scheduled() <= until);
   if (any_guard_) read_guards(world, before_);
@@ -161,13 +161,13 @@ std::vector<std::size_t> WorldEvents::take_due(double until, bool inclusive) {
   return due;
 }
 
-Status WorldEvents::happen_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink) {
+Status WorldEvents::fire_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink) {
   for (std::size_t round = 0; !fired.empty() && !stopped_; ++round) {
     if (round == most_rounds)
       return {.ending = Ending::events_accumulate,
               .message = fmt::format("the events of t = {:.6g} set each other off without end: `{}` is among them",
                                      world.time(), events_.name(fired.front()))};
-    auto next = happen_round(world, fired, sink);
+    auto next = fire_round(world, fired, sink);
     if (!next) return next.status();
     fired = *std::move(next);
   }
@@ -175,8 +175,8 @@ Status WorldEvents::happen_rounds(WorldRun& world, std::vector<std::size_t> fire
 }
 
 /// Fires the events of a round. Returns the events of the next round.
-Result<std::vector<std::size_t>> WorldEvents::happen_round(WorldRun& world, const std::vector<std::size_t>& fired,
-                                                           const Sink& sink) {
+Result<std::vector<std::size_t>> WorldEvents::fire_round(WorldRun& world, const std::vector<std::size_t>& fired,
+                                                         const Sink& sink) {
   const X before = world.state();
   X after = before;
   const double t = world.time();
@@ -223,7 +223,7 @@ void WorldEvents::go_on(WorldRun& world, std::span<const double> variables, std:
   events_ = model::ModelEvents(*program_, variables, events_.begin());
   events_.resume(world.time(), counts);
   names_.restart();
-  scheduled_after_ = world.time() + slack_of(world);  // events up to there have happened
+  scheduled_after_ = world.time() + slack_of(world);  // events up to there have fired
   stopped_ = false;
   stopped_by_.clear();
   place_guards(world);

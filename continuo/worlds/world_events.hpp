@@ -5,7 +5,7 @@
 //
 //   WorldEvents events(program, plan.variables, plan.from, look);
 //   events.begin(world, sink);
-//   status = events.advance(world, std::min(to, events.next(world)));  ...  events.happen(world, sink);
+//   status = events.advance(world, std::min(to, events.next(world)));  ...  events.fire_due(world, sink);
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -28,7 +28,7 @@ inline constexpr double looks = 1000;
 [[nodiscard]] double slack_of(const WorldRun& world);
 
 /// Events of one instant; the world is as they left it.
-struct WorldHappening {
+struct WorldEventOccurrence {
   double t;
   const std::vector<model::EventName>& names;  // empty for the step of an input, which is no event
   const std::vector<double>& before;
@@ -37,13 +37,13 @@ struct WorldHappening {
 class WorldEvents {
  public:
   using X = std::vector<double>;
-  using Sink = std::function<void(const WorldHappening&)>;
+  using Sink = std::function<void(const WorldEventOccurrence&)>;
 
   /// `look` is the time between two samples of a `when` in a world without steps.
   WorldEvents(const std::shared_ptr<const model::ModelProgram>& program, std::span<const double> variables, double from,
               double look);
 
-  /// Fires the events at the very beginning. Fails, like `happen`, where the run cannot continue.
+  /// Fires the events at the very beginning. Fails, like `fire_due`, where the run cannot continue.
   Status begin(WorldRun& world, const Sink& sink);
   /// The time to which the world may be advanced at once.
   [[nodiscard]] double next(const WorldRun& world) const;
@@ -52,7 +52,7 @@ class WorldEvents {
   Status advance(WorldRun& world, double to);
   /// Fires the events that are due now, in the order of the text, each on the state that the one before has left; then,
   /// round by round, the events whose guards these actions have carried to their other side (docs/events.md).
-  Status happen(WorldRun& world, const Sink& sink);
+  Status fire_due(WorldRun& world, const Sink& sink);
 
   /// Whether a `stop` has been reached, by which event, and its text.
   [[nodiscard]] bool stopped() const { return stopped_; }
@@ -77,9 +77,8 @@ class WorldEvents {
   Status go_back_to_event(WorldRun& world, const Snapshot& saved);
   std::vector<std::size_t> take_passed();
   std::vector<std::size_t> take_due(double until, bool inclusive);
-  Status happen_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink);
-  Result<std::vector<std::size_t>> happen_round(WorldRun& world, const std::vector<std::size_t>& fired,
-                                                const Sink& sink);
+  Status fire_rounds(WorldRun& world, std::vector<std::size_t> fired, const Sink& sink);
+  Result<std::vector<std::size_t>> fire_round(WorldRun& world, const std::vector<std::size_t>& fired, const Sink& sink);
   void carry_over(double t, const X& state, std::vector<std::size_t>& next);
 
   std::shared_ptr<const model::ModelProgram> program_;

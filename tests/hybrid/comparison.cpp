@@ -21,15 +21,15 @@ namespace {
 constexpr std::string_view refusal = "the text is refused";
 
 /// The events with a mark of their own; sliding and the like are reported without one.
-std::vector<model::Happened> marked(const model::Run& run) {
-  std::vector<model::Happened> found;
-  for (const model::Happened& event : run.events) {
+std::vector<model::RecordedEvent> marked(const model::Run& run) {
+  std::vector<model::RecordedEvent> found;
+  for (const model::RecordedEvent& event : run.events) {
     if (!event.mark.empty()) found.push_back(event);
   }
   return found;
 }
 
-std::string listed(const Expected& expected, const std::vector<model::Happened>& found) {
+std::string listed(const Expected& expected, const std::vector<model::RecordedEvent>& found) {
   std::string text;
   const std::size_t lines = std::max(expected.events.size(), found.size());
   std::size_t first = 0;
@@ -50,7 +50,8 @@ std::string listed(const Expected& expected, const std::vector<model::Happened>&
   return text;
 }
 
-std::optional<std::string> different_event(const Occurrence& expected, const model::Happened& found, double error) {
+std::optional<std::string> different_event(const Occurrence& expected, const model::RecordedEvent& found,
+                                           double error) {
   if (found.mark != fmt::format("e{}", expected.event)) return "another event";
   const double off = std::fabs(found.t - static_cast<double>(expected.t));
   if (expected.scheduled && off > 0) return fmt::format("a tick {:.2e} away from its decimal", off);

@@ -66,7 +66,7 @@ TEST(Tables, TheEventListHasTheStatesBeforeAndAfter) {
 TEST(Tables, ContactsHaveAnImpulseAndColumnsOfStatesOnlyBesideOtherEvents) {
   const Folder folder;
   model::Run run = falling_ball().run;
-  const model::Happened fall = run.events.at(0);
+  const model::RecordedEvent fall = run.events.at(0);
   run.events = {{.name = "a meets b", .mark = "", .t = 0.25, .before = {}, .after = {}, .impulse = 3}};
   ASSERT_TRUE(write_events(run, folder / "contacts.csv", "abc"));
   EXPECT_EQ(content(folder / "contacts.csv"), "# manifest abc\nevent,t,impulse\na meets b,0.25,3\n");

@@ -41,7 +41,7 @@ TEST_P(FoundEvents, AreFoundOnce) {
   ASSERT_TRUE(simulated.run) << render(simulated.diagnostics, loaded.source);
   EXPECT_TRUE(succeeded(simulated.run->outcome.ending)) << describe(simulated.run->outcome);
   std::vector<double> times;
-  for (const Happened& event : simulated.run->events)
+  for (const RecordedEvent& event : simulated.run->events)
     if (!event.mark.empty()) times.push_back(event.t);
   ASSERT_EQ(times.size(), found.times.size());
   for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], found.times[i], 1e-9) << i;

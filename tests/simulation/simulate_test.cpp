@@ -31,7 +31,7 @@ std::string code_of(const std::string& text, const Experiment& experiment = {}) 
 
 std::vector<double> times(const Run& run) {
   std::vector<double> all;
-  for (const Happened& event : run.events) all.push_back(event.t);
+  for (const RecordedEvent& event : run.events) all.push_back(event.t);
   return all;
 }
 

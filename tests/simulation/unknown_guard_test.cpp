@@ -150,7 +150,7 @@ std::vector<double> times(const std::string& text, const std::string& method) {
   const Simulated simulated = simulate(*loaded.model, experiment);
   EXPECT_TRUE(simulated.passed()) << method;
   std::vector<double> found;
-  for (const Happened& event : simulated.run->events) found.push_back(event.t);
+  for (const RecordedEvent& event : simulated.run->events) found.push_back(event.t);
   return found;
 }
 

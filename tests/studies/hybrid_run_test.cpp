@@ -65,11 +65,11 @@ TEST(HybridExponents, OfABounceSumToWhatItMakesOfAreas) {
   const model::Simulated simulated = model::simulate(program, {.rtol = 1e-10, .atol = {1e-10}, .to = 250});
   ASSERT_TRUE(simulated.run);
   std::size_t bounces = 0;
-  for (const model::Happened& event : simulated.run->events) bounces += event.t > 50 ? 1 : 0;
+  for (const model::RecordedEvent& event : simulated.run->events) bounces += event.t > 50 ? 1 : 0;
   const auto found = exponents_of(text, {.duration = 200, .settle = 50});
   ASSERT_EQ(found.size(), 2u);
   double sum = 0;
-  for (const model::Happened& event : simulated.run->events)
+  for (const model::RecordedEvent& event : simulated.run->events)
     if (event.t > 50) sum += std::log(0.8 * std::abs(event.after[1] / event.before[1]));
   EXPECT_GT(bounces, 50u);
   EXPECT_NEAR(found[0] + found[1], sum / 200, 2 * std::log(2.0) / 200 + 1e-3);

@@ -142,8 +142,8 @@ run 0..4 [s] output 0.5
 TEST(QueriesInText, AreSensorsOfEvents) {
   for (const auto& [mode, step] : {std::pair("", 1e-12), std::pair("mode fast step 1/100", 0.0100001)}) {
     const model::Run run = run_of(car(mode));
-    std::vector<model::Happened> marks;
-    for (const model::Happened& event : run.events)
+    std::vector<model::RecordedEvent> marks;
+    for (const model::RecordedEvent& event : run.events)
       if (!event.mark.empty()) marks.push_back(event);
     ASSERT_EQ(marks.size(), 2U) << mode;
     // The stone, with its centre at y = 6 and a radius of 1, moves down at 2 m/s: its edge reaches the beam at y = 1

@@ -85,7 +85,7 @@ class EquationTrack final : public Track, model::StepWatcher {
   }
 
   void on_segment(model::Stepping&, double) override {}
-  void on_event(model::Stepping& run, const Happening<X>& now) override {
+  void on_event(model::Stepping& run, const EventOccurrence<X>& now) override {
     const model::ModelEvents& events = run.events();
     const auto stops = events.stops();
     passed_.push_back({now.t,

@@ -23,7 +23,7 @@ struct Instant : model::Instant {
   bool moved = false;                               // a hand has changed x since
 };
 
-/// Events of one instant as they happened.
+/// The events that occurred at one instant.
 struct Passed {
   double t;
   std::vector<model::EventName> names;  // empty: the step of an input, which is nobody's event

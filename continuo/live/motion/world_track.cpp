@@ -81,7 +81,7 @@ class WorldTrack final : public Track {
     chunk_ = std::clamp(chunk_, 1e-9 * length(), length());
     put_held();
     note_contacts();
-    if (status_) status_ = events_.happen(*run_, sink());
+    if (status_) status_ = events_.fire_due(*run_, sink());
     end_where_stopped();
     if (status_ && run_->time() > before_t_) return !events_.stopped();
     if (events_.stopped()) return false;
@@ -149,7 +149,7 @@ class WorldTrack final : public Track {
 
  private:
   worlds::WorldEvents::Sink sink() {
-    return [this](const worlds::WorldHappening& now) {
+    return [this](const worlds::WorldEventOccurrence& now) {
       Passed passed{now.t, now.names, now.before, run_->state(), run_->mode(), {}};
       const auto stops = events_.stops();
       passed.stops.assign(stops.begin(), stops.end());

@@ -24,7 +24,7 @@ class Recording final : public StepWatcher {
                          At{&run, [](void* of, double t, ModelSystem::X& x) { static_cast<Stepping*>(of)->at(t, x); }});
   }
 
-  void on_event(Stepping& run, const Happening<ModelSystem::X>& now) override {
+  void on_event(Stepping& run, const EventOccurrence<ModelSystem::X>& now) override {
     recorder_.on_event(now.t, names_.of(run.events(), now.events, true), now.before, now.after);
   }
 
@@ -75,7 +75,7 @@ class SteppingByName final : public Stepping {
     SteppingByName& run;
     StepWatcher& watcher;
     void on_segment(Driving&, double, double to) { watcher.on_segment(run, to); }
-    void on_event(Driving&, const Happening<X>& now) { watcher.on_event(run, now); }
+    void on_event(Driving&, const EventOccurrence<X>& now) { watcher.on_event(run, now); }
   };
 
   void begin(ModelSystem system, X x0, Interval<double> interval, Options<X> options, ModelEvents events) {

@@ -100,18 +100,18 @@ class Judge {
   }
 
   /// Contacts of bodies are meant only where they are named.
-  bool matches(const Moment& moment, const Happened& event) const {
+  bool matches(const Moment& moment, const RecordedEvent& event) const {
     return event.name.starts_with(moment.event) && !(moment.event.empty() && event.is_contact());
   }
 
   std::size_t count_events(const Moment& moment) const {
     return static_cast<std::size_t>(
-        std::ranges::count_if(run_.events, [&](const Happened& event) { return matches(moment, event); }));
+        std::ranges::count_if(run_.events, [&](const RecordedEvent& event) { return matches(moment, event); }));
   }
 
-  const Happened* find_event(const Moment& moment) const {
+  const RecordedEvent* find_event(const Moment& moment) const {
     std::size_t number = 0;
-    for (const Happened& event : run_.events) {
+    for (const RecordedEvent& event : run_.events) {
       if (matches(moment, event) && ++number == moment.number) return &event;
     }
     return nullptr;
@@ -140,7 +140,7 @@ class Judge {
     const bool needs_event = check.measure == Measure::event_time ||
                              (check.measure == Measure::value && check.moment.kind == Moment::Kind::event);
     if (needs_event) {
-      const Happened* event = find_event(check.moment);
+      const RecordedEvent* event = find_event(check.moment);
       if (event == nullptr) {
         message = fmt::format("there were only {} such events", count_events(check.moment));
         return false;

@@ -76,7 +76,7 @@ class RunRecorder {
   std::size_t next_output_ = 0, next_sample_ = 0;
   Motion motion_;
   std::vector<double> total_energy_;
-  std::vector<Happened> events_;
+  std::vector<RecordedEvent> events_;
   Evaluation quantities_, watched_;
   std::vector<double> quantity_values_, watched_values_;
   std::vector<SampledState> samples_;

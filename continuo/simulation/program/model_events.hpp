@@ -72,7 +72,7 @@ class ModelEvents {
   [[nodiscard]] double begin() const { return begin_; }
   /// How often each `stop` of the model has been reached.
   [[nodiscard]] std::span<const std::size_t> stops() const { return stop_counts_; }
-  /// The run goes on from t: what was scheduled for that very instant has happened.
+  /// The run goes on from t: what was scheduled for that very instant has fired.
   void resume(double t, std::span<const std::size_t> stops) {
     resumed_ = t;
     stop_counts_.assign(stops.begin(), stops.end());

@@ -465,7 +465,7 @@ class Driver {
     if (!at_limit) ++steps().statistics().events;
     if (response.restart) settle_algebraic();
     if (response.changed && !response.restart) note_shifts();
-    observer.on_event(*this, Happening<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
+    observer.on_event(*this, EventOccurrence<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
     logic_.acted(steps(), i, response, t_, x_);
     if (at_limit || !logic_.events().is_guard(i)) return response;
     std::optional<Real> limit = logic_.accumulation().fired(i, t_);

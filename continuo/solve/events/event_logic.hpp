@@ -79,7 +79,7 @@ class EventLogic {
     return forward_ * (next - to) <= 0 ? std::optional<Real>(next) : std::nullopt;
   }
 
-  /// Begins the list of an instant with the events that are scheduled for t and have not happened yet.
+  /// Begins the list of an instant with the events that are scheduled for t and have not fired yet.
   void begin_instant(Real t) {
     fired_.clear();
     if (!any_scheduled_ || scheduled_at_ == t) return;

@@ -183,7 +183,7 @@ void SensitiveEvents::act(std::size_t fired, SensitiveSystem& system, double t, 
     }
   }
   moves_ = moves;
-  happened_.push_back({event, t, moves});
+  occurrences_.push_back({event, t, moves});
 }
 
 EventResponse SensitiveEvents::fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x) {

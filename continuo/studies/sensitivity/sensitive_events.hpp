@@ -14,8 +14,8 @@
 
 namespace continuo::studies::detail {
 
-/// An event as it happened.
-struct SensitiveHappening {
+/// An event at the instant at which it occurs.
+struct SensitiveEventOccurrence {
   std::size_t event;  // of the model, in the order of the text
   double t;
   std::vector<double> time_moves{};  // dt/dp
@@ -54,10 +54,10 @@ class SensitiveEvents {
   [[nodiscard]] Enclosure<double> value_enclosure(std::size_t i, double at) { return plain_.value_enclosure(i, at); }
 
   [[nodiscard]] EventResponse fire(SensitiveSystem& system, std::size_t fired, double t, const X& before, X& x);
-  /// The run goes on from t: what was scheduled for that very instant has happened.
+  /// The run goes on from t: what was scheduled for that very instant has fired.
   void resume(double t, std::span<const std::size_t> stops) { plain_.resume(t, stops); }
 
-  [[nodiscard]] std::span<const SensitiveHappening> happened() const { return happened_; }
+  [[nodiscard]] std::span<const SensitiveEventOccurrence> occurrences() const { return occurrences_; }
   [[nodiscard]] bool is_declared(std::size_t i) const { return plain_.is_declared(i); }
   /// A failure where the motion has no derivative.
   [[nodiscard]] const Status& status() const { return status_; }
@@ -105,7 +105,7 @@ class SensitiveEvents {
   const SensitiveProgram* program_;
   X x_;  // of the model alone
   std::vector<X> coefficients_;
-  std::vector<SensitiveHappening> happened_;
+  std::vector<SensitiveEventOccurrence> occurrences_;
   double instant_t_;  // of what follows
   std::vector<Change> instant_{};
   std::vector<double> moves_{};  // of the event that is firing

@@ -31,7 +31,7 @@ struct SensitiveRows {
 struct SensitiveEnding {
   Outcome<double> outcome;
   Statistics statistics;
-  std::vector<SensitiveHappening> happened;
+  std::vector<SensitiveEventOccurrence> occurrences;
   Status status;  // a failure where the motion has no derivative
   std::size_t mode;
 };
@@ -59,7 +59,7 @@ struct SensitiveObserver {
     rows.keep(to, x);
   }
   template <class I>
-  void on_event(I& integrator, const Happening<SensitiveSystem::X>& now) {
+  void on_event(I& integrator, const EventOccurrence<SensitiveSystem::X>& now) {
     if (!rows.events) return;
     const bool declared =
         std::ranges::any_of(now.events, [&](std::size_t i) { return integrator.events().is_declared(i); });
@@ -81,10 +81,10 @@ template <class Method>
   for (std::size_t count = 1; integrator.advance(observer); ++count)
     if (count % 256 == 0 && integrator.options().progress) integrator.options().progress(integrator.t());
   if (rows.events && rows.times.back() != integrator.t()) rows.keep(integrator.t(), integrator.x());
-  const auto happened = integrator.events().happened();
+  const auto occurrences = integrator.events().occurrences();
   return {integrator.outcome(),
           integrator.statistics(),
-          {happened.begin(), happened.end()},
+          {occurrences.begin(), occurrences.end()},
           integrator.events().status(),
           integrator.system().mode()};
 }

@@ -232,10 +232,10 @@ SensitivityRun SensitivityStudy::integrated(const SensitivityRequest& request) c
   run.statistics = ending.statistics;
   run.status = ending.status;
   run.mode = ending.mode;
-  for (const detail::SensitiveHappening& happened : ending.happened) {
-    const model::EventOrder& place = model.event_order[happened.event];
+  for (const detail::SensitiveEventOccurrence& occurrence : ending.occurrences) {
+    const model::EventOrder& place = model.event_order[occurrence.event];
     run.events.push_back({place.scheduled ? model.schedule[place.index].name : model.events[place.index].name,
-                          happened.t, happened.time_moves});
+                          occurrence.t, occurrence.time_moves});
   }
   return run;
 }

@@ -61,12 +61,12 @@ void HybridRun::on_segment(model::Stepping& run, double to) {
   from_ = to;
 }
 
-void HybridRun::on_event(model::Stepping& run, const Happening<X>& now) {
+void HybridRun::on_event(model::Stepping& run, const EventOccurrence<X>& now) {
   const bool jumps = std::ranges::any_of(now.events, [&](std::size_t i) { return run.events().is_jump(i); });
   const std::size_t mode = run.system().mode();
   if (now.before == now.after && mode == mode_ && !jumps) return;
   mode_ = mode;
-  ++happenings_;
+  ++discontinuities_;
   last_ = now.t;
   if (on_jump && now.before != now.after) on_jump(now.t, now.before, now.after);
 }

@@ -46,12 +46,13 @@ class HybridRun final : private model::StepWatcher {
   [[nodiscard]] model::Instant instant() const;
   [[nodiscard]] const Outcome<double>& outcome() const { return run_->outcome(); }
   /// How often the state or the mode has been changed, or the equations jumped, and when that was last.
-  [[nodiscard]] std::size_t happenings() const { return happenings_; }
-  [[nodiscard]] double last_happening() const { return last_; }
+  [[nodiscard]] std::size_t discontinuities() const { return discontinuities_; }
+  [[nodiscard]] double last_discontinuity() const { return last_; }
   /// Whether the motion is held by a surface where the equations jump.
   [[nodiscard]] bool slides() const { return run_->system().slides(); }
 
-  /// Called for every piece of motion between happenings: at(t, x) gives the state on from..to, in an x of its size.
+  /// Called for every piece of motion between discontinuities: at(t, x) gives the state on from..to, in an x of its
+  /// size.
   using At = std::function<void(double t, X& x)>;
   std::function<void(double from, double to, const At& at)> on_stretch{};
   /// Called where something changes the state at once.
@@ -59,12 +60,12 @@ class HybridRun final : private model::StepWatcher {
 
  private:
   void on_segment(model::Stepping& run, double to) override;
-  void on_event(model::Stepping& run, const Happening<X>& now) override;
+  void on_event(model::Stepping& run, const EventOccurrence<X>& now) override;
 
   std::vector<double> variables_;
   std::unique_ptr<model::Stepping> run_;
   double from_, last_ = -std::numeric_limits<double>::infinity();
-  std::size_t mode_, happenings_ = 0;
+  std::size_t mode_, discontinuities_ = 0;
 };
 
 }  // namespace continuo::studies

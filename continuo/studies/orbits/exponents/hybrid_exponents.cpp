@@ -97,9 +97,9 @@ class Neighbourhood {
     double margin = 1e-3 * (t - motion_.t());
     for (int tries = 0;; ++tries) {
       if (!scout_.advance_to(std::max(t + margin, scout_.t()))) return false;
-      if (scout_.last_happening() < t - margin || tries == 60) break;
+      if (scout_.last_discontinuity() < t - margin || tries == 60) break;
       if (tries % 10 == 9) margin /= 8;
-      t = scout_.last_happening() + 2 * margin;
+      t = scout_.last_discontinuity() + 2 * margin;
     }
     scouted_ = t;
     return motion_.advance_to(t);

@@ -183,9 +183,10 @@ class StartSearch {
     scan_.go_on(begin);
     if (!scan_.advance_to(t)) return;
     double gap_begin = t, best_from = t, best_length = 0;
-    std::size_t seen = scan_.happenings();
+    std::size_t seen = scan_.discontinuities();
     scan_.on_stretch = [&](double from, double to, const HybridRun::At&) {
-      if (scan_.happenings() != std::exchange(seen, scan_.happenings())) gap_begin = std::max(gap_begin, from);
+      if (scan_.discontinuities() != std::exchange(seen, scan_.discontinuities()))
+        gap_begin = std::max(gap_begin, from);
       if (scan_.slides()) gap_begin = to;
       if (to - gap_begin > best_length) best_from = gap_begin, best_length = to - gap_begin;
     };
