@@ -44,6 +44,7 @@ struct Branch {
   std::vector<BranchPoint> points;
   std::vector<BifurcationPoint> bifurcations;  // in the order of the branch
   bool complete = false;                       // it left the range of the constant, or closed
+  bool closed = false;                         // its first point is also its last
   std::string_view message{};                  // why it ended elsewhere; empty where complete
 };
 

@@ -316,6 +316,78 @@ TEST(Continuation, WhatGoesToInfinityIsSaidToDoSo) {  // x = 1 / p
   EXPECT_LE(branch.points.size(), 400u);
 }
 
+// The equilibria are the circle x^2 + p^2 = 1, beside an oscillator whose pair has the real part x - 0.3: Hopf points
+// at p = +-sqrt(0.91), folds at p = +-1.
+TEST(Continuation, AClosedBranchIsFollowedOnceRound) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    const double grow = x[0] - 0.3 - x[1] * x[1] - x[2] * x[2];
+    out[0] = 1 - x[0] * x[0] - p[0] * p[0];
+    out[1] = grow * x[1] - x[2];
+    out[2] = x[1] + grow * x[2];
+  };
+  for (const double angle : {0.0, 0.1, 0.25, 0.31, 0.5, 1.2, 2.0, 3.0, 4.0, 5.0}) {
+    const auto branch = continue_equilibrium(parametric_system(3, f, {std::sin(angle)}), {std::cos(angle), 0, 0},
+                                             {.low = -2, .high = 2});
+    EXPECT_TRUE(branch.complete && branch.closed) << angle << ": " << branch.message;
+    EXPECT_EQ(branch.points.front().x, branch.points.back().x) << angle;
+    std::vector<double> hopf, folds;
+    for (const auto& point : branch.bifurcations)
+      (point.kind == Bifurcation::hopf ? hopf : folds).push_back(point.at.constant);
+    std::ranges::sort(hopf);
+    std::ranges::sort(folds);
+    ASSERT_EQ(hopf.size(), 2u) << angle;
+    ASSERT_EQ(folds.size(), 2u) << angle;
+    for (const std::size_t k : {0u, 1u}) {
+      EXPECT_NEAR(hopf[k], (k == 0 ? -1 : 1) * std::sqrt(0.91), 1e-9) << angle;
+      EXPECT_NEAR(folds[k], k == 0 ? -1 : 1, 1e-9) << angle;
+    }
+    double turned = 0;  // once round, and no piece twice
+    for (std::size_t k = 1; k < branch.points.size(); ++k) {
+      const auto &a = branch.points[k - 1], &b = branch.points[k];
+      turned += std::asin(a.x[0] * b.constant - b.x[0] * a.constant);
+    }
+    EXPECT_NEAR(std::abs(turned), 2 * std::numbers::pi, 1e-6) << angle;
+  }
+}
+
+TEST(Continuation, AClosedBranchAcrossAnotherIsFollowedOnceRound) {  // x = 0 and the circle meet at p = +-1
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    out[0] = x[0] * (1 - x[0] * x[0] - p[0] * p[0]);
+  };
+  const auto system = parametric_system(1, f, {-1.5});
+  const ContinuationOptions options{.low = -2, .high = 2};
+  const auto diagram = continue_equilibria(system, {{-1.5, {0}}}, options);
+  ASSERT_EQ(diagram.size(), 2u);
+  EXPECT_FALSE(diagram[0].branch.closed);
+  EXPECT_TRUE(diagram[1].branch.complete && diagram[1].branch.closed) << diagram[1].branch.message;
+  for (const auto& one : diagram) {
+    ASSERT_EQ(one.branch.bifurcations.size(), 2u);
+    for (const auto& point : one.branch.bifurcations) {
+      EXPECT_EQ(point.kind, Bifurcation::pitchfork);
+      EXPECT_NEAR(std::abs(point.at.constant), 1, 1e-9);
+    }
+    EXPECT_LT(one.branch.bifurcations[0].at.constant * one.branch.bifurcations[1].at.constant, 0);
+  }
+}
+
+// x' = p (x - 1) (x + 1), y' = -y: at p = 0 every x is an equilibrium, and this line crosses both branches where they
+// leave the range.
+TEST(Continuation, BranchesThatMeetAtTheBoundAreListedOnce) {
+  const auto f = [](double, Values x, Values p, std::span<double> out) {
+    out[0] = p[0] * (x[0] - 1) * (x[0] + 1);
+    out[1] = -x[1];
+  };
+  const auto diagram =
+      continue_equilibria(parametric_system(2, f, {0.5}), {{0.5, {1, 0}}, {0.5, {-1, 0}}}, {.low = 0, .high = 2});
+  ASSERT_EQ(diagram.size(), 3u);  // the two, and the line
+  for (const std::size_t k : {0u, 1u}) {
+    const auto& points = diagram[k].branch.points;
+    EXPECT_NEAR(std::min(points.front().constant, points.back().constant), 0, 1e-6);
+    EXPECT_EQ(std::max(points.front().constant, points.back().constant), 2);
+  }
+  for (const auto& point : diagram[2].branch.points) EXPECT_NEAR(point.constant, 0, 1e-9);
+}
+
 TEST(Continuation, WithoutAStartItSaysSo) {
   const auto f = [](double, Values x, Values p, std::span<double> out) { out[0] = p[0] + x[0] * x[0]; };
   const auto branch = continue_equilibrium(parametric_system(1, f, {1.0}), {1}, {.low = 0, .high = 4});

@@ -27,7 +27,7 @@ constexpr double near_the_axis = 1e-5;  // of a pair, in parts of its frequency
 constexpr double no_slope = 1e-5;       // of a direction of length 1: so little is no change of the constant
 
 // In sizes at the start; of the constant in parts of its range.
-constexpr double far_away = 1e4, large = 4, standstill = 1e-3;
+constexpr double far_away = 1e4, large = 4, standstill = 1e-3, same_place = 1e-6;
 
 using Place = detail::EquilibriumPlace;
 
@@ -51,7 +51,9 @@ class Follower {
     }
     const Place first = steps_.described(*start, {});
     branch.points.push_back(first.point);
-    return joined(followed(first, -1), std::move(branch), followed(first, 1));
+    Branch back = followed(first, -1);
+    Branch ahead = back.closed ? nothing() : followed(first, 1);
+    return joined(std::move(back), std::move(branch), std::move(ahead));
   }
 
   /// The other branch through a crossing. Next to it alone are the equations good enough to go on from.
@@ -61,20 +63,20 @@ class Follower {
     for (std::size_t i = 0; i <= n_; ++i) along[i] /= steps_.unit(i);
     detail::normalize(along);
     branch.points.push_back(from.at);
-    Branch back = beside(z, along, -1), ahead = beside(z, along, 1);
-    return joined(std::move(back), std::move(branch), std::move(ahead));
+    Branch back = beside(z, along, -1);
+    if (back.closed) return back;  // it has passed through the crossing
+    return joined(std::move(back), std::move(branch), beside(z, along, 1));
   }
 
   /// Whether the branch passes through this place: where it crosses the plane through the place that is upright on the
   /// way between its two neighbours.
   bool passes(const Branch& branch, const Vector& x, double constant) {
-    constexpr double same = 1e-6;
     const Vector z = steps_.scaled(x, constant);
     const auto apart = [&](const Vector& a) { return detail::distance(a, z); };
     for (std::size_t k = 1; k < branch.points.size(); ++k) {
       const Vector a = steps_.scaled(branch.points[k - 1].x, branch.points[k - 1].constant),
                    b = steps_.scaled(branch.points[k].x, branch.points[k].constant);
-      if (apart(a) < same || apart(b) < same) return true;
+      if (apart(a) < same_place || apart(b) < same_place) return true;
       Vector way(n_ + 1), guess(n_ + 1);
       double length = 0, part = 0;
       for (std::size_t i = 0; i <= n_; ++i) way[i] = b[i] - a[i], length += way[i] * way[i];
@@ -84,18 +86,24 @@ class Follower {
       if (apart(guess) > std::sqrt(length)) continue;
       detail::normalize(way);
       const auto there = steps_.corrected(guess, guess, way, false);
-      if (there && apart(*there) < same) return true;
+      if (there && apart(*there) < same_place) return true;
     }
     return false;
   }
 
  private:
+  static Branch nothing() {
+    Branch branch;
+    branch.complete = true;
+    return branch;
+  }
   static Branch joined(Branch back, Branch middle, Branch ahead) {
     Branch branch = std::move(back);
     detail::turn_round(branch.points, branch.bifurcations);
     for (Branch* part : {&middle, &ahead})
       detail::append(branch.points, branch.bifurcations, std::move(part->points), std::move(part->bifurcations));
     branch.complete = branch.complete && ahead.complete;
+    branch.closed = branch.closed || ahead.closed;
     if (branch.message.empty()) branch.message = ahead.message;
     return branch;
   }
@@ -106,15 +114,10 @@ class Follower {
       if (!found || detail::distance(*found, guess) > step / 2) continue;  // it leapt to elsewhere
       Branch branch;
       const Place place = steps_.described(*found, along);
-      if (!inside(place.z)) {
-        branch.complete = true;
-        return branch;
-      }
+      if (!inside(place.z)) return nothing();
       Branch rest = followed(place, direction);
       branch.points.push_back(place.point);
-      Branch none;
-      none.complete = true;
-      return joined(std::move(none), std::move(branch), std::move(rest));
+      return joined(nothing(), std::move(branch), std::move(rest));
     }
     Branch branch;
     branch.message = "the branch could not be followed from where it crosses the other";
@@ -129,9 +132,9 @@ class Follower {
     Place here = from;
     for (double& part : here.tangent) part *= direction;
     here.direction_sign *= direction;
-    const Vector origin = here.z;
+    const Place origin = here;
     detail::StepLength step(options_);
-    double reached = 1, reached_at = origin[n_];
+    double reached = 1, reached_at = origin.z[n_];
     while (branch.points.size() < options_.most_points) {
       if (options_.interrupt && options_.interrupt->load()) {
         branch.message = "interrupted";
@@ -156,15 +159,21 @@ class Follower {
         branch.message = "the branch could not be followed further";
         return branch;
       }
+      if (const auto last = step_onto(origin, here, step * reach)) {
+        mark(branch, here, origin, *last);
+        branch.points.push_back(origin.point);
+        branch.complete = branch.closed = true;
+        return branch;
+      }
       mark(branch, here, *next, step * reach);
       const Place before = std::exchange(here, std::move(*next));
       if (inside(here.z)) {
         branch.points.push_back(here.point);
-      } else if (auto last = at_bound(before.z, here.z)) {
+      } else if (auto last = at_bound(before, here, step * reach)) {
         branch.points.push_back(std::move(last->point));
       }
       covered_.report(here.point.constant);
-      if (!inside(here.z) || (branch.points.size() > 20 && near(here.z, origin, step))) {
+      if (!inside(here.z)) {
         branch.complete = true;
         return branch;
       }
@@ -173,17 +182,37 @@ class Follower {
     branch.message = "too many points";
     return branch;
   }
-  /// Between a place inside of the range and one outside.
-  std::optional<Place> at_bound(const Vector& a, const Vector& b) {
-    const double bound = std::clamp(steps_.constant_of(b), options_.low, options_.high) / range_;
-    if (a[n_] == b[n_] || a[n_] == bound) return std::nullopt;
-    const double part = (bound - a[n_]) / (b[n_] - a[n_]);
-    Vector guess = detail::between(a, b, part);
+  /// Between a place inside of the range and the one outside that a step leads to.
+  std::optional<Place> at_bound(const Place& a, const Place& b, double step) {
+    const double bound = std::clamp(steps_.constant_of(b.z), options_.low, options_.high) / range_;
+    if (a.z[n_] == b.z[n_] || a.z[n_] == bound) return std::nullopt;
+    const double part = (bound - a.z[n_]) / (b.z[n_] - a.z[n_]);
+    Vector guess = detail::between(a.z, b.z, part);
     guess[n_] = bound;
-    auto z = steps_.corrected(guess, guess, {}, true);
-    return z ? std::optional(steps_.described(std::move(*z), {})) : std::nullopt;
+    if (auto z = steps_.corrected(guess, guess, {}, true)) return steps_.described(std::move(*z), {});
+    // Where another branch crosses at the bound, the constant does not determine the state: the longest step that stays
+    // inside does.
+    std::optional<Place> last;
+    double low = 0, high = step;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = (low + high) / 2;
+      auto place = steps_.stepped(a, middle);
+      if (!place) break;
+      (inside(place->z) ? low : high) = middle;
+      if (inside(place->z)) last = std::move(place);
+    }
+    return last;
   }
-  static bool near(const Vector& a, const Vector& b, double step) { return detail::distance(a, b) < step / 2; }
+  /// The length of the step that ends at `origin`, where the branch comes back to it within the next `step`.
+  std::optional<double> step_onto(const Place& origin, const Place& here, double step) {
+    double length = 0;
+    for (std::size_t i = 0; i <= n_; ++i) length += here.tangent[i] * (origin.z[i] - here.z[i]);
+    if (!(length > 0 && length < 1.001 * step) || detail::distance(origin.z, here.z) > 2 * step ||
+        detail::product(here.tangent, origin.tangent) < detail::least_cosine_of_neighbours)
+      return std::nullopt;
+    const auto there = steps_.stepped(here, length);
+    return there && detail::distance(there->z, origin.z) < same_place ? std::optional(length) : std::nullopt;
+  }
 
   /// What lies between two neighbours, narrowed down to where its test is zero.
   void mark(Branch& branch, const Place& a, const Place& b, double step) {
