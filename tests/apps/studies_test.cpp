@@ -453,6 +453,18 @@ TEST(Explore, SaysWhatIsThereAndWhatIsOpen) {
   EXPECT_EQ(lorenz.exit, 0) << lorenz.err;
   EXPECT_THAT(lorenz.out, AllOf(HasSubstr("rests    3 from"), HasSubstr("Hopf point at rho = 24.7368"),
                                 HasSubstr("the motion is chaotic"), HasSubstr("open     no closed orbit")));
+  // The equilibria mirror each other: each bifurcation is listed once, with a state where the parameter is not enough.
+  const auto count = [&](std::string_view text) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = lorenz.out.find(text, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("Hopf point at rho = 24.7368, x = 7.95602, "), 1u) << lorenz.out;
+  EXPECT_EQ(count("Hopf point at rho = 24.7368, x = -7.95602, "), 1u);
+  EXPECT_EQ(count("pitchfork at rho = 1\n"), 1u);
+  EXPECT_EQ(count("Hopf point at sigma = 6.47329, x = 8.48528, "), 1u);
+  EXPECT_EQ(count("Hopf point at sigma = 6.47329, x = -8.48528, "), 1u);
+  EXPECT_EQ(count("crossing of branches at sigma = 0, x = 0\n"), 1u);
   const Result spring = shell.run("explore " + gallery("mass_spring_damper"));
   EXPECT_THAT(spring.out, AllOf(HasSubstr("it goes on to rest 1"), HasSubstr("1 stable: x = 0.5")));
   // Its orbit has the period 2 pi (1 + mu^2/16 + ...), 6.6632868593231 for mu = 1.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <apps/continuo/orbits/bifurcation_text.hpp>
 #include <apps/continuo/orbits/exploration.hpp>
 #include <apps/continuo/studies/orbit_text.hpp>
 #include <fmt/format.h>
@@ -87,17 +88,19 @@ double cleared(const Slider& slider, double value) {
   return std::abs(value) < 1e-12 * (slider.high - slider.low) ? 0 : value;
 }
 
-std::string slider_text(const Slider& slider) {
+std::string slider_text(const Slider& slider, const model::Model& model) {
   std::string text =
       fmt::format("slider   {} from {} to {}\n", slider.name, short_number(slider.low), short_number(slider.high));
   bool any = false;
-  for (const studies::BranchOfDiagram& one : slider.branches) {
+  for (std::size_t b = 0; b < slider.branches.size(); ++b) {
+    const studies::BranchOfDiagram& one = slider.branches[b];
     std::string of = "a branch that crosses";
     for (std::size_t k = 0; k < one.starts.size(); ++k)
       of = k == 0 ? fmt::format("rest {}", one.starts[k] + 1) : fmt::format("{}, {}", of, one.starts[k] + 1);
     for (const studies::BifurcationPoint& point : one.branch.bifurcations) {
-      text += fmt::format("         {}: {} at {} = {}{}\n", of, to_string(point.kind), slider.name,
-                          short_number(cleared(slider, point.at.constant)),
+      if (is_listed_before(slider.branches, b, point)) continue;
+      text += fmt::format("         {}: {} at {} = {}{}{}\n", of, to_string(point.kind), slider.name,
+                          short_number(cleared(slider, point.at.constant)), state_text(slider.branches, point, model),
                           point.frequency > 0 ? fmt::format(", frequency {}", short_number(point.frequency)) : "");
       any = true;
     }
@@ -132,7 +135,7 @@ std::string exploration_text(const Studied& studied, const Exploration& found) {
   const model::Model& model = studied.prepared.program->model;
   std::string text = run_text(model, found) + conserved_text(studied, "kept     ") + rests_text(model, found) +
                      orbit_text(model, found);
-  for (const Slider& slider : found.sliders) text += slider_text(slider);
+  for (const Slider& slider : found.sliders) text += slider_text(slider, model);
   text += influences_text(found);
   if (!found.not_moved.empty())
     text += fmt::format("not moved: {}; a range behind a parameter (`in LOW..HIGH`) says how far it may go\n",

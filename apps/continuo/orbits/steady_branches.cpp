@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <apps/continuo/orbits/bifurcation_text.hpp>
 #include <apps/continuo/orbits/steady_branches.hpp>
 #include <apps/continuo/studies/branch_curves.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
@@ -27,9 +28,9 @@ double shown(double value, const NamedRange& range) {
   return std::abs(value) < 1e-11 * (range.high - range.low) ? 0 : value;
 }
 
-std::string text_of(const studies::BifurcationPoint& point, const NamedRange& range) {
+std::string text_of(const studies::BifurcationPoint& point, const NamedRange& range, std::string_view state) {
   std::string line =
-      fmt::format("   {} = {:.10g}: {}", range.name, shown(point.at.constant, range), to_string(point.kind));
+      fmt::format("   {} = {:.10g}{}: {}", range.name, shown(point.at.constant, range), state, to_string(point.kind));
   if (point.kind == studies::Bifurcation::hopf) {
     line += fmt::format(", frequency {}", results::short_number(point.frequency));
     if (point.coefficient)
@@ -110,7 +111,8 @@ SteadyDiagram diagram_of(const Studied& studied, const std::vector<studies::Equi
   return diagram;
 }
 
-std::string text_of(const SteadyDiagram& diagram, const NamedRange& range, std::size_t known) {
+std::string text_of(const SteadyDiagram& diagram, const model::Model& model, const NamedRange& range,
+                    std::size_t known) {
   std::string text;
   for (std::size_t k = 0; k < diagram.branches.size(); ++k) {
     const auto& [branch, starts, crossed] = diagram.branches[k];
@@ -127,7 +129,8 @@ std::string text_of(const SteadyDiagram& diagram, const NamedRange& range, std::
     }
     text += fmt::format("\nbranch {}{}: {} points{}\n", k + 1, whence, branch.points.size(),
                         branch.complete ? "" : fmt::format("; {}", branch.message));
-    for (const studies::BifurcationPoint& point : branch.bifurcations) text += text_of(point, range);
+    for (const studies::BifurcationPoint& point : branch.bifurcations)
+      text += text_of(point, range, state_text(diagram.branches, point, model));
   }
   return text;
 }

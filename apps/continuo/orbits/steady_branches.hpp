@@ -24,7 +24,8 @@ SteadyDiagram diagram_of(const Studied& studied, const std::vector<studies::Equi
                          const NamedRange& range, const studies::EquilibriumBox& box, const BranchSteps& steps = {});
 
 /// A few lines for each branch.
-std::string text_of(const SteadyDiagram& diagram, const NamedRange& range, std::size_t known);
+std::string text_of(const SteadyDiagram& diagram, const model::Model& model, const NamedRange& range,
+                    std::size_t known);
 nlohmann::json json_of(const SteadyDiagram& diagram, const model::Model& model, const NamedRange& range);
 std::string csv_of(const SteadyDiagram& diagram, const model::Model& model, const NamedRange& range);
 /// One state over the parameter, with the points at which something changes.

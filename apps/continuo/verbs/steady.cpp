@@ -120,7 +120,7 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
   const model::Model& model = studied.prepared.program->model;
   const SteadyDiagram diagram = diagram_of(studied, found.equilibria, range, box, options.steps);
   if (second) {
-    if (!options.json) print(text_of(diagram, range, found.equilibria.size()));
+    if (!options.json) print(text_of(diagram, model, range, found.equilibria.size()));
     return follow_curves(studied, found, diagram, {range, *second}, options);
   }
   if (options.json) {
@@ -128,7 +128,7 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
     json.update(json_of(diagram, model, range));
     print(json.dump(2) + "\n");
   } else {
-    print(text_of(diagram, range, found.equilibria.size()));
+    print(text_of(diagram, model, range, found.equilibria.size()));
   }
   if (!options.out.empty() && !written(results::write_file(options.out, csv_of(diagram, model, range)))) return usage;
   if (!options.plot.empty() && !draw(diagram, model, range, component, options.plot)) return usage;
