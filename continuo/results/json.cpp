@@ -92,7 +92,7 @@ Json error_of(const model::Run& run) {
 Json checks_of(const model::Run& run) {
   Json checks = Json::array();
   for (const model::CheckResult& check : run.checks) {
-    Json json{{"check", check.text}, {"passed", check.passed}};
+    Json json{{"check", check.text}, {"passed", check.passed}, {"evaluated", check.evaluated}};
     if (check.message.empty()) {
       json["value"] = check.value;
       json["expected"] = check.expected;

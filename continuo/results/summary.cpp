@@ -118,6 +118,18 @@ void append_energy(const model::Run& run, std::string& text) {
                  energy.relative ? drift + ", relative" : with_unit(drift, energy.unit));
 }
 
+/// `all 9 passed`, or how many passed, failed, and could not be evaluated.
+std::string counts_of(const std::vector<model::CheckResult>& checks) {
+  const auto passed = static_cast<std::size_t>(std::ranges::count_if(checks, &model::CheckResult::passed));
+  const auto open = static_cast<std::size_t>(std::ranges::count(checks, false, &model::CheckResult::evaluated));
+  const std::size_t failed = checks.size() - passed - open;
+  if (passed == checks.size()) return fmt::format("{}{} passed", passed > 1 ? "all " : "", passed);
+  std::string text;
+  for (const auto& [count, what] : {std::pair{passed, "passed"}, {failed, "failed"}, {open, "not evaluated"}})
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  return text;
+}
+
 void append_checks(const model::Run& run, bool as_written, std::string& text) {
   if (run.checks.empty()) return;
   std::vector<const model::CheckResult*> failed;
@@ -125,8 +137,8 @@ void append_checks(const model::Run& run, bool as_written, std::string& text) {
     if (!check.passed) failed.push_back(&check);
   }
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "checks  {} of {} hold", run.checks.size() - failed.size(), run.checks.size());
-  text += as_written ? "\n" : "; they judge the model as written in its file, and this run differs from it\n";
+  fmt::format_to(out, "checks  {}", counts_of(run.checks));
+  text += as_written ? "\n" : "; they apply to the model as written in its file, and this run differs from it\n";
   if (as_written) return;  // then a failure is an error, and reported as one
   for (std::size_t i = 0; i < std::min(failed.size(), most_checks); ++i) {
     fmt::format_to(out, "        {}\n", failed_check(*failed[i]));
@@ -225,7 +237,7 @@ std::string failed_check(const model::CheckResult& check) {
   const std::string why = !check.message.empty()    ? check.message
                           : std::isnan(check.value) ? "its value is not a number"
                                                     : "it is " + with_unit(number(check.value), check.unit);
-  return fmt::format("{} does not hold: {}", check.text, why);
+  return fmt::format("{} {}: {}", check.text, check.evaluated ? "does not hold" : "was not evaluated", why);
 }
 
 std::string summary(const model::Model& model, const model::Run& run, bool as_written) {

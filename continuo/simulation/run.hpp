@@ -55,7 +55,8 @@ struct CheckResult {
   bool passed = false;
   double value = 0, expected = 0, tolerance = 0;
   std::string unit;
-  std::string message;  // why there is no value; else empty
+  std::string message;    // why it was not evaluated, or when it failed; else empty
+  bool evaluated = true;  // false: the run failed, or did not reach the time or the event
 };
 
 /// The true error of a run, as a second, stricter one shows it: |difference| per state.

@@ -219,8 +219,8 @@ TEST(Run, AFailedCheckIsExitCodeFourForTheModelAsWritten) {
   EXPECT_EQ(result.exit, 4);
   EXPECT_THAT(result.err, HasSubstr("check x(2) = 0 within 1e-9 does not hold: it is -0.65"));
   const Result other = shell.run("run wrong.sim --set k=5");
-  EXPECT_EQ(other.exit, 0);  // checks judge only the model as written
-  EXPECT_THAT(other.out, HasSubstr("0 of 1 hold; they judge the model as written in its file"));
+  EXPECT_EQ(other.exit, 0);  // checks apply only to the model as written
+  EXPECT_THAT(other.out, HasSubstr("1 failed; they apply to the model as written in its file"));
   EXPECT_THAT(other.out, HasSubstr("check x(2) = 0 within 1e-9 does not hold: it is -0.23"));  // cos(2 sqrt(5))
 }
 
@@ -231,7 +231,7 @@ TEST(Verify, ListsEveryModelAndWhatDoesNotHold) {
   EXPECT_EQ(shell.run("verify good.sim").exit, 0);
   const Result result = shell.run("verify .");
   EXPECT_EQ(result.exit, 4);
-  EXPECT_THAT(result.out, HasSubstr("1 of 2 models hold, 1 of 2 checks"));
+  EXPECT_THAT(result.out, HasSubstr("1 of 2 models passed, 1 of 2 checks"));
   EXPECT_THAT(result.out, HasSubstr("FAILED"));
   EXPECT_EQ(shell.run("verify nothing.sim").exit, 1);
 }

@@ -23,7 +23,7 @@ TEST(BoundaryValues, RunSolvesThemByItself) {
   shell.write("p.sim", "x'' = 2\nx(1) = 3\nx(7) = 4\nrun 1..7\ncheck x(4) = -5.5 within 1e-12\n");
   const Result result = shell.run("run p.sim -o p.csv");
   EXPECT_EQ(result.exit, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("checks  1 of 1 hold"), HasSubstr("collocation")));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("checks  1 passed"), HasSubstr("collocation")));
   EXPECT_THAT(shell.read("p.csv"), HasSubstr("t,x,x'"));
   EXPECT_EQ(shell.run("verify p.sim").exit, 0);
 }

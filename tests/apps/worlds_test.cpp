@@ -38,7 +38,7 @@ TEST(Worlds, RunLikeEquations) {
   const Result result = shell.run("run bounce.sim -o rows.csv --events events.csv --plot rows.svg");
   EXPECT_EQ(result.exit, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("events  ball meets floor: 2 times, from t = 1 to 3\n"));
-  EXPECT_THAT(result.out, HasSubstr("checks  2 of 2 hold\n"));
+  EXPECT_THAT(result.out, HasSubstr("checks  all 2 passed\n"));
   EXPECT_THAT(result.out, HasSubstr("cost    2 collisions, "));
   const auto rows = lines_of(shell.read("rows.csv"));
   ASSERT_EQ(rows.size(), 7u);  // the manifest, the names, t = 0, 1, ..., 4

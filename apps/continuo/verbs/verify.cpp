@@ -87,7 +87,7 @@ ExitCode verify_all(const std::vector<std::string>& places) {
     for (const std::string& line : verdict.failed) print(fmt::format("  {}\n", line));
     if (verdict.exit == interrupted) break;
   }
-  print(fmt::format("{} of {} models hold, {} of {} checks\n", good, files.paths.size(), passed, checks));
+  print(fmt::format("{} of {} models passed, {} of {} checks\n", good, files.paths.size(), passed, checks));
   return exit;
 }
 

@@ -53,17 +53,14 @@ class Judge {
     r.text = check.text;
     r.unit = check.unit;
     std::vector<double> variables = run_.plan.variables;
-    if (!place_moment(check, variables, r.message) || !place_samples(check, variables, r.message)) return r;
+    r.evaluated = place_moment(check, variables, r.message) && place_samples(check, variables, r.message);
+    if (!r.evaluated) return r;
     r.tolerance = check.tolerance.valid() ? evaluate(model_, check.tolerance, variables) : 0;
     r.expected = evaluate(model_, check.value, variables);
     if (check.measure == Measure::always) return always(check, std::move(r));
     r.value = measured(check, variables);
     r.passed = holds(check.relation, r.value, r.expected, r.tolerance);
-    if (!succeeded(run_.outcome.ending)) {
-      r.passed = false;
-      r.message = "the run failed";
-    }
-    return r;
+    return succeeded(run_.outcome.ending) ? r : not_evaluated(std::move(r));
   }
 
   CheckResult always(const Check& check, CheckResult r) {
@@ -73,12 +70,13 @@ class Judge {
     const double worst = upper || (!lower && std::abs(e.high) > std::abs(e.low)) ? e.high : e.low;
     r.value = r.expected + worst;
     const bool kept = holds(check.relation, worst, 0, r.tolerance);
-    r.passed = kept && succeeded(run_.outcome.ending);
-    if (!kept) {
-      r.message = fmt::format("worst at t = {}", worst == e.high ? e.t_high : e.t_low);
-    } else if (!r.passed) {
-      r.message = "the run failed";
-    }
+    r.passed = kept;
+    if (!kept) r.message = fmt::format("worst at t = {}", worst == e.high ? e.t_high : e.t_low);
+    return !kept || succeeded(run_.outcome.ending) ? r : not_evaluated(std::move(r));
+  }
+  static CheckResult not_evaluated(CheckResult r) {
+    r.passed = r.evaluated = false;
+    r.message = "the run failed";
     return r;
   }
 
