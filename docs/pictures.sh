@@ -39,7 +39,7 @@ study() {  # study NAME VERB [OPTION ...]
 }
 
 study lorenz_branches steady models/lorenz.sim --along rho=0..30
-block tutorial_rest.md bautin.sim
+block tutorial_equilibria.md bautin.sim
 study bautin_orbits orbit "$scratch/bautin.sim" --along mu=-1..1
 block tutorial_two_parameters.md bazykin.sim
 study bazykin_curves steady "$scratch/bazykin.sim" --along alpha=0..1 --and delta=0..1

@@ -89,7 +89,7 @@ struct FitColumnResult {
   std::size_t data = 0, column = 0, values = 0;
   double degrees = 0;  // its values less what the unknowns take of them
   /// What the residuals scatter by, whatever was given: constant and relative part. NaN without degrees of freedom.
-  double met = 0, met_relative = 0;
+  double residual_deviation = 0, residual_deviation_relative = 0;
   bool given = false;             // the deviations were
   double ratio = 0;               // of what was met to what was given
   double chi_squared = 0, p = 0;  // where they were given

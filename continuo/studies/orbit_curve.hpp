@@ -86,7 +86,7 @@ struct DegenerateOrbit {
 
 /// Why a curve ends. `equilibrium`: the orbit shrinks to one. `long_period`: the period has grown to many times that at
 /// the start. `resonance`: 1:1 or 1:2, behind which there is no pair on the circle. `no_saddle`: a homoclinic orbit's
-/// place of rest is none any more. `merged`: leading eigenvalues by which the orbits are special meet.
+/// equilibrium is none any more. `merged`: leading eigenvalues by which the orbits are special meet.
 enum class OrbitCurveEnding {
   bound,
   closed,

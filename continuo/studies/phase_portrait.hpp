@@ -1,4 +1,4 @@
-// The plane of a system of two equations that do not depend on time: direction field, nullclines, places of rest, the
+// The plane of a system of two equations that do not depend on time: direction field, nullclines, equilibria, the
 // separatrices of saddles, and motions from given or spread starts.
 #pragma once
 #include <array>

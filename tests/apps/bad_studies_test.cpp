@@ -134,9 +134,9 @@ TEST(BadStudies, WhereNothingRestsTheEquationIsNamedWithItsLine) {
   for (const std::string verb : {"steady", "linearize"}) {
     const Result result = folder.run(verb + " fall.sim");
     EXPECT_EQ(result.exit, 3) << verb;
-    EXPECT_THAT(result.err, AllOf(HasSubstr("fall.sim:3: no place of rest"), HasSubstr("`h'`"))) << verb;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("fall.sim:3: no equilibrium"), HasSubstr("`h'`"))) << verb;
   }
-  EXPECT_THAT(folder.run("orbit fall.sim").err, HasSubstr("does not come back"));
+  EXPECT_THAT(folder.run("orbit fall.sim").err, HasSubstr("does not return to an earlier state"));
   EXPECT_EQ(folder.run("orbit fall.sim").exit, 3);
 }
 
@@ -262,19 +262,20 @@ TEST(BadStudies, WhatHasNoPartIsRefusedAndNotPassedOver) {
   const Folder folder;
   folder.write("at_both.sim", "param p = 1 in 0..3\nu'' = -p*u\nu(0) = 0; u(1) = 1\nrun 0..1\n");
   const std::string family = "run at_both.sim --family p=0..2 ";
-  expect_refused(folder,
-                 {{family + "--events e.csv", "there is no --events: leave it out"},
-                  {family + "--manifest m.json", "there is no --manifest: leave it out"},
-                  {family + "--estimate-error", "there is no --estimate-error: leave it out"},
-                  {family + "--output 0.1", "there is no --output: leave it out"},
-                  {"steady good.sim --of x", "--of requires --along"},
-                  {"steady good.sim --box x=0..1 --box x=0..2", "--box x=0..2: `x` is given twice"},
-                  {"sense good.sim --param k,k", "`k` is named twice"},
-                  {"sense good.sim --initial x,x", "`x(0)` is named twice"},
-                  {"sense good.sim --param k --of rest --until 3", "--of rest takes --param and --json alone"},
-                  {"sense good.sim --param k --of period --output 1", "--of period takes --param and --json alone"},
-                  {"orbit good.sim --period 0", "--period: 0 is no number above 0"},
-                  {"orbit good.sim --period nan", "--period: nan is no number above 0"}});
+  expect_refused(
+      folder,
+      {{family + "--events e.csv", "there is no --events: leave it out"},
+       {family + "--manifest m.json", "there is no --manifest: leave it out"},
+       {family + "--estimate-error", "there is no --estimate-error: leave it out"},
+       {family + "--output 0.1", "there is no --output: leave it out"},
+       {"steady good.sim --of x", "--of requires --along"},
+       {"steady good.sim --box x=0..1 --box x=0..2", "--box x=0..2: `x` is given twice"},
+       {"sense good.sim --param k,k", "`k` is named twice"},
+       {"sense good.sim --initial x,x", "`x(0)` is named twice"},
+       {"sense good.sim --param k --of equilibrium --until 3", "--of equilibrium takes --param and --json alone"},
+       {"sense good.sim --param k --of period --output 1", "--of period takes --param and --json alone"},
+       {"orbit good.sim --period 0", "--period: 0 is no number above 0"},
+       {"orbit good.sim --period nan", "--period: nan is no number above 0"}});
   folder.write("fold.sim", "param r = 1 in -1..2\nx' = r - x^2\nx(0) = 0.5\nrun 0..10\n");
   expect_refused(folder, {{"steady fold.sim --along r=-1..2 --of nope", "there is no state `nope`"}});
 }

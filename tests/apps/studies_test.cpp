@@ -90,7 +90,7 @@ TEST(Steady, FindsAndFollows) {
   const Shell shell;
   const Result result = shell.run("steady " + gallery("lorenz") + " --along rho=0..30");
   EXPECT_EQ(result.exit, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("at 3 places"), HasSubstr("rho = 24.7368"), HasSubstr("Hopf point"),
+  EXPECT_THAT(result.out, AllOf(HasSubstr("to 3 equilibria"), HasSubstr("rho = 24.7368"), HasSubstr("Hopf point"),
                                 HasSubstr("rho = 1: pitchfork")));
 }
 
@@ -99,7 +99,7 @@ TEST(Steady, WhatCannotBeAsked) {
   shell.write("fall.sim", "h'' = -9.8\nh(0) = 10; h'(0) = 0\nrun 0..1\n");
   const Result none = shell.run("steady fall.sim");
   EXPECT_EQ(none.exit, 3);
-  EXPECT_THAT(none.err, AllOf(HasSubstr("no place of rest"), HasSubstr("`h'` still changes by 9.8")));
+  EXPECT_THAT(none.err, AllOf(HasSubstr("no equilibrium"), HasSubstr("the smallest residual is 9.8, of `h'`")));
   EXPECT_THAT(none.out, IsEmpty());
   const std::string lorenz = "steady " + gallery("lorenz");
   EXPECT_THAT(shell.run(lorenz + " --along roh=0..3").err, HasSubstr("did you mean `rho`?"));
@@ -251,8 +251,8 @@ TEST(Steady, HoldsWhatIsConserved) {  // a + b = total, at rest a = total / 3
   ASSERT_EQ(found["branches"].size(), 1u);
   for (const auto& point : found["branches"][0]["points"])
     EXPECT_NEAR(point["x"][0].get<double>(), point["total"].get<double>() / 3, 1e-9);
-  EXPECT_THAT(shell.run("sense pair.sim --of rest --param total").out, HasSubstr("0.333333"));
-  EXPECT_THAT(shell.run("explore pair.sim").out, HasSubstr("kept     a + b = 3\nrests"));
+  EXPECT_THAT(shell.run("sense pair.sim --of equilibrium --param total").out, HasSubstr("0.333333"));
+  EXPECT_THAT(shell.run("explore pair.sim").out, HasSubstr("conserved   a + b = 3\nequilibria"));
 }
 
 TEST(Steady, SaysEverywhereThatEventsMayChangeWhatIsConserved) {
@@ -260,9 +260,9 @@ TEST(Steady, SaysEverywhereThatEventsMayChangeWhatIsConserved) {
   const std::string equations = "param total = 3\na' = b - 2*a\nb' = 2*a - b\na(0) = total; b(0) = 0\nrun 0..10\n";
   shell.write("pair.sim", equations);
   shell.write("fed.sim", equations + "when a falls through 0.5 { a := a + 1 }\n");
-  const std::string said = "by the equations; events that change it are not looked at\n";
+  const std::string said = "by the equations; events, which may change it, are not considered\n";
   EXPECT_THAT(shell.run("steady fed.sim").out, HasSubstr("conserved: a + b = 3\n           " + said));
-  EXPECT_THAT(shell.run("explore fed.sim").out, HasSubstr("kept     a + b = 3\n         " + said));
+  EXPECT_THAT(shell.run("explore fed.sim").out, HasSubstr("conserved   a + b = 3\n            " + said));
   for (const std::string& verb : {std::string("steady"), std::string("explore")}) {
     const auto with = nlohmann::json::parse(shell.run(verb + " fed.sim --json").out);
     EXPECT_EQ(with["events_may_change_conserved"], true) << verb;
@@ -319,7 +319,8 @@ TEST(Studies, OrbitGoesThroughEventsAndForces) {
               "when h falls through 0 { v := -0.7*v + 2; n := n + 1 }\nrun 0..60\n");
   const Result ball = shell.run("orbit ball.sim --plot ball.svg");
   EXPECT_THAT(ball.out, AllOf(HasSubstr("period 1.359157"), HasSubstr("multipliers 1, 0.7\n"),
-                              HasSubstr("`h falls through 0` once a period"), HasSubstr("n goes on")));
+                              HasSubstr("`h falls through 0` once a period"),
+                              HasSubstr("n does not return; nothing depends on it")));
   EXPECT_THAT(shell.read("ball.svg"), HasSubstr("<svg"));
   shell.write("forced.sim", "x'' = -x - 0.2*x' + cos(2*pi*t)\nx(0) = 0\nx'(0) = 0\nrun 0..200\n");
   const auto forced = nlohmann::json::parse(shell.run("orbit forced.sim --json").out);
@@ -327,7 +328,8 @@ TEST(Studies, OrbitGoesThroughEventsAndForces) {
   EXPECT_NEAR(std::hypot(forced["multipliers"][0][0].get<double>(), forced["multipliers"][0][1].get<double>()),
               std::exp(-0.1), 1e-9);
   shell.write("grows.sim", "x' = t - x\nx(0) = 0\nrun 0..20\n");
-  EXPECT_THAT(shell.run("orbit grows.sim").err, AllOf(HasSubstr("grows.sim:2:"), HasSubstr("does not repeat")));
+  EXPECT_THAT(shell.run("orbit grows.sim").err,
+              AllOf(HasSubstr("grows.sim:2:"), HasSubstr("the period of this time-dependent term")));
   EXPECT_THAT(shell.run("orbit grows.sim --period 1").err, HasSubstr("is not periodic with the period"));
   EXPECT_THAT(shell.run("orbit forced.sim --period 1.5").err, HasSubstr("not a multiple of 1"));
   EXPECT_THAT(shell.run("orbit ball.sim --turns 2").err, HasSubstr("the model does not depend on time"));
@@ -345,12 +347,12 @@ TEST(Studies, SenseOfWhatAMotionComesTo) {
               AllOf(HasSubstr("d t / d tau"), HasSubstr("T rises through high")));
   // x = a/b, y = a^2/b^2.
   shell.write("rest.sim", "param a = 3, b = 2\nx' = a - b*x\ny' = x^2 - y\nx(0) = 1\ny(0) = 1\nrun 0..1\n");
-  const auto rest = nlohmann::json::parse(shell.run("sense rest.sim --param a,b --of rest --json").out);
+  const auto rest = nlohmann::json::parse(shell.run("sense rest.sim --param a,b --of equilibrium --json").out);
   EXPECT_NEAR(rest["x_by"][0][0].get<double>(), 0.5, 1e-9);
   EXPECT_NEAR(rest["x_by"][0][1].get<double>(), 1.5, 1e-9);
   EXPECT_NEAR(rest["x_by"][1][1].get<double>(), -2.25, 1e-9);
-  EXPECT_THAT(shell.run("sense rest.sim --param a --of rest").out, HasSubstr("d y / d a"));
-  EXPECT_EQ(shell.run("sense rest.sim --param a --of rest --initial x").exit, 1);
+  EXPECT_THAT(shell.run("sense rest.sim --param a --of equilibrium").out, HasSubstr("d y / d a"));
+  EXPECT_EQ(shell.run("sense rest.sim --param a --of equilibrium --initial x").exit, 1);
 }
 
 TEST(Studies, PlacesOfRestNameTheEventsOnTheWay) {
@@ -451,8 +453,8 @@ TEST(Explore, SaysWhatIsThereAndWhatIsOpen) {
   const Shell shell;
   const Result lorenz = shell.run("explore " + gallery("lorenz"));
   EXPECT_EQ(lorenz.exit, 0) << lorenz.err;
-  EXPECT_THAT(lorenz.out, AllOf(HasSubstr("rests    3 from"), HasSubstr("Hopf point at rho = 24.7368"),
-                                HasSubstr("the motion is chaotic"), HasSubstr("open     no closed orbit")));
+  EXPECT_THAT(lorenz.out, AllOf(HasSubstr("equilibria  3 from"), HasSubstr("Hopf point at rho = 24.7368"),
+                                HasSubstr("the motion is chaotic"), HasSubstr("note        no closed orbit")));
   // The equilibria mirror each other: each bifurcation is listed once, with a state where the parameter is not enough.
   const auto count = [&](std::string_view text) {
     std::size_t found = 0;
@@ -466,7 +468,7 @@ TEST(Explore, SaysWhatIsThereAndWhatIsOpen) {
   EXPECT_EQ(count("Hopf point at sigma = 6.47329, x = -8.48528, "), 1u);
   EXPECT_EQ(count("crossing of branches at sigma = 0, x = 0\n"), 1u);
   const Result spring = shell.run("explore " + gallery("mass_spring_damper"));
-  EXPECT_THAT(spring.out, AllOf(HasSubstr("it goes on to rest 1"), HasSubstr("1 stable: x = 0.5")));
+  EXPECT_THAT(spring.out, AllOf(HasSubstr("later converges to equilibrium 1"), HasSubstr("1 stable: x = 0.5")));
   // Its orbit has the period 2 pi (1 + mu^2/16 + ...), 6.6632868593231 for mu = 1.
   shell.write("vdp.sim", "param mu = 1 in 0.5..2\nx'' = mu*(1 - x^2)*x' - x\nx(0) = 1; x'(0) = 0\nrun 0..20\n");
   const Result orbit = shell.run("explore vdp.sim --json --plot page.svg");
@@ -474,7 +476,7 @@ TEST(Explore, SaysWhatIsThereAndWhatIsOpen) {
   const auto page = nlohmann::json::parse(orbit.out);
   EXPECT_NEAR(page["orbit"]["period"].get<double>(), 6.6632868593231, 1e-8);
   EXPECT_TRUE(page["orbit"]["stable"].get<bool>());
-  EXPECT_EQ(page["rests"].size(), 1u);
+  EXPECT_EQ(page["equilibria"].size(), 1u);
   EXPECT_THAT(shell.read("page.svg"), HasSubstr("<svg"));
 }
 
@@ -485,10 +487,10 @@ TEST(Explore, LooksForNothingWhereItCannotSee) {
   const Result forced = shell.run("explore forced.sim");
   EXPECT_EQ(forced.exit, 0) << forced.err;
   EXPECT_THAT(forced.out,
-              AllOf(HasSubstr("places of rest were not looked for"), HasSubstr("orbit    period 6.283185307, stable"),
-                    Not(HasSubstr("open     no closed"))));
+              AllOf(HasSubstr("no equilibria were searched for"), HasSubstr("orbit       period 6.283185307, stable"),
+                    Not(HasSubstr("note        no closed"))));
   shell.write("clock.sim", "x' = 1\nx(0) = 0\nwhen x > 1e-3 { x := 0 }\nrun 0..0.01\n");
-  EXPECT_THAT(shell.run("explore clock.sim").out, HasSubstr("orbit    period 0.001,"));
+  EXPECT_THAT(shell.run("explore clock.sim").out, HasSubstr("orbit       period 0.001,"));
   shell.write("none.sim", "let a = 1\nrun 0..1\n");
   EXPECT_NE(shell.run("explore none.sim").exit, 0);
 }

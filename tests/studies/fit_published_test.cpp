@@ -97,7 +97,7 @@ TEST(FitPublished, Theophylline) {
     EXPECT_NEAR(found.estimates[i].deviation, deviations[i], 6e-5);
     EXPECT_NEAR(found.estimates[i].degrees, 8, 1e-6);
   }
-  EXPECT_NEAR(found.columns[0].met, 0.732, 6e-4);
+  EXPECT_NEAR(found.columns[0].residual_deviation, 0.732, 6e-4);
 }
 
 // Pelts of hares and lynxes of the Hudson Bay Company, 1900 to 1920, with lognormal errors: B. Carpenter,
@@ -125,8 +125,8 @@ TEST(FitPublished, HareAndLynx) {
     EXPECT_NEAR(found.estimates[i].value, values[i], 3e-3 * values[i]);
     EXPECT_LT(found.estimates[i].low, values[i]);
   }
-  EXPECT_NEAR(found.columns[0].met, 0.25, 0.03);
-  EXPECT_NEAR(found.columns[1].met, 0.25, 0.03);
+  EXPECT_NEAR(found.columns[0].residual_deviation, 0.25, 0.03);
+  EXPECT_NEAR(found.columns[1].residual_deviation, 0.25, 0.03);
 }
 
 // Dimers of STAT5A and STAT5B: M. E. Boehm et al., J. Proteome Res. 13 (2014), with deviations of its three columns

@@ -78,7 +78,7 @@ TEST(FitStatistics, OfAStraightLineAreThoseOfTheTextbooks) {
     const double n = static_cast<double>(rows), quantile = student_t_quantile(0.95, n - 2);
     EXPECT_NEAR(found.half_width(0), quantile * expected.deviation_a, 1e-6 * quantile * expected.deviation_a);
     EXPECT_NEAR(*found.statistics.sum_of_squares, expected.squares, 1e-9 * expected.squares);
-    EXPECT_NEAR(found.columns[0].met, std::sqrt(expected.squares / (n - 2)), 1e-6);
+    EXPECT_NEAR(found.columns[0].residual_deviation, std::sqrt(expected.squares / (n - 2)), 1e-6);
     const double minus_two_log = n * (std::log(2 * std::numbers::pi * expected.squares / n) + 1);
     EXPECT_NEAR(*found.statistics.aic, minus_two_log + 6, 1e-6);
     EXPECT_NEAR(*found.statistics.bic, minus_two_log + 3 * std::log(n), 1e-6);
@@ -93,14 +93,14 @@ TEST(FitStatistics, SayWhatWasMetAndNotWhatWasGiven) {
   request.data[0].columns[0].deviation = 0.25;
   const Fit found = fit(request);
   const Straight expected = straight(t, y, 0.25);
-  EXPECT_NEAR(found.columns[0].met, std::sqrt(expected.squares / 38), 1e-6);
+  EXPECT_NEAR(found.columns[0].residual_deviation, std::sqrt(expected.squares / 38), 1e-6);
   EXPECT_NEAR(found.estimates[0].deviation, expected.deviation_a, 1e-6);
   EXPECT_NEAR(*found.statistics.chi_squared, expected.squares / 0.0625, 1e-6);
   EXPECT_NEAR(*found.statistics.chi_squared_p, chi_squared_tail(expected.squares / 0.0625, 38), 1e-6);
   EXPECT_FALSE(found.doubts_of(FitDoubt::Kind::residuals_too_large));
   request.data[0].columns[0].deviation = 0.003;
   const Fit wrong = fit(request);
-  EXPECT_NEAR(wrong.columns[0].met, found.columns[0].met, 1e-6);
+  EXPECT_NEAR(wrong.columns[0].residual_deviation, found.columns[0].residual_deviation, 1e-6);
   EXPECT_TRUE(wrong.doubts_of(FitDoubt::Kind::residuals_too_large));
   EXPECT_EQ(wrong.least.starts_done, 11u);
 }
@@ -113,9 +113,9 @@ TEST(FitStatistics, EveryColumnHasADeviationOfItsOwn) {
                                    {data_of("y", t, noisy(t, 1, 0.1, random)), data_of("y", t, noisy(t, 1, 2, random)),
                                     data_of("z", few, noisy(few, 10, 30, random))}));
   ASSERT_TRUE(found.found()) << found.status.message;
-  EXPECT_NEAR(found.columns[0].met, 0.1, 0.04);
-  EXPECT_NEAR(found.columns[1].met, 2, 0.8);
-  EXPECT_NEAR(found.columns[2].met, 30, 4 * 30 / std::sqrt(12));
+  EXPECT_NEAR(found.columns[0].residual_deviation, 0.1, 0.04);
+  EXPECT_NEAR(found.columns[1].residual_deviation, 2, 0.8);
+  EXPECT_NEAR(found.columns[2].residual_deviation, 30, 4 * 30 / std::sqrt(12));
   EXPECT_NEAR(found.columns[0].degrees + found.columns[1].degrees + found.columns[2].degrees, 106 - 2, 1e-9);
   // Only the best column loses degrees of freedom to the unknowns, since it alone determines them.
   EXPECT_NEAR(found.columns[0].degrees, 48, 0.1);
@@ -247,7 +247,7 @@ TEST(FitStatistics, LogarithmsOfUnknownsAndOfValues) {
   for (const double value : y) square += std::pow(std::log(value) - mean, 2) / 4;
   EXPECT_NEAR(found.estimates[0].value, std::exp(mean), 1e-8 * std::exp(mean));
   EXPECT_NEAR(found.estimates[0].high, std::exp(mean + student_t_quantile(0.95, 4) * std::sqrt(square / 5)), 1e-4);
-  EXPECT_NEAR(found.columns[0].met, std::sqrt(square), 1e-8);
+  EXPECT_NEAR(found.columns[0].residual_deviation, std::sqrt(square), 1e-8);
 }
 
 // y = a: of counts the mean is most likely, of errors in proportion to a the mean again, with a^2 (mean square)/n.
@@ -262,7 +262,7 @@ TEST(FitStatistics, DeviationsMayDependOnWhatTheModelSays) {
   request.data[0].columns[0].error = ErrorModel::proportional;
   found = fit(request);
   EXPECT_NEAR(found.estimates[0].value, 15, 1e-6);
-  EXPECT_NEAR(found.columns[0].met_relative, std::sqrt(68.0 / 5) / 15, 1e-3);
+  EXPECT_NEAR(found.columns[0].residual_deviation_relative, std::sqrt(68.0 / 5) / 15, 1e-3);
 }
 
 TEST(FitStatistics, RefusesValuesThatTheirErrorsMakeImpossible) {

@@ -168,8 +168,8 @@ TEST(Fit, WeighsQuantitiesOfDifferentSizeByTheirOwnNoise) {
   // dx/da = -t x is about 0.4 in the mean square: 1e-4/(0.4 sqrt(200)) = 1.8e-5; a deviation of 200 values is known to
   // 5 %, taken as four of that.
   EXPECT_NEAR(result.least.p[0], 0.7, 1e-4);
-  EXPECT_NEAR(result.columns[0].met, 1e-4, 2e-5);
-  EXPECT_NEAR(result.columns[1].met, 1e4, 2e3);
+  EXPECT_NEAR(result.columns[0].residual_deviation, 1e-4, 2e-5);
+  EXPECT_NEAR(result.columns[1].residual_deviation, 1e4, 2e3);
 }
 
 TEST(Fit, BandHoldsTheMeasurementsItShould) {
@@ -179,7 +179,7 @@ TEST(Fit, BandHoldsTheMeasurementsItShould) {
   const auto curves = curves_of(request, result, 100);
   ASSERT_EQ(curves.size(), 1u);
   // Far from where x depends on k and c the band is the noise alone; nowhere it is narrower. 98 degrees of freedom.
-  const double narrowest = student_t_quantile(0.95, 98) * result.columns[0].met;
+  const double narrowest = student_t_quantile(0.95, 98) * result.columns[0].residual_deviation;
   for (std::size_t i = 0; i < curves[0].y.size(); ++i)
     EXPECT_GE((curves[0].high[i] - curves[0].low[i]) / 2, narrowest * (1 - 1e-6));
   EXPECT_NEAR(curves[0].high[0] - curves[0].y[0], narrowest, 1e-9);

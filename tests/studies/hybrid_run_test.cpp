@@ -110,8 +110,8 @@ TEST(Unseen, IsWhatEquationsAloneDoNotSay) {
   EXPECT_TRUE(unseen_of(*program_of("x'' = -x - sign(x')\nx(0) = 1\nx'(0) = 0\nrun 0..1\n"), 0));
   EXPECT_TRUE(unseen_of(*program_of("x' = 1\nx(0) = 0\nwhen x > 1 { x := 0 }\nrun 0..9\n"), 0));
   EXPECT_FALSE(unseen_of(*program_of("x' = 1\nx(0) = 0\nwhen x > 1 { mark \"one\" }\nrun 0..9\n"), 0));
-  EXPECT_TRUE(hangs_on_time(*program_of("x' = cos(t) - x\nx(0) = 0\nrun 0..9\n"), 0));
-  EXPECT_FALSE(hangs_on_time(*program_of("x' = 1 - x\nx(0) = 0\nrun 0..9\n"), 0));
+  EXPECT_TRUE(depends_on_time(*program_of("x' = cos(t) - x\nx(0) = 0\nrun 0..9\n"), 0));
+  EXPECT_FALSE(depends_on_time(*program_of("x' = 1 - x\nx(0) = 0\nrun 0..9\n"), 0));
   EXPECT_TRUE(jump_at(*program_of("x' = -x - sign(x)\nx(0) = 1\nrun 0..1\n"), 0, std::vector<double>{0.0}));
   EXPECT_FALSE(jump_at(*program_of("x' = -x - sign(x)\nx(0) = 1\nrun 0..1\n"), 0, std::vector<double>{0.1}));
 }

@@ -30,44 +30,44 @@ void run_it(const Studied& studied, Exploration& found) {
   }
 }
 
-/// A motion is at rest where what is left of its way to there is a thousandth of the way that it has come.
-std::optional<std::size_t> rest_at_end(const Exploration& found, const model::Simulated& simulated) {
+/// A motion has converged where its distance to the equilibrium is a thousandth of the extent of the run.
+std::optional<std::size_t> equilibrium_at_end(const Exploration& found, const model::Simulated& simulated) {
   if (!simulated.run || !succeeded(simulated.run->outcome.ending)) return std::nullopt;
   const std::span<const double> end = simulated.run->final_state();
-  for (std::size_t k = 0; k < found.rests.size(); ++k) {
+  for (std::size_t k = 0; k < found.equilibria.size(); ++k) {
     bool near = true;
     for (std::size_t i = 0; i < end.size(); ++i)
-      near = near && std::abs(end[i] - found.rests[k].at.x[i]) <=
+      near = near && std::abs(end[i] - found.equilibria[k].at.x[i]) <=
                          1e-3 * std::max(found.high[i] - found.low[i], 1e-9 * std::abs(end[i]));
     if (near) return k;
   }
   return std::nullopt;
 }
 
-void find_rests(const Studied& studied, const ExplorationLimits& limits, Exploration& found) {
+void find_all_equilibria(const Studied& studied, const ExplorationLimits& limits, Exploration& found) {
   studies::EquilibriumBox box{.low = {}, .high = {}, .starts = limits.starts, .interrupt = &interrupt_flag()};
   if (!set_box(studied, {}, box)) return;
-  const studies::Equilibria rests = studies::find_equilibria(studied.system, box);
-  found.searches = rests.searches;
-  for (const studies::Equilibrium& e : rests.equilibria)
-    found.rests.push_back(
+  const studies::Equilibria equilibria = studies::find_equilibria(studied.system, box);
+  found.searches = equilibria.searches;
+  for (const studies::Equilibrium& e : equilibria.equilibria)
+    found.equilibria.push_back(
         {e, studies::jump_at(*studied.prepared.program, studied.mode, e.x, studied.prepared.experiment.parameters)});
-  if (rests.outside > 0)
-    found.open.push_back(
-        fmt::format("{} searches came to rest beyond twice what the run passes through: `continuo "
-                    "steady --box NAME=LOW..HIGH` looks there",
-                    rests.outside));
-  found.comes_to = rest_at_end(found, found.simulated);
+  if (equilibria.outside > 0)
+    found.notes.push_back(
+        fmt::format("{} searches converged outside of twice the range of the run: `continuo steady --box "
+                    "NAME=LOW..HIGH` searches there",
+                    equilibria.outside));
+  found.comes_to = equilibrium_at_end(found, found.simulated);
 }
 
-/// Where the run has not come to rest yet, a longer one may.
+/// Where the run has not converged yet, a longer one may.
 void run_on(const Studied& studied, const ExplorationLimits& limits, Exploration& found) {
   if (found.comes_to || !found.simulated.run) return;
   model::Experiment experiment = studied.prepared.experiment;
   experiment.to = found.simulated.run->plan.to + limits.settle.value_or(run_length(studied.prepared.program->model));
   experiment.keep_rows = false;
   experiment.interrupt = &interrupt_flag();
-  found.comes_to = rest_at_end(found, model::simulate(studied.prepared.program, experiment));
+  found.comes_to = equilibrium_at_end(found, model::simulate(studied.prepared.program, experiment));
   found.comes_later = found.comes_to.has_value();
 }
 
@@ -85,8 +85,9 @@ void find_whole_orbit(const Studied& studied, const Times& times, Exploration& f
   const studies::Forcing forcing =
       studies::forcing_of(*studied.prepared.program, studied.prepared.experiment.parameters);
   if (!forcing.status) {
-    found.open.push_back(fmt::format("no closed orbit was looked for: {}: {}; `continuo orbit --period T` gives it",
-                                     place_text(studied.prepared, forcing.span), forcing.status.message));
+    found.notes.push_back(
+        fmt::format("no closed orbit was searched for: {}: {}; `continuo orbit --period T` sets the period",
+                    place_text(studied.prepared, forcing.span), forcing.status.message));
     return;
   }
   const HybridOrbitRequest request{
@@ -97,8 +98,8 @@ void find_whole_orbit(const Studied& studied, const Times& times, Exploration& f
   if (orbit.outcome) {
     found.hybrid_orbit = std::move(orbit);
   } else {
-    found.open.push_back("no closed orbit: " +
-                         (orbit.outcome.hint.empty() ? describe(orbit.outcome) : orbit.outcome.hint));
+    found.notes.push_back("no closed orbit: " +
+                          (orbit.outcome.hint.empty() ? describe(orbit.outcome) : orbit.outcome.hint));
   }
 }
 
@@ -118,8 +119,8 @@ void find_smooth_orbit(const Studied& studied, const Times& times, Exploration& 
   } else if (!orbit.wanders && !interrupt_flag()) {  // it comes back: perhaps one of many, where something is conserved
     find_whole_orbit(studied, times, found);
   } else {
-    found.open.push_back("no closed orbit: " +
-                         (orbit.outcome.hint.empty() ? describe(orbit.outcome) : orbit.outcome.hint));
+    found.notes.push_back("no closed orbit: " +
+                          (orbit.outcome.hint.empty() ? describe(orbit.outcome) : orbit.outcome.hint));
   }
 }
 
@@ -146,7 +147,7 @@ void find_orbit(const Studied& studied, const ExplorationLimits& limits, bool al
   if (!exponents.exponents.empty()) {
     found.exponents = std::move(exponents);
   } else {
-    found.open.push_back("no Lyapunov exponents: " + describe(exponents.outcome));
+    found.notes.push_back("no Lyapunov exponents: " + describe(exponents.outcome));
   }
 }
 
@@ -156,12 +157,12 @@ void move_sliders(const Studied& studied, const ExplorationLimits& limits, Explo
   for (const model::Parameter& parameter : model.parameters) {
     if (!parameter.independent || parameter.structural) continue;
     if (!parameter.range || !(parameter.range->low < parameter.range->high)) {
-      found.not_moved.push_back(parameter.name);
+      found.not_varied.push_back(parameter.name);
       continue;
     }
     if (found.sliders.size() == limits.sliders) {
-      found.open.push_back(
-          fmt::format("`{}` and what stands behind it were not moved: `continuo steady --along`", parameter.name));
+      found.notes.push_back(
+          fmt::format("`{}` and the parameters after it were not varied: `continuo steady --along`", parameter.name));
       return;
     }
     Slider slider{parameter.name, parameter.range->low, parameter.range->high, {}};
@@ -171,9 +172,9 @@ void move_sliders(const Studied& studied, const ExplorationLimits& limits, Explo
     const double here = set.contains(parameter.name) ? set.at(parameter.name) : parameter.value;
     std::vector<studies::BranchStart> starts;
     std::vector<std::size_t> numbers;
-    for (std::size_t k = 0; k < found.rests.size(); ++k) {
-      if (found.rests[k].jump) continue;
-      starts.push_back({here, found.rests[k].at.x});
+    for (std::size_t k = 0; k < found.equilibria.size(); ++k) {
+      if (found.equilibria[k].jump) continue;
+      starts.push_back({here, found.equilibria[k].at.x});
       numbers.push_back(k);
     }
     if (!starts.empty() && !interrupt_flag())
@@ -215,19 +216,19 @@ void weigh_parameters(const Studied& studied, Exploration& found) {
   }
   if (influences.empty()) return;
   if (influences.size() > most_parameters) {
-    found.open.push_back(
-        fmt::format("{} parameters are too many to be weighed here: `continuo sense --param`", influences.size()));
+    found.notes.push_back(
+        fmt::format("{} parameters are too many for sensitivities here: `continuo sense --param`", influences.size()));
     return;
   }
   if (const auto refused = studies::no_sensitivity(program->model, influences)) {
-    found.open.push_back("parameters were not weighed: " + refused->message);
+    found.notes.push_back("no sensitivities: " + refused->message);
     return;
   }
   model::Experiment experiment = studied.prepared.experiment;
   experiment.interrupt = &interrupt_flag();
   const studies::SensitivityStudy study(program, influences, experiment.parameters);
   const studies::SensitivityRun run = study.run({.experiment = experiment});
-  if (!run.good()) found.open.push_back("parameters were weighed only in part: " + run.status.message);
+  if (!run.good()) found.notes.push_back("sensitivities only of a part of the run: " + run.status.message);
   found.influences = strongest(program->model, run, influences, found);
 }
 
@@ -243,15 +244,15 @@ Exploration explore(const Studied& studied, const ExplorationLimits& limits) {
   };
   run_it(studied, found);
   report(0.1);
-  const auto timed = studies::hangs_on_time(program, studied.mode);
+  const auto timed = studies::depends_on_time(program, studied.mode);
   const auto unseen = studies::unseen_of(program, studied.mode);
   if (timed) {
-    found.open.push_back(fmt::format("places of rest were not looked for: the equation of `{}` hangs on the time",
-                                     program.model.states[*timed].column));
+    found.notes.push_back(fmt::format("no equilibria were searched for: the equation of `{}` depends on time",
+                                      program.model.states[*timed].column));
   } else {
-    find_rests(studied, limits, found);
+    find_all_equilibria(studied, limits, found);
     run_on(studied, limits, found);
-    if (unseen) found.open.push_back(fmt::format("rests are those of the equations alone: {}", unseen->what));
+    if (unseen) found.notes.push_back(fmt::format("the equilibria are those of the equations alone: {}", unseen->what));
   }
   report(0.3);
   if (!interrupt_flag()) find_orbit(studied, limits, !timed && !unseen, found);

@@ -1,5 +1,5 @@
-// A model from above: its run, where it rests, its orbit, what its sliders do, which parameters matter; and what was
-// not found, or not looked for, with the reason.
+// An overview of a model: its run, equilibria and orbit, bifurcations along its sliders, the influence of its
+// parameters; and what was not found, or not searched for, with the reason.
 #pragma once
 #include <optional>
 #include <string>
@@ -19,17 +19,17 @@
 
 namespace continuo::app {
 
-/// A place of rest, and the jump of the equations that it lies at, if any: then nothing is known of its stability.
-struct Rest {
+/// An equilibrium, and the jump of the equations that it lies at, if any: then nothing is known of its stability.
+struct ExploredEquilibrium {
   studies::Equilibrium at;
   std::optional<std::string> jump;
 };
 
-/// A parameter with a range, and the branches along it that lead through the places of rest, each once.
+/// A parameter with a range, and the branches along it that lead through the equilibria, each once.
 struct Slider {
   std::string name;
   double low, high;
-  std::vector<studies::BranchOfDiagram> branches;  // their starts: the places of rest, by number
+  std::vector<studies::BranchOfDiagram> branches;  // their starts: the equilibria, by number
 };
 
 /// The largest change of a state along the run by a change of the parameter, in parts of both.
@@ -41,18 +41,18 @@ struct Influenced {
 struct Exploration {
   model::Simulated simulated;
   std::vector<double> low, high;  // of the states, over the run
-  std::vector<Rest> rests;
+  std::vector<ExploredEquilibrium> equilibria;
   std::size_t searches = 0;
-  std::optional<std::size_t> comes_to;  // the place of rest at which the run ends
+  std::optional<std::size_t> comes_to;  // the equilibrium at which the run ends
   bool comes_later = false;             // it does so only when it goes on
   std::optional<studies::PeriodicOrbit> orbit;
   std::optional<studies::HybridOrbit> hybrid_orbit;  // instead, where events or the time have a part in the motion
   std::optional<studies::LyapunovExponents> exponents;
   std::vector<Slider> sliders;
-  std::vector<std::string> not_moved;  // parameters without a range
-  std::vector<Influenced> influences;  // by falling part
-  std::vector<std::string> open;       // what was not found or not looked for
-  bool complete = true;                // not interrupted
+  std::vector<std::string> not_varied;  // parameters without a range
+  std::vector<Influenced> influences;   // by falling part
+  std::vector<std::string> notes;       // what was not found or not searched for
+  bool complete = true;                 // not interrupted
 };
 
 struct ExplorationLimits {
@@ -65,7 +65,7 @@ Exploration explore(const Studied& studied, const ExplorationLimits& limits);
 
 std::string exploration_text(const Studied& studied, const Exploration& found);
 std::string exploration_json(const Studied& studied, const Exploration& found);
-/// The run, the plane of the first two states with its rests and orbit, and a panel for each slider.
+/// The run, the plane of the first two states with its equilibria and orbit, and a panel for each slider.
 results::Figure exploration_figure(const Studied& studied, const Exploration& found);
 
 }  // namespace continuo::app

@@ -52,12 +52,12 @@ results::Panel plane(const model::Model& model, const model::Motion& motion, con
     panel.curves.push_back(std::move(orbit));
   }
   for (const auto& [name, stable, style] :
-       {std::tuple{"at rest, stable", true, full_points}, {"at rest, not stable", false, empty_points}}) {
+       {std::tuple{"equilibrium, stable", true, full_points}, {"equilibrium, not stable", false, empty_points}}) {
     results::Curve points{.label = name, .x = {}, .y = {}, .color = "#000000", .style = style};
-    for (const Rest& rest : found.rests) {
-      if ((rest.at.stability == studies::Stability::asymptotically_stable) != stable) continue;
-      points.x.push_back(rest.at.x[0]);
-      points.y.push_back(rest.at.x[1]);
+    for (const ExploredEquilibrium& equilibrium : found.equilibria) {
+      if ((equilibrium.at.stability == studies::Stability::asymptotically_stable) != stable) continue;
+      points.x.push_back(equilibrium.at.x[0]);
+      points.y.push_back(equilibrium.at.x[1]);
     }
     if (!points.x.empty()) panel.curves.push_back(std::move(points));
   }

@@ -10,12 +10,12 @@ namespace {
 
 using nlohmann::json;
 
-json rests_json(const std::vector<Rest>& rests) {
+json equilibria_json(const std::vector<ExploredEquilibrium>& equilibria) {
   json list = json::array();
-  for (const Rest& rest : rests) {
-    list.push_back({{"x", rest.at.x}, {"eigenvalues", json_of(rest.at.eigenvalues)}});
-    list.back()["stability"] = rest.jump ? "undecided" : std::string(to_string(rest.at.stability));
-    if (rest.jump) list.back()["jump"] = *rest.jump;
+  for (const ExploredEquilibrium& equilibrium : equilibria) {
+    list.push_back({{"x", equilibrium.at.x}, {"eigenvalues", json_of(equilibrium.at.eigenvalues)}});
+    list.back()["stability"] = equilibrium.jump ? "undecided" : std::string(to_string(equilibrium.at.stability));
+    if (equilibrium.jump) list.back()["jump"] = *equilibrium.jump;
   }
   return list;
 }
@@ -29,8 +29,10 @@ json slider_json(const Slider& slider) {
                         {"at", point.at.constant},
                         {"x", point.at.x},
                         {"frequency", point.frequency}});
-    branches.push_back(
-        {{"rests", starts}, {"complete", branch.complete}, {"points", branch.points.size()}, {"bifurcations", points}});
+    branches.push_back({{"equilibria", starts},
+                        {"complete", branch.complete},
+                        {"points", branch.points.size()},
+                        {"bifurcations", points}});
     if (crossed) branches.back()["crosses"] = *crossed;
   }
   return {{"name", slider.name}, {"low", slider.low}, {"high", slider.high}, {"branches", branches}};
@@ -44,16 +46,21 @@ std::string exploration_json(const Studied& studied, const Exploration& found) {
   for (const Slider& slider : found.sliders) sliders.push_back(slider_json(slider));
   for (const Influenced& one : found.influences)
     influences.push_back({{"parameter", one.parameter}, {"state", one.state}, {"part", one.part}, {"t", one.t}});
-  json result{{"states", states},           {"low", found.low},
-              {"high", found.high},         {"rests", rests_json(found.rests)},
-              {"searches", found.searches}, {"sliders", sliders},
-              {"matters", influences},      {"not_moved", found.not_moved},
-              {"open", found.open},         {"complete", found.complete}};
+  json result{{"states", states},
+              {"low", found.low},
+              {"high", found.high},
+              {"equilibria", equilibria_json(found.equilibria)},
+              {"searches", found.searches},
+              {"parameters", sliders},
+              {"sensitivities", influences},
+              {"not_varied", found.not_varied},
+              {"notes", found.notes},
+              {"complete", found.complete}};
   add_conserved(result, studied);
   if (found.simulated.run)
     result["run"] = {{"ending", to_string(found.simulated.run->outcome.ending)},
                      {"t", found.simulated.run->final_time()}};
-  if (found.comes_to) result["comes_to_rest"] = *found.comes_to;
+  if (found.comes_to) result["converges_to"] = *found.comes_to;
   if (found.orbit)
     result["orbit"] = {{"period", found.orbit->period},
                        {"stable", found.orbit->stable},

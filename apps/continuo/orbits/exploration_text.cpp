@@ -25,62 +25,69 @@ std::string point_text(const model::Model& model, const std::vector<double>& x) 
   return x.size() > most_states ? text + ", ..." : text;
 }
 
+/// One line; those that belong to the line above have no label.
+std::string line(std::string_view label, std::string_view text) {
+  return fmt::format("{:<12}{}\n", label, text);
+}
+
 std::string run_text(const model::Model& model, const Exploration& found) {
-  if (!found.simulated.run) return "run      none: it could not begin\n";
+  if (!found.simulated.run) return line("run", "none: it could not begin");
   const model::Run& run = *found.simulated.run;
   std::string text =
-      fmt::format("run      {} at t = {}\n", to_string(run.outcome.ending), short_number(run.final_time()));
+      line("run", fmt::format("{} at t = {}", to_string(run.outcome.ending), short_number(run.final_time())));
   for (std::size_t i = 0; i < std::min(found.low.size(), most_states); ++i)
-    text += fmt::format("         {} from {} to {}\n", model.states[i].column, short_number(found.low[i]),
-                        short_number(found.high[i]));
+    text += line("", fmt::format("{} from {} to {}", model.states[i].column, short_number(found.low[i]),
+                                 short_number(found.high[i])));
   if (found.low.size() > most_states)
-    text += fmt::format("         and {} more states\n", found.low.size() - most_states);
+    text += line("", fmt::format("and {} more states", found.low.size() - most_states));
   if (found.comes_to)
-    text += fmt::format("         it {} rest {}\n", found.comes_later ? "goes on to" : "ends at", *found.comes_to + 1);
+    text += line("", fmt::format("{} equilibrium {}", found.comes_later ? "later converges to" : "converges to",
+                                 *found.comes_to + 1));
   return text;
 }
 
-std::string rests_text(const model::Model& model, const Exploration& found) {
+std::string equilibria_text(const model::Model& model, const Exploration& found) {
   if (found.searches == 0) return "";
-  if (found.rests.empty()) return fmt::format("rests    none found from {} starts\n", found.searches);
-  std::string text = fmt::format("rests    {} from {} starts\n", found.rests.size(), found.searches);
-  const std::size_t shown = std::min<std::size_t>(found.rests.size(), 12);
+  if (found.equilibria.empty()) return line("equilibria", fmt::format("none found from {} starts", found.searches));
+  std::string text = line("equilibria", fmt::format("{} from {} starts", found.equilibria.size(), found.searches));
+  const std::size_t shown = std::min<std::size_t>(found.equilibria.size(), 12);
   for (std::size_t k = 0; k < shown; ++k) {
-    const Rest& rest = found.rests[k];
-    text += fmt::format("      {:>2} {}: {}\n", k + 1,
-                        rest.jump ? "undecided, the equations jump here" : to_string(rest.at.stability),
-                        point_text(model, rest.at.x));
+    const ExploredEquilibrium& equilibrium = found.equilibria[k];
+    text += fmt::format("{:>11} {}: {}\n", k + 1,
+                        equilibrium.jump ? "undecided, the equations jump here" : to_string(equilibrium.at.stability),
+                        point_text(model, equilibrium.at.x));
   }
-  if (shown < found.rests.size()) text += "         and more: perhaps a whole curve of places is at rest\n";
+  if (shown < found.equilibria.size()) text += line("", "and more: perhaps a curve of equilibria");
   return text;
 }
 
 std::string orbit_text(const model::Model& model, const Exploration& found) {
   std::string text;
   if (found.orbit) {
-    text = fmt::format("orbit    period {}, {}\n", with_time_unit(found.orbit->period, model),
-                       found.orbit->stable ? "stable" : "not stable");
+    text = line("orbit", fmt::format("period {}, {}", with_time_unit(found.orbit->period, model),
+                                     found.orbit->stable ? "stable" : "not stable"));
   }
   if (found.hybrid_orbit) {
     using Neighbours = studies::HybridOrbit::Neighbours;
     const studies::HybridOrbit& orbit = *found.hybrid_orbit;
-    const std::string turns = orbit.turns > 1 ? fmt::format(", {} of the forcing's", orbit.turns) : "";
-    text = fmt::format("orbit    period {}{}, {}\n", with_time_unit(orbit.period, model), turns,
-                       orbit.neighbours == Neighbours::come_nearer ? "stable"
-                       : orbit.neighbours == Neighbours::go_away   ? "not stable"
-                       : orbit.family ? "one of a family: something is conserved, and each value of it has an orbit"
-                                      : "undecided at first order");
-    if (orbit.found_nearby) text += "         the motion does not converge to it, but passes near it\n";
+    const std::string turns = orbit.turns > 1 ? fmt::format(", {} periods of the forcing", orbit.turns) : "";
+    text = line("orbit", fmt::format("period {}{}, {}", with_time_unit(orbit.period, model), turns,
+                                     orbit.neighbours == Neighbours::come_nearer ? "stable"
+                                     : orbit.neighbours == Neighbours::go_away   ? "not stable"
+                                     : orbit.family                              ? one_of_a_family
+                                                                                 : "undecided at first order"));
+    if (orbit.found_nearby) text += line("", "the motion does not converge to it, but passes near it");
   }
   if (!found.exponents) return text;
-  text += "motion   Lyapunov exponents";
+  std::string exponents = "Lyapunov exponents";
   for (std::size_t i = 0; i < found.exponents->exponents.size(); ++i)
-    text += fmt::format("{} {} +- {:.1g}", i == 0 ? "" : ",", short_number(found.exponents->exponents[i]),
-                        found.exponents->spread[i]);
+    exponents += fmt::format("{} {} +- {:.1g}", i == 0 ? "" : ",", short_number(found.exponents->exponents[i]),
+                             found.exponents->spread[i]);
   const double first = found.exponents->exponents[0], doubt = 3 * found.exponents->spread[0];
-  return text + (first > doubt    ? ": the motion is chaotic\n"
-                 : first < -doubt ? ": neighbouring motions converge\n"
-                                  : ": neighbouring motions neither converge nor diverge measurably\n");
+  return text + line("motion",
+                     exponents + (first > doubt    ? ": the motion is chaotic"
+                                  : first < -doubt ? ": neighbouring motions converge"
+                                                   : ": neighbouring motions neither converge nor diverge measurably"));
 }
 
 /// What rounding leaves of a zero is one.
@@ -89,43 +96,39 @@ double cleared(const Slider& slider, double value) {
 }
 
 std::string slider_text(const Slider& slider, const model::Model& model) {
-  std::string text =
-      fmt::format("slider   {} from {} to {}\n", slider.name, short_number(slider.low), short_number(slider.high));
+  std::string text = line(
+      "parameter", fmt::format("{} from {} to {}", slider.name, short_number(slider.low), short_number(slider.high)));
   bool any = false;
   for (std::size_t b = 0; b < slider.branches.size(); ++b) {
     const studies::BranchOfDiagram& one = slider.branches[b];
-    std::string of = "a branch that crosses";
+    std::string of = "crossing branch";
     for (std::size_t k = 0; k < one.starts.size(); ++k)
-      of = k == 0 ? fmt::format("rest {}", one.starts[k] + 1) : fmt::format("{}, {}", of, one.starts[k] + 1);
+      of = k == 0 ? fmt::format("{} {}", one.starts.size() == 1 ? "equilibrium" : "equilibria", one.starts[k] + 1)
+                  : fmt::format("{}, {}", of, one.starts[k] + 1);
     for (const studies::BifurcationPoint& point : one.branch.bifurcations) {
       if (is_listed_before(slider.branches, b, point)) continue;
-      text += fmt::format("         {}: {} at {} = {}{}{}\n", of, to_string(point.kind), slider.name,
+      text += line(
+          "", fmt::format("{}: {} at {} = {}{}{}", of, to_string(point.kind), slider.name,
                           short_number(cleared(slider, point.at.constant)), state_text(slider.branches, point, model),
-                          point.frequency > 0 ? fmt::format(", frequency {}", short_number(point.frequency)) : "");
+                          point.frequency > 0 ? ", frequency " + short_number(point.frequency) : ""));
       any = true;
     }
-    if (!one.branch.complete)
-      text += fmt::format("         {}: not followed to the end: {}\n", of, one.branch.message), any = true;
+    if (!one.branch.complete) text += line("", fmt::format("{} ends early: {}", of, one.branch.message)), any = true;
   }
-  return any ? text : text + "         no place of rest changes its stability\n";
+  return any ? text : text + line("", "no equilibrium changes its stability");
 }
 
 std::string influences_text(const Exploration& found) {
   std::string text;
-  std::size_t shown = 0;
-  for (const Influenced& one : found.influences) {
-    if (shown++ == most_parameters) break;
-    text += fmt::format("matters  {}: ", one.parameter);
-    if (one.part == 0) {
-      text += "not at all in this run\n";
-    } else if (one.part > 100) {
-      text += fmt::format("1 % more moves {} by more than its size, at t = {}\n", one.state, short_number(one.t));
-    } else {
-      text += fmt::format("1 % more moves {} by up to {:.2g} %, at t = {}\n", one.state, one.part, short_number(one.t));
-    }
-  }
+  for (const Influenced& one : std::span(found.influences).first(std::min(found.influences.size(), most_parameters)))
+    text += line("sensitivity", one.part == 0
+                                    ? one.parameter + ": none in this run"
+                                    : fmt::format("{}: +1 % changes {} by {}, at t = {}", one.parameter, one.state,
+                                                  one.part > 100 ? "more than its largest value"
+                                                                 : fmt::format("up to {:.2g} %", one.part),
+                                                  short_number(one.t)));
   if (found.influences.size() > most_parameters)
-    text += fmt::format("         and {} that matter less\n", found.influences.size() - most_parameters);
+    text += line("", fmt::format("and {} parameters of less influence", found.influences.size() - most_parameters));
   return text;
 }
 
@@ -133,15 +136,15 @@ std::string influences_text(const Exploration& found) {
 
 std::string exploration_text(const Studied& studied, const Exploration& found) {
   const model::Model& model = studied.prepared.program->model;
-  std::string text = run_text(model, found) + conserved_text(studied, "kept     ") + rests_text(model, found) +
-                     orbit_text(model, found);
+  std::string text = run_text(model, found) + conserved_text(studied, fmt::format("{:<12}", "conserved")) +
+                     equilibria_text(model, found) + orbit_text(model, found);
   for (const Slider& slider : found.sliders) text += slider_text(slider, model);
   text += influences_text(found);
-  if (!found.not_moved.empty())
-    text += fmt::format("not moved: {}; a range behind a parameter (`in LOW..HIGH`) says how far it may go\n",
-                        fmt::join(found.not_moved, ", "));
-  for (const std::string& open : found.open) text += "open     " + open + "\n";
-  if (!found.complete) text += "open     what comes after Ctrl-C\n";
+  if (!found.not_varied.empty())
+    text += line("not varied", fmt::format("{}: a range after a parameter (`in LOW..HIGH`) declares how far to vary it",
+                                           fmt::join(found.not_varied, ", ")));
+  for (const std::string& note : found.notes) text += line("note", note);
+  if (!found.complete) text += line("note", "interrupted before all was computed");
   return text;
 }
 

@@ -80,9 +80,9 @@ const char* neighbours_text(const studies::HybridOrbit& found) {
 std::string text_of(const model::Model& model, const studies::HybridOrbit& found,
                     const std::optional<double>& forcing) {
   std::string text = fmt::format("period {}, ", with_time_unit(found.period, model));
-  if (forcing && found.turns > 1) text += fmt::format("{} of the forcing's {:.10g}, ", found.turns, *forcing);
+  if (forcing && found.turns > 1) text += fmt::format("{} periods of the forcing ({:.10g}), ", found.turns, *forcing);
   text += fmt::format("{}\n", neighbours_text(found)) + multipliers_text(found.multipliers);
-  if (found.family) text += "  one of a family: something is conserved, and each value of it has an orbit\n";
+  if (found.family) text += fmt::format("  {}\n", one_of_a_family);
   text += extents_text(model, found.low, found.high);
   std::vector<std::pair<std::string, std::size_t>> counts;
   for (const studies::SensitivityEvent& event : found.events) {
@@ -96,7 +96,7 @@ std::string text_of(const model::Model& model, const studies::HybridOrbit& found
   for (const auto& [name, count] : counts)
     text += fmt::format("  `{}` {} a period\n", name, count == 1 ? "once" : fmt::format("{} times", count));
   for (const std::size_t i : found.aside)
-    text += fmt::format("  {} goes on and does not come back; nothing hangs on it\n", model.states[i].column);
+    text += fmt::format("  {} does not return; nothing depends on it\n", model.states[i].column);
   if (found.found_nearby) text += "  the motion does not converge to it, but passes near it\n";
   return text;
 }

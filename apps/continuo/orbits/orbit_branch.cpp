@@ -119,7 +119,7 @@ results::Figure figure_of(const std::vector<OrbitBranch>& branches, const model:
   return figure;
 }
 
-/// Where places of rest within the range begin to oscillate, each once.
+/// Where equilibria within the range begin to oscillate, each once.
 std::vector<studies::HopfPoint> hopf_points(const Studied& studied, const NamedRange& range) {
   std::vector<studies::HopfPoint> found;
   studies::EquilibriumBox box{.low = {}, .high = {}, .interrupt = &interrupt_flag()};

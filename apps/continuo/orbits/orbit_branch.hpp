@@ -18,7 +18,7 @@ struct OrbitBranchOptions {
   studies::PeriodicOrbitOptions search{};      // of the orbit to begin with
   std::optional<HybridOrbitRequest> hybrid{};  // instead, where events or the time have a part in the motion
   bool patient = false;                        // look for it ten times and a hundred times as long, too
-  bool from_hopf = false;                      // begin where places of rest begin to oscillate
+  bool from_hopf = false;                      // begin where equilibria begin to oscillate
   bool json = false;
   std::size_t others = 0;  // so many branches more, that begin on those that were found
   BranchSteps steps{};

@@ -1,4 +1,4 @@
-// continuo steady FILE --along NAME=LOW..HIGH: how places of rest move with a parameter, which branches cross, and
+// continuo steady FILE --along NAME=LOW..HIGH: how equilibria move with a parameter, which branches cross, and
 // where stability changes.
 #pragma once
 #include <string>

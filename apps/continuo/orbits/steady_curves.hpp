@@ -19,7 +19,7 @@ struct NamedPlane {
   NamedRange first, second;
 };
 /// Whether the second parameter begins within its range; says so if not. `what` is followed with that value first.
-bool is_plane(const Studied& studied, const NamedPlane& plane, std::string_view what = "places of rest");
+bool is_plane(const Studied& studied, const NamedPlane& plane, std::string_view what = "equilibria");
 /// The range of --and, behind that of --along: of another parameter. Says what is wrong.
 std::optional<NamedRange> parse_second(const std::string& text, const NamedRange& first);
 

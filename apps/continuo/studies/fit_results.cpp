@@ -45,7 +45,7 @@ std::string unknowns_text(const studies::FitRequest& request, const studies::Fit
     } else if (estimate.undetermined) {
       text += fmt::format("{:>12}  the data do not determine it\n", "");
     } else if (!std::isfinite(fit.half_width(u))) {
-      text += fmt::format("{:>12}  no values are left over to tell how sure it is\n", "");
+      text += fmt::format("{:>12}  there are as many unknowns as values how sure it is\n", "");
     } else {
       const std::string width = request.unknowns[u].logarithmic
                                     ? "times " + short_number(estimate.high / estimate.value)
@@ -68,46 +68,47 @@ std::string relations_text(const studies::FitRequest& request, const studies::Fi
       moves.push_back(fmt::format("{} by {:+.3g} %", only, direction[u]));
     }
     text += moves.size() == 1
-                ? fmt::format("not determined: {} changes nothing that was measured\n", only)
-                : fmt::format("not determined: moving {} changes nothing that was measured\n", fmt::join(moves, ", "));
+                ? fmt::format("not determined: {} changes no measured quantity\n", only)
+                : fmt::format("not determined: moving {} changes no measured quantity\n", fmt::join(moves, ", "));
   }
   for (std::size_t a = 0; a < fit.estimates.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
       if (std::abs(correlation_of(fit, a, b)) > 0.9)
-        text += fmt::format("{} and {} are hard to tell apart: correlation {:.3f}\n", name_of_unknown(request, b),
+        text += fmt::format("{} and {} are strongly correlated: {:.3f}\n", name_of_unknown(request, b),
                             name_of_unknown(request, a), correlation_of(fit, a, b));
   return text;
 }
 
-std::string met_text(const studies::FitData& data, const studies::FitColumn& asked,
-                     const studies::FitColumnResult& column) {
-  if (!std::isfinite(column.ratio)) return "is met, but no values are left over to tell how closely";
-  std::string met;
+std::string deviation_text(const studies::FitData& data, const studies::FitColumn& asked,
+                           const studies::FitColumnResult& column) {
+  if (!std::isfinite(column.ratio)) return "no residual deviation: there are as many unknowns as values";
+  std::string text;
   if (asked.deviations_in) {
-    met = fmt::format("{:.3g} times its deviations in `{}`", column.ratio,
-                      data.measurements.columns[*asked.deviations_in]);
+    text = fmt::format("{:.3g} times its deviations in `{}`", column.ratio,
+                       data.measurements.columns[*asked.deviations_in]);
   } else {
     switch (asked.error) {
       case ErrorModel::constant:
-        met = short_number(column.met);
+        text = short_number(column.residual_deviation);
         break;
       case ErrorModel::proportional:
-        met = short_number(100 * column.met_relative) + " %";
+        text = short_number(100 * column.residual_deviation_relative) + " %";
         break;
       case ErrorModel::both:
-        met = fmt::format("{} and {} %", short_number(column.met), short_number(100 * column.met_relative));
+        text = fmt::format("{} and {} %", short_number(column.residual_deviation),
+                           short_number(100 * column.residual_deviation_relative));
         break;
       case ErrorModel::poisson:
-        met = fmt::format("{:.3g} times the root of what is counted", column.ratio);
+        text = fmt::format("{:.3g} times the square root of the count", column.ratio);
         break;
       case ErrorModel::lognormal:
-        met = "a factor of " + short_number(std::exp(column.met));
+        text = "a factor of " + short_number(std::exp(column.residual_deviation));
         break;
     }
   }
   if (column.given && !asked.deviations_in && asked.error != ErrorModel::poisson)
-    met += fmt::format(", {:.3g} times what was given", column.ratio);
-  return "is met within " + met;
+    text += fmt::format(", {:.3g} times the given one", column.ratio);
+  return "residual deviation " + text;
 }
 
 std::string columns_text(const studies::FitRequest& request, const studies::Fit& fit) {
@@ -115,7 +116,7 @@ std::string columns_text(const studies::FitRequest& request, const studies::Fit&
   for (const studies::FitColumnResult& column : fit.columns) {
     const studies::FitData& data = request.data[column.data];
     const studies::FitColumn& asked = data.columns[column.column];
-    text += fmt::format("{}: {} {}\n", data.measurements.file, asked.quantity, met_text(data, asked, column));
+    text += fmt::format("{}: {}: {}\n", data.measurements.file, asked.quantity, deviation_text(data, asked, column));
   }
   return text;
 }
@@ -137,7 +138,7 @@ std::string profiles_text(const studies::FitRequest& request, const std::vector<
   for (const studies::Profile& profile : profiles) {
     const std::string name = name_of_unknown(request, profile.unknown);
     if (profile.values.empty()) {
-      text += fmt::format("profile of {}: no values are left over to tell\n", name);
+      text += fmt::format("profile of {}: there are as many unknowns as values\n", name);
       continue;
     }
     text += fmt::format("profile of {}: {}", name, interval_text(profile.low, profile.high));
@@ -145,7 +146,7 @@ std::string profiles_text(const studies::FitRequest& request, const std::vector<
       text += fmt::format(" (its range ends {})", !profile.high_is_bound  ? "below"
                                                   : !profile.low_is_bound ? "above"
                                                                           : "on both sides");
-    text += profile.better ? "; on the way there the fit was better than the one above: take --starts\n" : "\n";
+    text += profile.better ? "; a better fit was found on the way: use --starts\n" : "\n";
   }
   return text;
 }
@@ -215,8 +216,8 @@ std::string fit_json(const studies::FitRequest& request, const studies::Fit& fit
                {"deviation_given", column.given},
                {"values", column.values},
                {"degrees", column.degrees},
-               {"met_within", column.met},
-               {"met_within_relative", column.met_relative},
+               {"residual_deviation", column.residual_deviation},
+               {"residual_deviation_relative", column.residual_deviation_relative},
                {"sum_of_squares", column.sum_of_squares},
                {"signs_p", column.signs_p},
                {"t", column.times},
@@ -228,7 +229,7 @@ std::string fit_json(const studies::FitRequest& request, const studies::Fit& fit
     if (column.given) {
       entry["chi_squared"] = column.chi_squared;
       entry["p"] = column.p;
-      entry["met_over_given"] = column.ratio;
+      entry["residual_over_given"] = column.ratio;
     }
     columns.push_back(std::move(entry));
   }

@@ -39,7 +39,7 @@ std::string advance_text(const model::Model& model, const std::vector<double>& a
     if (advance[i] == 0) continue;
     const auto turns = std::lround(advance[i] / (2 * std::numbers::pi));
     angles.push_back(
-        fmt::format("{} goes on by {} turn{}", model.states[i].column, turns, std::abs(turns) == 1 ? "" : "s"));
+        fmt::format("{} advances by {} turn{}", model.states[i].column, turns, std::abs(turns) == 1 ? "" : "s"));
   }
   return angles.empty() ? "" : fmt::format(" in which {}", fmt::join(angles, " and "));
 }

@@ -96,7 +96,7 @@ ExitCode sense_period(const ExperimentOptions& options, const std::vector<std::s
 }
 
 // f(x, p) = 0 differentiated: dx/dp = -(df/dx)^-1 df/dp.
-ExitCode sense_rest(const ExperimentOptions& options, const std::vector<std::string>& parameters, bool json) {
+ExitCode sense_equilibrium(const ExperimentOptions& options, const std::vector<std::string>& parameters, bool json) {
   Studied studied = study(options, "", parameters);
   if (studied.prepared.exit != done) return studied.prepared.exit;
   const model::Model& model = studied.prepared.program->model;
@@ -107,7 +107,7 @@ ExitCode sense_rest(const ExperimentOptions& options, const std::vector<std::str
   const ParametricSystem& system = studied.system;
   const auto search = studies::find_equilibrium(system, studied.start, system.constants);
   if (search.ending != studies::EquilibriumEnding::found) {
-    say(fmt::format("no place of rest was found near the start ({})", to_string(search.ending)));
+    say(fmt::format("no equilibrium was found near the start ({})", to_string(search.ending)));
     return numerical_failure;
   }
   const std::size_t n = system.size, m = parameters.size();
@@ -129,7 +129,7 @@ ExitCode sense_rest(const ExperimentOptions& options, const std::vector<std::str
     print(object.dump(2) + "\n");
     return done;
   }
-  std::string text = "at rest:";
+  std::string text = "equilibrium:";
   for (std::size_t i = 0; i < n; ++i)
     text += fmt::format("{} {} = {}", i == 0 ? "" : ",", model.states[i].column, results::short_number(search.x[i]));
   text += "\n" + events_text(studied, search.x) + head();

@@ -1,4 +1,4 @@
-// `continuo sense --of events|period|rest`: how what a motion comes to depends on parameters.
+// `continuo sense --of events|period|equilibrium`: how what a motion comes to depends on parameters.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ std::string events_table(const model::Model& model, const studies::SensitivityRu
                          const std::vector<studies::Influence>& influences);
 /// The period of the closed orbit that the run comes to.
 ExitCode sense_period(const ExperimentOptions& options, const std::vector<std::string>& parameters, bool json);
-/// The place of rest that is found from the start, of the mode the model starts in.
-ExitCode sense_rest(const ExperimentOptions& options, const std::vector<std::string>& parameters, bool json);
+/// The equilibrium that is found from the start, of the mode the model starts in.
+ExitCode sense_equilibrium(const ExperimentOptions& options, const std::vector<std::string>& parameters, bool json);
 
 }  // namespace continuo::app

@@ -99,7 +99,7 @@ std::string conserved_text(const Studied& studied, std::string_view head) {
     text += fmt::format("{}{} = {}\n", text.empty() ? head : below, studies::law_text(studied.system, law),
                         results::short_number(law.value));
   if (!text.empty() && !studied.prepared.program->model.events.empty())
-    text += below + "by the equations; events that change it are not looked at\n";
+    text += below + "by the equations; events, which may change it, are not considered\n";
   return text;
 }
 
@@ -116,7 +116,7 @@ double run_length(const model::Model& model) {
 bool stands_still_in_time(const Studied& studied, std::string_view what) {
   const model::ModelProgram& program = *studied.prepared.program;
   const auto follow = "`continuo orbit --section` and `--lyapunov` follow the motion as it is";
-  if (const auto i = studies::hangs_on_time(program, studied.mode)) {
+  if (const auto i = studies::depends_on_time(program, studied.mode)) {
     const model::State& state = program.model.states[*i];
     say(fmt::format("{}: {} only if no equation depends on time, and that of `{}` does; {}",
                     place_text(studied.prepared, state.span), what, state.algebraic ? state.column : state.column + "'",

@@ -31,7 +31,7 @@ struct Studied {
 Studied study(const ExperimentOptions& options, const std::string& mode, const std::vector<std::string>& constants = {},
               Equations equations = Equations::differential);
 
-/// Holds what the equations conserve at its value at the start: of places of rest and orbits, which else fill whole
+/// Holds what the equations conserve at its value at the start: of equilibria and orbits, which else fill whole
 /// families, those that a motion from there may come to.
 void hold_conserved(Studied& studied);
 /// The same for the model with other constants that move.
@@ -74,7 +74,7 @@ std::optional<NamedRange> parse_range(const std::string& text);
 /// Which state has this name; says so where none has.
 std::optional<std::size_t> state_named(const model::Model& model, const std::string& name);
 
-/// Where to look for places of rest: what the run passes through, twice as wide; the ranges that were asked for.
+/// Where to look for equilibria: what the run passes through, twice as wide; the ranges that were asked for.
 bool set_box(const Studied& studied, const std::vector<std::string>& ranges, studies::EquilibriumBox& box);
 
 /// "-0.5 +- 2.1 i"

@@ -110,7 +110,7 @@ ExitCode linearize(const LinearizeOptions& options) {
     auto search = studies::find_equilibrium(studied.system, x, studied.system.constants, time);
     if (search.ending != studies::EquilibriumEnding::found) {
       say(fmt::format(
-          "{}: no place of rest was found near the start ({}; `{}` still changes by {}); --start linearizes at "
+          "{}: no equilibrium was found near the start ({}; the residual of `{}` is {}); --start linearizes at "
           "the start, --at NAME=VALUE elsewhere",
           place_text(studied.prepared, model.states[search.worst].span), to_string(search.ending),
           studied.system.name(search.worst), results::short_number(search.residual)));
@@ -149,7 +149,7 @@ ExitCode linearize(const LinearizeOptions& options) {
     print(as_json(linear, x, studied, modes));
     return done;
   }
-  std::string text = options.at.empty() && !options.start ? "at rest:" : "at:";
+  std::string text = options.at.empty() && !options.start ? "equilibrium:" : "at:";
   for (std::size_t i = 0; i < x.size(); ++i)
     text += fmt::format("{} {} = {}", i == 0 ? "" : ",", model.states[i].column,
                         results::short_number(std::abs(x[i]) < 1e-13 ? 0 : x[i]));

@@ -54,7 +54,7 @@ bool needs_all(const Studied& studied, const OrbitOptions& options) {
 /// Whether something hangs on the time, or is said to.
 bool is_forced(const Studied& studied, const OrbitOptions& options) {
   if (options.forcing || options.turns > 0) return true;
-  return options.mode.empty() && studies::hangs_on_time(*studied.prepared.program, studied.mode).has_value();
+  return options.mode.empty() && studies::depends_on_time(*studied.prepared.program, studied.mode).has_value();
 }
 
 results::Figure figure_of(const model::Model& model, const studies::PeriodicOrbit& found) {

@@ -136,9 +136,9 @@ results::Figure figure_of(const model::Model& model, const PhasePortrait& portra
     auto& places = is_stable ? stable : e.stability == studies::Stability::undecided ? undecided : others;
     places.push_back({{e.x[0], e.x[1]}});
   }
-  add("at rest, stable", "#000000", stable, full_points);
-  add("at rest, undecided", "#888888", undecided, full_points);
-  add("at rest, not stable", "#000000", others, empty_points);
+  add("equilibrium, stable", "#000000", stable, full_points);
+  add("equilibrium, undecided", "#888888", undecided, full_points);
+  add("equilibrium, not stable", "#000000", others, empty_points);
   return {.title = model.name, .panels = {std::move(panel)}};
 }
 
@@ -148,7 +148,7 @@ std::string summary_of(const model::Model& model, const PhasePortrait& portrait,
                   results::short_number(plane.high[0]), model.states[1].column, results::short_number(plane.low[1]),
                   results::short_number(plane.high[1]));
   for (const studies::Equilibrium& e : portrait.equilibria) {
-    text += fmt::format("at rest  ({}, {}): {}, {}", results::short_number(std::abs(e.x[0]) < 1e-13 ? 0 : e.x[0]),
+    text += fmt::format("equilibrium ({}, {}): {}, {}", results::short_number(std::abs(e.x[0]) < 1e-13 ? 0 : e.x[0]),
                         results::short_number(std::abs(e.x[1]) < 1e-13 ? 0 : e.x[1]), to_string(e.stability),
                         e.eigenvalues.empty() ? "the equations jump here" : "eigenvalues");
     for (std::size_t i = 0; i < e.eigenvalues.size(); ++i)

@@ -136,13 +136,14 @@ ExitCode sense_of_limit(const SenseOptions& options) {
     say(fmt::format("--of {} takes --param and --json alone", options.of));
     return usage;
   }
-  return (options.of == "period" ? sense_period : sense_rest)(options.experiment, options.parameters, options.json);
+  return (options.of == "period" ? sense_period : sense_equilibrium)(options.experiment, options.parameters,
+                                                                     options.json);
 }
 
 ExitCode sense(const SenseOptions& options) {
   if (!drawable(options.plot) || !writable(options.output) || !are_apart({options.experiment.file}, {options.output}))
     return usage;
-  if (options.of == "period" || options.of == "rest") return sense_of_limit(options);
+  if (options.of == "period" || options.of == "equilibrium") return sense_of_limit(options);
   Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   const model::Model& model = prepared.program->model;
@@ -190,7 +191,7 @@ void add_sense(CLI::App& app, ExitCode& exit) {
       "  continuo sense models/mass_spring_damper.sim --param k,c             how x and x' depend on k and c\n"
       "  continuo sense models/bouncing_ball.sim --param e,g --until 8 --plot ball.svg\n"
       "  continuo sense models/lorenz.sim --initial x --until 5 -o growth.csv\n"
-      "  continuo sense models/thermostat.sim --param tau,high --of period      and --of events, --of rest\n";
+      "  continuo sense models/thermostat.sim --param tau,high --of period      and --of events, --of equilibrium\n";
   CLI::App* verb = add_verb(
       app, "sense", "Computes sensitivities: derivatives of a motion by parameters and initial values", examples);
   auto options = std::make_shared<SenseOptions>();
@@ -203,7 +204,7 @@ void add_sense(CLI::App& app, ExitCode& exit) {
       ->type_name("STATES");
   verb->add_option("--of", options->of,
                    "The quantity to differentiate: the motion, the times of its events, its period, its equilibrium")
-      ->check(CLI::IsMember({"motion", "events", "period", "rest"}))
+      ->check(CLI::IsMember({"motion", "events", "period", "equilibrium"}))
       ->type_name("WHAT");
   refuse_methods(*verb);
   add_tolerances(*verb, options->experiment);

@@ -1,4 +1,4 @@
-// continuo steady FILE: where a model comes to rest, whether it stays there, and how that moves with a parameter.
+// continuo steady FILE: the equilibria of a model, their stability, and their dependence on a parameter.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -69,10 +69,10 @@ std::string table_of(const studies::Equilibria& found, const Studied& studied) {
     text += "\n";
   }
   if (shown < found.equilibria.size())
-    text += fmt::format("and {} more: perhaps a whole curve of places is at rest\n", found.equilibria.size() - shown);
-  text += fmt::format("{} of {} searches came to rest, at {} place{}", found.arrived, found.searches,
-                      found.equilibria.size(), found.equilibria.size() == 1 ? "" : "s");
-  if (found.outside > 0) text += fmt::format("; {} elsewhere, beyond where was looked (--box)", found.outside);
+    text += fmt::format("and {} more: perhaps a curve of equilibria\n", found.equilibria.size() - shown);
+  text += fmt::format("{} of {} searches converged, to {} equilibri{}", found.arrived, found.searches,
+                      found.equilibria.size(), found.equilibria.size() == 1 ? "um" : "a");
+  if (found.outside > 0) text += fmt::format("; {} outside of the region of the search (--box)", found.outside);
   return text + "\n";
 }
 
@@ -178,11 +178,11 @@ ExitCode steady(const SteadyOptions& options) {
   if (found.equilibria.empty()) {
     if (interrupt_flag()) return interrupted;
     say(
-        fmt::format("{}: no place of rest was found from {} starts; nearest to it, `{}` still changes by {} ({}). "
-                    "--box NAME=LOW..HIGH looks elsewhere",
+        fmt::format("{}: no equilibrium was found from {} starts; the smallest residual is {}, of `{}` ({}). "
+                    "--box NAME=LOW..HIGH searches elsewhere",
                     place_text(studied.prepared, studied.prepared.program->model.states[found.nearest.worst].span),
-                    found.searches, studied.system.name(found.nearest.worst),
-                    results::short_number(found.nearest.residual), to_string(found.nearest.ending)));
+                    found.searches, results::short_number(found.nearest.residual),
+                    studied.system.name(found.nearest.worst), to_string(found.nearest.ending)));
     return numerical_failure;
   }
   if (!options.json) print(table_of(found, studied) + conserved_text(studied));

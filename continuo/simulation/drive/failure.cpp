@@ -83,7 +83,7 @@ Diagnostic failure(const ModelProgram& program, const Run& run) {
                                "sides lead back to a jump the motion slides along it",
                                state.algebraic ? state.column : state.column + "'", text_of(model, *jump))});
   diagnostic.help =
-      "jumps are located, and slid along, where they hang on states and the time, not on unknowns, stand outside of "
+      "jumps are located, and slid along, where they depend on states and the time, not on unknowns, stand outside of "
       "`smooth`, and are at most 64; " +
       diagnostic.help;
   return diagnostic;

@@ -162,7 +162,7 @@ class FamilyFollower {
         return family;
       }
       if (std::ranges::any_of(here.solution.points, [](double x) { return std::abs(x) > beyond_measure; })) {
-        family.message = "it goes off to infinity";
+        family.message = "it diverges to infinity";
         return family;
       }
       steps_.measure(here.solution);

@@ -147,7 +147,7 @@ class Follower {
       if (reach >= 2 * reached) {
         const bool still = std::abs(here.z[n_] - reached_at) < standstill;
         if (reach > far_away || (still && reached >= large)) {
-          branch.message = "it goes off to infinity";
+          branch.message = "it diverges to infinity";
           return branch;
         }
         reached = reach;

@@ -92,7 +92,7 @@ CurveEnd CurveFollower::followed(BifurcationCurve& curve, const CurvePlace& from
     if (options_.interrupt && options_.interrupt->load()) return {CurveEnding::interrupted, "it was interrupted"};
     double reach = 1;
     for (std::size_t i = 0; i < steps_.size(); ++i) reach = std::max(reach, std::abs(here.z[i]));
-    if (reach > far_off) return {CurveEnding::infinity, "it goes off to infinity"};
+    if (reach > far_off) return {CurveEnding::infinity, "it diverges to infinity"};
     auto next = steps_.stepped(here, step * reach);
     if (!next || product(here.tangent, next->tangent) < least_cosine_of_neighbours) {
       if (step.shorten()) continue;
@@ -112,7 +112,7 @@ CurveEnd CurveFollower::followed(BifurcationCurve& curve, const CurvePlace& from
     }
     if (!inside(next->point)) return at_bound(curve, here, *next);
     if (curve.points.size() > least_turn && comes_back(here, *next, origin))
-      return {CurveEnding::closed, "it comes back to where it began"};
+      return {CurveEnding::closed, "the curve is closed"};
     here = std::move(*next);
     curve.points.push_back(here.point);
     covered_.report(here.point.constants[1]);

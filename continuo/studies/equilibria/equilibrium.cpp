@@ -101,7 +101,7 @@ Linearization reduced(const ParametricSystem& system, std::vector<double> by_x, 
   return linear;
 }
 
-/// The largest eigenvalue a little beside a place of rest. Where all of them vanish at the place, as of x' = -x^2, what
+/// The largest eigenvalue a little beside an equilibrium. Where all of them vanish at the place, as of x' = -x^2, what
 /// is found of them is the rounding of the place, and says nothing beside what they are next to it.
 double size_nearby(const ParametricSystem& system, std::vector<double> x, Values p, double t) {
   constexpr double beside = 1e-6;

@@ -1,5 +1,5 @@
-// Which events of a model a point of its states has to do with: a place of rest at which one fires, or that a motion
-// cannot come to without meeting one, is no place of rest of the model as it is.
+// Which events of a model a point of its states has to do with: an equilibrium at which one fires, or that a motion
+// cannot come to without meeting one, is no equilibrium of the model as it is.
 #pragma once
 #include <cstddef>
 #include <span>

@@ -127,8 +127,9 @@ std::vector<FitColumnResult> column_results(const FitRequest& request, const Fit
     column.degrees = fit.sure.group_degrees[g];
     column.ratio = column.degrees > nothing_left ? fit.sure.group_ratio[g] : std::nan("");
     const bool relative = asked.error == ErrorModel::proportional || asked.error == ErrorModel::both;
-    if (asked.error != ErrorModel::proportional) column.met = column.ratio * problem.constant_deviation(g);
-    if (relative) column.met_relative = column.ratio * problem.relative_deviation(g);
+    if (asked.error != ErrorModel::proportional)
+      column.residual_deviation = column.ratio * problem.constant_deviation(g);
+    if (relative) column.residual_deviation_relative = column.ratio * problem.relative_deviation(g);
     column.p = column.given && column.degrees > nothing_left ? chi_squared_tail(column.chi_squared, column.degrees) : 1;
     double size = 0;
     for (const double value : column.measured) size += value * value;
@@ -228,7 +229,7 @@ std::vector<FitDoubt> doubts_of(const FitRequest& request, const Fit& fit) {
     if (column.given && request.options.loss == Loss::squares && column.p < by_chance)
       doubts.push_back(
           {Kind::residuals_too_large,
-           fmt::format("{} is off by {:.3g} times the deviations that were given: this is a false minimum, "
+           fmt::format("{}: the residual deviation is {:.3g} times the given one: this is a local minimum, "
                        "the model is wrong, or the deviations are larger",
                        name, column.ratio)});
     // Degrees of freedom. With 3 and 5 of them some 90 to 93 of 100 intervals hold the truth, with 8 some 94: only
@@ -249,7 +250,7 @@ std::vector<FitDoubt> doubts_of(const FitRequest& request, const Fit& fit) {
                                       name)});
     if (column.signs_p < by_chance)
       doubts.push_back({Kind::signs, fmt::format("{} is above and below the model for longer than noise would be "
-                                                 "(p = {:.1g}): a false minimum or a wrong model, and no interval is "
+                                                 "(p = {:.1g}): a local minimum or a wrong model, and no interval is "
                                                  "to be trusted",
                                                  name, column.signs_p)});
   }

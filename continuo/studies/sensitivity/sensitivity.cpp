@@ -66,8 +66,8 @@ Options<std::vector<double>> options_of(const model::Plan& plan, const model::Ex
   return options;
 }
 
-/// A jump of the equations that a run does not locate (simulation/program/switches.hpp): it hangs on an unknown, or is
-/// one of too many. What the text calls smooth does not jump.
+/// A jump of the equations that a run does not locate (simulation/program/switches.hpp): it depends on an unknown, or
+/// is one of too many. What the text calls smooth does not jump.
 std::optional<model::Jump> jump_not_located(const model::Model& model, std::size_t mode) {
   const auto moves = [&](model::NodeId node) {
     return std::ranges::any_of(model::variables_of(model.graph, node), [&](std::uint32_t v) {
@@ -121,7 +121,7 @@ std::optional<model::Diagnostic> no_sensitivity(const model::Model& model, std::
     return model::error(
         "E361", model.states[jump->state].span,
         fmt::format("no sensitivities through the jump `{}`", model::text_of(model, *jump)), "in this equation",
-        "it hangs on an unknown, or is one of too many to be located: an event (`when`) can do the same");
+        "it depends on an unknown, or is one of too many to be located: an event (`when`) can do the same");
   }
   if (!model.needs_dae_solver()) return std::nullopt;
   const auto refuse = [](const model::Span& span) {

@@ -193,7 +193,7 @@ Forcing forcing_of(const model::ModelProgram& program, const model::Overrides& p
       continue;
     }
     forcing.status = {.ending = Ending::cannot_continue,
-                      .message = "what hangs on the time here does not repeat after a time that the text shows"};
+                      .message = "the period of this time-dependent term does not follow from the text"};
     forcing.span = mover.span;
     return forcing;
   }
@@ -207,7 +207,7 @@ Forcing forcing_of(const model::ModelProgram& program, const model::Overrides& p
   for (const double period : periods) all += fmt::format("{}{:.10g}", all.empty() ? "" : ", ", period);
   forcing.status = {
       .ending = Ending::cannot_continue,
-      .message = fmt::format("what hangs on the time has periods of {}, which no common time is a multiple of", all)};
+      .message = fmt::format("the time-dependent terms have periods of {}, which have no common multiple", all)};
   forcing.span = model.run.span;
   return forcing;
 }

@@ -46,7 +46,7 @@ std::optional<Unseen> unseen_of(const model::ModelProgram& program, std::size_t 
   return std::nullopt;
 }
 
-std::optional<std::size_t> hangs_on_time(const model::ModelProgram& program, std::size_t mode) {
+std::optional<std::size_t> depends_on_time(const model::ModelProgram& program, std::size_t mode) {
   const model::Model& model = program.model;
   const std::vector<model::NodeId>& equations = model.modes[mode].derivatives;
   for (std::size_t i = 0; i < equations.size(); ++i) {

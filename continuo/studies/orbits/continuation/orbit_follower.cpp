@@ -65,7 +65,7 @@ OrbitBranchEnd OrbitFollower::followed(OrbitBranch& branch, const Place& from, d
                                           branch.points.end());
     if (auto end = ending_of(way, here)) return with_last(std::move(*end), here);
     if (way.size() > 20 && comes_back(here, origin, step))
-      return ended(OrbitEnding::closed, here.point.constant, "it comes back to where it began");
+      return ended(OrbitEnding::closed, here.point.constant, "the branch is closed");
     steps_.measure(here);
     if (iterations <= 4) step.lengthen();
   }

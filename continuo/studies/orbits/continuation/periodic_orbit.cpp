@@ -244,7 +244,7 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
   for (std::size_t i = 1; i < system.size; ++i)
     if (rank(i) > rank(section)) section = i;
   if (share(section) < 1e-6)
-    return without_orbit({}, "the motion comes to rest; start elsewhere, or see where with `steady`");
+    return without_orbit({}, "the motion converges to an equilibrium; start elsewhere, or find it with `steady`");
   const SectionOptions passing{.level = (extent.low[section] + extent.high[section]) / 2,
                                .duration = options.duration,
                                .rtol = options.rtol,
@@ -257,7 +257,7 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
   const double period = coming_back.time;
   const X& advance = coming_back.advance;
   if (period == 0) {
-    auto none = without_orbit({}, fmt::format("the motion does not come back to where it was within a time of {}; it "
+    auto none = without_orbit({}, fmt::format("the motion does not return to an earlier state within a time of {}; it "
                                               "may need longer to settle, or have no period",
                                               options.duration));
     none.wanders = true;
@@ -299,7 +299,7 @@ PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<do
         followed.period > 0)
       return followed;
     result.outcome.hint =
-        "the motion comes back, but no single orbit could be solved for: a system that keeps its energy has one for "
+        "the motion returns, but no single orbit could be solved for: a system that keeps its energy has one for "
         "each "
         "energy, and none that stands by itself";
     return result;

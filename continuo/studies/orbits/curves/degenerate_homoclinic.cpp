@@ -219,7 +219,7 @@ OrbitCurveEnd DegenerateHomoclinicFollower::followed(DegenerateHomoclinicCurve& 
     covered_.report(next->constants[2]);
     const Chord chord = chord_between(here.point(), next->point(), origin, options_);
     if (side.points.size() > points_round && chord.passes() && chord.apart < 0.1 * chord.length)
-      return {OrbitCurveEnding::closed, "it comes back to where it began"};
+      return {OrbitCurveEnding::closed, "the curve is closed"};
     here = std::move(*next);
     if (!steps_.renew(here)) return {OrbitCurveEnding::lost, "no mesh serves the orbits further on"};
     step.lengthen();
@@ -247,7 +247,7 @@ std::optional<OrbitCurveEnd> DegenerateHomoclinicFollower::end_at(const Found& f
     return OrbitCurveEnd{OrbitCurveEnding::no_saddle,
                          "the saddle has a pair of imaginary eigenvalues there, a Hopf point"};
   if (found.kind == OrbitDegeneracy::saddle_node)
-    return OrbitCurveEnd{OrbitCurveEnding::no_saddle, "the saddle meets another place of rest there, a saddle-node"};
+    return OrbitCurveEnd{OrbitCurveEnding::no_saddle, "the saddle meets another equilibrium there, a saddle-node"};
   const bool same_side = is_of_stable_side(found.test) == is_of_stable_side(test_);
   const bool of_leading =
       is_flip(test_) || test_ == HomoclinicTest::divergent_stable || test_ == HomoclinicTest::divergent_unstable;
@@ -293,7 +293,7 @@ std::optional<OrbitCurveEnd> DegenerateHomoclinicFollower::end_between(Degenerat
                    [&](const DegeneratePlace& each) { return towards_rest(each); }, 1, towards_rest(here), towards, at);
   if (place) side.points.push_back(place->point());
   return OrbitCurveEnd{OrbitCurveEnding::no_saddle,
-                       "the saddle-node meets a third place of rest there, a cusp: behind it the orbit is on the side "
+                       "the saddle-node meets a third equilibrium there, a cusp: behind it the orbit is on the side "
                        "on which motions go the other way"};
 }
 
@@ -328,7 +328,7 @@ DegenerateHomoclinicCurve follow_degenerate_homoclinic(const ParametricSystem& s
   }
   if (start.kind == OrbitDegeneracy::hopf) {
     curve.message =
-        "orbits homoclinic to a Hopf point are not followed: whether they come to rest there hangs on how it attracts";
+        "orbits homoclinic to a Hopf point are not followed: whether they converge to it depends on how it attracts";
     return curve;
   }
   ParametricSystem turning(system);

@@ -70,7 +70,7 @@ class HomoclinicFollower {
   /// end; but where it is not central any more the other curve begins.
   std::shared_ptr<const HomoclinicMark> start_in_three(const HomoclinicPlace& place, HomoclinicTest test) const;
   /// Whether the last points differ by the length of the interval alone: the curve goes round a point where the orbit
-  /// is one to another place of rest and back (a T-point, Glendinning and Sparrow, J. Stat. Phys. 43 (1986) 479-488).
+  /// is one to another equilibrium and back (a T-point, Glendinning and Sparrow, J. Stat. Phys. 43 (1986) 479-488).
   bool winds_up(const OrbitCurve& curve) const;
 
   const ParametricSystem& system_;
@@ -244,10 +244,10 @@ OrbitCurveEnd HomoclinicFollower::followed(OrbitCurve& curve, const HomoclinicPl
     curve.points.push_back(next->point);
     covered_.report(next->point.constants[1]);
     if (curve.points.size() > points_round && comes_back(here.point, next->point, origin, options_))
-      return {OrbitCurveEnding::closed, "it comes back to where it began"};
+      return {OrbitCurveEnding::closed, "the curve is closed"};
     if (winds_up(curve))
       return {OrbitCurveEnding::long_period,
-              "nothing changes any more but how long the orbit takes: it comes ever nearer to another place of rest"};
+              "nothing changes any more but how long the orbit takes: it comes ever nearer to another equilibrium"};
     here = std::move(*next);
     if (!is_served) return {OrbitCurveEnding::lost, "no mesh serves the orbits further on"};
     step.lengthen();
@@ -321,12 +321,12 @@ std::optional<OrbitDegeneracy> HomoclinicFollower::kind_of(HomoclinicTest test, 
 
 std::optional<std::string> HomoclinicFollower::reason_to_end(const Found& found) {
   if (found.kind == OrbitDegeneracy::hopf) return "the saddle has a pair of imaginary eigenvalues there, a Hopf point";
-  if (found.kind == OrbitDegeneracy::saddle_node) return "the saddle meets another place of rest there, a saddle-node";
+  if (found.kind == OrbitDegeneracy::saddle_node) return "the saddle meets another equilibrium there, a saddle-node";
   if (found.kind == OrbitDegeneracy::non_central)
     return fmt::format("the orbit {} in a strong direction there, no longer along the centre of the saddle-node",
                        found.test == HomoclinicTest::leaves_centre ? "leaves" : "comes back");
   if (!found.place.rest.is_saddle_node) return std::nullopt;
-  if (found.test == HomoclinicTest::curvature) return "three places of rest meet there, a cusp";
+  if (found.test == HomoclinicTest::curvature) return "three equilibria meet there, a cusp";
   return "a second eigenvalue of the saddle-node comes to the imaginary axis there";
 }
 

@@ -137,13 +137,13 @@ std::optional<HomoclinicPlace> HomoclinicSteps::first(const OrbitMark& mark, std
   if (!is_hyperbolic)
     fold = saddle_node_near(system_, options_.constants[0], slow, p, size, options_.high[0] - options_.low[0]);
   if (!is_hyperbolic && !fold) {
-    message = is_near ? "the place of rest next to which the orbit passes is no saddle: it has an eigenvalue on the "
+    message = is_near ? "the equilibrium next to which the orbit passes is no saddle: it has an eigenvalue on the "
                         "imaginary axis"
-                      : "the orbit of long period does not pass next to a place of rest";
+                      : "the orbit of long period does not pass next to an equilibrium";
     return std::nullopt;
   }
   if (!fold && (kind_.stable == 0 || kind_.stable == n_)) {
-    message = "the place of rest next to which the orbit passes is no saddle";
+    message = "the equilibrium next to which the orbit passes is no saddle";
     return std::nullopt;
   }
 

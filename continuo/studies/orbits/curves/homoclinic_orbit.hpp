@@ -68,7 +68,7 @@ class HomoclinicOrbit {
   /// Along the centre of a saddle-node at z, y' = c y^2 + ...: c.
   [[nodiscard]] double centre_curvature(std::span<const double> z) const;
   /// At the last evaluation, of a saddle-node: how fast f along the centre changes with the constants, in ranges and
-  /// rates. About 0 where x0 is a place of rest whatever they are, or by a symmetry: it is no fold then.
+  /// rates. About 0 where x0 is an equilibrium whatever they are, or by a symmetry: it is no fold then.
   [[nodiscard]] double unfolding() const;
   /// Of a solution of the transposed equations: the adjoint solution at the beginning, or at the end.
   [[nodiscard]] Eigen::VectorXd adjoint_at(const Vector& solution, bool at_end) const;

@@ -78,7 +78,7 @@ OrbitCurveEnd OrbitCurveFollower::followed(OrbitCurve& curve, const OrbitCurvePl
               fmt::format("the period has grown to {:.6g}, more than {:.3g} times that at the start",
                           next->point.period, options_.longest_period)};
     if (curve.points.size() > round_trip && comes_back(here.point, next->point, origin.point, options_))
-      return {OrbitCurveEnding::closed, "it comes back to where it began"};
+      return {OrbitCurveEnding::closed, "the curve is closed"};
     here = std::move(*next);
     if (!steps_.renew(here))
       return {OrbitCurveEnding::lost,

@@ -1,4 +1,4 @@
-// A saddle-node near by: a place of rest with an eigenvalue zero, for one value of a constant. Internal to
+// A saddle-node near by: an equilibrium with an eigenvalue zero, for one value of a constant. Internal to
 // homoclinic_curve, which needs one where a closed orbit of long period has passed the place where it is about to be.
 #pragma once
 #include <cstddef>

@@ -81,9 +81,9 @@ bool HybridBranchSteps::begin(const model::Instant& start, double period, double
       return other && std::abs(*other - *forcing) < 0.1 * *forcing;
     };
     if (!forcing || !about(before) || !about(after)) {
-      status_ = {
-          .ending = Ending::cannot_continue,
-          .message = fmt::format("what hangs on the time has no common period beside {} = {:.10g}", name_, constant)};
+      status_ = {.ending = Ending::cannot_continue,
+                 .message = fmt::format("the time-dependent terms have no common period beside {} = {:.10g}", name_,
+                                        constant)};
       return false;
     }
     turns_ = std::round(period / *forcing);
@@ -164,7 +164,7 @@ std::optional<HybridBranchSteps::Equations> HybridBranchSteps::evaluate(const mo
     if (!here || !before || !after || std::abs(*after - *before) > 0.1 * *here) {
       status_ = {
           .ending = Ending::cannot_continue,
-          .message = fmt::format("what hangs on the time has no common period at {} = {:.10g}", name_, constant)};
+          .message = fmt::format("the time-dependent terms have no common period at {} = {:.10g}", name_, constant)};
       return std::nullopt;
     }
     period = turns_ * *here;

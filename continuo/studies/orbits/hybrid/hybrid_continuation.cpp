@@ -64,7 +64,7 @@ OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgra
                                  options.low, options.high);
   if (branch.message.empty() && start.family)
     branch.message =
-        "the orbit is one of a family: something is conserved, and there is one for each value of it, all at one "
+        "the orbit is one of a family: a quantity is conserved, and there is one for each of its values, all at one "
         "value of the parameter";
   if (!branch.message.empty()) return branch;
   const model::Instant begin =

@@ -83,7 +83,7 @@ OrbitBranchEnd HybridFollower::followed(OrbitBranch& branch, const Place& from, 
     covered_.report(here.point.constant);
     if (auto end = ending_of(std::span(branch.points).subspan(begin), here)) return *end;
     if (branch.points.size() - begin > 20 && comes_back(here, origin, step))
-      return {OrbitEnding::closed, here.point.constant, "it comes back to where it began"};
+      return {OrbitEnding::closed, here.point.constant, "the branch is closed"};
     steps_.begin_anew(here);
     step.lengthen();
   }

@@ -291,10 +291,10 @@ HybridOrbit find_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& 
   }
   HybridOrbit none = without_hybrid_orbit(
       starts.nearby
-          ? fmt::format("the motion does not come back to where it was within a time of {}, and no orbit was found "
+          ? fmt::format("the motion does not return to an earlier state within a time of {}, and no orbit was found "
                         "near its way: it may need longer to settle, or have no period",
                         options.duration)
-          : fmt::format("the motion comes back, but no closed orbit could be solved for: {}", search.status().message));
+          : fmt::format("the motion returns, but no closed orbit could be solved for: {}", search.status().message));
   none.wanders = starts.nearby;
   return none;
 }

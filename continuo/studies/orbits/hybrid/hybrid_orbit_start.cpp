@@ -66,7 +66,7 @@ class StartSearch {
     result_.outcome = run_.outcome();
     if (result_.outcome.ending != Ending::stopped_by_event) return false;
     result_.outcome.ending = Ending::nonlinear_solve_failed;
-    result_.outcome.hint = fmt::format("`{}` ends the run at t = {}, before the motion has come back",
+    result_.outcome.hint = fmt::format("`{}` ends the run at t = {}, before the motion has returned",
                                        run_.outcome().event, run_.outcome().t);
     return false;
   }
@@ -111,7 +111,7 @@ class StartSearch {
     watch_extent(0.3, 0);
     if (!go_to(settled_ + options_.duration)) return;
     const std::optional<std::size_t> component = section();
-    if (!component) return fail("the motion comes to rest; start elsewhere, or see where with `steady`");
+    if (!component) return fail("the motion converges to an equilibrium; start elsewhere, or find it with `steady`");
     const double level = (result_.low[*component] + result_.high[*component]) / 2;
     // Who does not let it settle begins near an orbit, on which it may not stay.
     if (options_.settle == 0) run_.go_on(first);
@@ -201,7 +201,7 @@ class StartSearch {
   void end_search() {
     if (!result_.starts.empty()) return;
     fail(
-        fmt::format("the motion does not come back to where it was within a time of {}; it may need longer to settle, "
+        fmt::format("the motion does not return to an earlier state within a time of {}; it may need longer to settle, "
                     "or have no period",
                     options_.duration));
     result_.wanders = true;
