@@ -20,19 +20,19 @@ std::pair<std::size_t, double> place_of(const std::vector<double>& mesh, double 
 
 }  // namespace
 
-std::string what_is_wrong(const BoundaryValueProblem& problem) {
-  if (problem.system.size == 0) return "a system of at least one component is needed";
-  if (!problem.system.derivative || !problem.conditions) return "a derivative and conditions are needed";
-  if (problem.times.size() < 2) return "conditions at two times at least are needed";
+Status validate(const BoundaryValueProblem& problem) {
+  if (problem.system.size == 0) return invalid_input("a system of at least one component is needed");
+  if (!problem.system.derivative || !problem.conditions) return invalid_input("a derivative and conditions are needed");
+  if (problem.times.size() < 2) return invalid_input("conditions at two times at least are needed");
   for (std::size_t i = 0; i + 1 < problem.times.size(); ++i)
-    if (!(problem.times[i] < problem.times[i + 1])) return "the times of the conditions must ascend";
+    if (!(problem.times[i] < problem.times[i + 1])) return invalid_input("the times of the conditions must ascend");
   if (!std::isfinite(problem.times.front()) || !std::isfinite(problem.times.back()))
-    return "the times of the conditions must be finite";
+    return invalid_input("the times of the conditions must be finite");
   for (const MatrixPlace& place : problem.condition_places)
     if (place.row >= problem.system.size + problem.system.parameters() ||
         place.column >= problem.times.size() * problem.system.size + problem.system.parameters())
-      return "a place of the conditions lies outside their Jacobian";
-  return "";
+      return invalid_input("a place of the conditions lies outside their Jacobian");
+  return {};
 }
 
 void BoundaryValueSolution::at(double t, std::span<double> x) const {

@@ -30,13 +30,6 @@ std::string name_of(const ParametricSystem& system, std::size_t i) {
   return i < system.size ? system.name(i) : system.constant_name(i - system.size);
 }
 
-Outcome<double> invalid(std::string hint) {
-  Outcome<double> outcome;
-  outcome.ending = Ending::invalid_input;
-  outcome.hint = std::move(hint);
-  return outcome;
-}
-
 class Search {
  public:
   Search(const BoundaryValueProblem& problem, const BoundaryValueOptions& options)
@@ -296,11 +289,12 @@ class Search {
 
 BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem, const BoundaryValueGuess& guess,
                                             const BoundaryValueOptions& options) {
-  std::string wrong = what_is_wrong(problem);
-  if (wrong.empty() && !(options.tolerance > 0)) wrong = "the tolerance must be greater than zero";
-  if (!wrong.empty()) {
+  Status valid = validate(problem);
+  if (valid && !(options.tolerance > 0)) valid = invalid_input("the tolerance must be greater than zero");
+  if (!valid) {
     BoundaryValueSolution none;
-    none.outcome = invalid(std::move(wrong));
+    none.outcome.ending = valid.ending;
+    none.outcome.hint = std::move(valid.message);
     return none;
   }
   return Search(problem, options)(guess);

@@ -16,6 +16,7 @@
 
 #include <continuo/numerics/sparse_pattern.hpp>
 #include <continuo/solve/outcome.hpp>
+#include <continuo/status/status.hpp>
 #include <continuo/system/parametric_system.hpp>
 
 namespace continuo::boundary {
@@ -29,8 +30,8 @@ struct BoundaryValueProblem {
   std::vector<MatrixPlace> condition_places{};
 };
 
-/// Why a problem cannot be solved by any method; empty where nothing is wrong.
-[[nodiscard]] std::string what_is_wrong(const BoundaryValueProblem& problem);
+/// Invalid input where no method can solve the problem, as it is incomplete or contradicts itself.
+[[nodiscard]] Status validate(const BoundaryValueProblem& problem);
 
 struct BoundaryValueOptions {
   /// Of |x' - f| / (1 + |f|), root mean square over each interval of the mesh; and of the estimated error of each

@@ -84,7 +84,7 @@ struct OrbitBranch {
   std::vector<OrbitPoint> points;
   std::vector<OrbitMark> marks;        // in the order of the branch
   std::array<OrbitBranchEnd, 2> ends;  // before the first point, after the last
-  std::string message;                 // why there is no branch; empty where there is one
+  Status status{};                     // a failure where there is no branch
 };
 
 struct OrbitContinuationOptions {

@@ -183,7 +183,8 @@ struct HybridBranches {
     const studies::HybridOrbit start = find_hybrid_orbit(studied, *options.hybrid, looking);
     OrbitBranch none;
     if (!start.outcome) {
-      none.message = start.outcome.hint.empty() ? describe(start.outcome) : start.outcome.hint;
+      none.status = {.ending = start.outcome.ending,
+                     .message = start.outcome.hint.empty() ? describe(start.outcome) : start.outcome.hint};
       return none;
     }
     return studies::continue_hybrid_orbit(studied.prepared.program, studied.prepared.experiment, start,
@@ -262,7 +263,7 @@ std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions
         continue;
       OrbitBranch branch = hybrid ? hybrid->beginning_at(mark, continuation)
                                   : studies::continue_orbit(studied.system, mark, continuation);
-      if (!branch.message.empty()) say(branch.message);
+      if (!branch.status) say(describe(branch.status));
       if (branch.points.size() > 2) branches.push_back(std::move(branch));
     }
   }
@@ -381,7 +382,7 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
   }
   std::vector<OrbitBranch> branches = follow(studied, options, hybrid);
   for (const OrbitBranch& branch : branches)
-    if (!branch.message.empty()) say(branch.message);
+    if (!branch.status) say(describe(branch.status));
   std::erase_if(branches, [](const OrbitBranch& branch) { return branch.points.empty(); });
   if (branches.empty()) {
     if (interrupt_flag()) return interrupted;

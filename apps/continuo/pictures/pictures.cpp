@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <apps/continuo/pictures/body_pictures.hpp>
 #include <apps/continuo/pictures/pictures.hpp>
@@ -20,6 +21,10 @@ namespace continuo::app {
 namespace {
 
 constexpr int width = 960, height = 720;  // pixels
+
+Status unwritable(std::string message) {
+  return {.ending = Ending::unwritable, .message = std::move(message)};
+}
 
 /// With a margin, and square, so that what moves along a line has room to move.
 PictureFrame with_margin(PictureFrame frame) {
@@ -70,12 +75,12 @@ class ScenePictures {
   PictureFrame frame_;
 };
 
-std::string run_gnuplot(const ScratchFolder& scratch, const std::string& folder, const std::string& script) {
+Status run_gnuplot(const ScratchFolder& scratch, const std::string& folder, const std::string& script) {
   const std::string program = scratch.file("pictures.gnuplot");
-  if (const Status status = results::write_file(program, script); !status) return status.message;
+  if (Status status = results::write_file(program, script); !status) return status;
   const int exit = run_program({"gnuplot", program});
-  if (exit == -1) return "pictures are drawn by gnuplot, which is not installed";
-  return exit == 0 ? "" : fmt::format("gnuplot could not draw into {}", folder);
+  if (exit == -1) return unwritable("pictures are drawn by gnuplot, which is not installed");
+  return exit == 0 ? Status() : unwritable(fmt::format("gnuplot could not draw into {}", folder));
 }
 
 std::filesystem::path picture_of(const std::string& folder, std::size_t number) {
@@ -96,30 +101,29 @@ bool is_whole(const std::filesystem::path& picture) {
 
 /// Gives the pictures from `first` to before `end` their names, or says which could not be written: gnuplot does not
 /// see that a disk is full. What stood there before is replaced by whole pictures alone.
-std::string keep_whole(const std::string& folder, std::size_t first, std::size_t end) {
-  std::string problem;
+Status keep_whole(const std::string& folder, std::size_t first, std::size_t end) {
+  Status status;
   for (std::size_t k = first; k < end; ++k) {
     const std::filesystem::path picture = picture_of(folder, k), part = part_of(picture);
     std::error_code error;
-    const bool whole = problem.empty() && is_whole(part);
+    const bool whole = status && is_whole(part);
     if (whole) std::filesystem::rename(part, picture, error);
     if (whole && !error) continue;
-    if (problem.empty())
-      problem = fmt::format("cannot write {}{}; {}", picture.string(),
-                            error ? ": " + error.message() : " whole: the disk may be full",
-                            k == 0 ? "no picture was written" : fmt::format("those up to {:05d}.png are there", k));
+    if (status)
+      status = unwritable(fmt::format(
+          "cannot write {}{}; {}", picture.string(), error ? ": " + error.message() : " whole: the disk may be full",
+          k == 0 ? "no picture was written" : fmt::format("those up to {:05d}.png are there", k)));
     std::filesystem::remove(part, error);
   }
-  return problem;
+  return status;
 }
 
 /// So many pictures at a time as fit into memory well.
 template <class Pictures>
-std::string draw_all(const std::string& folder, const std::string& set_up, const Pictures& pictures,
-                     std::size_t count) {
+Status draw_all(const std::string& folder, const std::string& set_up, const Pictures& pictures, std::size_t count) {
   constexpr std::size_t much = std::size_t{32} << 20;  // bytes
   const ScratchFolder scratch;
-  if (!scratch.exists()) return "cannot make a folder for what gnuplot reads";
+  if (!scratch.exists()) return unwritable("cannot make a folder for what gnuplot reads");
   const std::string head = fmt::format("cd '{}'\nset terminal pngcairo size {},{} font ',11' noenhanced\n{}",
                                        std::filesystem::absolute(folder).string(), width, height, set_up);
   std::string script;
@@ -128,9 +132,8 @@ std::string draw_all(const std::string& folder, const std::string& set_up, const
     script += fmt::format("set output '{}'\n{}", part_of(picture_of("", k)).string(), pictures.commands(k));
     if (script.size() < much && k + 1 < count) continue;
     // The last picture is written when the next one begins, or gnuplot ends.
-    const std::string of_gnuplot = run_gnuplot(scratch, folder, head + script);
-    const std::string of_files = keep_whole(folder, first, k + 1);
-    if (!of_gnuplot.empty() || !of_files.empty()) return of_gnuplot.empty() ? of_files : of_gnuplot;
+    Status drawn = run_gnuplot(scratch, folder, head + script), kept = keep_whole(folder, first, k + 1);
+    if (Status status = first_failure(std::move(drawn), std::move(kept)); !status) return status;
     script.clear();
     first = k + 1;
   }
@@ -139,18 +142,18 @@ std::string draw_all(const std::string& folder, const std::string& set_up, const
 
 }  // namespace
 
-std::string draw_pictures(const std::string& folder, const live::Session& session, const Recorder::Slices& slices) {
+Status draw_pictures(const std::string& folder, const live::Session& session, const Recorder::Slices& slices) {
   if (folder.find('\'') != std::string::npos || folder.find('\n') != std::string::npos)
-    return fmt::format("gnuplot cannot write into a folder of this name: {}", folder);
+    return invalid_input(fmt::format("gnuplot cannot write into a folder of this name: {}", folder));
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return fmt::format("cannot make {}: {}", folder, error.message());
+  if (error) return unwritable(fmt::format("cannot make {}: {}", folder, error.message()));
   if (session.shown().drawing.empty() && !session.world()) {
     const PlotPictures pictures(session.shown(), slices);
     return draw_all(folder, pictures.data(), pictures, slices.size());
   }
   const ScenePictures pictures(session, slices);
-  if (pictures.is_empty()) return "nothing of the drawing has a place";
+  if (pictures.is_empty()) return invalid_input("nothing of the drawing has a place");
   return draw_all(folder, pictures.set_up(), pictures, slices.size());
 }
 

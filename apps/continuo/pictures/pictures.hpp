@@ -5,11 +5,11 @@
 #include <apps/continuo/pictures/recorder.hpp>
 
 #include <continuo/live/session.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo::app {
 
-/// Writes FOLDER/00001.png, ...: drawing and bodies of the model, or its plots where it has neither. Empty, or what
-/// went wrong.
-std::string draw_pictures(const std::string& folder, const live::Session& session, const Recorder::Slices& slices);
+/// Writes FOLDER/00001.png, ...: drawing and bodies of the model, or its plots where it has neither.
+Status draw_pictures(const std::string& folder, const live::Session& session, const Recorder::Slices& slices);
 
 }  // namespace continuo::app

@@ -53,10 +53,7 @@ ExitCode write_film(const std::string& path, double rate, const live::Session& s
     return usage;
   }
   const std::string folder = scratch.file("pictures");
-  if (const std::string problem = draw_pictures(folder, session, recorder.slices()); !problem.empty()) {
-    say(problem);
-    return usage;
-  }
+  if (!written(draw_pictures(folder, session, recorder.slices()))) return usage;
   const std::string part = path + ".part";  // a film is there whole or not at all
   const int exit = run_program({"ffmpeg", "-y", "-framerate", fmt::format("{}", rate), "-i", folder + "/%05d.png",
                                 "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", part});
@@ -107,9 +104,7 @@ ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std:
   if (!request.page.empty()) exit = write_page(request.page, page, recorder);
   if (exit != done || request.pictures.empty()) return exit;
   if (film) return write_film(request.pictures, request.rate, session, recorder);
-  const std::string problem = draw_pictures(request.pictures, session, recorder.slices());
-  if (!problem.empty()) say(problem);
-  return problem.empty() ? done : usage;
+  return written(draw_pictures(request.pictures, session, recorder.slices())) ? done : usage;
 }
 
 }  // namespace continuo::app

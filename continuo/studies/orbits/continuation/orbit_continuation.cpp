@@ -14,19 +14,20 @@ namespace {
 
 using Vector = std::vector<double>;
 
-constexpr std::string_view forced = "the equations depend on time; an orbit is looked for where they do not";
+constexpr const char* forced = "the equations depend on time; an orbit is searched for where they do not";
 
-/// Why nothing can be followed; empty where it can.
-std::string what_is_wrong(const ParametricSystem& system, const OrbitContinuationOptions& options, double begin) {
+/// Whether an orbit can be followed from this value of the constant.
+Status validate(const ParametricSystem& system, const OrbitContinuationOptions& options, double begin) {
   if (options.constant >= system.parameters())
-    return fmt::format("there is no constant number {}; there are {}", options.constant, system.parameters());
+    return invalid_input(
+        fmt::format("there is no constant number {}; there are {}", options.constant, system.parameters()));
   const std::string name = system.constant_name(options.constant);
-  if (!(options.low < options.high)) return fmt::format("the range of {} is empty", name);
-  if (system.size < 2) return "one state alone never comes back; an orbit needs two";
+  if (!(options.low < options.high)) return invalid_input(fmt::format("the range of {} is empty", name));
+  if (system.size < 2) return invalid_input("one state alone never returns; an orbit needs two");
   if (!(begin >= options.low && begin <= options.high))
-    return fmt::format("{} is {:.10g} at the start, outside of {:.10g}..{:.10g}", name, begin, options.low,
-                       options.high);
-  return "";
+    return invalid_input(
+        fmt::format("{} is {:.10g} at the start, outside of {:.10g}..{:.10g}", name, begin, options.low, options.high));
+  return {};
 }
 
 }  // namespace
@@ -41,9 +42,9 @@ OrbitBranch continue_orbit(const ParametricSystem& system, const PeriodicOrbit& 
                            const OrbitContinuationOptions& options) {
   OrbitBranch branch;
   const double begin = options.constant < system.parameters() ? system.constants[options.constant] : 0;
-  branch.message = what_is_wrong(system, options, begin);
-  if (branch.message.empty() && !start.outcome) branch.message = start.outcome.hint;
-  if (!branch.message.empty()) return branch;
+  branch.status = validate(system, options, begin);
+  if (branch.status && !start.outcome) branch.status = {.ending = start.outcome.ending, .message = start.outcome.hint};
+  if (!branch.status) return branch;
   ParametricSystem turning(system);
   turning.advance = start.advance;
   return detail::OrbitFollower(turning, options)
@@ -53,9 +54,9 @@ OrbitBranch continue_orbit(const ParametricSystem& system, const PeriodicOrbit& 
 OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitPoint& start,
                            const OrbitContinuationOptions& options) {
   OrbitBranch branch;
-  branch.message = what_is_wrong(system, options, start.constant);
-  if (branch.message.empty() && depends_on_time(system, start.x)) branch.message = forced;
-  if (!branch.message.empty()) return branch;
+  branch.status = validate(system, options, start.constant);
+  if (branch.status && depends_on_time(system, start.x)) branch.status = invalid_input(forced);
+  if (!branch.status) return branch;
   Vector p(system.constants);
   p[options.constant] = start.constant;
   ParametricSystem there(system);
@@ -67,7 +68,7 @@ OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitPoint& sta
                               .save = Save<Vector>::dense(),
                               .interrupt = options.interrupt});
   if (!turn.outcome) {
-    branch.message = describe(turn.outcome);
+    branch.status = status(turn.outcome);
     return branch;
   }
   return detail::OrbitFollower(there, options)
@@ -77,20 +78,20 @@ OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitPoint& sta
 OrbitBranch continue_orbit(const ParametricSystem& system, const HopfPoint& start,
                            const OrbitContinuationOptions& options) {
   OrbitBranch branch;
-  branch.message = what_is_wrong(system, options, start.constant);
-  if (branch.message.empty() && depends_on_time(system, start.x)) branch.message = forced;
-  return branch.message.empty() ? detail::OrbitFollower(system, options).from_hopf(start) : branch;
+  branch.status = validate(system, options, start.constant);
+  if (branch.status && depends_on_time(system, start.x)) branch.status = invalid_input(forced);
+  return branch.status ? detail::OrbitFollower(system, options).from_hopf(start) : branch;
 }
 
 OrbitBranch continue_orbit(const ParametricSystem& system, const OrbitMark& start,
                            const OrbitContinuationOptions& options) {
   OrbitBranch branch;
-  branch.message = what_is_wrong(system, options, start.at.constant);
+  branch.status = validate(system, options, start.at.constant);
   const bool branches = start.kind == OrbitBifurcation::period_doubling || start.kind == OrbitBifurcation::crossing;
-  if (branch.message.empty() && !branches)
-    branch.message = fmt::format("no branch begins at a {}", to_string(start.kind));
-  if (branch.message.empty() && start.mesh.size() < 2) branch.message = "the orbit there is not known";
-  if (!branch.message.empty()) return branch;
+  if (branch.status && !branches)
+    branch.status = invalid_input(fmt::format("no branch begins at a {}", to_string(start.kind)));
+  if (branch.status && start.mesh.size() < 2) branch.status = invalid_input("the orbit there is not known");
+  if (!branch.status) return branch;
   ParametricSystem turning(system);
   turning.advance = start.at.advance;
   if (start.kind == OrbitBifurcation::period_doubling)

@@ -21,6 +21,10 @@ using Place = OrbitPlace;
 constexpr double growth_of_size = 5;  // of the first orbit beside a Hopf point: twenty steps make it ten times as large
 constexpr std::size_t most_first_intervals = 400, even_intervals = 20;
 
+Status not_found(std::string message) {
+  return {.ending = Ending::nonlinear_solve_failed, .message = std::move(message)};
+}
+
 /// From a mesh that knows where an orbit changes fast, or an even one.
 std::shared_ptr<const OrbitMesh> first_mesh(const Vector& known) {
   const std::size_t intervals = known.size() < 2 ? 0 : known.size() - 1;
@@ -54,7 +58,8 @@ OrbitBranch OrbitFollower::from_orbit(const std::function<Vector(double part)>& 
   auto first = steps_.at_constant(z, z.back());
   if (first) refine(*first);
   if (!first) {
-    branch.message = is_interrupted() ? "it was interrupted" : "there is no orbit near the start";
+    branch.status = is_interrupted() ? Status{.ending = Ending::interrupted, .message = "it was interrupted"}
+                                     : not_found("there is no orbit near the start");
     return branch;
   }
   steps_.complete(*first);
@@ -106,7 +111,7 @@ OrbitBranch OrbitFollower::from_hopf(const HopfPoint& start) {
     first = steps_.across(predicted(rest, along, small, steps_.sizes()), along);
   }
   if (!first) {
-    branch.message = "no orbit was found near the Hopf point";
+    branch.status = not_found("no orbit was found near the Hopf point");
     return branch;
   }
   // What the orbit tells of the sizes: it is going to grow.
@@ -121,7 +126,7 @@ OrbitBranch OrbitFollower::from_hopf(const HopfPoint& start) {
   first = steps_.across(first->z, first->tangent);
   if (first) refine(*first);
   if (!first) {
-    branch.message = "no orbit was found near the Hopf point";
+    branch.status = not_found("no orbit was found near the Hopf point");
     return branch;
   }
   steps_.complete(*first);
@@ -158,7 +163,7 @@ OrbitBranch OrbitFollower::from_mark(const OrbitMark& start) {
   normalize(along);
   const auto other = steps_.other_direction(z, along);
   if (!other) {
-    branch.message = "no other branch was found there";
+    branch.status = not_found("no other branch was found there");
     return branch;
   }
   const auto beside = [&](double direction) {
@@ -178,7 +183,7 @@ OrbitBranch OrbitFollower::from_mark(const OrbitMark& start) {
   const std::string whence = fmt::format("it begins at a {}", to_string(start.kind));
   const auto ahead = beside(1);
   if (!ahead) {
-    branch.message = "no orbit was found on the other branch";
+    branch.status = not_found("no orbit was found on the other branch");
     return branch;
   }
   amplitude_ = amplitude(*ahead);

@@ -57,21 +57,21 @@ OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgra
                                   const HybridContinuationOptions& options) {
   OrbitBranch branch;
   const Wanted wanted = wanted_of(*program, experiment, options);
-  branch.message = wanted.status.message;
-  if (branch.message.empty() && !start.outcome) branch.message = start.outcome.hint;
-  if (branch.message.empty() && !(wanted.now >= options.low && wanted.now <= options.high))
-    branch.message = fmt::format("{} is {:.10g} at the start, outside of {:.10g}..{:.10g}", wanted.name, wanted.now,
-                                 options.low, options.high);
-  if (branch.message.empty() && start.family)
-    branch.message =
+  branch.status = wanted.status;
+  if (branch.status && !start.outcome) branch.status = {.ending = start.outcome.ending, .message = start.outcome.hint};
+  if (branch.status && !(wanted.now >= options.low && wanted.now <= options.high))
+    branch.status = invalid_input(fmt::format("{} is {:.10g} at the start, outside of {:.10g}..{:.10g}", wanted.name,
+                                              wanted.now, options.low, options.high));
+  if (branch.status && start.family)
+    branch.status = invalid_input(
         "the orbit is one of a family: a quantity is conserved, and there is one for each of its values, all at one "
-        "value of the parameter";
-  if (!branch.message.empty()) return branch;
+        "value of the parameter");
+  if (!branch.status) return branch;
   const model::Instant begin =
       options.forcing ? early(*program, experiment, start.start, *options.forcing) : start.start;
   detail::HybridBranchSteps steps(program, experiment, options, start.period, start.low, start.high);
   if (!steps.begin(begin, start.period, wanted.now)) {
-    branch.message = steps.status().message;
+    branch.status = steps.status();
     return branch;
   }
   return detail::HybridFollower(options, wanted.name, steps).from_orbit(begin, start.period, wanted.now);
@@ -82,16 +82,16 @@ OrbitBranch continue_hybrid_orbit(const std::shared_ptr<const model::ModelProgra
                                   const HybridContinuationOptions& options) {
   OrbitBranch branch;
   const Wanted wanted = wanted_of(*program, experiment, options);
-  branch.message = wanted.status.message;
+  branch.status = wanted.status;
   const bool branches = start.kind == OrbitBifurcation::period_doubling || start.kind == OrbitBifurcation::crossing;
-  if (branch.message.empty() && !branches)
-    branch.message = fmt::format("no branch begins at a {}", to_string(start.kind));
-  if (branch.message.empty() && !start.begin) branch.message = "the orbit there is not known";
-  if (!branch.message.empty()) return branch;
+  if (branch.status && !branches)
+    branch.status = invalid_input(fmt::format("no branch begins at a {}", to_string(start.kind)));
+  if (branch.status && !start.begin) branch.status = invalid_input("the orbit there is not known");
+  if (!branch.status) return branch;
   const double period = start.kind == OrbitBifurcation::period_doubling ? 2 * start.at.period : start.at.period;
   detail::HybridBranchSteps steps(program, experiment, options, period, start.at.low, start.at.high);
   if (!steps.begin(*start.begin, period, start.at.constant)) {
-    branch.message = steps.status().message;
+    branch.status = steps.status();
     return branch;
   }
   return detail::HybridFollower(options, wanted.name, steps).from_mark(start);

@@ -231,8 +231,9 @@ OrbitBranch HybridFollower::from_orbit(const model::Instant& start, double perio
   OrbitBranch branch;
   auto first = steps_.at_constant(start, period, constant);
   if (!first) {
-    branch.message = is_interrupted() ? "it was interrupted"
-                                      : fmt::format("there is no orbit near the start: {}", steps_.status().message);
+    branch.status = {.ending = steps_.status() ? Ending::nonlinear_solve_failed : steps_.status().ending,
+                     .message = fmt::format("there is no orbit near the start: {}", steps_.status().message)};
+    if (is_interrupted()) branch.status = {.ending = Ending::interrupted, .message = "it was interrupted"};
     return branch;
   }
   steps_.begin_anew(*first);
@@ -274,8 +275,9 @@ OrbitBranch HybridFollower::from_mark(const OrbitMark& start) {
   }
   const auto ahead = other ? beside(*start.begin, z, *other, 1) : std::nullopt;
   if (!ahead) {
-    branch.message =
-        fmt::format("no orbit was found on the branch that begins at {} = {:.10g}", name_, start.at.constant);
+    branch.status = {.ending = Ending::nonlinear_solve_failed,
+                     .message = fmt::format("no orbit was found on the branch that begins at {} = {:.10g}", name_,
+                                            start.at.constant)};
     return branch;
   }
   const OrbitBranchEnd whence{OrbitEnding::branching, start.at.constant,
