@@ -46,7 +46,7 @@ class Gmres {
     fill(solution_, Real(0));
     basis_[0] = right_;
     for (;;) {
-      Real length = length_of(basis_[0]);
+      Real length = euclidean_norm(basis_[0]);
       if (!detail::is_finite(length)) return give_up(b, result);
       if (length <= target) {
         result.converged = true;
@@ -95,7 +95,7 @@ class Gmres {
   // returned. Once more where so much was taken away that rounding is what remains.
   [[nodiscard]] Real orthogonalise(std::size_t k, X& next) {
     for (std::size_t j = 0; j <= k; ++j) entry(j, k) = Real(0);
-    const Real before = length_of(next);
+    const Real before = euclidean_norm(next);
     Real after = before;
     for (int pass = 0; pass < 2; ++pass) {
       for (std::size_t j = 0; j <= k; ++j) {
@@ -105,7 +105,7 @@ class Gmres {
         for (std::size_t i = 0; i < dimension(next); ++i) next.data()[i] -= part * direction.data()[i];
         entry(j, k) += part;
       }
-      after = length_of(next);
+      after = euclidean_norm(next);
       if (after > Real(0.001) * before) break;
     }
     return after <= std::numeric_limits<Real>::epsilon() * before ? Real(0) : after;
@@ -152,12 +152,6 @@ class Gmres {
   static void fill(X& x, const Real& value) { std::fill(x.data(), x.data() + dimension(x), value); }
   static void scale(X& x, const Real& factor) {
     for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] *= factor;
-  }
-  [[nodiscard]] static Real length_of(const X& x) {
-    using std::sqrt;
-    Real sum(0);
-    for (std::size_t i = 0; i < dimension(x); ++i) sum += x.data()[i] * x.data()[i];
-    return sqrt(sum);
   }
 
   std::size_t directions_;

@@ -2,6 +2,7 @@
 // What may serve as the state x of a system: `std::array<double, 3>` (registers, no heap), `std::vector<double>`
 // (size known at run time), an Eigen vector, or any copyable type with contiguous components.
 #pragma once
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <span>
@@ -36,6 +37,15 @@ template <State X>
 template <State X>
 [[nodiscard]] constexpr std::span<Scalar<X>> components(X& x) {
   return {x.data(), dimension(x)};
+}
+
+/// The root of the sum of the squares of the components. Overflows where a square does.
+template <State X>
+[[nodiscard]] Scalar<X> euclidean_norm(const X& x) {
+  using std::sqrt;
+  Scalar<X> sum(0);
+  for (std::size_t i = 0; i < dimension(x); ++i) sum += x.data()[i] * x.data()[i];
+  return sqrt(sum);
 }
 
 }  // namespace continuo

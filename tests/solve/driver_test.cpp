@@ -113,6 +113,22 @@ TEST(Driver, AHandOnTheStateBeginsAfresh) {
   EXPECT_NEAR(integrator.x()[0], 2 * std::cos(12 - t), 1e-7);
 }
 
+// x' = -k x with k = 1 until t = 1 and k = 3 from there: x(2) = e^-1 e^-3.
+TEST(Driver, ContinuesWithAChangedSystem) {
+  struct Decay {
+    double k = 1;
+    std::array<double, 1> operator()(double, const std::array<double, 1>& x) const { return {-k * x[0]}; }
+  };
+  Integrator integrator(Decay{}, std::array{1.0}, {0, 1}, Dop853{}, {.rtol = 1e-12, .atol = 1e-14});
+  while (integrator.advance()) continue;
+  integrator.change_system([](Decay& decay) { decay.k = 3; });
+  integrator.extend_to(2);
+  while (integrator.advance()) continue;
+  EXPECT_EQ(integrator.t(), 2);
+  EXPECT_EQ(integrator.system().k, 3);
+  EXPECT_NEAR(integrator.x()[0], std::exp(-4.0), 1e-12);
+}
+
 TEST(Driver, ToleranceMayStandForEachComponent) {
   const auto loose = solve(Oscillator{}, X{1, 0}, {0, 10}, Dop853{}, {.rtol = 1e-4, .atol = 1e-4});
   const auto tight =

@@ -28,7 +28,7 @@ struct SpectralRadius {
     const std::size_t n = dimension(x);
     if (n == 0) return Real(0);
     const Real root = sqrt(std::numeric_limits<Real>::epsilon());
-    const Real size = length(x);
+    const Real size = euclidean_norm(x);
     const Real distance = size > 0 ? root * size : root;
     // A smooth state is often made of a few eigenvectors, not of the one looked for: noise has a part of each.
     if (!known) {
@@ -37,12 +37,12 @@ struct SpectralRadius {
     known = true;
     Real radius(0);
     for (int k = 1; k <= most_iterations; ++k) {
-      const Real factor = distance / length(direction);
+      const Real factor = distance / euclidean_norm(direction);
       for (std::size_t i = 0; i < n; ++i) moved.data()[i] = x.data()[i] + factor * direction.data()[i];
       evaluate(f, t, moved, slope);
       ++evaluations;
       for (std::size_t i = 0; i < n; ++i) slope.data()[i] -= fx.data()[i];
-      const Real stretch = length(slope), last = radius;
+      const Real stretch = euclidean_norm(slope), last = radius;
       radius = stretch / distance;
       if (!(radius < std::numeric_limits<Real>::infinity())) {
         known = false;
@@ -70,12 +70,6 @@ struct SpectralRadius {
     std::uint32_t bits = static_cast<std::uint32_t>(i) + 1;
     for (const std::uint32_t factor : {0x85ebca6bU, 0xc2b2ae35U}) bits = (bits ^ (bits >> 15)) * factor;
     return Real(static_cast<std::int32_t>(bits | 1U)) / Real(2147483648.0);
-  }
-  [[nodiscard]] static Scalar<X> length(const X& v) {
-    using std::sqrt;
-    Scalar<X> sum(0);
-    for (std::size_t i = 0; i < dimension(v); ++i) sum += v.data()[i] * v.data()[i];
-    return sqrt(sum);
   }
 };
 
