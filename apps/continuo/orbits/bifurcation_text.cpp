@@ -11,7 +11,7 @@
 namespace continuo::app {
 namespace {
 
-constexpr double same = 1e-6;  // in parts of the largest value of the diagram
+constexpr double same_point = 1e-6;  // in parts of the largest value of the diagram
 
 /// The largest |x| of each state, and behind them that of the parameter.
 std::vector<double> sizes_of(const std::vector<studies::BranchOfDiagram>& diagram, std::size_t states) {
@@ -27,14 +27,14 @@ std::vector<double> sizes_of(const std::vector<studies::BranchOfDiagram>& diagra
 
 bool is_alike(const studies::BifurcationPoint& a, const studies::BifurcationPoint& b,
               const std::vector<double>& sizes) {
-  return a.kind == b.kind && std::abs(a.at.constant - b.at.constant) <= same * sizes.back();
+  return a.kind == b.kind && std::abs(a.at.constant - b.at.constant) <= same_point * sizes.back();
 }
 
 /// The first state in which the two points differ.
 std::optional<std::size_t> difference(const studies::BifurcationPoint& a, const studies::BifurcationPoint& b,
                                       const std::vector<double>& sizes) {
   for (std::size_t i = 0; i < a.at.x.size(); ++i)
-    if (std::abs(a.at.x[i] - b.at.x[i]) > same * sizes[i]) return i;
+    if (std::abs(a.at.x[i] - b.at.x[i]) > same_point * sizes[i]) return i;
   return std::nullopt;
 }
 
@@ -60,7 +60,7 @@ std::string state_text(const std::vector<studies::BranchOfDiagram>& diagram, con
   if (!state) return "";
   const double x = point.at.x[*state];
   return fmt::format(", {} = {}", model.states[*state].column,
-                     results::short_number(std::abs(x) <= same * sizes[*state] ? 0 : x));
+                     results::short_number(std::abs(x) <= same_point * sizes[*state] ? 0 : x));
 }
 
 }  // namespace continuo::app
