@@ -13,6 +13,7 @@
 
 #include "implicit_problems.hpp"
 #include "rooted_trees.hpp"
+#include "solved_by_name.hpp"
 #include <continuo/methods/dirk/implicit_euler.hpp>
 #include <continuo/methods/dirk/implicit_midpoint.hpp>
 #include <continuo/methods/dirk/kencarp4.hpp>
@@ -165,19 +166,19 @@ using Methods = ::testing::Types<ImplicitEuler, ImplicitMidpoint, Trapezoidal, B
 TYPED_TEST_SUITE(DiagonalMethod, Methods, NameOfMethod);
 
 TYPED_TEST(DiagonalMethod, HasItsOrder) {
-  const auto error = [](int n) { return testing::error_of_steps<TypeParam>(testing::Forced{}, n); };
+  const auto error = [](int n) { return testing::error_of_steps<TypeParam, testing::Forced>(n); };
   EXPECT_NEAR(testing::measured_order(error, 64), TypeParam::order, 0.15);
 }
 
 TYPED_TEST(DiagonalMethod, HasItsOrderInTheUnknownOfAnAlgebraicEquation) {
-  const auto error = [](int n) { return testing::error_of_steps<TypeParam>(testing::Circle{}, n); };
+  const auto error = [](int n) { return testing::error_of_steps<TypeParam, testing::Circle>(n); };
   EXPECT_NEAR(testing::measured_order(error, 64), TypeParam::order, 0.15);
 }
 
 TYPED_TEST(DiagonalMethod, TheInterpolantHasTheStatedOrder) {
-  const auto forced = [](int n) { return testing::dense_error<TypeParam>(testing::Forced{}, n); };
+  const auto forced = [](int n) { return testing::dense_error<TypeParam, testing::Forced>(n); };
   EXPECT_NEAR(testing::measured_order(forced, 64), TypeParam::dense_order + 1, 0.2);
-  const auto algebraic = [](int n) { return testing::dense_error<TypeParam>(testing::Circle{}, n); };
+  const auto algebraic = [](int n) { return testing::dense_error<TypeParam, testing::Circle>(n); };
   EXPECT_GT(testing::measured_order(algebraic, 32), TypeParam::dense_order + 0.7);
 }
 
@@ -185,7 +186,7 @@ TYPED_TEST(DiagonalMethod, TheInterpolantHasTheStatedOrder) {
 // where the last stage is the end of the step (E. Hairer, G. Wanner II, IV.15). The implicit midpoint rule has no such
 // stage.
 TYPED_TEST(DiagonalMethod, LosesThatMuchOrderOnProtheroRobinson) {
-  const auto error = [](int n) { return testing::error_of_steps<TypeParam>(testing::ProtheroRobinson{}, n); };
+  const auto error = [](int n) { return testing::error_of_steps<TypeParam, testing::ProtheroRobinson>(n); };
   EXPECT_NEAR(testing::measured_order(error, 32), TypeParam::order == 1 ? 1 : 2, 0.25);
   const double bound = std::is_same_v<TypeParam, ImplicitMidpoint> ? 1e-3 : 2e-8;  // as measured: 3e-4, 1.6e-8 and less
   EXPECT_LT(static_cast<double>(error(64)), bound);
@@ -193,18 +194,20 @@ TYPED_TEST(DiagonalMethod, LosesThatMuchOrderOnProtheroRobinson) {
 
 TYPED_TEST(DiagonalMethod, AFixedStepThatCannotBeSolvedEndsByName) {
   const std::array<double, 2> x0{1, 0};
-  const auto lost = solve(testing::LostUnknown{}, x0, {0.0, 1.0}, TypeParam{}, {.step = 0.1});
+  const auto lost = solve(testing::any_function<testing::LostUnknown>(), x0, {0.0, 1.0}, TypeParam{}, {.step = 0.1});
   EXPECT_EQ(lost.outcome.ending, Ending::nonlinear_solve_failed);
   EXPECT_NE(lost.outcome.hint.find("singular"), std::string::npos) << lost.outcome.hint;
-  const auto wall = solve(testing::NotANumberBeyond{}, x0, {0.0, 1.0}, TypeParam{}, {.step = 0.01});
+  const auto wall =
+      solve(testing::any_function<testing::NotANumberBeyond>(), x0, {0.0, 1.0}, TypeParam{}, {.step = 0.01});
   EXPECT_EQ(wall.outcome.ending, Ending::not_finite);
   EXPECT_NEAR(wall.outcome.t, 0.5, 0.02);
 }
 
 TYPED_TEST(DiagonalMethod, ARunGoesOnFromACopyBitByBit) {
-  using Problem = bench::Robertson<double>;
-  const Options<Problem::State> options{.rtol = 1e-5, .atol = 1e-12, .step = TypeParam::error_order > 0 ? 0 : 0.01};
-  Integrator run(Problem{}, Problem::start(), {0.0, 1.0}, TypeParam{}, options);
+  const Options<std::array<double, 2>> options{
+      .rtol = 1e-5, .atol = 1e-12, .step = TypeParam::error_order > 0 ? 0 : 0.01};
+  Integrator run(testing::any_problem<double, testing::Forced>(), std::array<double, 2>{0, 1}, {0.0, 1.0}, TypeParam{},
+                 options);
   for (int i = 0; i < 7; ++i) ASSERT_TRUE(run.advance());
   auto copy = run;
   while (run.advance()) continue;
@@ -225,8 +228,7 @@ TYPED_TEST(AdaptiveDiagonal, MeetsTheToleranceOnRobertson) {
   for (const double rtol : {1e-3, 1e-5, 1e-7}) {
     if (rtol < 1e-3 && TypeParam::order == 1) continue;
     if (rtol < 1e-5 && TypeParam::order == 2) continue;
-    const auto solution = solve(Problem{}, Problem::start(), {0.0, Problem::duration}, TypeParam{},
-                                {.rtol = rtol, .atol = rtol * 1e-8, .save = Save<Problem::State>::only_end()});
+    const auto solution = promises::solved_by_name<TypeParam, Problem>(rtol, rtol * 1e-8);
     ASSERT_EQ(solution.outcome.ending, Ending::reached_end);
     const auto& x = solution.final_state();
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(x[i], reference[i], 30 * rtol * reference[i]) << rtol << " " << i;
@@ -244,9 +246,12 @@ TYPED_TEST(AdaptiveDiagonal, DifferencesServeWhereNoDerivativesAreGiven) {
 
 TYPED_TEST(AdaptiveDiagonal, FailuresHaveTheirOutcome) {
   const std::array<double, 2> x0{1, 0};
-  EXPECT_EQ(solve(testing::LostUnknown{}, x0, {0.0, 1.0}, TypeParam{}).outcome.ending, Ending::nonlinear_solve_failed);
-  EXPECT_EQ(solve(testing::NotANumberInJacobian{}, x0, {0.0, 1.0}, TypeParam{}).outcome.ending, Ending::not_finite);
-  const auto wall = solve(testing::NotANumberBeyond{}, x0, {0.0, 1.0}, TypeParam{});
+  EXPECT_EQ(solve(testing::any_function<testing::LostUnknown>(), x0, {0.0, 1.0}, TypeParam{}).outcome.ending,
+            Ending::nonlinear_solve_failed);
+  EXPECT_EQ(
+      solve(testing::any_problem<double, testing::NotANumberInJacobian>(), x0, {0.0, 1.0}, TypeParam{}).outcome.ending,
+      Ending::not_finite);
+  const auto wall = solve(testing::any_function<testing::NotANumberBeyond>(), x0, {0.0, 1.0}, TypeParam{});
   EXPECT_EQ(wall.outcome.ending, Ending::not_finite);
   EXPECT_NEAR(wall.outcome.t, 0.5, 1e-8);
 }

@@ -16,6 +16,48 @@ namespace continuo::testing {
 template <class X>
 using EntriesOf = std::span<Scalar<X>>;
 
+/// M x' = f(t, x) with a diagonal M and its derivatives, the solution known, of one type for all problems: each method
+/// is compiled once for a kind of number, and not once for each problem.
+template <class Real>
+struct AnyProblem {
+  using X = std::array<Real, 2>;
+  void (*f)(const Real&, const X&, X&);
+  void (*slopes)(const Real&, const X&, std::span<Real>);
+  void (*slope_in_time)(const Real&, const X&, X&);
+  X (*solution)(const Real&);
+  X masses;
+  int duration;
+
+  void operator()(const Real& t, const X& x, X& dxdt) const { f(t, x, dxdt); }
+  void jacobian(const Real& t, const X& x, std::span<Real> rows) const { slopes(t, x, rows); }
+  void time_derivative(const Real& t, const X& x, X& dfdt) const { slope_in_time(t, x, dfdt); }
+  [[nodiscard]] bool has_mass() const { return masses != X{Real(1), Real(1)}; }
+  [[nodiscard]] Real mass(std::size_t i) const { return masses[i]; }
+  [[nodiscard]] X exact(const Real& t) const { return solution(t); }
+};
+
+/// A problem that gives its Jacobian. One that gives no df/dt does not depend on t.
+template <class Real, class Problem>
+AnyProblem<Real> any_problem() {
+  using X = std::array<Real, 2>;
+  AnyProblem<Real> any{
+      .f = [](const Real& t, const X& x, X& dxdt) { Problem{}(t, x, dxdt); },
+      .slopes = [](const Real& t, const X& x, std::span<Real> rows) { Problem{}.jacobian(t, x, rows); },
+      .slope_in_time = [](const Real&, const X&, X& dfdt) { dfdt = X{Real(0), Real(0)}; },
+      .solution = nullptr,
+      .masses = {Real(1), Real(1)},
+      .duration = 1};
+  if constexpr (HasTimeDerivative<Problem, X>)
+    any.slope_in_time = [](const Real& t, const X& x, X& dfdt) { Problem{}.time_derivative(t, x, dfdt); };
+  if constexpr (requires { Problem::exact(Real(0)); }) {
+    any.solution = [](const Real& t) -> X { return Problem::exact(t); };
+    any.duration = Problem::duration;
+  }
+  if constexpr (HasMassDiagonal<Problem, X>)
+    for (std::size_t i = 0; i < any.masses.size(); ++i) any.masses[i] = Real(Problem::mass(i));
+  return any;
+}
+
 /// x' = v, v' = -x^3 + g(t), g such that x = sin(t): not linear, f depends on t.
 struct ForcedAlone {
   template <class X>
@@ -92,6 +134,27 @@ struct ProtheroRobinson {
   static constexpr int duration = 2;
 };
 
+/// f alone, with a mass matrix where there is one, of one type for all systems.
+template <class X>
+struct AnyFunction {
+  using Rows = std::span<Scalar<X>>;
+  void (*f)(const Scalar<X>&, const X&, X&);
+  void (*matrix)(Rows) = nullptr;
+
+  void operator()(const Scalar<X>& t, const X& x, X& dxdt) const { f(t, x, dxdt); }
+  [[nodiscard]] bool has_mass() const { return matrix != nullptr; }
+  void mass_matrix(Rows rows) const {
+    if (matrix) return matrix(rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = Scalar<X>(i % 3 == 0 ? 1 : 0);  // of two components
+  }
+};
+template <class Problem, class X = std::array<double, 2>>
+AnyFunction<X> any_function() {
+  AnyFunction<X> any{.f = [](const Scalar<X>& t, const X& x, X& dxdt) { Problem{}(t, x, dxdt); }};
+  if constexpr (HasMassMatrix<Problem, X>) any.matrix = Problem::mass_matrix;
+  return any;
+}
+
 /// x[1] appears in no equation: the matrix of any implicit step is singular.
 struct LostUnknown {
   static void mass_matrix(std::span<double> rows) { rows[0] = 1, rows[1] = rows[2] = rows[3] = 0; }
@@ -133,9 +196,9 @@ Scalar<X> greatest_difference(const X& a, const X& b) {
 }
 
 /// The greatest error at the ends of n equal steps from t = 0 to the end of the problem.
-template <class M, class Problem, class Real = long double>
-Real error_of_steps(Problem problem, int n) {
-  const Real h = Real(Problem::duration) / n;
+template <class M, class Real = long double>
+Real error_of_steps(auto problem, int n) {
+  const Real h = Real(problem.duration) / n;
   Real worst(0);
   auto x = problem.exact(Real(0)), x_new = x;
   auto work = M::workspace(x);
@@ -151,8 +214,8 @@ Real error_of_steps(Problem problem, int n) {
 }
 
 /// The greatest error of the interpolant of one step of size 1 / n from the exact state at t = 1/4.
-template <class M, class Problem, class Real = long double>
-Real dense_error(Problem problem, int n) {
+template <class M, class Real = long double>
+Real dense_error(auto problem, int n) {
   const Real t(0.25), h = Real(1) / n;
   auto x = problem.exact(t), x_new = x, value = x;
   auto work = M::workspace(x);
@@ -167,6 +230,16 @@ Real dense_error(Problem problem, int n) {
     worst = std::max<Real>(worst, greatest_difference(value, problem.exact(Real(t + theta * h))));
   }
   return worst;
+}
+
+/// Both of a problem in long double, compiled once for all of them.
+template <class M, class Problem>
+long double error_of_steps(int n) {
+  return error_of_steps<M>(any_problem<long double, Problem>(), n);
+}
+template <class M, class Problem>
+long double dense_error(int n) {
+  return dense_error<M>(any_problem<long double, Problem>(), n);
 }
 
 /// log2 of the ratio of the errors of n and 2 n steps.

@@ -11,6 +11,7 @@
 
 #include "implicit_problems.hpp"
 #include "rooted_trees.hpp"
+#include "solved_by_name.hpp"
 #include <continuo/methods/rosenbrock/rodas4.hpp>
 #include <continuo/methods/rosenbrock/rodas5p.hpp>
 #include <continuo/methods/rosenbrock/rosenbrock23.hpp>
@@ -154,28 +155,28 @@ TYPED_TEST(Rosenbrock, IsZeroAtInfinity) {
 }
 
 TYPED_TEST(Rosenbrock, HasItsOrderWhereFDependsOnTime) {
-  const auto error = [](int n) { return testing::error_of_steps<TypeParam>(testing::Forced{}, n); };
+  const auto error = [](int n) { return testing::error_of_steps<TypeParam, testing::Forced>(n); };
   // From 64 steps on: the leading error of Rodas5P is small, the next one (h^6) is not.
   EXPECT_NEAR(testing::measured_order(error, 64), TypeParam::order, 0.25);
 }
 
 TYPED_TEST(Rosenbrock, HasItsOrderInTheUnknownOfAnAlgebraicEquation) {
-  const auto error = [](int n) { return testing::error_of_steps<TypeParam>(testing::Circle{}, n); };
+  const auto error = [](int n) { return testing::error_of_steps<TypeParam, testing::Circle>(n); };
   EXPECT_GT(testing::measured_order(error, 16), TypeParam::order - 0.2);
 }
 
 TYPED_TEST(Rosenbrock, TheInterpolantHasTheStatedOrder) {
-  const auto forced = [](int n) { return testing::dense_error<TypeParam>(testing::Forced{}, n); };
+  const auto forced = [](int n) { return testing::dense_error<TypeParam, testing::Forced>(n); };
   EXPECT_NEAR(testing::measured_order(forced, 8), TypeParam::dense_order + 1, 0.3);
   // Algebraic variables are not integrated: one power of h less inside a step, the same order over a run.
-  const auto algebraic = [](int n) { return testing::dense_error<TypeParam>(testing::Circle{}, n); };
+  const auto algebraic = [](int n) { return testing::dense_error<TypeParam, testing::Circle>(n); };
   EXPECT_GT(testing::measured_order(algebraic, 8), TypeParam::dense_order - 0.3);
 }
 
 // lambda = -1e6. The error is h^q / lambda or h^q; measured are q = 2, 1 and 3 (E. Hairer, G. Wanner II, IV.15 and
 // G. Steinebach 2023: Rodas5P was made for this), and errors far below those of h^order alone.
 TYPED_TEST(Rosenbrock, LosesThatMuchOrderOnProtheroRobinson) {
-  const auto error = [](int n) { return testing::error_of_steps<TypeParam>(testing::ProtheroRobinson{}, n); };
+  const auto error = [](int n) { return testing::error_of_steps<TypeParam, testing::ProtheroRobinson>(n); };
   const double order = TypeParam::order == 2 ? 2 : TypeParam::order == 4 ? 1 : 3;
   const double bound = TypeParam::order == 2 ? 8e-5 : TypeParam::order == 4 ? 7e-10 : 3e-13;  // as measured
   EXPECT_NEAR(testing::measured_order(error, 32), order, 0.2);
@@ -187,8 +188,7 @@ TYPED_TEST(Rosenbrock, MeetsTheToleranceOnRobertson) {
   const auto reference = bench::end_of<Problem>();
   for (const double rtol : {1e-3, 1e-5, 1e-7}) {
     if (rtol == 1e-7 && TypeParam::order == 2) continue;  // 1e5 steps: the method is not meant for this
-    const auto solution = solve(Problem{}, Problem::start(), {0.0, Problem::duration}, TypeParam{},
-                                {.rtol = rtol, .atol = rtol * 1e-8, .save = Save<Problem::State>::only_end()});
+    const auto solution = promises::solved_by_name<TypeParam, Problem>(rtol, rtol * 1e-8);
     ASSERT_EQ(solution.outcome.ending, Ending::reached_end);
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_NEAR(solution.final_state()[i], reference[i], 30 * rtol * reference[i]) << rtol << " " << i;
@@ -200,7 +200,8 @@ TYPED_TEST(Rosenbrock, MeetsTheToleranceOnRobertson) {
 }
 
 TYPED_TEST(Rosenbrock, AVectorGivesTheSameAsAnArray) {
-  const auto by_array = solve(testing::Circle{}, std::array<double, 2>{0, 1}, {0.0, 1.0}, TypeParam{});
+  const auto by_array =
+      solve(testing::any_problem<double, testing::Circle>(), std::array<double, 2>{0, 1}, {0.0, 1.0}, TypeParam{});
   const auto by_vector = solve(testing::Circle{}, std::vector<double>{0, 1}, {0.0, 1.0}, TypeParam{});
   ASSERT_EQ(by_vector.outcome.ending, Ending::reached_end);
   EXPECT_EQ(by_array.statistics.steps, by_vector.statistics.steps);
@@ -208,16 +209,18 @@ TYPED_TEST(Rosenbrock, AVectorGivesTheSameAsAnArray) {
 }
 
 TYPED_TEST(Rosenbrock, DifferencesServeWhereNoDerivativesAreGiven) {
-  const auto given = solve(testing::Forced{}, std::array<double, 2>{0, 1}, {0.0, 1.0}, TypeParam{});
-  const auto taken = solve(testing::ForcedAlone{}, std::array<double, 2>{0, 1}, {0.0, 1.0}, TypeParam{});
+  const auto given =
+      solve(testing::any_problem<double, testing::Forced>(), std::array<double, 2>{0, 1}, {0.0, 1.0}, TypeParam{});
+  const auto taken =
+      solve(testing::any_function<testing::ForcedAlone>(), std::array<double, 2>{0, 1}, {0.0, 1.0}, TypeParam{});
   EXPECT_EQ(given.statistics.steps, taken.statistics.steps);
   EXPECT_GT(taken.statistics.evaluations, given.statistics.evaluations);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(given.final_state()[i], taken.final_state()[i], 1e-8);
 }
 
 TYPED_TEST(Rosenbrock, ARunGoesOnFromACopyBitByBit) {
-  using Problem = bench::Robertson<double>;
-  Integrator run(Problem{}, Problem::start(), {0.0, 40.0}, TypeParam{}, {.rtol = 1e-5, .atol = 1e-12});
+  Integrator run(testing::any_problem<double, testing::Forced>(), std::array<double, 2>{0, 1}, {0.0, 40.0}, TypeParam{},
+                 {.rtol = 1e-5, .atol = 1e-12});
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(run.advance());
   auto copy = run;
   while (run.advance()) continue;
@@ -228,23 +231,25 @@ TYPED_TEST(Rosenbrock, ARunGoesOnFromACopyBitByBit) {
 
 TYPED_TEST(Rosenbrock, FailuresHaveTheirOutcome) {
   const std::array<double, 2> x0{1, 0};
-  const auto lost = solve(testing::LostUnknown{}, x0, {0.0, 1.0}, TypeParam{});
+  const auto lost = solve(testing::any_function<testing::LostUnknown>(), x0, {0.0, 1.0}, TypeParam{});
   EXPECT_EQ(lost.outcome.ending, Ending::nonlinear_solve_failed);
   EXPECT_NE(lost.outcome.hint.find("singular"), std::string::npos) << lost.outcome.hint;
-  const auto wall = solve(testing::NotANumberBeyond{}, x0, {0.0, 1.0}, TypeParam{});
+  const auto wall = solve(testing::any_function<testing::NotANumberBeyond>(), x0, {0.0, 1.0}, TypeParam{});
   EXPECT_EQ(wall.outcome.ending, Ending::not_finite);
   EXPECT_NEAR(wall.outcome.t, 0.5, 1e-8);  // df/dt by a difference evaluates f sqrt(epsilon) t ahead
-  const auto bad = solve(testing::NotANumberInJacobian{}, x0, {0.0, 1.0}, TypeParam{});
+  const auto bad = solve(testing::any_problem<double, testing::NotANumberInJacobian>(), x0, {0.0, 1.0}, TypeParam{});
   EXPECT_EQ(bad.outcome.ending, Ending::not_finite);
 }
 
-struct Silent : bench::Robertson<double> {
-  static constexpr bool autonomous = false;
+struct Robertson : bench::Robertson<double> {
+  bool autonomous = true;
 };
 TEST(RosenbrockMethod, ASystemThatSaysSoIsSpentNoEvaluationForTime) {
   const Options<std::array<double, 3>> options{.step = 1e-3};
-  const auto known = solve(bench::Robertson<double>{}, Silent::start(), {0.0, 0.01}, Rodas4{}, options);
-  const auto unknown = solve(Silent{}, Silent::start(), {0.0, 0.01}, Rodas4{}, options);
+  Robertson silent;
+  silent.autonomous = false;
+  const auto known = solve(Robertson{}, Robertson::start(), {0.0, 0.01}, Rodas4{}, options);
+  const auto unknown = solve(silent, Robertson::start(), {0.0, 0.01}, Rodas4{}, options);
   EXPECT_EQ(known.statistics.evaluations, 60U);
   EXPECT_EQ(unknown.statistics.evaluations, 70U);
   EXPECT_EQ(known.final_state(), unknown.final_state());
@@ -253,8 +258,7 @@ TEST(RosenbrockMethod, ASystemThatSaysSoIsSpentNoEvaluationForTime) {
 // 700,000 steps, in which the third amount slowly approaches 1: without compensated sums the rounding of the steps adds
 // up to 2e-13. With them the amounts add up to 1 within the rounding of the three.
 TEST(Rosenbrock23, RoundingIsNotAddedUp) {
-  const auto solution = solve(bench::Robertson<>{}, bench::Robertson<>::start(), {0.0, 1e11}, Rosenbrock23{},
-                              {.rtol = 1e-8, .atol = 1e-18, .save = Save<std::array<double, 3>>::only_end()});
+  const auto solution = promises::solved_by_name<Rosenbrock23, bench::Robertson<>>(1e-8, 1e-18);
   ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
   EXPECT_GT(solution.statistics.steps, 500'000U);
   const auto& x = solution.final_state();

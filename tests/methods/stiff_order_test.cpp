@@ -30,7 +30,7 @@ using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_
 /// High orders need room before rounding.
 template <class M>
 using RealOf = std::conditional_t<(M::order > 8), Quad, long double>;
-using testing::Forced;
+using testing::AnyProblem, testing::Forced;
 
 /// D_0 = at(0), D_1 = at(0) - at(1), ...: the backward differences of `at`, a function of the number of steps back.
 template <class Differences, class At>
@@ -95,10 +95,32 @@ constexpr bool one_step = !formula<M> && !std::same_as<M, Bdf2>;
 enum Column { classical, classical_dense, stiff, stiff_dense, differential, algebraic, columns };
 using Orders = std::array<std::optional<double>, columns>;
 
-/// The stiff problem: lambda h is beyond -1000 for every h here.
+/// The stiff problem, twice: lambda h is beyond -1000 for every h here.
 template <class Real>
-struct Stiff : bench::ProtheroRobinson<Real> {
+struct Stiff {
+  using One = bench::ProtheroRobinson<Real>;
+  using X = std::array<Real, 2>;
   static constexpr int duration = 2;
+
+  void operator()(const Real& t, const X& x, X& dxdt) const {
+    for (std::size_t i = 0; i < 2; ++i) {
+      typename One::State slope{};
+      One{}(t, typename One::State{x[i]}, slope);
+      dxdt[i] = slope[0];
+    }
+  }
+  void jacobian(const Real&, const X&, std::span<Real> rows) const {
+    rows[0] = rows[3] = One{}.lambda, rows[1] = rows[2] = 0;
+  }
+  void time_derivative(const Real& t, const X&, X& dfdt) const {
+    typename One::State slope{};
+    One{}.time_derivative(t, slope, slope);
+    dfdt[0] = dfdt[1] = slope[0];
+  }
+  static X exact(const Real& t) {
+    const Real x = One::exact(t)[0];
+    return {x, x};
+  }
 };
 
 /// x' = z, 0 = z + x^2/4 - (cos(t) + sin(t)^2/4): x = sin(t) and, by an equation of index 1, z = cos(t).
@@ -147,8 +169,8 @@ RealOf<M> of_solved_equations(const ErrorBy& error_by) {
 
 /// A workspace for steps of h from t on, with the exact state and, for formula k of a multistep method, exact earlier
 /// values.
-template <class M, class Problem, class Real>
-auto work_at(std::size_t k, const Problem& problem, const Real& t, const Real& h) {
+template <class M, class Real>
+auto work_at(std::size_t k, const AnyProblem<Real>& problem, const Real& t, const Real& h) {
   const auto x = problem.exact(t);
   auto work = M::workspace(x);
   if constexpr (formula<M>) M::remember(work, k, problem, t, h);
@@ -156,13 +178,11 @@ auto work_at(std::size_t k, const Problem& problem, const Real& t, const Real& h
 }
 
 /// The greatest error of a component after n equal steps; infinite where one of them cannot be solved.
-template <class M, class Problem>
-RealOf<M> error_of_steps(std::size_t k, int n, std::size_t component, const auto& set_tolerance) {
-  using Real = RealOf<M>;
+template <class M, class Real>
+Real error_of_steps(AnyProblem<Real> problem, std::size_t k, int n, std::size_t component, const auto& set_tolerance) {
   using std::abs;
-  Problem problem;
-  const Real h = Real(Problem::duration) / n;
-  auto x = Problem::exact(Real(0)), x_new = x;
+  const Real h = Real(problem.duration) / n;
+  auto x = problem.exact(Real(0)), x_new = x;
   auto work = work_at<M>(k, problem, Real(0), h);
   set_tolerance(work);
   Real worst(0);
@@ -174,20 +194,18 @@ RealOf<M> error_of_steps(std::size_t k, int n, std::size_t component, const auto
     if (detail::status_of<M>(work) != StepStatus::done) return std::numeric_limits<Real>::infinity();
     M::accept(work);
     x = x_new;
-    worst = std::max<Real>(worst, abs(x[component] - Problem::exact(Real(h * (i + 1)))[component]));
+    worst = std::max<Real>(worst, abs(x[component] - problem.exact(Real(h * (i + 1)))[component]));
   }
   return worst;
 }
 
 /// The greatest error of the interpolant of one step from the exact state.
-template <class M, class Problem>
-RealOf<M> error_within_step(std::size_t k, int n, std::size_t component, const auto& set_tolerance) {
-  using Real = RealOf<M>;
+template <class M, class Real>
+Real error_within_step(AnyProblem<Real> problem, std::size_t k, int n, const auto& set_tolerance) {
   using std::abs;
-  Problem problem;
   // Formulas use values of many earlier steps: neither sine nor cosine may be near zero there.
   const Real t(formula<M> ? 1 : 0.25), h = Real(1) / n;
-  auto x = Problem::exact(t), x_new = x, value = x;
+  auto x = problem.exact(t), x_new = x, value = x;
   auto work = work_at<M>(k, problem, t, h);
   set_tolerance(work);
   Interpolant<decltype(x), M::dense_degree> interpolant(x);
@@ -196,7 +214,7 @@ RealOf<M> error_within_step(std::size_t k, int n, std::size_t component, const a
   Real worst(0);
   for (Real theta(0.0625); theta < 1; theta += Real(0.0625)) {
     interpolant(theta, value);
-    worst = std::max<Real>(worst, abs(value[component] - Problem::exact(Real(t + theta * h))[component]));
+    worst = std::max<Real>(worst, abs(value[0] - problem.exact(Real(t + theta * h))[0]));
   }
   return worst;
 }
@@ -219,38 +237,40 @@ std::optional<double> order_of(const Error& error) {
   return order;
 }
 
-template <class M, class Problem>
-std::optional<double> order_of_steps(std::size_t k, std::size_t component) {
-  return order_of([=](int n) {
+template <class M>
+std::optional<double> order_of_steps(const AnyProblem<RealOf<M>>& problem, std::size_t k, std::size_t component) {
+  return order_of([&](int n) {
     return of_solved_equations<M>(
-        [&](const auto& set_tolerance) { return error_of_steps<M, Problem>(k, n, component, set_tolerance); });
+        [&](const auto& set_tolerance) { return error_of_steps<M>(problem, k, n, component, set_tolerance); });
   });
 }
 
-template <class M, class Problem>
-std::optional<double> order_within_step(std::size_t k) {
-  return order_of([=](int n) {
+template <class M>
+std::optional<double> order_within_step(const AnyProblem<RealOf<M>>& problem, std::size_t k) {
+  return order_of([&](int n) {
     return of_solved_equations<M>(
-        [&](const auto& set_tolerance) { return error_within_step<M, Problem>(k, n, 0, set_tolerance); });
+        [&](const auto& set_tolerance) { return error_within_step<M>(problem, k, n, set_tolerance); });
   });
 }
 
 /// Of formula k where M is several.
 template <class M>
 Orders measured(std::size_t k) {
-  using Hard = Stiff<RealOf<M>>;
+  using Real = RealOf<M>;
+  const auto plain = testing::any_problem<Real, Forced>(), hard = testing::any_problem<Real, Stiff<Real>>(),
+             index_1 = testing::any_problem<Real, Algebraic>();
   constexpr bool for_stiff = detail::is_implicit<M>();
   Orders orders;
-  orders[classical] = order_of_steps<M, Forced>(k, 0);
+  orders[classical] = order_of_steps<M>(plain, k, 0);
   if constexpr (one_step<M> || formula<M>) {
     // The error within one step is of an order more than that of many.
-    if (const auto within = order_within_step<M, Forced>(k)) orders[classical_dense] = *within - 1;
-    if constexpr (for_stiff) orders[stiff_dense] = order_within_step<M, Hard>(k);
+    if (const auto within = order_within_step<M>(plain, k)) orders[classical_dense] = *within - 1;
+    if constexpr (for_stiff) orders[stiff_dense] = order_within_step<M>(hard, k);
   }
   if constexpr (for_stiff) {
-    orders[stiff] = order_of_steps<M, Hard>(k, 0);
-    orders[differential] = order_of_steps<M, Algebraic>(k, 0);
-    orders[algebraic] = order_of_steps<M, Algebraic>(k, 1);
+    orders[stiff] = order_of_steps<M>(hard, k, 0);
+    orders[differential] = order_of_steps<M>(index_1, k, 0);
+    orders[algebraic] = order_of_steps<M>(index_1, k, 1);
   }
   return orders;
 }
