@@ -4,19 +4,22 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <vector>
 
 #include <bench/problems/arenstorf.hpp>
 #include <bench/problems/kepler.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
+#include "any_system.hpp"
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/methods/multistep/adams.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo::adams_test {
 namespace {
+
+using testing::any_system, testing::AnySystem;
+using Four = std::array<double, 4>;
 
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
                                            boost::multiprecision::et_off>;
@@ -69,8 +72,8 @@ TEST(Adams, AtEqualStepsTheWeightsAreThoseOfTheTextbook) {
 /// The greatest error over the run, dense output included, in units of the tolerance.
 template <class M, class Problem>
 double error_in_tolerances(double tolerance, double end, std::size_t* evaluations = nullptr) {
-  using X = std::array<double, Problem::size>;
-  const auto solution = solve(Problem{}, Problem::start(), {0.0, end}, M{},
+  using X = Four;
+  const auto solution = solve(any_system<Four>(Problem{}), Problem::start(), {0.0, end}, M{},
                               {.rtol = tolerance, .atol = tolerance, .save = Save<X>::every(0.03)});
   EXPECT_TRUE(solution.outcome) << describe(solution.outcome);
   if (evaluations) *evaluations = solution.statistics.evaluations;
@@ -101,7 +104,8 @@ TEST(Adams, NeedsFewerEvaluationsThanARungeKuttaMethodOfOrderEight) {
 }
 
 TEST(Adams, EvaluatesTwiceAStep) {
-  const auto solution = solve(bench::Kepler{}, bench::Kepler::start(), {0.0, 50.0}, Adams{}, {.rtol = 1e-8});
+  const auto solution =
+      solve(any_system<Four>(bench::Kepler{}), bench::Kepler::start(), {0.0, 50.0}, Adams{}, {.rtol = 1e-8});
   // Two more evaluations for the first step. A rejected step repeats its prediction, and at the start of the run also f
   // there.
   EXPECT_LE(solution.statistics.evaluations, 2 * (solution.statistics.steps + solution.statistics.rejected + 1));
@@ -110,8 +114,8 @@ TEST(Adams, EvaluatesTwiceAStep) {
 // The orbit passes the moon twice, with steps a thousand times shorter; it is unstable there.
 TEST(Adams, StepsFollowTheSolution) {
   using bench::Arenstorf;
-  const auto solution =
-      solve(Arenstorf{}, Arenstorf::start(), {0.0, Arenstorf::duration}, Adams{}, {.rtol = 1e-12, .atol = 1e-12});
+  const auto solution = solve(any_system<Four>(Arenstorf{}), Arenstorf::start(), {0.0, Arenstorf::duration}, Adams{},
+                              {.rtol = 1e-12, .atol = 1e-12});
   ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
   double shortest = 1, longest = 0;
   for (std::size_t n = 2; n < solution.t.size(); ++n) {
@@ -127,7 +131,7 @@ TEST(Adams, StepsFollowTheSolution) {
 TEST(Adams, AJumpForgetsThePast) {
   // An elastic ball: v^2/2 + 9.81 y is constant through twenty jumps of the velocity.
   using X = std::array<double, 2>;
-  const auto ball = [](double, const X& x) { return X{x[1], -9.81}; };
+  const AnySystem<X> ball{.f = [](double, const X& x, X& dxdt) { dxdt = {x[1], -9.81}; }};
   Options<X> options{.rtol = 1e-9, .atol = 1e-9};
   options.events = {falls<X>(
       "floor", [](double, const X& x) { return x[0]; }, [](EventAction<X>& event) { event.x[1] = -event.x[1]; })};
@@ -139,7 +143,7 @@ TEST(Adams, AJumpForgetsThePast) {
 }
 
 TEST(Adams, ACopyGoesOnToTheSameBits) {
-  Integrator original(bench::Kepler{}, bench::Kepler::start(), {0.0, 20.0}, Adams{}, {.rtol = 1e-9});
+  Integrator original(any_system<Four>(bench::Kepler{}), bench::Kepler::start(), {0.0, 20.0}, Adams{}, {.rtol = 1e-9});
   for (int i = 0; i < 100; ++i) original.advance();
   Integrator copy = original;
   while (original.advance()) {
@@ -152,19 +156,21 @@ TEST(Adams, ACopyGoesOnToTheSameBits) {
 
 TEST(Adams, TakesFixedSteps) {
   // Order 4, but the first step has order 2 and its error stays: h^3 / 12 or so.
-  using X = std::vector<double>;
-  const auto decay = [](double, const X& x, X& dxdt) { dxdt[0] = -x[0]; };
+  using X = testing::Two;
+  const AnySystem<X> decay{.f = [](double, const X& x, X& dxdt) { dxdt = {-x[0], -x[1]}; }};
   const auto error = [&](double h) {
-    return std::abs(solve(decay, X{1}, {0.0, 1.0}, Adams{}, {.step = h}).final_state()[0] - std::exp(-1.0));
+    return std::abs(solve(decay, X{1, 1}, {0.0, 1.0}, Adams{}, {.step = h}).final_state()[0] - std::exp(-1.0));
   };
   EXPECT_LT(error(0.01), 1e-6);
   EXPECT_NEAR(std::log2(error(0.01) / error(0.005)), 3, 0.2);
 }
 
 TEST(Adams, AnFThatIsNotANumberEndsTheRunByName) {
-  using X = std::array<double, 1>;
-  const auto broken = [](double t, const X& x) { return X{t < 1 ? -x[0] : std::numeric_limits<double>::quiet_NaN()}; };
-  const auto solution = solve(broken, X{1}, {0.0, 2.0}, Adams{}, {.rtol = 1e-6, .atol = 1e-6});
+  using X = testing::Two;
+  const AnySystem<X> broken{.f = [](double t, const X& x, X& dxdt) {
+    dxdt = {t < 1 ? -x[0] : std::numeric_limits<double>::quiet_NaN(), -x[1]};
+  }};
+  const auto solution = solve(broken, X{1, 1}, {0.0, 2.0}, Adams{}, {.rtol = 1e-6, .atol = 1e-6});
   EXPECT_EQ(solution.outcome.ending, Ending::not_finite) << describe(solution.outcome);
   EXPECT_NEAR(solution.outcome.t, 1, 1e-9);
 }

@@ -11,25 +11,19 @@
 namespace continuo::gauss4_test {
 namespace {
 
+using testing::AnySystem, testing::Two;
+
 /// The pendulum q'' = -sin q, and its energy.
-struct Pendulum {
-  template <class X>
-  void operator()(const auto&, const X& x, X& out) const {
-    using std::sin;
-    out = {x[1], -sin(x[0])};
-  }
-  template <class X>
-  static auto energy(const X& x) {
-    using std::cos;
-    return x[1] * x[1] / 2 - cos(x[0]);
-  }
-};
+const AnySystem<Two> pendulum{.f = [](double, const Two& x, Two& out) { out = {x[1], -std::sin(x[0])}; }};
+double energy(const Two& x) {
+  return x[1] * x[1] / 2 - std::cos(x[0]);
+}
 
 /// x' = x (1 - x), x(0) = 1/2: x = 1 / (1 + exp(-t)).
 struct Logistic {
   template <class X>
   void operator()(const auto&, const X& x, X& out) const {
-    out[0] = x[0] * (1 - x[0]);
+    for (std::size_t i = 0; i < x.size(); ++i) out[i] = x[i] * (1 - x[i]);
   }
 };
 template <class Real>
@@ -70,9 +64,7 @@ TEST(Gauss4, DenseOutputIsOfOrderThree) {
 // Gauss keeps every quadratic invariant (Hairer, Lubich, Wanner, "Geometric Numerical Integration", theorem IV.2.1): to
 // rounding, 2e-16 a step at random, where the equations are solved to it.
 TEST(Gauss4, KeepsQuadraticInvariants) {
-  const auto oscillator = [](double, const std::array<double, 2>& x, std::array<double, 2>& out) {
-    out = {x[1], -x[0]};
-  };
+  const AnySystem<Two> oscillator{.f = [](double, const Two& x, Two& out) { out = {x[1], -x[0]}; }};
   const auto solution =
       solve(oscillator, std::array{1.0, 0.0}, {0.0, 1000.0}, Gauss4{}, {.rtol = 1e-14, .atol = 1e-14, .step = 0.25});
   const auto& x = solution.final_state();
@@ -82,12 +74,11 @@ TEST(Gauss4, KeepsQuadraticInvariants) {
 // A symplectic method's energy oscillates and does not drift: its greatest error over the first ten turns bounds that
 // over the last ten of a thousand.
 TEST(Gauss4, EnergyDoesNotDrift) {
-  Integrator integrator(Pendulum{}, std::array{2.0, 0.0}, {0.0, 8000.0}, Gauss4{},
-                        {.rtol = 1e-13, .atol = 1e-13, .step = 0.2});
-  const double start = Pendulum::energy(std::array{2.0, 0.0});
+  Integrator integrator(pendulum, Two{2, 0}, {0.0, 8000.0}, Gauss4{}, {.rtol = 1e-13, .atol = 1e-13, .step = 0.2});
+  const double start = energy(Two{2, 0});
   double early = 0, late = 0;
   while (integrator.advance()) {
-    const double error = std::abs(Pendulum::energy(integrator.x()) - start);
+    const double error = std::abs(energy(integrator.x()) - start);
     if (integrator.t() < 80) early = std::max(early, error);
     if (integrator.t() > 7920) late = std::max(late, error);
   }
@@ -99,8 +90,8 @@ TEST(Gauss4, EnergyDoesNotDrift) {
 // A tolerance at which steps are rejected: half a unit of energy, a closed orbit, the tolerance of the suite.
 TEST(Gauss4, MeetsItsToleranceWithStepControl) {
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
-    const auto solution =
-        solve(Logistic{}, std::array{0.5}, {0.0, 4.0}, Gauss4{}, {.rtol = tolerance, .atol = tolerance});
+    const auto solution = solve(testing::any_system(Logistic{}), Two{0.5, 0.5}, {0.0, 4.0}, Gauss4{},
+                                {.rtol = tolerance, .atol = tolerance});
     ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
     EXPECT_LT(std::abs(solution.final_state()[0] - logistic(4.0)), 30 * tolerance);
   }
@@ -113,7 +104,7 @@ TEST(Gauss4, SolvesAlgebraicEquations) {
 }
 
 TEST(Gauss4, ACopyGoesOnToTheSameBits) {
-  promises::expect_copy_goes_on_to_the_same_bits<Gauss4>(Pendulum{}, std::array{2.0, 0.0}, 20.0);
+  promises::expect_copy_goes_on_to_the_same_bits<Gauss4>(pendulum, Two{2, 0}, 20.0);
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 namespace continuo::rkc2_test {
 namespace {
 
+using testing::AnySystem, testing::Two;
+
 /// R(-z): one step of x' = -z x from 1 with h = 1.
 double growth(std::size_t stages, double z) {
   const auto f = [z](double, const std::array<double, 1>& x) { return std::array{-z * x[0]}; };
@@ -49,18 +51,19 @@ TEST(Rkc2, IsOfOrderTwoForEveryNumberOfStages) {
 
 // The same with t in f and a nonlinear f: x' = 2 t x^2 from 1 at 0 is 1 / (1 - t^2).
 TEST(Rkc2, StagesLieAtTheirTimes) {
-  const auto f = [](double t, const std::array<double, 1>& x) { return std::array{2 * t * x[0] * x[0]}; };
+  const AnySystem<Two> f{
+      .f = [](double t, const Two& x, Two& out) { out = {2 * t * x[0] * x[0], 2 * t * x[1] * x[1]}; }};
   const auto error = [&](double h) {
-    const auto solution = solve(f, std::array{1.0}, {0.0, 0.5}, Rkc2{}, {.step = h});
+    const auto solution = solve(f, Two{1, 1}, {0.0, 0.5}, Rkc2{}, {.step = h});
     return std::abs(solution.final_state()[0] - 1 / 0.75);
   };
   EXPECT_NEAR(error(0.01) / error(0.005), 4, 0.2);
 }
 
 TEST(Rkc2, DenseOutputIsOfOrderTwoToo) {
-  const auto f = [](double, const std::array<double, 2>& x) { return std::array{x[1], -x[0]}; };
+  const AnySystem<Two> f{.f = [](double, const Two& x, Two& out) { out = {x[1], -x[0]}; }};
   const auto error = [&](double h) {
-    Integrator integrator(f, std::array{0.0, 1.0}, {0.0, 1.0}, Rkc2{}, {.step = h});
+    Integrator integrator(f, Two{0, 1}, {0.0, 1.0}, Rkc2{}, {.step = h});
     double worst = 0;
     std::array<double, 2> x{};
     while (integrator.advance()) {
@@ -101,7 +104,8 @@ struct Heat {
 TEST(Rkc2, SolvesTheHeatEquationToItsTolerance) {
   const Heat heat{200};
   for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
-    const auto solution = solve(heat, heat.exact(0), {0.0, 0.3}, Rkc2{}, {.rtol = tolerance, .atol = tolerance});
+    const auto solution = solve(testing::any_system<std::vector<double>>(heat), heat.exact(0), {0.0, 0.3}, Rkc2{},
+                                {.rtol = tolerance, .atol = tolerance});
     ASSERT_TRUE(solution.outcome) << describe(solution.outcome);
     const auto exact = heat.exact(0.3);
     for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(solution.final_state()[i], exact[i], 30 * tolerance);
@@ -127,14 +131,16 @@ TEST(Rkc2, EstimatesTheSpectralRadiusFromAboveAndTakesAGivenOne) {
     double spectral_radius(double, const std::vector<double>&) const { return 4 / (dx() * dx()); }
   };
   const auto with = solve(Given{heat}, heat.exact(0), {0.0, 0.3}, Rkc2{}, {.rtol = 1e-5, .atol = 1e-5});
-  const auto without = solve(heat, heat.exact(0), {0.0, 0.3}, Rkc2{}, {.rtol = 1e-5, .atol = 1e-5});
+  const auto without = solve(testing::any_system<std::vector<double>>(heat), heat.exact(0), {0.0, 0.3}, Rkc2{},
+                             {.rtol = 1e-5, .atol = 1e-5});
   ASSERT_TRUE(with.outcome);
   EXPECT_LT(with.statistics.evaluations, without.statistics.evaluations);
 }
 
 TEST(Rkc2, ACopyGoesOnToTheSameBits) {
   const Heat heat{40};
-  promises::expect_copy_goes_on_to_the_same_bits<Rkc2>(heat, heat.exact(0), 0.3);
+  promises::expect_copy_goes_on_to_the_same_bits<Rkc2>(testing::any_system<std::vector<double>>(heat), heat.exact(0),
+                                                       0.3);
 }
 
 TEST(Rkc2, WhatIsNotFiniteEndsByName) {
