@@ -13,6 +13,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
+#include "any_motion.hpp"
 #include <continuo/methods/all.hpp>
 
 namespace continuo::order_test {
@@ -27,10 +28,7 @@ struct Problem {
   Real (*acceleration)(Real t, Real q, Real v);
   std::array<Real, 2> (*exact)(Real t);
 
-  auto system() const {
-    return second_order(
-        [a = acceleration](Real t, const auto& q, const auto& v) { return std::array{a(t, q[0], v[0])}; });
-  }
+  testing::AnyMotion<Real> system() const { return {acceleration}; }
 };
 
 const int end = 2;  // all of them run from 0 to here

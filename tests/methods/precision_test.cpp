@@ -11,6 +11,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
+#include "any_motion.hpp"
 #include <continuo/methods/all.hpp>
 #include <continuo/solve/solve.hpp>
 
@@ -28,9 +29,8 @@ struct Soliton {
     using std::cosh, std::tanh;
     return {Real(1 / cosh(t)), Real(-tanh(t) / cosh(t))};
   }
-  static auto system() {
-    return second_order(
-        [](const Real&, const auto& q) { return std::array<Real, 1>{Real(q[0] - 2 * q[0] * q[0] * q[0])}; });
+  static testing::AnyMotion<Real> system() {
+    return {.acceleration = [](Real, Real q, Real) -> Real { return q - 2 * q * q * q; }, .reads_velocity = false};
   }
 };
 
