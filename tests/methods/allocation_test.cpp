@@ -1,11 +1,14 @@
 // No method allocates after its workspace is made: every operator new of the program is counted here.
 #include <array>
+#include <cstddef>
 #include <cstdlib>
 #include <new>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "equations.hpp"
 #include <continuo/methods/all.hpp>
 #include <continuo/methods/dirk/implicit_euler.hpp>
 #include <continuo/methods/dirk/implicit_midpoint.hpp>
@@ -44,10 +47,11 @@ void operator delete(void* memory, std::size_t) noexcept {
 namespace continuo::allocation_test {
 namespace {
 
-auto damped() {
-  return second_order([](double, const auto& q, const auto& v, auto& a) {
-    for (std::size_t i = 0; i < q.size(); ++i) a[i] = -q[i] - v[i];
-  });
+testing::Equations damped() {
+  return {[](double, std::span<const double> x, std::span<double> dxdt) {
+    const std::size_t n = x.size() / 2;
+    for (std::size_t i = 0; i < n; ++i) dxdt[i] = x[n + i], dxdt[n + i] = -x[i] - x[n + i];
+  }};
 }
 auto planar() {
   return second_order([](double, const auto& q, auto& a) {
@@ -77,8 +81,8 @@ TEST(Allocation, NoStepAllocates) {
   const std::vector<int> seen(3);
   ASSERT_GT(allocations, before) << "the count works";
   for_each_method<ExplicitMethods>([]<class M>() {
-    EXPECT_EQ((allocations_in_steps<M>(std::array<double, 4>{1, 2, 3, 4}, damped())), 0U) << M::name;
-    EXPECT_EQ((allocations_in_steps<M>(std::vector<double>{1, 2, 3, 4}, damped())), 0U) << M::name;
+    EXPECT_EQ((allocations_in_steps<M>(std::array<double, 2>{1, 2}, damped())), 0U) << M::name;
+    EXPECT_EQ((allocations_in_steps<M>(std::vector<double>{1, 2}, damped())), 0U) << M::name;
   });
 }
 
@@ -134,8 +138,8 @@ TEST(Allocation, NoImplicitStepAllocatesAfterTheFirst) {
 
 TEST(Allocation, NoStructuralStepAllocatesAfterTheFirst) {
   const auto expect_none = []<class M>(M) {
-    EXPECT_EQ((allocations_in_implicit_steps<M>(std::array<double, 4>{1, 2, 3, 4}, damped())), 0U) << M::name;
-    EXPECT_EQ((allocations_in_implicit_steps<M>(std::vector<double>{1, 2, 3, 4}, damped())), 0U) << M::name;
+    EXPECT_EQ((allocations_in_implicit_steps<M>(std::array<double, 2>{1, 2}, damped())), 0U) << M::name;
+    EXPECT_EQ((allocations_in_implicit_steps<M>(std::vector<double>{1, 2}, damped())), 0U) << M::name;
   };
   expect_none(Newmark{});
   expect_none(GeneralizedAlpha{});

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "equations.hpp"
 #include <continuo/methods/all.hpp>
 
 namespace continuo::explicit_runge_kutta_test {
@@ -21,16 +22,7 @@ using Methods = ::testing::Types<ExplicitEuler, Midpoint, Heun, Rk4, Rk38, Bogac
                                  Dop853, Verner7, Verner9>;
 TYPED_TEST_SUITE(Stepper, Methods);
 
-/// Any right-hand side, so that each method is compiled once for a kind of state.
-struct Equations {
-  std::function<void(double, std::span<const double>, std::span<double>)> f;
-  int calls = 0;
-  template <State X>
-  void operator()(double t, const X& x, X& dxdt) {
-    ++calls;
-    f(t, x, dxdt);
-  }
-};
+using testing::Equations;
 const Equations oscillator{[](double, auto x, auto dxdt) { dxdt[0] = x[1], dxdt[1] = -x[0]; }};
 
 TYPED_TEST(Stepper, CountsTheEvaluationsItMakes) {
