@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include <continuo/status/status.hpp>
 #include <continuo/studies/continuation.hpp>
 #include <continuo/system/parametric_system.hpp>
 
@@ -62,7 +63,7 @@ struct BifurcationCurve {
   std::vector<CurvePoint> points{};
   std::vector<DegeneratePoint> marks{};  // in the order of the curve
   std::array<CurveEnd, 2> ends{};        // before the first point, after the last
-  std::string message{};                 // why there is no curve; empty where there is one
+  Status status{};                       // a failure where there is no curve
 };
 
 struct CurveOptions {

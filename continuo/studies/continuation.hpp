@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include <continuo/status/status.hpp>
 #include <continuo/studies/equilibrium.hpp>
 #include <continuo/system/parametric_system.hpp>
 
@@ -43,9 +44,8 @@ struct BifurcationPoint {
 struct Branch {
   std::vector<BranchPoint> points;
   std::vector<BifurcationPoint> bifurcations;  // in the order of the branch
-  bool complete = false;                       // it left the range of the constant, or closed
   bool closed = false;                         // its first point is also its last
-  std::string_view message{};                  // why it ended elsewhere; empty where complete
+  Status status{};                             // a failure where it neither left the range of the constant nor closed
 };
 
 struct ContinuationOptions {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <continuo/status/status.hpp>
 #include <continuo/studies/orbit_curve.hpp>
 
 namespace continuo::studies {
@@ -31,7 +32,7 @@ struct DegenerateHomoclinicCurve {
   std::vector<DegenerateHomoclinicPoint> points{};
   std::vector<MarkedHomoclinic> marks{};  // in the order of the curve
   std::array<OrbitCurveEnd, 2> ends{};    // before the first point, after the last
-  std::string message{};                  // why there is no curve; empty where there is one
+  Status status{};                        // a failure where there is no curve
 };
 
 struct DegenerateHomoclinicOptions {

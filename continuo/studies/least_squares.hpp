@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
+#include <continuo/status/status.hpp>
 #include <continuo/studies/fit/robust_loss.hpp>
 
 namespace continuo::studies {
@@ -39,7 +39,7 @@ struct LeastSquaresOptions {
 struct LeastSquaresResult {
   bool found = false, interrupted = false;
   bool converged = false;  // else the search ended at its limit of iterations
-  std::string message;     // why nothing was found
+  Status status{};         // a failure where nothing was found
   std::vector<double> p;
   std::vector<double> residuals, rows;  // r and dr/dp at p
   double cost = 0;                      // half the sum of the losses

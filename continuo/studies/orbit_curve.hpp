@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include <continuo/status/status.hpp>
 #include <continuo/studies/bifurcation_curve.hpp>
 #include <continuo/studies/orbit_continuation.hpp>
 
@@ -114,7 +115,7 @@ struct OrbitCurve {
   std::vector<OrbitCurvePoint> points{};
   std::vector<DegenerateOrbit> marks{};  // in the order of the curve
   std::array<OrbitCurveEnd, 2> ends{};   // before the first point, after the last
-  std::string message{};                 // why there is no curve; empty where there is one
+  Status status{};                       // a failure where there is no curve
 };
 
 struct OrbitCurveOptions {

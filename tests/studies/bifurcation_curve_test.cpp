@@ -219,7 +219,7 @@ TEST(BifurcationCurve, AClosedCurveEndsWhereItBegan) {
     });
     const auto curve = follow_bifurcation(system, {Bifurcation::fold, change.outside({r, 0}), at<2>(change, {0, 0}), 0},
                                           box(change, 3));
-    ASSERT_FALSE(curve.points.empty()) << curve.message;
+    ASSERT_FALSE(curve.points.empty()) << curve.status.message;
     EXPECT_EQ(curve.ends[0].ending, CurveEnding::closed) << curve.ends[0].reason;
     EXPECT_TRUE(curve.marks.empty()) << seed;
     double turned = 0;
@@ -242,7 +242,7 @@ TEST(BifurcationCurve, ANeutralSaddleIsNoHopfPoint) {  // eigenvalues 1 and -1 w
   const auto curve = follow_bifurcation(parametric_system(2, f, {0, 0}), {Bifurcation::hopf, {0, 0}, {0, 0}, 0.2},
                                         {.low = {-1, -1}, .high = {1, 1}});
   EXPECT_TRUE(curve.points.empty());
-  EXPECT_FALSE(curve.message.empty());
+  EXPECT_FALSE(curve.status.message.empty());
 }
 
 // The Brusselator: x' = a - (b + 1) x + x^2 y, y' = b x - x^2 y rests at (a, b / a), with Hopf points at b = 1 + a^2,
@@ -280,7 +280,7 @@ TEST(BifurcationCurve, AlgebraicEquationsAreTakenAlong) {
   const double y = 0.3;
   const auto curve = follow_bifurcation(system, {Bifurcation::fold, {-2 * y * y * y, 3 * y * y}, {y, y * y * y}, 0},
                                         {.low = {-1, -1}, .high = {1, 1}});
-  ASSERT_EQ(curve.marks.size(), 1u) << curve.message;
+  ASSERT_EQ(curve.marks.size(), 1u) << curve.status.message;
   EXPECT_EQ(curve.marks[0].kind, Degeneracy::cusp);
   EXPECT_NEAR(curve.marks[0].at.constants[0], 0, 1e-8);
   for (const CurvePoint& point : curve.points)

@@ -49,7 +49,7 @@ TEST(BoundaryFamily, FollowsBratuRoundItsFold) {
   const auto problem = two_ends([](double x, double p) { return -p * std::exp(x); }, 1);
   const auto families = follow_families(problem, {nought}, {.low = 0.1, .high = 4, .tolerance = 1e-8});
   ASSERT_EQ(families.size(), 1u);
-  EXPECT_TRUE(families[0].complete) << families[0].message;
+  EXPECT_TRUE(families[0].status) << families[0].status.message;
   double quarter = 1, above = 1.4;
   for (int k = 0; k < 60; ++k) {
     const double middle = (quarter + above) / 2;
@@ -80,7 +80,7 @@ TEST(BoundaryFamily, BendsTheElastica) {
     EXPECT_NEAR(loads[n - 1], load, 1e-7 * load);
     const Family& bent = families[n];
     EXPECT_EQ(bent.crossed, 0u);
-    EXPECT_TRUE(bent.complete) << bent.message;
+    EXPECT_TRUE(bent.status) << bent.status.message;
     EXPECT_NEAR(bent.points.front().constant + bent.points.back().constant, 200, 1e-6);
     double least = 0, most = 0;
     for (const FamilyPoint& point : bent.points) {
@@ -117,7 +117,7 @@ TEST(BoundaryFamily, ClosesAnIsland) {
   const auto families =
       follow_families(circle, {[](double, std::span<double> x) { x[0] = 0.2; }}, {.low = 0, .high = 1});
   ASSERT_EQ(families.size(), 1u);
-  EXPECT_TRUE(families[0].complete) << families[0].message;
+  EXPECT_TRUE(families[0].status) << families[0].status.message;
   for (const double fold : marks_of(families[0], FamilyEvent::fold)) EXPECT_NEAR(std::abs(fold - 0.5), 0.2, 1e-9);
   EXPECT_GE(marks_of(families[0], FamilyEvent::fold).size(), 2u);
 }
@@ -154,7 +154,7 @@ TEST(BoundaryFamily, SaysWhereAGuessLeadsNowhere) {
   const auto families = follow_families(problem, {nought}, {.low = 4.5, .high = 6});
   ASSERT_EQ(families.size(), 1u);
   EXPECT_TRUE(families[0].points.empty());
-  EXPECT_FALSE(families[0].message.empty());
+  EXPECT_FALSE(families[0].status.message.empty());
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ TEST_P(CentralHomoclinic, IsLeftForTheSaddlesWhereTheRefereeSaysSo) {
   const auto curves = follow_orbit_bifurcations(
       system, mark_of(change, 1 + at_start[0], usual_friction + at_start[1], backward, constants[0]),
       {.low = {centre[0] - size, centre[1] - size}, .high = {centre[0] + size, centre[1] + size}}, 4);
-  ASSERT_EQ(curves.size(), 2u) << curves[0].message;
+  ASSERT_EQ(curves.size(), 2u) << curves[0].status.message;
   EXPECT_EQ(curves[0].kind, OrbitBifurcation::central_homoclinic);
   EXPECT_EQ(curves[1].kind, OrbitBifurcation::homoclinic);
   for (const OrbitCurvePoint& point : curves[0].points) {

@@ -202,7 +202,7 @@ TEST(ConservationLaws, MoveWithTheStart) {
   ASSERT_EQ(laws.size(), 1u);
   const auto held = holding(free, laws, [](Values p) { return Vector{p[0], 0}; });
   const auto branch = continue_equilibrium(held, {1, 2}, {.low = 1, .high = 9});
-  EXPECT_TRUE(branch.complete) << branch.message;
+  EXPECT_TRUE(branch.status) << branch.status.message;
   EXPECT_TRUE(branch.bifurcations.empty());
   for (const BranchPoint& point : branch.points) {
     EXPECT_NEAR(point.x[0], point.constant / 3, 1e-9);

@@ -37,7 +37,7 @@ TEST(Continuation, LorenzFromTheSide) {  // Hopf at rho = 24.7368..., and where 
 
 TEST(Continuation, LorenzFromTheOrigin) {
   const auto branch = continue_equilibrium(lorenz(0.5), {0, 0, 0}, {.constant = 1, .low = 0, .high = 3});
-  EXPECT_TRUE(branch.complete) << branch.message;
+  EXPECT_TRUE(branch.status) << branch.status.message;
   ASSERT_EQ(branch.bifurcations.size(), 1u);
   EXPECT_EQ(branch.bifurcations[0].kind, Bifurcation::pitchfork);
   EXPECT_NEAR(branch.bifurcations[0].at.constant, 1, 1e-10);
@@ -48,7 +48,7 @@ TEST(Continuation, LorenzFromTheOrigin) {
 TEST(Continuation, AFoldIsRounded) {  // 0 = p - x^2: both branches, the fold at the origin
   const auto f = [](double, Values x, Values p, std::span<double> out) { out[0] = p[0] - x[0] * x[0]; };
   const auto branch = continue_equilibrium(parametric_system(1, f, {1.0}), {1}, {.low = -1, .high = 4});
-  EXPECT_TRUE(branch.complete) << branch.message;
+  EXPECT_TRUE(branch.status) << branch.status.message;
   ASSERT_EQ(branch.bifurcations.size(), 1u);
   EXPECT_EQ(branch.bifurcations[0].kind, Bifurcation::fold);
   EXPECT_NEAR(branch.bifurcations[0].at.constant, 0, 1e-9);
@@ -188,7 +188,7 @@ TEST(NormalForms, CrossingsAreNamedAndTheOtherBranchIsFound) {
         const auto y = disguise.back(Three<double>{point.x[0], point.x[1], point.x[2]});
         EXPECT_NEAR(point.constant - 0.4, pitchfork ? y[0] * y[0] : y[0], 1e-9);
       }
-      EXPECT_TRUE(diagram[1].branch.complete) << diagram[1].branch.message;
+      EXPECT_TRUE(diagram[1].branch.status) << diagram[1].branch.status.message;
     }
   }
 }
@@ -256,7 +256,7 @@ TEST(Continuation, HopfPointsBesideAPairThatStaysOnTheAxis) {
     };
     const auto rest = change.place(std::array<double, 5>{});
     const auto branch = continue_equilibrium(system, {rest.begin(), rest.end()}, {.low = -2, .high = 2});
-    EXPECT_TRUE(branch.complete) << seed << ": " << branch.message;
+    EXPECT_TRUE(branch.status) << seed << ": " << branch.status.message;
     ASSERT_EQ(branch.bifurcations.size(), passes ? 1u : 0u) << seed;
     if (!passes) continue;
     EXPECT_EQ(branch.bifurcations[0].kind, Bifurcation::hopf) << seed;
@@ -280,7 +280,7 @@ TEST(Continuation, APairThatComesToTheAxisAndStaysIsNoHopfPoint) {  // x'' = -x 
     out[1] = -x[0] - std::max(0.0, p[0]) * x[1];
   };
   const auto branch = continue_equilibrium(parametric_system(2, f, {0.5}), {0, 0}, {.low = -1, .high = 1});
-  EXPECT_TRUE(branch.complete) << branch.message;
+  EXPECT_TRUE(branch.status) << branch.status.message;
   EXPECT_TRUE(branch.bifurcations.empty());
 }
 
@@ -311,8 +311,8 @@ TEST(NormalForms, ACoefficientThatIsZeroIsSaidToBe) {
 TEST(Continuation, WhatGoesToInfinityIsSaidToDoSo) {  // x = 1 / p
   const auto f = [](double, Values x, Values p, std::span<double> out) { out[0] = 1 - p[0] * x[0]; };
   const auto branch = continue_equilibrium(parametric_system(1, f, {1.0}), {1}, {.low = 0, .high = 2});
-  EXPECT_FALSE(branch.complete);
-  EXPECT_NE(branch.message.find("infinity"), std::string_view::npos) << branch.message;
+  EXPECT_FALSE(branch.status);
+  EXPECT_NE(branch.status.message.find("infinity"), std::string_view::npos) << branch.status.message;
   EXPECT_LE(branch.points.size(), 400u);
 }
 
@@ -328,7 +328,7 @@ TEST(Continuation, AClosedBranchIsFollowedOnceRound) {
   for (const double angle : {0.0, 0.1, 0.25, 0.31, 0.5, 1.2, 2.0, 3.0, 4.0, 5.0}) {
     const auto branch = continue_equilibrium(parametric_system(3, f, {std::sin(angle)}), {std::cos(angle), 0, 0},
                                              {.low = -2, .high = 2});
-    EXPECT_TRUE(branch.complete && branch.closed) << angle << ": " << branch.message;
+    EXPECT_TRUE(branch.status && branch.closed) << angle << ": " << branch.status.message;
     EXPECT_EQ(branch.points.front().x, branch.points.back().x) << angle;
     std::vector<double> hopf, folds;
     for (const auto& point : branch.bifurcations)
@@ -359,7 +359,7 @@ TEST(Continuation, AClosedBranchAcrossAnotherIsFollowedOnceRound) {  // x = 0 an
   const auto diagram = continue_equilibria(system, {{-1.5, {0}}}, options);
   ASSERT_EQ(diagram.size(), 2u);
   EXPECT_FALSE(diagram[0].branch.closed);
-  EXPECT_TRUE(diagram[1].branch.complete && diagram[1].branch.closed) << diagram[1].branch.message;
+  EXPECT_TRUE(diagram[1].branch.status && diagram[1].branch.closed) << diagram[1].branch.status.message;
   for (const auto& one : diagram) {
     ASSERT_EQ(one.branch.bifurcations.size(), 2u);
     for (const auto& point : one.branch.bifurcations) {
@@ -392,7 +392,7 @@ TEST(Continuation, WithoutAStartItSaysSo) {
   const auto f = [](double, Values x, Values p, std::span<double> out) { out[0] = p[0] + x[0] * x[0]; };
   const auto branch = continue_equilibrium(parametric_system(1, f, {1.0}), {1}, {.low = 0, .high = 4});
   EXPECT_TRUE(branch.points.empty());
-  EXPECT_FALSE(branch.message.empty());
+  EXPECT_FALSE(branch.status.message.empty());
 }
 
 }  // namespace

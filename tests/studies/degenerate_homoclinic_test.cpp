@@ -109,7 +109,7 @@ std::vector<DegenerateHomoclinicCurve> curves_from(const Space& space, F flow, c
                                 .first_step = 0.01 * longer,
                                 .largest_step = 0.05 * longer};
   const auto curve = follow_orbit_bifurcation(system, start_of(space, flow(m), p[0], 22), plane);
-  EXPECT_GT(curve.points.size(), 4u) << curve.message;
+  EXPECT_GT(curve.points.size(), 4u) << curve.status.message;
   const DegenerateHomoclinicOptions options{.low = {plane.low[0], plane.low[1], third[0]},
                                             .high = {plane.high[0], plane.high[1], third[1]},
                                             .first_step = 0.05 * longer,
@@ -131,7 +131,7 @@ TEST(DegenerateHomoclinic, NeutralSaddlesAndSaddleNodes) {
   ASSERT_EQ(curves.size(), 3u);
   std::size_t neutral = 0, nodes = 0;
   for (const auto& curve : curves) {
-    ASSERT_GT(curve.points.size(), 4u) << curve.message;
+    ASSERT_GT(curve.points.size(), 4u) << curve.status.message;
     (curve.kind == OrbitDegeneracy::neutral_saddle ? neutral : nodes) += 1;
     for (const auto& point : curve.points) {
       const auto m = space.inside(point.constants);
@@ -158,7 +158,7 @@ TEST(DegenerateHomoclinic, InclinationFlips) {
   std::size_t printed = 0;
   for (const auto& curve : curves) {
     EXPECT_EQ(curve.kind, OrbitDegeneracy::inclination_flip_stable);
-    ASSERT_GT(curve.points.size(), 4u) << curve.message;
+    ASSERT_GT(curve.points.size(), 4u) << curve.status.message;
     const auto part = [&](const DegenerateHomoclinicPoint& point) {
       const auto m = space.inside(point.constants);
       EXPECT_NEAR(m[1], 0, 1e-6);
@@ -183,7 +183,7 @@ TEST(DegenerateHomoclinic, OrbitFlips) {
   const auto curves = curves_from(space, flow, {0.02, 0.005, 0}, 0.3, {-0.4, 0.4});
   const auto* flips = curve_of(curves, OrbitDegeneracy::orbit_flip_stable);
   ASSERT_TRUE(flips);
-  ASSERT_GT(flips->points.size(), 4u) << flips->message;
+  ASSERT_GT(flips->points.size(), 4u) << flips->status.message;
   for (const auto& point : flips->points) {
     const auto m = space.inside(point.constants);
     EXPECT_NEAR(m[0], 0, 1e-5);
@@ -194,7 +194,7 @@ TEST(DegenerateHomoclinic, OrbitFlips) {
 
 TEST(DegenerateHomoclinic, OnlyWhatIsMarkedOnCurvesOfHomoclinicOrbits) {
   const auto system = parametric_system(1, [](double, Values x, Values, std::span<double> out) { out[0] = x[0]; });
-  EXPECT_NE(follow_degenerate_homoclinic(system, {.kind = OrbitDegeneracy::cusp, .at = {}}, {}).message, "");
+  EXPECT_NE(follow_degenerate_homoclinic(system, {.kind = OrbitDegeneracy::cusp, .at = {}}, {}).status.message, "");
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ TEST(HomoclinicCurve, NeutralSaddleAndItsEnd) {
     auto at_start = s;
     at_start.a = 0.2;
     const auto curve = curve_from(change, system, at_start, {0.2 - shift, 0}, 1.9);
-    ASSERT_GT(curve.points.size(), 4u) << seed << curve.message;
+    ASSERT_GT(curve.points.size(), 4u) << seed << curve.status.message;
     for (const OrbitCurvePoint& point : curve.points) {
       EXPECT_NEAR(change.constants(point.constants)[1], 0, 1e-7) << seed;
       EXPECT_LT(point.truncation, 1e-7) << seed;
@@ -122,7 +122,7 @@ TEST(HomoclinicCurve, InclinationFlip) {
     const auto system = change.system(
         [&](const auto& y, const auto& m) { return flow_of(s, y, 0 * m[0] + s.a, shift + m[0], 0 * m[0], m[1]); });
     const auto curve = curve_from(change, system, s, {1 - shift, 0}, 0.8);
-    ASSERT_GT(curve.points.size(), 4u) << seed << curve.message;
+    ASSERT_GT(curve.points.size(), 4u) << seed << curve.status.message;
     for (const OrbitCurvePoint& point : curve.points)
       EXPECT_NEAR(change.constants(point.constants)[1], 0, 1e-7) << seed;
     ASSERT_EQ(kinds_of(curve), std::vector{OrbitDegeneracy::inclination_flip_stable}) << seed;
@@ -140,7 +140,7 @@ TEST(HomoclinicCurve, OrbitFlip) {
     const auto system = change.system(
         [&](const auto& y, const auto& m) { return flow_of(s, y, 0 * m[0] + s.a, 0 * m[0] + s.alpha, m[0], m[1]); });
     const auto curve = curve_from(change, system, s, {0.02, 0.005}, 0.4);
-    ASSERT_GT(curve.points.size(), 4u) << seed << curve.message;
+    ASSERT_GT(curve.points.size(), 4u) << seed << curve.status.message;
     ASSERT_EQ(kinds_of(curve), std::vector{OrbitDegeneracy::orbit_flip_stable}) << seed;
     const auto m = change.constants(curve.marks[0].at.constants);
     EXPECT_NEAR(m[0], 0, 1e-5) << seed;
@@ -225,7 +225,7 @@ OrbitCurve driven_curve(const CoordinateChange<4>& change, const Driven& s, bool
 }
 
 void expect_one_mark(const CoordinateChange<4>& change, const OrbitCurve& curve, OrbitDegeneracy kind) {
-  ASSERT_GT(curve.points.size(), 4u) << curve.message;
+  ASSERT_GT(curve.points.size(), 4u) << curve.status.message;
   for (const OrbitCurvePoint& point : curve.points) EXPECT_NEAR(change.constants(point.constants)[1], 0, 1e-7);
   ASSERT_EQ(std::ranges::count(curve.marks, kind, &DegenerateOrbit::kind), 1) << curve.marks.size();
   const auto mark = std::ranges::find(curve.marks, kind, &DegenerateOrbit::kind);
@@ -339,7 +339,7 @@ TEST(HomoclinicCurve, OfARotation) {
   mark.at.advance = {round, -0.3 * round};
   mark.unknowns.push_back(mark.at.period), mark.unknowns.push_back(begin);
   const auto curve = follow_orbit_bifurcation(system, mark, {.low = {0.05, 0}, .high = {0.6, 0.9}});
-  ASSERT_GT(curve.points.size(), 4u) << curve.message;
+  ASSERT_GT(curve.points.size(), 4u) << curve.status.message;
   double least = 1, most = 0;
   for (const OrbitCurvePoint& point : curve.points) {
     EXPECT_NEAR(point.constants[1], drive_of(point.constants[0]), 1e-6) << point.constants[0];

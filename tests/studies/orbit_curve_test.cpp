@@ -82,7 +82,7 @@ TEST(OrbitCurve, FoldsOfOrbitsMeetInACusp) {
     const auto constants = change.outside({2 * c * u * u * u, -3 * c * u * u});
     const auto curve =
         curve_from(change, system, mark_of(change, OrbitBifurcation::fold, constants, 1 + u, 0), constants, 0.3);
-    ASSERT_GT(curve.points.size(), 4u) << seed << curve.message;
+    ASSERT_GT(curve.points.size(), 4u) << seed << curve.status.message;
     for (const OrbitCurvePoint& point : curve.points) {
       const auto m = change.constants(point.constants);
       EXPECT_NEAR(4 * std::pow(m[1], 3), -27 * c * m[0] * m[0], 1e-7) << seed;
@@ -107,7 +107,7 @@ TEST(OrbitCurve, FoldsAndToriTouchAtAOneToOneResonance) {
     const auto at_fold = change.outside({m1 * m1 / (4 * a), m1});
     const auto folds =
         curve_from(change, system, mark_of(change, OrbitBifurcation::fold, at_fold, 1 - m1 / (2 * a), 0), at_fold, 0.4);
-    ASSERT_GT(folds.points.size(), 4u) << seed << folds.message;
+    ASSERT_GT(folds.points.size(), 4u) << seed << folds.status.message;
     for (const OrbitCurvePoint& point : folds.points) {
       const auto m = change.constants(point.constants);
       EXPECT_NEAR(4 * a * m[0], m[1] * m[1], 1e-7) << seed;
@@ -118,7 +118,7 @@ TEST(OrbitCurve, FoldsAndToriTouchAtAOneToOneResonance) {
     const auto tori =
         curve_from(change, system, mark_of(change, OrbitBifurcation::torus, at_torus, 1, 0, std::sqrt(m1) / turn_rate),
                    at_torus, 0.4);
-    ASSERT_GT(tori.points.size(), 4u) << seed << tori.message;
+    ASSERT_GT(tori.points.size(), 4u) << seed << tori.status.message;
     for (const OrbitCurvePoint& point : tori.points) {
       const auto m = change.constants(point.constants);
       EXPECT_NEAR(m[0], 0, 1e-7) << seed;
@@ -150,7 +150,7 @@ TEST(OrbitCurve, DoublingsAndToriMeetAtAOneToTwoResonance) {
     const auto at_doubling = change.outside({0, 0.11});
     const auto doublings = curve_from(
         change, system, mark_of(change, OrbitBifurcation::period_doubling, at_doubling, 1, 0), at_doubling, 0.5);
-    ASSERT_GT(doublings.points.size(), 4u) << seed << doublings.message;
+    ASSERT_GT(doublings.points.size(), 4u) << seed << doublings.status.message;
     for (const OrbitCurvePoint& point : doublings.points)
       EXPECT_NEAR(change.constants(point.constants)[0], 0, 1e-8) << seed;
     EXPECT_EQ(kinds_of(doublings), std::vector{OrbitDegeneracy::resonance_2}) << seed;
@@ -161,7 +161,7 @@ TEST(OrbitCurve, DoublingsAndToriMeetAtAOneToTwoResonance) {
     const auto at_torus = change.outside({m0, 0});
     const auto tori =
         curve_from(change, system, mark_of(change, OrbitBifurcation::torus, at_torus, 1, 0, rotation), at_torus, 2);
-    ASSERT_GT(tori.points.size(), 4u) << seed << tori.message;
+    ASSERT_GT(tori.points.size(), 4u) << seed << tori.status.message;
     for (const OrbitCurvePoint& point : tori.points) {
       const auto m = change.constants(point.constants);
       EXPECT_NEAR(m[1], 0, 1e-7) << seed;
@@ -198,7 +198,7 @@ TEST(OrbitCurve, FoldsOfOrbitsEndAtAGeneralisedHopfPoint) {
     const auto constants = change.outside({-m1 * m1 / 4, m1});
     const auto curve = curve_from(
         change, system, mark_of(change, OrbitBifurcation::fold, constants, std::sqrt(m1 / 2), 0), constants, 1);
-    ASSERT_GT(curve.points.size(), 4u) << seed << curve.message;
+    ASSERT_GT(curve.points.size(), 4u) << seed << curve.status.message;
     for (const OrbitCurvePoint& point : curve.points) {
       const auto m = change.constants(point.constants);
       EXPECT_NEAR(m[0], -m[1] * m[1] / 4, 1e-7) << seed;

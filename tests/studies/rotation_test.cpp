@@ -115,7 +115,7 @@ TEST(Rotation, DoublesItsPeriodToTwoTurns) {
 
   const auto curve =
       follow_orbit_bifurcation(system, doubling, {.constants = {0, 1}, .low = {-0.1, -0.5}, .high = {0.2, 0.5}});
-  ASSERT_EQ(curve.message, "");
+  ASSERT_EQ(curve.status.message, "");
   ASSERT_GT(curve.points.size(), 10u);
   for (const OrbitCurvePoint& point : curve.points)
     EXPECT_NEAR(point.constants[0], point.constants[1] * point.constants[1], 1e-8);

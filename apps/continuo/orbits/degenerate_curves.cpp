@@ -119,7 +119,7 @@ std::string text_of(const SpaceCurves& curves, const NamedSpace& space) {
     const DegenerateHomoclinicCurve& curve = curves[k];
     text += fmt::format("\ncurve {} in three parameters, {}: ", k + 1, to_string(curve.kind));
     if (curve.points.empty()) {
-      text += curve.message + "\n";
+      text += curve.status.message + "\n";
       continue;
     }
     text += fmt::format("{} homoclinic orbits\n", curve.points.size());
@@ -141,7 +141,7 @@ nlohmann::json json_of(const SpaceCurves& curves, const NamedSpace& space) {
                          {"points", nlohmann::json::array()},
                          {"degenerate", nlohmann::json::array()},
                          {"ends", nlohmann::json::array()}};
-    if (!curve.message.empty()) entry["message"] = curve.message;
+    if (!curve.status) entry["message"] = curve.status.message;
     for (const DegenerateHomoclinicPoint& point : curve.points) entry["points"].push_back(json_of(point, space));
     for (const MarkedHomoclinic& mark : curve.marks) {
       nlohmann::json at = json_of(mark.at, space);

@@ -30,7 +30,7 @@ json slider_json(const Slider& slider) {
                         {"x", point.at.x},
                         {"frequency", point.frequency}});
     branches.push_back({{"equilibria", starts},
-                        {"complete", branch.complete},
+                        {"complete", static_cast<bool>(branch.status)},
                         {"points", branch.points.size()},
                         {"bifurcations", points}});
     if (crossed) branches.back()["crosses"] = *crossed;

@@ -113,7 +113,8 @@ std::string slider_text(const Slider& slider, const model::Model& model) {
                           point.frequency > 0 ? ", frequency " + short_number(point.frequency) : ""));
       any = true;
     }
-    if (!one.branch.complete) text += line("", fmt::format("{} ends early: {}", of, one.branch.message)), any = true;
+    if (!one.branch.status)
+      text += line("", fmt::format("{} ends early: {}", of, one.branch.status.message)), any = true;
   }
   return any ? text : text + line("", "no equilibrium changes its stability");
 }

@@ -104,7 +104,7 @@ std::string text_of(const OrbitCurves& curves, const NamedPlane& plane) {
         "\ncurve {} of {}: ", k + 1,
         curve.kind == studies::OrbitBifurcation::torus ? "tori" : fmt::format("{}s", to_string(curve.kind)));
     if (curve.points.empty()) {
-      text += curve.message + "\n";
+      text += curve.status.message + "\n";
       continue;
     }
     text += fmt::format("{} orbits\n", curve.points.size());
@@ -126,7 +126,7 @@ nlohmann::json json_of(const OrbitCurves& curves, const NamedPlane& plane) {
                          {"points", nlohmann::json::array()},
                          {"degenerate", nlohmann::json::array()},
                          {"ends", nlohmann::json::array()}};
-    if (!curve.message.empty()) entry["message"] = curve.message;
+    if (!curve.status) entry["message"] = curve.status.message;
     for (const OrbitCurvePoint& point : curve.points) entry["points"].push_back(json_of(point, curve, plane));
     for (const DegenerateOrbit& mark : curve.marks) {
       nlohmann::json at = json_of(mark.at, curve, plane);

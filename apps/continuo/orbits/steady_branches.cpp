@@ -128,7 +128,7 @@ std::string text_of(const SteadyDiagram& diagram, const model::Model& model, con
       whence = fmt::format(", found at {} = {:.10g}", range.name, diagram.starts[starts.front()].constant);
     }
     text += fmt::format("\nbranch {}{}: {} points{}\n", k + 1, whence, branch.points.size(),
-                        branch.complete ? "" : fmt::format("; {}", branch.message));
+                        branch.status ? "" : fmt::format("; {}", branch.status.message));
     for (const studies::BifurcationPoint& point : branch.bifurcations)
       text += text_of(point, range, state_text(diagram.branches, point, model));
   }
@@ -140,8 +140,8 @@ nlohmann::json json_of(const SteadyDiagram& diagram, const model::Model& model, 
   for (const auto& [branch, starts, crossed] : diagram.branches) {
     nlohmann::json entry{{"points", nlohmann::json::array()},
                          {"bifurcations", nlohmann::json::array()},
-                         {"complete", branch.complete},
-                         {"message", branch.message}};
+                         {"complete", static_cast<bool>(branch.status)},
+                         {"message", branch.status.message}};
     if (crossed) entry["across"] = *crossed + 1;
     for (const studies::BranchPoint& point : branch.points) entry["points"].push_back(json_of(point, range));
     for (const studies::BifurcationPoint& point : branch.bifurcations) {

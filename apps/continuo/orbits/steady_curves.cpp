@@ -144,7 +144,7 @@ std::string text_of(const Curves& curves, const NamedPlane& plane) {
     text += fmt::format("\ncurve {} of {}s{}: ", k + 1, to_string(curve.kind),
                         from ? fmt::format(", touching curve {}", *from + 1) : "");
     if (curve.points.empty()) {
-      text += curve.message + "\n";
+      text += curve.status.message + "\n";
       continue;
     }
     text += fmt::format("{} points\n", curve.points.size());
@@ -166,7 +166,7 @@ nlohmann::json json_of(const Curves& curves, const NamedPlane& plane) {
                          {"points", nlohmann::json::array()},
                          {"degenerate", nlohmann::json::array()},
                          {"ends", nlohmann::json::array()}};
-    if (!curve.message.empty()) entry["message"] = curve.message;
+    if (!curve.status) entry["message"] = curve.status.message;
     if (from) entry["from"] = *from + 1;
     for (const CurvePoint& point : curve.points) entry["points"].push_back(json_of(point, curve, plane));
     for (const DegeneratePoint& mark : curve.marks) {

@@ -74,7 +74,7 @@ std::string text_of(const ModelFamilies& found, const Shown& shown, std::size_t 
     text += fmt::format("{}family {}{}: {} solutions, {} from {:.6g} to {:.6g}{}\n", k == 0 ? "" : "\n", k + 1,
                         family.crossed ? fmt::format(", across family {}", *family.crossed + 1) : "",
                         family.points.size(), shown.parameter, shown.constant(low.constant),
-                        shown.constant(high.constant), family.complete ? "" : fmt::format("; {}", family.message));
+                        shown.constant(high.constant), family.status ? "" : fmt::format("; {}", family.status.message));
     if (family.crossings_left > 0)
       text += fmt::format("   {} of its crossings not followed, for there are many families: ask for a smaller range\n",
                           family.crossings_left);
@@ -102,9 +102,12 @@ nlohmann::json json_of(const FamilyPoint& point, const Shown& shown) {
 nlohmann::json json_of(const ModelFamilies& found, const Shown& shown) {
   auto families = nlohmann::json::array();
   for (const Family& family : found.families) {
-    nlohmann::json entry{{"points", nlohmann::json::array()}, {"marks", nlohmann::json::array()},
-                         {"complete", family.complete},       {"message", family.message},
-                         {"doubtful", family.doubtful},       {"crossings_left", family.crossings_left}};
+    nlohmann::json entry{{"points", nlohmann::json::array()},
+                         {"marks", nlohmann::json::array()},
+                         {"complete", static_cast<bool>(family.status)},
+                         {"message", family.status.message},
+                         {"doubtful", family.doubtful},
+                         {"crossings_left", family.crossings_left}};
     if (family.crossed) entry["across"] = *family.crossed + 1;
     for (const FamilyPoint& point : family.points) entry["points"].push_back(json_of(point, shown));
     for (const FamilyMark& mark : family.marks) {

@@ -51,7 +51,7 @@ class FamilyFollower {
     const BoundaryValueGuess guess = [&](double t, std::span<double> x) { start.at(t, x); };
     const auto first = steps_.at_constant(guess, start.mesh, start.parameters[0]);
     if (!first) {
-      family.message = "the solution at the start is not isolated";
+      family.status = detail::not_found("the solution at the start is not isolated");
       return family;
     }
     family.points.push_back(point_of(*first));
@@ -98,8 +98,7 @@ class FamilyFollower {
       detail::append(family.points, family.marks, std::move(part->points), std::move(part->marks));
       std::ranges::copy(part->doubtful, std::back_inserter(family.doubtful));
     }
-    family.complete = family.complete && ahead.complete;
-    if (family.message.empty()) family.message = ahead.message;
+    family.status = first_failure(std::move(family.status), std::move(ahead.status));
     return family;
   }
 
@@ -114,16 +113,11 @@ class FamilyFollower {
     for (double step = options_.first_step; step > options_.least_step; step /= 4) {
       auto place = steps_.stepped(crossing.solution, direction, step, may_lean);
       if (!place) continue;
-      if (!is_inside(place->constant())) {
-        family.complete = true;
-        return family;
-      }
-      Family none;
-      none.complete = true;
+      if (!is_inside(place->constant())) return family;
       family.points.push_back(point_of(*place));
-      return joined(std::move(none), std::move(family), followed(std::move(*place)));
+      return joined({}, std::move(family), followed(std::move(*place)));
     }
-    family.message = "the family could not be followed from where it crosses the other";
+    family.status = detail::not_found("the family could not be followed from where it crosses the other");
     return family;
   }
 
@@ -133,13 +127,13 @@ class FamilyFollower {
     detail::StepLength step(options_);
     while (family.points.size() < options_.most_points) {
       if (options_.interrupt && options_.interrupt->load()) {
-        family.message = "interrupted";
+        family.status = {.ending = Ending::interrupted, .message = "interrupted"};
         return family;
       }
       auto next = steps_.stepped(here.solution, here.tangent, step);
       if (!next || FamilySteps::cosine(steps_, here.tangent, next->tangent) < detail::least_cosine_of_neighbours) {
         if (step.shorten()) continue;
-        family.message = "the family could not be followed further";
+        family.status = detail::not_found("the family could not be followed further");
         return family;
       }
       // A leap next to a crossing hides it: in shorter steps they part.
@@ -150,26 +144,22 @@ class FamilyFollower {
       mark(family, here, *next, step);
       if (!is_inside(next->constant())) {
         if (auto last = at_bound(here, *next)) family.points.push_back(std::move(*last));
-        family.complete = true;
         return family;
       }
       const double moved = steps_.distance(here.solution, next->solution);
       here = std::move(*next);
       family.points.push_back(point_of(here));
       covered_.report(here.constant());
-      if (family.points.size() > 20 && steps_.distance(here.solution, origin) < moved / 2) {
-        family.complete = true;
-        return family;
-      }
+      if (family.points.size() > 20 && steps_.distance(here.solution, origin) < moved / 2) return family;
       if (std::ranges::any_of(here.solution.points, [](double x) { return std::abs(x) > beyond_measure; })) {
-        family.message = "it diverges to infinity";
+        family.status = {.ending = Ending::cannot_continue, .message = "it diverges to infinity"};
         return family;
       }
       steps_.measure(here.solution);
       steps_.scale(here.tangent);
       step.lengthen();
     }
-    family.message = "too many points";
+    family.status = {.ending = Ending::too_many_steps, .message = "too many points"};
     return family;
   }
 
@@ -240,7 +230,8 @@ std::vector<Family> follow_families(const BoundaryValueProblem& problem, const s
     BoundaryValueSolution start =
         solve_with_continuation(fixed, guess, {.tolerance = options.tolerance, .interrupt = options.interrupt});
     if (!start.outcome) {
-      families.push_back({.points = {}, .marks = {}, .message = start.outcome.hint});
+      families.push_back(
+          {.points = {}, .marks = {}, .status = {.ending = start.outcome.ending, .message = start.outcome.hint}});
       crossings.emplace_back();
       continue;
     }

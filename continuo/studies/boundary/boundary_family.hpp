@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <continuo/boundary/boundary_value.hpp>
+#include <continuo/status/status.hpp>
 
 namespace continuo::studies {
 
@@ -39,8 +40,7 @@ struct Family {
   std::vector<FamilyPoint> points;
   std::vector<FamilyMark> marks;         // in the order of the family
   std::vector<double> doubtful{};        // of the constant, where something happens of which the place was not found
-  bool complete = false;                 // it left the range of the constant at both ends, or closed
-  std::string message;                   // why it ended elsewhere; empty where complete
+  Status status{};                       // a failure where it neither left the range of the constant nor closed
   std::optional<std::size_t> crossed{};  // it was found where it crosses this family
   std::size_t crossings_left = 0;        // of its crossings, that were beyond FamilyOptions::most_families
 };

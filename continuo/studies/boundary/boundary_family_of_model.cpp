@@ -110,7 +110,7 @@ ModelFamilies families_of_model(const std::shared_ptr<const model::ModelProgram>
     result.diagnostics.push_back(model::error(
         "E322", model.boundary.front().span,
         fmt::format("no motion meets these conditions near the guess for {} = {:g}", request.parameter, result.start),
-        {}, result.families.empty() ? "" : result.families.front().message));
+        {}, result.families.empty() ? "" : result.families.front().status.message));
     result.families.clear();
   }
   std::erase_if(result.families, is_empty);

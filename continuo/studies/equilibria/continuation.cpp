@@ -46,13 +46,13 @@ class Follower {
     const Vector z = steps_.scaled(x, system_.constants[options_.constant]);
     const auto start = steps_.corrected(z, z, Vector(n_ + 1, 0.0), true);
     if (!start) {
-      branch.message = "there is no equilibrium near the start";
+      branch.status = detail::not_found("there is no equilibrium near the start");
       return branch;
     }
     const Place first = steps_.described(*start, {});
     branch.points.push_back(first.point);
     Branch back = followed(first, -1);
-    Branch ahead = back.closed ? nothing() : followed(first, 1);
+    Branch ahead = back.closed ? Branch{} : followed(first, 1);
     return joined(std::move(back), std::move(branch), std::move(ahead));
   }
 
@@ -92,19 +92,13 @@ class Follower {
   }
 
  private:
-  static Branch nothing() {
-    Branch branch;
-    branch.complete = true;
-    return branch;
-  }
   static Branch joined(Branch back, Branch middle, Branch ahead) {
     Branch branch = std::move(back);
     detail::turn_round(branch.points, branch.bifurcations);
     for (Branch* part : {&middle, &ahead})
       detail::append(branch.points, branch.bifurcations, std::move(part->points), std::move(part->bifurcations));
-    branch.complete = branch.complete && ahead.complete;
     branch.closed = branch.closed || ahead.closed;
-    if (branch.message.empty()) branch.message = ahead.message;
+    branch.status = first_failure(std::move(branch.status), std::move(ahead.status));
     return branch;
   }
   Branch beside(const Vector& z, const Vector& along, double direction) {
@@ -114,13 +108,13 @@ class Follower {
       if (!found || detail::distance(*found, guess) > step / 2) continue;  // it leapt to elsewhere
       Branch branch;
       const Place place = steps_.described(*found, along);
-      if (!inside(place.z)) return nothing();
+      if (!inside(place.z)) return {};
       Branch rest = followed(place, direction);
       branch.points.push_back(place.point);
-      return joined(nothing(), std::move(branch), std::move(rest));
+      return joined({}, std::move(branch), std::move(rest));
     }
     Branch branch;
-    branch.message = "the branch could not be followed from where it crosses the other";
+    branch.status = detail::not_found("the branch could not be followed from where it crosses the other");
     return branch;
   }
   bool inside(const Vector& z) const {
@@ -137,7 +131,7 @@ class Follower {
     double reached = 1, reached_at = origin.z[n_];
     while (branch.points.size() < options_.most_points) {
       if (options_.interrupt && options_.interrupt->load()) {
-        branch.message = "interrupted";
+        branch.status = {.ending = Ending::interrupted, .message = "interrupted"};
         return branch;
       }
       // States that grow far beyond their size at the start are measured by what they are now; where they double and
@@ -147,7 +141,7 @@ class Follower {
       if (reach >= 2 * reached) {
         const bool still = std::abs(here.z[n_] - reached_at) < standstill;
         if (reach > far_away || (still && reached >= large)) {
-          branch.message = "it diverges to infinity";
+          branch.status = {.ending = Ending::cannot_continue, .message = "it diverges to infinity"};
           return branch;
         }
         reached = reach;
@@ -156,13 +150,13 @@ class Follower {
       auto next = steps_.stepped(here, step * reach);
       if (!next || detail::product(here.tangent, next->tangent) < detail::least_cosine_of_neighbours) {
         if (step.shorten()) continue;
-        branch.message = "the branch could not be followed further";
+        branch.status = detail::not_found("the branch could not be followed further");
         return branch;
       }
       if (const auto last = step_onto(origin, here, step * reach)) {
         mark(branch, here, origin, *last);
         branch.points.push_back(origin.point);
-        branch.complete = branch.closed = true;
+        branch.closed = true;
         return branch;
       }
       mark(branch, here, *next, step * reach);
@@ -173,13 +167,10 @@ class Follower {
         branch.points.push_back(std::move(last->point));
       }
       covered_.report(here.point.constant);
-      if (!inside(here.z)) {
-        branch.complete = true;
-        return branch;
-      }
+      if (!inside(here.z)) return branch;
       step.lengthen();
     }
-    branch.message = "too many points";
+    branch.status = {.ending = Ending::too_many_steps, .message = "too many points"};
     return branch;
   }
   /// Between a place inside of the range and the one outside that a step leads to.
@@ -356,7 +347,7 @@ Branch continue_equilibrium(const ParametricSystem& system, const BifurcationPoi
                             const ContinuationOptions& options) {
   if (!from.other.empty()) return Follower(system, from.at.x, options).through(from);
   Branch branch;
-  branch.message = "no other branch is known there";
+  branch.status = {.ending = Ending::invalid_input, .message = "no other branch is known there"};
   return branch;
 }
 

@@ -41,7 +41,8 @@ BifurcationCurve CurveFollower::from(const CurveStart& start) {
   const auto space = space_at(z, start.kind, start.frequency);
   const auto first = space ? steps_.first(z, *space) : std::nullopt;
   if (!first || (start.kind == Bifurcation::hopf && !(first->space.margin > 0))) {
-    curve.message = fmt::format("there is no {} near the start that could be followed", to_string(start.kind));
+    curve.status =
+        not_found(fmt::format("there is no {} near the start that could be followed", to_string(start.kind)));
     return curve;
   }
   return both_ways(std::move(curve), *first, nullptr);
@@ -53,7 +54,7 @@ BifurcationCurve CurveFollower::from(const DegeneratePoint& start, Bifurcation k
   const auto space = space_at(z, kind, start.other_frequency);
   const auto first = space ? steps_.first(z, *space) : std::nullopt;
   if (!first) {
-    curve.message = fmt::format("the curve of {}s there could not be followed", to_string(kind));
+    curve.status = not_found(fmt::format("the curve of {}s there could not be followed", to_string(kind)));
     return curve;
   }
   DegeneratePoint origin(start);

@@ -224,10 +224,13 @@ LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquares
   }
   result.starts_done = all.size();
   result.interrupted = stopped();
-  if (all.empty()) return result;
+  if (all.empty()) {
+    result.status = {.ending = Ending::interrupted, .message = "interrupted before anything was found"};
+    return result;
+  }
   const auto best = std::ranges::min_element(all, {}, &Found::cost);
   if (!std::isfinite(best->cost)) {
-    result.message = all.front().message;
+    result.status = {.ending = Ending::cannot_continue, .message = all.front().message};
     return result;
   }
   for (const Found& found : all) result.starts_agreeing += found.cost <= best->cost * (1 + 1e-6) + 1e-300 ? 1 : 0;
@@ -238,6 +241,8 @@ LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquares
   result.residuals.resize(problem.residuals);
   result.rows.resize(problem.residuals * result.p.size());
   result.found = problem.evaluate(result.p, result.residuals, result.rows);
+  if (!result.found)
+    result.status = {.ending = Ending::not_finite, .message = "there are no residuals where the search ended"};
   result.at_bound.assign(result.p.size(), 0);
   for (const int i : held_by_bounds(problem, result.p)) result.at_bound[static_cast<std::size_t>(i)] = 1;
   result.interrupted = stopped();

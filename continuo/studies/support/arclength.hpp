@@ -6,11 +6,19 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include <continuo/status/status.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
+
+/// The equations of a solution, or of the next one on a curve, could not be solved.
+[[nodiscard]] inline Status not_found(std::string message) {
+  return {.ending = Ending::nonlinear_solve_failed, .message = std::move(message)};
+}
 
 /// The least cosine between the tangents of neighbours, that of 25 degrees: a step that turns by more was too long to
 /// be sure of the curve.

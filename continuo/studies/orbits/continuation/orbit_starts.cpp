@@ -21,10 +21,6 @@ using Place = OrbitPlace;
 constexpr double growth_of_size = 5;  // of the first orbit beside a Hopf point: twenty steps make it ten times as large
 constexpr std::size_t most_first_intervals = 400, even_intervals = 20;
 
-Status not_found(std::string message) {
-  return {.ending = Ending::nonlinear_solve_failed, .message = std::move(message)};
-}
-
 /// From a mesh that knows where an orbit changes fast, or an even one.
 std::shared_ptr<const OrbitMesh> first_mesh(const Vector& known) {
   const std::size_t intervals = known.size() < 2 ? 0 : known.size() - 1;

@@ -118,11 +118,12 @@ class DegenerateHomoclinicFollower {
 DegenerateHomoclinicCurve DegenerateHomoclinicFollower::curve() {
   const auto first = steps_.first(start_.place);
   if (!first) {
-    curve_.message = "the curve could not be followed from there";
+    curve_.status = detail::not_found("the curve could not be followed from there");
     return curve_;
   }
   if (is_rest(test_) && !(towards_rest(*first) > 0)) {
-    curve_.message = "the orbit there is on the side of the saddle-node on which motions go the other way";
+    curve_.status =
+        detail::not_found("the orbit there is on the side of the saddle-node on which motions go the other way");
     return curve_;
   }
   (void)sizes_.part_of(first->orbit.point);
@@ -323,12 +324,12 @@ DegenerateHomoclinicCurve follow_degenerate_homoclinic(const ParametricSystem& s
                                                        const DegenerateHomoclinicOptions& options) {
   DegenerateHomoclinicCurve curve{.kind = start.kind};
   if (!start.homoclinic) {
-    curve.message = "only what is marked on a curve of homoclinic orbits is followed in three parameters";
+    curve.status = invalid_input("only what is marked on a curve of homoclinic orbits is followed in three parameters");
     return curve;
   }
   if (start.kind == OrbitDegeneracy::hopf) {
-    curve.message =
-        "orbits homoclinic to a Hopf point are not followed: whether they converge to it depends on how it attracts";
+    curve.status = invalid_input(
+        "orbits homoclinic to a Hopf point are not followed: whether they converge to it depends on how it attracts");
     return curve;
   }
   ParametricSystem turning(system);

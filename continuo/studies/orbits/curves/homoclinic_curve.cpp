@@ -93,14 +93,17 @@ std::vector<OrbitCurve> HomoclinicFollower::from(const OrbitMark& start, std::si
 
 OrbitCurve HomoclinicFollower::first_curve(const OrbitMark& start) {
   OrbitCurve curve{.kind = OrbitBifurcation::homoclinic};
-  const auto first = steps_.first(start, curve.message);
-  if (!first) return curve;
+  const auto first = steps_.first(start);
+  if (!first) {
+    curve.status = first.status();
+    return curve;
+  }
   if (first->point.truncation > truncated_by_at_most(*first)) {
-    curve.message = fmt::format(
-        "what is cut off of the homoclinic orbit would move {} by {:.2g} of {}: motions leave the "
-        "saddle, or come to it, too slowly",
-        first->rest.is_saddle_node ? "it" : "the constants", first->point.truncation,
-        first->rest.is_saddle_node ? "its size" : "their ranges");
+    curve.status = not_found(
+        fmt::format("what is cut off of the homoclinic orbit would move {} by {:.2g} of {}: motions leave the "
+                    "saddle, or come to it, too slowly",
+                    first->rest.is_saddle_node ? "it" : "the constants", first->point.truncation,
+                    first->rest.is_saddle_node ? "its size" : "their ranges"));
     return curve;
   }
   (void)sizes_.part_of(first->point);

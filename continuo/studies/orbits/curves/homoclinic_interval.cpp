@@ -10,6 +10,7 @@
 #include <continuo/studies/equilibrium.hpp>
 #include <continuo/studies/orbits/collocation/closed_view.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_steps.hpp>
+#include <continuo/studies/support/arclength.hpp>
 #include <continuo/studies/support/vector_algebra.hpp>
 
 namespace continuo::studies::detail {
@@ -90,7 +91,7 @@ void add_graded(OrbitMesh& mesh, double from, double to, double width) {
 
 }  // namespace
 
-std::optional<HomoclinicPlace> HomoclinicSteps::first(const OrbitMark& mark, std::string& message) {
+Result<HomoclinicPlace> HomoclinicSteps::first(const OrbitMark& mark) {
   const auto mesh = std::make_shared<const OrbitMesh>(mark.mesh);
   const std::size_t closed_nodes = (mesh->size() - 1) * interval_nodes;
   Vector nodes(mark.unknowns.begin(), mark.unknowns.begin() + static_cast<std::ptrdiff_t>(closed_nodes * n_));
@@ -136,16 +137,12 @@ std::optional<HomoclinicPlace> HomoclinicSteps::first(const OrbitMark& mark, std
   std::optional<SaddleNode> fold;
   if (!is_hyperbolic)
     fold = saddle_node_near(system_, options_.constants[0], slow, p, size, options_.high[0] - options_.low[0]);
-  if (!is_hyperbolic && !fold) {
-    message = is_near ? "the equilibrium next to which the orbit passes is no saddle: it has an eigenvalue on the "
-                        "imaginary axis"
-                      : "the orbit of long period does not pass next to an equilibrium";
-    return std::nullopt;
-  }
-  if (!fold && (kind_.stable == 0 || kind_.stable == n_)) {
-    message = "the equilibrium next to which the orbit passes is no saddle";
-    return std::nullopt;
-  }
+  if (!is_hyperbolic && !fold)
+    return not_found(is_near ? "the equilibrium next to which the orbit passes is no saddle: it has an eigenvalue on "
+                               "the imaginary axis"
+                             : "the orbit of long period does not pass next to an equilibrium");
+  if (!fold && (kind_.stable == 0 || kind_.stable == n_))
+    return not_found("the equilibrium next to which the orbit passes is no saddle");
 
   // From there once round.
   const ClosedView closed(n_, nodes, mesh);
@@ -170,16 +167,19 @@ std::optional<HomoclinicPlace> HomoclinicSteps::first(const OrbitMark& mark, std
     if (s > 1 && !system_.advance.empty())
       for (std::size_t i = 0; i < n_; ++i) x[i] += system_.advance[i];
   }
-  message = "no homoclinic orbit is found near the orbit of long period";
+  const Status none_near = not_found("no homoclinic orbit is found near the orbit of long period");
   longest_ = std::numeric_limits<double>::infinity();
-  if (fold) return first_central(own, period, states, *fold);
+  if (fold) {
+    auto central = first_central(own, period, states, *fold);
+    return central ? Result<HomoclinicPlace>(std::move(*central)) : none_near;
+  }
   states.insert(states.end(), found.x.begin(), found.x.end());
   for (std::size_t c = 0; c < 2; ++c) states.push_back(p[options_.constants[c]]);
   auto place = settled(std::make_shared<const OrbitMesh>(std::move(own)), period, states);
-  if (!place) return std::nullopt;
+  if (!place) return none_near;
   improve(*place);
   longest_ = options_.longest_period * place->length;
-  return place;
+  return *std::move(place);
 }
 
 // Along the centre a closed orbit near by needs about as long as one of the saddle-node, where it is far enough from

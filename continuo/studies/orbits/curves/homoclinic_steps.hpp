@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include <continuo/status/result.hpp>
 #include <continuo/studies/orbit_curve.hpp>
 #include <continuo/studies/orbits/curves/homoclinic_orbit.hpp>
 #include <continuo/studies/orbits/curves/saddle_node.hpp>
@@ -74,9 +75,8 @@ class HomoclinicSteps {
  public:
   HomoclinicSteps(const ParametricSystem& system, const OrbitCurveOptions& options);
 
-  /// From a closed orbit of long period that passes next to a saddle, or to where a saddle-node is about to be. Nothing
-  /// where none is found; `message` says why.
-  [[nodiscard]] std::optional<HomoclinicPlace> first(const OrbitMark& mark, std::string& message);
+  /// From a closed orbit of long period that passes next to a saddle, or to where a saddle-node is about to be.
+  [[nodiscard]] Result<HomoclinicPlace> first(const OrbitMark& mark);
   /// At an orbit of a saddle-node that is not central: as an orbit of the other kind, a saddle's or a central one, with
   /// a tangent of any direction.
   [[nodiscard]] std::optional<HomoclinicPlace> switched(const HomoclinicPlace& from, HomoclinicRest kind);

@@ -87,11 +87,11 @@ std::vector<OrbitCurve> follow_orbit_bifurcations(const ParametricSystem& system
                                                   const OrbitCurveOptions& options, std::size_t most) {
   OrbitCurve curve{.kind = start.kind};
   if (start.kind == OrbitBifurcation::crossing) {
-    curve.message = "where branches of orbits cross is not followed in two parameters";
+    curve.status = invalid_input("where branches of orbits cross is not followed in two parameters");
     return {curve};
   }
   if (start.mesh.size() < 2) {
-    curve.message = "the orbit there is not known";
+    curve.status = invalid_input("the orbit there is not known");
     return {curve};
   }
   ParametricSystem turning(system);

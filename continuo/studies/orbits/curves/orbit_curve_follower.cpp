@@ -31,7 +31,8 @@ OrbitCurve OrbitCurveFollower::from(const OrbitMark& start) {
   OrbitCurve curve{.kind = start.kind};
   const auto first = steps_.first(start);
   if (!first) {
-    curve.message = fmt::format("there is no {} near the start that could be followed", to_string(start.kind));
+    curve.status =
+        not_found(fmt::format("there is no {} near the start that could be followed", to_string(start.kind)));
     return curve;
   }
   first_period_ = first->point.period;
