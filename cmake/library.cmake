@@ -12,7 +12,7 @@ set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 #            them is the module's own; its public headers lie in the module itself.
 #   BRIEF    its sources (without .cpp, as patterns, wherever they lie) that run for milliseconds: compiled in half the
 #            time, with -O1.
-#   ALONE    those that compute, or are large: never joined, so that what is inlined in them hangs on themselves alone.
+#   ALONE    those that compute, or are large: never joined, so that what is inlined in them depends on themselves alone.
 #   LOADED   those that the command loads when they are asked for (modules.cmake): alone, and fit for a shared library.
 function(continuo_library name)
   cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;FOLDERS;BRIEF;ALONE;LOADED" ${ARGN})

@@ -4,7 +4,7 @@
 //   const Enclosure<double> x{1, 2}, y{-1, 3};
 //   const auto z = x * y - Enclosure(0.5);      // holds every x*y - 0.5: a little more than [-2.5, 5.5]
 //   if (z.lo > 0) ...                           // positive, proved
-//   (x < y).may_hold, (x < y).may_fail          // both: it hangs on the numbers
+//   (x < y).may_hold, (x < y).may_fail          // both: it depends on the numbers
 //
 // Bounds are computed in the usual rounding and then moved outwards, which is many times faster than to change the
 // mode of rounding. Let r be the rounded and v the exact bound. Both are within half a unit in the last place of r, and

@@ -1,5 +1,5 @@
 // Sums of states that never change: the totals of a reaction network, momenta. Each law w . x = c says that an equation
-// hangs on the others: df/dx is singular everywhere, and no equilibrium and no orbit stands by itself, for there is
+// depends on the others: df/dx is singular everywhere, and no equilibrium and no orbit stands by itself, for there is
 // one for each value of c. With c that of the initial state there is one.
 //
 //   const auto laws = conservation_laws_of(system, start);

@@ -19,7 +19,7 @@ namespace continuo::studies {
 
 /// `constant` is one of the model's parameters, by number.
 struct HybridContinuationOptions : OrbitContinuationOptions {
-  /// What hangs on the time has this period where the parameter is now; nothing where no time matters.
+  /// What depends on the time has this period where the parameter is now; nothing where no time matters.
   std::optional<double> forcing{};
 };
 

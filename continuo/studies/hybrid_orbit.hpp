@@ -26,7 +26,7 @@ struct HybridOrbitOptions {
   double settle = 100;     // time for the motion to come to the orbit, before it is looked for
   double duration = 1000;  // within which it must come back
   double tolerance = 1e-9;
-  /// What hangs on the time has this period; nothing where no time matters.
+  /// What depends on the time has this period; nothing where no time matters.
   std::optional<double> forcing{};
   /// As many of these are one period of the orbit; 0: as the motion comes back.
   std::size_t turns = 0;

@@ -25,7 +25,7 @@ namespace {
 constexpr double longer = 10;
 constexpr double longest_forcing = 10;  // in times of the run that looks for the orbit
 
-/// The period of what hangs on the time: that of the text, or the one that was given where it fits. False where there
+/// The period of what depends on the time: that of the text, or the one that was given where it fits. False where there
 /// is none that can be relied on, which is said.
 bool set_forcing(const Studied& studied, const HybridOrbitRequest& request, studies::HybridOrbitOptions& search) {
   const model::ModelProgram& program = *studied.prepared.program;

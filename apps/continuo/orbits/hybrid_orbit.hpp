@@ -20,8 +20,8 @@ struct HybridOrbitRequest {
   std::string plot{};
 };
 
-/// What the request asks for, with the period of what hangs on the time; nothing where there is none that can be relied
-/// on, which is said.
+/// What the request asks for, with the period of what depends on the time; nothing where there is none that can be
+/// relied on, which is said.
 std::optional<studies::HybridOrbitOptions> search_of(const Studied& studied, const HybridOrbitRequest& request);
 /// The orbit that the motion comes to; where it may take longer, it is looked for longer.
 studies::HybridOrbit find_hybrid_orbit(const Studied& studied, const HybridOrbitRequest& request,

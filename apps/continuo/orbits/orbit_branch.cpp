@@ -166,7 +166,7 @@ bool ends_at(const OrbitBranch& branch, const studies::OrbitPoint& orbit, const 
   return false;
 }
 
-/// Orbits through events, or of what hangs on the time: how to go on from an orbit and from a mark.
+/// Orbits through events, or of what depends on the time: how to go on from an orbit and from a mark.
 struct HybridBranches {
   const Studied& studied;
   const OrbitBranchOptions& options;

@@ -42,7 +42,7 @@ std::string conserved_text(const Studied& studied, std::string_view head = "cons
 /// what they do to it.
 void add_conserved(nlohmann::json& object, const Studied& studied);
 
-/// Whether neither the equations of the studied mode hang on the time nor anything happens at set times; says what
+/// Whether neither the equations of the studied mode depend on the time nor anything happens at set times; says what
 /// does, and where, if not. `what` is the study's: "an orbit is solved for".
 bool stands_still_in_time(const Studied& studied, std::string_view what);
 /// Whether beside that no event of the model changes the motion and no equation jumps. Who has named a mode means its

@@ -51,7 +51,7 @@ bool needs_all(const Studied& studied, const OrbitOptions& options) {
   return options.mode.empty() && studies::unseen_of(*studied.prepared.program, studied.mode).has_value();
 }
 
-/// Whether something hangs on the time, or is said to.
+/// Whether something depends on the time, or is said to.
 bool is_forced(const Studied& studied, const OrbitOptions& options) {
   if (options.forcing || options.turns > 0) return true;
   return options.mode.empty() && studies::depends_on_time(*studied.prepared.program, studied.mode).has_value();

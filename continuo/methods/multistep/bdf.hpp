@@ -278,8 +278,8 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
   // Where t is rounded by dt, the solution of the step's equations is off by dt (c M - J)^-1 f_t: of 0 = g(t, x) by
   // dt g_t / g_x, whatever the step. Differences of order k show that multiplied, and a shorter step does not make them
   // less: the order would fall, and h with it, until nothing is left of it. An unknown is off as well by what the
-  // iteration leaves the states off that it hangs on, which is little against their tolerances and may be much against
-  // its own.
+  // iteration leaves the states off that it depends on, which is little against their tolerances and may be much
+  // against its own.
   template <class System, State X>
   [[nodiscard]] static int measure_rounding(System& system, const Scalar<X>& t, const Scalar<X>& h, const X& x,
                                             Workspace<X>& work) {

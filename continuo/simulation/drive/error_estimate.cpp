@@ -41,7 +41,7 @@ Experiment stricter_run(const Experiment& experiment, const Run& run, double str
   return strict;
 }
 
-/// A run of a model that hangs on time steps no further than a fiftieth of its length, which may be all that held its
+/// A run of a model that depends on time steps no further than a fiftieth of its length, which may be all that held its
 /// steps.
 double half_of_longest(const Plan& plan) {
   return std::min(plan.max_step, std::abs(plan.to - plan.from) / 100);

@@ -43,7 +43,7 @@ class GuardEnclosures {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   struct OfMode {
     std::vector<Guard> guards;
-    std::vector<UnknownBlock> blocks;                // that each guard hangs on
+    std::vector<UnknownBlock> blocks;                // that each guard depends on
     std::vector<std::vector<std::size_t>> switches;  // that the equations of each block read
     std::optional<StepEnclosure> all;
     std::vector<std::optional<StepEnclosure>> alone;

@@ -54,7 +54,7 @@ struct ModelProgram {
   std::vector<TableInput> step_inputs;    // constant between scheduled times
   std::vector<TableInput> linear_inputs;  // part of the expressions
   std::vector<std::shared_ptr<const Tape>> derivatives;  // by mode
-  bool autonomous = false;                               // no derivative hangs on the time
+  bool autonomous = false;                               // no derivative depends on the time
   std::vector<SwitchedEquations> switches;               // by mode
   std::uint32_t switch_variables = 0;                    // behind those of the model
   std::vector<ProgramGuards> guards;                     // by mode

@@ -93,7 +93,7 @@ void ModelSystem::place_switches() {
     derivatives_of_f_->set(switches[k].variable, switched_->values()[k]);
 }
 
-/// df/dx of a motion that slides, whose weights hang on x, too: by central differences.
+/// df/dx of a motion that slides, whose weights depend on x, too: by central differences.
 void ModelSystem::difference_rows(double t, const X& x, std::span<double> rows) {
   difference_jacobian(
       x, [&](std::size_t j) { return central_increment(x[j], 1e-3); },

@@ -114,7 +114,7 @@ std::span<const TapeSeries> MotionSeries::states(std::size_t mode, double t, std
     sweep();
     if (is_settled(pass == sweeps)) return x_;
   }
-  sweep();  // once more, with what hangs on the coefficients that have been given up
+  sweep();  // once more, with what depends on the coefficients that have been given up
   return x_;
 }
 

@@ -14,8 +14,8 @@
 //
 // A state counts as known to four units in the last place, the time to one, zero as exact. Values that are equal bit by
 // bit are a tie, which the motion decides by the first order in which they part; what does not part up to the third
-// counts as equal for good. Values within their rounding of each other may be either way round, and what hangs on that
-// is not known unless both ways agree in sign.
+// counts as equal for good. Values within their rounding of each other may be either way round, and what depends on
+// that is not known unless both ways agree in sign.
 #pragma once
 #include <array>
 #include <cstddef>

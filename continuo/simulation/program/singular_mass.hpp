@@ -10,7 +10,7 @@
 namespace continuo::model {
 
 /// E335: what stands before the highest derivatives in the start mode is singular with these variables, a register file
-/// as `start_values` makes it. What hangs on unknowns, or of conditions at several times on states, is not looked at,
+/// as `start_values` makes it. What depends on unknowns, or of conditions at several times on states, is not looked at,
 /// nor is anything where an event acts at the start.
 [[nodiscard]] std::optional<Diagnostic> singular_mass(const Model& model, std::span<const double> variables);
 

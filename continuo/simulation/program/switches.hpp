@@ -30,12 +30,12 @@ struct SwitchedEquations {
   std::vector<NodeId> guards;       // by switch: zero on its surface; of floor positive between two whole numbers
   std::vector<NodeId> derivatives;  // as in Mode
   std::shared_ptr<const Tape> rates, surfaces, approach;  // of derivatives, surfaces, d surface/dt along the motion
-  bool slides = false;                                    // a surface hangs on states: the motion may slide along it
+  bool slides = false;                                    // a surface depends on states: the motion may slide along it
 
   [[nodiscard]] bool empty() const { return switches.empty(); }
 };
 
-/// Finds the switches of a mode and rewrites its equations. What hangs on the unknowns of algebraic equations, or on
+/// Finds the switches of a mode and rewrites its equations. What depends on the unknowns of algebraic equations, or on
 /// nothing that moves, stays as it is, and so does all of a mode with more than `most_switches` of them, as on a grid:
 /// there error control sees to the jumps. `program` lends its graph, which grows.
 [[nodiscard]] SwitchedEquations switched_equations(ModelProgram& program, std::size_t mode);

@@ -1,4 +1,4 @@
-// Which unknowns of algebraic equations an expression hangs on, and by which equations:
+// Which unknowns of algebraic equations an expression depends on, and by which equations:
 //
 //   const UnknownCoupling coupling(program, program.model.modes[mode].derivatives);
 //   coupling.block(program.model.events[0].guard)      // its unknowns, and those that they are determined together

@@ -149,7 +149,7 @@ std::optional<CurveSteps::Found> CurveSteps::corrected(const Vector& guess, cons
       z[i] -= step[i];
       size = std::max(size, std::abs(step[i]) / std::max(1.0, std::abs(z[i])));
     }
-    // A fold's test hangs on its border, which stays; the plane of a pair is looked for from the last one.
+    // A fold's test depends on its border, which stays; the plane of a pair is looked for from the last one.
     latest = std::move(*space);
     if (near.dimension == 2) reference = latest;
     return size;

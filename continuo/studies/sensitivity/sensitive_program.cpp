@@ -240,7 +240,7 @@ const SensitiveProgram::Jacobians& SensitiveProgram::jacobians() const {
     const auto& places = made->by_state.back().places;
     all.insert(all.end(), places.begin(), places.end());
   }
-  // Where the motion slides everything may hang on everything.
+  // Where the motion slides everything may depend on everything.
   const bool slides = std::ranges::any_of(program_->switches, &model::SwitchedEquations::slides);
   for (std::uint32_t row = 0; slides && columns.size() <= largest_full && row < columns.size(); ++row)
     for (std::uint32_t column = 0; column < columns.size(); ++column) all.push_back({row, column});

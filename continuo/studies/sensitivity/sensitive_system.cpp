@@ -121,7 +121,7 @@ void SensitiveSystem::slide(double t, const X& x, X& dxdt) {
   }
 }
 
-/// The motion slides, and the pattern has a place for all that its weights hang on.
+/// The motion slides, and the pattern has a place for all that its weights depend on.
 bool SensitiveSystem::slides_in_full() const {
   const std::size_t width = program_->size() * (1 + program_->count());
   return plain_.slides() && program_->jacobians().pattern.entries() == width * width;

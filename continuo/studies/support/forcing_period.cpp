@@ -19,7 +19,7 @@ namespace {
 using model::NodeId;
 using model::Op;
 
-/// How an expression hangs on t while the states are held: slope t + something with all these periods.
+/// How an expression depends on t while the states are held: slope t + something with all these periods.
 struct Course {
   bool known = true;
   double slope = 0;

@@ -14,7 +14,7 @@
 namespace continuo::studies {
 
 struct Forcing {
-  std::optional<double> period;  // nothing where nothing hangs on the time
+  std::optional<double> period;  // nothing where nothing depends on the time
   Status status;                 // a failure where there is one that is not known
   model::Span span;              // of what the failure is about
 };

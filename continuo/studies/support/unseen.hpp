@@ -20,7 +20,7 @@ struct Unseen {
 };
 [[nodiscard]] std::optional<Unseen> unseen_of(const model::ModelProgram& program, std::size_t mode);
 
-/// The first state of the mode whose equation hangs on t, or on an input that a file moves.
+/// The first state of the mode whose equation depends on t, or on an input that a file moves.
 [[nodiscard]] std::optional<std::size_t> depends_on_time(const model::ModelProgram& program, std::size_t mode);
 
 /// A jump of the mode's equations that this state lies at, to nine digits, as it is written: "sign(x)". There no

@@ -10,7 +10,7 @@
 // The registers belong to the caller: a tape is constant and serves any number of threads. Real may be float, double,
 // long double, and with tape_run.hpp lanes of them or a type that carries derivatives.
 //
-// How it is fast: what hangs on parameters alone is computed by `prepare` (a division by a parameter becomes a
+// How it is fast: what depends on parameters alone is computed by `prepare` (a division by a parameter becomes a
 // multiplication by its reciprocal); a product and the sum it goes into are one instruction; equal operations that
 // do not wait for each other are one loop over neighbouring registers, a grid's inner points without their ends; a
 // family whose members lie apart (u[1], v[1], u[2], v[2], ...) is first copied to where they are neighbours.
@@ -48,7 +48,7 @@ class Tape {
   [[nodiscard]] std::size_t register_count() const { return registers_; }
   [[nodiscard]] std::size_t output_count() const { return output_count_; }
 
-  /// Constants, and what hangs on them and on the steady variables alone.
+  /// Constants, and what depends on them and on the steady variables alone.
   template <class Real>
   void prepare(std::span<Real> registers) const;
 

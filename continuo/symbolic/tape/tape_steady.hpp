@@ -1,5 +1,5 @@
 // continuo/symbolic/tape/tape_steady.hpp
-// Before a tape is compiled: factors that hang on steady variables alone are gathered. Internal to the tape.
+// Before a tape is compiled: factors that depend on steady variables alone are gathered. Internal to the tape.
 #pragma once
 #include <cstdint>
 #include <functional>

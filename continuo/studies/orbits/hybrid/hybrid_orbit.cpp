@@ -241,7 +241,7 @@ class OrbitSearch {
   Status status_;
 };
 
-/// Which event is to blame: two at the same time that neighbours pass one after the other, or one whose time hangs on
+/// Which event is to blame: two at the same time that neighbours pass one after the other, or one whose time depends on
 /// the start too much.
 std::string OrbitSearch::unsupported_reason_confirmed(const Shot& shot, double period) const {
   const std::vector<SensitivityEvent>& events = shot.image.run.events;
