@@ -3,9 +3,9 @@
 # a file proves that it includes what it uses.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 
-# continuo_library(NAME [FUZZED] [USES ...] [PARTS ...] [FOLDERS ...] [BRIEF ...] [ALONE ...] [LOADED ...]): the library
-# of a module, which is a folder of continuo/; static when it has sources. The target is continuo_NAME, Continuo::NAME to
-# those who find the package.
+# continuo_library(NAME [FUZZED] [USES ...] [PARTS ...] [FOLDERS ...] [BRIEF ...] [ALONE ...] [LOADED ...] [APART ...]):
+# the library of a module, which is a folder of continuo/; static when it has sources. The target is continuo_NAME,
+# Continuo::NAME to those who find the package.
 #   FUZZED   it reads what others wrote, and counts its branches for the fuzzer where the sanitizers are on.
 #   USES     modules below it; those that they use come with them.
 #   FOLDERS  of the module, lowest first: each may use those before it (tests/architecture holds it to that). What lies in
@@ -14,8 +14,10 @@ set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 #            time, with -O1.
 #   ALONE    those that compute, or are large: never joined, so that what is inlined in them depends on themselves alone.
 #   LOADED   those that the command loads when they are asked for (modules.cmake): alone, and fit for a shared library.
+#   APART    those that neither the command nor another module uses: a library of their own, which everybody else links
+#            with the module's, so that the command is built without them.
 function(continuo_library name)
-  cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;FOLDERS;BRIEF;ALONE;LOADED" ${ARGN})
+  cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;FOLDERS;BRIEF;ALONE;LOADED;APART" ${ARGN})
   set(folders ${PROJECT_SOURCE_DIR}/continuo/${name})
   foreach(folder IN LISTS module_FOLDERS)
     list(APPEND folders ${PROJECT_SOURCE_DIR}/continuo/${name}/${folder})
@@ -26,7 +28,8 @@ function(continuo_library name)
     continuo_sources(brief "${folders}" ${module_BRIEF})
     continuo_sources(alone "${folders}" ${module_ALONE})
     continuo_sources(loaded "${folders}" ${module_LOADED})
-    list(REMOVE_ITEM sources ${brief} ${loaded})
+    continuo_sources(apart "${folders}" ${module_APART})
+    list(REMOVE_ITEM sources ${brief} ${loaded} ${apart})
     set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     add_library(continuo_${name} STATIC ${sources})
     set(scope PUBLIC)
@@ -52,7 +55,16 @@ function(continuo_library name)
   target_include_directories(continuo_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(continuo_${name} ${scope} ${module_USES} ${module_PARTS})
-  set_target_properties(continuo_${name} PROPERTIES EXPORT_NAME ${name})
+  set_target_properties(continuo_${name} PROPERTIES EXPORT_NAME ${name} CONTINUO_WITHOUT_APART ON)
+  if(apart)
+    add_library(continuo_${name}_apart STATIC ${apart})
+    continuo_library_flags(continuo_${name}_apart)
+    target_link_libraries(continuo_${name}_apart PUBLIC continuo_${name})
+    set_target_properties(continuo_${name}_apart PROPERTIES EXPORT_NAME ${name}_apart CONTINUO_WITHOUT_APART ON)
+    set(is_wanted $<NOT:$<BOOL:$<TARGET_PROPERTY:CONTINUO_WITHOUT_APART>>>)  # by the target that links the module
+    target_link_libraries(continuo_${name} INTERFACE $<${is_wanted}:$<TARGET_NAME:continuo_${name}_apart>>)
+    set_property(GLOBAL APPEND PROPERTY CONTINUO_MODULES ${name}_apart)
+  endif()
   add_library(Continuo::${name} ALIAS continuo_${name})
   set_property(GLOBAL APPEND PROPERTY CONTINUO_MODULES ${name})
 endfunction()
@@ -74,6 +86,7 @@ endfunction()
 macro(continuo_library_objects target)
   add_library(${target} OBJECT ${ARGN})
   continuo_library_flags(${target})
+  set_target_properties(${target} PROPERTIES CONTINUO_WITHOUT_APART ON)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${target} PRIVATE ${module_USES} ${module_PARTS})
   target_sources(continuo_${name} PRIVATE $<TARGET_OBJECTS:${target}>)

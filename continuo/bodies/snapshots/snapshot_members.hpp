@@ -1,4 +1,7 @@
-// Writes a world and the internal state of its motion as bytes, and reads them back with every value checked.
+// continuo/bodies/snapshots/snapshot_members.hpp
+// Writes a world and the internal state of its motion as bytes, and reads them back with every value checked. Compiled
+// once for each kind of number.
+#pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,9 +12,9 @@
 
 namespace continuo {
 
-namespace {
+namespace detail::snapshots {
 
-constexpr std::array<char, 8> magic{'c', 'o', 'n', 't', 'i', 'n', 'u', 'o'};
+inline constexpr std::array<char, 8> magic{'c', 'o', 'n', 't', 'i', 'n', 'u', 'o'};
 
 enum class Of : std::uint8_t { world, exact_motion, fast_motion };
 
@@ -87,7 +90,7 @@ void transfer_list(Archive& archive, std::vector<T>& values) {
   }
 }
 
-}  // namespace
+}  // namespace detail::snapshots
 
 /// The private parts of a world.
 struct SnapshotAccess {
@@ -107,12 +110,12 @@ struct SnapshotAccess {
     archive(laws);
     if constexpr (Archive::reads)
       archive.expect(laws == laws_here(), "the world that was saved had another number of laws of forces or torques");
-    transfer_list(archive, world.springs);
-    transfer_list(archive, world.walls_);
+    detail::snapshots::transfer_list(archive, world.springs);
+    detail::snapshots::transfer_list(archive, world.walls_);
     archive(world.position), archive(world.velocity), archive(world.constant_force), archive(world.orientation);
     archive(world.spin), archive(world.radius), archive(world.mass), archive(world.inverse_mass);
     archive(world.inverse_inertia);
-    transfer_list(archive, world.material);
+    detail::snapshots::transfer_list(archive, world.material);
     archive(world.group_), archive(world.slot_of_), archive(world.free_slots_);
     auto slots = static_cast<std::uint64_t>(world.slots_.size());
     archive(slots);
@@ -133,10 +136,11 @@ struct SnapshotAccess {
     bool are_as_many = true;
     world.for_each_array(world, [&](const auto& values) { are_as_many = are_as_many && values.size() == n; });
     if (!are_as_many) return archive.fail("bodies of which some parts are missing");
-    archive.expect(is_number(world.time) && is_finite(world.gravity), "a time or gravity that is not finite");
+    archive.expect(detail::snapshots::is_number(world.time) && is_finite(world.gravity),
+                   "a time or gravity that is not finite");
     for (const Real& value : {world.attraction.constant, world.attraction.softening, world.attraction.opening,
                               world.drag.linear, world.drag.quadratic})
-      archive.expect(is_number(value), "a force that is not finite");
+      archive.expect(detail::snapshots::is_number(value), "a force that is not finite");
     for (std::size_t i = 0; i < n && archive.ok(); ++i)
       if (const char* fault = fault_of_body(world, i)) archive.fail("body " + std::to_string(i) + ": " + fault);
     std::size_t used = 0;
@@ -156,16 +160,19 @@ struct SnapshotAccess {
     if (!is_finite(world.position[i]) || !is_finite(world.velocity[i]) || !is_finite(world.spin[i]) ||
         !is_finite(world.orientation[i]) || !is_finite(world.constant_force[i]))
       return "place, motion or force is not finite";
-    if (!(world.radius[i] > Real(0)) || !is_number(world.radius[i])) return "the radius must be greater than 0";
-    if (!(world.mass[i] > Real(0)) || !is_number(world.mass[i])) return "the mass must be greater than 0";
-    if (!is_inverse(world.inverse_mass[i]) || !is_inverse(world.inverse_inertia[i]) ||
+    if (!(world.radius[i] > Real(0)) || !detail::snapshots::is_number(world.radius[i]))
+      return "the radius must be greater than 0";
+    if (!(world.mass[i] > Real(0)) || !detail::snapshots::is_number(world.mass[i]))
+      return "the mass must be greater than 0";
+    if (!detail::snapshots::is_inverse(world.inverse_mass[i]) ||
+        !detail::snapshots::is_inverse(world.inverse_inertia[i]) ||
         (world.inverse_mass[i] > Real(0)) != (world.inverse_inertia[i] > Real(0)))
       return "the inverse of the mass must be that of a body that moves, or 0";
     return world.group_[i] < 32 ? nullptr : "groups are numbered from 0 to 31";
   }
 };
 
-namespace {
+namespace detail::snapshots {
 
 template <class Real, int Dim, class WriteMotion>
 Bytes written(const World<Real, Dim>& world, Of of, WriteMotion&& write_motion) {
@@ -179,7 +186,7 @@ Bytes written(const World<Real, Dim>& world, Of of, WriteMotion&& write_motion) 
 }
 
 /// Bytes that cannot be read.
-Status corrupt(std::string message) {
+inline Status corrupt(std::string message) {
   return {.ending = Ending::unreadable, .message = std::move(message)};
 }
 
@@ -214,30 +221,33 @@ Status read(std::span<const std::byte> bytes, World<Real, Dim>& world, ReadMotio
   return reader.status();
 }
 
-}  // namespace
+}  // namespace detail::snapshots
 
 template <class Real, int Dim>
 Bytes snapshot(const World<Real, Dim>& world) {
-  return written(world, Of::world, [](ByteWriter&) {});
+  return detail::snapshots::written(world, detail::snapshots::Of::world, [](ByteWriter&) {});
 }
 template <class Real, int Dim>
 Bytes snapshot(const World<Real, Dim>& world, const ExactMotion<Real, Dim>& motion) {
-  return written(world, Of::exact_motion, [&](ByteWriter& writer) { motion.save(writer); });
+  return detail::snapshots::written(world, detail::snapshots::Of::exact_motion,
+                                    [&](ByteWriter& writer) { motion.save(writer); });
 }
 template <class Real, int Dim>
 Bytes snapshot(const World<Real, Dim>& world, const FastMotion<Real, Dim>& motion) {
-  return written(world, Of::fast_motion, [&](ByteWriter& writer) { motion.save(writer); });
+  return detail::snapshots::written(world, detail::snapshots::Of::fast_motion,
+                                    [&](ByteWriter& writer) { motion.save(writer); });
 }
 
 template <class Real, int Dim>
 Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world) {
-  return read(bytes, world, [&](ByteReader& reader, Of of, World<Real, Dim>& found) {
-    if (of == Of::world) reader.expect_end();
-    if (reader.ok()) world = std::move(found);
-  });
+  return detail::snapshots::read(bytes, world,
+                                 [&](ByteReader& reader, detail::snapshots::Of of, World<Real, Dim>& found) {
+                                   if (of == detail::snapshots::Of::world) reader.expect_end();
+                                   if (reader.ok()) world = std::move(found);
+                                 });
 }
 
-namespace {
+namespace detail::snapshots {
 
 template <class Real, int Dim, class Motion>
 Status restore_both(std::span<const std::byte> bytes, World<Real, Dim>& world, Motion& motion, Of expected) {
@@ -250,40 +260,15 @@ Status restore_both(std::span<const std::byte> bytes, World<Real, Dim>& world, M
   });
 }
 
-}  // namespace
+}  // namespace detail::snapshots
 
 template <class Real, int Dim>
 Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, ExactMotion<Real, Dim>& motion) {
-  return restore_both(bytes, world, motion, Of::exact_motion);
+  return detail::snapshots::restore_both(bytes, world, motion, detail::snapshots::Of::exact_motion);
 }
 template <class Real, int Dim>
 Status restore(std::span<const std::byte> bytes, World<Real, Dim>& world, FastMotion<Real, Dim>& motion) {
-  return restore_both(bytes, world, motion, Of::fast_motion);
+  return detail::snapshots::restore_both(bytes, world, motion, detail::snapshots::Of::fast_motion);
 }
-
-template Bytes snapshot(const World<float, 2>&);
-template Bytes snapshot(const World<float, 3>&);
-template Bytes snapshot(const World<double, 2>&);
-template Bytes snapshot(const World<double, 3>&);
-template Bytes snapshot(const World<float, 2>&, const ExactMotion<float, 2>&);
-template Bytes snapshot(const World<float, 3>&, const ExactMotion<float, 3>&);
-template Bytes snapshot(const World<double, 2>&, const ExactMotion<double, 2>&);
-template Bytes snapshot(const World<double, 3>&, const ExactMotion<double, 3>&);
-template Bytes snapshot(const World<float, 2>&, const FastMotion<float, 2>&);
-template Bytes snapshot(const World<float, 3>&, const FastMotion<float, 3>&);
-template Bytes snapshot(const World<double, 2>&, const FastMotion<double, 2>&);
-template Bytes snapshot(const World<double, 3>&, const FastMotion<double, 3>&);
-template Status restore(std::span<const std::byte>, World<float, 2>&);
-template Status restore(std::span<const std::byte>, World<float, 3>&);
-template Status restore(std::span<const std::byte>, World<double, 2>&);
-template Status restore(std::span<const std::byte>, World<double, 3>&);
-template Status restore(std::span<const std::byte>, World<float, 2>&, ExactMotion<float, 2>&);
-template Status restore(std::span<const std::byte>, World<float, 3>&, ExactMotion<float, 3>&);
-template Status restore(std::span<const std::byte>, World<double, 2>&, ExactMotion<double, 2>&);
-template Status restore(std::span<const std::byte>, World<double, 3>&, ExactMotion<double, 3>&);
-template Status restore(std::span<const std::byte>, World<float, 2>&, FastMotion<float, 2>&);
-template Status restore(std::span<const std::byte>, World<float, 3>&, FastMotion<float, 3>&);
-template Status restore(std::span<const std::byte>, World<double, 2>&, FastMotion<double, 2>&);
-template Status restore(std::span<const std::byte>, World<double, 3>&, FastMotion<double, 3>&);
 
 }  // namespace continuo
