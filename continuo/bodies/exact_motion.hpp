@@ -23,7 +23,7 @@
 // that would rebound from a wall for less than the contact time rests on it. Two bodies that would rebound from each
 // other for less than that have no parabolas: together with the bodies near them they form an island, which moves as
 // under other forces until its bodies have not touched each other for some time. All other bodies stay on their
-// parabolas, see islands.cpp.
+// parabolas, see islands.hpp.
 #pragma once
 #include <cstddef>
 #include <memory>

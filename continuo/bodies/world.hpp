@@ -175,7 +175,7 @@ class World {
   [[nodiscard]] bool is_fixed(std::size_t i) const { return inverse_mass[i] == Real(0); }
 
  private:
-  friend struct SnapshotAccess;  // snapshot.cpp
+  friend struct SnapshotAccess;  // snapshots/snapshot_members.hpp
   static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
   struct Slot {
     std::uint32_t index = nowhere, generation = 0;

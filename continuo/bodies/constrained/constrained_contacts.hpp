@@ -166,7 +166,7 @@ class ConstrainedContacts {
     lasting = std::move(now);
     note_together(world_.time, journal);
   }
-  /// Notes time t for bodies that lie on another body, or on two walls of which one has friction: event_driven.cpp has
+  /// Notes time t for bodies that lie on another body, or on two walls of which one has friction: event_driven.hpp has
   /// no parabola for them.
   void note_together(const Real& t, const Journal& journal) const {
     const auto friction = [&](const Touching& at) {

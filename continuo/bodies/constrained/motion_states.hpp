@@ -1,5 +1,5 @@
 // The state machine of the exact motion under forces: its states, its events, and the table of its transitions.
-// constrained_motion.cpp has a function for each state.
+// constrained_motion.hpp has a function for each state.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -103,18 +103,18 @@ template <class Real, int Dim>
   return {};
 }
 
-/// The engine for parabolas, from event to event: event_driven.cpp.
+/// The engine for parabolas, from event to event: event_driven.hpp.
 template <class Real, int Dim>
 [[nodiscard]] std::unique_ptr<ParabolicEngine<Real, Dim>> event_driven(World<Real, Dim>& world,
                                                                        const ExactOptions<Real>& options);
 
-/// The engine for any forces, from contact to contact by an error-controlled method: constrained_motion.cpp.
+/// The engine for any forces, from contact to contact by an error-controlled method: constrained_motion.hpp.
 template <class Real, int Dim>
 [[nodiscard]] std::unique_ptr<ContactEngine<Real, Dim>> constrained_motion(World<Real, Dim>& world,
                                                                            const ExactOptions<Real>& options,
                                                                            Companions<Real, Dim>* companions);
 
-/// The event-driven engine, with the constrained one for bodies that lie on each other: islands.cpp.
+/// The event-driven engine, with the constrained one for bodies that lie on each other: islands.hpp.
 template <class Real, int Dim>
 [[nodiscard]] std::unique_ptr<ExactEngine<Real, Dim>> islands(World<Real, Dim>& world,
                                                               const ExactOptions<Real>& options);

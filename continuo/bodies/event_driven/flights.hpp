@@ -47,7 +47,7 @@ template <class Real, int Dim>
   }
   using std::pow;
   const Real spacing = Real(pow(room / static_cast<Real>(n), Real(1) / Real(Dim)));
-  // Proxies of bodies are wider than these by a quarter, see islands.cpp.
+  // Proxies of bodies are wider than these by a quarter, see islands.hpp.
   const Real more = world.gravity == Vector<Real, Dim>{} ? Real(1) : Real(1.25);
   return std::max(2 * more * widest, std::min(spacing, 1000 * widest)) * Real(1.0001);
 }
