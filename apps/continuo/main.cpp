@@ -51,6 +51,7 @@ int command(int argc, char** argv) {
   add_methods(app, exit);
   add_explain(app, exit);
   add_new(app, exit);
+  add_help(app, exit);
 
   for (CLI::App* verb : app.get_subcommands({})) refuse_empty(*verb);
   if (argc == 1) {

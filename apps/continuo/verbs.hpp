@@ -27,5 +27,6 @@ void add_fit(CLI::App& app, ExitCode& exit);
 void add_methods(CLI::App& app, ExitCode& exit);
 void add_explain(CLI::App& app, ExitCode& exit);
 void add_new(CLI::App& app, ExitCode& exit);
+void add_help(CLI::App& app, ExitCode& exit);
 
 }  // namespace continuo::app

@@ -29,6 +29,35 @@ TEST(Usage, HelpBeginsWithExamples) {
   }
 }
 
+TEST(Usage, HelpOfAVerbIsAVerbToo) {
+  const Shell shell;
+  EXPECT_EQ(shell.run("help").out, shell.run("--help").out);
+  EXPECT_EQ(shell.run("help run").out, shell.run("run --help").out);
+  const Result wrong = shell.run("help rnu");
+  EXPECT_EQ(wrong.exit, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("did you mean `run`?"));
+}
+
+TEST(Usage, ThePageOfAVerbIsMadeOfItsDeclarations) {
+  const Shell shell;
+  const std::string pages = shell.run("help --markdown").out;
+  EXPECT_THAT(pages, StartsWith("# The command continuo\n"));
+  EXPECT_THAT(pages, HasSubstr("| [continuo orbit](verb_orbit.md) | "));
+  EXPECT_THAT(pages, HasSubstr("| 130 | "));
+  const std::string run = shell.run("help run --markdown").out;
+  EXPECT_THAT(run, StartsWith("# continuo run\n"));
+  EXPECT_THAT(run, HasSubstr("\ncontinuo run file [OPTIONS]\n"));
+  EXPECT_THAT(run, HasSubstr("| `--step` | `H` | Fixed step size. Not together with `--atol`, `--max-step`, "));
+  EXPECT_THAT(run, HasSubstr("| `-o`, `--out` | `FILE` | "));
+  EXPECT_THAT(run, HasSubstr("| 4 | "));
+  EXPECT_THAT(run, HasSubstr("<!-- json: continuo run models/"));
+  // Options that only explain why there is no such option are on no page.
+  const std::string fit = shell.run("help fit --markdown").out;
+  EXPECT_THAT(fit, Not(HasSubstr("`--until`")));
+  EXPECT_THAT(fit, HasSubstr("| `--param` | `NAMES` | "));
+  EXPECT_THAT(shell.run("help methods --markdown").out, Not(HasSubstr("| 3 | ")));
+}
+
 TEST(Usage, NothingAskedShowsTheHelpAndFails) {
   const Result result = Shell().run("");
   EXPECT_EQ(result.exit, 1);

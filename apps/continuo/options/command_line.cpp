@@ -58,10 +58,17 @@ std::string with_hint(std::string message, const std::string& hint) {
 
 }  // namespace
 
-CLI::App* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples) {
-  CLI::App* verb = app.add_subcommand(std::move(name), std::move(description));
+Verb::Verb(CLI::App& app, std::string name, std::string description)
+    : CLI::App(std::move(description), std::move(name), &app) {}
+
+Verb* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples,
+               std::vector<ExitCode> failures) {
+  auto verb = std::make_shared<Verb>(app, std::move(name), std::move(description));
+  verb->examples = examples;
+  verb->failures = std::move(failures);
   examples_first(*verb, examples);
-  return verb;
+  app.add_subcommand(verb);
+  return verb.get();
 }
 
 void examples_first(CLI::App& app, std::string_view examples) {
@@ -116,12 +123,16 @@ void refuse_empty(CLI::App& verb) {
     if (option->get_items_expected_max() > 0) option->check(not_empty);
 }
 
+std::string no_such_verb(const CLI::App& app, std::string_view word) {
+  return with_hint(fmt::format("there is no verb `{}`", word), model::did_you_mean(word, verb_names(app)));
+}
+
 std::string unexpected(const CLI::App& app, int argc, char** argv) {
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
     for (const char* word : std::span(argv, static_cast<std::size_t>(argc)).subspan(1)) {
       if (*word == '-') continue;
-      return with_hint(fmt::format("there is no verb `{}`", word), model::did_you_mean(word, verb_names(app)));
+      return no_such_verb(app, word);
     }
   }
   const CLI::App& verb = chosen.empty() ? app : *chosen.front();

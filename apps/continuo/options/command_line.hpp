@@ -4,14 +4,28 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>
+#include <apps/continuo/terminal/exit_codes.hpp>
 
 namespace continuo::app {
 
-/// A verb whose help begins with `examples` (lines of `continuo VERB ...`).
-CLI::App* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples);
+/// A verb, with the facts that only its page in the reference states.
+class Verb : public CLI::App {
+ public:
+  Verb(CLI::App& app, std::string name, std::string description);
+
+  std::string examples;
+  std::vector<ExitCode> failures;          // its exit codes besides `done` and `usage`
+  std::vector<std::string> json_examples;  // commands on models of the gallery: their output shows the layout of --json
+};
+
+/// A verb whose help begins with `examples` (lines of `continuo VERB ...`). `failures`: its exit codes besides `done`
+/// and `usage`, which all verbs have.
+Verb* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples,
+               std::vector<ExitCode> failures);
 
 /// Help of every verb begins with its examples.
 void examples_first(CLI::App& app, std::string_view examples);
@@ -30,6 +44,9 @@ CLI::Validator number_above(double least);
 CLI::Validator number_between(double least, double below);
 /// A text that is empty, as an unset variable of a shell leaves it, is no value of any option.
 void refuse_empty(CLI::App& verb);
+
+/// The message for a word that names no verb, with the nearest name.
+std::string no_such_verb(const CLI::App& app, std::string_view word);
 
 /// What to say of words that no verb or option takes.
 std::string unexpected(const CLI::App& app, int argc, char** argv);

@@ -13,7 +13,7 @@ using nlohmann::json;
 json equilibria_json(const std::vector<ExploredEquilibrium>& equilibria) {
   json list = json::array();
   for (const ExploredEquilibrium& equilibrium : equilibria) {
-    list.push_back({{"x", equilibrium.at.x}, {"eigenvalues", json_of(equilibrium.at.eigenvalues)}});
+    list.push_back({{"x", equilibrium.at.x}, {"eigenvalues", app::json_of(equilibrium.at.eigenvalues)}});
     list.back()["stability"] = equilibrium.jump ? "undecided" : std::string(to_string(equilibrium.at.stability));
     if (equilibrium.jump) list.back()["jump"] = *equilibrium.jump;
   }

@@ -113,7 +113,7 @@ std::string json_text(const model::Model& model, const studies::HybridOrbit& fou
                         {"x", found.start.x},
                         {"min", found.low},
                         {"max", found.high},
-                        {"multipliers", json_of(found.multipliers)},
+                        {"multipliers", app::json_of(found.multipliers)},
                         {"stable", found.neighbours == studies::HybridOrbit::Neighbours::come_nearer},
                         {"family", found.family},
                         {"settled", !found.found_nearby},

@@ -96,7 +96,9 @@ void add_check(CLI::App& app, ExitCode& exit) {
       "  continuo check models/          every model of a folder\n"
       "  continuo check spring.sim --json\n"
       "  continuo check spring.sim --jacobian   df/dx and df/dt against differences, along a run\n";
-  CLI::App* verb = add_verb(app, "check", "Checks text, names and units of models, and their derivatives", examples);
+  Verb* verb = add_verb(app, "check", "Checks text, names and units of models, and their derivatives", examples,
+                        {wrong_model, numerical_failure, check_failed, interrupted});
+  verb->json_examples = {"continuo check models/pendulum.sim --jacobian --json"};
   auto request = std::make_shared<CheckRequest>();
   verb->add_option("files", request->files, "Models, or folders of models")->required()->type_name("");
   verb->add_flag("--json", request->json, "Prints the messages as JSON, one array per file");

@@ -126,8 +126,9 @@ void add_compare(CLI::App& app, ExitCode& exit) {
       "  continuo compare models/mass_spring.sim --methods euler,semi_implicit_euler,rk4 --step 0.1,0.05\n"
       "  continuo compare models/kepler.sim --methods dop853,tsitouras5 --tol 1e-6,1e-9 --plot methods.svg\n"
       "  continuo compare models/chain.sim --methods exact,central_difference,explicit_euler --step 0.005\n";
-  CLI::App* verb =
-      add_verb(app, "compare", "Compares errors and cost of several methods and steps on a model", examples);
+  Verb* verb = add_verb(app, "compare", "Compares errors and cost of several methods and steps on a model", examples,
+                        {wrong_model, numerical_failure, interrupted});
+  verb->json_examples = {"continuo compare models/mass_spring.sim --methods euler,rk4 --step 0.1 --json"};
   auto options = std::make_shared<CompareOptions>();
   add_experiment(*verb, options->experiment);
   verb->add_option("--methods", options->methods, "Methods, separated by commas")

@@ -104,7 +104,9 @@ void add_converge(CLI::App& app, ExitCode& exit) {
       "  continuo converge models/kepler.sim --methods adams --tol 1e-3,1e-5,1e-7\n"
       "  continuo converge models/chain.sim --methods fast,rk4 --until 2         bodies, against their exact motion\n"
       "  continuo converge --derivative \"sin(x)\" --at 1            difference schemes for f' and f''\n";
-  CLI::App* verb = add_verb(app, "converge", "Measures the order of methods, and the limit set by rounding", examples);
+  Verb* verb = add_verb(app, "converge", "Measures the order of methods, and the limit set by rounding", examples,
+                        {wrong_model, numerical_failure, interrupted});
+  verb->json_examples = {"continuo converge models/mass_spring_damper.sim --methods rk4 --most-steps 256 --json"};
   auto options = std::make_shared<ConvergeOptions>();
   add_experiment(*verb, options->experiment);
   verb->get_option("file")->required(false);

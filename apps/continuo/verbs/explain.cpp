@@ -44,7 +44,7 @@ void add_explain(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo explain E201     its meaning, an example, a remedy\n"
       "  continuo explain          all codes\n";
-  CLI::App* verb = add_verb(app, "explain", "Explains the code of a message", examples);
+  Verb* verb = add_verb(app, "explain", "Explains the code of a message", examples, {});
   auto code = std::make_shared<std::string>();
   verb->add_option("code", *code, "The code of the message, E201")->type_name("");
   verb->callback([&exit, code] { exit = code->empty() ? list() : explain(*code); });

@@ -43,8 +43,9 @@ void add_explore(CLI::App& app, ExitCode& exit) {
       "and open questions\n"
       "  continuo explore models/van_der_pol_stiff.sim --plot page.svg\n"
       "  continuo explore models/mass_spring_damper.sim --json\n";
-  CLI::App* verb =
-      add_verb(app, "explore", "Gives an overview of a model: run, equilibria, orbits, parameters", examples);
+  Verb* verb = add_verb(app, "explore", "Gives an overview of a model: run, equilibria, orbits, parameters", examples,
+                        {wrong_model, interrupted});
+  verb->json_examples = {"continuo explore models/mass_spring_damper.sim --json"};
   auto options = std::make_shared<ExploreOptions>();
   add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");

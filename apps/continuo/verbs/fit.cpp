@@ -92,7 +92,11 @@ void add_fit(CLI::App& app, ExitCode& exit) {
       "  continuo fit spring.sim measured.csv --param k,c --initial x --loss huber --plot fit.svg\n"
       "  continuo fit spring.sim a.csv b.csv --param k --in b.csv:m=2 --column \"pos=x\" --sigma pos=0.01\n"
       "  continuo fit decay.sim counts.csv --param a --log a --error n=poisson --profile --json\n";
-  CLI::App* verb = add_verb(app, "fit", "Finds parameters and initial values from measurements", examples);
+  Verb* verb = add_verb(app, "fit", "Finds parameters and initial values from measurements", examples,
+                        {wrong_model, numerical_failure, interrupted});
+  verb->json_examples = {
+      "continuo run models/mass_spring_damper.sim -o measured.csv && continuo fit models/mass_spring_damper.sim "
+      "measured.csv --param k,c --profile --json"};
   auto options = std::make_shared<FitOptions>();
   add_model(*verb, options->experiment);
   refuse_option(*verb, "--until", "a fit's runs end with each data file's last time");

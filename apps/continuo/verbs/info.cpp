@@ -23,8 +23,8 @@ ExitCode info(const std::string& path) {
 }  // namespace
 
 void add_info(CLI::App& app, ExitCode& exit) {
-  CLI::App* verb = add_verb(app, "info", "Shows the equations, states, parameters, events and experiment of a model",
-                            "  continuo info models/bouncing_ball.sim\n");
+  Verb* verb = add_verb(app, "info", "Shows the equations, states, parameters, events and experiment of a model",
+                        "  continuo info models/bouncing_ball.sim\n", {wrong_model});
   auto path = std::make_shared<std::string>();
   verb->add_option("file", *path, "The model")->required()->type_name("");
   verb->callback([&exit, path] { exit = info(*path); });

@@ -169,7 +169,9 @@ void add_linearize(CLI::App& app, ExitCode& exit) {
       "damping\n"
       "  continuo linearize models/pendulum.sim --at theta=3.14159  at another point\n"
       "  continuo linearize models/lorenz.sim --start --json\n";
-  CLI::App* verb = add_verb(app, "linearize", "Linearizes a model at a point, and prints its modes", examples);
+  Verb* verb = add_verb(app, "linearize", "Linearizes a model at a point, and prints its modes", examples,
+                        {wrong_model, numerical_failure});
+  verb->json_examples = {"continuo linearize models/mass_spring_damper.sim --json"};
   auto options = std::make_shared<LinearizeOptions>();
   add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");

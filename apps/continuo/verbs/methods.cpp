@@ -113,7 +113,7 @@ void add_methods(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo methods\n  continuo methods --why models/lorenz.sim\n  continuo run models/kepler.sim --method "
       "dop853\n";
-  CLI::App* verb = add_verb(app, "methods", "Lists the integration methods", examples);
+  Verb* verb = add_verb(app, "methods", "Lists the integration methods", examples, {wrong_model});
   auto file = std::make_shared<std::string>();
   verb->add_option("--why", *file, "Shows the method chosen for this model, and the reason")->type_name("FILE");
   verb->callback([&exit, file] { exit = file->empty() ? methods() : why(*file); });

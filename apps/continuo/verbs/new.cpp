@@ -81,7 +81,7 @@ ExitCode write_starter(const std::string& name) {
 
 void add_new(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples = "  continuo new spring       writes spring.sim\n";
-  CLI::App* verb = add_verb(app, "new", "Writes a commented model to start from", examples);
+  Verb* verb = add_verb(app, "new", "Writes a commented model to start from", examples, {});
   auto name = std::make_shared<std::string>();
   verb->add_option("name", *name, "Name of the file, with or without .sim")->required()->type_name("");
   verb->callback([&exit, name] { exit = write_starter(*name); });

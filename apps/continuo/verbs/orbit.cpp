@@ -105,7 +105,7 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
     for (const model::State& state : model.states) states.push_back(state.column);
     nlohmann::json json{{"states", states},       {"period", found.period},
                         {"x", found.orbit(0)},    {"min", extents.low},
-                        {"max", extents.high},    {"multipliers", json_of(found.multipliers)},
+                        {"max", extents.high},    {"multipliers", app::json_of(found.multipliers)},
                         {"stable", found.stable}, {"advance", found.advance}};
     add_conserved(json, studied);
     print(json.dump(2) + "\n");
@@ -222,7 +222,11 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
       "forces\n"
       "  continuo orbit models/lorenz.sim --lyapunov --duration 5000              Lyapunov exponents\n"
       "  continuo orbit models/lorenz.sim --section z=27 --duration 500 -o s.csv  a Poincare section\n";
-  CLI::App* verb = add_verb(app, "orbit", "Finds periodic orbits, Poincare sections, or Lyapunov exponents", examples);
+  Verb* verb = add_verb(app, "orbit", "Finds periodic orbits, Poincare sections, or Lyapunov exponents", examples,
+                        {wrong_model, numerical_failure, interrupted});
+  verb->json_examples = {"continuo orbit models/van_der_pol_stiff.sim --set mu=1 --json",
+                         "continuo orbit models/van_der_pol_stiff.sim --set mu=1 --along mu=0.5..2 --json",
+                         "continuo orbit models/lorenz.sim --lyapunov --duration 100 --json"};
   auto options = std::make_shared<OrbitOptions>();
   add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");

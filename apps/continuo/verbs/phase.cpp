@@ -210,7 +210,9 @@ void add_phase(CLI::App& app, ExitCode& exit) {
       "  continuo phase models/pendulum.sim --plot pendulum.svg\n"
       "  continuo phase models/predator_prey.sim --box hares=0..4,lynxes=0..3 --plot plane.svg\n"
       "  continuo phase models/pendulum.sim --start \"theta=1;theta'=0\" --plot one.svg\n";
-  CLI::App* verb = add_verb(app, "phase", "Draws the phase plane of a model with two states", examples);
+  Verb* verb =
+      add_verb(app, "phase", "Draws the phase plane of a model with two states", examples, {wrong_model, interrupted});
+  verb->json_examples = {"continuo phase models/pendulum.sim --json"};
   auto options = std::make_shared<PhaseOptions>();
   add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");

@@ -122,7 +122,10 @@ void add_replay(CLI::App& app, ExitCode& exit) {
       "  continuo run gas.sim --record gas.run                      runs a world and records it\n"
       "  continuo replay gas.run                                    its results, without simulating\n"
       "  continuo replay gas.run -o gas.nc --plot gas.svg           its rows and a plot\n";
-  CLI::App* verb = add_verb(app, "replay", "Shows, plots or writes a recorded run, without simulating", examples);
+  Verb* verb = add_verb(app, "replay", "Shows, plots or writes a recorded run, without simulating", examples,
+                        {wrong_model, numerical_failure, check_failed, interrupted});
+  verb->json_examples = {
+      "continuo run models/newtons_cradle.sim --record cradle.run && continuo replay cradle.run --json"};
   auto request = std::make_shared<ReplayRequest>();
   verb->add_option("file", request->file, "A recording, written by --record")->required()->type_name("");
   add_outputs(*verb, request->outputs);
@@ -134,8 +137,11 @@ void add_resume(CLI::App& app, ExitCode& exit) {
       "  continuo resume gas.run                                    continues an interrupted run to its end\n"
       "  continuo resume gas.run --until 100 --record longer.run    continues beyond its end\n"
       "  continuo resume gas.run --at 20 -o gas.csv                 restarts from the last snapshot before t = 20\n";
-  CLI::App* verb = add_verb(
-      app, "resume", "Continues a recorded run, with bitwise the same results as without interruption", examples);
+  Verb* verb =
+      add_verb(app, "resume", "Continues a recorded run, with bitwise the same results as without interruption",
+               examples, {wrong_model, numerical_failure, check_failed, interrupted});
+  verb->json_examples = {
+      "continuo run models/newtons_cradle.sim --record cradle.run && continuo resume cradle.run --json"};
   auto request = std::make_shared<ReplayRequest>();
   verb->add_option("file", request->file, "A recording, written by --record")->required()->type_name("");
   verb->add_option("--at", request->at, "Starts from the last snapshot at or before this time (default: the last one)")

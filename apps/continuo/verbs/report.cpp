@@ -91,7 +91,8 @@ void add_report(CLI::App& app, ExitCode& exit) {
       "  continuo report models/bouncing_ball.sim -o ball.html\n"
       "  continuo report models/lorenz.sim --with steady --with \"steady --along rho=0..30\" -o lorenz.html\n"
       "  continuo report models/pendulum.sim --with \"phase --box theta=-7..7\" --with linearize -o pendulum.html\n";
-  CLI::App* verb = add_verb(app, "report", "Writes a page with a model, its run and studies of it", examples);
+  Verb* verb = add_verb(app, "report", "Writes a page with a model, its run and studies of it", examples,
+                        {wrong_model, numerical_failure, interrupted});
   auto options = std::make_shared<ReportOptions>();
   verb->add_option("file", options->file, "The model")->required()->type_name("");
   verb->add_option("--with", options->studies,

@@ -109,7 +109,10 @@ void add_run(CLI::App& app, ExitCode& exit) {
       "  continuo run bratu.sim --family p=0.1..4 --plot bratu.svg  all solutions along p, around folds and at branch "
       "points\n"
       "  continuo run ball.sim --json                               outcome, state, events, cost\n";
-  CLI::App* verb = add_verb(app, "run", "Runs a model and shows, plots or writes its motion", examples);
+  Verb* verb = add_verb(app, "run", "Runs a model and shows, plots or writes its motion", examples,
+                        {wrong_model, numerical_failure, check_failed, interrupted});
+  verb->json_examples = {"continuo run models/bouncing_ball.sim --json",
+                         "continuo run models/bratu.sim --family lambda=0.1..4 --json"};
   auto request = std::make_shared<RunRequest>();
   add_experiment(*verb, request->experiment);
   add_method(*verb, request->experiment);

@@ -192,8 +192,11 @@ void add_sense(CLI::App& app, ExitCode& exit) {
       "  continuo sense models/bouncing_ball.sim --param e,g --until 8 --plot ball.svg\n"
       "  continuo sense models/lorenz.sim --initial x --until 5 -o growth.csv\n"
       "  continuo sense models/thermostat.sim --param tau,high --of period      and --of events, --of equilibrium\n";
-  CLI::App* verb = add_verb(
-      app, "sense", "Computes sensitivities: derivatives of a motion by parameters and initial values", examples);
+  Verb* verb =
+      add_verb(app, "sense", "Computes sensitivities: derivatives of a motion by parameters and initial values",
+               examples, {wrong_model, numerical_failure, interrupted});
+  verb->json_examples = {"continuo sense models/mass_spring_damper.sim --param k,c --json",
+                         "continuo sense models/lorenz.sim --param rho --of equilibrium --json"};
   auto options = std::make_shared<SenseOptions>();
   add_experiment(*verb, options->experiment);
   verb->add_option("--param", options->parameters, "Parameters, separated by commas")

@@ -200,7 +200,10 @@ void add_steady(CLI::App& app, ExitCode& exit) {
       "  continuo steady models/lorenz.sim --along rho=0..30 --plot branches.svg -o branches.csv\n"
       "  continuo steady models/lorenz.sim --along rho=0..30 --and sigma=5..20   bifurcation curves in two parameters\n"
       "  continuo steady models/pendulum.sim --box theta=-7..7          restricts the search\n";
-  CLI::App* verb = add_verb(app, "steady", "Finds the equilibria of a model and their stability", examples);
+  Verb* verb = add_verb(app, "steady", "Finds the equilibria of a model and their stability", examples,
+                        {wrong_model, numerical_failure, interrupted});
+  verb->json_examples = {"continuo steady models/lorenz.sim --json",
+                         "continuo steady models/lorenz.sim --along rho=0..30 --json"};
   auto options = std::make_shared<SteadyOptions>();
   add_model(*verb, options->experiment);
   verb->add_option("--mode", options->mode, "The mode whose equations are used")->type_name("NAME");

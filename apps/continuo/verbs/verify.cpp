@@ -97,7 +97,8 @@ void add_verify(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo verify models/            every model of a folder\n"
       "  continuo verify ball.sim spring.sim\n";
-  CLI::App* verb = add_verb(app, "verify", "Runs models and tests all of their checks", examples);
+  Verb* verb = add_verb(app, "verify", "Runs models and tests all of their checks", examples,
+                        {wrong_model, numerical_failure, check_failed, interrupted});
   auto places = std::make_shared<std::vector<std::string>>();
   verb->add_option("files", *places, "Models, or folders of models")->required()->type_name("");
   verb->callback([&exit, places] { exit = verify_all(*places); });

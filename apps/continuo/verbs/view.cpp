@@ -188,7 +188,7 @@ void add_view(CLI::App& app, ExitCode& exit) {
       "  continuo view ball.sim --export ball.html                  one page that replays the run, for a lecture\n"
       "  continuo view ball.sim --record frames/                    pictures, without a browser\n"
       "  continuo view ball.sim --listen 0.0.0.0 --port 8000        for others in this network too\n";
-  CLI::App* verb = add_verb(app, "view", "Shows a model live in the browser", examples);
+  Verb* verb = add_verb(app, "view", "Shows a model live in the browser", examples, {wrong_model});
   auto request = std::make_shared<ViewRequest>();
   add_model(*verb, request->experiment);
   add_method(*verb, request->experiment);
