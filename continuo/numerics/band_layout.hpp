@@ -6,6 +6,7 @@
 
 namespace continuo {
 
+/// The shape of a band matrix, and where its entries lie.
 struct BandLayout {
   std::size_t size = 0, lower = 0, upper = 0;  // diagonals below and above the main one
   std::size_t stride = 0;                      // from one diagonal to the next
@@ -25,6 +26,7 @@ struct BandLayout {
   }
   /// How many numbers; those no entry lies at are zero.
   [[nodiscard]] std::size_t numbers() const { return stride * (lower + upper + 1); }
+  /// The index of entry (row, column), which must be in the band.
   [[nodiscard]] std::size_t place(std::size_t row, std::size_t column) const {
     return (lower + column - row) * stride + row;
   }

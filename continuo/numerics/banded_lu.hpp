@@ -28,14 +28,18 @@
 
 namespace continuo {
 
+/// The factors of a band matrix, which solve for as many right-hand sides as wanted. For a matrix of n rows, factoring
+/// costs about n * lower * (lower + upper) products, a solution n * (2 lower + upper).
 template <class Number>
 class BandedLU {
  public:
   using Real = decltype(magnitude(Number{}));
 
   BandedLU() = default;
+  /// Allocates for matrices of this layout; nothing is allocated afterwards.
   explicit BandedLU(const BandLayout& layout);
 
+  /// The number of rows.
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Decomposes c M - J. `jacobian` is J as it lies in the layout, `mass` the diagonal of M, or empty for the identity.

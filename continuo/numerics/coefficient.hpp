@@ -20,6 +20,7 @@
 
 namespace continuo {
 
+/// An unevaluated sum of three doubles: a constant with some 46 digits, and arithmetic on it at compile time.
 class Coefficient {
  public:
   constexpr Coefficient() = default;
@@ -46,6 +47,8 @@ class Coefficient {
     }
   }
 
+  /// Sums, differences and products, with the last of the 46 digits rounded.
+  /// @{
   friend constexpr Coefficient operator-(const Coefficient& a) {
     return Coefficient(-a.part_[0], -a.part_[1], -a.part_[2]);
   }
@@ -61,6 +64,7 @@ class Coefficient {
     const double low = a.part_[0] * b.part_[2] + a.part_[1] * b.part_[1] + a.part_[2] * b.part_[0];
     return distil({p.value, q.value, r.value, p.error, q.error, r.error, low}, 7);
   }
+  /// @}
   /// Long division: each quotient removes some 53 bits of what is left.
   friend constexpr Coefficient operator/(const Coefficient& a, const Coefficient& b) {
     const double first = a.part_[0] / b.part_[0];
@@ -71,10 +75,14 @@ class Coefficient {
     return distil({first, second, third}, 3);
   }
 
+  /// Adds or subtracts in place.
+  /// @{
   constexpr Coefficient& operator+=(const Coefficient& b) { return *this = *this + b; }
   constexpr Coefficient& operator-=(const Coefficient& b) { return *this = *this - b; }
+  /// @}
 
   friend constexpr bool operator==(const Coefficient&, const Coefficient&) = default;
+  /// Whether it is exactly zero.
   [[nodiscard]] constexpr bool is_zero() const { return part_[0] == 0; }
 
  private:
@@ -182,11 +190,13 @@ template <class Real>
 struct CoefficientScalar {
   using type = Real;
 };
+/// The scalar of lanes and dual numbers: the number inside.
 template <class Real>
   requires std::floating_point<typename Real::Scalar>
 struct CoefficientScalar<Real> {
   using type = typename Real::Scalar;
 };
+/// The scalar in which a coefficient is multiplied with states of `Real`.
 template <class Real>
 using CoefficientOf = typename CoefficientScalar<Real>::type;
 

@@ -6,14 +6,20 @@
 
 namespace continuo {
 
+/// A complex number re + i im. Infinities and NaN get no special treatment.
 template <class Real>
 struct ComplexNumber {
   Real re{}, im{};
 
+  /// Zero.
   constexpr ComplexNumber() = default;
+  /// A real number.
   constexpr ComplexNumber(const Real& re_) : re(re_), im(Real(0)) {}
+  /// re + i im.
   constexpr ComplexNumber(const Real& re_, const Real& im_) : re(re_), im(im_) {}
 
+  /// The operations in place.
+  /// @{
   [[gnu::always_inline]] constexpr ComplexNumber& operator+=(const ComplexNumber& b) {
     return re += b.re, im += b.im, *this;
   }
@@ -21,7 +27,10 @@ struct ComplexNumber {
     return re -= b.re, im -= b.im, *this;
   }
   [[gnu::always_inline]] constexpr ComplexNumber& operator*=(const ComplexNumber& b) { return *this = *this * b; }
+  /// @}
 
+  /// Sum, difference, negative and product, by the formulas of the field, without a test for overflow.
+  /// @{
   [[gnu::always_inline]] friend constexpr ComplexNumber operator+(ComplexNumber a, const ComplexNumber& b) {
     return a += b;
   }
@@ -32,6 +41,7 @@ struct ComplexNumber {
   [[gnu::always_inline]] friend constexpr ComplexNumber operator*(const ComplexNumber& a, const ComplexNumber& b) {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
   }
+  /// @}
   friend constexpr bool operator==(const ComplexNumber&, const ComplexNumber&) = default;
 };
 

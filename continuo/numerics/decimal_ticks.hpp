@@ -77,11 +77,14 @@ template <class Real>
 class DecimalTicks {
  public:
   DecimalTicks() = default;
+  /// The instants from `first` on, `period` apart. The period must not be zero.
   DecimalTicks(Real first, Real period) : first_(first), period_(period) {
     if constexpr (std::is_same_v<Real, double>) align();
   }
 
+  /// The instant of number 0.
   [[nodiscard]] const Real& first() const { return first_; }
+  /// The distance of the instants.
   [[nodiscard]] const Real& period() const { return period_; }
 
   /// The instant of number k = 0, 1, 2, ...

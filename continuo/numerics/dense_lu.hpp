@@ -121,17 +121,22 @@ class PlainLU {
 
 }  // namespace detail
 
+/// For sizes that are too large to be written out, or known at run time only: loops over rows. Factoring costs n^3 / 3
+/// products, a solution n^2.
 template <class Number, std::size_t N = run_time_size>
 class DenseLU : public detail::PlainLU<Number, N> {
  public:
   using detail::PlainLU<Number, N>::PlainLU;
 };
 
+/// For at most eight rows, written out by the compiler.
 template <class Number, std::size_t N>
   requires(N <= greatest_small_size)
 class DenseLU<Number, N> : public detail::SmallLU<Number, N> {
  public:
+  /// The size is known already.
   explicit DenseLU(std::size_t) {}
+  /// The number of rows.
   static constexpr std::size_t size() { return N; }
 };
 
@@ -140,15 +145,20 @@ template <class Number, std::size_t N>
   requires(N > greatest_small_size && N <= greatest_listed_size)
 class DenseLU<Number, N> {
  public:
+  /// The size is known already; `size` must be N.
   explicit DenseLU(std::size_t size) : plain_(size) {}
+  /// The number of rows.
   static constexpr std::size_t size() { return N; }
+  /// The entries, row by row, to be filled before each call of `factor`.
   std::array<Number, N * N>& matrix() { return plain_.matrix(); }
 
+  /// Decomposes the matrix. False where a pivot is zero or not a number: the matrix is singular, or was not finite.
   bool factor() {
     const auto result = listed_.factor(plain_.matrix());
     is_listed_ = result != Listed::Result::not_listed;
     return is_listed_ ? result == Listed::Result::done : plain_.factor();
   }
+  /// b becomes the solution. `factor` must have succeeded.
   void solve(Number* b) const {
     if (is_listed_) {
       listed_.solve(b);

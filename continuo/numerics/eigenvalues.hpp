@@ -10,6 +10,7 @@
 
 namespace continuo {
 
+/// The eigenvalues of a matrix with their eigenvectors.
 struct Eigenvalues {
   bool found = false;  // false where the matrix is not finite, or the algorithm did not converge
   /// By descending real part; of a pair of conjugates the one with positive imaginary part first.

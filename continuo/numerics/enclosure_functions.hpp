@@ -69,10 +69,12 @@ template <class Real, class Function>
 
 }  // namespace enclosing
 
+/// The range of the sine. In -1..1, unless the angle is entirely unknown.
 template <class Real>
 [[nodiscard]] Enclosure<Real> sin(const Enclosure<Real>& a) {
   return enclosing::wave(a, Real(0.5), [](Real x) { return std::sin(x); });
 }
+/// The range of the cosine. In -1..1, unless the angle is entirely unknown.
 template <class Real>
 [[nodiscard]] Enclosure<Real> cos(const Enclosure<Real>& a) {
   return enclosing::wave(a, Real(0), [](Real x) { return std::cos(x); });
@@ -85,21 +87,25 @@ template <class Real>
   return enclosing::growing(a, [](Real x) { return std::tan(x); });
 }
 
+/// The range of the arc sine; the entire line where a reaches beyond -1..1.
 template <class Real>
 [[nodiscard]] Enclosure<Real> asin(const Enclosure<Real>& a) {
   if (!enclosing::is_within(a, Real(-1), Real(1))) return Enclosure<Real>::entire();
   return enclosing::growing(a, [](Real x) { return std::asin(x); });
 }
+/// The range of the arc cosine; the entire line where a reaches beyond -1..1.
 template <class Real>
 [[nodiscard]] Enclosure<Real> acos(const Enclosure<Real>& a) {
   if (!enclosing::is_within(a, Real(-1), Real(1))) return Enclosure<Real>::entire();
   return enclosing::growing(-a, [](Real x) { return std::acos(-x); });
 }
+/// The range of the arc tangent.
 template <class Real>
 [[nodiscard]] Enclosure<Real> atan(const Enclosure<Real>& a) {
   return enclosing::growing_within(a, Real(-2), Real(2), [](Real x) { return std::atan(x); });
 }
 
+/// The range of the absolute value; exact.
 template <class Real>
 [[nodiscard]] Enclosure<Real> abs(const Enclosure<Real>& a) {
   if (a.lo >= 0 || a.is_entire()) return a;
@@ -107,6 +113,8 @@ template <class Real>
   return {Real(0), a.magnitude()};
 }
 
+/// The range of a hyperbolic function.
+/// @{
 template <class Real>
 [[nodiscard]] Enclosure<Real> sinh(const Enclosure<Real>& a) {
   return enclosing::growing(a, [](Real x) { return std::sinh(x); });
@@ -119,22 +127,28 @@ template <class Real>
 [[nodiscard]] Enclosure<Real> tanh(const Enclosure<Real>& a) {
   return enclosing::growing_within(a, Real(-1), Real(1), [](Real x) { return std::tanh(x); });
 }
+/// @}
 
+/// The range of the exponential, never below zero.
 template <class Real>
 [[nodiscard]] Enclosure<Real> exp(const Enclosure<Real>& a) {
   return enclosing::growing_within(a, Real(0), Enclosure<Real>::infinity, [](Real x) { return std::exp(x); });
 }
+/// The range of the natural logarithm; the entire line where a is not above zero.
 template <class Real>
 [[nodiscard]] Enclosure<Real> log(const Enclosure<Real>& a) {
   if (!(a.lo > 0)) return Enclosure<Real>::entire();
   return enclosing::growing(a, [](Real x) { return std::log(x); });
 }
+/// The range of the decimal logarithm; the entire line where a is not above zero.
 template <class Real>
 [[nodiscard]] Enclosure<Real> log10(const Enclosure<Real>& a) {
   if (!(a.lo > 0)) return Enclosure<Real>::entire();
   return enclosing::growing(a, [](Real x) { return std::log10(x); });
 }
 
+/// The range of the square root; the entire line where a reaches below zero. Of a single number with an exact root it
+/// is that root.
 template <class Real>
 [[nodiscard]] Enclosure<Real> sqrt(const Enclosure<Real>& a) {
   if (!(a.lo >= 0)) return Enclosure<Real>::entire();
@@ -143,11 +157,14 @@ template <class Real>
   return enclosing::widened(lo, hi);  // of zero it is zero
 }
 
+/// The range of sqrt(x^2 + y^2).
 template <class Real>
 [[nodiscard]] Enclosure<Real> hypot(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   return sqrt(square(a) + square(b));
 }
 
+/// The range of the lesser, or of the greater, of two numbers; exact.
+/// @{
 template <class Real>
 [[nodiscard]] Enclosure<Real> min(const Enclosure<Real>& a, const Enclosure<Real>& b) {
   if (a.is_entire() || b.is_entire()) return Enclosure<Real>::entire();
@@ -158,7 +175,10 @@ template <class Real>
   if (a.is_entire() || b.is_entire()) return Enclosure<Real>::entire();
   return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
+/// @}
 
+/// The range of the next whole number below, or above; exact.
+/// @{
 template <class Real>
 [[nodiscard]] Enclosure<Real> floor(const Enclosure<Real>& a) {
   return {std::floor(a.lo), std::floor(a.hi)};
@@ -167,6 +187,8 @@ template <class Real>
 [[nodiscard]] Enclosure<Real> ceil(const Enclosure<Real>& a) {
   return {std::ceil(a.lo), std::ceil(a.hi)};
 }
+/// @}
+/// The range of the sign, -1, 0 or 1.
 template <class Real>
 [[nodiscard]] Enclosure<Real> sign(const Enclosure<Real>& a) {
   if (a.is_entire()) return a;
@@ -225,6 +247,7 @@ template <class Real>
 [[nodiscard]] bool is_angle_continuous(const Enclosure<Real>& y, const Enclosure<Real>& x) {
   return x.lo > 0 || y.lo > 0 || y.hi < 0;
 }
+/// The range of the angle of (x, y), in -pi..pi up to rounding.
 template <class Real>
 [[nodiscard]] Enclosure<Real> atan2(const Enclosure<Real>& y, const Enclosure<Real>& x) {
   if (y.is_entire() || x.is_entire()) return Enclosure<Real>::entire();

@@ -14,15 +14,19 @@
 
 namespace continuo {
 
+/// The range of a function over an interval, and the range of its difference quotients.
 template <class Real>
 struct EnclosureWithSlope {
   Enclosure<Real> value, slope;
 
+  /// Zero.
   EnclosureWithSlope() = default;
   /// A constant.
   explicit EnclosureWithSlope(Real number) : value(number) {}
+  /// A function with these values and these difference quotients.
   EnclosureWithSlope(const Enclosure<Real>& values, const Enclosure<Real>& slopes) : value(values), slope(slopes) {}
 
+  /// Whether it is a constant.
   bool is_steady() const { return slope.lo == 0 && slope.hi == 0; }
 };
 
@@ -42,6 +46,8 @@ Enclosure<Real> times_slope(const Enclosure<Real>& factor, const EnclosureWithSl
 
 }  // namespace enclosing
 
+/// Negative, sum and difference of functions.
+/// @{
 template <class Real>
 EnclosureWithSlope<Real> operator-(const EnclosureWithSlope<Real>& a) {
   return {-a.value, -a.slope};
@@ -54,10 +60,13 @@ template <class Real>
 EnclosureWithSlope<Real> operator-(const EnclosureWithSlope<Real>& a, const EnclosureWithSlope<Real>& b) {
   return {a.value - b.value, a.slope - b.slope};
 }
+/// @}
+/// The square of a function.
 template <class Real>
 EnclosureWithSlope<Real> square(const EnclosureWithSlope<Real>& a) {
   return {square(a.value), enclosing::times_slope(a.value + a.value, a)};
 }
+/// The product of two functions; of one object with itself the square.
 template <class Real>
 EnclosureWithSlope<Real> operator*(const EnclosureWithSlope<Real>& a, const EnclosureWithSlope<Real>& b) {
   if (&a == &b) return square(a);
@@ -70,6 +79,8 @@ EnclosureWithSlope<Real> operator/(const EnclosureWithSlope<Real>& a, const Encl
   return {quotient, (a.slope - enclosing::times_slope(quotient, b)) / b.value};
 }
 
+/// Whether the comparison may hold, and may fail, somewhere in the interval.
+/// @{
 template <class Real>
 Decision operator<(const EnclosureWithSlope<Real>& a, const EnclosureWithSlope<Real>& b) {
   return a.value < b.value;
@@ -86,6 +97,7 @@ template <class Real>
 Decision operator!=(const EnclosureWithSlope<Real>& a, const EnclosureWithSlope<Real>& b) {
   return a.value != b.value;
 }
+/// @}
 
 /// Where the condition is not decided the function may jump, unless both are the same number.
 template <class Real>
@@ -97,6 +109,8 @@ EnclosureWithSlope<Real> select(Decision condition, const EnclosureWithSlope<Rea
   return {value, value.is_point() ? Enclosure<Real>() : Enclosure<Real>::entire()};
 }
 
+/// The lesser, the greater, or the absolute value of functions. At a kink the slope contains those of both sides.
+/// @{
 template <class Real>
 EnclosureWithSlope<Real> min(const EnclosureWithSlope<Real>& a, const EnclosureWithSlope<Real>& b) {
   if (a.value.hi <= b.value.lo) return a;
@@ -115,6 +129,7 @@ EnclosureWithSlope<Real> abs(const EnclosureWithSlope<Real>& a) {
   if (a.value.hi <= 0) return -a;
   return {abs(a.value), hull(a.slope, -a.slope)};
 }
+/// @}
 
 namespace enclosing {
 
@@ -126,6 +141,8 @@ EnclosureWithSlope<Real> with_jumps(const Enclosure<Real>& range) {
 
 }  // namespace enclosing
 
+/// Functions that jump: the slope is zero where the value is a single number, else the entire line.
+/// @{
 template <class Real>
 EnclosureWithSlope<Real> floor(const EnclosureWithSlope<Real>& a) {
   return enclosing::with_jumps(floor(a.value));
@@ -138,6 +155,8 @@ template <class Real>
 EnclosureWithSlope<Real> sign(const EnclosureWithSlope<Real>& a) {
   return enclosing::with_jumps(sign(a.value));
 }
+/// @}
+/// a - b*floor(a/b), which has the sign of b. Where the quotient may pass a whole number, the slope is the entire line.
 template <class Real>
 EnclosureWithSlope<Real> mod(const EnclosureWithSlope<Real>& a, const EnclosureWithSlope<Real>& b) {
   const EnclosureWithSlope<Real> times = floor(a / b);
@@ -157,15 +176,19 @@ Enclosure<Real> slope_of_root(const Enclosure<Real>& root) {
 
 }  // namespace enclosing
 
+/// The square root. Its slope is unbounded where a reaches zero.
 template <class Real>
 EnclosureWithSlope<Real> sqrt(const EnclosureWithSlope<Real>& a) {
   const Enclosure<Real> root = sqrt(a.value);
   return {root, enclosing::times_slope(enclosing::slope_of_root(root), a)};
 }
+/// sqrt(a^2 + b^2).
 template <class Real>
 EnclosureWithSlope<Real> hypot(const EnclosureWithSlope<Real>& a, const EnclosureWithSlope<Real>& b) {
   return sqrt(square(a) + square(b));
 }
+/// Elementary functions, each with its derivative.
+/// @{
 template <class Real>
 EnclosureWithSlope<Real> exp(const EnclosureWithSlope<Real>& a) {
   const Enclosure<Real> range = exp(a.value);
@@ -194,6 +217,7 @@ EnclosureWithSlope<Real> tan(const EnclosureWithSlope<Real>& a) {
   const Enclosure<Real> range = tan(a.value);
   return {range, range.is_bounded() ? enclosing::times_slope(enclosing::one<Real>() + square(range), a) : range};
 }
+/// @}
 
 namespace enclosing {
 
@@ -205,6 +229,8 @@ Enclosure<Real> slope_of_arc(const Enclosure<Real>& x) {
 
 }  // namespace enclosing
 
+/// Inverse trigonometric and hyperbolic functions, each with its derivative.
+/// @{
 template <class Real>
 EnclosureWithSlope<Real> asin(const EnclosureWithSlope<Real>& a) {
   return {asin(a.value), enclosing::times_slope(enclosing::slope_of_arc(a.value), a)};
@@ -231,6 +257,7 @@ EnclosureWithSlope<Real> tanh(const EnclosureWithSlope<Real>& a) {
   const Enclosure<Real> rest = enclosing::one<Real>() - square(range);
   return {range, enclosing::times_slope(enclosing::within(rest, Real(0), Real(1)), a)};
 }
+/// @}
 
 /// (x^y)' = y x^(y - 1) x' + x^y log(x) y', the last only where the exponent moves.
 template <class Real>

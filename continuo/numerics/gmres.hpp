@@ -32,6 +32,7 @@ class Gmres {
         sine_(directions_),
         rest_(directions_ + 1) {}
 
+  /// How a solution went.
   struct Result {
     std::size_t products = 0;  // of the matrix with a vector
     bool converged = false;    // else the solution is the best found

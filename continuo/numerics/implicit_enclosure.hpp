@@ -33,11 +33,14 @@
 
 namespace continuo {
 
+/// Encloses the solution of a system of equations that depends on one variable, with a proof that it is the only one
+/// nearby.
 template <class Real>
 class ImplicitEnclosure {
  public:
   using Range = Enclosure<Real>;
 
+  /// For `size` equations in as many unknowns. Allocates about 8 size^2 numbers.
   explicit ImplicitEnclosure(std::size_t size)
       : size_(size),
         middle_(size),
@@ -84,6 +87,8 @@ class ImplicitEnclosure {
   /// Of the solution over the last part, wider by the rounding of an iteration that solves for it in the number format;
   /// entire where nothing is proved.
   [[nodiscard]] std::span<const Range> values() const { return values_; }
+  /// The difference quotients of the solution by theta over the last part; entire where nothing is proved. Costs a few
+  /// times size^2 products at each call.
   [[nodiscard]] std::span<const Range> slopes() {
     if (is_proved_) {
       bound_slopes();

@@ -40,15 +40,18 @@ struct LaneParts<Real, W> : BatchParts<xsimd::batch<Real>, W> {};
 
 }  // namespace detail
 
+/// A truth value for each of W lanes.
 template <std::floating_point Real, std::size_t W>
 class LaneMask {
  public:
+  /// False in every lane.
   LaneMask() : LaneMask(false) {}
   /// The same answer for every lane.
   LaneMask(bool value) {
     for (Part& part : part_) part = Part(value);
   }
 
+  /// The truth value of one lane, from 0 to W - 1.
   bool operator[](std::size_t lane) const {
     if constexpr (std::same_as<Part, bool>) {
       return part_[lane];
@@ -57,6 +60,8 @@ class LaneMask {
     }
   }
 
+  /// Logic, lane by lane.
+  /// @{
   friend LaneMask operator&(const LaneMask& a, const LaneMask& b) {
     return map([](const Part& x, const Part& y) { return Part(x & y); }, a, b);
   }
@@ -66,18 +71,23 @@ class LaneMask {
   friend LaneMask operator!(const LaneMask& a) {
     return map([](const Part& x) { return Part(!x); }, a);
   }
+  /// @}
 
+  /// Whether it is true in any lane.
   friend bool any(const LaneMask& mask) {
     for (const Part& part : mask.part_) {
       if (any_in(part)) return true;
     }
     return false;
   }
+  /// Whether it is true in every lane.
   friend bool all(const LaneMask& mask) { return !any(!mask); }
+  /// Whether it is true in no lane.
   friend bool none(const LaneMask& mask) { return !any(mask); }
 
   // For Lanes, which are cut the same way.
   using Part = typename detail::LaneParts<Real, W>::MaskPart;
+  /// Register i of the mask.
   [[nodiscard]] Part& part(std::size_t i) { return part_[i]; }
   [[nodiscard]] const Part& part(std::size_t i) const { return part_[i]; }
 

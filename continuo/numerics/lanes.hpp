@@ -28,6 +28,7 @@
 
 namespace continuo {
 
+/// W numbers of type Real; an operation applies to all of them.
 template <std::floating_point Real, std::size_t W>
 class Lanes {
  public:
@@ -35,21 +36,28 @@ class Lanes {
   using Mask = LaneMask<Real, W>;
   static constexpr std::size_t width = W;
 
+  /// Zero in every lane.
   Lanes() : Lanes(Real(0)) {}
   /// The same number in every lane.
   Lanes(Real value) {
     for (Part& part : part_) part = Part(value);
   }
+  /// One number for each lane.
   explicit Lanes(const std::array<Real, W>& values) : part_(std::bit_cast<Parts>(values)) {}
 
+  /// The number of one lane, from 0 to W - 1.
   Real operator[](std::size_t lane) const { return values()[lane]; }
+  /// Replaces the number of one lane.
   void set(std::size_t lane, Real value) {
     std::array<Real, W> all = values();
     all[lane] = value;
     part_ = std::bit_cast<Parts>(all);
   }
+  /// The numbers of all lanes.
   [[nodiscard]] std::array<Real, W> values() const { return std::bit_cast<std::array<Real, W>>(part_); }
 
+  /// Arithmetic, lane by lane, rounded as for single numbers.
+  /// @{
   friend Lanes operator+(const Lanes& a, const Lanes& b) {
     return map([](const Part& x, const Part& y) { return Part(x + y); }, a, b);
   }
@@ -70,7 +78,10 @@ class Lanes {
   Lanes& operator-=(const Lanes& b) { return *this = *this - b; }
   Lanes& operator*=(const Lanes& b) { return *this = *this * b; }
   Lanes& operator/=(const Lanes& b) { return *this = *this / b; }
+  /// @}
 
+  /// Comparisons, lane by lane.
+  /// @{
   friend Mask operator<(const Lanes& a, const Lanes& b) {
     return test([](const Part& x, const Part& y) { return x < y; }, a, b);
   }
@@ -83,6 +94,7 @@ class Lanes {
     return test([](const Part& x, const Part& y) { return x == y; }, a, b);
   }
   friend Mask operator!=(const Lanes& a, const Lanes& b) { return !(a == b); }
+  /// @}
 
   /// Lane by lane: yes where the mask is set, otherwise no.
   friend Lanes select(const Mask& mask, const Lanes& yes, const Lanes& no) {
@@ -92,12 +104,19 @@ class Lanes {
   }
 
   // max and min choose as std::max and std::min do: the first one where neither is greater, or one is not a number.
+  /// The greater, or the lesser, lane by lane.
+  /// @{
   friend Lanes max(const Lanes& a, const Lanes& b) { return select(a < b, b, a); }
   friend Lanes min(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }
+  /// @}
+  /// The lanes that are not a number.
   friend Mask isnan(const Lanes& a) { return a != a; }
+  /// The lanes that are neither infinite nor not a number.
   friend Mask isfinite(const Lanes& a) { return a - a == Lanes(); }
 
   // clang-format off
+  /// Elementary functions, lane by lane, within a few units in the last place of those of <cmath>.
+  /// @{
   friend Lanes abs(const Lanes& a) { return map([](const Part& x) { using std::abs; return Part(abs(x)); }, a); }
   friend Lanes sqrt(const Lanes& a) { return map([](const Part& x) { using std::sqrt; return Part(sqrt(x)); }, a); }
   friend Lanes floor(const Lanes& a) { return map([](const Part& x) { using std::floor; return Part(floor(x)); }, a); }
@@ -121,6 +140,7 @@ class Lanes {
   friend Lanes pow(const Lanes& a, const Lanes& b) { return each([](Real x, Real y) { return std::pow(x, y); }, a, b); }
   friend Lanes atan2(const Lanes& a, const Lanes& b) { return each([](Real x, Real y) { return std::atan2(x, y); }, a, b); }
   friend Lanes hypot(const Lanes& a, const Lanes& b) { return each([](Real x, Real y) { return std::hypot(x, y); }, a, b); }
+  /// @}
   // clang-format on
 
  private:

@@ -18,17 +18,22 @@
 
 namespace continuo {
 
+/// How an iteration ended. `no_descent`: no part of a correction was better. `diverged`: a correction was too large.
+/// `too_many`: the limit of iterations was reached.
 enum class NewtonEnding { converged, no_descent, diverged, singular, not_finite, too_many, interrupted };
 
+/// How an iteration ended, and after how many corrections.
 struct [[nodiscard]] NewtonOutcome {
   NewtonEnding ending = NewtonEnding::too_many;
   std::size_t iterations = 0;  // with that in which it ended
+  /// Whether it converged.
   explicit operator bool() const { return ending == NewtonEnding::converged; }
 };
 
 /// How large a correction is, or why there is none.
 using NewtonCorrection = std::variant<double, NewtonEnding>;
 
+/// When an iteration in full steps ends. Corrections are measured as the caller measures them.
 struct NewtonLimits {
   std::size_t most_iterations = 20;
   double solved_to = 0;  // a correction behind which none is needed: the next one would be of the size of its square
@@ -61,6 +66,7 @@ template <class Correct>
   return newton_iteration(limits, correct, [] { return true; });
 }
 
+/// When an iteration in shortened steps ends.
 struct DampedNewtonLimits {
   std::size_t most_iterations = 40;
   double least_damping = 1e-4;

@@ -26,12 +26,14 @@
 
 namespace continuo {
 
+/// What is known of a function, and how much may be spent on it.
 template <class Real>
 struct IsolationLimits {
   Real band = 0;              // where it begins the function is zero up to here, by its rounding
   std::size_t budget = 2000;  // evaluations; no quarter of the interval takes from what the later ones need
 };
 
+/// The result of a search for crossings.
 struct Isolation {
   int side;                     // at the end of what was looked at
   bool proved = true;           // no stretch was left undecided

@@ -22,32 +22,41 @@ namespace continuo {
 /// Of a comparison whose sides are not known exactly.
 enum class Truth { no, yes, undecided };
 
+/// Whether it holds, without doubt.
 [[nodiscard]] constexpr bool certainly(bool truth) {
   return truth;
 }
 [[nodiscard]] constexpr bool certainly(Truth truth) {
   return truth == Truth::yes;
 }
+/// The opposite; undecided stays undecided.
 constexpr Truth operator!(Truth truth) {
   if (truth == Truth::undecided) return truth;
   return truth == Truth::yes ? Truth::no : Truth::yes;
 }
 
+/// A number with a bound of its rounding.
 template <std::floating_point Real>
 struct Rounded {
   Real value{}, rounding{};
 
+  /// Zero, exactly.
   constexpr Rounded() = default;
+  /// A number; exact unless a rounding is given.
   constexpr Rounded(Real value_, Real rounding_ = 0) : value(value_), rounding(rounding_) {}
   /// A number of which nothing is known.
   [[nodiscard]] static constexpr Rounded anything() {
     return {std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity()};
   }
 
+  /// Whether it is zero without rounding.
   [[nodiscard]] constexpr bool is_exactly_zero() const { return value == 0 && rounding == 0; }
+  /// Whether it has a bounded rounding and a value.
   [[nodiscard]] bool is_known() const { return rounding < std::numeric_limits<Real>::infinity() && !std::isnan(value); }
 
+  /// The negative.
   friend Rounded operator-(const Rounded& a) { return {-a.value, a.rounding}; }
+  /// The sum, with its rounding.
   friend Rounded operator+(const Rounded& a, const Rounded& b) {
     const Real sum = a.value + b.value, shadow = sum - a.value;
     const Real error = (a.value - (sum - shadow)) + (b.value - shadow);
@@ -55,6 +64,7 @@ struct Rounded {
     if (std::isinf(sum) && (std::isinf(a.value) || std::isinf(b.value))) return {sum, a.rounding + b.rounding};
     return known(sum, a.rounding + b.rounding + std::abs(error));
   }
+  /// The difference, with its rounding.
   friend Rounded operator-(const Rounded& a, const Rounded& b) { return a + -b; }
   /// Zero times whatever there is, is zero.
   friend Rounded operator*(const Rounded& a, const Rounded& b) {
@@ -64,6 +74,7 @@ struct Rounded {
     return known(product, std::abs(a.value) * b.rounding + std::abs(b.value) * a.rounding + a.rounding * b.rounding +
                               std::abs(std::fma(a.value, b.value, -product)));
   }
+  /// The quotient, with its rounding; anything where b may be zero.
   friend Rounded operator/(const Rounded& a, const Rounded& b) {
     if (!b.has_sign()) return anything();
     if (a.is_exactly_zero()) return {};
@@ -77,6 +88,8 @@ struct Rounded {
     if (a.value == b.value && a.is_known() && b.is_known()) return Truth::yes;
     return std::abs(a.value - b.value) > a.rounding + b.rounding ? Truth::no : Truth::undecided;
   }
+  /// Comparisons, decided where the numbers differ by more than their roundings.
+  /// @{
   friend Truth operator!=(const Rounded& a, const Rounded& b) { return !(a == b); }
   friend Truth operator<(const Rounded& a, const Rounded& b) {
     const Truth same = a == b;
@@ -86,6 +99,7 @@ struct Rounded {
   friend Truth operator>(const Rounded& a, const Rounded& b) { return b < a; }
   friend Truth operator<=(const Rounded& a, const Rounded& b) { return !(b < a); }
   friend Truth operator>=(const Rounded& a, const Rounded& b) { return !(a < b); }
+  /// @}
 
   /// One of the two, it is not known which. Two that differ by more than their roundings, and in sign, are anything:
   /// the middle of them would pass for a zero.
@@ -98,15 +112,19 @@ struct Rounded {
     return known(low / 2 + high / 2, high / 2 - low / 2);
   }
 
+  /// The square root. Its rounding stays bounded at zero.
   friend Rounded sqrt(const Rounded& a) {
     const Real root = std::sqrt(a.value);
     if (a.value <= a.rounding) return known(root, std::sqrt(a.value + a.rounding));
     const Real rest = std::abs(std::fma(-root, root, a.value));
     return known(root, (rest + a.rounding) / (root + std::sqrt(a.value - a.rounding)));
   }
+  /// The whole number below the value; exact, since the rounding of a is ignored.
   friend Rounded floor(const Rounded& a) { return std::floor(a.value); }
 
   // Functions of the standard library, by their slopes.
+  /// Functions of the standard library, whose rounding follows from their slopes.
+  /// @{
   friend Rounded sin(const Rounded& a) { return function(std::sin(a.value), std::cos(a.value), a); }
   friend Rounded cos(const Rounded& a) { return function(std::cos(a.value), std::sin(a.value), a); }
   friend Rounded asin(const Rounded& a) {
@@ -122,11 +140,16 @@ struct Rounded {
     const Real y = std::tanh(a.value);
     return function(y, (1 - y) * (1 + y), a);
   }
+  /// @}
+  /// Exponential and logarithms.
+  /// @{
   friend Rounded exp(const Rounded& a) { return function(std::exp(a.value), std::exp(a.value), a); }
   friend Rounded log(const Rounded& a) { return function(std::log(a.value), 1 / a.value, a); }
   friend Rounded log10(const Rounded& a) {
     return function(std::log10(a.value), 1 / (std::numbers::ln10_v<Real> * a.value), a);
   }
+  /// @}
+  /// a^b.
   friend Rounded pow(const Rounded& a, const Rounded& b) {
     const Real power = std::pow(a.value, b.value);
     Real bound = library(power);
@@ -134,6 +157,7 @@ struct Rounded {
     if (b.rounding > 0) bound += std::abs(std::log(a.value) * power) * b.rounding;
     return known(power, bound);
   }
+  /// The angle of (x, y). Near the negative x axis its rounding contains a whole turn.
   friend Rounded atan2(const Rounded& y, const Rounded& x) {
     const Real angle = std::atan2(y.value, x.value);
     if (y.value == 0 && y.rounding == 0) return known(angle, x.has_sign() ? library(angle) : anything().rounding);

@@ -20,12 +20,17 @@ namespace continuo {
 template <class Number>
 class SparseLU {
  public:
+  /// Allocates for matrices of this pattern, and analyses it.
   explicit SparseLU(const SparsePattern& pattern);
+  /// A copy, which decomposes to the same bits.
   SparseLU(const SparseLU& other);
   SparseLU(SparseLU&&) noexcept;
+  /// Takes the place of another one.
   SparseLU& operator=(SparseLU other) noexcept;
+  /// Frees the factors.
   ~SparseLU();
 
+  /// The entries, in the order of the pattern, to be filled before each call of `factor`.
   [[nodiscard]] std::span<Number> values() { return values_; }
   /// False where the matrix is singular or not finite.
   [[nodiscard]] bool factor();

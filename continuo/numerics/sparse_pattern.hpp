@@ -10,6 +10,7 @@
 
 namespace continuo {
 
+/// The place of an entry.
 struct MatrixPlace {
   std::uint32_t row, column;
 };
@@ -21,10 +22,15 @@ class SparsePattern {
   /// Places in any order, doubles allowed.
   SparsePattern(std::size_t size, std::span<const MatrixPlace> places);
 
+  /// The number of columns.
   [[nodiscard]] std::size_t size() const { return starts_.empty() ? 0 : starts_.size() - 1; }
+  /// The number of entries.
   [[nodiscard]] std::size_t entries() const { return rows_.size(); }
+  /// The first entry of a column.
   [[nodiscard]] std::size_t begin(std::size_t column) const { return static_cast<std::size_t>(starts_[column]); }
+  /// The entry after the last one of a column.
   [[nodiscard]] std::size_t end(std::size_t column) const { return static_cast<std::size_t>(starts_[column + 1]); }
+  /// The row of an entry.
   [[nodiscard]] std::size_t row(std::size_t entry) const { return static_cast<std::size_t>(rows_[entry]); }
   /// Which entry is (row, column); entries() where it is none.
   [[nodiscard]] std::size_t find(std::size_t row, std::size_t column) const;
@@ -32,17 +38,21 @@ class SparsePattern {
   struct Bandwidth {
     std::size_t lower, upper;
   };
+  /// How far the entries reach from the diagonal. Costs a pass over the columns.
   [[nodiscard]] Bandwidth bandwidth() const;
   /// Whether a factorization as a band, with what pivoting adds, has at most four times the entries of the pattern:
   /// then it takes a half to a third of the time of a sparse solver, which is faster where most of a band would be
   /// empty.
   [[nodiscard]] bool is_banded() const;
+  /// The layout of a band that contains all entries.
   [[nodiscard]] BandLayout band() const;
   /// Of the entries in that layout.
   [[nodiscard]] std::vector<std::uint32_t> places_in_band() const;
 
   // In the form that sparse solvers read.
+  /// For each column the number of its first entry, and last the number of entries.
   [[nodiscard]] std::span<const std::int32_t> starts() const { return starts_; }
+  /// The row of each entry.
   [[nodiscard]] std::span<const std::int32_t> rows() const { return rows_; }
 
  private:
@@ -54,9 +64,12 @@ class SparsePattern {
 class ColumnGroups {
  public:
   ColumnGroups() = default;
+  /// Groups the columns of a pattern, once; costs about the number of entries times the number of groups.
   explicit ColumnGroups(const SparsePattern& pattern);
 
+  /// The number of groups.
   [[nodiscard]] std::size_t count() const { return starts_.empty() ? 0 : starts_.size() - 1; }
+  /// The columns of a group.
   [[nodiscard]] std::span<const std::size_t> group(std::size_t i) const {
     return std::span(columns_).subspan(starts_[i], starts_[i + 1] - starts_[i]);
   }

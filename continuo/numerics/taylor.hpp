@@ -29,6 +29,7 @@
 
 namespace continuo {
 
+/// A truncated power series: the coefficients c[k] of s^k.
 template <class Scalar_, std::size_t order_>
 struct Taylor {
   using Scalar = Scalar_;
@@ -36,6 +37,7 @@ struct Taylor {
 
   std::array<Scalar, order + 1> c{};
 
+  /// Zero.
   constexpr Taylor() = default;
   /// A constant.
   template <class Number>
@@ -46,6 +48,8 @@ struct Taylor {
   /// value + slope*s
   constexpr Taylor(const Scalar& value, const Scalar& slope) { c[0] = value, c[1] = slope; }
 
+  /// Negative, sum and difference.
+  /// @{
   friend Taylor operator-(Taylor a) {
     for (Scalar& coefficient : a.c) coefficient = -coefficient;
     return a;
@@ -58,6 +62,8 @@ struct Taylor {
     for (std::size_t k = 0; k <= order; ++k) a.c[k] = a.c[k] - b.c[k];
     return a;
   }
+  /// @}
+  /// The product, truncated. Costs order^2 / 2 products.
   [[gnu::noinline]] friend Taylor operator*(const Taylor& a, const Taylor& b) {
     Taylor product;
     for (std::size_t k = 0; k <= order; ++k) {
@@ -76,6 +82,8 @@ struct Taylor {
     return quotient;
   }
 
+  /// Comparisons by the first coefficients that differ: what holds just after s = 0.
+  /// @{
   friend auto operator<(const Taylor& a, const Taylor& b) {
     for (std::size_t k = 0; k < order; ++k) {
       if (!certainly(a.c[k] == b.c[k])) return a.c[k] < b.c[k];
@@ -90,6 +98,7 @@ struct Taylor {
     return a.c[order] <= b.c[order];
   }
   friend auto operator>=(const Taylor& a, const Taylor& b) { return b <= a; }
+  /// @}
   /// Not equal where any coefficient differs: then they part, whatever the others do.
   friend auto operator==(const Taylor& a, const Taylor& b) {
     auto same = a.c[0] == b.c[0];
@@ -99,6 +108,7 @@ struct Taylor {
     }
     return same;
   }
+  /// The opposite of ==.
   friend auto operator!=(const Taylor& a, const Taylor& b) { return !(a == b); }
 
   /// a where it holds, b where it does not, else one of them.
@@ -107,6 +117,7 @@ struct Taylor {
   {
     if (condition != Truth::undecided) return condition == Truth::yes ? a : b;
     Taylor either;
+    /// The first series where the condition holds, else the second.
     for (std::size_t k = 0; k <= order; ++k) either.c[k] = hull(a.c[k], b.c[k]);
     return either;
   }
@@ -120,6 +131,7 @@ struct Taylor {
       return a * b;
     }
   }
+  /// Whether a coefficient is exactly zero, without rounding.
   static bool is_zero(const Scalar& x) {
     if constexpr (std::floating_point<Scalar>) {
       return x == 0;
@@ -127,10 +139,12 @@ struct Taylor {
       return x.is_exactly_zero();
     }
   }
+  /// A coefficient that is not determined: NaN.
   static Scalar unknown() { return Scalar(std::numeric_limits<double>::quiet_NaN()); }
 
   /// The first coefficient that is not exactly zero; order + 1 where all are.
   std::size_t leading() const { return static_cast<std::size_t>(std::ranges::find_if_not(c, is_zero) - c.begin()); }
+  /// Whether all coefficients but the first are exactly zero.
   bool is_constant() const { return std::ranges::all_of(c.begin() + 1, c.end(), is_zero); }
 };
 
@@ -267,6 +281,7 @@ template <class Scalar, std::size_t order>
 
 }  // namespace detail
 
+/// The square root. At zero it is that of the leading term, whose coefficients may be infinite or unknown.
 template <class Scalar, std::size_t order>
 [[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> sqrt(const Taylor<Scalar, order>& a) {
   using std::sqrt;
@@ -281,24 +296,28 @@ template <class Scalar, std::size_t order>
   return root;
 }
 
+/// The exponential.
 template <class Scalar, std::size_t order>
 [[nodiscard]] Taylor<Scalar, order> exp(const Taylor<Scalar, order>& a) {
   using std::exp;
   return detail::exponential_of(Scalar(exp(a.c[0])), a);
 }
 
+/// The natural logarithm.
 template <class Scalar, std::size_t order>
 [[nodiscard]] Taylor<Scalar, order> log(const Taylor<Scalar, order>& a) {
   using std::log;
   return detail::along(Scalar(log(a.c[0])), 1.0 / a, a);
 }
 
+/// The decimal logarithm.
 template <class Scalar, std::size_t order>
 [[nodiscard]] Taylor<Scalar, order> log10(const Taylor<Scalar, order>& a) {
   using std::log10, std::log;
   return detail::along(Scalar(log10(a.c[0])), Taylor<Scalar, order>(Scalar(1) / Scalar(log(Scalar(10)))) / a, a);
 }
 
+/// a^b. Whole exponents up to 16 are products, exact at zero and for negative numbers.
 template <class Scalar, std::size_t order>
 [[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> pow(const Taylor<Scalar, order>& a,
                                                           const Taylor<Scalar, order>& b) {
@@ -321,6 +340,8 @@ template <class Scalar, std::size_t order>
   return detail::power_away_from_zero(a, value, b.c[0]);
 }
 
+/// Trigonometric functions.
+/// @{
 template <class Scalar, std::size_t order>
 [[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> sin(const Taylor<Scalar, order>& a) {
   using std::sin, std::cos;
@@ -335,6 +356,9 @@ template <class Scalar, std::size_t order>
 [[nodiscard]] Taylor<Scalar, order> tan(const Taylor<Scalar, order>& a) {
   return sin(a) / cos(a);
 }
+/// @}
+/// Inverse trigonometric functions.
+/// @{
 template <class Scalar, std::size_t order>
 [[nodiscard]] Taylor<Scalar, order> asin(const Taylor<Scalar, order>& a) {
   using std::asin;
@@ -350,6 +374,9 @@ template <class Scalar, std::size_t order>
   using std::atan;
   return detail::along(Scalar(atan(a.c[0])), 1.0 / (1.0 + a * a), a);
 }
+/// @}
+/// Hyperbolic functions.
+/// @{
 template <class Scalar, std::size_t order>
 [[nodiscard]] [[gnu::noinline]] Taylor<Scalar, order> sinh(const Taylor<Scalar, order>& a) {
   using std::sinh, std::cosh;
@@ -360,6 +387,7 @@ template <class Scalar, std::size_t order>
   using std::sinh, std::cosh;
   return detail::pair_of(Scalar(sinh(a.c[0])), Scalar(cosh(a.c[0])), a, 1)[1];
 }
+/// @}
 /// The slope is 1 - y^2.
 template <class Scalar, std::size_t order>
 [[nodiscard]] Taylor<Scalar, order> tanh(const Taylor<Scalar, order>& a) {
@@ -396,6 +424,7 @@ template <class Scalar, std::size_t order>
   return angle;
 }
 
+/// The absolute value: -a where a is negative just after s = 0.
 template <class Scalar, std::size_t order>
 [[nodiscard]] Taylor<Scalar, order> abs(const Taylor<Scalar, order>& a) {
   return select(a < Taylor<Scalar, order>(0), -a, a);
@@ -409,6 +438,7 @@ template <class Scalar, std::size_t order>
   if (!std::isfinite(value)) return Series(Series::unknown());
   return select(a < Series(nearest), Series(nearest - 1), Series(nearest));
 }
+/// The next whole number above, just after s = 0.
 template <class Scalar, std::size_t order>
 [[nodiscard]] Taylor<Scalar, order> ceil(const Taylor<Scalar, order>& a) {
   return -floor(-a);

@@ -16,6 +16,7 @@ namespace continuo {
 template <class T>
 class [[nodiscard]] Result {
  public:
+  /// A success with this value. It may be written as `return value;`.
   Result(T value) : value_(std::move(value)) {}  // NOLINT(google-explicit-constructor): `return value;` is meant
   /// Why there is no value. A status that succeeded gives no reason: it counts as a failure, so that nobody who passes
   /// it on reports a success.
@@ -25,12 +26,14 @@ class [[nodiscard]] Result {
 
   /// Whether there is a value.
   explicit operator bool() const { return value_.has_value(); }
+  /// Whether there is a value.
   [[nodiscard]] bool has_value() const { return value_.has_value(); }
 
   /// The value, which must be there.
   T& operator*() & { return *value_; }
   const T& operator*() const& { return *value_; }
   T&& operator*() && { return *std::move(value_); }
+  /// Access to the value, which must be there.
   T* operator->() { return &*value_; }
   const T* operator->() const { return &*value_; }
 
