@@ -38,6 +38,7 @@ struct CombineRule {
   friend bool operator==(const CombineRule&, const CombineRule&) = default;
 };
 
+/// The value for a contact, from the values a and b of its two surfaces; for materials, each parameter by its own rule.
 template <class Real>
 [[nodiscard]] Real combined(Combine how, const Real& a, const Real& b) {
   using std::sqrt;
@@ -63,6 +64,7 @@ template <class Real>
           combined(combine_rule.rolling_resistance, a.rolling_resistance, b.rolling_resistance)};
 }
 
+/// A body to be added to a world. Lengths, masses and times are in the units of the world.
 template <class Real, int Dim>
 struct BodyDefinition {
   Shape<Real, Dim> shape = Sphere<Real>{};

@@ -18,12 +18,14 @@
 
 namespace continuo {
 
+/// What happens to a contact.
 enum class ContactChange : std::uint8_t {
   impact,  // begins and ends in an instant
   begin,   // of a contact that lasts
   end
 };
 
+/// One event of a contact. The impulse has the unit mass times velocity.
 template <class Real, int Dim>
 struct ContactEvent {
   static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
@@ -35,6 +37,7 @@ struct ContactEvent {
   Real impulse{};                       // along the normal: of the impact; at `end`, of the whole contact
   Real time{};
 
+  /// Whether b is a wall.
   [[nodiscard]] bool with_wall() const { return wall != no_wall; }
 };
 
@@ -42,13 +45,17 @@ struct ContactEvent {
 template <class Real, int Dim>
 class ContactLog {
  public:
+  /// An empty log for `most` events; with 0, nothing is recorded.
   explicit ContactLog(std::size_t most = 0) : most_(most) {}
 
+  /// Whether events are recorded.
   [[nodiscard]] bool is_kept() const { return most_ > 0; }
+  /// Drops all events, and sets the number of lost ones to 0.
   void clear() {
     events_.clear();
     lost_ = 0;
   }
+  /// Records an event, or counts it as lost where the log is full.
   void add(const ContactEvent<Real, Dim>& event) {
     if (events_.size() < most_) {
       events_.push_back(event);
@@ -73,7 +80,9 @@ class ContactLog {
     if (events_.size() > most_) lost_ += events_.size() - most_, events_.resize(most_);
     other.clear();
   }
+  /// The recorded events, in the order of time.
   [[nodiscard]] std::span<const ContactEvent<Real, Dim>> events() const { return events_; }
+  /// The number of events that were not recorded because the log was full.
   [[nodiscard]] std::size_t lost() const { return lost_; }
 
  private:

@@ -40,6 +40,8 @@ namespace continuo {
 template <class Real, int Dim>
 class ExactEngine;
 
+/// Moves a world exactly, from collision to collision. The cost is that of the events: a body that meets nothing costs
+/// nothing.
 template <class Real, int Dim>
 class ExactMotion {
  public:
@@ -47,8 +49,12 @@ class ExactMotion {
   explicit ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options = {});
   /// The companions must live as long as the motion. After changing them, call `refresh`.
   ExactMotion(World<Real, Dim>& world, const ExactOptions<Real>& options, Companions<Real, Dim>& companions);
+  /// The moved-from motion can only be destroyed or assigned.
+  /// @{
   ExactMotion(ExactMotion&&) noexcept;
   ExactMotion& operator=(ExactMotion&&) noexcept;
+  /// @}
+  /// Leaves the world as it is.
   ~ExactMotion();
 
   /// Advances the world with all its bodies to time t. On failure the world is at the time of the last event.
@@ -56,14 +62,17 @@ class ExactMotion {
   /// Predicts all events again from the present state of the world.
   void refresh();
 
+  /// Counts of all events since the construction.
   [[nodiscard]] const ExactStatistics& statistics() const;
   /// The contact events of the last call of advance_to, and the number of those beyond `contact_events`, which are
   /// dropped.
   [[nodiscard]] std::span<const ContactEvent<Real, Dim>> contact_events() const;
+  /// The number of contact events of the last call of advance_to that were not recorded.
   [[nodiscard]] std::size_t lost_contact_events() const;
 
   /// For snapshot.hpp: the state beside the world from which the motion continues to the same bits.
   void save(ByteWriter& writer) const;
+  /// Takes over a state written by `save`; on wrong bytes the reader fails, and the motion stays as it was.
   void load(ByteReader& reader);
 
  private:

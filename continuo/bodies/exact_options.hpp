@@ -29,6 +29,7 @@ struct Companions {
   Real absolute_tolerance = Real(1e-13);
 };
 
+/// The options of the exact motion, in the units of the world.
 template <class Real>
 struct ExactOptions {
   std::optional<Real> contact_time{};     // without one: a hundred-thousandth of the time in which a body falls its
@@ -39,20 +40,24 @@ struct ExactOptions {
   std::size_t contact_events = 0;  // at most so many of a call are recorded
   const std::atomic<bool>* interrupt = nullptr;  // once it is true, advance_to ends as `interrupted`
 
+  /// Whether the caller has asked for the end.
   [[nodiscard]] bool is_interrupted() const { return interrupt != nullptr && interrupt->load(); }
 };
 
+/// What a motion has done so far.
 struct ExactStatistics {
   std::size_t collisions = 0;       // of two bodies
   std::size_t wall_collisions = 0;  //
   std::size_t crossings = 0;        // of cells
   std::size_t outdated = 0;         // predictions made again
 
+  /// Adds the counts of another motion.
   ExactStatistics& operator+=(const ExactStatistics& more) {
     collisions += more.collisions, wall_collisions += more.wall_collisions;
     crossings += more.crossings, outdated += more.outdated;
     return *this;
   }
+  /// Reads or writes all counts.
   template <class Archive>
   void transfer(Archive& archive) {
     archive(collisions), archive(wall_collisions), archive(crossings), archive(outdated);

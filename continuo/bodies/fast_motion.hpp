@@ -23,6 +23,7 @@
 
 namespace continuo {
 
+/// The options of the fast motion, in the units of the world.
 template <class Real>
 struct FastOptions {
   Real step = Real(1) / Real(60);
@@ -37,37 +38,48 @@ struct FastOptions {
   int threads = 1;                // at most; the results are the same to the last bit for any number
 };
 
+/// The steps, built pair lists and impacts so far; the contacts, colours (groups of contacts that share no body) and
+/// sleeping bodies of the last step.
 struct FastStatistics {
   std::size_t steps = 0, lists = 0, contacts = 0, colours = 0, impacts = 0, asleep = 0;
 };
 
+/// Moves a world in fixed steps.
 template <class Real, int Dim>
 class FastMotion {
  public:
   /// Moves `world`. Changes of the world between steps take effect in the next step; after adding or removing bodies
   /// call `refresh`, which wakes all bodies.
   explicit FastMotion(World<Real, Dim>& world, const FastOptions<Real>& options = {});
+  /// The moved-from motion can only be destroyed or assigned.
+  /// @{
   FastMotion(FastMotion&&) noexcept;
   FastMotion& operator=(FastMotion&&) noexcept;
+  /// @}
+  /// Leaves the world as it is.
   ~FastMotion();
 
   /// Advances by one step. On failure the world is as it was before the step.
   [[nodiscard]] Status advance();
+  /// Starts anew from the present state of the world, with all bodies awake.
   void refresh();
 
   /// The deepest overlap of two bodies, or of one and a wall, now.
   [[nodiscard]] Real deepest_overlap() const;
+  /// What the motion has done so far.
   [[nodiscard]] const FastStatistics& statistics() const;
   /// The contact events of the last step, and the number of those beyond `contact_events`, which are dropped. Impacts
   /// have their instants. A lasting contact begins and ends at the end of a step; its impulse is the sum over its steps
   /// of the impulse in the last substep times the number of substeps.
   [[nodiscard]] std::span<const ContactEvent<Real, Dim>> contact_events() const;
+  /// The number of contact events of the last step that were not recorded.
   [[nodiscard]] std::size_t lost_contact_events() const;
   /// Bytes of memory beside the world: the bodies of the contact solver, pairs, contacts.
   [[nodiscard]] std::size_t memory() const;
 
   /// For snapshot.hpp: the state beside the world from which the motion continues to the same bits.
   void save(ByteWriter& writer) const;
+  /// Takes over a state written by `save`; on wrong bytes the reader fails.
   void load(ByteReader& reader);
 
  private:

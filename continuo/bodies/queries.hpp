@@ -20,6 +20,7 @@
 
 namespace continuo {
 
+/// A half line, or a segment of length `reach`.
 template <class Real, int Dim>
 struct Ray {
   Vector<Real, Dim> origin{}, direction{};  // of any length but 0
@@ -40,25 +41,30 @@ struct RayHit {
   std::uint32_t wall = no_wall;
   Real distance{};                      // along the ray; 0 where it starts inside the body or behind the wall
   Vector<Real, Dim> point{}, normal{};  // of the surface; against the ray where it starts inside
+  /// Whether it is a wall that was hit.
   [[nodiscard]] bool is_wall() const { return wall != no_wall; }
 };
 
+/// A body near a point.
 template <class Real>
 struct Neighbour {
   BodyHandle body{};
   Real distance{};  // to its surface, below 0 inside
 };
 
+/// What a region touches.
 struct Overlap {
   std::vector<BodyHandle> bodies{};
   std::vector<std::uint32_t> walls{};
 };
 
+/// An index of the bodies of a world at one instant. It does not follow the world: build another after a change.
 template <class Real, int Dim>
 class Queries {
  public:
   using V = Vector<Real, Dim>;
 
+  /// Copies positions and radii, and sorts them in O(N log N). The world may change or end afterwards.
   explicit Queries(const World<Real, Dim>& world);
 
   // All queries fail for invalid arguments: numbers that are not finite, a direction of 0, a negative radius or reach,
@@ -72,6 +78,7 @@ class Queries {
                                                                 const QueryFilter& filter = {}) const;
   /// The bodies and walls that a ball, or a box with its faces along the axes, touches, in the order of the world.
   [[nodiscard]] Result<Overlap> in_sphere(const V& centre, const Real& radius, const QueryFilter& filter = {}) const;
+  /// The bodies and walls that a box with its faces along the axes touches, in the order of the world.
   [[nodiscard]] Result<Overlap> in_box(const V& lower, const V& upper, const QueryFilter& filter = {}) const;
   /// The `count` bodies whose surfaces are nearest, or as many as there are; the nearest first.
   [[nodiscard]] Result<std::vector<Neighbour<Real>>> nearest(const V& point, std::size_t count,

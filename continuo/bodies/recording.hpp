@@ -30,6 +30,7 @@
 
 namespace continuo {
 
+/// The positions and orientations of all bodies at an instant.
 template <class Real, int Dim>
 struct Frame {
   Real time{};
@@ -37,6 +38,7 @@ struct Frame {
   std::vector<Vector<Real, Dim>> position{};
   std::vector<Orientation<Real, Dim>> orientation{};
 
+  /// Reads or writes the frame.
   template <class Archive>
   void transfer(Archive& archive) {
     archive(time), archive(scene), archive(position), archive(orientation);
@@ -61,6 +63,7 @@ struct RecordingIndex {
 
 }  // namespace detail
 
+/// Writes a recording to a stream, frame by frame.
 template <class Real, int Dim>
 class Recorder {
  public:
@@ -72,6 +75,8 @@ class Recorder {
     out_.write(head.bytes());
   }
 
+  /// Writes the present state as a frame, after a snapshot of the whole world where bodies have been added or removed.
+  /// Costs about 56 bytes a body in space and double precision.
   void add(const World<Real, Dim>& world) {
     std::vector<BodyHandle> bodies(world.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i] = world.handle(i);
@@ -85,6 +90,7 @@ class Recorder {
     index_.frames.push_back(out_.position());
     out_.write(detail::RecordingBlock::frame, writer.bytes());
   }
+  /// Writes the index, with which a recording is whole.
   void finish() {
     ByteWriter writer;
     writer(index_);
@@ -98,12 +104,14 @@ class Recorder {
   detail::RecordingIndex index_;
 };
 
+/// A recording that was read from a file.
 template <class Real, int Dim>
 struct Recording {
   bool is_whole = false;  // false where the index is missing: the run was cut off
   std::vector<World<Real, Dim>> scenes{};
   std::vector<Frame<Real, Dim>> frames{};
 
+  /// Frame i, counted from 0.
   [[nodiscard]] const Frame<Real, Dim>& frame(std::size_t i) const { return frames[i]; }
   /// The last frame not after t; the first frame where all are after t.
   [[nodiscard]] const Frame<Real, Dim>& at(const Real& t) const {

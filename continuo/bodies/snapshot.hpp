@@ -23,6 +23,7 @@ namespace continuo {
 
 inline constexpr std::uint32_t snapshot_version = 8;
 
+/// The world as bytes, without a motion.
 template <class Real, int Dim>
 [[nodiscard]] Bytes snapshot(const World<Real, Dim>& world);
 /// The motion must move this world.

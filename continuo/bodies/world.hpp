@@ -95,6 +95,8 @@ template <class Real, int Dim>
 using TorqueLaw = std::function<void(const World<Real, Dim>& world, Real t, const BodyStates<Real, Dim>& at,
                                      std::span<Spin<Real, Dim>> torque)>;
 
+/// Bodies in the plane (Dim = 2) or in space (Dim = 3), with walls and forces. The units are yours, as long as they
+/// belong together.
 template <class Real, int Dim>
 class World {
   static_assert(Dim == 2 || Dim == 3);
@@ -119,12 +121,14 @@ class World {
   Result<BodyHandle> add(const BodyDefinition<Real, Dim>& definition);
   /// False where the world has no such body. O(1): the last body moves to the index that becomes free.
   bool remove(BodyHandle handle);
+  /// Whether the body exists.
   [[nodiscard]] bool contains(BodyHandle handle) const {
     return handle.slot < slots_.size() && slots_[handle.slot].generation == handle.generation &&
            slots_[handle.slot].index != nowhere;
   }
   /// The world must contain the body.
   [[nodiscard]] std::size_t index(BodyHandle handle) const { return slots_[handle.slot].index; }
+  /// The handle of the body with this index.
   [[nodiscard]] BodyHandle handle(std::size_t index) const {
     return {slot_of_[index], slots_[slot_of_[index]].generation};
   }
@@ -137,6 +141,7 @@ class World {
   [[nodiscard]] Status add_wall(Wall<Real, Dim> wall);
   /// The inside of a box with its faces along the axes.
   [[nodiscard]] Status add_container(const V& lower, const V& upper, const Material<Real>& material = {});
+  /// All walls, in the order in which they were added.
   [[nodiscard]] std::span<const Wall<Real, Dim>> walls() const { return walls_; }
 
   /// From now on, bodies of groups a and b do not collide.
@@ -144,12 +149,16 @@ class World {
     ignored_[a] |= 1u << b;
     ignored_[b] |= 1u << a;
   }
+  /// The group of body i, below 32.
   [[nodiscard]] std::uint32_t group(std::size_t i) const { return group_[i]; }
+  /// Whether any two groups have been told to ignore each other.
   [[nodiscard]] bool has_ignored_groups() const { return ignored_ != std::array<std::uint32_t, 32>{}; }
+  /// Whether bodies i and j may collide: their groups do not ignore each other, and one of them can move.
   [[nodiscard]] bool collide(std::size_t i, std::size_t j) const {
     return (ignored_[group_[i]] >> group_[j] & 1u) == 0 && (inverse_mass[i] > 0 || inverse_mass[j] > 0);
   }
 
+  /// The number of bodies.
   [[nodiscard]] std::size_t size() const { return position.size(); }
   /// Reserves memory for so many bodies. Without it, growing arrays occupy up to twice the memory that they need.
   void reserve(std::size_t bodies) {
@@ -170,8 +179,11 @@ class World {
   std::vector<Real> radius, mass, inverse_mass, inverse_inertia;  // inverses are 0 of fixed bodies
   std::vector<Material<Real>> material;
 
+  /// The centre of a body, which the world must contain.
   [[nodiscard]] const V& position_of(BodyHandle body) const { return position[index(body)]; }
+  /// The velocity of a body, which the world must contain.
   [[nodiscard]] const V& velocity_of(BodyHandle body) const { return velocity[index(body)]; }
+  /// Whether body i is fixed.
   [[nodiscard]] bool is_fixed(std::size_t i) const { return inverse_mass[i] == Real(0); }
 
  private:
@@ -200,8 +212,10 @@ template <class Real, int Dim>
 /// The potential energy of gravity, constant forces, springs and attraction.
 template <class Real, int Dim>
 [[nodiscard]] Real potential_energy(const World<Real, Dim>& world);
+/// The sum of mass times velocity over all bodies.
 template <class Real, int Dim>
 [[nodiscard]] Vector<Real, Dim> momentum(const World<Real, Dim>& world);
+/// The angular momentum about the origin of all bodies that move, spin included; one number in the plane.
 template <class Real, int Dim>
 [[nodiscard]] Spin<Real, Dim> angular_momentum(const World<Real, Dim>& world);
 

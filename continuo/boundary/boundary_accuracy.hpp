@@ -24,6 +24,7 @@ struct Residuals {
   std::vector<double> shares;      // by interval: the greatest of the integrals relative to the size of its component
   std::vector<double> integrals;   // as the rows of the system but those of conditions
 };
+/// Evaluates the residuals at further points of each interval, and counts the evaluations in `solution`.
 [[nodiscard]] Residuals residuals_of(const BoundaryValueProblem& problem, BoundaryValueSolution& solution,
                                      const CollocationSystem& system, double tolerance);
 
@@ -39,6 +40,7 @@ struct ErrorBounds {
     double part = 0;
     std::size_t component = 0;
   };
+  /// The component with the greatest of these errors, relative to its size.
   [[nodiscard]] Worst worst(const std::vector<double>& errors) const;
 };
 /// Needs the matrix of an iteration at, or close to, the solution.

@@ -23,6 +23,7 @@ struct FollowedSolution {
   double reached = 0;
   std::size_t steps = 0;  // to values between
 };
+/// Solves the problem at `from`, then at values on the way to `to`, each from the solution before.
 [[nodiscard]] FollowedSolution follow_path(const BoundaryPath& path, const BoundaryValueGuess& guess = {},
                                            const BoundaryValueOptions& options = {});
 

@@ -32,6 +32,7 @@ struct BoundaryRuns {
   std::size_t guesses = 0;
   std::vector<model::Diagnostic> diagnostics;
 };
+/// Solves the problem once from each guess of the model, or from the one that the request names.
 [[nodiscard]] BoundaryRuns solve_boundary(const std::shared_ptr<const model::ModelProgram>& program,
                                           const model::Experiment& experiment = {},
                                           const BoundaryRequest& request = {});

@@ -20,12 +20,16 @@ namespace continuo::boundary {
 /// The conditions as one function of x at the times that they name.
 class BoundaryConditions {
  public:
+  /// The conditions of a model with the parameters of a plan. The program must outlive this object.
   BoundaryConditions(const model::ModelProgram& program, const model::Plan& plan);
 
+  /// The times that conditions read, ascending.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   /// Which of `times` this setting of a condition is.
   [[nodiscard]] std::size_t place_of(const model::Setting& setting) const;
 
+  /// residuals = what is left of each condition, in the order of the text. x: the states at the first time, at the
+  /// second, and so on.
   void operator()(Values x, std::span<double> residuals);
 
   /// Which entries of the Jacobian may differ from zero.

@@ -21,6 +21,7 @@
 
 namespace continuo::boundary {
 
+/// A boundary-value problem: a system, and as many conditions as it has components and unknown constants.
 struct BoundaryValueProblem {
   ParametricSystem system{};    // its constants p, of which there are m, are unknown
   std::vector<double> times{};  // at which conditions read x, ascending; the first and the last bound the interval
@@ -33,6 +34,7 @@ struct BoundaryValueProblem {
 /// Invalid input where no method can solve the problem, as it is incomplete or contradicts itself.
 [[nodiscard]] Status validate(const BoundaryValueProblem& problem);
 
+/// How exactly a problem is solved, and how much may be spent on it.
 struct BoundaryValueOptions {
   /// Of |x' - f| / (1 + |f|), root mean square over each interval of the mesh; and of the estimated error of each
   /// component, relative to its greatest value. Where the former takes more than some thousand intervals (it may be
@@ -68,11 +70,16 @@ struct BoundaryValueSolution {
   std::size_t meshes = 0, iterations = 0;  // how many meshes, and iterations of Newton on all of them
   std::size_t evaluations = 0;             // of f
 
+  /// x(t), `size` numbers; t in the interval.
   void at(double t, std::span<double> x) const;
+  /// dx/dt at t, of the polynomial.
   void slope_at(double t, std::span<double> dxdt) const;
+  /// x(t) as a new vector.
   [[nodiscard]] std::vector<double> operator()(double t) const;
 };
 
+/// Solves the problem by collocation on a mesh that is refined until residual and error are below the tolerance. Where
+/// Newton's iteration finds nothing near the guess, or a limit is reached, the outcome says so; nothing throws.
 [[nodiscard]] BoundaryValueSolution solve_boundary_values(const BoundaryValueProblem& problem,
                                                           const BoundaryValueGuess& guess = {},
                                                           const BoundaryValueOptions& options = {});

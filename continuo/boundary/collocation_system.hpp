@@ -26,6 +26,7 @@ struct OpenEnds {
   bool first = false, last = false;
 };
 
+/// The equations of one problem on one mesh.
 class CollocationSystem {
  public:
   static constexpr const auto& table = lobatto4;
@@ -34,24 +35,33 @@ class CollocationSystem {
   /// `mesh` holds every one of problem.times.
   CollocationSystem(const BoundaryValueProblem& problem, std::span<const double> mesh, OpenEnds open = {});
 
+  /// The number of components of x.
   [[nodiscard]] std::size_t components() const { return n_; }
+  /// The number of collocation points, those of the mesh among them.
   [[nodiscard]] std::size_t point_count() const { return per_interval * intervals() + 1; }
+  /// The number of intervals of the mesh.
   [[nodiscard]] std::size_t intervals() const { return mesh_.size() - 1; }
+  /// The time of a collocation point.
   [[nodiscard]] double time(std::size_t point) const;
+  /// Whether the interval touches an end at which f has no value.
   [[nodiscard]] bool has_open_end(std::size_t interval) const {
     return (open_.first && interval == 0) || (open_.last && interval + 1 == intervals());
   }
 
   /// Unknowns, to be set before `iterate` and read after it.
   std::span<double> unknowns() { return z_; }
+  /// x at collocation point q, to be read or set.
   std::span<double> point(std::size_t q) { return std::span(z_).subspan(q * n_, n_); }
+  /// The constants p, to be read or set.
   std::span<double> constants() { return std::span(z_).subspan(point_count() * n_, m_); }
   /// f at the points, of the last iteration.
   [[nodiscard]] std::span<const double> slopes() const { return f_; }
 
   /// Damped until a correction is below `target`, relative to the size of each component.
   NewtonEnding iterate(double target, const BoundaryValueOptions& options);
+  /// Iterations of Newton so far.
   [[nodiscard]] std::size_t iterations() const { return iterations_; }
+  /// Evaluations of f so far.
   [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
   /// The component or constant that moved most, in its measure, in the last correction.
   [[nodiscard]] std::size_t worst() const { return worst_; }

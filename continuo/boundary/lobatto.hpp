@@ -9,6 +9,7 @@
 
 namespace continuo::boundary {
 
+/// The coefficients of collocation at s points of the unit interval.
 template <std::size_t s>
 struct LobattoTable {
   static constexpr std::size_t stages = s;
@@ -27,6 +28,7 @@ struct LobattoTable {
     }
     return weights;
   }
+  /// The values at theta: x'(t + theta h) = sum_j weights[j] f_j.
   [[nodiscard]] constexpr std::array<double, s> slopes(double theta) const {
     std::array<double, s> weights{};
     for (std::size_t j = 0; j < s; ++j)
@@ -35,6 +37,7 @@ struct LobattoTable {
   }
 };
 
+/// The table for these points, 0 and 1 among them, by expanding Lagrange's polynomials.
 template <std::size_t s>
 [[nodiscard]] constexpr LobattoTable<s> make_lobatto(const std::array<double, s>& nodes) {
   LobattoTable<s> table{.c = nodes};

@@ -10,11 +10,13 @@
 
 namespace continuo::model {
 
+/// How much of a model is listed.
 struct DescribeOptions {
   std::size_t most_listed = 24;          // of each kind; the rest is counted
   std::size_t longest_expression = 200;  // characters
 };
 
+/// The text that `continuo info` prints.
 [[nodiscard]] std::string describe(const Model& model, const DescribeOptions& options = {});
 
 }  // namespace continuo::model

@@ -17,11 +17,13 @@
 
 namespace continuo::model {
 
+/// A model that was read, with its messages.
 struct Loaded {
   Source source;
   std::optional<Model> model;           // there iff no diagnostic is an error
   std::vector<Diagnostic> diagnostics;  // errors of the parser and the checks, or warnings
 
+  /// Whether there is a model.
   explicit operator bool() const { return model.has_value(); }
   /// All diagnostics as shown on a terminal.
   [[nodiscard]] std::string text(const RenderOptions& options = {}) const {

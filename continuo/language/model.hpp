@@ -51,6 +51,7 @@ struct Range {
   double low, high;
 };
 
+/// A parameter, or one member of a family.
 struct Parameter {
   std::string name;        // "k", "m[3]"
   std::uint32_t variable;  // in the flat space
@@ -111,6 +112,7 @@ struct Quantity {
 // ---- events ---------------------------------------------------------------------------------------------------------
 
 struct Action;
+/// The actions of an event, or of one branch of an `if`.
 using Block = std::vector<Action>;
 
 /// Every expression of a block reads the state from before the event; assignments take effect together at its end.
@@ -118,13 +120,16 @@ struct Assign {
   std::size_t state;  // index into Model::states
   NodeId value;       // in the state's unit
 };
+/// One of two blocks.
 struct If {
   NodeId condition;  // not zero: true
   Block then, otherwise;
 };
+/// Changes the mode.
 struct Go {
   std::size_t mode;
 };
+/// Labels the event in the event list.
 struct Mark {
   std::string text;
 };
@@ -133,6 +138,7 @@ struct Stop {
   std::string text;  // may be empty
   std::size_t after = 1;
 };
+/// One action of an event.
 struct Action {
   std::variant<Assign, If, Go, Mark, Stop> what;
   Span span;
@@ -156,6 +162,7 @@ struct When {
 /// `initially` (once, at the start), `at TIME` (once), `every DT from FIRST`; without FIRST it is one DT after the
 /// start.
 struct Scheduled {
+  /// The kinds of scheduled events.
   enum class Kind { initially, at, every };
   Kind kind;
   std::string name;              // "at 3", "every 0.5"
@@ -173,7 +180,9 @@ struct EventOrder {
 
 // ---- the experiment -------------------------------------------------------------------------------------------------
 
+/// At which times rows are written.
 struct OutputPlan {
+  /// Regular times, times with equal ratios, or the ends of steps.
   enum class Kind { every, logarithmic, steps };
   Kind kind;
   std::optional<Setting> interval;  // every
@@ -200,12 +209,14 @@ struct Series {
   NodeId node;
   std::string unit;
 };
+/// A `plot` statement.
 struct Plot {
   std::vector<Series> curves;
   Series against;  // t where the text does not say
   Span span;
 };
 
+/// The shapes of a drawing.
 enum class Shape { floor, ball, spring, rod, rope, arrow, trail, box, text };
 
 /// One argument of a drawing: a point has two or three numbers, the height of a floor one, a text none.
@@ -218,6 +229,7 @@ struct DrawAttribute {
   std::string name;
   DrawArgument value;
 };
+/// One shape of a drawing, with its numbers and attributes.
 struct DrawItem {
   Shape shape;
   std::vector<DrawArgument> arguments;
@@ -230,6 +242,7 @@ struct DrawItem {
 
 /// When a check reads the motion. Events count from 1 among those whose name begins with `event`.
 struct Moment {
+  /// The end of the run, a time, or an event.
   enum class Kind { end, time, event };
   Kind kind = Kind::end;
   std::optional<Setting> time;
@@ -246,6 +259,7 @@ struct Sample {
   Setting when;
 };
 
+/// What a check reads.
 enum class Measure {
   value,         // of `node` at `moment`
   always,        // of `node` at every accepted step, output and event
@@ -254,6 +268,7 @@ enum class Measure {
   event_count,   // of the events of `moment`
   end_time
 };
+/// How a check compares.
 enum class Relation { equal, less, less_equal, greater, greater_equal };
 
 /// `check MEASURE = value within tolerance`, `check MEASURE < value`.
@@ -280,11 +295,13 @@ struct BoundaryCondition {
   std::vector<Sample> samples;  // states at times, that `value` needs first
   Span span;
 };
+/// An initial guess for a state of a boundary-value problem.
 struct Guess {
   std::size_t state;
   NodeId node;  // may use t
   Span span;
 };
+/// An unknown constant or the unknown of an algebraic equation.
 struct Unknown {
   std::string name;
   std::uint32_t variable;
@@ -292,6 +309,7 @@ struct Unknown {
   std::string unit;
   Span span;
 };
+/// An equation without derivatives.
 struct AlgebraicEquation {
   NodeId residual;  // = 0
   std::size_t mode;
@@ -321,6 +339,8 @@ struct Text {
   std::string path, content;
 };
 
+/// A checked model. It is plain data, and copies are independent of each other but for the world's description, which
+/// they share.
 struct Model {
   std::string name;     // of `model NAME`, else of the file
   std::string heading;  // the comment at the top of the text
@@ -364,8 +384,11 @@ struct Model {
 
   std::shared_ptr<const WorldDescription> world;  // null where the model has no bodies
 
+  /// Whether conditions are at several times.
   [[nodiscard]] bool needs_boundary_solver() const { return !boundary.empty(); }
+  /// Whether there are algebraic equations.
   [[nodiscard]] bool needs_dae_solver() const { return !algebraic.empty(); }
+  /// Whether there are bodies.
   [[nodiscard]] bool has_world() const { return world != nullptr; }
 };
 
@@ -374,11 +397,15 @@ struct Model {
 
 /// By name, `npos` where there is none: "h'" for states, "k" or "m[3]" for parameters.
 inline constexpr std::size_t npos = static_cast<std::size_t>(-1);
+/// The index of a state, by its column.
 [[nodiscard]] std::size_t find_state(const Model& model, std::string_view column);
 /// The state of that column; where there is none, the states of the family of that name: "u'" for all u[i]'.
 [[nodiscard]] std::vector<std::size_t> states_named(const Model& model, std::string_view name);
+/// The index of a parameter.
 [[nodiscard]] std::size_t find_parameter(const Model& model, std::string_view name);
+/// The index of an input.
 [[nodiscard]] std::size_t find_input(const Model& model, std::string_view name);
+/// The index of a mode.
 [[nodiscard]] std::size_t find_mode(const Model& model, std::string_view name);
 
 /// Values of parameters by name that stand for those in the text. Unknown names are left aside: see `find_parameter`.

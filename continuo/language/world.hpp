@@ -25,6 +25,7 @@ namespace continuo::model {
 inline constexpr std::size_t no_body = static_cast<std::size_t>(-1);
 using NodePoint = std::array<NodeId, 3>;  // the third is not valid in the plane
 
+/// The contact parameters of a surface.
 struct MaterialDescription {
   NodeId restitution, friction, rolling;
 };
@@ -58,6 +59,7 @@ struct WallDescription {
   Span span;
 };
 
+/// A spring between two bodies, or from a body to a point.
 struct SpringDescription {
   std::size_t a = no_body, b = no_body;  // no body: the point
   NodePoint point;
@@ -82,6 +84,7 @@ struct WorldMode {
   std::string integrator = "semi_implicit_euler";  //
 };
 
+/// The world of a model.
 struct WorldDescription {
   int dimension = 2;
   std::string length_unit, mass_unit;
@@ -98,6 +101,7 @@ struct WorldDescription {
   std::size_t first_measure = 0;  // of `measures(dimension)` in Model::states: world.kinetic, ...; the last states
   Span span;
 
+  /// The number of states of all bodies.
   [[nodiscard]] std::size_t body_states() const { return bodies.size() * states_of_body(dimension); }
   /// In the plane x, x', y, y', angle, angle'; in space x, x', y, y', z, z', q_w, q_x, q_y, q_z, spin_x, spin_y,
   /// spin_z.

@@ -14,9 +14,11 @@ namespace continuo::live {
 struct Bodies {
   std::size_t dimension = 3;
   std::vector<float> position, orientation;
+  /// The number of bodies.
   [[nodiscard]] std::size_t count() const { return position.size() / dimension; }
 };
 
+/// An event that is shown in the list.
 struct LiveEvent {
   double t;
   std::string name, mark;
@@ -40,10 +42,13 @@ struct Slice {
 /// What a text says; who comes later needs the newest `model` and `state`.
 enum class Topic { model, state, message };
 
+/// An observer of a session. It is called on the thread of the session.
 class Audience {
  public:
   virtual ~Audience() = default;
+  /// Gets the newest part of the picture.
   virtual void see(std::shared_ptr<const Slice> slice) = 0;
+  /// Gets a message, as JSON (docs/protocol.md).
   virtual void hear(Topic topic, std::string json) = 0;
 };
 

@@ -13,6 +13,7 @@
 
 namespace continuo::live {
 
+/// The kinds of plotted values.
 enum class ColumnKind { state, let, output, energy, drift, curve, distance };
 
 /// A plotted value: the states (of many bodies only those of equations and
@@ -23,11 +24,13 @@ struct LiveColumn {
   ColumnKind kind;
 };
 
+/// A curve of a plot, by its column.
 struct LiveCurve {
   std::string label;
   std::size_t column;
   std::string unit;
 };
+/// A plot: curves over a column, or over t.
 struct LivePlot {
   std::vector<LiveCurve> curves;
   std::optional<LiveCurve> against;  // nothing: t
@@ -39,6 +42,7 @@ struct SceneNumbers {
   std::vector<std::size_t> places;
   bool is_point;
 };
+/// A shape of the drawing.
 struct SceneItem {
   model::Shape shape;
   std::string label, color, text;
@@ -47,6 +51,7 @@ struct SceneItem {
   std::vector<std::size_t> path{};         // of a trail: where its point stands in the paths
 };
 
+/// A model with all that is shown of it.
 struct LiveModel {
   std::shared_ptr<const model::ModelProgram> program;
   std::vector<LiveColumn> columns;
@@ -59,7 +64,9 @@ struct LiveModel {
   std::optional<std::size_t> energy, drift;  // columns
   int dimension = 2;
 
+  /// The model itself.
   [[nodiscard]] const model::Model& model() const { return program->model; }
+  /// The column of the ghost's distance, the last one.
   [[nodiscard]] std::size_t distance() const { return columns.size() - 1; }
 };
 
@@ -69,6 +76,7 @@ using Variables = std::shared_ptr<const std::vector<double>>;
 
 /// Inputs that somebody moves (those with a key, and `taken`) do not follow their files.
 using Taken = std::set<std::string, std::less<>>;
+/// Prepares a model to be shown. Compiles its equations.
 [[nodiscard]] LiveModel prepare(model::Model model, const Taken& taken = {});
 
 }  // namespace continuo::live

@@ -17,20 +17,25 @@ namespace continuo::live {
 /// Seconds of a clock that never goes backwards.
 [[nodiscard]] double steady_seconds();
 
+/// The thread of a session.
 class Loop {
  public:
   /// `complain` is told what was wrong with a command, and of which client.
   using Complain = std::function<void(std::uint64_t client, const std::string& problem)>;
 
+  /// The session must outlive the loop, and only the loop may use it while it runs.
   Loop(Session& session, Complain complain);
+  /// Stops the thread.
   ~Loop();
 
+  /// Starts the thread.
   void start();
   /// Returns when the turn that is being made has ended.
   void stop();
 
   /// From any thread. False: there is too much to do already, ask again in a moment.
   bool post(Command command, std::uint64_t client);
+  /// Sets the number of pictures a second, from any thread.
   void set_rate(double pictures) { rate_.store(pictures); }
 
  private:

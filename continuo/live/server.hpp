@@ -19,6 +19,7 @@
 
 namespace continuo::live {
 
+/// Where the server listens, and its limits.
 struct ServerOptions {
   std::string address = "127.0.0.1";
   unsigned short port = 0;          // 0: any free one
@@ -35,26 +36,37 @@ struct ServerHooks {
   std::function<void(std::size_t clients)> attached{};
 };
 
+/// A server of one session.
 class Server final : public Audience {
  public:
+  /// Gets messages for the terminal.
   using Say = std::function<void(const std::string&)>;
 
+  /// Nothing is opened yet. `say` gets messages for the terminal, on the server's thread.
   Server(ServerOptions options, Say say);
+  /// Closes all connections.
   ~Server() override;
 
   /// Invalid input where the address is none; cannot continue where nobody can listen there.
   Status listen();
+  /// Accepts clients from now on, on a thread of its own. `listen` must have succeeded.
   void start(ServerHooks hooks);
   /// Says goodbye to all and returns when the thread has ended.
   void stop();
 
+  /// The port, after `listen`.
   [[nodiscard]] unsigned short port() const;
+  /// The address of the page, after `listen`.
   [[nodiscard]] std::string url() const;
+  /// The number of clients that are connected.
   [[nodiscard]] std::size_t clients() const;
 
   // From any thread.
+  /// Sends a part of the picture to all clients that have read the last one.
   void see(std::shared_ptr<const Slice> slice) override;
+  /// Sends a message to all clients.
   void hear(Topic topic, std::string json) override;
+  /// Tells one client what was wrong with its message.
   void complain(std::uint64_t client, const std::string& problem);
 
   struct Parts;  // server_parts.hpp

@@ -31,16 +31,19 @@
 
 namespace continuo::live {
 
+/// A running model with its history, changed by commands. One thread at a time.
 class Session {
  public:
   using Now = WallClock;
 
+  /// Nothing is opened yet. `now` gives wall time in seconds; the audience must outlive the session.
   Session(Now now, Audience& audience, Place place);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   /// Reads the file of the place, or what is wrong with it: then there is nothing to show.
   model::Loaded open_file();
+  /// Whether a model is shown.
   [[nodiscard]] bool is_open() const { return playback_.shown() != nullptr; }
   /// Why there is nothing to show.
   [[nodiscard]] const std::vector<model::Diagnostic>& problems() const { return notices_.problems(); }
@@ -51,42 +54,66 @@ class Session {
   void set_rate(double pictures) { playback_.set_rate(pictures); }
 
   // What hands do.
+  /// The commands of the same names in docs/protocol.md: play, pause, one step, one step back, begin again, play to the
+  /// next event.
+  /// @{
   void play() { playback_.play(); }
   void pause() { playback_.pause(); }
   void step();
   void back() { playback_.back(); }
   void reset();
   void until_event() { playback_.until_event(); }
+  /// @}
+  /// Shows an instant of the history; `play` continues from it and discards the later part.
   void seek(double t) { playback_.seek(t); }
+  /// Sets the speed as a multiple of real time; 0: as fast as possible.
   void set_speed(double speed) { playback_.set_speed(speed); }
+  /// Changes a parameter at the instant that is shown. An unknown name is reported to the audience.
   void set_parameter(const std::string& name, double value);
+  /// Gives all parameters and inputs the values of the text.
   void restore_parameters();
+  /// Moves an input, which no longer follows its file.
   void move_input(const std::string& name, double value) { interaction_.move_input(name, value); }
   /// False where the model cannot be run so: `problems` says why.
   bool take_method(MethodChoice choice) { return interaction_.take_method(std::move(choice)); }
+  /// Runs another method beside the first; nothing ends that.
   void take_ghost(std::optional<MethodChoice> choice) { interaction_.take_ghost(std::move(choice)); }
+  /// Takes back the last change of settings, up to 200 of them.
   void undo();
+  /// Moves a shape of the drawing towards a point, until `release`.
   void drag(std::size_t item, std::span<const double> to) { drag_.move(item, to); }
+  /// Moves a body towards a point, until `release`.
   void drag_body(std::size_t body, std::span<const double> to) { drag_.move_body(body, to); }
   /// What was in the hand goes on as fast as the hand went, or `still`.
   void release(bool still = false) { drag_.release(still); }
+  /// Tells the audience the values of a body.
   void pick(std::size_t body);
+  /// Opens a model of the gallery by its name.
   void open_gallery(const std::string& name);
+  /// Reads a text as the model, and begins it. Where it is wrong, the present model stays.
   void run_text(const std::string& text);
+  /// Writes the text to the file of the place. Any other file is refused.
   void save_text(const std::string& text);
 
+  /// Whether the motion advances.
   [[nodiscard]] bool playing() const { return playback_.playing(); }
+  /// Whether the run has come to its end.
   [[nodiscard]] bool has_ended() const { return !playback_.ended().empty(); }
+  /// The time that is shown, in the model's unit of time.
   [[nodiscard]] double shown_time() const { return playback_.shown_time(); }
   /// Where the run of the text ends; the view goes on.
   [[nodiscard]] double planned_end() const { return playback_.main().plan().to; }
+  /// The model that is shown; `is_open` must be true.
   [[nodiscard]] const LiveModel& shown() const { return *playback_.shown(); }
+  /// The instants to which the session can go back.
   [[nodiscard]] const History& history() const { return playback_.history(); }
+  /// The clock that maps wall time to time of the model.
   [[nodiscard]] const PacedClock& clock() const { return playback_.clock(); }
   /// Null without bodies.
   [[nodiscard]] const worlds::WorldRun* world() const { return playback_.main().world(); }
   /// For those who come later.
   [[nodiscard]] std::string model_json() const;
+  /// The message `state` of docs/protocol.md, for clients that join later.
   [[nodiscard]] std::string state_json() const;
 
  private:

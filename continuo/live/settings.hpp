@@ -24,10 +24,12 @@ struct Settings {
   std::optional<MethodChoice> ghost{};
 };
 
+/// A model that can be opened: its name, the first line of its heading, and its file.
 struct GalleryModel {
   std::string name, title, path;
 };
 
+/// Where models come from.
 struct Place {
   std::string path;                     // of the model that was named: the only file that is ever written
   std::vector<GalleryModel> gallery{};  // what can be opened besides

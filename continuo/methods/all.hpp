@@ -56,8 +56,10 @@ using AccelerationMethods = std::tuple<McLachlanAtela4, Yoshida6, KahanLi8, Dorm
                                        DormandPrinceNystrom8, DormandPrinceNystrom12>;
 /// For structures, M x'' + C x' + K x = f.
 using StructuralMethods = std::tuple<Newmark, GeneralizedAlpha>;
+/// For stiff systems; all but Rkc2 are implicit and solve algebraic equations.
 using StiffMethods = std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5, Rkc2,
                                 Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf>;
+/// All methods, in the order of the catalogue.
 using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
                                            std::tuple<Adams>{}, StiffMethods{}, AutomaticMethods{}));
 

@@ -19,11 +19,14 @@ struct Interpolant {
   static constexpr int degree = Degree;
   std::array<X, Degree + 1> c;
 
+  /// Room for coefficients like x.
   explicit Interpolant(const X& x) { c.fill(x); }
 
+  /// x = x(t + theta h), theta in 0..1.
   void operator()(Scalar<X> theta, X& x) const {
     for (std::size_t i = 0; i < dimension(x); ++i) x.data()[i] = component(theta, i);
   }
+  /// Component i of x(t + theta h).
   [[nodiscard]] Scalar<X> component(Scalar<X> theta, std::size_t i) const {
     Scalar<X> value = c[Degree].data()[i];
     for (int j = Degree - 1; j >= 0; --j) value = value * theta + c[static_cast<std::size_t>(j)].data()[i];
@@ -43,6 +46,7 @@ struct Tolerance {
   const Real* atol_each = nullptr;
   Real rounding_of_time{};  // what rounding of t leaves undecided of a step, as a part of the change it makes
 
+  /// The size against which an error of component i is measured; the unit is that of the component.
   [[nodiscard]] Real scale(std::size_t i, const Real& x, const Real& x_new) const {
     using std::abs;
     using std::max;

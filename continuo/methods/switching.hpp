@@ -19,6 +19,9 @@
 
 namespace continuo {
 
+/// A method that is NonStiff or Stiff, whichever takes fewer evaluations of f for the next steps. Both need an error
+/// estimate, and Stiff must be implicit. It has the static functions of the concept Method; what they share is stated
+/// there.
 template <class NonStiff, class Stiff>
 struct Switching {
   static constexpr int order = NonStiff::order, error_order = NonStiff::error_order;
@@ -28,6 +31,7 @@ struct Switching {
   static constexpr bool second_order = NonStiff::second_order, implicit = true, automatic = true;
   static_assert(!Stiff::second_order && Stiff::implicit && NonStiff::error_order > 0 && Stiff::error_order > 0);
 
+  /// The stages of both methods, and what is known of the stiffness.
   template <State X>
   struct Workspace {
     typename NonStiff::template Workspace<X> nonstiff;
@@ -49,18 +53,21 @@ struct Switching {
     Scalar<X> h_of_stiff{};    // its |h| when it was left last
   };
 
+  /// Allocates for both methods.
   template <State X>
   [[nodiscard]] static Workspace<X> workspace(const X& x) {
     return {NonStiff::workspace(x), Stiff::workspace(x), Interpolant<X, NonStiff::dense_degree>(x),
             Interpolant<X, Stiff::dense_degree>(x), StiffnessWatch<X>(x)};
   }
 
+  /// What the explicit method has against the system; empty where nothing.
   template <class System, State X>
   [[nodiscard]] static std::string_view unsupported_reason(const System& system, const X& x) {
     if constexpr (requires { NonStiff::unsupported_reason(system, x); }) return NonStiff::unsupported_reason(system, x);
     return {};
   }
 
+  /// The tolerance of the equations of a stiff step.
   template <State X>
   static void set_tolerance(Workspace<X>& work, const Tolerance<Scalar<X>>& tolerance) {
     work.tolerance = tolerance;
@@ -70,6 +77,7 @@ struct Switching {
       Stiff::set_tolerance(work.stiff, tolerance);
   }
 
+  /// One step, and every few steps one evaluation of f more, to test for stiffness.
   template <class System, State X>
   [[nodiscard]] static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                                 Workspace<X>& work, X& x_new) {
@@ -93,28 +101,35 @@ struct Switching {
     return evaluations;
   }
 
+  /// How the last step ended.
   template <State X>
   [[nodiscard]] static StepStatus status(const Workspace<X>& work) {
     return work.is_stiff ? detail::status_of<Stiff>(work.stiff) : detail::status_of<NonStiff>(work.nonstiff);
   }
+  /// What the stiff method's equations have cost so far.
   template <State X>
   [[nodiscard]] static EquationCosts costs(const Workspace<X>& work) {
     return Stiff::costs(work.stiff);
   }
+  /// The order of the error estimate of the method in use.
   template <State X>
   [[nodiscard]] static int error_order_of(const Workspace<X>& work) {
     return work.is_stiff ? detail::error_order_of<Stiff>(work.stiff) : detail::error_order_of<NonStiff>(work.nonstiff);
   }
+  /// The norm of the error of the last step: good where it is <= 1. In long oscillations it is stricter, so that the
+  /// errors of many turns do not add up.
   template <State X>
   [[nodiscard]] static Scalar<X> error_norm(const Workspace<X>& work, const Scalar<X>& h, const X& x, const X& x_new,
                                             const Tolerance<Scalar<X>>& tolerance) {
     return work.is_stiff ? Stiff::error_norm(work.stiff, h, x, x_new, tolerance)
                          : strictness_of_turns(work) * NonStiff::error_norm(work.nonstiff, h, x, x_new, tolerance);
   }
+  /// The estimated local error of component i.
   template <State X>
   [[nodiscard]] static Scalar<X> error_of(const Workspace<X>& work, const Scalar<X>& h, std::size_t i) {
     return work.is_stiff ? Stiff::error_of(work.stiff, h, i) : NonStiff::error_of(work.nonstiff, h, i);
   }
+  /// The factor for the next step, from the stiff method where it has an opinion.
   template <State X>
   [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h,
                                              const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
@@ -123,6 +138,7 @@ struct Switching {
     }
     return factor;
   }
+  /// The last step was rejected, and h_next is tried instead.
   template <State X>
   static void rejected(Workspace<X>& work, const Scalar<X>& h_next) {
     if constexpr (requires { Stiff::rejected(work.stiff, h_next); }) {
@@ -130,6 +146,7 @@ struct Switching {
     }
   }
 
+  /// The last step is taken once more, to end at an event.
   template <State X>
   static void retaken(Workspace<X>& work) {
     if constexpr (requires { Stiff::retaken(work.stiff); }) {
@@ -137,6 +154,7 @@ struct Switching {
     }
   }
 
+  /// The polynomial of the last step, raised to the higher of the two degrees.
   template <class System, State X>
   [[nodiscard]] static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,
                                        const X& x_new, Workspace<X>& work, Interpolant<X, dense_degree>& interpolant) {
@@ -150,6 +168,8 @@ struct Switching {
     return evaluations;
   }
 
+  /// Accepts the last step, and changes the method where three tests in a row speak for it (six in an oscillation; more
+  /// after changes that did not pay).
   template <State X>
   static void accept(Workspace<X>& work) {
     work.fresh = false;
@@ -170,6 +190,7 @@ struct Switching {
     }
   }
 
+  /// x' at the start of the last step.
   template <State X>
   [[nodiscard]] static X derivative(const Workspace<X>& work) {
     if (work.is_stiff) return Stiff::derivative(work.stiff);

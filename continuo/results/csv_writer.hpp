@@ -15,6 +15,7 @@ namespace continuo::results {
 
 /// The number at the end of the text.
 void append_number(std::string& text, double value);
+/// The shortest text that reads back as the same double.
 [[nodiscard]] std::string number(double value);
 
 /// The field at the end of the text, in quotes where it holds a comma, a quote or a line end.
@@ -23,8 +24,10 @@ void append_field(std::string& text, std::string_view field);
 /// Writes row by row as they come; nothing is kept.
 class CsvWriter {
  public:
+  /// Writes the first line with the hash, and the names of the columns. The file must outlive the writer.
   CsvWriter(OutputFile& out, std::string_view manifest_hash, std::span<const std::string> columns);
 
+  /// A row of numbers, one for each column.
   void row(std::span<const double> values);
   /// A row that begins with a text: the event list.
   void row(std::string_view name, std::span<const double> values);

@@ -11,6 +11,7 @@ namespace continuo::results {
 
 /// A single column has no axes. The columns of a family stand in the order of their indices, the last counting fastest.
 struct ColumnFamily {
+  /// An index of the family: its first value, and the number of values.
   struct Axis {
     long first = 0;
     std::size_t count = 0;

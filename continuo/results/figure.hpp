@@ -14,6 +14,7 @@
 
 namespace continuo::results {
 
+/// A curve, or a set of points, of a panel.
 struct Curve {
   std::string label;
   std::vector<double> x, y;  // of equal length; a NaN breaks the line
@@ -22,6 +23,7 @@ struct Curve {
   enum class Style { line, dashed_line, thin_line, full_points, empty_points, dots, area, discs };
   Style style = Style::line;
   bool widens_axes = true;  // false: the axes do not reach for it
+  /// A disc at a point of the curve.
   struct Disc {
     double radius = 0;
     std::string_view color;  // "#rrggbb", of a text that lasts
@@ -29,6 +31,7 @@ struct Curve {
   std::vector<Disc> discs{};  // one for each point of that style
 };
 
+/// A pair of axes with its curves.
 struct Panel {
   std::string x_label, y_label;
   std::vector<Curve> curves;
@@ -42,6 +45,7 @@ struct Panel {
   bool no_numbers = false;  // at the axes
 };
 
+/// A picture: panels from top to bottom.
 struct Figure {
   std::string title;
   std::vector<Panel> panels;
@@ -57,6 +61,7 @@ Status draw(const Figure& figure, const std::string& path);
 /// The program for gnuplot that `draw` runs.
 [[nodiscard]] std::string gnuplot_script(const Figure& figure, const std::string& path);
 
+/// The numbers from low to high.
 struct Range {
   double low, high;
 };

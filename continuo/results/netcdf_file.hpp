@@ -17,15 +17,18 @@
 
 namespace continuo::results {
 
+/// A text that describes a variable or the file, such as its units.
 struct NetcdfAttribute {
   std::string name, text;  // without text: left out
 };
 
+/// An index of variables with its size.
 struct NetcdfDimension {
   std::string name;
   std::size_t size = 0;
 };
 
+/// A variable over dimensions: numbers, or texts.
 struct NetcdfVariable {
   /// Asked for when the file has come to them, so that those of one variable at a time are in memory.
   using Numbers = std::function<std::vector<double>()>;
@@ -38,6 +41,7 @@ struct NetcdfVariable {
   bool integers = false;  // stored as such
 };
 
+/// The content of a file.
 struct NetcdfFile {
   std::vector<NetcdfAttribute> attributes;
   std::vector<NetcdfDimension> dimensions;
@@ -48,6 +52,7 @@ struct NetcdfFile {
     dimensions.push_back({std::move(name), size});
     return dimensions.size() - 1;
   }
+  /// Appends a variable.
   void variable(NetcdfVariable variable) { variables.push_back(std::move(variable)); }
 };
 

@@ -14,16 +14,21 @@
 
 namespace continuo::results {
 
+/// A file that is written from its beginning to its end, with a buffer of its own.
 class OutputFile {
  public:
+  /// Opens the file, and empties it where it exists; "-" is standard output.
   explicit OutputFile(std::string path);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
+  /// Writes what is left, without a message. `close` says whether that succeeds.
   ~OutputFile();
 
+  /// Appends bytes. After a failure this does nothing.
   void write(std::string_view bytes);
   /// Writes what is left. The first failure since the file was opened: "cannot write ball.csv: Permission denied".
   Status close();
+  /// The first failure so far, or a success.
   [[nodiscard]] const Status& status() const { return status_; }
 
  private:

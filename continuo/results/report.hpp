@@ -9,6 +9,7 @@
 
 namespace continuo::results {
 
+/// One part of the page.
 struct ReportSection {
   std::string title;
   std::string command{};   // what gives the same on a terminal; may be empty

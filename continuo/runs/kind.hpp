@@ -18,6 +18,7 @@ namespace continuo::runs {
 /// the world that moves its bodies and the equations beside them.
 enum class Solver { integration, collocation, world };
 
+/// The properties of a model's runs.
 struct Kind {
   Solver solver = Solver::integration;
   bool has_start = true;                  // the motion follows from its start; false: all of it is found at once
@@ -28,6 +29,7 @@ struct Kind {
   std::string_view cost = "evaluations";  // what is counted of a run
 };
 
+/// The kind of a model, from its statements alone.
 [[nodiscard]] Kind kind_of(const model::Model& model);
 
 /// How many evaluations, or whatever Kind::cost names, the run has taken.

@@ -9,6 +9,7 @@
 
 namespace continuo::runs {
 
+/// A method that a model can be run by.
 struct Method {
   std::string name;
   std::string title;           // for people

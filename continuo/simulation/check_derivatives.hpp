@@ -28,6 +28,7 @@ struct DerivativeEntry {
   double apart;         // in parts of the greatest entry of the row, each times its variable
 };
 
+/// What a comparison along a run has found.
 struct DerivativeReport {
   std::size_t states = 0, entries = 0;  // entries of the pattern of df/dx, all modes together
   SparsePattern::Bandwidth band{};
@@ -40,6 +41,7 @@ struct DerivativeReport {
   std::vector<DerivativeEntry> undecided;   // f is not finite nearby, or too rough; each entry once
   std::optional<DerivativeEntry> furthest;  // of those that agree
 
+  /// Whether no entry is wrong.
   [[nodiscard]] bool agrees() const { return wrong.empty(); }
 };
 

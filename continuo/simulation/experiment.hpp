@@ -55,7 +55,9 @@ struct Plan {
   double first = 0;               // and its first time
   std::vector<double> variables;  // the register file at the start
 
+  /// The relative tolerance of a state.
   [[nodiscard]] double rtol_of(std::size_t state) const { return rtol_each.empty() ? rtol : rtol_each[state]; }
+  /// The absolute tolerance of a state, in its unit.
   [[nodiscard]] double atol_of(std::size_t state) const { return atol.size() == 1 ? atol.front() : atol[state]; }
 };
 
@@ -69,12 +71,15 @@ struct Plan {
 
 /// E340, E344 with the names that may have been meant.
 [[nodiscard]] Diagnostic no_parameter(const Model& model, std::string_view name, Span span);
+/// E344, with the names that may have been meant.
 [[nodiscard]] Diagnostic no_state(const Model& model, std::string_view name, Span span);
 
 /// The times at which rows are wanted, one after the other; infinity when there are no more.
 class OutputTimes {
  public:
+  /// The times of the plan's rows.
   explicit OutputTimes(const Plan& plan) : plan_(plan) {}
+  /// Time number k; infinity behind the last one.
   double operator[](std::size_t k) const;
 
  private:

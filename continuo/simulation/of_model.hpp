@@ -13,6 +13,7 @@
 
 namespace continuo::model {
 
+/// Which parameters become constants, and in which mode.
 struct OfModel {
   std::vector<std::string> constants{};  // names of parameters, each one of the model's
   Overrides parameters{};                // values that stand for those in the text

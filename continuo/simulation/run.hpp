@@ -13,6 +13,7 @@
 
 namespace continuo::model {
 
+/// The name of a column, and its unit.
 struct Column {
   std::string name, unit;
 };
@@ -23,11 +24,15 @@ struct Motion {
   std::vector<double> values;  // row after row
   std::size_t states = 0;      // how many columns after t are states
 
+  /// The number of rows.
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
+  /// Row i: one number for each column.
   [[nodiscard]] std::span<const double> row(std::size_t i) const {
     return {values.data() + i * columns.size(), columns.size()};
   }
+  /// The time of row i, in the model's unit of time.
   [[nodiscard]] double time(std::size_t i) const { return row(i)[0]; }
+  /// The states of row i, each in its unit.
   [[nodiscard]] std::span<const double> state(std::size_t i) const { return row(i).subspan(1, states); }
 };
 
@@ -39,6 +44,7 @@ struct RecordedEvent {
   std::vector<double> before, after;  // both empty for a contact
   std::optional<double> impulse{};    // of a contact of bodies: along the normal
 
+  /// Whether it is a contact of bodies, not an event of the text.
   [[nodiscard]] bool is_contact() const { return impulse.has_value(); }
 };
 
@@ -50,6 +56,7 @@ struct EnergyBalance {
   bool relative = true;  // whether `drift` is; else it is in `unit`
 };
 
+/// The verdict on one check of the model.
 struct CheckResult {
   std::string text;
   bool passed = false;
@@ -66,6 +73,7 @@ struct ErrorEstimate {
   std::string message;          // why there is no estimate; else empty
 };
 
+/// The result of a run.
 struct Run {
   Plan plan;
   Motion motion;
@@ -78,8 +86,11 @@ struct Run {
   std::vector<CheckResult> checks;
   std::optional<ErrorEstimate> error;
 
+  /// The time of the last row.
   [[nodiscard]] double final_time() const { return motion.time(motion.rows() - 1); }
+  /// The states of the last row.
   [[nodiscard]] std::span<const double> final_state() const { return motion.state(motion.rows() - 1); }
+  /// Whether all checks passed; true of a model without checks.
   [[nodiscard]] bool checks_passed() const {
     for (const CheckResult& check : checks) {
       if (!check.passed) return false;

@@ -29,6 +29,8 @@ struct Simulated {
   [[nodiscard]] bool passed() const { return run && succeeded(run->outcome.ending) && run->checks_passed(); }
 };
 
+/// Runs a model from its start as its `run` statement says, with the changes of the experiment. Models with conditions
+/// at several times or with bodies have no such run: diagnostics E321 and E323.
 [[nodiscard]] Simulated simulate(const Model& model, const Experiment& experiment = {});
 /// The same for a program compiled before: for many runs of one model.
 [[nodiscard]] Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment = {});
@@ -57,6 +59,7 @@ struct ParameterSetting {
 
 /// `1e-8` for all states, `y2=1e-10`, `x' = 1 [mm/s]` for one or a family of them; absolute ones in the state's unit.
 enum class ToleranceKind { relative, absolute };
+/// A tolerance for one state, a family of states, or all.
 struct ToleranceSetting {
   std::string name;  // empty: of all
   double value;

@@ -45,10 +45,13 @@ class Stepping;
 class StepWatcher {
  public:
   virtual ~StepWatcher() = default;
+  /// The motion is final up to `to`; run.at(t, x) gives x there.
   virtual void on_segment(Stepping& run, double to) = 0;
+  /// Events have fired.
   virtual void on_event(Stepping& run, const EventOccurrence<ModelSystem::X>& now) = 0;
 };
 
+/// A run that is advanced step by step. One object serves one thread at a time.
 class Stepping {
  public:
   using X = ModelSystem::X;
@@ -56,14 +59,21 @@ class Stepping {
 
   /// One step, cut short at an event that changes the state. True while there is more.
   [[nodiscard]] virtual bool advance(StepWatcher& watcher) = 0;
+  /// The time reached.
   [[nodiscard]] virtual double t() const = 0;
+  /// The state at that time.
   [[nodiscard]] virtual const X& x() const = 0;
   /// x at a time of the last stretch, on the dense output.
   virtual void at(double t, X& x) = 0;
+  /// The equations with their mode and parameters.
   [[nodiscard]] virtual const ModelSystem& system() const = 0;
+  /// The events with their guards and counts.
   [[nodiscard]] virtual const ModelEvents& events() const = 0;
+  /// How the run ended, once `advance` has returned false.
   [[nodiscard]] virtual const Outcome<double>& outcome() const = 0;
+  /// The cost so far.
   [[nodiscard]] virtual Statistics statistics() const = 0;
+  /// Moves the end of the run to a later time.
   virtual void extend_to(double to) = 0;
 
   /// Goes on from another instant with these parameters and inputs, as after an event; events scheduled for that very

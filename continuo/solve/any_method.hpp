@@ -12,6 +12,7 @@
 
 namespace continuo {
 
+/// A method that was compiled elsewhere, as a pointer to the function that begins its steps.
 template <class System, State X>
 struct AnyMethod {
   using Real = Scalar<X>;
@@ -25,6 +26,7 @@ template <class M, class System, State X>
   return std::make_unique<StepControl<System, X, M>>(std::move(f), std::move(x0), t0, forward, options);
 }
 
+/// The method M for this type of system and state.
 template <class M, class System, State X>
 [[nodiscard]] AnyMethod<System, X> any_method() {
   return {begin_steps<M, System, X>};

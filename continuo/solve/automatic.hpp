@@ -34,6 +34,8 @@ template <class System, State X>
   return traits;
 }
 
+/// Integrates dx/dt = f(t, x) from x(from) = x0 by a method that `choose_method` chooses. A failure on the way does not
+/// throw: see Solution::outcome.
 template <class System, State X>
 [[nodiscard]] auto solve(System system, const X& x0, Interval<std::type_identity_t<Scalar<X>>> interval,
                          const std::type_identity_t<Options<X>>& options = {}) {

@@ -16,6 +16,7 @@ struct SystemTraits {
   bool banded = false;         // and the others lie near its diagonal
 };
 
+/// A method and why it was chosen, each as a text.
 struct Choice {
   std::string_view method, reason;
 };

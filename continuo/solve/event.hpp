@@ -34,8 +34,10 @@ struct EventAction {
   bool restart = false;  // set it where the action changed f but not x (a mode kept outside the state)
 };
 
+/// g(t, x), whose zeros are events.
 template <State X>
 using Guard = std::function<Scalar<X>(Scalar<X>, const X&)>;
+/// Reads and changes the state at an event.
 template <State X>
 using Action = std::function<void(EventAction<X>&)>;
 
@@ -52,20 +54,24 @@ struct Event {
   Action<X> at_limit{};            // where the firings accumulate; empty: the run ends there
 };
 
+/// An event where the guard goes from above zero to below.
 template <State X>
 [[nodiscard]] Event<X> falls(std::string name, Guard<X> guard, Action<X> action = {}) {
   return {
       .name = std::move(name), .guard = std::move(guard), .direction = Direction::falls, .action = std::move(action)};
 }
+/// An event where the guard goes from below zero to above.
 template <State X>
 [[nodiscard]] Event<X> rises(std::string name, Guard<X> guard, Action<X> action = {}) {
   return {
       .name = std::move(name), .guard = std::move(guard), .direction = Direction::rises, .action = std::move(action)};
 }
+/// An event where the guard changes its sign.
 template <State X>
 [[nodiscard]] Event<X> crosses(std::string name, Guard<X> guard, Action<X> action = {}) {
   return {.name = std::move(name), .guard = std::move(guard), .action = std::move(action)};
 }
+/// An event at given times, which are in ascending order.
 template <State X>
 [[nodiscard]] Event<X> at(std::string name, std::vector<Scalar<X>> times, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .times = std::move(times)};
@@ -117,22 +123,32 @@ class EventList {
  public:
   using Real = Scalar<X>;
   EventList() = default;
+  /// These events, in this order.
   explicit EventList(std::vector<Event<X>> events) : events_(std::move(events)), fired_(events_.size(), 0) {
     for (const Event<X>& event : events_) ticks_.emplace_back(event.from, event.period);
   }
 
+  /// The number of events.
   [[nodiscard]] std::size_t size() const { return events_.size(); }
+  /// The name of event i.
   [[nodiscard]] std::string_view name(std::size_t i) const { return events_[i].name; }
+  /// The direction in which the guard of event i is watched.
   [[nodiscard]] Direction direction(std::size_t i) const { return events_[i].direction; }
+  /// Whether event i has a guard; else it is scheduled.
   [[nodiscard]] bool is_guard(std::size_t i) const { return static_cast<bool>(events_[i].guard); }
+  /// Whether event i may change the state or stop the run.
   [[nodiscard]] bool can_restart(std::size_t i) const { return events_[i].action || events_[i].stop_after != 0; }
+  /// Whether event i may change the state.
   [[nodiscard]] bool can_assign(std::size_t i) const { return static_cast<bool>(events_[i].action); }
+  /// Whether event i has an action at the limit of its times.
   [[nodiscard]] bool has_limit_action(std::size_t i) const { return static_cast<bool>(events_[i].at_limit); }
+  /// Whether event i is watched: always.
   template <class System>
   [[nodiscard]] bool active(const System&, std::size_t) const {
     return true;
   }
 
+  /// values[i] = the guard of event i at (t, x); those of scheduled events stay as they are.
   template <class System>
   void guards(const System&, Real t, const X& x, std::span<Real> values) const {
     Real* value = values.data();
@@ -142,6 +158,7 @@ class EventList {
     }
   }
 
+  /// The first scheduled time of event i after t, or at t where `inclusive`; infinity where there is none.
   [[nodiscard]] Real next_time(std::size_t i, Real t, bool inclusive) const {
     const Event<X>& event = events_[i];
     Real next = std::numeric_limits<Real>::infinity();
@@ -158,6 +175,7 @@ class EventList {
     return {};
   }
 
+  /// Executes the action of event i on x, which begins as `before`.
   template <class System>
   [[nodiscard]] EventResponse fire(System&, std::size_t i, Real t, const X& before, X& x) {
     EventAction<X> now{t, before, x};
@@ -165,6 +183,7 @@ class EventList {
     if (++fired_[i] == events_[i].stop_after) now.stop = true;
     return response(now);
   }
+  /// Executes the action of event i at the limit of its times.
   template <class System>
   [[nodiscard]] EventResponse at_limit(System&, std::size_t i, Real t, const X& before, X& x) {
     EventAction<X> now{t, before, x};

@@ -14,6 +14,7 @@
 
 namespace continuo {
 
+/// A run that is advanced step by step by the method M.
 template <class System, State X, class M, class Events = EventList<X>>
 class Integrator : public Driver<System, X, Events> {
   using Base = Driver<System, X, Events>;
@@ -28,6 +29,7 @@ class Integrator : public Driver<System, X, Events> {
     requires std::same_as<Events, EventList<X>>
       : Integrator(std::move(f), std::move(x0), interval, method, options, EventList<X>(options.events)) {}
 
+  /// The same with events of another source.
   Integrator(System f, X x0, Interval<std::type_identity_t<Real>> interval, M method,
              std::type_identity_t<Options<X>> options, Events events)
       : Base(begin(method, std::move(f), x0, interval, options), x0, interval, options, std::move(events)) {}

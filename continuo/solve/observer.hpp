@@ -20,8 +20,10 @@ struct EventOccurrence {
 /// An observer of a run. The run calls `on_segment(integrator, from, to)` for every piece of the trajectory that is
 /// final (integrator.at(t, x) gives x there), and `on_event(integrator, EventOccurrence)` at every event.
 struct NoObserver {
+  /// Does nothing.
   template <class I, class Real>
   void on_segment(I&, Real, Real) {}
+  /// Does nothing.
   template <class I, class Occurrence>
   void on_event(I&, const Occurrence&) {}
 };

@@ -25,19 +25,27 @@ struct Interval {
 template <State X>
 struct Save {
   using Real = Scalar<X>;
+  /// Every accepted step, given times, a regular grid, every step with its polynomial, or the last state alone.
   enum class Kind { steps, times, grid, dense, end };
   Kind kind = Kind::steps;
   std::vector<Real> times{};                       // Kind::times, in the direction of time
   Real spacing{};                                  // Kind::grid: from, from + spacing, ...
   std::function<void(Real, const X&)> callback{};  // gets every saved state; with it nothing is stored
 
+  /// Keeps the state after every accepted step.
   [[nodiscard]] static Save every_step() { return {}; }
+  /// Keeps the states at these times, in the direction of time.
   [[nodiscard]] static Save at(std::vector<Real> times) { return {.kind = Kind::times, .times = std::move(times)}; }
+  /// Keeps the states at from, from + spacing, and so on.
   [[nodiscard]] static Save every(Real spacing) { return {.kind = Kind::grid, .spacing = spacing}; }
+  /// Keeps every step with its polynomial, so that the solution can be evaluated anywhere. Costs the memory of all
+  /// polynomials.
   [[nodiscard]] static Save dense() { return {.kind = Kind::dense}; }
+  /// Keeps the last state alone.
   [[nodiscard]] static Save only_end() { return {.kind = Kind::end}; }
 };
 
+/// The options of a run.
 template <State X>
 struct Options {
   using Real = Scalar<X>;

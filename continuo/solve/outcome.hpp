@@ -19,6 +19,7 @@ struct Outcome {
   Real limit_time{};        // the limit of the times of accumulating events
   std::string hint{};       // what to try
 
+  /// Whether the run reached its end, or an event stopped it.
   explicit operator bool() const { return succeeded(ending); }
 };
 

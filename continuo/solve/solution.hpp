@@ -28,6 +28,7 @@ struct DenseSegment {
   Scalar<X> begin, end, origin, h;
   std::vector<X> coefficients;
 
+  /// x = x(t), for t from begin to end; outside, the polynomial is continued.
   void operator()(Scalar<X> t, X& x) const {
     const Scalar<X> theta = (t - origin) / h;
     x = coefficients.back();
@@ -36,6 +37,7 @@ struct DenseSegment {
   }
 };
 
+/// The result of a run.
 template <State X>
 struct Solution {
   using Real = Scalar<X>;

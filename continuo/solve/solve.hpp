@@ -23,6 +23,7 @@ class SolutionRecorder {
  public:
   using Real = Scalar<X>;
 
+  /// Records the initial state where `save` selects it. `save` and `solution` must outlive the recorder.
   SolutionRecorder(const Save<X>& save, Interval<Real> interval, const X& x0, Solution<X>& solution)
       : save_(save), interval_(interval), x_(x0), solution_(solution) {
     if (save_.kind == Save<X>::Kind::times || save_.kind == Save<X>::Kind::grid) skip_to_start();
@@ -32,6 +33,7 @@ class SolutionRecorder {
     if (next_ == interval.from) next_ = time(++index_);
   }
 
+  /// Records the selected states of a piece of the motion.
   template <class I>
   void on_segment(I& integrator, Real from, Real to) {
     switch (save_.kind) {
@@ -59,6 +61,7 @@ class SolutionRecorder {
     }
   }
 
+  /// Records the events of an instant, and the states before and after them.
   template <class I>
   void on_event(I&, const EventOccurrence<X>& now) {
     for (const std::size_t event : now.events) solution_.events.push_back({event, now.t, now.before, now.after});
@@ -68,6 +71,7 @@ class SolutionRecorder {
       keep(now.t, now.after);
   }
 
+  /// Records the state at the end of the run.
   template <class I>
   void finish(I& integrator) {
     if (kept_at(integrator.t())) return;

@@ -20,6 +20,7 @@
 
 namespace continuo::studies {
 
+/// A point of a curve of folds or Hopf points.
 struct CurvePoint {
   std::array<double, 2> constants{};  // their values
   std::vector<double> x;
@@ -33,6 +34,7 @@ struct CurvePoint {
 /// curve of folds and one of Hopf points touch, the latter ends. `generalized_hopf`: the first Lyapunov coefficient
 /// vanishes (Bautin). `zero_hopf`: a zero eigenvalue and a pair on the imaginary axis. `double_hopf`: two such pairs.
 enum class Degeneracy { cusp, bogdanov_takens, generalized_hopf, zero_hopf, double_hopf };
+/// The name, as in the text of messages and tables.
 [[nodiscard]] std::string_view to_string(Degeneracy kind);
 
 /// A number of a normal form, by the name it has in the books.
@@ -41,6 +43,7 @@ struct NormalFormNumber {
   double value;
 };
 
+/// A point of a curve at which a second condition holds.
 struct DegeneratePoint {
   Degeneracy kind;
   CurvePoint at;
@@ -53,11 +56,13 @@ struct DegeneratePoint {
 /// the pair is real (a neutral saddle), nothing begins to oscillate.
 enum class CurveEnding { bound, closed, bogdanov_takens, infinity, interrupted, too_many_points, lost };
 
+/// How one end of a curve came about.
 struct CurveEnd {
   CurveEnding ending = CurveEnding::lost;
   std::string reason{};  // one sentence
 };
 
+/// A curve of folds or Hopf points over two constants.
 struct BifurcationCurve {
   Bifurcation kind = Bifurcation::fold;  // fold or hopf
   std::vector<CurvePoint> points{};
@@ -66,6 +71,7 @@ struct BifurcationCurve {
   Status status{};                       // a failure where there is no curve
 };
 
+/// Which constants move, over which ranges, and how far the curve may be followed.
 struct CurveOptions {
   std::array<std::size_t, 2> constants{0, 1};  // which of the system's
   std::array<double, 2> low{0, 0}, high{1, 1};
@@ -84,6 +90,8 @@ struct CurveStart {
   std::vector<double> x;
   double frequency = 0;  // of a Hopf point
 };
+/// Follows the curve through one point. Where the start is no such point, or the iteration fails, the curve is empty
+/// and has a message.
 [[nodiscard]] BifurcationCurve follow_bifurcation(const ParametricSystem& system, const CurveStart& start,
                                                   const CurveOptions& options);
 
@@ -93,6 +101,7 @@ struct CurveOfDiagram {
   std::vector<std::size_t> starts;    // those that lie on it
   std::optional<std::size_t> from{};  // it was found at a degenerate point of this curve
 };
+/// Follows all starts, then the curves that begin at degenerate points, at most `most_curves`.
 [[nodiscard]] std::vector<CurveOfDiagram> bifurcation_curves(const ParametricSystem& system,
                                                              const std::vector<CurveStart>& starts,
                                                              const CurveOptions& options, std::size_t most_curves = 20);

@@ -14,6 +14,7 @@
 
 namespace continuo::studies {
 
+/// The parameter and its range.
 struct FamilyRequest {
   std::string parameter;
   double low, high;
@@ -28,6 +29,7 @@ struct ModelFamilies {
   double start = 0;  // of the parameter
   std::vector<model::Diagnostic> diagnostics;
 };
+/// Follows the families over the range of the parameter.
 [[nodiscard]] ModelFamilies families_of_model(const std::shared_ptr<const model::ModelProgram>& program,
                                               const model::Experiment& experiment, const FamilyRequest& request);
 

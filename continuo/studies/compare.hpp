@@ -29,9 +29,11 @@ struct Contender {
   double final_error, largest_error;  // NaN without a run
   std::vector<double> times, errors;  // at each output time that was reached
 
+  /// The method with its step or tolerance, as in the legend of a plot.
   [[nodiscard]] std::string label() const;  // "rk4, h = 0.1"
 };
 
+/// A reference run, and the methods that are compared with it.
 struct Comparison {
   model::Simulated reference;
   std::vector<Contender> contenders;

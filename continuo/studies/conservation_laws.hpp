@@ -18,6 +18,7 @@
 
 namespace continuo::studies {
 
+/// A linear combination of the components that the motion does not change.
 struct ConservationLaw {
   std::vector<double> weights;  // of the components; 0 of the unknowns of algebraic equations
   double value = 0;             // of the sum, at the start

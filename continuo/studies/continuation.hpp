@@ -17,6 +17,7 @@
 
 namespace continuo::studies {
 
+/// A point of a branch of equilibria.
 struct BranchPoint {
   double constant;  // its value
   std::vector<double> x;
@@ -28,8 +29,10 @@ struct BranchPoint {
 /// with `frequency` is born. `transcritical`: another branch passes through. `pitchfork`: one of the two branches turns
 /// round there. `crossing`: another branch is there, but its direction was not found.
 enum class Bifurcation { fold, hopf, transcritical, pitchfork, crossing };
+/// The name, as in the text of messages and tables.
 [[nodiscard]] std::string_view to_string(Bifurcation kind);
 
+/// A point of a branch at which its stability changes.
 struct BifurcationPoint {
   Bifurcation kind;
   BranchPoint at;
@@ -41,6 +44,7 @@ struct BifurcationPoint {
   std::vector<double> other{};  // the direction of the other branch: x, then the constant
 };
 
+/// A branch of equilibria over one constant.
 struct Branch {
   std::vector<BranchPoint> points;
   std::vector<BifurcationPoint> bifurcations;  // in the order of the branch
@@ -48,6 +52,7 @@ struct Branch {
   Status status{};                             // a failure where it neither left the range of the constant nor closed
 };
 
+/// Which constant moves, over which range, and how far the branch may be followed.
 struct ContinuationOptions {
   std::size_t constant = 0;  // which of the system's
   double low = 0, high = 1;  // of the constant
@@ -81,6 +86,7 @@ struct BranchOfDiagram {
   std::optional<std::size_t> crossed{};  // it was found where it crosses this branch
 };
 /// At most `most_branches`.
+/// Follows all starts, then the branches that cross them, at most `most_branches`.
 [[nodiscard]] std::vector<BranchOfDiagram> continue_equilibria(const ParametricSystem& system,
                                                                const std::vector<BranchStart>& starts,
                                                                const ContinuationOptions& options,

@@ -68,6 +68,7 @@ template <class F>
     const std::shared_ptr<const model::ModelProgram>& program, const model::Overrides& parameters,
     Interval<double> interval);
 
+/// Which methods are studied, and with which steps or tolerances.
 struct ConvergeRequest {
   std::vector<std::string> methods{};
   std::size_t most_steps = 65536;                 // of the shortest step; the longest makes eight of the interval
@@ -80,6 +81,7 @@ struct ConvergeRequest {
 /// One step size (or tolerance), and the errors with it, relative to the largest value of each state, the worst
 /// state's; not_measured where there is none.
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+/// The errors of a method with one step size or tolerance.
 struct StepErrors {
   double step, global, local, energy, in_float, in_long_double;  // the last two: global
   std::size_t evaluations = 0;
@@ -92,6 +94,7 @@ struct FloorPrediction {
   Balance at_random, at_worst;
 };
 
+/// The convergence of one method.
 struct MethodConvergence {
   std::string method;
   int nominal = 0;  // the order it claims for steps of a fixed size; 0 by tolerance, which has none
@@ -108,6 +111,7 @@ struct SpoiledOrder {
   double first_event = 0;
 };
 
+/// The convergence of several methods on one problem.
 struct Convergence {
   std::vector<MethodConvergence> methods{};
   std::optional<SpoiledOrder> spoiled{};  // of a model, where some method keeps less than its order

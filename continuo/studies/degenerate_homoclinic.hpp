@@ -16,17 +16,20 @@
 
 namespace continuo::studies {
 
+/// A point of a curve of degenerate homoclinic orbits.
 struct DegenerateHomoclinicPoint {
   std::array<double, 3> constants{};  // their values
   OrbitCurvePoint orbit{};            // whose constants are the first two
 };
 
+/// A point of a curve at which another condition holds too.
 struct MarkedHomoclinic {
   OrbitDegeneracy kind;  // what it is besides
   DegenerateHomoclinicPoint at;
   std::size_t next = 0;  // of the curve's points, the first behind it
 };
 
+/// A curve of degenerate homoclinic orbits over three constants.
 struct DegenerateHomoclinicCurve {
   OrbitDegeneracy kind = OrbitDegeneracy::saddle_node;
   std::vector<DegenerateHomoclinicPoint> points{};
@@ -35,6 +38,7 @@ struct DegenerateHomoclinicCurve {
   Status status{};                        // a failure where there is no curve
 };
 
+/// Which constants move, over which ranges, and how far the curve may be followed.
 struct DegenerateHomoclinicOptions {
   std::array<std::size_t, 3> constants{0, 1, 2};  // which of the system's
   std::array<double, 3> low{0, 0, 0}, high{1, 1, 1};

@@ -28,6 +28,7 @@ inline constexpr std::array<DifferenceScheme, 4> difference_schemes{{{"forward",
                                                                      {"central", 1, 2, {-0.5, 0, 0.5}},
                                                                      {"central, f''", 2, 2, {1, -2, 1}}}};
 
+/// The errors of one scheme over the step.
 struct DifferenceErrors {
   DifferenceScheme scheme;
   std::vector<double> steps, in_double, in_float;  // relative errors at each step

@@ -19,12 +19,14 @@ namespace continuo::studies {
 /// some on either side, `undecided` one on the imaginary axis and none on the right (then the linear part does not
 /// say).
 enum class Stability { asymptotically_stable, unstable, saddle, undecided };
+/// The name, as in the text of messages and tables.
 [[nodiscard]] std::string_view to_string(Stability stability);
 /// `undecided` where a real part is within `slack` times the largest eigenvalue of zero, or times `size` where that is
 /// more.
 [[nodiscard]] Stability stability_of(const std::vector<std::complex<double>>& eigenvalues, double slack = 1e-9,
                                      double size = 0);
 
+/// A state at which f is zero, with the eigenvalues there.
 struct Equilibrium {
   std::vector<double> x;  // unknowns of algebraic equations among them
   /// Of df/dx, by descending real part; with algebraic equations of what is left when their unknowns are taken out.
@@ -37,8 +39,10 @@ struct Equilibrium {
 
 /// How one search ended.
 enum class EquilibriumEnding { found, no_descent, not_finite, too_many };
+/// The name, as in the text of messages and tables.
 [[nodiscard]] std::string_view to_string(EquilibriumEnding ending);
 
+/// One search for an equilibrium.
 struct EquilibriumSearch {
   EquilibriumEnding ending = EquilibriumEnding::too_many;
   std::vector<double> x;  // where it ended
@@ -70,11 +74,13 @@ struct EquilibriumBox {
   std::function<void(double part)> progress{};  // from 0 to 1
 };
 
+/// The equilibria that a search of a box has found. Others may exist between its starting points.
 struct Equilibria {
   std::vector<Equilibrium> equilibria;  // each once, ascending in the first component in which they differ
   std::size_t searches = 0, arrived = 0, outside = 0;  // outside of the box: of those that arrived
   EquilibriumSearch nearest;                           // where none was found: the search that came closest
 };
+/// Searches the box. Each of its starts costs a damped Newton iteration.
 [[nodiscard]] Equilibria find_equilibria(const ParametricSystem& system, const EquilibriumBox& box);
 
 /// x' = A u, y = C u near (x, p): the matrices of the linear system, the inputs being the constants p. Unknowns of
@@ -85,6 +91,7 @@ struct Linearization {
   std::vector<double> b;  // states * inputs
   Undetermined undetermined{};
 };
+/// The linear system at (t, x, p), which need not be an equilibrium.
 [[nodiscard]] Linearization linearize(const ParametricSystem& system, Values x, Values p, double t = 0);
 
 /// One eigenvalue, or a pair of conjugates, as motion: exp(real t) cos(imag t).
@@ -95,6 +102,7 @@ struct MotionMode {
   double time_constant = 0;                 // -1 / real: to 1/e; negative where it grows; infinite on the axis
   std::vector<std::complex<double>> shape;  // the eigenvector
 };
+/// The modes of the matrix a, n * n row by row.
 [[nodiscard]] std::vector<MotionMode> modes_of(const std::vector<double>& a, std::size_t n);
 
 }  // namespace continuo::studies

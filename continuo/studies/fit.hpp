@@ -41,6 +41,7 @@ struct FitColumn {
 };
 inline constexpr std::size_t fewest_of_own_deviation = 5;
 
+/// One set of measurements: a run of its own in the search.
 struct FitData {
   Measurements measurements;
   std::vector<FitColumn> columns;
@@ -49,11 +50,13 @@ struct FitData {
 
 /// What was known of an unknown before: normal about `center`, or with a normal logarithm about that of `center`.
 struct FitPrior {
+  /// The distribution of the prior.
   enum class Kind { normal, lognormal };
   Kind kind = Kind::normal;
   double center = 0, deviation = 1;
 };
 
+/// A parameter or an initial value that is searched for.
 struct FitUnknown {
   Influence influence;
   std::optional<double> start{};  // else as the model has it
@@ -62,6 +65,7 @@ struct FitUnknown {
   std::optional<FitPrior> prior{};
 };
 
+/// A model, its data, and its unknowns.
 struct FitRequest {
   std::shared_ptr<const model::ModelProgram> program;
   std::vector<FitData> data;
@@ -76,6 +80,7 @@ struct FitRequest {
   std::size_t starts_in_doubt = 10;
 };
 
+/// The estimate of one unknown, in its unit.
 struct FitEstimate {
   double value = 0;
   double deviation = 0;      // infinite where the data do not determine it, 0 at a bound
@@ -98,6 +103,7 @@ struct FitColumnResult {
   std::vector<double> times{}, measured{}, fitted{}, deviations{}, residuals{}, weights{};
 };
 
+/// Numbers for the whole fit.
 struct FitStatistics {
   std::size_t values = 0, free_unknowns = 0, estimated_variances = 0;
   double degrees = 0;
@@ -108,6 +114,7 @@ struct FitStatistics {
 
 /// Why an end is to be doubted.
 struct FitDoubt {
+  /// What is doubtful.
   enum class Kind { not_converged, at_bound, residuals_too_large, signs, weights, better_start, undetermined };
   Kind kind;
   std::string text;
@@ -121,6 +128,7 @@ struct FitCurve {
   std::vector<double> t, y, low, high;
 };
 
+/// The result of a fit.
 struct Fit {
   LeastSquaresResult least;  // on the scale of the search: in logarithms where an unknown is looked for in its own
   Uncertainty sure;          // on that scale
@@ -133,11 +141,13 @@ struct Fit {
   std::vector<model::Diagnostic> diagnostics;
   Status status;  // a failure where there is no fit; of data, the message begins with "file:line: "
 
+  /// Whether there is a fit.
   [[nodiscard]] bool found() const { return least.found; }
   /// Of the 95 % confidence interval.
   [[nodiscard]] double half_width(std::size_t unknown) const {
     return (estimates[unknown].high - estimates[unknown].low) / 2;
   }
+  /// Whether there is a doubt of this kind.
   [[nodiscard]] bool doubts_of(FitDoubt::Kind kind) const {
     for (const FitDoubt& doubt : doubts)
       if (doubt.kind == kind) return true;
@@ -151,6 +161,8 @@ inline constexpr double greatest_rtol_of_fit = 1e-8;
 /// Some hundred roundings of a double: with less, steps become ever shorter and nothing more exact.
 inline constexpr double least_rtol_of_fit = 1e-14;
 
+/// Searches for the unknowns. Each evaluation is a run of the model with sensitivities for each set of data. Where
+/// there is no fit, `status` or `diagnostics` has the reason.
 [[nodiscard]] Fit fit(const FitRequest& request);
 
 /// The fitted model along time. `points` per curve.
@@ -166,6 +178,7 @@ struct Profile {
   std::vector<double> values, rises;  // ascending
   bool better = false;                // somewhere the fit was better than the one that was found
 };
+/// The profiles of all unknowns. Each value of a profile is another fit of the other unknowns.
 [[nodiscard]] std::vector<Profile> profiles_of(const FitRequest& request, const Fit& fit);
 
 /// Names a column may have: states, outputs, lets and energies.

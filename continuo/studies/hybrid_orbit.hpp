@@ -22,6 +22,7 @@
 
 namespace continuo::studies {
 
+/// For how long, and how exactly, an orbit is searched for.
 struct HybridOrbitOptions {
   double settle = 100;     // time for the motion to come to the orbit, before it is looked for
   double duration = 1000;  // within which it must come back
@@ -36,6 +37,7 @@ struct HybridOrbitOptions {
   std::function<void(double part)> progress{};  // from 0 to 1
 };
 
+/// A closed orbit with its events and multipliers.
 struct HybridOrbit {
   Outcome<double> outcome;  // its hint says why there is none
   double period = 0;
@@ -48,6 +50,7 @@ struct HybridOrbit {
   /// By descending size; without a forcing one of them is 1, that of the shift along the orbit. States that conditions
   /// ask for and only events change, and sums that nothing reads, have none.
   std::vector<std::complex<double>> multipliers;
+  /// What motions beside the orbit do, as runs show.
   enum class Neighbours { come_nearer, go_away, undecided };
   Neighbours neighbours = Neighbours::undecided;
   bool family = false;             // one of many: something is conserved, and there is one for each value of it
@@ -57,6 +60,7 @@ struct HybridOrbit {
   bool wanders = false;            // there is none because the motion did not come back: a longer run may find one
 };
 
+/// Runs until the motion comes back, then solves for the orbit. Where there is none, the outcome has the reason.
 [[nodiscard]] HybridOrbit find_hybrid_orbit(const std::shared_ptr<const model::ModelProgram>& program,
                                             const model::Experiment& experiment,
                                             const HybridOrbitOptions& options = {});

@@ -17,6 +17,7 @@
 
 namespace continuo::studies {
 
+/// A least-squares problem.
 struct LeastSquares {
   std::vector<double> start{};
   std::vector<double> low{}, high{};  // infinite for none; empty: none at all
@@ -25,6 +26,7 @@ struct LeastSquares {
   std::function<bool(std::span<const double> p, std::span<double> r, std::span<double> rows)> evaluate{};
 };
 
+/// Where the search begins, and how far it goes.
 struct LeastSquaresOptions {
   Loss loss = Loss::squares;  // of residuals whose deviation is 1
   /// Searches from this many places: the start, then others by a Latin hypercube within the bounds, or from a tenth to
@@ -36,6 +38,7 @@ struct LeastSquaresOptions {
   std::function<void(std::size_t start, double cost)> progress{};  // after each iteration
 };
 
+/// The result of a search.
 struct LeastSquaresResult {
   bool found = false, interrupted = false;
   bool converged = false;  // else the search ended at its limit of iterations
@@ -48,6 +51,7 @@ struct LeastSquaresResult {
   std::size_t iterations = 0, evaluations = 0, starts_done = 0, starts_agreeing = 0;
 };
 
+/// Searches for the least sum from each start, and returns the best result.
 [[nodiscard]] LeastSquaresResult least_squares(const LeastSquares& problem, const LeastSquaresOptions& options = {});
 
 }  // namespace continuo::studies

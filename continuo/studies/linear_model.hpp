@@ -12,6 +12,7 @@
 
 namespace continuo::studies {
 
+/// The matrices of a linear system, with names.
 struct LinearModel {
   std::vector<std::string> states, inputs, outputs;  // without the unknowns of algebraic equations, which are taken out
   std::vector<double> a, b, c, d;                    // row by row: n * n, n * inputs, outputs * n, outputs * inputs

@@ -15,6 +15,7 @@
 
 namespace continuo::studies {
 
+/// How long the motion is followed, in the unit of time of the system.
 struct LyapunovOptions {
   double duration = 1000;  // of what is averaged
   double settle = 50;      // before that, to come to the attractor
@@ -24,6 +25,7 @@ struct LyapunovOptions {
   std::function<void(double t)> progress{};
 };
 
+/// The exponents that were found.
 struct LyapunovExponents {
   Outcome<double> outcome;
   std::vector<double> exponents;  // descending, per unit of time; of what was averaged where it was interrupted
@@ -31,6 +33,7 @@ struct LyapunovExponents {
   double averaged = 0;            // over how much time
 };
 
+/// Integrates the motion from x0 with its variational equations, n (n + 1) numbers for n components.
 [[nodiscard]] LyapunovExponents lyapunov_exponents(const ParametricSystem& system, std::vector<double> x0,
                                                    const LyapunovOptions& options = {});
 

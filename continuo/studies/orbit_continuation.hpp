@@ -24,6 +24,7 @@
 
 namespace continuo::studies {
 
+/// A point of a branch of orbits.
 struct OrbitPoint {
   double constant = 0;  // its value
   double period = 0;
@@ -41,8 +42,10 @@ struct OrbitPoint {
 /// `central_homoclinic`: there, of a saddle-node, which the orbit leaves and comes back to along the direction of the
 /// eigenvalue zero.
 enum class OrbitBifurcation { fold, period_doubling, torus, crossing, homoclinic, central_homoclinic };
+/// The name, as in the text of messages and tables.
 [[nodiscard]] std::string_view to_string(OrbitBifurcation kind);
 
+/// A point of a branch at which its stability changes.
 struct OrbitMark {
   OrbitBifurcation kind;
   OrbitPoint at;
@@ -72,6 +75,7 @@ enum class OrbitEnding {
   lost
 };
 
+/// How one end of a branch came about.
 struct OrbitBranchEnd {
   OrbitEnding ending = OrbitEnding::lost;
   double constant = 0;      // where
@@ -80,6 +84,7 @@ struct OrbitBranchEnd {
   std::optional<OrbitMark> last = {};
 };
 
+/// A branch of orbits over one constant.
 struct OrbitBranch {
   std::vector<OrbitPoint> points;
   std::vector<OrbitMark> marks;        // in the order of the branch
@@ -87,6 +92,7 @@ struct OrbitBranch {
   Status status{};                     // a failure where there is no branch
 };
 
+/// Which constant moves, over which range, and how far the branch may be followed.
 struct OrbitContinuationOptions {
   std::size_t constant = 0;  // which of the system's
   double low = 0, high = 1;  // of the constant

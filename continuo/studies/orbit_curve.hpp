@@ -25,6 +25,7 @@ namespace detail {
 struct HomoclinicMark;
 }
 
+/// A point of a curve of bifurcations of orbits.
 struct OrbitCurvePoint {
   std::array<double, 2> constants{};  // their values
   double period = 0;
@@ -75,8 +76,10 @@ enum class OrbitDegeneracy {
   non_central
 };
 inline constexpr std::size_t orbit_degeneracies = 24;
+/// The name, as in the text of messages and tables.
 [[nodiscard]] std::string_view to_string(OrbitDegeneracy kind);
 
+/// A point of a curve at which a second condition holds.
 struct DegenerateOrbit {
   OrbitDegeneracy kind;
   OrbitCurvePoint at;
@@ -101,15 +104,18 @@ enum class OrbitCurveEnding {
   lost
 };
 
+/// How one end of a curve came about.
 struct OrbitCurveEnd {
   OrbitCurveEnding ending = OrbitCurveEnding::lost;
   std::string reason{};  // one sentence
 };
 
+/// Whether it is a homoclinic orbit, of a saddle or of a saddle-node.
 [[nodiscard]] inline bool is_homoclinic(OrbitBifurcation kind) {
   return kind == OrbitBifurcation::homoclinic || kind == OrbitBifurcation::central_homoclinic;
 }
 
+/// A curve of bifurcations of orbits over two constants.
 struct OrbitCurve {
   OrbitBifurcation kind = OrbitBifurcation::fold;  // but crossing
   std::vector<OrbitCurvePoint> points{};
@@ -118,6 +124,7 @@ struct OrbitCurve {
   Status status{};                       // a failure where there is no curve
 };
 
+/// Which constants move, over which ranges, and how far the curve may be followed.
 struct OrbitCurveOptions {
   std::array<std::size_t, 2> constants{0, 1};  // which of the system's
   std::array<double, 2> low{0, 0}, high{1, 1};
@@ -143,6 +150,7 @@ struct OrbitCurveOfDiagram {
   OrbitCurve curve;
   std::vector<std::size_t> starts;  // those that lie on it; none where it begins at the end of another
 };
+/// Follows all marks, then the curves that begin where homoclinic ones end, at most `most_curves`.
 [[nodiscard]] std::vector<OrbitCurveOfDiagram> orbit_curves(const ParametricSystem& system,
                                                             const std::vector<OrbitMark>& starts,
                                                             const OrbitCurveOptions& options,

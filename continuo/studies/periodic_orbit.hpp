@@ -17,6 +17,7 @@
 
 namespace continuo::studies {
 
+/// For how long, and how exactly, an orbit is searched for.
 struct PeriodicOrbitOptions {
   double settle = 100;       // time for the motion to come to the orbit, before it is looked for
   double duration = 1000;    // within which it must come back
@@ -26,6 +27,7 @@ struct PeriodicOrbitOptions {
   std::function<void(double part)> progress{};  // from 0 to 1
 };
 
+/// A closed orbit with its multipliers.
 struct PeriodicOrbit {
   Outcome<double> outcome;  // its hint says why there is none
   double period = 0;
@@ -38,6 +40,8 @@ struct PeriodicOrbit {
   bool wanders = false;  // there is none because the motion did not come back: a longer run may find one
 };
 
+/// Runs from x0 until the motion comes back, then solves for the orbit. Where there is none, the outcome has the
+/// reason.
 [[nodiscard]] PeriodicOrbit find_periodic_orbit(const ParametricSystem& system, std::vector<double> x0,
                                                 const PeriodicOrbitOptions& options = {});
 
@@ -45,6 +49,7 @@ struct PeriodicOrbit {
 struct OrbitExtents {
   std::vector<double> low, high;
 };
+/// The extents of the orbit's polynomial.
 [[nodiscard]] OrbitExtents extents_of(const ParametricSystem& system, const PeriodicOrbit& found);
 
 /// Whether f(t, x) differs from one t to another.
@@ -55,10 +60,12 @@ struct SectionPoint {
   double t;
   std::vector<double> x;
 };
+/// The points of a section, in the order of time.
 struct Section {
   Outcome<double> outcome;
   std::vector<SectionPoint> points;
 };
+/// The plane, and how long the motion is followed.
 struct SectionOptions {
   double level = 0;
   double settle = 0, duration = 100;
@@ -67,6 +74,7 @@ struct SectionOptions {
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double t)> progress{};
 };
+/// Runs from x0 and records the crossings after `settle`.
 [[nodiscard]] Section poincare_section(const ParametricSystem& system, std::vector<double> x0, std::size_t component,
                                        const SectionOptions& options);
 

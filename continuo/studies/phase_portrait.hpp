@@ -13,9 +13,12 @@
 
 namespace continuo::studies {
 
+/// The values of the two states.
 using PlanePoint = std::array<double, 2>;
+/// A curve as points, one after the other.
 using PlaneCurve = std::vector<PlanePoint>;
 
+/// The part of the plane, and how finely it is looked at.
 struct PhasePlane {
   PlanePoint low, high;              // the part of the plane that is looked at
   std::vector<PlanePoint> starts{};  // of motions; empty: `spread` of them on a grid
@@ -29,11 +32,13 @@ struct PhasePlane {
   std::function<void(double part)> progress{};  // from 0 to 1
 };
 
+/// An arrow of the direction field.
 struct FieldArrow {
   PlanePoint at, direction;  // of length 1 where each side of the part is 1
   double speed;              // |f| in the same measure
 };
 
+/// The parts of a portrait.
 struct PhasePortrait {
   std::vector<FieldArrow> field;
   std::array<std::vector<PlaneCurve>, 2> nullclines;  // where x' = 0 and where y' = 0, in short pieces

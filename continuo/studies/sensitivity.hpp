@@ -29,12 +29,14 @@ namespace detail {
 class SensitiveProgram;
 }
 
+/// An event of the run, and how its time depends on the influences.
 struct SensitivityEvent {
   std::string name;
   double t;
   std::vector<double> time_moves;  // dt/dp
 };
 
+/// A run with the sensitivities of all states.
 struct SensitivityRun {
   std::size_t states = 0, influences = 0;
   std::vector<double> times;
@@ -49,22 +51,28 @@ struct SensitivityRun {
   Status status;
   std::vector<model::Diagnostic> diagnostics;
 
+  /// Whether the run succeeded with its sensitivities.
   [[nodiscard]] bool good() const { return diagnostics.empty() && succeeded(status.ending); }
   /// Whether the status tells why the motion has no derivative, and not how a run failed.
   [[nodiscard]] bool has_no_derivative() const {
     return !status && diagnostics.empty() && status.ending != outcome.ending;
   }
+  /// The number of rows.
   [[nodiscard]] std::size_t rows() const { return times.size(); }
+  /// Row r: the states, then the sensitivities to each influence.
   [[nodiscard]] std::span<const double> row(std::size_t r) const {
     const std::size_t width = states * (1 + influences);
     return {values.data() + r * width, width};
   }
+  /// A state at row r, in its unit.
   [[nodiscard]] double value(std::size_t r, std::size_t state) const { return row(r)[state]; }
+  /// The derivative of a state by an influence at row r.
   [[nodiscard]] double sensitivity(std::size_t r, std::size_t state, std::size_t influence) const {
     return row(r)[states * (1 + influence) + state];
   }
 };
 
+/// Which run, and at which times.
 struct SensitivityRequest {
   /// Its method and its step have no part, but for a world: the method is chosen by tolerance and size; collocation
   /// where conditions stand at several times.
@@ -83,15 +91,21 @@ struct SensitivityRequest {
 /// Compiled once, for any number of runs with other values.
 class SensitivityStudy {
  public:
+  /// Compiles the sensitivities of a model to these influences. With `start_is_given`, the initial values come from the
+  /// requests.
   SensitivityStudy(std::shared_ptr<const model::ModelProgram> program, std::vector<Influence> influences,
                    const model::Overrides& overrides = {}, bool start_is_given = false);
 
+  /// A run with its sensitivities.
   [[nodiscard]] SensitivityRun run(const SensitivityRequest& request = {}) const;
 
+  /// The program of the model.
   [[nodiscard]] const model::ModelProgram& program() const;
+  /// The influences, in the order of the columns.
   [[nodiscard]] const std::vector<Influence>& influences() const;
   /// Quantities q of the model along a run: for each row and each quantity q, then dq/dp of each influence.
   using Along = std::function<std::vector<double>(const SensitivityRun& run)>;
+  /// A function that evaluates quantities of the model, with their sensitivities, along a run.
   [[nodiscard]] Along along(std::span<const model::NodeId> quantities) const;
 
  private:

@@ -20,6 +20,7 @@ namespace continuo::studies {
 /// `farthest`; 0 where they do from the start; NaN where the method has no factors.
 [[nodiscard]] double stability_limit(const StepSequence& sequence, Complex direction, double farthest = 1e4);
 
+/// The region of absolute stability of a method.
 struct StabilityRegion {
   double real_limit = 0, imaginary_limit = 0;  // distances down the real axis and up the imaginary one
   /// The curve |zeta| = 1, piece by piece with a NaN between them, in a square of this half side around the origin.
@@ -51,10 +52,12 @@ struct StepLimit {
   double time = 0;       // and when
   double beyond = 0;     // the factor of each step that is one part in a hundred longer
 };
+/// Computes the limit by the eigenvalue that bounds the step most.
 [[nodiscard]] StepLimit largest_stable_step(std::string_view method, const Spectrum& spectrum);
 
 /// What two runs with fixed steps that begin next to each other do: their distance dies out or stays, or it grows.
 enum class Fate { bounded, grows, no_run };
+/// The name, as in the text of messages and tables.
 [[nodiscard]] std::string_view to_string(Fate fate);
 /// What a run needs to know of a system besides its equations, for methods of x'' = a.
 struct Pairing {

@@ -32,6 +32,7 @@ struct JacobianEntry {
   bool in_pattern = true;
 };
 
+/// The entries of df/dx and df/dt, sorted by the verdict on each.
 template <class Real>
 struct JacobianCheck {
   using Entry = JacobianEntry<Real>;
@@ -41,9 +42,11 @@ struct JacobianCheck {
   std::vector<Entry> right;      // at most one: the one furthest apart
   std::size_t compared = 0;
 
+  /// Whether no entry is wrong.
   [[nodiscard]] bool agrees() const { return wrong.empty(); }
 };
 
+/// What a comparison may know of the run in which the derivatives are used.
 template <class Real>
 struct JacobianCheckOptions {
   std::vector<Real> sizes{};  // how large the components become; without, as large as they are (or 1)

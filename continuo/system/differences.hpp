@@ -24,12 +24,14 @@ struct Difference {
   bool kinked = false;                                 // the slopes to either side stay apart: no derivative here
 };
 
+/// Central differences at twelve increments, extrapolated, with a bound of their error.
 template <State X>
 class Differences {
  public:
   using Real = Scalar<X>;
   using Column = std::vector<Difference<Real>>;
 
+  /// Allocates for states like x; nothing is allocated afterwards except the results.
   explicit Differences(const X& x) : moved_(x), above_(levels, x), below_(levels, x) {}
 
   /// d f / d x[j]; fx = f(t, x), size > 0 says how large x[j] is, terms[i] what the terms of f[i] amount to, of which

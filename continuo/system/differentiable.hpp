@@ -166,17 +166,22 @@ template <class F, class Real = double>
 class Differentiable : public F {
  public:
   Differentiable() = default;
+  /// The right-hand side f, which may be called with any number type.
   explicit Differentiable(F f) : F(std::move(f)) {}
 
+  /// df/dx at (t, x), n*n numbers row by row. One call of f for each eight columns.
   template <detail::DualsFor<Real> X>
   void jacobian(const Scalar<X>& t, const X& x, std::span<Scalar<X>> rows) {
     duals_.jacobian(static_cast<F&>(*this), t, x, rows);
   }
+  /// The entries of df/dx at (t, x) in the order of f's pattern. One call of f for each eight groups of columns that
+  /// share no row.
   template <detail::DualsFor<Real> X>
     requires HasJacobianPattern<F>
   void jacobian_values(const Scalar<X>& t, const X& x, std::span<Scalar<X>> values) {
     duals_.entries(static_cast<F&>(*this), t, x, F::jacobian_pattern(), values);
   }
+  /// df/dt at (t, x), by one call of f.
   template <detail::DualsFor<Real> X>
     requires RightHandSide<F, detail::DualState<X, 1>>
   void time_derivative(const Scalar<X>& t, const X& x, X& dfdt) {

@@ -18,8 +18,11 @@
 
 namespace continuo {
 
+/// Some numbers to read: states, constants.
 using Values = std::span<const double>;
 
+/// A system x' = f(t, x, p) with its constants p and the derivatives that it knows. Functions that are not set are not
+/// known.
 struct ParametricSystem {
   std::size_t size = 0;             // n: components of x
   std::vector<double> constants{};  // m: p as it is unless a study says otherwise
@@ -45,10 +48,13 @@ struct ParametricSystem {
   std::size_t conserved = 0;
   double conserved_rate = 0;
 
+  /// The number of components with a derivative.
   [[nodiscard]] std::size_t differential() const { return size - algebraic; }
+  /// The number of constants.
   [[nodiscard]] std::size_t parameters() const { return constants.size(); }
   /// `x[i]` where it has none.
   [[nodiscard]] std::string name(std::size_t i) const;
+  /// `p[i]` where it has none.
   [[nodiscard]] std::string constant_name(std::size_t i) const;
 };
 

@@ -49,10 +49,13 @@ void for_each_pair(const F& f, const X& x, Body&& body) {
   }
 }
 
+/// A system of pairs (q, v) from the acceleration alone. The state has an even number of components: the positions,
+/// then the velocities.
 template <class Acceleration>
 struct SecondOrderSystem {
   Acceleration acceleration;
 
+  /// dxdt = (v, a(t, q, v)).
   template <State X>
   void operator()(const Scalar<X>& t, const X& x, X& dxdt) {
     using Half = HalfOf<X>;
@@ -76,9 +79,12 @@ struct SecondOrderSystem {
     }
   }
 
+  /// The number of pairs: half the size of the state.
   [[nodiscard]] std::size_t pair_count(std::size_t size) const { return size / 2; }
+  /// Pair i: components i and i + size / 2.
   [[nodiscard]] PositionVelocity pair(std::size_t i, std::size_t size) const { return {i, i + size / 2}; }
 
+  /// Whether the acceleration takes no velocity.
   template <State X>
   [[nodiscard]] bool ignores_velocity(const X&) const {
     if constexpr (std::invocable<Acceleration&, Scalar<X>, const HalfOf<X>&>) {

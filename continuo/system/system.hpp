@@ -47,11 +47,12 @@ concept Named = requires(const F& f, std::size_t i) {
   { f.component_name(i) } -> std::convertible_to<std::string_view>;
 };
 
-/// The system says which components are a position and which the velocity of that position: x[position]' is
-/// x[velocity]. Methods for x'' = a(t, x) need it.
+/// A position and its velocity, as components of the state.
 struct PositionVelocity {
   std::size_t position, velocity;
 };
+/// The system says which components are a position and which the velocity of that position: pair_count(size) and
+/// pair(i, size), with x[position]' = x[velocity]. Methods for x'' = a(t, x) need it.
 template <class F>
 concept SecondOrder = requires(const F& f, std::size_t size) {
   { f.pair_count(size) } -> std::convertible_to<std::size_t>;
@@ -100,6 +101,7 @@ template <class F>
 concept KnowsAutonomous = requires(const F& f) {
   { f.autonomous } -> std::convertible_to<bool>;
 };
+/// Whether the system says that f does not depend on t; false of a system that says nothing.
 template <class F>
 [[nodiscard]] constexpr bool is_autonomous(const F& f) {
   if constexpr (KnowsAutonomous<F>) {

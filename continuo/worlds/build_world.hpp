@@ -10,6 +10,7 @@
 
 namespace continuo::worlds {
 
+/// A world of bodies, or the reason why there is none.
 template <int Dim>
 struct BuiltWorld {
   World<double, Dim> world;

@@ -20,21 +20,30 @@ template <int Dim>
 void write_body(double* state, const Vector<double, Dim>& x, const Vector<double, Dim>& v,
                 const Orientation<double, Dim>& orientation, const Spin<double, Dim>& spin);
 
+/// The forces, torques and equations of a model beside its bodies, to be evaluated at any state.
 template <int Dim>
 class CoupledEquations {
  public:
   using V = Vector<double, Dim>;
 
+  /// For a program with a world of Dim dimensions; `variables` is a register file as `start_values` gives it.
   CoupledEquations(const model::ModelProgram& program, std::span<const double> variables);
 
+  /// The number of states of the equations.
   [[nodiscard]] std::size_t states() const { return count_; }
+  /// Whether any expression is a force on a body.
   [[nodiscard]] bool has_forces() const { return !forces_of_.empty(); }
+  /// Whether any expression is a torque on a body.
   [[nodiscard]] bool has_torques() const { return !torques_of_.empty(); }
+  /// Whether the model has only bodies.
   [[nodiscard]] bool is_empty() const { return count_ == 0 && !has_forces() && !has_torques(); }
   /// The index of the first state of the equations among the states of the model.
   [[nodiscard]] std::size_t first() const { return first_; }
+  /// Sets a parameter or an input, by its place in the register file.
   void set(std::uint32_t variable, double value);
+  /// The mode of the equations.
   [[nodiscard]] std::size_t mode() const { return mode_; }
+  /// Changes the mode of the equations.
   void go(std::size_t mode) { mode_ = mode; }
 
   /// Adds to forces and torques and sets the rates of the equations' states z; an empty span leaves one of these out.

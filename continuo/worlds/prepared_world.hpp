@@ -16,6 +16,7 @@ namespace continuo::worlds {
 
 inline constexpr std::size_t contacts_of_one_look = 10'000;
 
+/// A world at its start, with its plan.
 struct PreparedWorld {
   std::optional<model::Plan> plan;
   std::unique_ptr<WorldRun> world;  // null where it cannot begin

@@ -38,6 +38,7 @@ struct RunHead {
 
 /// A message of a run to its recorder.
 struct Note {
+  /// What the recorder is told.
   enum class Kind : std::uint8_t { begin, arrival, contact, event, finish };
   Kind kind{};
   double t = 0;
@@ -48,6 +49,7 @@ struct Note {
   double impulse = 0;                       //
   std::vector<model::EventName> names{};    // of an event
 };
+/// Tells a recorder what a note contains, as the run itself does.
 void tell(model::RunRecorder& recorder, const Note& note);
 
 /// A checkpoint between two notes: the world, and the progress of its run.
@@ -65,14 +67,18 @@ struct RunEnd {
   double seconds = 0;
 };
 
+/// Writes a run to a stream while it advances.
 class RunLog {
  public:
   /// The stream must be binary and outlive this object. The caller checks the stream for failed writes.
   RunLog(std::ostream& out, const RunHead& head, std::size_t checkpoints = 20);
 
+  /// Writes a note, a checkpoint, or the end of the run as one block.
+  /// @{
   void add(const Note& note);
   void add(const Checkpoint& checkpoint);
   void add(const RunEnd& end);
+  /// @}
   /// The number of checkpoints, evenly over the run; there are more where the run takes long, and none for 0.
   [[nodiscard]] std::size_t checkpoints() const { return checkpoints_; }
 
@@ -81,6 +87,7 @@ class RunLog {
   std::size_t checkpoints_;
 };
 
+/// A run that was read from a file.
 struct RunRecording {
   RunHead head{};
   std::vector<Note> notes{};

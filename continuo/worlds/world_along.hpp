@@ -20,12 +20,14 @@
 
 namespace continuo::worlds {
 
+/// Which run, and at which times its states are wanted.
 struct AlongRequest {
   model::Experiment experiment{};
   std::vector<double> times{};                            // ascending; empty: as the model's `run` says
   std::vector<std::pair<std::size_t, double>> initial{};  // values of states in place of the model's
 };
 
+/// The states at the wanted times.
 struct WorldAlong {
   std::vector<double> times;                // as far as the run advanced
   std::vector<std::vector<double>> states;  // Model::states at each of them
@@ -34,6 +36,8 @@ struct WorldAlong {
   std::vector<model::Diagnostic> diagnostics;
 };
 
+/// Runs the world of a program. A run that ends early has the states up to there, and its outcome; where it cannot
+/// begin, `diagnostics` has the reason.
 [[nodiscard]] WorldAlong world_along(const std::shared_ptr<const model::ModelProgram>& program,
                                      const AlongRequest& request);
 

@@ -34,9 +34,11 @@ struct WorldEventOccurrence {
   const std::vector<double>& before;
 };
 
+/// Finds and fires the events of one run.
 class WorldEvents {
  public:
   using X = std::vector<double>;
+  /// Gets the events of each instant.
   using Sink = std::function<void(const WorldEventOccurrence&)>;
 
   /// `look` is the time between two samples of a `when` in a world without steps.
@@ -56,8 +58,11 @@ class WorldEvents {
 
   /// Whether a `stop` has been reached, by which event, and its text.
   [[nodiscard]] bool stopped() const { return stopped_; }
+  /// The event whose `stop` was reached.
   [[nodiscard]] const std::string& stopped_by() const { return stopped_by_; }
+  /// The text of the `stop`, which may be empty.
   [[nodiscard]] const std::string& stop_text() const { return events_.stop_text(); }
+  /// For each `stop after N`, how often it has been executed.
   [[nodiscard]] std::span<const std::size_t> stops() const { return events_.stops(); }
 
   /// Continues after the state of the world or its variables have been set. Events scheduled for this very instant

@@ -35,6 +35,7 @@ namespace continuo::worlds {
 /// z is 0 in the plane.
 using Point = std::array<double, 3>;
 
+/// The scalar product.
 [[nodiscard]] inline double dot(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -52,6 +53,7 @@ struct WallShape {
   double offset;
   bool thin = false;  // free on both sides
 };
+/// The ends of a spring.
 struct SpringShape {
   std::size_t a, b;  // bodies; b is model::no_body where it ends at the point
   Point point;
@@ -67,6 +69,7 @@ struct Contact {
   double time;
 };
 
+/// How a world is moved.
 struct WorldOptions {
   std::string method = "exact";                  // one of model::world_methods()
   double step = 0;                               // of methods with steps
@@ -74,6 +77,7 @@ struct WorldOptions {
   const std::atomic<bool>* interrupt = nullptr;  // once it is true, an advance ends as `interrupted`
   std::size_t most_contacts = 0;                 // at most so many of one advance are kept
 };
+/// The options that a plan asks for.
 [[nodiscard]] WorldOptions options_of(const model::Plan& plan);
 
 /// A world at an instant, with all data that a run needs to continue to the same bits.
@@ -88,6 +92,7 @@ struct Snapshot {
   double step = 0;
 };
 
+/// A world of a model in motion. One object serves one thread at a time.
 class WorldRun {
  public:
   WorldRun() = default;
@@ -95,7 +100,9 @@ class WorldRun {
   WorldRun& operator=(const WorldRun&) = delete;
   virtual ~WorldRun() = default;
 
+  /// 2 or 3.
   [[nodiscard]] virtual int dimension() const = 0;
+  /// The time of the world, in the model's unit of time.
   [[nodiscard]] virtual double time() const = 0;
   /// Advances to t; with steps, to the first end of a step that is not before t. On failure the world stays at the time
   /// that it has reached.
@@ -103,17 +110,24 @@ class WorldRun {
   /// 0 without steps.
   [[nodiscard]] virtual double step() const = 0;
 
+  /// The bodies, in the order of the model.
   [[nodiscard]] virtual const std::vector<BodyShape>& bodies() const = 0;
+  /// The walls, in the order of the model.
   [[nodiscard]] virtual const std::vector<WallShape>& walls() const = 0;
+  /// The springs, in the order of the model.
   [[nodiscard]] virtual const std::vector<SpringShape>& springs() const = 0;
 
+  /// The centre of a body, in the model's unit of length.
   [[nodiscard]] virtual Point position(std::size_t body) const = 0;
+  /// The velocity of a body.
   [[nodiscard]] virtual Point velocity(std::size_t body) const = 0;
   /// The spin about the axes; in the plane it is the third component.
   [[nodiscard]] virtual Point spin(std::size_t body) const = 0;
   /// A unit quaternion (w, x, y, z).
   [[nodiscard]] virtual std::array<double, 4> orientation(std::size_t body) const = 0;
+  /// The kinetic energy of all bodies that move.
   [[nodiscard]] virtual double kinetic_energy() const = 0;
+  /// The potential energy of gravity, constant forces, springs and attraction.
   [[nodiscard]] virtual double potential_energy() const = 0;
   /// The contacts of the last advance, the first `most_contacts` of them.
   [[nodiscard]] virtual const std::vector<Contact>& contacts() const = 0;
@@ -136,8 +150,10 @@ class WorldRun {
   virtual std::span<const double> variables() = 0;
   /// The mode of the equations.
   [[nodiscard]] virtual std::size_t mode() const = 0;
+  /// Changes the mode of the equations.
   virtual void go(std::size_t mode) = 0;
 
+  /// The present state, from which this or another run of the same model can continue to the same bits.
   [[nodiscard]] virtual Snapshot snapshot() const = 0;
   /// Whether this run can continue from a snapshot that was read from a file, which may contain anything.
   virtual Status check(const Snapshot& snapshot) const = 0;

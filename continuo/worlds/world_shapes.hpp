@@ -10,12 +10,14 @@
 
 namespace continuo::worlds {
 
+/// The bodies, walls and springs of a world, without their motion.
 struct Shapes {
   std::vector<BodyShape> bodies;
   std::vector<WallShape> walls;
   std::vector<SpringShape> springs;
 };
 
+/// A vector as a point; z is 0 in the plane.
 template <int Dim>
 [[nodiscard]] Point point_of(const Vector<double, Dim>& v) {
   Point point{};
