@@ -2,6 +2,7 @@
 # The command continuo from a fresh clone: installs what is missing, builds it once, then hands over.
 #
 #   ./continuo.sh run models/bouncing_ball.sim --plot ball.svg
+#   ./continuo.sh docs      builds the documentation as a site, and prints the path of its first page
 #
 # Works from any folder. Its own messages go to standard error; standard output is that of the command.
 set -euo pipefail
@@ -23,5 +24,11 @@ if [[ ! -x $build/continuo || ! -e $stamp ]] ||
   source "$root/cmake/setup.sh"
   setup_packages build
   setup_build "$build" continuo "$stamp"
+fi
+if [[ ${1-} == docs ]]; then
+  # shellcheck source=cmake/setup.sh
+  source "$root/cmake/setup.sh"
+  setup_packages docs
+  exec "$(python_of_packages)" "$root/docs/site/build.py" --command "$build/continuo" --out "$build/site"
 fi
 exec "$build/continuo" "$@"

@@ -22,13 +22,18 @@ packages_to_build=(
   "npm                    npm          builds the live view's page"
   "gnuplot-nox            gnuplot      plots"
 )
+packages_to_document=(
+  "doxygen                doxygen      the reference of the library, as pages"
+  "python3                python3      builds the pages"
+  "python3-markdown       -            Markdown as HTML"
+)
 packages_to_test=(
   "libgtest-dev           -            unit tests"
   "libgmock-dev           -            unit tests"
   "chromium               chromium     the live view's page, tested in a browser"
-  "python3                python3      the client of docs/protocol.md"
   "python3-xarray         -            reads our netCDF files, as users do"
   "python3-netcdf4        -            what it reads them with"
+  "python3-clang-19       -            lists the public functions, all of which must be documented"
   "clang-19               clang++-19   the second compiler, with sanitizers"
   "libclang-rt-19-dev     -            sanitizers and the fuzzer"
   "lld-19                 ld.lld-19    its linker: six times as fast on sanitized programs"
@@ -42,9 +47,13 @@ package_is_there() {  # package command
   [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
 }
 
-# setup_packages build|test: installs what is missing, after saying what and why.
+# The distribution's Python, for which its packages are installed, even if another one is first in the path.
+python_of_packages() { if [[ -x /usr/bin/python3 ]]; then echo /usr/bin/python3; else echo python3; fi; }
+
+# setup_packages build|docs|test: installs what is missing, after saying what and why.
 setup_packages() {
   local rows=("${packages_to_build[@]}") row package proof why missing=()
+  if [[ $1 != build ]]; then rows+=("${packages_to_document[@]}"); fi
   if [[ $1 == test ]]; then rows+=("${packages_to_test[@]}"); fi
   if ! command -v dpkg-query >/dev/null 2>&1; then
     say "this system has no Debian packages; the build needs (names as on Debian):"
