@@ -13,7 +13,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include <continuo/methods/method.hpp>
+#include <continuo/methods/check_method.hpp>
 #include <continuo/methods/support/stiffness_watch.hpp>
 #include <continuo/system/mass.hpp>
 
@@ -29,13 +29,24 @@ struct Switching {
   static constexpr int dense_order = std::min(NonStiff::dense_order, Stiff::dense_order);
   static constexpr int dense_degree = std::max(NonStiff::dense_degree, Stiff::dense_degree);
   static constexpr bool second_order = NonStiff::second_order, implicit = true, automatic = true;
-  static_assert(!Stiff::second_order && Stiff::implicit && NonStiff::error_order > 0 && Stiff::error_order > 0);
+  static_assert(detail::is_implicit<Stiff>() && !Stiff::second_order,
+                "the second method of a pair is for stiff systems: it is implicit, and not only for x'' = a(t, x)");
+  static_assert(detail::estimates_error<NonStiff>() && detail::estimates_error<Stiff>(),
+                "the methods of a pair have error estimates: their error_order is above 0");
 
   /// The stages of both methods, and what is known of the stiffness.
   template <State X>
+  using NonStiffWork = typename NonStiff::template Workspace<X>;
+  template <State X>
+  using StiffWork = typename Stiff::template Workspace<X>;
+  template <State X>
   struct Workspace {
-    typename NonStiff::template Workspace<X> nonstiff;
-    typename Stiff::template Workspace<X> stiff;
+    static_assert(check_method<NonStiff, X>() && check_method<Stiff, X>());
+    static_assert(detail::HasDerivative<NonStiff, X, NonStiffWork<X>> && detail::HasDerivative<Stiff, X, StiffWork<X>>,
+                  "the methods of a pair have a public and static member `derivative`, x' at the start of the last "
+                  "step: static const X& derivative(const Workspace<X>& work)");
+    NonStiffWork<X> nonstiff;
+    StiffWork<X> stiff;
     Interpolant<X, NonStiff::dense_degree> nonstiff_interpolant;
     Interpolant<X, Stiff::dense_degree> stiff_interpolant;
     StiffnessWatch<X> watch;
@@ -63,7 +74,7 @@ struct Switching {
   /// What the explicit method has against the system; empty where nothing.
   template <class System, State X>
   [[nodiscard]] static std::string_view unsupported_reason(const System& system, const X& x) {
-    if constexpr (requires { NonStiff::unsupported_reason(system, x); }) return NonStiff::unsupported_reason(system, x);
+    if constexpr (detail::HasUnsupportedReason<NonStiff, X, System>) return NonStiff::unsupported_reason(system, x);
     return {};
   }
 
@@ -73,8 +84,9 @@ struct Switching {
     work.tolerance = tolerance;
     if constexpr (requires { Stiff::expect_oscillation(work.stiff, true); })
       Stiff::expect_oscillation(work.stiff, work.watch.oscillates());
-    if constexpr (requires { Stiff::set_tolerance(work.stiff, tolerance); })
-      Stiff::set_tolerance(work.stiff, tolerance);
+    if constexpr (detail::HasSetTolerance<Stiff, X, StiffWork<X>>) Stiff::set_tolerance(work.stiff, tolerance);
+    if constexpr (detail::HasSetTolerance<NonStiff, X, NonStiffWork<X>>)
+      NonStiff::set_tolerance(work.nonstiff, tolerance);
   }
 
   /// One step, and every few steps one evaluation of f more, to test for stiffness.
@@ -133,24 +145,33 @@ struct Switching {
   template <State X>
   [[nodiscard]] static Scalar<X> next_factor(Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>& h,
                                              const X& x, const X& x_new, const Tolerance<Scalar<X>>& tolerance) {
-    if constexpr (requires { Stiff::next_factor(work.stiff, factor, h, x, x_new, tolerance); }) {
+    if constexpr (detail::HasNextFactor<Stiff, X, StiffWork<X>>) {
       if (work.is_stiff) return Stiff::next_factor(work.stiff, factor, h, x, x_new, tolerance);
+    }
+    if constexpr (detail::HasNextFactor<NonStiff, X, NonStiffWork<X>>) {
+      if (!work.is_stiff) return NonStiff::next_factor(work.nonstiff, factor, h, x, x_new, tolerance);
     }
     return factor;
   }
   /// The last step was rejected, and h_next is tried instead.
   template <State X>
   static void rejected(Workspace<X>& work, const Scalar<X>& h_next) {
-    if constexpr (requires { Stiff::rejected(work.stiff, h_next); }) {
+    if constexpr (detail::HasRejected<Stiff, X, StiffWork<X>>) {
       if (work.is_stiff) Stiff::rejected(work.stiff, h_next);
+    }
+    if constexpr (detail::HasRejected<NonStiff, X, NonStiffWork<X>>) {
+      if (!work.is_stiff) NonStiff::rejected(work.nonstiff, h_next);
     }
   }
 
   /// The last step is taken once more, to end at an event.
   template <State X>
   static void retaken(Workspace<X>& work) {
-    if constexpr (requires { Stiff::retaken(work.stiff); }) {
+    if constexpr (detail::HasRetaken<Stiff, StiffWork<X>>) {
       if (work.is_stiff) Stiff::retaken(work.stiff);
+    }
+    if constexpr (detail::HasRetaken<NonStiff, NonStiffWork<X>>) {
+      if (!work.is_stiff) NonStiff::retaken(work.nonstiff);
     }
   }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include <continuo/methods/check_method.hpp>
 #include <continuo/solve/steps/step_control.hpp>
 #include <continuo/solve/steps/steps.hpp>
 
@@ -23,7 +24,11 @@ struct AnyMethod {
 template <class M, class System, State X>
 [[nodiscard]] std::unique_ptr<Steps<System, X>> begin_steps(System f, X x0, Scalar<X> t0, Scalar<X> forward,
                                                             const Options<X>& options) {
-  return std::make_unique<StepControl<System, X, M>>(std::move(f), std::move(x0), t0, forward, options);
+  if constexpr (check_method<M, X, System>()) {
+    return std::make_unique<StepControl<System, X, M>>(std::move(f), std::move(x0), t0, forward, options);
+  } else {
+    return nullptr;  // refused by the compiler
+  }
 }
 
 /// The method M for this type of system and state.

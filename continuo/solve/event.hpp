@@ -95,7 +95,9 @@ struct EventResponse {
 ///   is_guard(i); guards(system, t, x, span of size() values): g_i, anything for those not guards or not active
 ///   next_time(i, t, inclusive): the first scheduled time > t (>= t where inclusive), infinity where none
 ///   fire(system, i, t, before, x) -> EventResponse; x begins as `before`
-/// and optionally, with the default in brackets,
+/// A source is copied: an event may be tried on copies of the source and the system, so `fire` changes only these two
+/// and x. `check_event_source` (check_event_source.hpp) tells by a sentence what a type lacks to be a source, and
+/// refuses an optional member with another signature. Optional members, with the default in brackets:
 ///   can_restart(i) [true]: firing may change what f reads, or stop the run
 ///   can_assign(i) [can_restart(i)]: firing may change a state
 ///   carried(system, i, t, x, forward) [by differences]: the side to which the motion takes guard i from zero, if known
@@ -104,9 +106,11 @@ struct EventResponse {
 ///   is_condition(i) [false]: the guard is positive where a condition holds, and never zero
 ///   renews_guard(i) [false]: only the motion crosses the guard, and firing gives it another meaning
 ///   has_limit_action(i) [false], at_limit(system, i, t, before, x) -> EventResponse: where the firings accumulate
+///   schedule_problem(to) [empty]: why the times of an event cannot be represented in a run that ends at `to`
 template <class S, class System, class X>
 concept EventSource =
-    State<X> && requires(S& s, const S& constant, System& system, const X& before, X& x, std::span<Scalar<X>> values) {
+    State<X> && std::copy_constructible<S> &&
+    requires(S& s, const S& constant, System& system, const X& before, X& x, std::span<Scalar<X>> values) {
       { constant.size() } -> std::convertible_to<std::size_t>;
       { constant.name(std::size_t{}) } -> std::convertible_to<std::string_view>;
       { constant.direction(std::size_t{}) } -> std::same_as<Direction>;

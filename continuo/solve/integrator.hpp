@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <continuo/solve/any_method.hpp>
+#include <continuo/solve/check_event_source.hpp>
 #include <continuo/solve/driver/driver.hpp>
 
 namespace continuo {
@@ -18,6 +19,7 @@ namespace continuo {
 template <class System, State X, class M, class Events = EventList<X>>
 class Integrator : public Driver<System, X, Events> {
   using Base = Driver<System, X, Events>;
+  static_assert(check_event_source<Events, System, X>());
 
  public:
   using Real = Scalar<X>;
@@ -36,7 +38,7 @@ class Integrator : public Driver<System, X, Events> {
 
   /// The last step: dense output in theta = (t - begin) / size.
   [[nodiscard]] const auto& interpolant()
-    requires Method<M, X>
+    requires(!std::same_as<M, AnyMethod<System, X>>)
   {
     return static_cast<StepControl<System, X, M>&>(this->steps()).interpolant();
   }
@@ -45,10 +47,10 @@ class Integrator : public Driver<System, X, Events> {
   [[nodiscard]] static std::unique_ptr<Steps<System, X>> begin(M method, System f, const X& x0, Interval<Real> interval,
                                                                const Options<X>& options) {
     const Real forward = interval.to < interval.from ? Real(-1) : Real(1);
-    if constexpr (Method<M, X>) {
-      return begin_steps<M, System, X>(std::move(f), x0, interval.from, forward, options);
-    } else {
+    if constexpr (std::same_as<M, AnyMethod<System, X>>) {
       return method.begin(std::move(f), x0, interval.from, forward, options);
+    } else {
+      return begin_steps<M, System, X>(std::move(f), x0, interval.from, forward, options);
     }
   }
 };

@@ -145,7 +145,7 @@ template <class System, State X, class Events>
 
 /// Integrates dx/dt = f(t, x) from x(from) = x0. A failure on the way does not throw: see Solution::outcome.
 template <class System, State X, class M>
-  requires Method<M, X> || std::same_as<M, AnyMethod<System, X>>
+  requires(!std::same_as<M, Options<X>>)  // without a method: automatic.hpp
 [[nodiscard]] Solution<X> solve(System system, X x0, Interval<std::type_identity_t<Scalar<X>>> interval, M method,
                                 std::type_identity_t<Options<X>> options = {}) {
   Integrator<System, X, M> integrator(std::move(system), std::move(x0), interval, method, std::move(options));

@@ -14,6 +14,7 @@
 
 #include <continuo/solve/driver/step_marks.hpp>
 #include <continuo/solve/events/event_logic.hpp>
+#include <continuo/solve/events/event_members.hpp>
 #include <continuo/solve/observer.hpp>
 #include <continuo/solve/steps/consistent.hpp>
 #include <continuo/solve/steps/steps.hpp>
@@ -182,7 +183,7 @@ class Driver {
   void start(Observer& observer) {
     started_ = true;
     std::string why = wrong_input(steps().needs(x_), system(), x_, interval_, options_);
-    if constexpr (requires { events().schedule_problem(interval_.to); })
+    if constexpr (detail::HasScheduleProblem<Events, X>)
       if (why.empty()) why = events().schedule_problem(interval_.to);
     if (!why.empty()) {
       end(Ending::invalid_input, why);
@@ -481,14 +482,14 @@ class Driver {
   }
 
   [[nodiscard]] bool has_limit_action(std::size_t i) const {
-    if constexpr (requires { logic_.events().has_limit_action(i); }) {
+    if constexpr (detail::HasLimitAction<Events, System, X>) {
       return logic_.events().has_limit_action(i);
     } else {
       return false;
     }
   }
   [[nodiscard]] EventResponse limit_action(std::size_t i) {
-    if constexpr (requires { logic_.events().at_limit(steps().system(), i, t_, before_, x_); }) {
+    if constexpr (detail::HasLimitAction<Events, System, X>) {
       return logic_.events().at_limit(steps().system(), i, t_, before_, x_);
     } else {
       return {};

@@ -13,6 +13,7 @@
 #include <continuo/solve/event.hpp>
 #include <continuo/solve/events/accumulation.hpp>
 #include <continuo/solve/events/event_location.hpp>
+#include <continuo/solve/events/event_members.hpp>
 #include <continuo/solve/events/guard_motion.hpp>
 #include <continuo/solve/steps/consistent.hpp>
 #include <continuo/solve/steps/steps.hpp>
@@ -59,7 +60,7 @@ class EventLogic {
   [[nodiscard]] AccumulationWatch<Real>& accumulation() { return accumulation_; }
 
   [[nodiscard]] bool can_restart(std::size_t i) const {
-    if constexpr (requires { events_.can_restart(i); }) {
+    if constexpr (detail::HasCanRestart<Events>) {
       return events_.can_restart(i);
     } else {
       return true;
@@ -110,9 +111,7 @@ class EventLogic {
     size_ = steps.size();
     if constexpr (has_enclosures) events_.take_step(steps.system(), steps.begin(), size_, dense_output);
   }
-  static constexpr bool has_enclosures = requires(Events& events, System& system, std::span<const X> coefficients) {
-    events.take_step(system, Real{}, Real{}, coefficients);
-  };
+  static constexpr bool has_enclosures = detail::HasEnclosures<Events, System, X>;
 
   /// Updates the sides at (t, x), the end of the segment that was searched last, in which there is no event.
   void settle(StepsOf& steps, Real t, const X& x) {
@@ -281,7 +280,7 @@ class EventLogic {
 
   /// Whether a guard was made of a condition: its sign, even at zero, tells whether the condition is true.
   [[nodiscard]] bool is_condition(std::size_t i) const {
-    if constexpr (requires { events_.is_condition(i); }) {
+    if constexpr (detail::HasIsCondition<Events>) {
       return events_.is_condition(i);
     } else {
       return false;
@@ -292,7 +291,7 @@ class EventLogic {
   /// state, the source settles the jumps itself. Firing gives such a guard another meaning, and it gets the side of its
   /// new values.
   [[nodiscard]] bool renews_guard(std::size_t i) const {
-    if constexpr (requires { events_.renews_guard(i); }) {
+    if constexpr (detail::HasRenewsGuard<Events>) {
       return events_.renews_guard(i);
     } else {
       return false;
@@ -355,7 +354,7 @@ class EventLogic {
   }
 
   [[nodiscard]] Carried carried(StepsOf& steps, std::size_t i, Real t, const X& x) {
-    if constexpr (requires { events_.carried(steps.system(), i, t, x, forward_); }) {
+    if constexpr (detail::HasCarried<Events, System, X>) {
       if (const std::optional<Carried> known = events_.carried(steps.system(), i, t, x, forward_)) {
         if (known->order != 1 || known->surely) return *known;
         // Near a jump of the equations the derivative may have an error beyond rounding, which differences show.
@@ -567,7 +566,7 @@ class EventLogic {
   // Whether the event of guard i, which the motion carries from zero to the far side, would turn the motion back. It is
   // tried on copies, a little beyond zero.
   [[nodiscard]] bool restores(StepsOf& steps, std::size_t i, Real t, const X& x, int near) {
-    if constexpr (requires { events_.can_assign(i); }) {
+    if constexpr (detail::HasCanAssign<Events>) {
       if (!events_.can_assign(i)) return false;
     } else if (!can_restart(i)) {
       return false;

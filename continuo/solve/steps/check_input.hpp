@@ -22,8 +22,7 @@ struct MethodNeeds {
 template <class M, class System, State X>
 [[nodiscard]] MethodNeeds needs_of(const System& system, const X& x) {
   MethodNeeds needs{M::name, detail::is_implicit<M>(), M::error_order > 0, {}};
-  if constexpr (requires { M::unsupported_reason(system, x); })
-    needs.unsupported_reason = M::unsupported_reason(system, x);
+  if constexpr (detail::HasUnsupportedReason<M, X, System>) needs.unsupported_reason = M::unsupported_reason(system, x);
   return needs;
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <continuo/methods/support/weighted_norm.hpp>
+#include <continuo/numerics/finite.hpp>
 #include <continuo/solve/steps/consistent.hpp>
 #include <continuo/solve/steps/steps.hpp>
 
@@ -23,6 +24,7 @@ class StepControl final : public Steps<System, X> {
 
  public:
   using Real = Scalar<X>;
+  using Work = typename M::template Workspace<X>;
 
   StepControl(System f, X x0, Real t0, Real forward, const Options<X>& options)
       : Base(std::move(f), x0, t0, forward), work_(M::workspace(x0)), interpolant_(x0), origin_(t0) {
@@ -57,7 +59,7 @@ class StepControl final : public Steps<System, X> {
 
   [[nodiscard]] bool lands() const override { return detail::is_implicit<M>(); }
   [[nodiscard]] bool retake(Real size, const Options<X>& options) override {
-    if constexpr (requires { M::retaken(work_); }) M::retaken(work_);
+    if constexpr (detail::HasRetaken<M, Work>) M::retaken(work_);
     jumped_ = began_anew_;
     attempt(size, options);
     jumped_ = false;
@@ -84,10 +86,9 @@ class StepControl final : public Steps<System, X> {
   void attempt(Real h, const Options<X>& options) {
     h_ = h;
     began_anew_ = jumped_;
-    if constexpr (requires { M::set_tolerance(work_, tolerance(options)); })
-      M::set_tolerance(work_, tolerance_of_step(h, options));
+    if constexpr (detail::HasSetTolerance<M, X, Work>) M::set_tolerance(work_, tolerance_of_step(h, options));
     statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
-    if constexpr (requires { M::costs(work_); }) {
+    if constexpr (detail::HasCosts<M, Work>) {
       const EquationCosts costs = M::costs(work_);
       statistics_.jacobians = costs.jacobians;
       statistics_.factorizations = costs.factorizations;
@@ -108,13 +109,14 @@ class StepControl final : public Steps<System, X> {
     return weights;
   }
 
-  /// The square of M::error_norm, without computing its root where the method provides that.
+  /// The square of M::error_norm, without computing its root where the method provides that. Not a number where a
+  /// component of x_end_ is not finite: an estimate may not contain all components.
   [[nodiscard]] Real error_square(const Tolerance<Real>& weights) const {
-    if constexpr (requires { M::error_square(work_, h_, x_begin_, x_end_, weights); }) {
+    if constexpr (detail::HasErrorSquare<M, X, Work>) {
       return M::error_square(work_, h_, x_begin_, x_end_, weights);
     } else {
       const Real norm = M::error_norm(work_, h_, x_begin_, x_end_, weights);
-      return norm * norm;
+      return norm * norm + detail::zero_if_all_finite(x_end_);
     }
   }
 
@@ -199,7 +201,7 @@ class StepControl final : public Steps<System, X> {
       last_not_finite = detail::status_of<M>(work_) == StepStatus::not_finite || (solved && !finite);
       error = sqrt(square);
       h = h_ * factor_of_rejected(solved, finite, static_cast<float>(min(square, Real(1e30))), options);
-      if constexpr (requires { M::rejected(work_, h); }) M::rejected(work_, h);
+      if constexpr (detail::HasRejected<M, X, Work>) M::rejected(work_, h);
       if constexpr (HasMassDiagonal<System, X>) {
         if (rejects == rejects_before_settling) settle_unknowns(weights);
       }
@@ -240,8 +242,10 @@ class StepControl final : public Steps<System, X> {
     using std::min;
     float factor = errors_.accept(options.controller, detail::error_order_of<M>(work_), error_square);
     if (was_rejected) factor = min(factor, 1.0F);
-    if constexpr (requires { M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights); }) {
+    if constexpr (detail::HasNextFactor<M, X, Work>) {
       const Real wanted = M::next_factor(work_, Real(factor), h_, x_begin_, x_end_, weights);
+      if (!(wanted > 0)) [[unlikely]]  // time would stop, or run backwards
+        return Real(factor);
       return was_rejected ? min(wanted, Real(1)) : wanted;
     } else {
       return Real(factor);
@@ -275,7 +279,7 @@ class StepControl final : public Steps<System, X> {
     return dimension(x_begin_) == 0 ? std::string{} : component_name(system_, worst);
   }
 
-  typename M::template Workspace<X> work_;
+  Work work_;
   Interpolant<X, M::dense_degree> interpolant_;
   Real origin_, reach_{};   // the start of the run, and the greatest distance of a limit from it
   bool began_anew_ = true;  // the last step: nothing was kept from before it
