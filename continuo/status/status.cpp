@@ -31,6 +31,8 @@ std::string_view to_string(Ending ending) {
       return "unreadable";
     case Ending::unwritable:
       return "unwritable";
+    case Ending::stopped_by_callback:
+      return "stopped by callback";
   }
   return "unknown";
 }

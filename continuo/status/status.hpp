@@ -25,14 +25,16 @@ enum class Ending {        // recordings hold the number: new ones come last
   cannot_continue,         ///< Nothing further can be computed from here; the message names the reason.
   unreadable,              ///< A file could not be read, or its content is corrupt.
   unwritable,              ///< A file could not be written; an older one stays.
+  stopped_by_callback,     ///< A function that watches the run asked for its end; a success.
 };
+inline constexpr Ending last_ending = Ending::stopped_by_callback;
 
 /// "reached end", "step too small", ...
 [[nodiscard]] std::string_view to_string(Ending ending);
 
-/// Whether the operation gave what was asked: it reached the end, or an event stopped it.
+/// Whether the operation gave what was asked: it reached the end, or an event or a callback stopped it.
 [[nodiscard]] constexpr bool succeeded(Ending ending) {
-  return ending == Ending::reached_end || ending == Ending::stopped_by_event;
+  return ending == Ending::reached_end || ending == Ending::stopped_by_event || ending == Ending::stopped_by_callback;
 }
 
 /// How an operation ended, in words.

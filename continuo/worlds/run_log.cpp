@@ -104,7 +104,7 @@ void transfer(Archive& archive, RunEnd& end) {
   archive(end.seconds);
   if constexpr (Archive::reads) {
     const auto ending = static_cast<int>(o.ending);
-    archive.expect(ending >= 0 && ending <= static_cast<int>(Ending::unwritable), "an end of no known kind");
+    archive.expect(ending >= 0 && ending <= static_cast<int>(last_ending), "an end of no known kind");
   }
 }
 

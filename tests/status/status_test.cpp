@@ -14,16 +14,17 @@ namespace {
 
 TEST(Status, EveryEndingHasWordsOfItsOwn) {
   std::set<std::string_view> words;
-  for (int k = 0; k <= static_cast<int>(Ending::unwritable); ++k) words.insert(to_string(static_cast<Ending>(k)));
-  EXPECT_EQ(words.size(), static_cast<std::size_t>(Ending::unwritable) + 1);
+  for (int k = 0; k <= static_cast<int>(last_ending); ++k) words.insert(to_string(static_cast<Ending>(k)));
+  EXPECT_EQ(words.size(), static_cast<std::size_t>(last_ending) + 1);
   EXPECT_FALSE(words.contains("unknown"));
 }
 
-TEST(Status, OnlyTheEndAndAnEventAreSuccesses) {
-  for (int k = 0; k <= static_cast<int>(Ending::unwritable); ++k) {
+TEST(Status, OnlyTheEndAnEventAndACallbackAreSuccesses) {
+  for (int k = 0; k <= static_cast<int>(last_ending); ++k) {
     const auto ending = static_cast<Ending>(k);
-    EXPECT_EQ(static_cast<bool>(Status{.ending = ending}),
-              ending == Ending::reached_end || ending == Ending::stopped_by_event);
+    EXPECT_EQ(static_cast<bool>(Status{.ending = ending}), ending == Ending::reached_end ||
+                                                               ending == Ending::stopped_by_event ||
+                                                               ending == Ending::stopped_by_callback);
   }
   EXPECT_TRUE(Status{});
 }

@@ -120,6 +120,7 @@ Diagnostic failure(const Model& model, const Outcome<double>& outcome) {
     case Ending::cannot_continue:
     case Ending::unreadable:
     case Ending::unwritable:
+    case Ending::stopped_by_callback:
       break;
   }
   return make("E300", "the run ended at " + at, model.run.span);
