@@ -6,18 +6,25 @@
 #include <concepts>
 #include <cstddef>
 #include <span>
+#include <tuple>
 #include <type_traits>
 
 namespace continuo {
 
-/// A copyable block of components of one scalar type, contiguous in memory.
+/// A copyable block of components of one scalar type, contiguous in memory. The scalar is a real number or behaves like
+/// one; it is neither a whole number nor complex.
 template <class X>
 concept State = std::copyable<X> && requires(X& x, const X& constant) {
   typename X::value_type;
   { x.data() } -> std::convertible_to<typename X::value_type*>;
   { constant.data() } -> std::convertible_to<const typename X::value_type*>;
   { constant.size() } -> std::convertible_to<std::size_t>;
+  requires !std::integral<typename X::value_type>;
 };
+
+/// A state whose size is part of its type.
+template <class X>
+concept FixedSize = State<X> && requires { std::tuple_size<X>::value; };
 
 /// The scalar of a state: float, double, long double, a quad type, a dual number or Lanes<double, W>.
 template <State X>

@@ -29,6 +29,8 @@ template <class F, State X, class Least>
 int evaluate_jacobian(F& f, const Scalar<X>& t, const X& x, const X& fx, X& moved, X& slope, const Least& least,
                       std::span<Scalar<X>> rows) {
   if constexpr (HasJacobian<F, X>) {
+    // A Jacobian that writes only its nonzero entries, or adds to them, is right only on zeros.
+    std::ranges::fill(rows, Scalar<X>(0));
     f.jacobian(t, x, rows);
     return 0;
   } else {
@@ -51,6 +53,7 @@ template <class F, State X, class Least>
 int evaluate_jacobian(F& f, const Scalar<X>& t, const X& x, const X& fx, X& moved, X& slope, const Least& least,
                       const SparsePattern& pattern, const ColumnGroups& groups, std::span<Scalar<X>> values) {
   if constexpr (HasSparseJacobian<F, X>) {
+    std::ranges::fill(values, Scalar<X>(0));
     f.jacobian_values(t, x, values);
     return 0;
   } else {
@@ -76,6 +79,7 @@ template <class F, State X>
                                            X& dfdt) {
   if constexpr (HasTimeDerivative<F, X>) {
     f.time_derivative(t, x, dfdt);
+    detail::keep_size(x, dfdt);
     return 0;
   } else {
     using Real = Scalar<X>;

@@ -12,6 +12,7 @@
 #include <concepts>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -79,6 +80,20 @@ struct SecondOrderSystem {
     }
   }
 
+  /// Whether the acceleration can be called in one of the four ways.
+  template <State X>
+  [[nodiscard]] static consteval bool is_callable() {
+    using Half = HalfOf<X>;
+    using Out = OutOf<X>;
+    return std::invocable<Acceleration&, Scalar<X>, const Half&> ||
+           std::invocable<Acceleration&, Scalar<X>, const Half&, Out&> ||
+           std::invocable<Acceleration&, Scalar<X>, const Half&, const Half&, Out&>;
+  }
+  /// Why there is no state of this size; empty where there is.
+  [[nodiscard]] std::string size_problem(std::size_t size) const {
+    if (size % 2 == 0) return {};
+    return "a state of positions and velocities has an even number of components; this one has " + std::to_string(size);
+  }
   /// The number of pairs: half the size of the state.
   [[nodiscard]] std::size_t pair_count(std::size_t size) const { return size / 2; }
   /// Pair i: components i and i + size / 2.
@@ -136,6 +151,10 @@ struct SecondOrderSystem {
   static void put(const From& from, X& dxdt) {
     const std::size_t n = dimension(dxdt) / 2;
     if (from.data() == dxdt.data() + n) return;
+    if (from.size() != n) {
+      detail::discard_result(dxdt, dxdt);
+      return;
+    }
     for (std::size_t i = 0; i < n; ++i) dxdt.data()[n + i] = from.data()[i];
   }
   template <class X>

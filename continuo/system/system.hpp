@@ -9,6 +9,7 @@
 #pragma once
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,13 +32,51 @@ concept ReturnsDerivative = State<X> && std::invocable<F&, Scalar<X>, const X&> 
 template <class F, class X>
 concept RightHandSide = WritesDerivative<F, X> || ReturnsDerivative<F, X>;
 
-/// dxdt = f(t, x), whichever way f likes to be called.
+namespace detail {
+/// A result of another size than the state. It becomes one of the size of the state that is not a number, so that
+/// nothing is read beyond its end, and the step is rejected.
+template <State X>
+[[gnu::noinline]] void discard_result(const X& x, X& dxdt) {
+  dxdt = x;
+  for (std::size_t i = 0; i < dimension(dxdt); ++i)
+    dxdt.data()[i] = Scalar<X>(std::numeric_limits<double>::quiet_NaN());
+}
+/// Discards what a function of the system has written for a state x where it has another size.
+template <State X>
+void keep_size(const X& x, X& result) {
+  if constexpr (!FixedSize<X>) {
+    if (dimension(result) != dimension(x)) [[unlikely]]
+      discard_result(x, result);
+  }
+}
+}  // namespace detail
+
+/// dxdt = f(t, x), for an f that writes its result or returns it. If it has another size than x, all of dxdt is NaN.
 template <State X, RightHandSide<X> F>
 void evaluate(F& f, const Scalar<X>& t, const X& x, X& dxdt) {
   if constexpr (WritesDerivative<F, X>) {
     f(t, x, dxdt);
   } else {
     dxdt = f(t, x);
+  }
+  detail::keep_size(x, dxdt);
+}
+
+/// Why dx/dt at (t, x) cannot be used: its size is not that of x. Empty where it is. Evaluates f once.
+template <State X, RightHandSide<X> F>
+[[nodiscard]] std::string problem_of_result(F& f, const Scalar<X>& t, const X& x) {
+  if constexpr (FixedSize<X>) {
+    return {};
+  } else {
+    X dxdt = x;
+    if constexpr (WritesDerivative<F, X>) {
+      f(t, x, dxdt);
+    } else {
+      dxdt = f(t, x);
+    }
+    if (dimension(dxdt) == dimension(x)) return {};
+    return "f gives " + std::to_string(dimension(dxdt)) + " derivatives of " + std::to_string(dimension(x)) +
+           " components: it must give one for each component of the state";
   }
 }
 
@@ -59,7 +98,7 @@ concept SecondOrder = requires(const F& f, std::size_t size) {
   { f.pair(std::size_t{}, size) } -> std::convertible_to<PositionVelocity>;
 };
 
-/// The system gives df/dx: f.jacobian(t, x, span of n*n, row by row). The seat of the implicit methods.
+/// The system gives df/dx: f.jacobian(t, x, span of n*n, row by row), which begins as zeros. Implicit methods need it.
 template <class F, class X>
 concept HasJacobian = requires(F& f, Scalar<X> t, const X& x, std::span<Scalar<X>> rows) { f.jacobian(t, x, rows); };
 
@@ -68,7 +107,8 @@ template <class F>
 concept HasJacobianPattern = requires(F& f) {
   { f.jacobian_pattern() } -> std::convertible_to<const SparsePattern&>;
 };
-/// The system gives the entries of df/dx in the order of its pattern: f.jacobian_values(t, x, span).
+/// The system gives the entries of df/dx in the order of its pattern: f.jacobian_values(t, x, span), which begins as
+/// zeros.
 template <class F, class X>
 concept HasSparseJacobian =
     HasJacobianPattern<F> &&
@@ -144,6 +184,10 @@ concept IsSplit = requires(F& f, Scalar<X> t, const X& x, X& dxdt) {
   f.stiff(t, x, dxdt);
   f.nonstiff(t, x, dxdt);
 };
+/// The Jacobian of the stiff part of a split system: f.stiff_jacobian(t, x, span of n*n, row by row).
+template <class F, class X>
+concept HasStiffJacobian =
+    requires(F& f, Scalar<X> t, const X& x, std::span<Scalar<X>> rows) { f.stiff_jacobian(t, x, rows); };
 
 /// The name of component i, `x[i]` where the system has none.
 template <class F>

@@ -224,6 +224,7 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
     int evaluations = 1;
     if constexpr (treats_as_split<System, X>()) {
       system.nonstiff(t, x, work.nonstiff[0]);
+      detail::keep_size(x, work.nonstiff[0]);
     } else {
       if constexpr (HasMassMatrix<System, X> || HasMassDiagonal<System, X>) {
         if (has_mass<X>(system)) evaluations += divide_by_singular_mass(system, t, x, h, work);
@@ -286,6 +287,7 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
         for (std::size_t i = 0; i < dimension(x); ++i)
           solver.argument.data()[i] = work.base.data()[i] + work.z.data()[i];
         system.nonstiff(t_stage, solver.argument, work.nonstiff[s]);
+        detail::keep_size(x, work.nonstiff[s]);
       }
     }
     return true;

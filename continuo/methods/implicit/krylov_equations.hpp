@@ -94,6 +94,7 @@ class KrylovEquations : public StepEquations<Scalar<X>> {
                                       const Real& root) {
     if constexpr (HasJacobianAction<System, X>) {
       system.jacobian_action(t, x, argument_, product_);
+      detail::keep_size(x, product_);
       return 0;
     } else {
       using std::max, std::sqrt;
@@ -110,6 +111,7 @@ class KrylovEquations : public StepEquations<Scalar<X>> {
   void precondition(System& system, X& r) {
     if constexpr (HasPreconditioner<System, X>) {
       system.precondition(r);
+      detail::keep_size(point_, r);
     } else {
       for (std::size_t i = 0; i < dimension(r); ++i) r.data()[i] /= weight_of_row(i);
     }

@@ -24,6 +24,7 @@ template <class System, State X>
   using std::abs;
   if constexpr (HasTimeDerivative<System, X>) {
     system.time_derivative(t, x, dfdt);
+    keep_size(x, dfdt);
     return 0;
   } else {
     const Real scale = Real(0.01) * abs(h) / sqrt_of_epsilon<Real>();
