@@ -101,6 +101,11 @@ struct StabilizedRungeKutta {
     const Scalar<X> longest = Derived::template reach<Scalar<X>>(most_stages(work));
     return abs(h) * work.radius * factor > longest ? longest / (abs(h) * work.radius) : factor;
   }
+  /// Whether stability limits the last step, despite nearly as many stages as a step may have.
+  template <State X>
+  [[nodiscard]] static bool stability_limits(const Workspace<X>& work) {
+    return 10 * work.stages >= 9 * most_stages(work);
+  }
   template <State X>
   static void rejected(Workspace<X>& work, const Scalar<X>&) {
     work.retry = true;

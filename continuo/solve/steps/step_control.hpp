@@ -191,7 +191,8 @@ class StepControl final : public Steps<System, X> {
             return fail(Ending::step_too_small, sqrt(square), worst_component(weights), singular_hint, outcome);
         }
         if constexpr (watches_stiffness) {
-          if (statistics_.steps % Base::probe_every == 0 && statistics_.steps >= Base::first_probe) [[unlikely]]
+          if (statistics_.steps % Base::probe_every == 0 && statistics_.steps >= Base::first_probe &&
+              stability_may_limit()) [[unlikely]]
             this->probe_stiffness(M::derivative(work_), weights, options.max_steps);
         }
         return accepted();
@@ -208,6 +209,15 @@ class StepControl final : public Steps<System, X> {
       if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
           interrupted(options))
         return give_up(rejects >= options.max_rejects_in_a_row, last_not_finite, error, weights, options, outcome);
+    }
+  }
+
+  // A stabilised method adds stages where the stability of a step needs them.
+  [[nodiscard]] bool stability_may_limit() const {
+    if constexpr (requires { M::stability_limits(work_); }) {
+      return M::stability_limits(work_);
+    } else {
+      return true;
     }
   }
 
