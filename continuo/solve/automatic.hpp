@@ -36,20 +36,26 @@ template <class System, State X>
 
 /// Integrates dx/dt = f(t, x) from x(from) = x0 by a method that `choose_method` chooses. A failure on the way does not
 /// throw: see Solution::outcome.
-template <class System, State X>
-[[nodiscard]] auto solve(System system, const X& x0, Interval<std::type_identity_t<Scalar<X>>> interval,
-                         const std::type_identity_t<Options<X>>& options = {}) {
-  const auto rtol = options.rtol_each.empty() ? options.rtol : *std::ranges::min_element(options.rtol_each);
-  const std::string_view method = choose_method(traits_of(system, x0, static_cast<double>(rtol))).method;
-  const auto by = [&](auto chosen) { return solve(std::move(system), x0, interval, chosen, options); };
-  if constexpr (SecondOrder<System>) {
-    if (method == DormandPrinceNystrom8Radau::name) return by(DormandPrinceNystrom8Radau{});
-    if (method == DormandPrinceNystrom12Radau::name) return by(DormandPrinceNystrom12Radau{});
+template <class System, class X>
+[[nodiscard]] typename detail::TypesOfRun<X>::Result solve(System system, X x0,
+                                                           Interval<typename detail::TypesOfRun<X>::Real> interval,
+                                                           typename detail::TypesOfRun<X>::Settings options = {}) {
+  if constexpr (detail::check_call<HeldSystem<System>, X, Tsitouras5Rodas5P>()) {
+    HeldSystem<System> held(std::move(system));
+    const auto rtol = options.rtol_each.empty() ? options.rtol : *std::ranges::min_element(options.rtol_each);
+    const std::string_view method = choose_method(traits_of(held, x0, static_cast<double>(rtol))).method;
+    const auto by = [&](auto chosen) { return solve(std::move(held), x0, interval, chosen, options); };
+    if constexpr (SecondOrder<HeldSystem<System>>) {
+      if (method == DormandPrinceNystrom8Radau::name) return by(DormandPrinceNystrom8Radau{});
+      if (method == DormandPrinceNystrom12Radau::name) return by(DormandPrinceNystrom12Radau{});
+    }
+    // With algebraic equations, each of these uses its stiff half from the beginning to the end.
+    if (method == Dop853Radau::name || method == Radau::name) return by(Dop853Radau{});
+    if (method == Tsitouras5Bdf::name || method == Bdf::name) return by(Tsitouras5Bdf{});
+    return by(Tsitouras5Rodas5P{});
+  } else {
+    return {};
   }
-  // With algebraic equations, each of these uses its stiff half from the beginning to the end.
-  if (method == Dop853Radau::name || method == Radau::name) return by(Dop853Radau{});
-  if (method == Tsitouras5Bdf::name || method == Bdf::name) return by(Tsitouras5Bdf{});
-  return by(Tsitouras5Rodas5P{});
 }
 
 }  // namespace continuo

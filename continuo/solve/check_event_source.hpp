@@ -19,7 +19,7 @@ namespace detail {
 // As for methods (check_method.hpp): a name that S has too is ambiguous in a class that derives from both.
 struct NamesOfEvents {
   int can_restart, can_assign, is_condition, renews_guard, has_limit_action, at_limit, carried, take_step, is_enclosed,
-      enclose_all, whole, enclosure, value_enclosure, schedule_problem;
+      enclose_all, whole, enclosure, value_enclosure, problem;
 };
 template <class S>
 struct WithNamesOfEvents : S, NamesOfEvents {};
@@ -108,10 +108,10 @@ consteval void check_optional_members_of_source() {
                 "a, Real b); const Enclosure<Real>& whole(std::size_t i); EnclosureWithSlope<Real> "
                 "enclosure(std::size_t i, Real a, "
                 "Real b); Enclosure<Real> value_enclosure(std::size_t i, Real a)");
-  constexpr bool keeps_schedule_problem = HasScheduleProblem<S, X> || requires { &With::schedule_problem; };
-  static_assert(keeps_schedule_problem,
-                "the member `schedule_problem` of the source of events would be ignored: it must be public and const: "
-                "std::string schedule_problem(Real to) const");
+  constexpr bool keeps_problem = HasProblem<S, X> || requires { &With::problem; };
+  static_assert(keeps_problem,
+                "the member `problem` of the source of events would be ignored: it must be public and const: "
+                "std::string problem(Real from, Real to, const X& x) const");
 }
 template <class S, class System, State X>
 consteval void check_optional_members_of_source() {

@@ -6,15 +6,17 @@
 //      one event `before` is the state from before it. Guards that an action has carried across zero fire in the next
 //      round.
 //
-//   auto floor = falls<X>("floor", [](double, const X& x) { return x[0]; },
-//                         [](auto& now) { now.x[0] = 0; now.x[1] = -0.9 * now.before[1]; });
+//   auto floor = falls("floor", [](double, const X& x) { return x[0]; },
+//                      [](auto& now) { now.x[0] = 0; now.x[1] = -0.9 * now.before[1]; });
 #pragma once
+#include <concepts>
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -24,7 +26,17 @@
 
 namespace continuo {
 
-/// The data that an action reads and may change.
+namespace detail {
+struct NotCopied {
+  NotCopied() = default;
+  NotCopied(const NotCopied&) = delete;
+  NotCopied& operator=(const NotCopied&) = delete;
+};
+/// In the place of a guard or an action that an event does not have.
+struct NoFunction {};
+}  // namespace detail
+
+/// The data that an action reads and may change. An action gets them by reference.
 template <State X>
 struct EventAction {
   Scalar<X> t;
@@ -32,14 +44,81 @@ struct EventAction {
   X& x;  // starts as `before`
   bool stop = false;
   bool restart = false;  // set it where the action changed f but not x (a mode kept outside the state)
+  [[no_unique_address]] detail::NotCopied not_copied{};
 };
 
-/// g(t, x), whose zeros are events.
+/// A guard g(t, x): the event happens where its sign changes. It returns a number; a truth value or a whole number has
+/// no zero to locate.
 template <State X>
-using Guard = std::function<Scalar<X>(Scalar<X>, const X&)>;
-/// Reads and changes the state at an event.
+class Guard {
+ public:
+  Guard() = default;
+  explicit(false) Guard(detail::NoFunction) {}
+  template <class G>
+    requires(!std::same_as<std::remove_cvref_t<G>, Guard>)
+  explicit(false) Guard(G&& g) {
+    if constexpr (check<std::remove_cvref_t<G>>()) g_ = std::forward<G>(g);
+  }
+
+  explicit operator bool() const { return static_cast<bool>(g_); }
+  Scalar<X> operator()(const Scalar<X>& t, const X& x) const { return g_(t, x); }
+
+ private:
+  template <class G>
+  [[nodiscard]] static consteval bool check() {
+    constexpr bool callable = std::invocable<G&, Scalar<X>, const X&>;
+    static_assert(callable, "a guard is called as g(t, x), with t a number and x of the type of the state x0");
+    if constexpr (callable) {
+      using Value = std::remove_cvref_t<std::invoke_result_t<G&, Scalar<X>, const X&>>;
+      constexpr bool whole = std::is_integral_v<Value>, number = std::convertible_to<Value, Scalar<X>>;
+      static_assert(!std::same_as<Value, bool>,
+                    "the guard returns bool: it must return a number that changes its sign at the event, such as x[0] "
+                    "- 1 for the condition x[0] > 1");
+      static_assert(!whole || std::same_as<Value, bool>,
+                    "the guard returns a whole number: it must return a real number that changes its sign at the "
+                    "event");
+      static_assert(number || whole, "the guard must return a number of the type of the components of x0");
+      return number && !whole;
+    } else {
+      return false;
+    }
+  }
+
+  std::function<Scalar<X>(Scalar<X>, const X&)> g_;
+};
+
+/// The action of an event.
 template <State X>
-using Action = std::function<void(EventAction<X>&)>;
+class Action {
+ public:
+  Action() = default;
+  explicit(false) Action(detail::NoFunction) {}
+  template <class A>
+    requires(!std::same_as<std::remove_cvref_t<A>, Action>)
+  explicit(false) Action(A&& action) {
+    if constexpr (check<std::remove_cvref_t<A>>()) action_ = std::forward<A>(action);
+  }
+
+  explicit operator bool() const { return static_cast<bool>(action_); }
+  void operator()(EventAction<X>& now) const { action_(now); }
+
+ private:
+  template <class A>
+  [[nodiscard]] static consteval bool check() {
+    constexpr bool callable = std::invocable<A&, EventAction<X>&>;
+    static_assert(callable,
+                  "an action is called with its data by reference: [](EventAction<X>& now), or [](auto& now)");
+    if constexpr (callable) {
+      constexpr bool returns_bool = std::same_as<std::invoke_result_t<A&, EventAction<X>&>, bool>;
+      static_assert(!returns_bool, "the action returns bool, which has no effect: set now.stop to end the run");
+      return !returns_bool;
+    } else {
+      return false;
+    }
+  }
+
+  std::function<void(EventAction<X>&)> action_;
+};
 
 /// One event: a guard with a direction, or times. Without an action it is only noted.
 template <State X>
@@ -48,13 +127,77 @@ struct Event {
   Guard<X> guard{};  // empty: the event is scheduled
   Direction direction = Direction::crosses;
   Action<X> action{};
-  std::vector<Scalar<X>> times{};  // scheduled, in ascending order
+  std::vector<Scalar<X>> times{};  // scheduled
   Scalar<X> period{}, from{};      // scheduled at from, from + period, ... where period > 0
   std::size_t stop_after = 0;      // the run stops at this many firings; 0: never
   Action<X> at_limit{};            // where the firings accumulate; empty: the run ends there
 };
 
-/// An event where the guard goes from above zero to below.
+/// An event as falls, rises, crosses, at and every make it where no type of state is named. It becomes an `Event` for
+/// the state of the run.
+template <class G, class A, class Real = double, class L = detail::NoFunction>
+struct EventOf {
+  std::string name;
+  G guard;
+  Direction direction;
+  A action;
+  std::vector<Real> times{};
+  Real period{}, from{};
+  std::size_t stop_after = 0;
+  L at_limit{};
+
+  /// The same event with an action where its firings accumulate.
+  template <class Limit>
+  [[nodiscard]] EventOf<G, A, Real, Limit> then(Limit limit) const {
+    return {name, guard, direction, action, times, period, from, stop_after, std::move(limit)};
+  }
+
+  template <State X>
+  explicit(false) operator Event<X>() const {
+    Event<X> event{.name = name, .guard = guard, .direction = direction, .action = action};
+    for (const Real& time : times) event.times.push_back(static_cast<Scalar<X>>(time));
+    event.period = static_cast<Scalar<X>>(period);
+    event.from = static_cast<Scalar<X>>(from);
+    event.stop_after = stop_after;
+    event.at_limit = at_limit;
+    return event;
+  }
+};
+
+/// Events where g falls through zero, rises through it, or does either.
+template <class G, class A = detail::NoFunction>
+  requires(!State<G>)
+[[nodiscard]] EventOf<G, A> falls(std::string name, G guard, A action = {}) {
+  return {std::move(name), std::move(guard), Direction::falls, std::move(action)};
+}
+template <class G, class A = detail::NoFunction>
+  requires(!State<G>)
+[[nodiscard]] EventOf<G, A> rises(std::string name, G guard, A action = {}) {
+  return {std::move(name), std::move(guard), Direction::rises, std::move(action)};
+}
+template <class G, class A = detail::NoFunction>
+  requires(!State<G>)
+[[nodiscard]] EventOf<G, A> crosses(std::string name, G guard, A action = {}) {
+  return {std::move(name), std::move(guard), Direction::crosses, std::move(action)};
+}
+/// An event at these times.
+template <class A, class Real = double>
+  requires(!State<A>)
+[[nodiscard]] EventOf<detail::NoFunction, A, Real> at(std::string name, std::vector<Real> times, A action) {
+  return {std::move(name), {}, Direction::crosses, std::move(action), std::move(times)};
+}
+/// An event at from, from + period, from + 2 period, ...: where these are decimals, at the decimals (DecimalTicks).
+template <class Real, class From, class A>
+  requires(!State<Real>)
+[[nodiscard]] EventOf<detail::NoFunction, A, std::common_type_t<Real, From, double>> every(std::string name,
+                                                                                           Real period, From from,
+                                                                                           A action) {
+  using Time = std::common_type_t<Real, From, double>;
+  return {std::move(name),        {}, Direction::crosses, std::move(action), {}, static_cast<Time>(period),
+          static_cast<Time>(from)};
+}
+
+// The same for states of a named type X.
 template <State X>
 [[nodiscard]] Event<X> falls(std::string name, Guard<X> guard, Action<X> action = {}) {
   return {
@@ -76,7 +219,6 @@ template <State X>
 [[nodiscard]] Event<X> at(std::string name, std::vector<Scalar<X>> times, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .times = std::move(times)};
 }
-/// Fires at from, from + period, from + 2 period, ...: where these are decimals, at the decimals (DecimalTicks).
 template <State X>
 [[nodiscard]] Event<X> every(std::string name, Scalar<X> period, Scalar<X> from, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .period = period, .from = from};
@@ -106,7 +248,7 @@ struct EventResponse {
 ///   is_condition(i) [false]: the guard is positive where a condition holds, and never zero
 ///   renews_guard(i) [false]: only the motion crosses the guard, and firing gives it another meaning
 ///   has_limit_action(i) [false], at_limit(system, i, t, before, x) -> EventResponse: where the firings accumulate
-///   schedule_problem(to) [empty]: why the times of an event cannot be represented in a run that ends at `to`
+///   problem(from, to, x) [empty]: why an event cannot happen as it is given in a run over this time from x
 template <class S, class System, class X>
 concept EventSource =
     State<X> && std::copy_constructible<S> &&
@@ -171,11 +313,14 @@ class EventList {
     if (event.period > 0 && ticks_[i].next(t, inclusive) < next) next = ticks_[i].next(t, inclusive);
     return next;
   }
-  /// Why the numbers cannot represent the times of an event in a run that ends at `to`; empty where they can.
-  [[nodiscard]] std::string schedule_problem(Real to) const {
-    for (std::size_t i = 0; i < events_.size(); ++i)
+  /// Why an event cannot happen as it is given, in a run over this time from x; empty where all can.
+  [[nodiscard]] std::string problem(Real from, Real to, const X& x) const {
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      const std::string what = problem_of(events_[i], from, to, x);
+      if (!what.empty()) return "the event `" + events_[i].name + "` " + what;
       if (events_[i].period > 0 && !ticks_[i].advances(to))
         return "the period of the event `" + events_[i].name + "` is below the spacing of numbers at its times";
+    }
     return {};
   }
 
@@ -197,9 +342,31 @@ class EventList {
 
  private:
   [[nodiscard]] static EventResponse response(const EventAction<X>& now) {
-    bool changed = now.restart;
-    for (std::size_t k = 0; k < dimension(now.x); ++k) changed = changed || now.x.data()[k] != now.before.data()[k];
+    bool changed = now.restart || dimension(now.x) != dimension(now.before);
+    for (std::size_t k = 0; !changed && k < dimension(now.x); ++k) changed = now.x.data()[k] != now.before.data()[k];
     return {.stop = now.stop, .restart = changed, .changed = false};
+  }
+
+  [[nodiscard]] static std::string problem_of(const Event<X>& event, Real from, Real to, const X& x) {
+    const auto finite = [](const Real& value) { return Real(0) * value == Real(0); };
+    if (!finite(event.period) || event.period < 0 || !finite(event.from))
+      return "must have a period of at least 0 and a first time, both finite";
+    for (const Real& time : event.times)
+      if (!finite(time)) return "has a time that is not finite";
+    const bool scheduled = !event.times.empty() || event.period > 0;
+    if (event.guard) {
+      if (scheduled || event.from != Real(0)) return "has a guard and times: give the times to an event of their own";
+      const Real g = event.guard(from, x);
+      if (!(g == g)) return "has a guard that is not a number at the start of the run";
+      return {};
+    }
+    if (!(event.period > 0) && event.from != Real(0))
+      return "has a first time and no period: give it a period, or `times`";
+    if (!scheduled) return "has neither a guard nor times, so that it never happens";
+    if (event.direction != Direction::crosses) return "has times and a direction: only a guard has one";
+    if (event.at_limit) return "has times and an action at the limit: only the firings of a guard accumulate";
+    if (to < from) return "has times in a run that goes backwards: only guards are watched there";
+    return {};
   }
 
   std::vector<Event<X>> events_;

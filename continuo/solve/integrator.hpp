@@ -12,11 +12,14 @@
 #include <continuo/solve/any_method.hpp>
 #include <continuo/solve/check_event_source.hpp>
 #include <continuo/solve/driver/driver.hpp>
+#include <continuo/system/check_system.hpp>
+#include <continuo/system/system_reference.hpp>
 
 namespace continuo {
 
 /// A run that is advanced step by step by the method M.
 template <class System, State X, class M, class Events = EventList<X>>
+  requires RightHandSide<System, X>
 class Integrator : public Driver<System, X, Events> {
   using Base = Driver<System, X, Events>;
   static_assert(check_event_source<Events, System, X>());
@@ -46,6 +49,8 @@ class Integrator : public Driver<System, X, Events> {
  private:
   [[nodiscard]] static std::unique_ptr<Steps<System, X>> begin(M method, System f, const X& x0, Interval<Real> interval,
                                                                const Options<X>& options) {
+    static_cast<void>(check_state<X>());
+    check_system<ReferredSystem<System>, X>();
     const Real forward = interval.to < interval.from ? Real(-1) : Real(1);
     if constexpr (std::same_as<M, AnyMethod<System, X>>) {
       return method.begin(std::move(f), x0, interval.from, forward, options);
@@ -54,5 +59,15 @@ class Integrator : public Driver<System, X, Events> {
     }
   }
 };
+
+template <class System, State X, class M>
+Integrator(std::reference_wrapper<System>, X, Interval<std::type_identity_t<Scalar<X>>>, M)
+    -> Integrator<SystemReference<System>, X, M>;
+template <class System, State X, class M>
+Integrator(std::reference_wrapper<System>, X, Interval<std::type_identity_t<Scalar<X>>>, M,
+           std::type_identity_t<Options<X>>) -> Integrator<SystemReference<System>, X, M>;
+template <class System, State X, class M, class Events>
+Integrator(std::reference_wrapper<System>, X, Interval<std::type_identity_t<Scalar<X>>>, M,
+           std::type_identity_t<Options<X>>, Events) -> Integrator<SystemReference<System>, X, M, Events>;
 
 }  // namespace continuo

@@ -3,10 +3,12 @@
 #pragma once
 #include <atomic>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,16 +23,70 @@ struct Interval {
   Real from, to;
 };
 
-/// The states that a run keeps.
+/// A function that watches a run. It returns nothing, or a bool: `false` ends the run.
+template <class... Arguments>
+class Callback {
+ public:
+  Callback() = default;
+  explicit(false) Callback(std::nullptr_t) {}
+  template <class F>
+    requires(!std::same_as<std::remove_cvref_t<F>, Callback>)
+  explicit(false) Callback(F&& f) {
+    if constexpr (check<std::remove_cvref_t<F>>()) {
+      using Result = std::invoke_result_t<std::remove_cvref_t<F>&, Arguments...>;
+      if constexpr (std::same_as<Result, bool>) {
+        f_ = std::forward<F>(f);
+      } else if constexpr (requires { f.target_type(); }) {  // a std::function may be empty
+        if (f) wrap(std::forward<F>(f));
+      } else {
+        wrap(std::forward<F>(f));
+      }
+    }
+  }
+
+  explicit operator bool() const { return static_cast<bool>(f_); }
+  /// Whether the run is to continue.
+  bool operator()(Arguments... arguments) const { return f_(arguments...); }
+
+ private:
+  template <class F>
+  [[nodiscard]] static consteval bool check() {
+    constexpr bool callable = std::invocable<F&, Arguments...>;
+    static_assert(callable,
+                  "a callback of a run gets constants: [](double t, const X& x) for saved states, [](double t) for the "
+                  "progress, with X the type of the state x0");
+    if constexpr (callable) {
+      using Result = std::invoke_result_t<F&, Arguments...>;
+      constexpr bool usable = std::same_as<Result, void> || std::same_as<Result, bool>;
+      static_assert(usable, "a callback of a run returns nothing, or a bool of which false ends the run");
+      return usable;
+    } else {
+      return false;
+    }
+  }
+  template <class F>
+  void wrap(F&& f) {
+    f_ = [call = std::forward<F>(f)](Arguments... arguments) mutable {
+      call(arguments...);
+      return true;
+    };
+  }
+
+  std::function<bool(Arguments...)> f_;
+};
+
+/// The states that a run keeps. For `times` and `grid` these are the states at the times asked for and no others: one
+/// for each time up to the end of the run, after the events at that time. The other kinds also keep the state before
+/// and after every event, and the last one.
 template <State X>
 struct Save {
   using Real = Scalar<X>;
   /// Every accepted step, given times, a regular grid, every step with its polynomial, or the last state alone.
   enum class Kind { steps, times, grid, dense, end };
   Kind kind = Kind::steps;
-  std::vector<Real> times{};                       // Kind::times, in the direction of time
-  Real spacing{};                                  // Kind::grid: from, from + spacing, ...
-  std::function<void(Real, const X&)> callback{};  // gets every saved state; with it nothing is stored
+  std::vector<Real> times{};            // Kind::times, in the direction of time, within the run
+  Real spacing{};                       // Kind::grid: from, from + spacing, ...
+  Callback<Real, const X&> callback{};  // gets every saved state; with it no states are stored
 
   /// Keeps the state after every accepted step.
   [[nodiscard]] static Save every_step() { return {}; }
@@ -44,6 +100,58 @@ struct Save {
   /// Keeps the last state alone.
   [[nodiscard]] static Save only_end() { return {.kind = Kind::end}; }
 };
+
+namespace detail {
+struct NoCallback {};
+}  // namespace detail
+
+/// The states to keep, where no type of state is named: it becomes a `Save` for the state of the run.
+template <class Real = double, class Call = detail::NoCallback>
+struct SaveOf {
+  enum class Kind { steps, times, grid, dense, end };
+  Kind kind;
+  std::vector<Real> times{};
+  Real spacing{};
+  Call callback{};
+
+  /// The same, with a function that gets the states instead of the solution.
+  template <class F>
+  [[nodiscard]] SaveOf<Real, F> into(F f) const {
+    return {static_cast<typename SaveOf<Real, F>::Kind>(kind), times, spacing, std::move(f)};
+  }
+
+  template <State X>
+  explicit(false) operator Save<X>() const {
+    Save<X> save{.kind = static_cast<typename Save<X>::Kind>(kind), .spacing = static_cast<Scalar<X>>(spacing)};
+    for (const Real& time : times) save.times.push_back(static_cast<Scalar<X>>(time));
+    if constexpr (!std::same_as<Call, detail::NoCallback>) save.callback = callback;
+    return save;
+  }
+};
+
+/// Keeps the state after every accepted step.
+[[nodiscard]] inline SaveOf<> save_every_step() {
+  return {SaveOf<>::Kind::steps};
+}
+/// Keeps the states at these times, in the direction of time.
+template <class Real = double>
+[[nodiscard]] SaveOf<Real> save_at(std::vector<Real> times) {
+  return {SaveOf<Real>::Kind::times, std::move(times)};
+}
+/// Keeps the states at from, from + spacing, and so on.
+template <class Real>
+[[nodiscard]] SaveOf<std::common_type_t<Real, double>> save_every(Real spacing) {
+  using Time = std::common_type_t<Real, double>;
+  return {SaveOf<Time>::Kind::grid, {}, static_cast<Time>(spacing)};
+}
+/// Keeps every step with its polynomial, so that the solution can be evaluated anywhere.
+[[nodiscard]] inline SaveOf<> save_dense() {
+  return {SaveOf<>::Kind::dense};
+}
+/// Keeps the last state alone.
+[[nodiscard]] inline SaveOf<> save_only_end() {
+  return {SaveOf<>::Kind::end};
+}
 
 /// The options of a run.
 template <State X>
@@ -60,7 +168,7 @@ struct Options {
   std::vector<Event<X>> events{};
   Save<X> save{};
   const std::atomic<bool>* interrupt = nullptr;  // the run ends as `interrupted` once it is true
-  std::function<void(Real)> progress{};          // called with t now and then (about every thousand steps)
+  Callback<Real> progress{};                     // called with t now and then (about every thousand steps)
 };
 
 }  // namespace continuo

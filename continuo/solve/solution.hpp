@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -41,27 +43,51 @@ struct DenseSegment {
 template <State X>
 struct Solution {
   using Real = Scalar<X>;
-  std::vector<Real> t;  // the times of kept states; an event that changes the state has two, before and after it
+  std::vector<Real> t;  // the times of the kept states, see Save; where an event changes the state, two of them
   std::vector<X> x;
   std::vector<EventRecord<X>> events;
   std::vector<std::string> event_names;
   std::vector<DenseSegment<X>> segments;  // with Save::dense()
   Statistics statistics;
   Outcome<Real> outcome;
+  std::optional<X> last{};  // the last valid state, whatever is saved
+  bool dense = false;       // saved with Save::dense()
 
-  /// The last valid state.
-  [[nodiscard]] const X& final_state() const { return x.back(); }
+  /// The last valid state, at outcome.t. It is known whatever the run saves.
+  [[nodiscard]] const X& final_state() const {
+    if (last) return *last;
+    if (x.empty()) throw std::logic_error("there is no final state: this solution is not that of a run");
+    return x.back();
+  }
 
-  /// x(t) anywhere in the run; needs Save::dense(). At an event: the state after it.
+  /// x(t) anywhere in the run; needs Save::dense(). At an event: the state after it. Throws std::out_of_range for a
+  /// time outside of the run, std::logic_error without Save::dense().
   X operator()(Real time) const {
-    if (segments.empty()) throw std::logic_error("x(t) needs a solution saved with Save::dense()");
+    if (!dense && segments.empty()) throw std::logic_error("x(t) needs a solution saved with Save::dense()");
+    if (segments.empty()) {  // a run of no length, or one that has failed before the first step
+      if (time == outcome.t) return final_state();
+      throw std::out_of_range("x(t) is known at the only time of the run, no other");
+    }
     const bool forward = segments.back().end >= segments.front().begin;
+    check_time(time, forward ? segments.front().begin : segments.back().end,
+               forward ? segments.back().end : segments.front().begin);
     const auto after = std::upper_bound(segments.begin(), segments.end(), time, [&](Real value, const auto& segment) {
       return forward ? value < segment.begin : value > segment.begin;
     });
-    X result = x.front();
-    (after == segments.begin() ? *after : *std::prev(after))(time, result);
+    const DenseSegment<X>& segment = after == segments.begin() ? *after : *std::prev(after);
+    X result = segment.coefficients.back();
+    segment(time, result);
     return result;
+  }
+
+ private:
+  // A time that a sum of steps of a table has carried beyond an end by rounding is that end.
+  static void check_time(const Real& time, const Real& first, const Real& last_time) {
+    using std::abs, std::max;
+    const Real slack =
+        Real(64) * std::numeric_limits<Real>::epsilon() * max(max(abs(first), abs(last_time)), Real(last_time - first));
+    if (!(time >= first - slack) || !(time <= last_time + slack))
+      throw std::out_of_range("x(t) is known within the run only: this t lies outside");
   }
 };
 

@@ -146,11 +146,11 @@ struct OneEnclosureOfSix : Right {
 // refused: the enclosures of guards would be ignored: they have six public members
 template bool const checked<OneEnclosureOfSix>;
 
-struct ScheduleProblemOfNone : Right {
-  std::string schedule_problem() const;
+struct ProblemOfNone : Right {
+  std::string problem() const;
 };
-// refused: the member `schedule_problem` of the source of events would be ignored
-template bool const checked<ScheduleProblemOfNone>;
+// refused: the member `problem` of the source of events would be ignored
+template bool const checked<ProblemOfNone>;
 
 struct FinalSource final : Right {};
 // refused: the source of events is final: remove `final`, so that its optional members can be checked

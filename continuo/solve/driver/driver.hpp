@@ -30,7 +30,10 @@ class Driver {
   /// run has not ended.
   template <class Observer = NoObserver>
   bool advance(Observer&& observer = {}) {
-    if (!started_) start(observer);
+    if (!started_) {
+      start(observer);
+      end_instant(observer);
+    }
     if (ended_) return false;
     if (!consistent_) return end_inconsistent();
     if (t_ == interval_.to) return end(Ending::reached_end, steps().stiff() ? stiff_hint : "");
@@ -92,8 +95,25 @@ class Driver {
   [[nodiscard]] Real step_begin() const { return steps().begin(); }
   [[nodiscard]] Real step_size() const { return steps().size(); }
 
-  /// Sets the state from outside, for example where a user drags a body: the run continues from here.
+  /// Whether the run can begin. If it cannot, the first advance() ends it as invalid input, with the reason.
+  [[nodiscard]] bool can_begin() { return problem().empty(); }
+  /// Ends the run at its present time or at an earlier one of its last step, with the state x there: for observers.
+  void stop(Real t, const X& x) {
+    if (ended_) return;
+    t_ = t;
+    x_ = x;
+    end(Ending::stopped_by_callback);
+    stopped_ = true;
+  }
+
+  /// Sets the state from outside, for example where a user drags a body: the run continues from here. A state of
+  /// another size ends the run as invalid input.
   void set_state(const X& x) {
+    if (dimension(x) != dimension(x_)) {
+      end(Ending::invalid_input, "set_state was given " + std::to_string(dimension(x)) + " components for a state of " +
+                                     std::to_string(dimension(x_)));
+      return;
+    }
     x_ = x;
     restart();
   }
@@ -103,8 +123,12 @@ class Driver {
     change(steps().system());
     restart();
   }
-  /// Moves the end of the run.
+  /// Moves the end of the run. An end before the present time ends the run as invalid input.
   void extend_to(Real to) {
+    if (started_ && (!(forward() * (to - t_) >= 0) || !(Real(0) * to == Real(0)))) {
+      end(Ending::invalid_input, "the new end of the run must be finite and not before its present time");
+      return;
+    }
     interval_.to = to;
     if (ended_ && outcome_.ending == Ending::reached_end) ended_ = false;
   }
@@ -182,11 +206,8 @@ class Driver {
   template <class Observer>
   void start(Observer& observer) {
     started_ = true;
-    std::string why = wrong_input(steps().needs(x_), system(), x_, interval_, options_);
-    if constexpr (detail::HasScheduleProblem<Events, X>)
-      if (why.empty()) why = events().schedule_problem(interval_.to);
-    if (!why.empty()) {
-      end(Ending::invalid_input, why);
+    if (!problem().empty()) {
+      end(Ending::invalid_input, problem());
       return;
     }
     if (!consistent_) {
@@ -198,7 +219,22 @@ class Driver {
     fire(observer);
   }
 
+  /// Why the run cannot begin; empty where it can.
+  [[nodiscard]] const std::string& problem() {
+    if (problem_) return *problem_;
+    // A method asks for the pairs of the system: they are tested before.
+    std::string why = detail::problem_of_structure(system(), x_);
+    if (why.empty()) why = wrong_input(steps().needs(x_), system(), x_, interval_, options_);
+    if constexpr (detail::HasProblem<Events, X>) {
+      if (why.empty() && dimension(x_) == 0) why = "the state is empty: x0 must have a component for each equation";
+      if (why.empty()) why = detail::problem_of_pattern(steps().system(), x_);
+      if (why.empty()) why = events().problem(t_, interval_.to, x_);
+    }
+    return problem_.emplace(std::move(why));
+  }
+
   void restart() {
+    problem_.reset();
     settle_algebraic();
     begin_anew();
     logic_.arm(steps(), t_, x_);
@@ -233,6 +269,8 @@ class Driver {
     }
   }
   bool end_inconsistent() {
+    if (const std::string why = problem_of_result(steps().system(), t_, x_); !why.empty())
+      return end(Ending::invalid_input, why);
     end(Ending::nonlinear_solve_failed, hint_of(consistent_));
     outcome_.component = component_name(system(), consistent_.equation);
     return false;
@@ -286,9 +324,12 @@ class Driver {
         if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
       }
       observer.on_segment(*this, from, t_);
+      if (stopped_) return;
       logic_.begin_instant(t_);
       logic_.arrive(steps(), t_, x_, crossing);
-      if (fire(observer) || t_ == steps().end()) return;
+      const bool step_ends = fire(observer) || t_ == steps().end();
+      end_instant(observer);
+      if (step_ends || stopped_) return;
       from = t_;
       from_here = true;
     }
@@ -303,12 +344,23 @@ class Driver {
     if (logic_.any_guard()) solve_unknowns(t_, x_);
     solved_to_rounding_ = logic_.any_guard();
     observer.on_segment(*this, from, t_);
+    if (stopped_) return;
     if (logic_.any_guard()) logic_.settle(steps(), t_, x_);
     logic_.begin_instant(t_);
-    if (logic_.fired().empty()) return;
-    steps().dense_output();  // computed while the state and f are those of the step, for `at`
-    logic_.arrive(steps(), t_, x_, nullptr);
-    fire(observer);
+    if (!logic_.fired().empty()) {
+      steps().dense_output();  // computed while the state and f are those of the step, for `at`
+      logic_.arrive(steps(), t_, x_, nullptr);
+      fire(observer);
+    }
+    end_instant(observer);
+  }
+
+  // The events of the present instant, if any, have acted.
+  template <class Observer>
+  void end_instant(Observer& observer) {
+    if constexpr (requires { observer.on_instant(*this); }) {
+      if (!stopped_) observer.on_instant(*this);
+    }
   }
 
   // Whether a crossing is an event, and not only a guard that leaves the zero at which it began.
@@ -445,6 +497,7 @@ class Driver {
       std::optional<std::size_t> stopped;
       for (const std::size_t i : logic_.fired()) {
         const EventResponse response = act(i, observer, false);
+        if (stopped_) return true;
         restarted = restarted || response.restart;
         if (!consistent_) return !end_inconsistent();
         if (response.stop && !stopped) stopped = i;
@@ -464,6 +517,7 @@ class Driver {
     before_ = x_;
     EventResponse response = at_limit ? limit_action(i) : logic_.events().fire(steps().system(), i, t_, before_, x_);
     if (!at_limit) ++steps().statistics().events;
+    if (dimension(x_) != dimension(before_)) return end_resized(i);
     if (response.restart) settle_algebraic();
     if (response.changed && !response.restart) note_shifts();
     observer.on_event(*this, EventOccurrence<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
@@ -494,6 +548,15 @@ class Driver {
     } else {
       return {};
     }
+  }
+
+  [[nodiscard]] EventResponse end_resized(std::size_t event) {
+    end(Ending::invalid_input, "its action has changed the number of components from " +
+                                   std::to_string(dimension(before_)) + " to " + std::to_string(dimension(x_)));
+    outcome_.event = events().name(event);
+    x_ = before_;
+    stopped_ = true;
+    return {};
   }
 
   void note_shifts() {
@@ -539,8 +602,9 @@ class Driver {
   std::vector<X> shifted_output_;
   Consistency consistent_;
   StepMarks<Real> marks_;
-  std::size_t restarts_ = 0;  // by events
-  bool started_ = false, ended_ = false;
+  std::size_t restarts_ = 0;                                // by events
+  bool started_ = false, ended_ = false, stopped_ = false;  // stopped_: from outside, or by a fault of an action
+  std::optional<std::string> problem_;
   bool solved_to_rounding_ = true;  // the unknowns in x_
   bool shifts_end_ = false;         // the next step begins with the whole state
   Outcome<Real> outcome_;

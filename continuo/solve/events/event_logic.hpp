@@ -585,7 +585,7 @@ class EventLogic {
     for (std::size_t k = 0; k < dimension(x); ++k)
       before.data()[k] = x.data()[k] + dt * (slope.data()[k] + later.data()[k]) / 2;
     X after = before;
-    if (!events.fire(system, i, t + dt, before, after).restart) return false;
+    if (!events.fire(system, i, t + dt, before, after).restart || dimension(after) != dimension(x)) return false;
     events.guards(system, t + dt, after, std::span<Real>(scratch_));
     const Real g = scratch_[i];
     continuo::evaluate(system, t + dt, after, slope);

@@ -84,8 +84,8 @@ concept HasEnclosures =
       s.value_enclosure(i, a);
     };
 template <class S, class X>
-concept HasScheduleProblem = requires(const S& s, const Scalar<X>& to) {
-  { s.schedule_problem(to) } -> std::convertible_to<std::string>;
+concept HasProblem = requires(const S& s, const Scalar<X>& t, const X& x) {
+  { s.problem(t, t, x) } -> std::convertible_to<std::string>;
 };
 
 }  // namespace continuo::detail

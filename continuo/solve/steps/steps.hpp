@@ -131,10 +131,22 @@ class Steps {
   // From here on x_begin_ is the start of the step; after a failure only the start is valid.
   [[nodiscard]] bool fail(Ending ending, Real error, std::string component, std::string hint, Outcome<Real>& outcome) {
     outcome = {ending, begin_, h_, error, std::move(component), {}, {}, std::move(hint)};
+    if (ending != Ending::interrupted) name_wrong_size(outcome);
     end_ = begin_;
     x_end_ = x_begin_;
     jumped_ = true;
     return false;
+  }
+
+  // A result of another size counts as not finite (see `evaluate`): here is the reason.
+  void name_wrong_size(Outcome<Real>& outcome) {
+    std::string why = problem_of_result(system_, begin_, x_begin_);
+    if (why.empty()) why = problem_of_result(system_, Real(begin_ + h_), x_begin_);
+    if (why.empty()) return;
+    outcome = {};
+    outcome.ending = Ending::invalid_input;
+    outcome.t = begin_;
+    outcome.hint = std::move(why);
   }
 
   // A step whose equations were not solved.
