@@ -1,0 +1,17 @@
+// The headers of the programs in mistakes.cpp, precompiled once for all of them.
+#pragma once
+#include <array>
+#include <complex>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <boost/multiprecision/cpp_dec_float.hpp>
+
+#include <continuo/methods/collocation/radau.hpp>
+#include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/symplectic/velocity_verlet.hpp>
+#include <continuo/solve/automatic.hpp>
+#include <continuo/solve/solve.hpp>
+#include <continuo/system/second_order.hpp>
