@@ -28,6 +28,8 @@
 #include <continuo/methods/explicit_rk/tsitouras5.hpp>
 #include <continuo/methods/explicit_rk/verner7.hpp>
 #include <continuo/methods/explicit_rk/verner9.hpp>
+#include <continuo/methods/extrapolation/odex.hpp>
+#include <continuo/methods/extrapolation/seulex.hpp>
 #include <continuo/methods/multistep/adams.hpp>
 #include <continuo/methods/multistep/bdf.hpp>
 #include <continuo/methods/multistep/bdf2.hpp>
@@ -58,10 +60,10 @@ using AccelerationMethods = std::tuple<McLachlanAtela4, Yoshida6, KahanLi8, Dorm
 using StructuralMethods = std::tuple<Newmark, GeneralizedAlpha>;
 /// For stiff systems; all but Rkc2 are implicit and solve algebraic equations.
 using StiffMethods = std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5, Rkc2,
-                                Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf>;
+                                Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf, Seulex>;
 /// All methods, in the order of the catalogue.
 using AllMethods = decltype(std::tuple_cat(ExplicitMethods{}, AccelerationMethods{}, StructuralMethods{},
-                                           std::tuple<Adams>{}, StiffMethods{}, AutomaticMethods{}));
+                                           std::tuple<Adams, Odex>{}, StiffMethods{}, AutomaticMethods{}));
 
 /// Calls visit.template operator()<M>() for every method M of the list.
 template <class Methods = AllMethods, class Visit>

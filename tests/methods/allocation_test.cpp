@@ -92,6 +92,7 @@ TEST(Allocation, NoStepOfAccelerationsAllocates) {
     EXPECT_EQ((allocations_in_steps<M>(std::vector<double>{1, 2, 3, 4}, planar())), 0U) << M::name;
   };
   expect_none(Adams{});
+  expect_none(Odex{});
   expect_none(DormandPrinceNystrom6{});
   expect_none(DormandPrinceNystrom8{});
   expect_none(McLachlanAtela4{});
@@ -134,6 +135,7 @@ TEST(Allocation, NoImplicitStepAllocatesAfterTheFirst) {
   expect_none(TrBdf2{});
   expect_none(KenCarp4{});
   expect_none(Kvaerno5{});
+  expect_none(Seulex{});
 }
 
 TEST(Allocation, NoStructuralStepAllocatesAfterTheFirst) {

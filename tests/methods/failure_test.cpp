@@ -102,7 +102,7 @@ constexpr auto for_any_system(std::tuple<M...>) {
 }
 using Solving =
     decltype(std::tuple_cat(std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5,
-                                       Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf, BdfKrylov>{},
+                                       Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau, Bdf, BdfKrylov, Seulex>{},
                             for_any_system(AutomaticMethods{})));
 struct NameOfMethod {
   template <class M>

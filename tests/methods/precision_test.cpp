@@ -126,6 +126,8 @@ TEST(Precision, ToleranceBelowThoseOfADoubleIsMet) {
   EXPECT_LT((error_of_run<DormandPrinceNystrom12, Quad>(Quad("1e-28"))), 30);
   EXPECT_LT((error_of_run<Radau, Quad>(Quad("1e-26"))), 30);
   EXPECT_LT((error_of_run<Adams, Quad>(Quad("1e-26"))), 30);
+  EXPECT_LT((error_of_run<Odex, Quad>(Quad("1e-26"))), 30);
+  EXPECT_LT((error_of_run<Seulex, Quad>(Quad("1e-20"))), 30);
 }
 
 // The orders of Adams' methods cannot be followed in one step, which needs others before it: tests/methods/

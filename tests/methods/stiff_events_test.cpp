@@ -8,6 +8,7 @@
 #include <continuo/methods/collocation/radau.hpp>
 #include <continuo/methods/dirk/kencarp4.hpp>
 #include <continuo/methods/dirk/kvaerno5.hpp>
+#include <continuo/methods/extrapolation/seulex.hpp>
 #include <continuo/methods/multistep/bdf.hpp>
 #include <continuo/methods/rosenbrock/rodas4.hpp>
 #include <continuo/methods/rosenbrock/rodas5p.hpp>
@@ -18,7 +19,7 @@ namespace {
 
 template <class M>
 class StiffEvents : public ::testing::Test {};
-using Methods = ::testing::Types<Rodas4, Rodas5P, Radau5, Radau, Bdf, Kvaerno5, KenCarp4>;
+using Methods = ::testing::Types<Rodas4, Rodas5P, Radau5, Radau, Bdf, Kvaerno5, KenCarp4, Seulex>;
 TYPED_TEST_SUITE(StiffEvents, Methods);
 
 // Until the first event C grows like t, near the second A falls like 1/t: a relative error of theirs is one of t, to a

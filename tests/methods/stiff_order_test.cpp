@@ -328,7 +328,7 @@ TEST(StiffOrder, IsTheDocumentedOneForEveryMethod) {
     GTEST_SKIP() << "long double is double here: no room before rounding";
   const auto rows = documented();
   using Measured = std::tuple<ImplicitEuler, Trapezoidal, ImplicitMidpoint, Bdf2, TrBdf2, KenCarp4, Kvaerno5, Rkc2,
-                              Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau9, Radau13>;
+                              Rosenbrock23, Rodas4, Rodas5P, Gauss4, Radau5, Radau9, Radau13, Odex, Seulex>;
   for_each_method<Measured>([&]<class M>() { expect_as_documented<M>(rows, M::name); });
   for (std::size_t k = 1; k <= Bdf::greatest_order; ++k) expect_as_documented<Ndf>(rows, "ndf" + std::to_string(k), k);
   for (std::size_t k = 1; k <= Adams::greatest_order; ++k) {

@@ -20,6 +20,7 @@
 #include <continuo/methods/dirk/kencarp4.hpp>
 #include <continuo/methods/dirk/kvaerno5.hpp>
 #include <continuo/methods/dirk/tr_bdf2.hpp>
+#include <continuo/methods/extrapolation/seulex.hpp>
 #include <continuo/methods/multistep/bdf.hpp>
 #include <continuo/methods/rosenbrock/rodas4.hpp>
 #include <continuo/methods/rosenbrock/rodas5p.hpp>
@@ -109,6 +110,8 @@ using DiagonalMethods = ::testing::Types<ImplicitEuler, TrBdf2, KenCarp4, Kvaern
 INSTANTIATE_TYPED_TEST_SUITE_P(DiagonallyImplicit, StiffTolerance, DiagonalMethods, NameOfStiffMethod);
 using MultistepMethods = ::testing::Types<Bdf>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Multistep, StiffTolerance, MultistepMethods, NameOfStiffMethod);
+using ExtrapolationMethods = ::testing::Types<Seulex>;
+INSTANTIATE_TYPED_TEST_SUITE_P(Extrapolation, StiffTolerance, ExtrapolationMethods, NameOfStiffMethod);
 using RosenbrockMethods = ::testing::Types<Rosenbrock23, Rodas4, Rodas5P>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Rosenbrock, StiffTolerance, RosenbrockMethods, NameOfStiffMethod);
 

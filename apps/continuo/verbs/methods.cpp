@@ -46,6 +46,8 @@ constexpr std::array citations{
     Citation{"newmark", "Newmark, J. Eng. Mech. Div. ASCE 85 (1959), average acceleration"},
     Citation{"generalized_alpha", "Chung, Hulbert, J. Appl. Mech. 60 (1993), spectral radius 0.8"},
     Citation{"adams", "Shampine, Gordon, Computer Solution of ODEs (1975), orders 1 to 12; for costly equations"},
+    Citation{"odex",
+             "Bulirsch, Stoer, Numer. Math. 8 (1966); Hairer, Norsett, Wanner, Solving ODEs I, II.9, orders 4 to 18"},
     Citation{"gauss4", "Hairer, Wanner, Solving ODEs II, IV.5; symplectic"},
     Citation{"radau5", "Hairer, Wanner, Solving ODEs II, IV.8"},
     Citation{"radau", "Hairer, Wanner, J. Comput. Appl. Math. 111 (1999), orders 5, 9, 13; stiff and strict"},
@@ -67,6 +69,7 @@ constexpr std::array citations{
     Citation{"rodas4", "Hairer, Wanner, Solving ODEs II, IV.7"},
     Citation{"rodas5p", "Steinebach, BIT 63 (2023); the first choice for stiff systems"},
     Citation{"bdf", "Shampine, Reichelt, SIAM J. Sci. Comput. 18 (1997), NDF of orders 1 to 5"},
+    Citation{"seulex", "Deuflhard, SIAM Review 27 (1985); Hairer, Wanner, Solving ODEs II, IV.9, orders 2 to 10"},
     Citation{"verner9", "Verner, Numer. Algorithms 53 (2010), most efficient 9(8), https://www.sfu.ca/~jverner/"},
 };
 

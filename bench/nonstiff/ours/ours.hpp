@@ -15,6 +15,7 @@
 #include <continuo/methods/explicit_rk/tsitouras5.hpp>
 #include <continuo/methods/explicit_rk/verner7.hpp>
 #include <continuo/methods/explicit_rk/verner9.hpp>
+#include <continuo/methods/extrapolation/odex.hpp>
 #include <continuo/methods/multistep/adams.hpp>
 #include <continuo/methods/nystrom/dormand_prince_nystrom12.hpp>
 #include <continuo/methods/nystrom/dormand_prince_nystrom6.hpp>
@@ -89,7 +90,7 @@ void add_fixed(std::vector<Solver>& solvers) {
 template <class Problem>
 std::vector<Solver> our_solvers() {
   std::vector<Solver> solvers{our_adaptive_solver<Problem>(default_choice)};
-  add_adaptive<Problem, DormandPrince5, Tsitouras5, Dop853, Verner7, Verner9, Adams>(solvers);
+  add_adaptive<Problem, DormandPrince5, Tsitouras5, Dop853, Verner7, Verner9, Adams, Odex>(solvers);
   if constexpr (SecondOrder<Problem>) {
     add_adaptive<Problem, DormandPrinceNystrom6, DormandPrinceNystrom8, DormandPrinceNystrom12>(solvers);
     add_fixed<Problem, McLachlanAtela4, Yoshida6, KahanLi8>(solvers);

@@ -16,6 +16,7 @@
 #include <continuo/methods/dirk/kencarp4.hpp>
 #include <continuo/methods/dirk/kvaerno5.hpp>
 #include <continuo/methods/dirk/tr_bdf2.hpp>
+#include <continuo/methods/extrapolation/seulex.hpp>
 #include <continuo/methods/multistep/bdf.hpp>
 #include <continuo/methods/rosenbrock/rodas4.hpp>
 #include <continuo/methods/rosenbrock/rodas5p.hpp>
@@ -53,8 +54,8 @@ std::vector<Solver> our_stiff_solvers_by() {
 }
 template <class Problem, class System = Problem>
 std::vector<Solver> all_our_stiff_solvers() {
-  std::vector<Solver> solvers = our_stiff_solvers_by<Problem, System, Rodas5P, Rodas4, Radau, Radau5, Bdf, Kvaerno5,
-                                                     KenCarp4, TrBdf2, Rosenbrock23>();
+  std::vector<Solver> solvers = our_stiff_solvers_by<Problem, System, Rodas5P, Rodas4, Radau, Radau5, Bdf, Seulex,
+                                                     Kvaerno5, KenCarp4, TrBdf2, Rosenbrock23>();
   solvers.insert(solvers.begin(), our_stiff_solver<Problem, System>(default_choice));
   return solvers;
 }

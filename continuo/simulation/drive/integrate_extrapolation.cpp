@@ -1,0 +1,12 @@
+// continuo/simulation/drive/integrate_extrapolation.cpp
+// Instantiates the integration of models for the extrapolation methods.
+#include <continuo/methods/extrapolation/odex.hpp>
+#include <continuo/methods/extrapolation/seulex.hpp>
+#include <continuo/simulation/drive/model_method_body.hpp>
+
+namespace continuo::model {
+
+template ModelMethod model_method<Odex>();
+template ModelMethod model_method<Seulex>();
+
+}  // namespace continuo::model
