@@ -84,16 +84,21 @@ struct Save {
   /// Every accepted step, given times, a regular grid, every step with its polynomial, or the last state alone.
   enum class Kind { steps, times, grid, dense, end };
   Kind kind = Kind::steps;
-  std::vector<Real> times{};            // Kind::times, in the direction of time, within the run
-  Real spacing{};                       // Kind::grid: from, from + spacing, ...
-  Callback<Real, const X&> callback{};  // gets every saved state; with it no states are stored
+  using Watcher = Callback<Real, const X&>;
+  std::vector<Real> times{};  // Kind::times, in the direction of time, within the run
+  Real spacing{};             // Kind::grid: from, from + spacing, ...
+  Watcher callback{};         // gets every saved state; with it no states are stored
 
   /// Keeps the state after every accepted step.
-  [[nodiscard]] static Save every_step() { return {}; }
+  [[nodiscard]] static Save every_step(Watcher callback = {}) { return {.callback = std::move(callback)}; }
   /// Keeps the states at these times, in the direction of time.
-  [[nodiscard]] static Save at(std::vector<Real> times) { return {.kind = Kind::times, .times = std::move(times)}; }
+  [[nodiscard]] static Save at(std::vector<Real> times, Watcher callback = {}) {
+    return {.kind = Kind::times, .times = std::move(times), .callback = std::move(callback)};
+  }
   /// Keeps the states at from, from + spacing, and so on.
-  [[nodiscard]] static Save every(Real spacing) { return {.kind = Kind::grid, .spacing = spacing}; }
+  [[nodiscard]] static Save every(Real spacing, Watcher callback = {}) {
+    return {.kind = Kind::grid, .spacing = spacing, .callback = std::move(callback)};
+  }
   /// Keeps every step with its polynomial, so that the solution can be evaluated anywhere. Costs the memory of all
   /// polynomials.
   [[nodiscard]] static Save dense() { return {.kind = Kind::dense}; }
