@@ -38,6 +38,7 @@ class EventLogic {
         marks_(events_.size()),
         jumps_(events_.size()),
         held_(events_.size()),
+        turned_back_(events_.size()),
         forward_(forward),
         longest_(longest),
         moved_(x),
@@ -227,6 +228,7 @@ class EventLogic {
   void begin_round() {
     next_.clear();
     std::ranges::fill(marks_, char{0});
+    std::ranges::fill(turned_back_, char{0});
     for (const std::size_t i : fired_) marks_[i] = pending;
     jumped_ = restarted_ = false;
   }
@@ -245,6 +247,11 @@ class EventLogic {
       if (k == i && renews_guard(i)) continue;
       if (!std::exchange(rounded, true)) find_rounding(steps, t, x);
       jump(k);
+    }
+    // Another event of the round may carry the guard across once more.
+    if (response.restart && fired_.size() > 1 && watched(i) && watch_.states()[i].active && !renews_guard(i)) {
+      if (!rounded) find_rounding(steps, t, x);
+      turned_back_[i] = is_still_zero(i) && way_from_zero(steps, i, t, x).side == -watch_.states()[i].side;
     }
   }
   /// Ends a round, in which every event has acted. Guards at zero get the side to which the motion carries them;
@@ -327,6 +334,23 @@ class EventLogic {
     largest_changes(steps, t, x, many, wide_);
     for (std::size_t i = 0; i < events_.size(); ++i)
       if (is_near(i)) rounding_[i] = min(rounding_[i], wide_[i] / (many / (2 * few)));
+  }
+  /// The change of guard i by the rounding error that a step leaves in the state, which has the size of the change over
+  /// the step and not that of the state: where bodies meet in the origin, all positions are near zero.
+  [[nodiscard]] Real change_by_rounding_of_step(StepsOf& steps, std::size_t i, Real t, const X& x) {
+    using std::abs, std::max;
+    const Real part = 16 * std::numeric_limits<Real>::epsilon() * abs(steps.size());
+    first_ = steps.slope(t, x);
+    Real change(0);
+    for (int pattern = 0; pattern < 2; ++pattern) {
+      for (std::size_t k = 0; k < dimension(x); ++k) {
+        const Real moved = part * first_.data()[k];
+        moved_.data()[k] = x.data()[k] + (pattern == 0 || k % 2 == 0 ? moved : -moved);
+      }
+      evaluate(steps, t, moved_, scratch_);
+      change = max(change, abs(scratch_[i] - g_[i]));
+    }
+    return change;
   }
   void changes_by_tolerance(StepsOf& steps, Real t, const X& x, const Tolerance<Real>& tolerance, Real times,
                             std::vector<Real>& changes) {
@@ -474,7 +498,7 @@ class EventLogic {
     using std::abs;
     GuardState<Real>& state = watch_.states()[i];
     if (!state.active || state.side == 0) return;
-    const bool zero = is_still_zero(i);
+    bool zero = is_still_zero(i);
     if (!zero && sign_of(g_[i]) == state.side) {
       if (state.at_zero && !(Real(state.side) * g_[i] <= state.band)) state.at_zero = false;
       return;
@@ -482,6 +506,10 @@ class EventLogic {
     int side = !zero ? sign_of(g_[i]) : state.at_zero ? state.side : way_from_zero(steps, i, t, x).side;
     if (side == 0 && is_condition(i)) side = sign_a_little_later(steps, i, t, x);
     if (side == 0 || side == state.side) return;
+    if (!zero && !renews_guard(i) && abs(g_[i]) <= change_by_rounding_of_step(steps, i, t, x)) {
+      zero = true;
+      slack_[i] = std::max(slack_[i], rounding_[i] + abs(g_[i]));
+    }
     state = {.side = side, .at_zero = zero, .active = true, .band = inaccuracy(i)};
     if (watches(events_.direction(i), side)) add(fired_, i);
   }
@@ -546,6 +574,10 @@ class EventLogic {
       state.side = -state.side;
       state.band = abs(g_[i]) + rounding_[i];
       if (way.side != 0 && watches(events_.direction(i), state.side)) add(next_, i);
+    } else if (turned_back_[i]) {
+      // The event turned the motion back, and a later event of the round has carried it across again: of three balls
+      // that meet in one point, the first two collide twice.
+      add(next_, i);
     } else if (way.order > 1 || !way.surely) {
       held_[i] = 1;
       add(next_, i);
@@ -599,10 +631,11 @@ class EventLogic {
   EventLocator<Real> watch_;
   AccumulationWatch<Real> accumulation_;
   std::vector<Real> g_, rounding_, wide_, scratch_;
-  std::vector<Real> slack_;  // of the last instant that a step was taken to
-  std::vector<char> marks_;  // of the present round
-  std::vector<char> jumps_;  // of the guards of the last crossing: g jumps across zero
-  std::vector<char> held_;   // the event fires because the motion would leave zero at once by its far side
+  std::vector<Real> slack_;        // of the last instant that a step was taken to
+  std::vector<char> marks_;        // of the present round
+  std::vector<char> jumps_;        // of the guards of the last crossing: g jumps across zero
+  std::vector<char> held_;         // the event fires because the motion would leave zero at once by its far side
+  std::vector<char> turned_back_;  // of the present round: the guard was turned back by its own event
   std::vector<std::size_t> fired_, next_;
   std::optional<Real> last_event_, scheduled_at_;
   Real forward_, longest_, size_{};
