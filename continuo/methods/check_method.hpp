@@ -21,7 +21,7 @@ namespace detail {
 // member of this name too, whatever its type, its arguments and its access.
 struct NamesOfMethods {
   int unsupported_reason, error_square, implicit, set_tolerance, status, costs, automatic, error_order_of,
-      starting_order, order_of_fixed_steps, next_factor, rejected, retaken;
+      starting_order, order_of_fixed_steps, next_factor, rejected, retaken, stability_limits;
 };
 template <class M>
 struct WithNamesOfMethods : M, NamesOfMethods {};
@@ -268,6 +268,10 @@ consteval void check_optional_members() {
   static_assert(keeps_rejected,
                 "the member `rejected` of the method would be ignored: it must be public: static void "
                 "rejected(Workspace<X>& work, Real h_next)");
+  constexpr bool keeps_stability_limits = HasStabilityLimits<M, Work> || requires { &With::stability_limits; };
+  static_assert(keeps_stability_limits,
+                "the member `stability_limits` of the method would be ignored: it must be public: static bool "
+                "stability_limits(const Workspace<X>& work)");
   constexpr bool keeps_retaken = HasRetaken<M, Work> || requires { &With::retaken; };
   static_assert(keeps_retaken,
                 "the member `retaken` of the method would be ignored: it must be public: static void "

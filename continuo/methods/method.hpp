@@ -205,6 +205,10 @@ concept HasNextFactor = requires(Work& work, const Scalar<X>& factor, const Scal
 template <class M, class X, class Work>
 concept HasRejected = requires(Work& work, const Scalar<X>& h_next) { M::rejected(work, h_next); };
 template <class M, class Work>
+concept HasStabilityLimits = requires(const Work& work) {
+  { M::stability_limits(work) } -> std::convertible_to<bool>;
+};
+template <class M, class Work>
 concept HasRetaken = requires(Work& work) { M::retaken(work); };
 
 template <class M>
@@ -310,6 +314,8 @@ template <class M, class Work>
 ///       is the one of the controller. A method of variable order chooses its next order here; one that keeps a
 ///       factorization may return 1. A factor that is not above 0 is replaced by that of the controller
 ///   M::rejected(Workspace<X>& work, Real h_next) the last step was not accepted and will be tried again
+///   M::stability_limits(const Workspace<X>& work) -> whether stability may limit the last step; assumed of every
+///       explicit method without it
 ///   M::retaken(Workspace<X>& work)  the last step was good and is taken once more, to end at an event; where there is
 ///       none, nothing needs to be done
 template <class M, class X, class System = detail::AnySystem<X, false>>

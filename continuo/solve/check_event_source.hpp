@@ -23,6 +23,9 @@ struct NamesOfEvents {
 };
 template <class S>
 struct WithNamesOfEvents : S, NamesOfEvents {};
+/// A type with one of these members is a source of events that may lack others.
+template <class S>
+concept ResemblesEventSource = HasNameOfEvent<S> || HasDirection<S> || HasIsGuard<S>;
 template <class S>
 concept DerivableSource = std::is_class_v<S> && !std::is_final_v<S>;
 

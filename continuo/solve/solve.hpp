@@ -226,11 +226,16 @@ template <class System, class X, class M, class Events = detail::EventsOfOptions
   } else if constexpr (std::same_as<Events, detail::EventsOfOptions>) {
     Integrator<HeldSystem<System>, X, M> integrator(std::move(system), std::move(x0), interval, method,
                                                     std::move(options));
-    return run(integrator);
+    return continuo::run(integrator);
+  } else if constexpr (!detail::ResemblesEventSource<Events>) {
+    static_assert(detail::ResemblesEventSource<Events>,
+                  "the last argument of solve is no source of events for this system: see the concept EventSource; a "
+                  "list of events belongs to the options, {.events = {...}}");
+    return {};
   } else if constexpr (check_event_source<Events, HeldSystem<System>, X>()) {
     Integrator<HeldSystem<System>, X, M, Events> integrator(std::move(system), std::move(x0), interval, method,
                                                             std::move(options), std::move(events));
-    return run(integrator);
+    return continuo::run(integrator);
   } else {
     return {};
   }

@@ -88,6 +88,7 @@ class StepControl final : public Steps<System, X> {
     began_anew_ = jumped_;
     if constexpr (detail::HasSetTolerance<M, X, Work>) M::set_tolerance(work_, tolerance_of_step(h, options));
     statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
+    detail::keep_size(x_begin_, x_end_);
     if constexpr (detail::HasCosts<M, Work>) {
       const EquationCosts costs = M::costs(work_);
       statistics_.jacobians = costs.jacobians;
@@ -214,7 +215,7 @@ class StepControl final : public Steps<System, X> {
 
   // A stabilised method adds stages where the stability of a step needs them.
   [[nodiscard]] bool stability_may_limit() const {
-    if constexpr (requires { M::stability_limits(work_); }) {
+    if constexpr (detail::HasStabilityLimits<M, Work>) {
       return M::stability_limits(work_);
     } else {
       return true;
