@@ -34,11 +34,14 @@ struct Switching {
   static_assert(detail::estimates_error<NonStiff>() && detail::estimates_error<Stiff>(),
                 "the methods of a pair have error estimates: their error_order is above 0");
 
-  /// The stages of both methods, and what is known of the stiffness.
+  /// The workspaces of the two methods.
+  /// @{
   template <State X>
   using NonStiffWork = typename NonStiff::template Workspace<X>;
   template <State X>
   using StiffWork = typename Stiff::template Workspace<X>;
+  /// @}
+  /// The stages of both methods, and what is known of the stiffness.
   template <State X>
   struct Workspace {
     static_assert(check_method<NonStiff, X>() && check_method<Stiff, X>());

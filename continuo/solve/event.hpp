@@ -53,14 +53,18 @@ template <State X>
 class Guard {
  public:
   Guard() = default;
+  /// No guard.
   explicit(false) Guard(detail::NoFunction) {}
+  /// Any function of (t, x) that returns a real number. A bool or a whole number is refused by the compiler.
   template <class G>
     requires(!std::same_as<std::remove_cvref_t<G>, Guard>)
   explicit(false) Guard(G&& g) {
     if constexpr (check<std::remove_cvref_t<G>>()) g_ = std::forward<G>(g);
   }
 
+  /// Whether there is a guard.
   explicit operator bool() const { return static_cast<bool>(g_); }
+  /// g(t, x).
   Scalar<X> operator()(const Scalar<X>& t, const X& x) const { return g_(t, x); }
 
  private:
@@ -92,14 +96,18 @@ template <State X>
 class Action {
  public:
   Action() = default;
+  /// No action.
   explicit(false) Action(detail::NoFunction) {}
+  /// Any function of EventAction<X>&. It returns nothing; what returns a bool is refused by the compiler.
   template <class A>
     requires(!std::same_as<std::remove_cvref_t<A>, Action>)
   explicit(false) Action(A&& action) {
     if constexpr (check<std::remove_cvref_t<A>>()) action_ = std::forward<A>(action);
   }
 
+  /// Whether there is an action.
   explicit operator bool() const { return static_cast<bool>(action_); }
+  /// Acts.
   void operator()(EventAction<X>& now) const { action_(now); }
 
  private:
@@ -152,6 +160,7 @@ struct EventOf {
     return {name, guard, direction, action, times, period, from, stop_after, std::move(limit)};
   }
 
+  /// The event for states of the type X.
   template <State X>
   explicit(false) operator Event<X>() const {
     Event<X> event{.name = name, .guard = guard, .direction = direction, .action = action};
@@ -164,17 +173,19 @@ struct EventOf {
   }
 };
 
-/// Events where g falls through zero, rises through it, or does either.
+/// An event where the guard falls through zero, for the state of the run.
 template <class G, class A = detail::NoFunction>
   requires(!State<G>)
 [[nodiscard]] EventOf<G, A> falls(std::string name, G guard, A action = {}) {
   return {std::move(name), std::move(guard), Direction::falls, std::move(action)};
 }
+/// An event where the guard rises through zero, for the state of the run.
 template <class G, class A = detail::NoFunction>
   requires(!State<G>)
 [[nodiscard]] EventOf<G, A> rises(std::string name, G guard, A action = {}) {
   return {std::move(name), std::move(guard), Direction::rises, std::move(action)};
 }
+/// An event where the guard passes through zero in either direction, for the state of the run.
 template <class G, class A = detail::NoFunction>
   requires(!State<G>)
 [[nodiscard]] EventOf<G, A> crosses(std::string name, G guard, A action = {}) {
@@ -198,6 +209,7 @@ template <class Real, class From, class A>
 }
 
 // The same for states of a named type X.
+/// An event where the guard falls through zero, for states of the type X.
 template <State X>
 [[nodiscard]] Event<X> falls(std::string name, Guard<X> guard, Action<X> action = {}) {
   return {
@@ -219,6 +231,7 @@ template <State X>
 [[nodiscard]] Event<X> at(std::string name, std::vector<Scalar<X>> times, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .times = std::move(times)};
 }
+/// An event at from, from + period, from + 2 period, ..., for states of the type X.
 template <State X>
 [[nodiscard]] Event<X> every(std::string name, Scalar<X> period, Scalar<X> from, Action<X> action) {
   return {.name = std::move(name), .action = std::move(action), .period = period, .from = from};

@@ -60,6 +60,8 @@ class Integrator : public Driver<System, X, Events> {
   }
 };
 
+/// std::ref(f): the run refers to f, which must outlive it.
+/// @{
 template <class System, State X, class M>
 Integrator(std::reference_wrapper<System>, X, Interval<std::type_identity_t<Scalar<X>>>, M)
     -> Integrator<SystemReference<System>, X, M>;
@@ -69,5 +71,6 @@ Integrator(std::reference_wrapper<System>, X, Interval<std::type_identity_t<Scal
 template <class System, State X, class M, class Events>
 Integrator(std::reference_wrapper<System>, X, Interval<std::type_identity_t<Scalar<X>>>, M,
            std::type_identity_t<Options<X>>, Events) -> Integrator<SystemReference<System>, X, M, Events>;
+/// @}
 
 }  // namespace continuo

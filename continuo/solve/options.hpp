@@ -28,7 +28,9 @@ template <class... Arguments>
 class Callback {
  public:
   Callback() = default;
+  /// No function.
   explicit(false) Callback(std::nullptr_t) {}
+  /// Any function of these arguments that returns nothing or a bool; anything else is refused by the compiler.
   template <class F>
     requires(!std::same_as<std::remove_cvref_t<F>, Callback>)
   explicit(false) Callback(F&& f) {
@@ -44,6 +46,7 @@ class Callback {
     }
   }
 
+  /// Whether there is a function.
   explicit operator bool() const { return static_cast<bool>(f_); }
   /// Whether the run is to continue.
   bool operator()(Arguments... arguments) const { return f_(arguments...); }
@@ -113,6 +116,7 @@ struct NoCallback {};
 /// The states to keep, where no type of state is named: it becomes a `Save` for the state of the run.
 template <class Real = double, class Call = detail::NoCallback>
 struct SaveOf {
+  /// As Save::Kind.
   enum class Kind { steps, times, grid, dense, end };
   Kind kind;
   std::vector<Real> times{};
@@ -125,6 +129,7 @@ struct SaveOf {
     return {static_cast<typename SaveOf<Real, F>::Kind>(kind), times, spacing, std::move(f)};
   }
 
+  /// The same for states of the type X.
   template <State X>
   explicit(false) operator Save<X>() const {
     Save<X> save{.kind = static_cast<typename Save<X>::Kind>(kind), .spacing = static_cast<Scalar<X>>(spacing)};

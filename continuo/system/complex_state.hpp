@@ -1,3 +1,4 @@
+// continuo/system/complex_state.hpp
 // A state of complex components. To the methods it is its real and imaginary parts, one after the other, so that
 // errors, tolerances and Jacobians are those of the parts:
 //
@@ -12,6 +13,7 @@
 
 namespace continuo {
 
+/// A container of std::complex as a state of twice as many real components.
 template <class Container>
 struct ComplexState {
   using Number = typename Container::value_type;
@@ -21,12 +23,19 @@ struct ComplexState {
   Container z;
 
   // An array of std::complex may be read as one of its parts: [complex.numbers.general] of the C++ standard.
+  /// The parts, real and imaginary in turn.
+  /// @{
   [[nodiscard]] value_type* data() { return reinterpret_cast<value_type*>(z.data()); }
   [[nodiscard]] const value_type* data() const { return reinterpret_cast<const value_type*>(z.data()); }
+  /// @}
+  /// The number of parts: twice that of the components.
   [[nodiscard]] std::size_t size() const { return 2 * static_cast<std::size_t>(z.size()); }
 
+  /// Component i.
+  /// @{
   [[nodiscard]] Number& operator[](std::size_t i) { return z.data()[i]; }
   [[nodiscard]] const Number& operator[](std::size_t i) const { return z.data()[i]; }
+  /// @}
 };
 
 }  // namespace continuo

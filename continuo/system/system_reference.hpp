@@ -27,16 +27,21 @@ struct AutonomousOf<F> {
 template <class F>
 class SystemReference : public detail::AutonomousOf<F> {
  public:
+  /// Refers to the system of std::ref.
   explicit(false) SystemReference(std::reference_wrapper<F> f) : detail::AutonomousOf<F>(f.get()), f_(&f.get()) {}
 
+  /// The system itself.
   [[nodiscard]] F& get() const { return *f_; }
 
+  /// Evaluates the right-hand side of the system.
   template <class... Arguments>
     requires std::invocable<F&, Arguments...>
   decltype(auto) operator()(Arguments&&... arguments) const {
     return std::invoke(*f_, std::forward<Arguments>(arguments)...);
   }
 
+  /// The member of this name of the system; it is there exactly if the system has it.
+  /// @{
   template <class... Arguments>
     requires requires(F& f, Arguments&&... arguments) { f.component_name(std::forward<Arguments>(arguments)...); }
   decltype(auto) component_name(Arguments&&... arguments) const {
@@ -139,6 +144,7 @@ class SystemReference : public detail::AutonomousOf<F> {
   decltype(auto) nonstiff(Arguments&&... arguments) const {
     return f_->nonstiff(std::forward<Arguments>(arguments)...);
   }
+  /// @}
 
  private:
   F* f_;

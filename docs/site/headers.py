@@ -197,5 +197,6 @@ def staged(source, path):
         if code.strip():
             doc = []
         indent = len(code) - len(code.lstrip())
+        code = code.replace("explicit(false) ", "")  # which Doxygen takes for a part of the name
         result.append(code[:indent] + prefix + code[indent:] + (comment or ""))
     return "\n".join(result)

@@ -122,6 +122,9 @@ def public_names(cindex):
                 continue
             if child.access_specifier in (cindex.AccessSpecifier.PRIVATE, cindex.AccessSpecifier.PROTECTED):
                 continue
+            # Doxygen and libclang name a conversion to a template differently.
+            if child.spelling.startswith("<deduction guide") or "type-parameter" in child.spelling:
+                continue
             if is_public and child.kind in kinds and child.spelling and not child.is_anonymous() \
                     and (child.is_definition() or child.kind not in scopes):
                 yield found(child, scope)
