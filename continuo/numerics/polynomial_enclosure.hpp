@@ -25,7 +25,8 @@
 
 namespace continuo {
 
-inline constexpr std::size_t greatest_enclosed_degree = 15;
+/// That of the dense output of odex, the greatest of all methods.
+inline constexpr std::size_t greatest_enclosed_degree = 17;
 
 namespace enclosing {
 
@@ -75,6 +76,7 @@ template <class Real>
 [[nodiscard]] EnclosureWithSlope<Real> enclose_polynomial(std::span<const Real> c, Real from, Real to) {
   if (c.size() <= 4) return enclosing::polynomial_over<4>(c, from, to);
   if (c.size() <= 8) return enclosing::polynomial_over<8>(c, from, to);
+  if (c.size() <= 16) return enclosing::polynomial_over<16>(c, from, to);
   return enclosing::polynomial_over<greatest_enclosed_degree + 1>(c, from, to);
 }
 
