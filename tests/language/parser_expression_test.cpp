@@ -74,6 +74,9 @@ TEST(ParsedExpressions, NumbersAloneHaveTheUnitAtTheirEndTogether) {
   EXPECT_EQ(spelled("x < (1/2) [m]"), "x < 1/2 [m]");
   EXPECT_EQ(spelled("x + (1/2) [m]"), "x + 1/2 [m]");
   EXPECT_EQ(spelled("1/(2 [m])"), "1/(2 [m])");  // a bracket keeps it
+  EXPECT_EQ(spelled("not 3 [s]"), "not 3 [s]");  // a condition has no unit
+  EXPECT_EQ(spelled("(1/2 [m])/3"), "(1/2 [m])/3");
+  EXPECT_EQ(spelled("-(3 [m])"), "-(3 [m])");
 }
 
 TEST(ParsedExpressions, TheUnitOfNumbersAloneIsOutermost) {

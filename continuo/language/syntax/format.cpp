@@ -13,10 +13,11 @@ namespace {
 using ast::BinaryOperator;
 using ast::Expression;
 
-// Binding strengths, weakest first; an operand weaker than its place asks for is put into brackets.
+// Binding strengths, weakest first; an operand weaker than its place asks for is put into brackets. A quotient of
+// numbers with a unit, 1/2 [m], has its unit as a whole only where no further factor follows.
 constexpr int choice_strength = 0, or_strength = 1, and_strength = 2, not_strength = 3, comparison_strength = 4,
-              additive_strength = 5, multiplicative_strength = 6, negation_strength = 7, power_strength = 8,
-              quantity_strength = 9, primary_strength = 10;
+              additive_strength = 5, quotient_with_unit_strength = 6, multiplicative_strength = 7,
+              negation_strength = 8, power_strength = 9, quantity_strength = 10, primary_strength = 11;
 
 struct Spelling {
   std::string_view sign;
@@ -105,8 +106,11 @@ Spelled spell_node(const ast::Text& text) {
 }
 
 Spelled spell_node(const ast::Unary& unary) {
-  if (unary.op == ast::UnaryOperator::negate)
-    return {"-" + operand(*unary.operand, negation_strength), negation_strength};
+  if (unary.op == ast::UnaryOperator::negate) {
+    // A quantity keeps its unit to itself by a bracket, -(3 [m]): -3 [m] is read as (-3) [m].
+    const bool keeps = std::holds_alternative<ast::Quantity>(unary.operand->node);
+    return {"-" + operand(*unary.operand, keeps ? primary_strength : negation_strength), negation_strength};
+  }
   return {"not " + operand(*unary.operand, not_strength), not_strength};
 }
 
@@ -143,8 +147,11 @@ Spelled spell_node(const ast::Conditional& choice) {
 Spelled spell_node(const ast::Quantity& quantity) {
   const bool plain = is_plain_number(*quantity.value);
   const Spelled value = spell(*quantity.value);
-  if (plain)
-    return {fmt::format("{} [{}]", value.text, quantity.unit.text), std::min(value.strength, quantity_strength)};
+  if (plain) {
+    const int strength = value.strength >= power_strength ? std::min(value.strength, quantity_strength)
+                                                          : std::min(value.strength, quotient_with_unit_strength);
+    return {fmt::format("{} [{}]", value.text, quantity.unit.text), strength};
+  }
   return {fmt::format("{} [{}]", operand(*quantity.value, primary_strength), quantity.unit.text), quantity_strength};
 }
 

@@ -18,7 +18,10 @@ Expression* last_quantity(Expression& expression, std::uint32_t end) {
   if (expression.span.end != end) return nullptr;
   if (auto* quantity = std::get_if<ast::Quantity>(&expression.node))
     return quantity->unit.span.end == end && is_plain_number(*quantity->value) ? &expression : nullptr;
-  if (auto* unary = std::get_if<ast::Unary>(&expression.node)) return last_quantity(*unary->operand, end);
+  if (auto* unary = std::get_if<ast::Unary>(&expression.node)) {
+    const bool is_number = unary->op == ast::UnaryOperator::negate;  // a condition, `not 3 [s]`, has no unit
+    return is_number ? last_quantity(*unary->operand, end) : nullptr;
+  }
   auto* binary = std::get_if<ast::Binary>(&expression.node);
   if (!binary || binary->op > ast::BinaryOperator::power) return nullptr;  // a comparison has no unit
   Expression* found = last_quantity(*binary->right, end);
