@@ -263,7 +263,7 @@ class Driver {
       if (!has_mass<X>(system())) return;
       solved_ = x;
       const Consistency found =
-          make_consistent(steps().system(), t, solved_, steps().tolerance(options_), SolvedTo::rounding);
+          unknowns_.solve(steps().system(), t, solved_, steps().tolerance(options_), SolvedTo::rounding);
       steps().statistics().evaluations += static_cast<std::size_t>(found.evaluations);
       if (found) x = solved_;
     }
@@ -595,6 +595,7 @@ class Driver {
   Real t_;
   X x_, before_;
   X solved_ = x_;
+  UnknownsSolver<X> unknowns_{x_};
   StepsValue<System, X> steps_;
   Logic logic_;
   std::vector<Real> guard_values_, later_values_;
