@@ -32,6 +32,7 @@ struct Interpolant {
   /// Component i of x(t + theta h).
   [[nodiscard]] Scalar<X> component(Scalar<X> theta, std::size_t i) const {
     Scalar<X> value = c[Degree].data()[i];
+#pragma GCC unroll 20
     for (int j = Degree - 1; j >= 0; --j) value = value * theta + c[static_cast<std::size_t>(j)].data()[i];
     return value;
   }
