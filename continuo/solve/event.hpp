@@ -283,8 +283,9 @@ class EventList {
   using Real = Scalar<X>;
   EventList() = default;
   /// These events, in this order.
-  explicit EventList(std::vector<Event<X>> events) : events_(std::move(events)), fired_(events_.size(), 0) {
-    for (const Event<X>& event : events_) ticks_.emplace_back(event.from, event.period);
+  explicit EventList(std::vector<Event<X>> events) : events_(std::move(events)) {
+    memory_.reserve(events_.size());
+    for (const Event<X>& event : events_) memory_.push_back({.ticks = {event.from, event.period}});
   }
 
   /// The number of events.
@@ -319,19 +320,20 @@ class EventList {
 
   /// The first scheduled time of event i after t, or at t where `inclusive`; infinity where there is none.
   [[nodiscard]] Real next_time(std::size_t i, Real t, bool inclusive) const {
-    const Event<X>& event = events_[i];
-    Real next = std::numeric_limits<Real>::infinity();
-    for (const Real& time : event.times)
-      if ((inclusive ? time >= t : time > t) && time < next) next = time;
-    if (event.period > 0 && ticks_[i].next(t, inclusive) < next) next = ticks_[i].next(t, inclusive);
-    return next;
+    if (inclusive) return first_time(i, t, inclusive);
+    const Memory& memory = memory_[i];
+    if (!(t >= memory.asked && t < memory.next)) {
+      memory.asked = t;
+      memory.next = first_time(i, t, inclusive);
+    }
+    return memory.next;
   }
   /// Why an event cannot happen as it is given, in a run over this time from x; empty where all can.
   [[nodiscard]] std::string problem(Real from, Real to, const X& x) const {
     for (std::size_t i = 0; i < events_.size(); ++i) {
       const std::string what = problem_of(events_[i], from, to, x);
       if (!what.empty()) return "the event `" + events_[i].name + "` " + what;
-      if (events_[i].period > 0 && !ticks_[i].advances(to))
+      if (events_[i].period > 0 && !memory_[i].ticks.advances(to))
         return "the period of the event `" + events_[i].name + "` is below the spacing of numbers at its times";
     }
     return {};
@@ -342,7 +344,7 @@ class EventList {
   [[nodiscard]] EventResponse fire(System&, std::size_t i, Real t, const X& before, X& x) {
     EventAction<X> now{t, before, x};
     if (events_[i].action) events_[i].action(now);
-    if (++fired_[i] == events_[i].stop_after) now.stop = true;
+    if (++memory_[i].fired == events_[i].stop_after) now.stop = true;
     return response(now);
   }
   /// Executes the action of event i at the limit of its times.
@@ -354,6 +356,18 @@ class EventList {
   }
 
  private:
+  [[nodiscard]] Real first_time(std::size_t i, const Real& t, bool inclusive) const {
+    const Event<X>& event = events_[i];
+    Real first = std::numeric_limits<Real>::infinity();
+    for (const Real& time : event.times)
+      if ((inclusive ? time >= t : time > t) && time < first) first = time;
+    if (event.period > 0) {
+      const Real tick = memory_[i].ticks.next(t, inclusive);
+      if (tick < first) first = tick;
+    }
+    return first;
+  }
+
   [[nodiscard]] static EventResponse response(const EventAction<X>& now) {
     bool changed = now.restart || dimension(now.x) != dimension(now.before);
     for (std::size_t k = 0; !changed && k < dimension(now.x); ++k) changed = now.x.data()[k] != now.before.data()[k];
@@ -382,9 +396,16 @@ class EventList {
     return {};
   }
 
+  /// What a run remembers of an event.
+  struct Memory {
+    DecimalTicks<Real> ticks;
+    std::size_t fired = 0;
+    /// No scheduled time lies between the two, and one at the second: the answer for many short steps.
+    mutable Real asked = std::numeric_limits<Real>::infinity(), next = asked;
+  };
+
   std::vector<Event<X>> events_;
-  std::vector<DecimalTicks<Real>> ticks_;  // of those with a period
-  std::vector<std::size_t> fired_;
+  std::vector<Memory> memory_;
 };
 
 }  // namespace continuo
