@@ -1,9 +1,13 @@
 // continuo/language/load.cpp
 // Reads, parses and checks a model.
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
 
 #include <fmt/format.h>
 
+#include <continuo/language/check/check.hpp>
 #include <continuo/language/load.hpp>
 #include <continuo/language/syntax/parser.hpp>
 
@@ -20,12 +24,12 @@ Loaded load(Source source, const CheckOptions& options) {
   return loaded;
 }
 
-Loaded load(const std::filesystem::path& path, const CheckOptions& options) {
+Loaded load(const std::string& path, const CheckOptions& options) {
   if (auto source = read_source(path)) return load(std::move(*source), options);
   std::error_code ignored;
   const bool there = std::filesystem::exists(path, ignored);
-  Loaded loaded{Source(path.string(), ""), std::nullopt, {}};
-  loaded.diagnostics.push_back(error("E270", {}, fmt::format("`{}` cannot be read", path.string()), {},
+  Loaded loaded{Source(path, ""), std::nullopt, {}};
+  loaded.diagnostics.push_back(error("E270", {}, fmt::format("`{}` cannot be read", path), {},
                                      there ? "is it a folder, or not yours to read?" : "there is no such file"));
   return loaded;
 }

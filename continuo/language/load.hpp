@@ -5,12 +5,11 @@
 //   if (!loaded) { std::cerr << loaded.text(); return 2; }
 //   simulate(*loaded.model);
 #pragma once
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <continuo/language/check/check.hpp>
+#include <continuo/language/check/check_options.hpp>
 #include <continuo/language/model.hpp>
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/language/text/source.hpp>
@@ -32,7 +31,7 @@ struct Loaded {
 };
 
 /// Reads, parses and checks. Files of tables and inputs are found relative to the model's folder.
-[[nodiscard]] Loaded load(const std::filesystem::path& path, const CheckOptions& options = {});
+[[nodiscard]] Loaded load(const std::string& path, const CheckOptions& options = {});
 /// The same for a text that is in memory already.
 [[nodiscard]] Loaded load(Source source, const CheckOptions& options = {});
 

@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <ranges>
+#include <iterator>
 
 #include <continuo/numerics/state.hpp>
 
 namespace continuo {
 
 /// Whether all numbers of a range are finite; of complex ones, both parts.
-template <std::ranges::input_range Values>
+template <class Values>
 [[nodiscard]] bool all_finite(const Values& values) {
-  return std::ranges::all_of(values, [](const auto& value) {
+  return std::all_of(std::begin(values), std::end(values), [](const auto& value) {
     if constexpr (requires { value.imag(); })
       return std::isfinite(value.real()) && std::isfinite(value.imag());
     else

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <continuo/simulation/experiment.hpp>
-#include <continuo/simulation/program/model_events.hpp>
 #include <continuo/solve/outcome.hpp>
 
 namespace continuo::model {

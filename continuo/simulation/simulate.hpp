@@ -14,10 +14,11 @@
 
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/simulation/experiment.hpp>
-#include <continuo/simulation/program/model_program.hpp>
 #include <continuo/simulation/run.hpp>
 
 namespace continuo::model {
+
+struct ModelProgram;  // simulation/program/model_program.hpp
 
 /// A run, or why there is none. A run that failed on the way is a run: its outcome says how it ended, and
 /// `diagnostics` holds the same as an error with its code. Warnings may stand beside a good run.

@@ -1,4 +1,5 @@
 // The outcome of a run in words.
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -13,6 +14,10 @@ std::string number(double value) {
   return text;
 }
 }  // namespace
+
+double detail::seconds_of_steady_clock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 std::string where_steps_lie(double from, double to) {
   const std::string first = number(from), last = number(to);

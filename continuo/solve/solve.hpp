@@ -5,7 +5,6 @@
 //   auto solution = solve(oscillator, std::array{1.0, 0.0}, {0, 10}, Dop853{}, {.rtol = 1e-10});
 //   if (!solution.outcome) std::puts(describe(solution.outcome).c_str());
 #pragma once
-#include <chrono>
 #include <concepts>
 #include <cstddef>
 #include <span>
@@ -148,7 +147,7 @@ class SolutionRecorder {
 template <class System, State X, class Events>
 [[nodiscard]] Solution<X> run(Driver<System, X, Events>& integrator) {
   Solution<X> solution;
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = detail::seconds_of_steady_clock();
   for (std::size_t i = 0; i < integrator.events().size(); ++i)
     solution.event_names.emplace_back(integrator.events().name(i));
   const Options<X>& options = integrator.options();
@@ -160,7 +159,7 @@ template <class System, State X, class Events>
   keeper.finish(integrator);
   solution.outcome = integrator.outcome();
   solution.statistics = integrator.statistics();
-  solution.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  solution.statistics.seconds = detail::seconds_of_steady_clock() - begin;
   return solution;
 }
 

@@ -11,18 +11,13 @@
 #include <optional>
 #include <vector>
 
+#include <continuo/language/check/check_options.hpp>
 #include <continuo/language/model.hpp>
 #include <continuo/language/syntax/ast.hpp>
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/language/text/source.hpp>
 
 namespace continuo::model {
-
-struct CheckOptions {
-  /// Parameters by name, as if the text had these values. The only way to change one that decides the size of a
-  /// family (`Parameter::structural`). Names that are no parameter are reported with E210.
-  Overrides overrides = {};
-};
 
 struct Checked {
   std::optional<Model> model;           // there iff no diagnostic is an error

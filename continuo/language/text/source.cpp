@@ -1,5 +1,6 @@
 // Lines and columns of places in a text.
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -51,7 +52,7 @@ std::string_view Source::line(int number) const {
   return line;
 }
 
-std::optional<Source> read_source(const std::filesystem::path& path) {
+std::optional<Source> read_source(const std::string& path) {
   std::error_code code;
   if (std::filesystem::is_directory(path, code)) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
@@ -60,7 +61,7 @@ std::optional<Source> read_source(const std::filesystem::path& path) {
   if (!code && size > Source::largest_size) return std::nullopt;
   std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (file.bad() || text.size() > Source::largest_size) return std::nullopt;
-  return Source(path.string(), std::move(text));
+  return Source(path, std::move(text));
 }
 
 }  // namespace continuo::model

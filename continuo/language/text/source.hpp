@@ -7,7 +7,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -64,6 +63,6 @@ class Source {
 };
 
 /// Reads a file whole; nothing where it cannot be read or is larger than `Source::largest_size`.
-[[nodiscard]] std::optional<Source> read_source(const std::filesystem::path& path);
+[[nodiscard]] std::optional<Source> read_source(const std::string& path);
 
 }  // namespace continuo::model
