@@ -21,7 +21,7 @@ namespace detail {
 // member of this name too, whatever its type, its arguments and its access.
 struct NamesOfMethods {
   int unsupported_reason, error_square, implicit, set_tolerance, status, costs, automatic, error_order_of,
-      starting_order, order_of_fixed_steps, next_factor, rejected, retaken, stability_limits;
+      starting_order, order_of_fixed_steps, next_factor, rejected, retaken, stability_limits, moved;
 };
 template <class M>
 struct WithNamesOfMethods : M, NamesOfMethods {};
@@ -78,6 +78,11 @@ template <class M, class Work>
 [[nodiscard]] consteval bool retaken_copies_work() {
   using R = decltype(M::retaken(std::declval<Work&>()));
   return requires { static_cast<R (*)(Work)>(&M::retaken); };
+}
+template <class M, class X, class Work>
+[[nodiscard]] consteval bool moved_copies_work() {
+  using R = decltype(M::moved(std::declval<Work&>(), std::declval<const X&>(), std::declval<const X&>()));
+  return requires { static_cast<R (*)(Work, const X&, const X&)>(&M::moved); };
 }
 template <class M, class X, class Work>
 [[nodiscard]] consteval bool rejected_copies_work() {
@@ -276,6 +281,10 @@ consteval void check_optional_members() {
   static_assert(keeps_retaken,
                 "the member `retaken` of the method would be ignored: it must be public: static void "
                 "retaken(Workspace<X>& work)");
+  constexpr bool keeps_moved = HasMoved<M, X, Work> || requires { &With::moved; };
+  static_assert(keeps_moved,
+                "the member `moved` of the method would be ignored: it must be public: static void "
+                "moved(Workspace<X>& work, const X& from, const X& to)");
   if constexpr (HasSetTolerance<M, X, Work>) {
     constexpr bool set_tolerance_writes = !set_tolerance_copies_work<M, X, Work>();
     static_assert(
@@ -291,6 +300,11 @@ consteval void check_optional_members() {
     constexpr bool rejected_writes = !rejected_copies_work<M, X, Work>();
     static_assert(rejected_writes,
                   "`rejected` gets the workspace by value, so that it changes nothing: declare Workspace<X>& work");
+  }
+  if constexpr (HasMoved<M, X, Work>) {
+    constexpr bool moved_writes = !moved_copies_work<M, X, Work>();
+    static_assert(moved_writes,
+                  "`moved` gets the workspace by value, so that it changes nothing: declare Workspace<X>& work");
   }
   if constexpr (HasRetaken<M, Work>) {
     constexpr bool retaken_writes = !retaken_copies_work<M, Work>();

@@ -212,6 +212,9 @@ concept HasStabilityLimits = requires(const Work& work) {
 template <class M, class Work>
 concept HasRetaken = requires(Work& work) { M::retaken(work); };
 
+template <class M, class X, class Work>
+concept HasMoved = requires(Work& work, const X& from, const X& to) { M::moved(work, from, to); };
+
 template <class M>
 [[nodiscard]] constexpr bool is_implicit() {
   if constexpr (HasImplicit<M>) {
@@ -319,6 +322,9 @@ template <class M, class Work>
 ///       explicit method without it
 ///   M::retaken(Workspace<X>& work)  the last step was good and is taken once more, to end at an event; where there is
 ///       none, nothing needs to be done
+///   M::moved(Workspace<X>& work, const X& from, const X& to)  after `accept`: the next step begins at `to` and not at
+///       `from`, where the last one ended, which is nearer than the tolerance; f is the same. A method that keeps
+///       states of before moves them by the same way, and drops f at `from`
 template <class M, class X, class System = detail::AnySystem<X, false>>
 concept Method =
     State<X> && detail::HasName<M> && detail::HasOrder<M> && detail::HasErrorOrder<M> && detail::HasDenseOrder<M> &&

@@ -178,6 +178,17 @@ struct Switching {
     }
   }
 
+  /// The end of the last step was moved. A method that has just taken over begins anew in any case.
+  template <State X>
+  static void moved(Workspace<X>& work, const X& from, const X& to) {
+    if constexpr (detail::HasMoved<Stiff, X, StiffWork<X>>) {
+      if (work.is_stiff) Stiff::moved(work.stiff, from, to);
+    }
+    if constexpr (detail::HasMoved<NonStiff, X, NonStiffWork<X>>) {
+      if (!work.is_stiff) NonStiff::moved(work.nonstiff, from, to);
+    }
+  }
+
   /// The polynomial of the last step, raised to the higher of the two degrees.
   template <class System, State X>
   [[nodiscard]] static int interpolate(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h,

@@ -175,6 +175,12 @@ struct CollocationMethod : ImplicitMethod<> {
     work.stages = work.next_stages;
   }
 
+  /// f at the start of the next step is not that of the end of this one any more.
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X&) {
+    work.has_f = false;
+  }
+
   template <State X>
   [[nodiscard]] static X derivative(const Workspace<X>& work) {
     return work.linear.has_mass() ? work.slope : work.f;

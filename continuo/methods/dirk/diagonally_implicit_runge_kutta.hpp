@@ -119,6 +119,12 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
     work.solver.accept();
     work.has_guess = true;
   }
+
+  /// f at the start of the next step is not that of the end of this one any more.
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X&) {
+    work.start_fresh = false;
+  }
   template <State X>
   [[nodiscard]] static Scalar<X> next_factor(const Workspace<X>& work, const Scalar<X>& factor, const Scalar<X>&,
                                              const X&, const X&, const Tolerance<Scalar<X>>&) {

@@ -146,6 +146,12 @@ struct ExplicitRungeKutta {
     work.end_fresh = false;
   }
 
+  /// f at the start of the next step is not that of the end of this one any more.
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X&) {
+    work.start_fresh = false;
+  }
+
   /// f at the start of the last step: after `step`, before `accept`.
   template <State X>
   static decltype(auto) derivative(const Workspace<X>& work) {

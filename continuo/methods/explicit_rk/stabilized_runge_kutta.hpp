@@ -42,6 +42,7 @@ struct StabilizedRungeKutta {
     std::size_t radius_age = 0;  // accepted steps since it was estimated
     std::size_t stages = 0;      // of the last step
     bool retry = false;          // the last step was rejected: f at its start is known
+    bool moved = false;          // the end of the last step was moved: f at the start of this one is not known
   };
 
   template <State X>
@@ -65,7 +66,11 @@ struct StabilizedRungeKutta {
       evaluate(system, t, x, work.start);
       ++evaluations;
       work.spectrum.known = false;
+    } else if (work.moved) {
+      evaluate(system, t, x, work.start);
+      ++evaluations;
     }
+    work.moved = false;
     const bool stale = discontinuity || work.radius_age >= oldest_radius || again;
     if constexpr (HasSpectralRadius<System, X>) {
       if (!again) work.radius = system.spectral_radius(t, x);
@@ -128,6 +133,11 @@ struct StabilizedRungeKutta {
   static void accept(Workspace<X>& work) {
     std::swap(work.start, work.end);
     ++work.radius_age;
+  }
+
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X&) {
+    work.moved = true;
   }
   template <State X>
   [[nodiscard]] static const X& derivative(const Workspace<X>& work) {

@@ -155,6 +155,12 @@ struct Odex : ExtrapolationMethod<Odex> {
     work.has_end_slope = false;
   }
 
+  /// f at the start of the next step is not that of the end of this one any more.
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X&) {
+    work.has_slope = false;
+  }
+
   template <State X>
   [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.slope;

@@ -218,6 +218,13 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
     ++work.jacobian_age;
   }
 
+  /// The whole history is moved: differences stay, and with them what the polynomial says of x'. A difference to the
+  /// past that had the way of the end alone would be taken for a motion.
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X& to) {
+    work.D[0] = to;
+  }
+
   template <State X>
   [[nodiscard]] static X derivative(const Workspace<X>& work) {
     X slope = work.D[1];

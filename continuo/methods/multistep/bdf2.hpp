@@ -90,6 +90,12 @@ struct Bdf2 : ImplicitMethod<InFirstStep> {
     work.h_before = work.h_current;
     work.start.solver.accept();
   }
+  /// The state of before is moved by the same way: the distance between them is a motion.
+  template <State X>
+  static void moved(Workspace<X>& work, const X& from, const X& to) {
+    for (std::size_t i = 0; i < dimension(to); ++i) work.before.data()[i] += to.data()[i] - from.data()[i];
+  }
+
   template <State X>
   [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.slope;

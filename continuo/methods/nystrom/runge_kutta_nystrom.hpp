@@ -163,6 +163,12 @@ struct RungeKuttaNystrom {
     work.end_fresh = false;
   }
 
+  /// f at the start of the next step is not that of the end of this one any more.
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X&) {
+    work.start_fresh = false;
+  }
+
   template <State X>
   [[nodiscard]] static const X& derivative(const Workspace<X>& work) {
     return work.slope;

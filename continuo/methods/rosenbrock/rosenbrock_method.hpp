@@ -134,6 +134,12 @@ struct RosenbrockMethod : ImplicitMethod<> {
     work.linear_fresh = false;
   }
 
+  /// f at the start of the next step is not that of the end of this one any more.
+  template <State X>
+  static void moved(Workspace<X>& work, const X&, const X&) {
+    work.start_fresh = false;
+  }
+
   /// f at the start of the last step; with a mass matrix that is M x'.
   template <State X>
   [[nodiscard]] static const X& derivative(const Workspace<X>& work) {

@@ -62,6 +62,12 @@ struct CentralDifference : SecondOrderMethod {
     swap(work.half, work.half_new);
     work.h_last = work.h_taken;
   }
+  /// The velocities half a step before are moved by the same way.
+  template <State X>
+  static void moved(Workspace<X>& work, const X& from, const X& to) {
+    for (std::size_t i = 0; i < dimension(to); ++i) work.half.data()[i] += to.data()[i] - from.data()[i];
+    SecondOrderMethod::moved<X>(work, from, to);
+  }
   template <State X, class Mask>
   static void accept(Workspace<X>& work, const Mask& accepted) {
     SecondOrderMethod::accept<X>(work, accepted);

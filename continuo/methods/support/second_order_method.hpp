@@ -88,6 +88,12 @@ struct SecondOrderMethod {
     work.end_fresh = false;
   }
 
+  /// f at the start of the next step is not that of the end of this one any more.
+  template <State X>
+  static void moved(EndDerivatives<X>& work, const X&, const X&) {
+    work.start_fresh = false;
+  }
+
   /// The same where each lane of the state is a run of its own: only the lanes in `accepted` go on.
   template <State X, class Mask>
   static void accept(EndDerivatives<X>& work, const Mask& accepted) {
