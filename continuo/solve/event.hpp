@@ -44,6 +44,9 @@ struct EventAction {
   X& x;  // starts as `before`
   bool stop = false;
   bool restart = false;  // set it where the action changed f but not x (a mode kept outside the state)
+  // Set it where the action moves x by no more than the tolerance, and f is the same: at the end of a step, where a
+  // scheduled event happens, the method keeps its history, moved by the same way. A greater change begins anew.
+  bool correction = false;
   [[no_unique_address]] detail::NotCopied not_copied{};
 };
 
@@ -242,6 +245,7 @@ struct EventResponse {
   bool stop = false;
   bool restart = false;  // data that f reads has changed: the motion begins again
   bool changed = false;  // something else has changed: a state that f does not read and that is constant between events
+  bool correction = false;  // restart, only because x has moved: see EventAction::correction
 };
 
 /// The functions of a source of events, which the driver calls. `size()` counts guards and scheduled events together,
@@ -371,7 +375,7 @@ class EventList {
   [[nodiscard]] static EventResponse response(const EventAction<X>& now) {
     bool changed = now.restart || dimension(now.x) != dimension(now.before);
     for (std::size_t k = 0; !changed && k < dimension(now.x); ++k) changed = now.x.data()[k] != now.before.data()[k];
-    return {.stop = now.stop, .restart = changed, .changed = false};
+    return {.stop = now.stop, .restart = changed, .changed = false, .correction = now.correction && !now.restart};
   }
 
   [[nodiscard]] static std::string problem_of(const Event<X>& event, Real from, Real to, const X& x) {

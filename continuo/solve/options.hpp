@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/solve/correction.hpp>
 #include <continuo/solve/event.hpp>
 #include <continuo/solve/steps/controller.hpp>
 
@@ -179,6 +180,8 @@ struct Options {
   Save<X> save{};
   const std::atomic<bool>* interrupt = nullptr;  // the run ends as `interrupted` once it is true
   Callback<Real> progress{};                     // called with t now and then (about every thousand steps)
+  Projection<X> projection{};                    // onto invariants, after every step
+  std::vector<Sign> signs{};                     // of the components, one for each; empty: any
 };
 
 }  // namespace continuo

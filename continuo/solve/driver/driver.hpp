@@ -72,12 +72,13 @@ class Driver {
     if (t == t_) {
       x = x_;
       if (!solved_to_rounding_) solve_unknowns(t, x);
+      if (!options_.signs.empty()) keep_signs(options_, x);
       return;
     }
     steps().at(t, x);
     for (const Shift& shift : shifts_)
       if (shift.earlier || forward() * (t - shift.t) > 0) x.data()[shift.component] = shift.value;
-    solve_unknowns(t, x);
+    complete(t, x);
   }
 
   /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant. Unknowns of algebraic
@@ -106,16 +107,25 @@ class Driver {
     stopped_ = true;
   }
 
-  /// Sets the state from outside, for example where a user drags a body: the run continues from here. A state of
-  /// another size ends the run as invalid input.
+  /// Sets the state from outside, for example where a user drags a body: the run continues from here. The state that
+  /// the run has costs nothing; one that differs from it by no more than the tolerance (root mean square) is a
+  /// correction: the method keeps its step size and its history, moved by the same way. Any other begins anew. f must
+  /// be the same: change_system is for changes of it. A state of another size, or with a component that is not of its
+  /// sign, ends the run as invalid input.
   void set_state(const X& x) {
     if (dimension(x) != dimension(x_)) {
       end(Ending::invalid_input, "set_state was given " + std::to_string(dimension(x)) + " components for a state of " +
                                      std::to_string(dimension(x_)));
       return;
     }
+    if (std::string why = problem_of_signs(x); !why.empty()) {
+      end(Ending::invalid_input, "set_state was given a state in which " + why);
+      return;
+    }
+    if (std::equal(x.data(), x.data() + dimension(x), x_.data()) && (steps().jumped() || t_ == steps().end())) return;
+    const bool keeps_history = t_ == steps().end() && shifted_.empty() && steps().is_near_end(x, options_);
     x_ = x;
-    restart();
+    keeps_history ? correct() : restart();
   }
   /// Changes the system from outside, for example a parameter or an input: `change` gets it by reference.
   template <class Change>
@@ -240,6 +250,13 @@ class Driver {
     logic_.arm(steps(), t_, x_);
     logic_.clear();
   }
+  // Continues from x_, which is near to the end of the last step.
+  void correct() {
+    settle_algebraic();
+    steps().move_end(x_);
+    logic_.arm(steps(), t_, x_);
+    logic_.clear();
+  }
   void begin_anew() {
     steps().jump(t_, x_, options_);
     shifts_end_ = true;
@@ -267,6 +284,18 @@ class Driver {
       steps().statistics().evaluations += static_cast<std::size_t>(found.evaluations);
       if (found) x = solved_;
     }
+  }
+  // What the polynomial of a step does not say: the invariants, the unknowns, the signs.
+  void complete(Real t, X& x) {
+    if (options_.projection) static_cast<void>(project(options_, t, x, solved_));
+    solve_unknowns(t, x);
+    if (!options_.signs.empty()) keep_signs(options_, x);
+  }
+  [[nodiscard]] std::string problem_of_signs(const X& x) const {
+    for (std::size_t i = 0; i < std::min(options_.signs.size(), dimension(x)); ++i)
+      if (!detail::has_sign(options_.signs[i], x.data()[i]))
+        return component_name(system(), i) + " is not " + detail::words_for(options_.signs[i]);
+    return {};
   }
   bool end_inconsistent() {
     if (const std::string why = problem_of_result(steps().system(), t_, x_); !why.empty())
@@ -342,6 +371,7 @@ class Driver {
     x_ = steps().x_end();
     shift(x_);
     if (logic_.any_guard()) solve_unknowns(t_, x_);
+    if (!options_.signs.empty()) keep_signs(options_, x_);
     solved_to_rounding_ = logic_.any_guard();
     observer.on_segment(*this, from, t_);
     if (stopped_) return;
@@ -392,11 +422,12 @@ class Driver {
       x = steps().x_end();
       shift(x);
       solve_unknowns(steps().end(), x);
+      if (!options_.signs.empty()) keep_signs(options_, x);
       return;
     }
     steps().at_part(offset / steps().size(), x);
     shift(x);
-    solve_unknowns(steps().begin() + offset, x);
+    complete(steps().begin() + offset, x);
   }
   void shift(X& x) const {
     for (const Shift& one : shifted_) x.data()[one.component] = one.value;
@@ -491,14 +522,15 @@ class Driver {
   // Fires the list of the instant at (t_, x_), round by round. True where the step ends here.
   template <class Observer>
   bool fire(Observer& observer) {
-    bool restarted = false;
+    bool restarted = false, corrected = false;
     while (!logic_.fired().empty()) {
       logic_.begin_round();
       std::optional<std::size_t> stopped;
       for (const std::size_t i : logic_.fired()) {
         const EventResponse response = act(i, observer, false);
         if (stopped_) return true;
-        restarted = restarted || response.restart;
+        restarted = restarted || (response.restart && !response.correction);
+        corrected = corrected || response.correction;
         if (!consistent_) return !end_inconsistent();
         if (response.stop && !stopped) stopped = i;
       }
@@ -506,6 +538,13 @@ class Driver {
       if (ended_) return true;
       logic_.end_round(steps(), t_, x_);
       if (statistics().events >= options_.max_steps || interrupted()) return end_among_events();
+    }
+    if (corrected && !restarted) {
+      if (t_ == steps().end() && shifted_.empty() && steps().is_near_end(x_, options_)) {
+        steps().move_end(x_);
+      } else {
+        restarted = true;
+      }
     }
     if (restarted) begin_anew(), ++restarts_;
     return restarted;
@@ -518,6 +557,7 @@ class Driver {
     EventResponse response = at_limit ? limit_action(i) : logic_.events().fire(steps().system(), i, t_, before_, x_);
     if (!at_limit) ++steps().statistics().events;
     if (dimension(x_) != dimension(before_)) return end_resized(i);
+    if (std::string why = problem_of_signs(x_); !why.empty()) return end_at_fault(i, "after its action " + why);
     if (response.restart) settle_algebraic();
     if (response.changed && !response.restart) note_shifts();
     observer.on_event(*this, EventOccurrence<X>{t_, std::span<const std::size_t>(&i, 1), before_, x_});
@@ -532,7 +572,8 @@ class Driver {
       return response;
     }
     const EventResponse further = act(i, observer, true);
-    return {response.stop || further.stop, response.restart || further.restart, response.changed || further.changed};
+    return {response.stop || further.stop, response.restart || further.restart, response.changed || further.changed,
+            response.correction && (further.correction || !further.restart)};
   }
 
   [[nodiscard]] bool has_limit_action(std::size_t i) const {
@@ -551,8 +592,11 @@ class Driver {
   }
 
   [[nodiscard]] EventResponse end_resized(std::size_t event) {
-    end(Ending::invalid_input, "its action has changed the number of components from " +
+    return end_at_fault(event, "its action has changed the number of components from " +
                                    std::to_string(dimension(before_)) + " to " + std::to_string(dimension(x_)));
+  }
+  [[nodiscard]] EventResponse end_at_fault(std::size_t event, std::string why) {
+    end(Ending::invalid_input, std::move(why));
     outcome_.event = events().name(event);
     x_ = before_;
     stopped_ = true;

@@ -14,6 +14,7 @@
 #include <continuo/methods/method.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/solve/options.hpp>
+#include <continuo/solve/steps/correct.hpp>
 #include <continuo/system/mass.hpp>
 #include <continuo/system/second_order.hpp>
 
@@ -179,7 +180,8 @@ template <class System, State X>
   if (!method.estimates_error && !(options.step > 0)) return hint(" has no error estimate: give it a step");
   if (std::string why = detail::problem_of_tolerances(x, options); !why.empty()) return why;
   if (std::string why = detail::problem_of_steps(options); !why.empty()) return why;
-  return detail::problem_of_save(interval, options.save);
+  if (std::string why = detail::problem_of_save(interval, options.save); !why.empty()) return why;
+  return detail::problem_of_corrections(system, interval.from, x, options);
 }
 
 }  // namespace continuo

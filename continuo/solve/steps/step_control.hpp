@@ -28,6 +28,7 @@ class StepControl final : public Steps<System, X> {
 
   StepControl(System f, X x0, Real t0, Real forward, const Options<X>& options)
       : Base(std::move(f), x0, t0, forward), work_(M::workspace(x0)), interpolant_(x0), origin_(t0) {
+    this->corrects_ = corrects(options);
     this->jump(t0, x0, options);
   }
 
@@ -48,8 +49,11 @@ class StepControl final : public Steps<System, X> {
 
   [[nodiscard]] const Interpolant<X, M::dense_degree>& interpolant() {
     if (!interpolated_) {
+      const X& x_new = moved_ ? *unmoved_ : x_end_;
       statistics_.evaluations +=
-          static_cast<std::size_t>(M::interpolate(system_, begin_, x_begin_, h_, x_end_, work_, interpolant_));
+          static_cast<std::size_t>(M::interpolate(system_, begin_, x_begin_, h_, x_new, work_, interpolant_));
+      if (moved_) [[unlikely]]
+        bend();
       interpolated_ = true;
     }
     return interpolant_;
@@ -66,25 +70,58 @@ class StepControl final : public Steps<System, X> {
     interpolated_ = false;
     end_ = begin_ + size;
     carried_ = 0;
-    return detail::status_of<M>(work_) == StepStatus::done && finite_end();
+    if (detail::status_of<M>(work_) != StepStatus::done || !finite_end()) return false;
+    if (!corrects_) [[likely]]
+      return true;
+    const Real square = this->correct_end(end_, tolerance_of_step(size, options), options);
+    return fixed(options) ? square < std::numeric_limits<Real>::infinity() : square <= Real(1);
+  }
+  void move_end(const X& x) override {
+    static_cast<void>(interpolant());  // to where it was
+    this->keep_unmoved();
+    x_end_ = x;
   }
 
  private:
   using Base::accepted, Base::fail, Base::fail_to_solve, Base::finite_end, Base::first_not_finite, Base::fixed,
       Base::interrupted, Base::singular_hint, Base::tolerance;
-  using Base::begin_, Base::carried_, Base::end_, Base::errors_, Base::forward_, Base::grid_, Base::grid_steps_,
-      Base::h_, Base::interpolated_, Base::jumped_, Base::next_, Base::statistics_, Base::step_begin_, Base::system_,
-      Base::x_begin_, Base::x_end_;
+  using Base::begin_, Base::carried_, Base::corrects_, Base::end_, Base::errors_, Base::forward_, Base::grid_,
+      Base::grid_steps_, Base::h_, Base::interpolated_, Base::jumped_, Base::moved_, Base::next_, Base::statistics_,
+      Base::step_begin_, Base::system_, Base::unmoved_, Base::x_begin_, Base::x_end_;
 
   void advance_to_end() {
-    if (!jumped_) M::accept(work_);
+    if (!jumped_) {
+      M::accept(work_);
+      if (moved_) [[unlikely]]
+        tell_of_move();
+    }
+    moved_ = false;
     begin_ = step_begin_ = end_;
     std::swap(x_begin_, x_end_);
     interpolated_ = false;
   }
 
+  void tell_of_move() {
+    if constexpr (detail::HasMoved<M, X, Work>) M::moved(work_, *unmoved_, x_end_);
+  }
+
+  // The polynomial ends where the step was moved to. What is added has no slope at both ends, as far as the degree
+  // allows: theta^2 (3 - 2 theta), or theta.
+  void bend() {
+    for (std::size_t i = 0; i < dimension(x_end_); ++i) {
+      const Real way = x_end_.data()[i] - unmoved_->data()[i];
+      if constexpr (M::dense_degree >= 3) {
+        interpolant_.c[2].data()[i] += 3 * way;
+        interpolant_.c[3].data()[i] -= 2 * way;
+      } else {
+        interpolant_.c[1].data()[i] += way;
+      }
+    }
+  }
+
   void attempt(Real h, const Options<X>& options) {
     h_ = h;
+    moved_ = false;
     began_anew_ = jumped_;
     if constexpr (detail::HasSetTolerance<M, X, Work>) M::set_tolerance(work_, tolerance_of_step(h, options));
     statistics_.evaluations += static_cast<std::size_t>(M::step(system_, begin_, x_begin_, h, jumped_, work_, x_end_));
@@ -143,6 +180,10 @@ class StepControl final : public Steps<System, X> {
                   outcome);
     }
     end_ = last ? limit : on_grid;
+    if (corrects_) {
+      if (!(this->correct_end(end_, tolerance(options), options) < std::numeric_limits<Real>::infinity()))
+        return this->fail_to_correct(Ending::cannot_continue, 0, outcome);
+    }
     ++grid_steps_;
     if (short_step) grid_ = limit, grid_steps_ = 0;
     return accepted();
@@ -172,10 +213,18 @@ class StepControl final : public Steps<System, X> {
       }
       weights = tolerance_of_step(h_, options);
       const bool solved = detail::status_of<M>(work_) == StepStatus::done;
-      const Real square = solved ? error_square(weights) : std::numeric_limits<Real>::infinity();
+      Real square = solved ? error_square(weights) : std::numeric_limits<Real>::infinity();
+      bool corrected = true;
+      if (corrects_ && square <= 1) [[unlikely]] {
+        const Real way = this->correct_end(last ? limit : Real(begin_ + h_), weights, options);
+        corrected = way <= 1;
+        square = detail::greater(square, way);
+      }
       // Also false where `square` is NaN, which it is where x_end_ is not finite.
       const bool finite = square < std::numeric_limits<Real>::infinity();
       if (finite && square <= 1) {
+        if (moved_ && this->leaves_sign(weights, options)) [[unlikely]]
+          return this->fail_to_keep_sign(Ending::cannot_continue, sqrt(square), outcome);
         const Real factor = factor_after(static_cast<float>(square), was_rejected, weights, options);
         if (last) [[unlikely]] {
           // A step that was shortened by the limit says little about the next one, which is no shorter than planned.
@@ -204,12 +253,19 @@ class StepControl final : public Steps<System, X> {
       error = sqrt(square);
       h = h_ * factor_of_rejected(solved, finite, static_cast<float>(min(square, Real(1e30))), options);
       if constexpr (detail::HasRejected<M, X, Work>) M::rejected(work_, h);
+      if (!corrected && this->leaves_sign(weights, options)) [[unlikely]]
+        return this->fail_to_keep_sign(Ending::cannot_continue, error, outcome);
       if constexpr (HasMassDiagonal<System, X>) {
         if (rejects == rejects_before_settling) settle_unknowns(weights);
       }
       if (abs(h) <= 4 * epsilon * max(abs(begin_), abs(begin_ + h)) || rejects >= options.max_rejects_in_a_row ||
-          interrupted(options))
+          interrupted(options)) {
+        if (!corrected && !interrupted(options))
+          return this->fail_to_correct(
+              rejects >= options.max_rejects_in_a_row ? Ending::too_many_rejects : Ending::step_too_small, error,
+              outcome);
         return give_up(rejects >= options.max_rejects_in_a_row, last_not_finite, error, weights, options, outcome);
+      }
     }
   }
 

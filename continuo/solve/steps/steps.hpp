@@ -17,6 +17,7 @@
 #include <continuo/solve/options.hpp>
 #include <continuo/solve/outcome.hpp>
 #include <continuo/solve/steps/check_input.hpp>
+#include <continuo/solve/steps/correct.hpp>
 #include <continuo/solve/steps/first_step.hpp>
 #include <continuo/solve/steps/step_budget.hpp>
 #include <continuo/system/mass.hpp>
@@ -46,6 +47,9 @@ class Steps {
   /// Takes the last step again from its beginning, with this size. False where its equations could not be solved: then
   /// the step must be taken again with another size.
   [[nodiscard]] virtual bool retake(Real size, const Options<X>& options) = 0;
+  /// Moves the end of the last step to x, which is nearer than the tolerance. The method keeps its history, moved by
+  /// the same way. The dense output of the last step stays.
+  virtual void move_end(const X& x) = 0;
 
   [[nodiscard]] System& system() { return system_; }
   [[nodiscard]] const System& system() const { return system_; }
@@ -55,6 +59,8 @@ class Steps {
   [[nodiscard]] Real size() const { return h_; }
   [[nodiscard]] const X& x_begin() const { return x_begin_; }
   [[nodiscard]] const X& x_end() const { return x_end_; }
+  /// Whether the next step begins without a history: at the start of a run, and after a jump.
+  [[nodiscard]] bool jumped() const { return jumped_; }
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
   [[nodiscard]] Statistics& statistics() { return statistics_; }
 
@@ -65,9 +71,22 @@ class Steps {
     grid_steps_ = 0;
     x_end_ = x;
     jumped_ = true;
+    moved_ = false;
     errors_ = {};
     step_budget_.forget();
     next_ = fixed(options) ? forward_ * options.step : Real(0);  // 0: to be estimated
+  }
+
+  /// Whether x is so near to the end of the last step, from which the next one begins, that the history of the method
+  /// is worth keeping: within the tolerance (root mean square).
+  [[nodiscard]] bool is_near_end(const X& x, const Options<X>& options) const {
+    if (jumped_) return false;
+    const Tolerance<Real> weights = tolerance(options);
+    const auto part = [&](std::size_t i) {
+      const Real from = x_end_.data()[i], to = x.data()[i];
+      return to == from ? Real(0) : Real((to - from) / weights.scale(i, from, to));
+    };
+    return root_mean_square<Real>(dimension(x), part) <= Real(1);
   }
 
   /// x' at (t, x) by an evaluation of its own; 0 for the unknown of an algebraic equation.
@@ -98,10 +117,7 @@ class Steps {
     }
   }
 
-  [[nodiscard]] static Tolerance<Real> tolerance(const Options<X>& options) {
-    return {options.rtol, options.atol, options.rtol_each.empty() ? nullptr : options.rtol_each.data(),
-            options.atol_each.empty() ? nullptr : options.atol_each.data()};
-  }
+  [[nodiscard]] static Tolerance<Real> tolerance(const Options<X>& options) { return tolerance_of(options); }
 
  protected:
   static constexpr std::size_t first_probe = 1000, probe_every = 50, least_probes = 10;
@@ -135,6 +151,7 @@ class Steps {
     end_ = begin_;
     x_end_ = x_begin_;
     jumped_ = true;
+    moved_ = false;
     return false;
   }
 
@@ -196,6 +213,62 @@ class Steps {
     return {};
   }
 
+  /// Moves the end of the step, at the time t, to where the options want it. Returns the square of the way in
+  /// tolerances; for signs 0 where no component lies beyond its sign by more than the tolerance. Infinite where there
+  /// is no state.
+  [[nodiscard]] [[gnu::noinline]] Real correct_end(const Real& t, const Tolerance<Real>& weights,
+                                                   const Options<X>& options) {
+    moved_ = false;
+    keep_unmoved();
+    refusal_ = Refusal::none;
+    const Real square = options.projection ? project_end(t, weights, options) : keep_signs_of_end(weights, options);
+    moved_ = false;
+    for (std::size_t i = 0; i < dimension(x_end_); ++i) moved_ = moved_ || x_end_.data()[i] != unmoved_->data()[i];
+    return square;
+  }
+
+  void keep_unmoved() {
+    if (moved_) return;
+    unmoved_ = x_end_;
+    moved_ = true;
+  }
+
+  /// Whether f has driven a component out of its sign that was at its bound already, by several tolerances in all: then
+  /// no solution has the sign. f is asked at the bound itself, where that of a decay is 0: what overshoots there is the
+  /// method.
+  [[nodiscard]] bool leaves_sign(const Tolerance<Real>& weights, const Options<X>& options) {
+    using std::abs, std::min;
+    if (options.signs.empty()) return false;
+    const Real most(10), one(1);
+    const std::size_t i = refused_;
+    const Real value = x_begin_.data()[i], scale = weights.scale(i, value, value);
+    if (abs(value) > scale) return false;
+    scratch_ = x_begin_;
+    scratch_.data()[i] = Real(0);
+    const Real way = h_ * slope(begin_, scratch_).data()[i];
+    const bool from_above = options.signs[i] == Sign::nonnegative || options.signs[i] == Sign::positive;
+    if (from_above ? way < Real(0) : way > Real(0)) driven_ += min(one, Real(abs(way) / scale));
+    return driven_ >= most;
+  }
+
+  [[nodiscard]] bool fail_to_correct(Ending ending, Real error, Outcome<Real>& outcome) {
+    switch (refusal_) {
+      case Refusal::resized:
+        return fail(Ending::invalid_input, 0, {}, "the projection changes the number of components", outcome);
+      case Refusal::no_state:
+        return fail(ending, 0, {}, "the projection finds no state on the invariants, however short the step", outcome);
+      case Refusal::sign:
+        return fail_to_keep_sign(ending, error, outcome);
+      case Refusal::too_far:
+      case Refusal::none:
+        break;
+    }
+    return fail(ending, error, {},
+                "the projection moves the state by more than the tolerance, however short the step: the step begins "
+                "off the invariants, or f leads away from them",
+                outcome);
+  }
+
   [[nodiscard]] bool accepted() {
     jumped_ = false;
     ++statistics_.steps;
@@ -234,6 +307,53 @@ class Steps {
     held ? step_budget_.mark(statistics_.steps, max_steps, begin_) : step_budget_.forget();
   }
 
+  [[nodiscard]] bool fail_to_keep_sign(Ending ending, Real error, Outcome<Real>& outcome) {
+    const char* hint =
+        ending == Ending::cannot_continue
+            ? "f drives it out of the sign that is asked of it: no solution keeps it from here on"
+            : "it leaves the sign that is asked of it, however short the step: f jumps, or leads far away";
+    return fail(ending, error, component_name(system_, refused_), hint, outcome);
+  }
+
+  enum class Refusal { none, too_far, no_state, resized, sign };
+
+  [[nodiscard]] Real project_end(const Real& t, const Tolerance<Real>& weights, const Options<X>& options) {
+    if (!project(options, t, x_end_, scratch_)) {
+      refusal_ = dimension(scratch_) == dimension(x_end_) ? Refusal::no_state : Refusal::resized;
+      if (refusal_ == Refusal::resized) scratch_ = x_end_;
+      return std::numeric_limits<Real>::infinity();
+    }
+    const Real way = root_mean_square<Real>(dimension(x_end_), [&](std::size_t i) {
+      const Real from = unmoved_->data()[i];
+      return Real((x_end_.data()[i] - from) / weights.scale_of_step(i, x_begin_.data()[i], from));
+    });
+    if (!(way <= Real(1))) refusal_ = Refusal::too_far;
+    return way * way;
+  }
+
+  [[nodiscard]] Real keep_signs_of_end(const Tolerance<Real>& weights, const Options<X>& options) {
+    using std::abs;
+    Real farthest(0);
+    bool all_kept = true;
+    for (std::size_t i = 0; i < dimension(x_end_); ++i) {
+      const Real value = x_end_.data()[i];
+      if (detail::has_sign(options.signs[i], value)) continue;
+      all_kept = false;
+      const Real beyond = abs(value) / weights.scale_of_step(i, x_begin_.data()[i], value);
+      if (beyond > farthest) farthest = beyond, refused_ = i;
+    }
+    if (all_kept) {
+      const Real value = x_end_.data()[refused_];
+      if (abs(value) > weights.scale(refused_, value, value)) driven_ = 0;
+    } else if (farthest <= Real(1)) {
+      keep_signs(options, x_end_);
+      return Real(0);  // no reason for shorter steps
+    } else {
+      refusal_ = Refusal::sign;
+    }
+    return farthest * farthest;
+  }
+
   System system_;
   Real forward_, begin_, end_, h_{}, next_{};  // begin_: of the next step, once there was a jump
   Real step_begin_ = begin_;
@@ -242,6 +362,12 @@ class Steps {
   std::size_t grid_steps_ = 0, standing_ = 0;
   Real stood_at_{};  // the time of the last steps that did not change t
   bool jumped_ = true, interpolated_ = false;
+  bool corrects_ = false;  // the options may move the end of a step
+  bool moved_ = false;     // and they have: the method ended at unmoved_
+  std::optional<X> unmoved_;
+  Refusal refusal_ = Refusal::none;  // of the last correction
+  std::size_t refused_ = 0;          // the component farthest beyond its sign
+  Real driven_{};                    // how far f has driven it out, in tolerances
   ErrorHistory errors_;
   X x_begin_, x_end_, scratch_, slope_;
   Statistics statistics_;
