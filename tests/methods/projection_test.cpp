@@ -73,10 +73,11 @@ TEST(Projection, EveryMethodKeepsItsOrderOrItsTolerance) {
     ASSERT_TRUE(projected.outcome) << describe(projected.outcome);
     for (const V& x : projected.x) EXPECT_LT(beside_invariants(x), 1e-13);
     EXPECT_LT(error_of(projected), 1.6 * error_of(plain) + 1e-14);
-    // One evaluation more at each step, of the methods that would have kept f at its end.
-    EXPECT_LT(projected.statistics.evaluations, plain.statistics.evaluations * 8 / 5 + 10);
+    // One evaluation more at each step, of the methods that would have kept f at its end: of some the second.
+    EXPECT_LT(projected.statistics.evaluations, 2 * plain.statistics.evaluations);
     const double half = step > 0 ? error_of(turn(method, step / 2, true)) : 0;
-    if (half > 1e-13) EXPECT_GT(std::log2(error_of(projected) / half), method.order_of_fixed_steps - 0.2);
+    if (half <= 1e-13) continue;
+    EXPECT_GT(std::log2(error_of(projected) / half), method.order_of_fixed_steps - 0.2);
   }
 }
 

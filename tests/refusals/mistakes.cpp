@@ -341,6 +341,18 @@ int main() {
   const Writing system;
   return solve(std::ref(system), x0, {0, 1}, Radau{}).outcome ? 0 : 1;
 }
+#elif MISTAKE == 56  // refused: the projection takes x by value or as a constant, so that its result is lost
+int main() {
+  return solve(f, x0, {0, 1}, Dop853{}, {.projection = [](double, X x) { x[0] = 1; }}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 57  // refused: a projection moves x itself, and returns nothing, or a bool
+int main() {
+  return solve(f, x0, {0, 1}, Dop853{}, {.projection = [](double, X& x) { return x; }}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 58  // refused: a projection is called as projection(t, x)
+int main() {
+  return solve(f, x0, {0, 1}, Dop853{}, {.projection = [](X& x) { x[0] = 1; }}).outcome ? 0 : 1;
+}
 #else
 #error "there is no such mistake"
 #endif

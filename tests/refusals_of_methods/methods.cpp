@@ -260,6 +260,20 @@ struct RetakenCopiesWork : Right {
 // refused: `retaken` gets the workspace by value, so that it changes nothing: declare Workspace<X>& work
 template bool const checked<RetakenCopiesWork>;
 
+struct PrivateMoved : Right {
+ private:
+  template <State Y>
+  static void moved(Workspace<Y>&, const Y&, const Y&);
+};
+// refused: the member `moved` of the method would be ignored
+template bool const checked<PrivateMoved>;
+
+struct MovedCopiesWork : Right {
+  static void moved(Workspace<X>, const X&, const X&);
+};
+// refused: `moved` gets the workspace by value, so that it changes nothing: declare Workspace<X>& work
+template bool const checked<MovedCopiesWork>;
+
 struct FinalMethod final : Right {};
 // refused: the method is final: remove `final`, so that its optional members can be checked
 template bool const checked<FinalMethod>;

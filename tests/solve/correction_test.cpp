@@ -193,6 +193,47 @@ TYPED_TEST(Projected, RandomQuadraticInvariants) {
   }
 }
 
+// The pendulum of SUNDIALS' cvPendulum, in Cartesian coordinates with the force of the rod: with this g its period is
+// 2, so that at t = 30 it is where it began. Positions go to the circle, velocities along it.
+constexpr double g = 13.750371636040745654980191559621;
+constexpr AnyDerivative pendulum{[](double, const V& x, V& dxdt) {
+  const double force = x[2] * x[2] + x[3] * x[3] - g * x[1];
+  dxdt[0] = x[2];
+  dxdt[1] = x[3];
+  dxdt[2] = -x[0] * force;
+  dxdt[3] = -x[1] * force - g;
+}};
+void onto_rod(double, V& x) {
+  onto_circle(0, x);
+  const double along_rod = x[0] * x[2] + x[1] * x[3];
+  for (std::size_t i = 0; i < 2; ++i) x[2 + i] -= along_rod * x[i];
+}
+
+TYPED_TEST(Projected, ThePendulumReturnsAfterFifteenPeriods) {
+  const auto run = [](double rtol, bool projected) {
+    Options<V> options{.rtol = rtol, .atol = rtol};
+    if (projected) options.projection = onto_rod;
+    const auto solution = solve(pendulum, V{1, 0, 0, 0}, {0, 30}, TypeParam{}, options);
+    EXPECT_TRUE(solution.outcome) << describe(solution.outcome);
+    double beside = 0;
+    for (const V& x : solution.x)
+      beside = std::max({beside, std::abs(std::hypot(x[0], x[1]) - 1), std::abs(x[0] * x[2] + x[1] * x[3])});
+    const V& x = solution.final_state();
+    return std::pair(std::hypot(x[0] - 1, x[1], x[2]) + std::abs(x[3]), beside);
+  };
+  double last = 1;
+  for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+    const auto [error, beside] = run(rtol, true);
+    const auto [free_error, free_beside] = run(rtol, false);
+    EXPECT_LT(beside, 2e-15);
+    EXPECT_GT(free_beside, 1e-12);
+    EXPECT_LT(error, 2e4 * rtol);
+    EXPECT_LT(error, last);
+    EXPECT_LT(error, free_error);
+    last = error;
+  }
+}
+
 TEST(Correction, WhatCannotBeProjectedIsRefused) {
   const auto ending = [](V start, Options<V> options) {
     return solve(oscillator, std::move(start), {0, 20}, Adams{}, std::move(options)).outcome;
