@@ -21,7 +21,7 @@ namespace detail {
 // member of this name too, whatever its type, its arguments and its access.
 struct NamesOfMethods {
   int unsupported_reason, error_square, implicit, set_tolerance, status, costs, automatic, error_order_of,
-      starting_order, order_of_fixed_steps, next_factor, rejected, retaken, stability_limits, moved;
+      starting_order, order_of_fixed_steps, next_factor, rejected, retaken, stability_limits, moved, fault;
 };
 template <class M>
 struct WithNamesOfMethods : M, NamesOfMethods {};
@@ -285,6 +285,10 @@ consteval void check_optional_members() {
   static_assert(keeps_moved,
                 "the member `moved` of the method would be ignored: it must be public: static void "
                 "moved(Workspace<X>& work, const X& from, const X& to)");
+  constexpr bool keeps_fault = HasFault<M, Work> || requires { &With::fault; };
+  static_assert(keeps_fault,
+                "the member `fault` of the method would be ignored: it must be public: static std::string_view "
+                "fault(const Workspace<X>& work)");
   if constexpr (HasSetTolerance<M, X, Work>) {
     constexpr bool set_tolerance_writes = !set_tolerance_copies_work<M, X, Work>();
     static_assert(

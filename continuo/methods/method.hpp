@@ -214,6 +214,10 @@ concept HasRetaken = requires(Work& work) { M::retaken(work); };
 
 template <class M, class X, class Work>
 concept HasMoved = requires(Work& work, const X& from, const X& to) { M::moved(work, from, to); };
+template <class M, class Work>
+concept HasFault = requires(const Work& work) {
+  { M::fault(work) } -> std::convertible_to<std::string_view>;
+};
 
 template <class M>
 [[nodiscard]] constexpr bool is_implicit() {
@@ -325,6 +329,9 @@ template <class M, class Work>
 ///   M::moved(Workspace<X>& work, const X& from, const X& to)  after `accept`: the next step begins at `to` and not at
 ///       `from`, where the last one ended, which is nearer than the tolerance; f is the same. A method that keeps
 ///       states of before moves them by the same way, and drops f at `from`
+///   M::fault(const Workspace<X>& work) -> why the run cannot go on with this method, after a step whose error was
+///       measured and after `next_factor`; empty where it can. A method with it is refused where steps have a fixed
+///       size: it controls the error by something of its own (with_norm.hpp, with_controller.hpp)
 template <class M, class X, class System = detail::AnySystem<X, false>>
 concept Method =
     State<X> && detail::HasName<M> && detail::HasOrder<M> && detail::HasErrorOrder<M> && detail::HasDenseOrder<M> &&

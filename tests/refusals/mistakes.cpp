@@ -353,6 +353,19 @@ int main() {
 int main() {
   return solve(f, x0, {0, 1}, Dop853{}, {.projection = [](X& x) { x[0] = 1; }}).outcome ? 0 : 1;
 }
+#elif MISTAKE == 59  // refused: the method chooses its order and its step together: it has a controller of its own
+#include <continuo/methods/with_controller.hpp>
+int main() {
+  return solve(f, x0, {0, 1}, with_controller(Radau{}, H211b{})).outcome ? 0 : 1;
+}
+#elif MISTAKE == 60  // refused: a norm is an empty type that is called as norm(std::span<const Real> errors)
+#include <continuo/methods/with_norm.hpp>
+struct Sum {
+  double operator()(const X& errors) const { return errors[0] + errors[1]; }
+};
+int main() {
+  return solve(f, x0, {0, 1}, with_norm(Dop853{}, Sum{})).outcome ? 0 : 1;
+}
 #else
 #error "there is no such mistake"
 #endif

@@ -25,13 +25,15 @@ struct MethodNeeds {
   std::string_view name;
   bool implicit, estimates_error;
   std::string_view
-      unsupported_reason;  // why it does not support the system, to be read after its name; empty if it does
+      unsupported_reason;        // why it does not support the system, to be read after its name; empty if it does
+  bool has_own_control = false;  // a norm or a controller of its own: see WithNorm, WithController
 };
 
 template <class M, class System, State X>
 [[nodiscard]] MethodNeeds needs_of(const System& system, const X& x) {
-  MethodNeeds needs{M::name, detail::is_implicit<M>(), M::error_order > 0, {}};
+  MethodNeeds needs{M::name, detail::is_implicit<M>(), M::error_order > 0, {}, false};
   if constexpr (detail::HasUnsupportedReason<M, X, System>) needs.unsupported_reason = M::unsupported_reason(system, x);
+  needs.has_own_control = detail::HasFault<M, typename M::template Workspace<X>>;
   return needs;
 }
 
@@ -178,6 +180,8 @@ template <class System, State X>
     return hint(" cannot integrate M x' = f(t, x): take an implicit method, such as rodas5p");
   if (!method.unsupported_reason.empty()) return hint(" ").append(method.unsupported_reason);
   if (!method.estimates_error && !(options.step > 0)) return hint(" has no error estimate: give it a step");
+  if (method.has_own_control && options.step > 0)
+    return hint(" has a norm or a step controller, and steps of a fixed size are given: leave out one of them");
   if (std::string why = detail::problem_of_tolerances(x, options); !why.empty()) return why;
   if (std::string why = detail::problem_of_steps(options); !why.empty()) return why;
   if (std::string why = detail::problem_of_save(interval, options.save); !why.empty()) return why;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <continuo/methods/support/weighted_norm.hpp>
@@ -214,6 +215,7 @@ class StepControl final : public Steps<System, X> {
       weights = tolerance_of_step(h_, options);
       const bool solved = detail::status_of<M>(work_) == StepStatus::done;
       Real square = solved ? error_square(weights) : std::numeric_limits<Real>::infinity();
+      if (has_fault()) return fail_by_method(outcome);
       bool corrected = true;
       if (corrects_ && square <= 1) [[unlikely]] {
         const Real way = this->correct_end(last ? limit : Real(begin_ + h_), weights, options);
@@ -226,6 +228,7 @@ class StepControl final : public Steps<System, X> {
         if (moved_ && this->leaves_sign(weights, options)) [[unlikely]]
           return this->fail_to_keep_sign(Ending::cannot_continue, sqrt(square), outcome);
         const Real factor = factor_after(static_cast<float>(square), was_rejected, weights, options);
+        if (has_fault()) return fail_by_method(outcome);
         if (last) [[unlikely]] {
           // A step that was shortened by the limit says little about the next one, which is no shorter than planned.
           next_ = forward_ * max(abs(h), abs(h_) * factor);
@@ -266,6 +269,21 @@ class StepControl final : public Steps<System, X> {
               outcome);
         return give_up(rejects >= options.max_rejects_in_a_row, last_not_finite, error, weights, options, outcome);
       }
+    }
+  }
+
+  [[nodiscard]] bool has_fault() const {
+    if constexpr (detail::HasFault<M, Work>) {
+      return !std::string_view(M::fault(work_)).empty();
+    } else {
+      return false;
+    }
+  }
+  [[nodiscard]] bool fail_by_method(Outcome<Real>& outcome) {
+    if constexpr (detail::HasFault<M, Work>) {
+      return fail(Ending::invalid_input, 0, {}, std::string(M::fault(work_)), outcome);
+    } else {
+      return false;
     }
   }
 
