@@ -1,7 +1,11 @@
 // continuo/numerics/sparse_lu.cpp
-// KLU behind SparseLU: analysis, factorization, refactorization with the same pivots, solution.
+// KLU behind SparseLU: analysis, factorization, refactorization with the same pivots, solution. Nothing else is here,
+// so that a program without sparse matrices is linked without it.
+#include <cstdint>
+#include <memory>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <suitesparse/klu.h>
 
@@ -26,113 +30,83 @@ constexpr bool is_real = std::is_same_v<Number, double>;
 // A factorization with old pivots is good while no entry grew beyond this against the matrix.
 constexpr double least_pivot_growth = 1e-10;
 
-}  // namespace
-
 template <class Number>
-struct SparseLU<Number>::Factors {
-  klu_common common;
-  klu_symbolic* symbolic = nullptr;
-  klu_numeric* numeric = nullptr;
-  std::vector<std::int32_t> starts, rows;
-
-  explicit Factors(const SparsePattern& pattern)
-      : Factors({pattern.starts().begin(), pattern.starts().end()}, {pattern.rows().begin(), pattern.rows().end()}) {}
-  Factors(std::vector<std::int32_t> starts_, std::vector<std::int32_t> rows_)
-      : starts(std::move(starts_)), rows(std::move(rows_)) {
-    klu_defaults(&common);
-    symbolic = klu_analyze(size(), starts.data(), rows.data(), &common);
+class KluFactors final : public SparseFactors<Number> {
+ public:
+  explicit KluFactors(const SparsePattern& pattern)
+      : KluFactors({pattern.starts().begin(), pattern.starts().end()}, {pattern.rows().begin(), pattern.rows().end()}) {
   }
-  Factors(const Factors&) = delete;
-  ~Factors() {
+  KluFactors(std::vector<std::int32_t> starts, std::vector<std::int32_t> rows)
+      : starts_(std::move(starts)), rows_(std::move(rows)) {
+    klu_defaults(&common_);
+    symbolic_ = klu_analyze(size(), starts_.data(), rows_.data(), &common_);
+  }
+  KluFactors(const KluFactors&) = delete;
+  KluFactors& operator=(const KluFactors&) = delete;
+  ~KluFactors() override {
     forget_pivots();
-    klu_free_symbolic(&symbolic, &common);
+    klu_free_symbolic(&symbolic_, &common_);
   }
 
-  int size() const { return static_cast<int>(starts.size()) - 1; }
-
-  void forget_pivots() {
-    if (!numeric) return;
-    if constexpr (is_real<Number>) {
-      klu_free_numeric(&numeric, &common);
-    } else {
-      klu_z_free_numeric(&numeric, &common);
-    }
+  [[nodiscard]] std::unique_ptr<SparseFactors<Number>> for_same_pattern() const override {
+    return std::make_unique<KluFactors>(starts_, rows_);
   }
-  bool choose_pivots(Number* values) {
+
+  [[nodiscard]] bool choose_pivots(Number* values) override {
     forget_pivots();
-    if (!symbolic) return false;  // singular whatever its entries are
+    if (!symbolic_) return false;  // singular whatever its entries are
     if constexpr (is_real<Number>) {
-      numeric = klu_factor(starts.data(), rows.data(), doubles(values), symbolic, &common);
+      numeric_ = klu_factor(starts_.data(), rows_.data(), doubles(values), symbolic_, &common_);
     } else {
-      numeric = klu_z_factor(starts.data(), rows.data(), doubles(values), symbolic, &common);
+      numeric_ = klu_z_factor(starts_.data(), rows_.data(), doubles(values), symbolic_, &common_);
     }
-    if (common.status == KLU_OK) return true;
+    if (common_.status == KLU_OK) return true;
     forget_pivots();
     return false;
   }
-  bool refactor(Number* values) {
+  [[nodiscard]] bool refactor(Number* values) override {
     int done;
     if constexpr (is_real<Number>) {
-      done = klu_refactor(starts.data(), rows.data(), doubles(values), symbolic, numeric, &common) &&
-             klu_rgrowth(starts.data(), rows.data(), doubles(values), symbolic, numeric, &common);
+      done = klu_refactor(starts_.data(), rows_.data(), doubles(values), symbolic_, numeric_, &common_) &&
+             klu_rgrowth(starts_.data(), rows_.data(), doubles(values), symbolic_, numeric_, &common_);
     } else {
-      done = klu_z_refactor(starts.data(), rows.data(), doubles(values), symbolic, numeric, &common) &&
-             klu_z_rgrowth(starts.data(), rows.data(), doubles(values), symbolic, numeric, &common);
+      done = klu_z_refactor(starts_.data(), rows_.data(), doubles(values), symbolic_, numeric_, &common_) &&
+             klu_z_rgrowth(starts_.data(), rows_.data(), doubles(values), symbolic_, numeric_, &common_);
     }
-    return done && common.status == KLU_OK && common.rgrowth > least_pivot_growth;
+    return done && common_.status == KLU_OK && common_.rgrowth > least_pivot_growth;
   }
-  void solve(Number* b) {
+  void solve(Number* b) override {
     if constexpr (is_real<Number>) {
-      klu_solve(symbolic, numeric, size(), 1, doubles(b), &common);
+      klu_solve(symbolic_, numeric_, size(), 1, doubles(b), &common_);
     } else {
-      klu_z_solve(symbolic, numeric, size(), 1, doubles(b), &common);
+      klu_z_solve(symbolic_, numeric_, size(), 1, doubles(b), &common_);
     }
   }
+
+ private:
+  [[nodiscard]] int size() const { return static_cast<int>(starts_.size()) - 1; }
+  void forget_pivots() {
+    if (!numeric_) return;
+    if constexpr (is_real<Number>) {
+      klu_free_numeric(&numeric_, &common_);
+    } else {
+      klu_z_free_numeric(&numeric_, &common_);
+    }
+  }
+
+  klu_common common_;
+  klu_symbolic* symbolic_ = nullptr;
+  klu_numeric* numeric_ = nullptr;
+  std::vector<std::int32_t> starts_, rows_;
 };
 
 template <class Number>
-SparseLU<Number>::SparseLU(const SparsePattern& pattern)
-    : values_(pattern.entries()), factors_(std::make_unique<Factors>(pattern)) {}
-
-// The pivots of the original come from the matrix kept in pivot_values_; what it has decomposed since is in values_.
-template <class Number>
-SparseLU<Number>::SparseLU(const SparseLU& other)
-    : values_(other.values_),
-      pivot_values_(other.pivot_values_),
-      factors_(std::make_unique<Factors>(other.factors_->starts, other.factors_->rows)) {
-  if (pivot_values_.empty()) return;
-  factors_->choose_pivots(pivot_values_.data());
-  factors_->refactor(values_.data());
+std::unique_ptr<SparseFactors<Number>> analyse_by_klu(const SparsePattern& pattern) {
+  return std::make_unique<KluFactors<Number>>(pattern);
 }
 
-template <class Number>
-SparseLU<Number>::SparseLU(SparseLU&&) noexcept = default;
-template <class Number>
-SparseLU<Number>& SparseLU<Number>::operator=(SparseLU other) noexcept {
-  std::swap(values_, other.values_);
-  std::swap(pivot_values_, other.pivot_values_);
-  std::swap(factors_, other.factors_);
-  return *this;
-}
-template <class Number>
-SparseLU<Number>::~SparseLU() = default;
+}  // namespace
 
-template <class Number>
-bool SparseLU<Number>::factor() {
-  if (!pivot_values_.empty() && factors_->refactor(values_.data())) return true;
-  pivot_values_.clear();
-  if (!factors_->choose_pivots(values_.data())) return false;
-  pivot_values_ = values_;
-  // To the same bits as a copy, which can only refactor.
-  return factors_->refactor(values_.data());
-}
-
-template <class Number>
-void SparseLU<Number>::solve(Number* b) {
-  factors_->solve(b);
-}
-
-template class SparseLU<double>;
-template class SparseLU<ComplexNumber<double>>;
+constinit const SparseSolver klu{analyse_by_klu<double>, analyse_by_klu<ComplexNumber<double>>};
 
 }  // namespace continuo

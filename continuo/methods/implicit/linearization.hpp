@@ -53,11 +53,15 @@ class Linearization {
     prepared_ = true;
     mass_.read(f, size_);
     if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
+      static_assert(klu_is_installed || !HasJacobianPattern<F>,
+                    "the pattern of the Jacobian of a system of run-time size needs the sparse solver KLU: install "
+                    "libsuitesparse-dev (SuiteSparse)");
       pattern_ = f.jacobian_pattern();
       sparse_ = !mass_.is_matrix() && size_ >= least_sparse_size &&
                 static_cast<double>(pattern_.entries()) <=
                     greatest_sparse_part * static_cast<double>(size_) * static_cast<double>(size_);
       if (sparse_) {
+        solver_ = &klu;
         rows_.assign(pattern_.entries(), 0);
         if constexpr (!HasSparseJacobian<F, X>) groups_ = ColumnGroups(pattern_);
         banded_ = pattern_.is_banded();
@@ -132,6 +136,9 @@ class Linearization {
   /// The diagonal of M; empty where it is the identity.
   [[nodiscard]] std::span<const Real> mass_diagonal() const { return mass_.diagonal(); }
   [[nodiscard]] const SparsePattern& pattern() const { return pattern_; }
+  /// For matrices of the pattern; sparse only. A system without a pattern does not name one, and its program is linked
+  /// without.
+  [[nodiscard]] const SparseSolver& sparse_solver() const { return *solver_; }
   /// Of J: row by row, of its pattern or of its band.
   [[nodiscard]] std::span<const Real> entries() const { return rows_; }
   /// Entry p of the pattern.
@@ -161,6 +168,7 @@ class Linearization {
   BandLayout band_;
   ConstantMass<X> mass_;
   SparsePattern pattern_;
+  const SparseSolver* solver_ = nullptr;
   ColumnGroups groups_;
   std::vector<std::size_t> diagonal_;  // where the pattern has it
   bool sparse_ = false, banded_ = false, prepared_ = false;
@@ -179,7 +187,7 @@ class Factorization {
     if constexpr (has_sparse) {
       if (linear.banded()) return factor_band(linear, c);
       if (linear.sparse()) {
-        if (!sparse_) sparse_.emplace(linear.pattern());
+        if (!sparse_) sparse_.emplace(linear.pattern(), linear.sparse_solver());
         linear.shifted_entries(c, sparse_->values().data());
         return sparse_->factor();
       }
