@@ -1,5 +1,6 @@
 # cmake --install: headers, libraries and the package that find_package(Continuo) reads. Continuo::Continuo is all of
-# it, Continuo::solve and its like are single modules with what they stand on.
+# it, Continuo::solve and its like are single modules with what they stand on: components, each with the parts of the
+# distribution that it needs.
 get_property(modules GLOBAL PROPERTY CONTINUO_MODULES)
 add_library(continuo_all INTERFACE)
 set_target_properties(continuo_all PROPERTIES EXPORT_NAME Continuo)
@@ -20,12 +21,18 @@ install(CODE "set(sources \"${PROJECT_SOURCE_DIR}\")")
 install(CODE "set(includes \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}\")")
 install(SCRIPT cmake/public_headers.cmake)
 install(EXPORT ContinuoTargets NAMESPACE Continuo:: DESTINATION ${package_folder})
-install(FILES cmake/parts.cmake DESTINATION ${package_folder})
+install(FILES cmake/parts.cmake cmake/components.cmake DESTINATION ${package_folder})
 write_basic_package_version_file(ContinuoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-file(CONFIGURE OUTPUT ContinuoConfig.cmake CONTENT [[
-include(${CMAKE_CURRENT_LIST_DIR}/parts.cmake)
-include(${CMAKE_CURRENT_LIST_DIR}/ContinuoTargets.cmake)
-]] @ONLY)
+set(config "set(continuo_components ${modules})\n")
+foreach(module IN LISTS modules)
+  foreach(list IN ITEMS uses parts optional_parts)
+    string(TOUPPER ${list} property)
+    get_property(names GLOBAL PROPERTY CONTINUO_${property}_${module})
+    string(APPEND config "set(continuo_${list}_${module} ${names})\n")
+  endforeach()
+endforeach()
+string(APPEND config "include(\${CMAKE_CURRENT_LIST_DIR}/components.cmake)\n")
+file(CONFIGURE OUTPUT ContinuoConfig.cmake CONTENT "${config}" @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/ContinuoConfig.cmake ${PROJECT_BINARY_DIR}/ContinuoConfigVersion.cmake
         DESTINATION ${package_folder})
 

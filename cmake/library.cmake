@@ -3,11 +3,13 @@
 # a file proves that it includes what it uses.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 
-# continuo_library(NAME [FUZZED] [USES ...] [PARTS ...] [FOLDERS ...] [BRIEF ...] [ALONE ...] [LOADED ...] [APART ...]):
+# continuo_library(NAME [FUZZED] [USES ...] [PARTS ...] [INNER_PARTS ...] [OPTIONAL_PARTS ...] [FOLDERS ...] [BRIEF ...] [ALONE ...] [LOADED ...] [APART ...]):
 # the library of a module, which is a folder of continuo/; static when it has sources. The target is continuo_NAME,
 # Continuo::NAME to those who find the package.
 #   FUZZED   it reads what others wrote, and counts its branches for the fuzzer where the sanitizers are on.
 #   USES     modules below it; those that they use come with them.
+#   PARTS    of the distribution (parts.cmake) that whoever uses the module needs too. INNER_PARTS: headers that only its
+#            sources read. OPTIONAL_PARTS: libraries that a program needs only where it uses a part of the module.
 #   FOLDERS  of the module, lowest first: each may use those before it (tests/architecture holds it to that). What lies in
 #            them is the module's own; its public headers lie in the module itself.
 #   BRIEF    its sources (without .cpp, as patterns, wherever they lie) that run for milliseconds: compiled in half the
@@ -17,12 +19,21 @@ set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 #   APART    those that neither the command nor another module uses: a library of their own, which everybody else links
 #            with the module's, so that the command is built without them.
 function(continuo_library name)
-  cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;FOLDERS;BRIEF;ALONE;LOADED;APART" ${ARGN})
+  cmake_parse_arguments(module "FUZZED" "" "USES;PARTS;INNER_PARTS;OPTIONAL_PARTS;FOLDERS;BRIEF;ALONE;LOADED;APART" ${ARGN})
   set(folders ${PROJECT_SOURCE_DIR}/continuo/${name})
   foreach(folder IN LISTS module_FOLDERS)
     list(APPEND folders ${PROJECT_SOURCE_DIR}/continuo/${name}/${folder})
   endforeach()
   continuo_sources(sources "${folders}" *)
+  set_property(GLOBAL PROPERTY CONTINUO_USES_${name} ${module_USES})
+  set_property(GLOBAL PROPERTY CONTINUO_PARTS_${name} ${module_PARTS})
+  set_property(GLOBAL PROPERTY CONTINUO_OPTIONAL_PARTS_${name} ${module_OPTIONAL_PARTS})
+  foreach(part IN LISTS module_PARTS module_INNER_PARTS module_OPTIONAL_PARTS)
+    continuo_find_part(${part} missing)
+    if(missing)
+      message(SEND_ERROR "continuo_${name} needs the package ${missing}")
+    endif()
+  endforeach()
   list(TRANSFORM module_USES PREPEND continuo_)
   if(sources)
     continuo_sources(brief "${folders}" ${module_BRIEF})
@@ -54,7 +65,10 @@ function(continuo_library name)
   target_compile_features(continuo_${name} ${scope} cxx_std_20)
   target_include_directories(continuo_${name} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(continuo_${name} ${scope} ${module_USES} ${module_PARTS})
+  target_link_libraries(continuo_${name} ${scope} ${module_USES} ${module_PARTS} ${module_OPTIONAL_PARTS})
+  if(module_INNER_PARTS)
+    target_link_libraries(continuo_${name} PRIVATE $<BUILD_INTERFACE:${module_INNER_PARTS}>)
+  endif()
   set_target_properties(continuo_${name} PROPERTIES EXPORT_NAME ${name} CONTINUO_WITHOUT_APART ON)
   if(apart)
     add_library(continuo_${name}_apart STATIC ${apart})
@@ -64,6 +78,7 @@ function(continuo_library name)
     set(is_wanted $<NOT:$<BOOL:$<TARGET_PROPERTY:CONTINUO_WITHOUT_APART>>>)  # by the target that links the module
     target_link_libraries(continuo_${name} INTERFACE $<${is_wanted}:$<TARGET_NAME:continuo_${name}_apart>>)
     set_property(GLOBAL APPEND PROPERTY CONTINUO_MODULES ${name}_apart)
+    set_property(GLOBAL PROPERTY CONTINUO_USES_${name}_apart ${name})
   endif()
   add_library(Continuo::${name} ALIAS continuo_${name})
   set_property(GLOBAL APPEND PROPERTY CONTINUO_MODULES ${name})

@@ -18,6 +18,7 @@ done
 
 "$cmake" -S "$here/consumer" -B "$prefix/consumer" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 "$cmake" --build "$prefix/consumer"
+"$here/components.sh" "$cmake" "$compiler" "$prefix"
 cd "$prefix"
 consumer/consumer
 if [[ ! -x bin/continuo ]]; then exit 0; fi
