@@ -22,6 +22,7 @@ namespace continuo {
 template <class Number>
 class SparseFactors {
  public:
+  /// Frees the factors.
   virtual ~SparseFactors() = default;
   /// Factors for the same pattern, of no matrix yet.
   [[nodiscard]] virtual std::unique_ptr<SparseFactors> for_same_pattern() const = 0;
