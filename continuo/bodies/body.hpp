@@ -13,7 +13,7 @@ namespace continuo {
 /// A ball in space, a disc in the plane. You choose the units; all lengths must be in the same one.
 template <class Real>
 struct Sphere {
-  Real radius = Real(0.5);
+  Real radius = Real(0.5);  // in the unit of length of the world
 };
 /// The shapes of bodies: spheres so far. Boxes, capsules and hulls are planned.
 template <class Real, int Dim>
@@ -34,7 +34,9 @@ enum class Combine : std::uint8_t { average, minimum, maximum, product, geometri
 /// frictionless surface makes a frictionless contact), the greater restitution (a ball that bounces does so on any
 /// floor) and the greater rolling resistance, as in Box2D and most engines.
 struct CombineRule {
-  Combine restitution = Combine::maximum, friction = Combine::geometric_mean, rolling_resistance = Combine::maximum;
+  Combine restitution = Combine::maximum;         // of Material::restitution
+  Combine friction = Combine::geometric_mean;     // of Material::friction
+  Combine rolling_resistance = Combine::maximum;  // of Material::rolling_resistance
   friend bool operator==(const CombineRule&, const CombineRule&) = default;
 };
 
@@ -67,21 +69,23 @@ template <class Real>
 /// A body to be added to a world. Lengths, masses and times are in the units of the world.
 template <class Real, int Dim>
 struct BodyDefinition {
-  Shape<Real, Dim> shape = Sphere<Real>{};
-  Vector<Real, Dim> position{}, velocity{};
-  Orientation<Real, Dim> orientation = upright<Real, Dim>();
-  Spin<Real, Dim> spin{};
-  std::optional<Real> mass{};  // default: density times volume (area in the plane)
-  Real density = Real(1);
-  bool fixed = false;  // never moves, whatever meets it
-  Material<Real> material{};
-  std::uint32_t group = 0;  // below 32; see World::ignore
+  Shape<Real, Dim> shape = Sphere<Real>{};                    // by default a radius of 0.5
+  Vector<Real, Dim> position{};                               // of the centre
+  Vector<Real, Dim> velocity{};                               // of the centre
+  Orientation<Real, Dim> orientation = upright<Real, Dim>();  // an angle in the plane, a unit quaternion in space
+  Spin<Real, Dim> spin{};                                     // the angular velocity, in radians per time
+  std::optional<Real> mass{};                                 // default: density times volume (area in the plane)
+  Real density = Real(1);                                     // mass per volume (area in the plane)
+  bool fixed = false;                                         // never moves, whatever meets it
+  Material<Real> material{};                                  // of its surface
+  std::uint32_t group = 0;                                    // below 32; see World::ignore
 };
 
 /// Identifies a body until it is removed. The generation tells the handle of a removed body from that of a later body
 /// in the same slot.
 struct BodyHandle {
-  std::uint32_t slot = 0, generation = 0;
+  std::uint32_t slot = 0;        // a place, used again after its body is removed
+  std::uint32_t generation = 0;  // how often it was
   friend bool operator==(const BodyHandle&, const BodyHandle&) = default;
 };
 

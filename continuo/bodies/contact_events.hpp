@@ -28,14 +28,16 @@ enum class ContactChange : std::uint8_t {
 /// One event of a contact. The impulse has the unit mass times velocity.
 template <class Real, int Dim>
 struct ContactEvent {
-  static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();  // `wall` of two bodies
 
-  ContactChange change = ContactChange::impact;
-  BodyHandle a{}, b{};                  // b is unused in a contact with a wall
-  std::uint32_t wall = no_wall;         // its number in world.walls()
-  Vector<Real, Dim> point{}, normal{};  // normal: from a to b, or into the wall
-  Real impulse{};                       // along the normal: of the impact; at `end`, of the whole contact
-  Real time{};
+  ContactChange change = ContactChange::impact;  // what happens
+  BodyHandle a{};                                // a body
+  BodyHandle b{};                                // the other one; unused in a contact with a wall
+  std::uint32_t wall = no_wall;                  // its number in world.walls()
+  Vector<Real, Dim> point{};                     // of the contact
+  Vector<Real, Dim> normal{};                    // from a to b, or into the wall; of length 1
+  Real impulse{};                                // along the normal: of the impact; at `end`, of the whole contact
+  Real time{};                                   // of the world
 
   /// Whether b is a wall.
   [[nodiscard]] bool with_wall() const { return wall != no_wall; }

@@ -21,12 +21,13 @@ namespace continuo {
 template <class Real, int Dim>
 struct Companions {
   using V = Vector<Real, Dim>;
-  std::vector<Real> state;
+  std::vector<Real> state;  // at the present time of the world
+  /// Adds to `force` and `torque`, and sets `rate` to the derivative of `state`.
   std::function<void(Real t, const BodyStates<Real, Dim>& at, std::span<const Real> state, std::span<V> force,
                      std::span<Spin<Real, Dim>> torque, std::span<Real> rate)>
       law;
-  bool twists = false;  // the law has torques
-  Real absolute_tolerance = Real(1e-13);
+  bool twists = false;                    // the law has torques
+  Real absolute_tolerance = Real(1e-13);  // of the states, in their units
 };
 
 /// The options of the exact motion, in the units of the world.
@@ -47,7 +48,7 @@ struct ExactOptions {
 /// What a motion has done so far.
 struct ExactStatistics {
   std::size_t collisions = 0;       // of two bodies
-  std::size_t wall_collisions = 0;  //
+  std::size_t wall_collisions = 0;  // of a body with a wall
   std::size_t crossings = 0;        // of cells
   std::size_t outdated = 0;         // predictions made again
 

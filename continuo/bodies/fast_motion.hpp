@@ -26,7 +26,7 @@ namespace continuo {
 /// The options of the fast motion, in the units of the world.
 template <class Real>
 struct FastOptions {
-  Real step = Real(1) / Real(60);
+  Real step = Real(1) / Real(60);  // the time of one step
   int substeps = 4;                // more make contacts stiffer, at proportional cost
   Real hertz = Real(120);          // of a contact; at most a third of the rate of substeps is used
   Real damping = Real(10);         // ratio: 1 is critical; overdamped contacts do not jump
@@ -41,7 +41,12 @@ struct FastOptions {
 /// The steps, built pair lists and impacts so far; the contacts, colours (groups of contacts that share no body) and
 /// sleeping bodies of the last step.
 struct FastStatistics {
-  std::size_t steps = 0, lists = 0, contacts = 0, colours = 0, impacts = 0, asleep = 0;
+  std::size_t steps = 0;     // so far
+  std::size_t lists = 0;     // of pairs, built so far
+  std::size_t contacts = 0;  // in the last step
+  std::size_t colours = 0;   // in the last step
+  std::size_t impacts = 0;   // so far
+  std::size_t asleep = 0;    // bodies, after the last step
 };
 
 /// Moves a world in fixed steps.

@@ -23,24 +23,26 @@ namespace continuo {
 /// A half line, or a segment of length `reach`.
 template <class Real, int Dim>
 struct Ray {
-  Vector<Real, Dim> origin{}, direction{};  // of any length but 0
-  Real reach = std::numeric_limits<Real>::infinity();
+  Vector<Real, Dim> origin{};                          // where it begins
+  Vector<Real, Dim> direction{};                       // of any length but 0
+  Real reach = std::numeric_limits<Real>::infinity();  // its length
 };
 
 /// Selects the objects of a query: bodies of the groups whose bit is set, and walls.
 struct QueryFilter {
-  std::uint32_t groups = ~std::uint32_t{0};
-  bool walls = true;
+  std::uint32_t groups = ~std::uint32_t{0};  // bit i: the bodies of group i; by default all
+  bool walls = true;                         // walls too
 };
 
 /// A hit on a body, or on a wall, whose number in world.walls() is `wall`.
 template <class Real, int Dim>
 struct RayHit {
-  static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();
-  BodyHandle body{};
-  std::uint32_t wall = no_wall;
-  Real distance{};                      // along the ray; 0 where it starts inside the body or behind the wall
-  Vector<Real, Dim> point{}, normal{};  // of the surface; against the ray where it starts inside
+  static constexpr std::uint32_t no_wall = std::numeric_limits<std::uint32_t>::max();  // `wall` of a hit on a body
+  BodyHandle body{};                                                                   // that was hit
+  std::uint32_t wall = no_wall;                                                        // that was hit
+  Real distance{};             // along the ray; 0 where it starts inside the body or behind the wall
+  Vector<Real, Dim> point{};   // where it is
+  Vector<Real, Dim> normal{};  // of the surface; against the ray where it starts inside
   /// Whether it is a wall that was hit.
   [[nodiscard]] bool is_wall() const { return wall != no_wall; }
 };
@@ -48,14 +50,14 @@ struct RayHit {
 /// A body near a point.
 template <class Real>
 struct Neighbour {
-  BodyHandle body{};
-  Real distance{};  // to its surface, below 0 inside
+  BodyHandle body{};  // the body
+  Real distance{};    // to its surface, below 0 inside
 };
 
 /// What a region touches.
 struct Overlap {
-  std::vector<BodyHandle> bodies{};
-  std::vector<std::uint32_t> walls{};
+  std::vector<BodyHandle> bodies{};    // the bodies
+  std::vector<std::uint32_t> walls{};  // the walls, by their numbers in world.walls()
 };
 
 /// An index of the bodies of a world at one instant. It does not follow the world: build another after a change.

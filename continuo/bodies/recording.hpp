@@ -33,10 +33,10 @@ namespace continuo {
 /// The positions and orientations of all bodies at an instant.
 template <class Real, int Dim>
 struct Frame {
-  Real time{};
+  Real time{};              // of the world
   std::uint64_t scene = 0;  // Recording::scenes[scene] is the world of these bodies, in the same order
-  std::vector<Vector<Real, Dim>> position{};
-  std::vector<Orientation<Real, Dim>> orientation{};
+  std::vector<Vector<Real, Dim>> position{};          // of centres
+  std::vector<Orientation<Real, Dim>> orientation{};  // angles or quaternions
 
   /// Reads or writes the frame.
   template <class Archive>
@@ -107,9 +107,9 @@ class Recorder {
 /// A recording that was read from a file.
 template <class Real, int Dim>
 struct Recording {
-  bool is_whole = false;  // false where the index is missing: the run was cut off
-  std::vector<World<Real, Dim>> scenes{};
-  std::vector<Frame<Real, Dim>> frames{};
+  bool is_whole = false;                   // false where the index is missing: the run was cut off
+  std::vector<World<Real, Dim>> scenes{};  // the worlds, a new one where bodies were added or removed
+  std::vector<Frame<Real, Dim>> frames{};  // in the order of time
 
   /// Frame i, counted from 0.
   [[nodiscard]] const Frame<Real, Dim>& frame(std::size_t i) const { return frames[i]; }

@@ -33,10 +33,10 @@ struct Wall {
     Vector<Real, Dim> up;
     up[static_cast<std::size_t>(Dim - 1)] = Real(1);
     return up;
-  }();
-  Real offset = Real(0);
-  Material<Real> material{};
-  bool thin = false;
+  }();  // of length 1, by default upwards
+  Real offset = Real(0);      // normal . x of the points on the wall
+  Material<Real> material{};  // of its surface
+  bool thin = false;          // true: bodies are on both sides
 };
 /// The wall with its normal turned to the side of x.
 template <class Real, int Dim>
@@ -51,23 +51,27 @@ template <class Real, int Dim>
 /// Pulls two bodies, or one body to a point, together with stiffness * (distance - rest_length) + damping * its rate.
 template <class Real, int Dim>
 struct Spring {
-  BodyHandle a{};
-  std::variant<BodyHandle, Vector<Real, Dim>> b = Vector<Real, Dim>{};
-  Real rest_length = Real(0), stiffness = Real(1), damping = Real(0);
+  BodyHandle a{};                                                       // one end, a body
+  std::variant<BodyHandle, Vector<Real, Dim>> b = Vector<Real, Dim>{};  // the other, a body or a point
+  Real rest_length = Real(0);                                           // at which it does not pull
+  Real stiffness = Real(1);                                             // force per length
+  Real damping = Real(0);                                               // force per speed
 };
 
 /// A drag force against the velocity of every body: linear * v + quadratic * |v| * v.
 template <class Real>
 struct Drag {
-  Real linear = Real(0), quadratic = Real(0);
+  Real linear = Real(0);     // force per speed
+  Real quadratic = Real(0);  // force per square of speed
 };
 
 /// The two bodies of every pair attract each other by constant * m1 * m2 * r / (r^2 + softening^2)^(3/2), fixed bodies
 /// included.
 template <class Real>
 struct Attraction {
-  Real constant = Real(0), softening = Real(0);
-  Real opening = Real(0);  // of the tree: 0 sums up all pairs, 0.5 is usual, see attraction.hpp
+  Real constant = Real(0);   // of gravitation, in the units of the world
+  Real softening = Real(0);  // a length
+  Real opening = Real(0);    // of the tree: 0 sums up all pairs, 0.5 is usual, see attraction.hpp
 };
 
 template <class Real, int Dim>
@@ -86,9 +90,10 @@ template <class Real>
 /// The states of all bodies: body i has x[i], v[i], orientation[i], spin[i].
 template <class Real, int Dim>
 struct BodyStates {
-  std::span<const Vector<Real, Dim>> x, v;
-  std::span<const Orientation<Real, Dim>> orientation;
-  std::span<const Spin<Real, Dim>> spin;
+  std::span<const Vector<Real, Dim>> x;                 // centres
+  std::span<const Vector<Real, Dim>> v;                 // their velocities
+  std::span<const Orientation<Real, Dim>> orientation;  // angles or quaternions
+  std::span<const Spin<Real, Dim>> spin;                // angular velocities, in radians per time
 };
 /// A user-defined torque: adds to torque[i], the torque on body i.
 template <class Real, int Dim>
@@ -107,14 +112,14 @@ class World {
   using O = Orientation<Real, Dim>;
 
   // Forces. All but the last three have a potential energy.
-  V gravity{};
-  std::vector<Spring<Real, Dim>> springs;
-  Attraction<Real> attraction{};
-  Drag<Real> drag{};
-  std::vector<ForceLaw<Real, Dim>> force_laws;
-  std::vector<TorqueLaw<Real, Dim>> torque_laws;
-  CombineRule combine_rule{};  // of the materials of any two surfaces
-  Real time = Real(0);
+  V gravity{};                                    // the acceleration of every body
+  std::vector<Spring<Real, Dim>> springs;         // between bodies and points
+  Attraction<Real> attraction{};                  // of all pairs of bodies
+  Drag<Real> drag{};                              // on every body
+  std::vector<ForceLaw<Real, Dim>> force_laws;    // of your own
+  std::vector<TorqueLaw<Real, Dim>> torque_laws;  // of your own
+  CombineRule combine_rule{};                     // of the materials of any two surfaces
+  Real time = Real(0);                            // of the present state
 
   /// Fails for a body without size or mass, or with a number that is not finite; the message says how to correct it.
   /// Amortised O(1).
@@ -173,11 +178,16 @@ class World {
   }
 
   // By index: body i has position[i] and so on. An index is valid until a body is removed, a handle for ever.
-  std::vector<V> position, velocity, constant_force;
-  std::vector<O> orientation;
-  std::vector<S> spin;
-  std::vector<Real> radius, mass, inverse_mass, inverse_inertia;  // inverses are 0 of fixed bodies
-  std::vector<Material<Real>> material;
+  std::vector<V> position;               // of centres
+  std::vector<V> velocity;               // of centres
+  std::vector<V> constant_force;         // at the centre
+  std::vector<O> orientation;            // an angle in the plane, a unit quaternion in space
+  std::vector<S> spin;                   // the angular velocity, in radians per time
+  std::vector<Real> radius;              // in the unit of length
+  std::vector<Real> mass;                // in the unit of mass
+  std::vector<Real> inverse_mass;        // 0 of fixed bodies
+  std::vector<Real> inverse_inertia;     // 0 of fixed bodies
+  std::vector<Material<Real>> material;  // of surfaces
 
   /// The centre of a body, which the world must contain.
   [[nodiscard]] const V& position_of(BodyHandle body) const { return position[index(body)]; }

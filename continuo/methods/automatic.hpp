@@ -18,23 +18,23 @@ namespace continuo {
 
 /// The default for tolerances from 1e-6 up.
 struct Tsitouras5Rodas5P : Switching<Tsitouras5, Rodas5P> {
-  static constexpr std::string_view name = "tsitouras5_rodas5p";
+  static constexpr std::string_view name = "tsitouras5_rodas5p";  // by which with_method finds it
 };
 /// The default for tolerances below 1e-6.
 struct Dop853Radau : Switching<Dop853, Radau> {
-  static constexpr std::string_view name = "dop853_radau";
+  static constexpr std::string_view name = "dop853_radau";  // by which with_method finds it
 };
 /// The default for more than 100 states.
 struct Tsitouras5Bdf : Switching<Tsitouras5, Bdf> {
-  static constexpr std::string_view name = "tsitouras5_bdf";
+  static constexpr std::string_view name = "tsitouras5_bdf";  // by which with_method finds it
 };
 /// The default for x'' = a(t, x) and tolerances from 1e-6 up.
 struct DormandPrinceNystrom8Radau : Switching<DormandPrinceNystrom8, Radau> {
-  static constexpr std::string_view name = "dprkn8_radau";
+  static constexpr std::string_view name = "dprkn8_radau";  // by which with_method finds it
 };
 /// The default for x'' = a(t, x) and tolerances below 1e-6.
 struct DormandPrinceNystrom12Radau : Switching<DormandPrinceNystrom12, Radau> {
-  static constexpr std::string_view name = "dprkn12_radau";
+  static constexpr std::string_view name = "dprkn12_radau";  // by which with_method finds it
 };
 
 /// What is taken where no method is named.

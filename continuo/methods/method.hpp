@@ -19,8 +19,8 @@ namespace continuo {
 /// x(t + theta h) = c[0] + theta (c[1] + theta (c[2] + ...)) for theta in 0..1. Each c is a state.
 template <State X, int Degree>
 struct Interpolant {
-  static constexpr int degree = Degree;
-  std::array<X, Degree + 1> c;
+  static constexpr int degree = Degree;  // of the polynomial
+  std::array<X, Degree + 1> c;           // its coefficients, that of theta^0 first
 
   /// Room for coefficients like x.
   explicit Interpolant(const X& x) { c.fill(x); }
@@ -60,10 +60,11 @@ inline constexpr double greatest_rounding_of_time = 0.1;
 /// One number each, or one per component (then the spans have the size of the state).
 template <class Real>
 struct Tolerance {
-  Real rtol, atol;
+  Real rtol;                        // relative
+  Real atol;                        // absolute, in the unit of the components
   const Real* rtol_each = nullptr;  // null, or one per component
-  const Real* atol_each = nullptr;
-  Real rounding_of_time{};  // what rounding of t leaves undecided of a step, as a part of the change it makes
+  const Real* atol_each = nullptr;  // null, or one per component
+  Real rounding_of_time{};          // what rounding of t leaves undecided of a step, as a part of the change it makes
 
   /// The size against which an error of component i is measured; the unit is that of the component.
   [[nodiscard]] Real scale(std::size_t i, const Real& x, const Real& x_new) const {
@@ -90,7 +91,9 @@ enum class StepStatus { done, newton_diverged, singular_matrix, not_finite };
 
 /// What the solving of equations cost since the workspace was made.
 struct EquationCosts {
-  std::size_t jacobians = 0, factorizations = 0, linear_solves = 0;
+  std::size_t jacobians = 0;       // df/dx computed
+  std::size_t factorizations = 0;  // of matrices made of it
+  std::size_t linear_solves = 0;   // with these factors
 };
 
 namespace detail {

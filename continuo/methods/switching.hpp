@@ -24,11 +24,17 @@ namespace continuo {
 /// there.
 template <class NonStiff, class Stiff>
 struct Switching {
+  /// Of the explicit method.
+  /// @{
   static constexpr int order = NonStiff::order, error_order = NonStiff::error_order;
   static constexpr int order_of_fixed_steps = detail::order_of_fixed_steps<NonStiff>();
+  /// @}
+  /// What holds of both methods.
+  /// @{
   static constexpr int dense_order = std::min(NonStiff::dense_order, Stiff::dense_order);
   static constexpr int dense_degree = std::max(NonStiff::dense_degree, Stiff::dense_degree);
   static constexpr bool second_order = NonStiff::second_order, implicit = true, automatic = true;
+  /// @}
   static_assert(detail::is_implicit<Stiff>() && !Stiff::second_order,
                 "the second method of a pair is for stiff systems: it is implicit, and not only for x'' = a(t, x)");
   static_assert(detail::estimates_error<NonStiff>() && detail::estimates_error<Stiff>(),

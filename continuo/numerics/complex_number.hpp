@@ -9,7 +9,8 @@ namespace continuo {
 /// A complex number re + i im. Infinities and NaN get no special treatment.
 template <class Real>
 struct ComplexNumber {
-  Real re{}, im{};
+  Real re{};  // the real part
+  Real im{};  // the imaginary part
 
   /// Zero.
   constexpr ComplexNumber() = default;

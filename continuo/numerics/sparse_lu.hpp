@@ -36,7 +36,9 @@ class SparseFactors {
 
 /// A sparse solver: it analyses a pattern, for real and for complex matrices.
 struct SparseSolver {
+  /// For real matrices.
   std::unique_ptr<SparseFactors<double>> (*analyse_real)(const SparsePattern&);
+  /// For complex matrices.
   std::unique_ptr<SparseFactors<ComplexNumber<double>>> (*analyse_complex)(const SparsePattern&);
 };
 

@@ -12,7 +12,8 @@ namespace continuo {
 
 /// The place of an entry.
 struct MatrixPlace {
-  std::uint32_t row, column;
+  std::uint32_t row;     // from 0
+  std::uint32_t column;  // from 0
 };
 
 /// Columns one after another, the rows of each ascending; every diagonal entry is there.
@@ -36,7 +37,8 @@ class SparsePattern {
   [[nodiscard]] std::size_t find(std::size_t row, std::size_t column) const;
   /// How far the entries reach below and above the diagonal.
   struct Bandwidth {
-    std::size_t lower, upper;
+    std::size_t lower;  // rows below the diagonal
+    std::size_t upper;  // rows above it
   };
   /// How far the entries reach from the diagonal. Costs a pass over the columns.
   [[nodiscard]] Bandwidth bandwidth() const;

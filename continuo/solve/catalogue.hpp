@@ -9,14 +9,14 @@ namespace continuo {
 
 /// The properties of a method.
 struct MethodInfo {
-  std::string_view name;
+  std::string_view name;     // by which with_method finds it
   int order;                 // the greatest, where it varies;
   int order_of_fixed_steps;  // then the order of steps of fixed size
   int error_order;           // 0: no error estimate, needs a step
-  int dense_order;
-  bool second_order;  // only for x'' = a(t, x)
-  bool implicit;      // solves equations in each step: for stiff systems and algebraic equations
-  bool automatic;     // switches between an explicit and a stiff method
+  int dense_order;           // of the polynomial between the ends of a step
+  bool second_order;         // only for x'' = a(t, x)
+  bool implicit;             // solves equations in each step: for stiff systems and algebraic equations
+  bool automatic;            // switches between an explicit and a stiff method
 };
 
 /// Other names of a method: `euler` for explicit_euler, `crank_nicolson` for trapezoidal.

@@ -39,10 +39,10 @@ struct NoFunction {};
 /// The data that an action reads and may change. An action gets them by reference.
 template <State X>
 struct EventAction {
-  Scalar<X> t;
-  const X& before;
-  X& x;  // starts as `before`
-  bool stop = false;
+  Scalar<X> t;           // the time of the event
+  const X& before;       // the state before it
+  X& x;                  // the state after it; starts as `before`
+  bool stop = false;     // set it to end the run here
   bool restart = false;  // set it where the action changed f but not x (a mode kept outside the state)
   // Set it where the action moves x by no more than the tolerance, and f is the same: at the end of a step, where a
   // scheduled event happens, the method keeps its history, moved by the same way. A greater change begins anew.
@@ -134,28 +134,30 @@ class Action {
 /// One event: a guard with a direction, or times. Without an action it is only noted.
 template <State X>
 struct Event {
-  std::string name{};
-  Guard<X> guard{};  // empty: the event is scheduled
-  Direction direction = Direction::crosses;
-  Action<X> action{};
-  std::vector<Scalar<X>> times{};  // scheduled
-  Scalar<X> period{}, from{};      // scheduled at from, from + period, ... where period > 0
-  std::size_t stop_after = 0;      // the run stops at this many firings; 0: never
-  Action<X> at_limit{};            // where the firings accumulate; empty: the run ends there
+  std::string name{};                        // in messages and Solution::event_names
+  Guard<X> guard{};                          // empty: the event is scheduled
+  Direction direction = Direction::crosses;  // the sign change of the guard that counts
+  Action<X> action{};                        // empty: the event is only noted
+  std::vector<Scalar<X>> times{};            // scheduled
+  Scalar<X> period{};                        // > 0: scheduled at from, from + period, ...
+  Scalar<X> from{};                          // the first time of a period
+  std::size_t stop_after = 0;                // the run stops at this many firings; 0: never
+  Action<X> at_limit{};                      // where the firings accumulate; empty: the run ends there
 };
 
 /// An event as falls, rises, crosses, at and every make it where no type of state is named. It becomes an `Event` for
 /// the state of the run.
 template <class G, class A, class Real = double, class L = detail::NoFunction>
 struct EventOf {
-  std::string name;
-  G guard;
-  Direction direction;
-  A action;
-  std::vector<Real> times{};
-  Real period{}, from{};
-  std::size_t stop_after = 0;
-  L at_limit{};
+  std::string name;            // as Event::name, and so are the others
+  G guard;                     // no function: the event is scheduled
+  Direction direction;         // the sign change of the guard that counts
+  A action;                    // no function: the event is only noted
+  std::vector<Real> times{};   // scheduled
+  Real period{};               // > 0: scheduled at from, from + period, ...
+  Real from{};                 // the first time of a period
+  std::size_t stop_after = 0;  // the run stops at this many firings; 0: never
+  L at_limit{};                // where the firings accumulate; no function: the run ends there
 
   /// The same event with an action where its firings accumulate.
   template <class Limit>
@@ -242,7 +244,7 @@ template <State X>
 
 /// The effects of firing an event.
 struct EventResponse {
-  bool stop = false;
+  bool stop = false;     // the run ends here
   bool restart = false;  // data that f reads has changed: the motion begins again
   bool changed = false;  // something else has changed: a state that f does not read and that is constant between events
   bool correction = false;  // restart, only because x has moved: see EventAction::correction

@@ -11,10 +11,10 @@ namespace continuo {
 /// The events of one instant. The references are valid during the call that gets it.
 template <State X>
 struct EventOccurrence {
-  Scalar<X> t;
+  Scalar<X> t;                          // the instant
   std::span<const std::size_t> events;  // by number, in order of declaration
-  const X& before;
-  const X& after;
+  const X& before;                      // the state before all of them
+  const X& after;                       // the state after all of them
 };
 
 /// An observer of a run. The run calls `on_segment(integrator, from, to)` for every piece of the trajectory that is

@@ -21,7 +21,8 @@ namespace continuo {
 /// The time span of a run. If `to` is less than `from`, time runs backwards.
 template <class Real>
 struct Interval {
-  Real from, to;
+  Real from;  // the time at which the run begins
+  Real to;    // the time at which it ends
 };
 
 /// A function that watches a run. It returns nothing, or a bool: `false` ends the run.
@@ -87,7 +88,7 @@ struct Save {
   using Real = Scalar<X>;
   /// Every accepted step, given times, a regular grid, every step with its polynomial, or the last state alone.
   enum class Kind { steps, times, grid, dense, end };
-  Kind kind = Kind::steps;
+  Kind kind = Kind::steps;  // which states are kept
   using Watcher = Callback<Real, const X&>;
   std::vector<Real> times{};  // Kind::times, in the direction of time, within the run
   Real spacing{};             // Kind::grid: from, from + spacing, ...
@@ -119,10 +120,10 @@ template <class Real = double, class Call = detail::NoCallback>
 struct SaveOf {
   /// As Save::Kind.
   enum class Kind { steps, times, grid, dense, end };
-  Kind kind;
-  std::vector<Real> times{};
-  Real spacing{};
-  Call callback{};
+  Kind kind;                  // which states are kept
+  std::vector<Real> times{};  // Kind::times, in the direction of time, within the run
+  Real spacing{};             // Kind::grid: from, from + spacing, ...
+  Call callback{};            // gets every saved state; with it no states are stored
 
   /// The same, with a function that gets the states instead of the solution.
   template <class F>
@@ -168,20 +169,22 @@ template <class Real>
 template <State X>
 struct Options {
   using Real = Scalar<X>;
-  Real rtol = Real(1e-6), atol = Real(1e-9);
-  std::vector<Real> rtol_each{}, atol_each{};  // one per component, instead of the above
-  Real step = 0;                               // > 0: fixed steps of this size, no error control
-  Real first_step = 0;                         // 0: Hairer's estimate
-  Real max_step = std::numeric_limits<Real>::infinity();
-  Controller controller = PI;
-  std::size_t max_steps = 10'000'000;  // accepted and rejected together
-  std::size_t max_rejects_in_a_row = 60;
-  std::vector<Event<X>> events{};
-  Save<X> save{};
-  const std::atomic<bool>* interrupt = nullptr;  // the run ends as `interrupted` once it is true
-  Callback<Real> progress{};                     // called with t now and then (about every thousand steps)
-  Projection<X> projection{};                    // onto invariants, after every step
-  std::vector<Sign> signs{};                     // of the components, one for each; empty: any
+  Real rtol = Real(1e-6);                                 // the error allowed in a step, relative to each component
+  Real atol = Real(1e-9);                                 // and its absolute part, in the unit of the components
+  std::vector<Real> rtol_each{};                          // one per component, instead of rtol
+  std::vector<Real> atol_each{};                          // one per component, instead of atol
+  Real step = 0;                                          // > 0: fixed steps of this size, no error control
+  Real first_step = 0;                                    // the size that is tried first; 0: Hairer's estimate
+  Real max_step = std::numeric_limits<Real>::infinity();  // no step is longer
+  Controller controller = PI;                             // how the next step follows from the error
+  std::size_t max_steps = 10'000'000;                     // accepted and rejected together
+  std::size_t max_rejects_in_a_row = 60;                  // at more the run ends as `too_many_rejects`
+  std::vector<Event<X>> events{};                         // in the order in which they fire at one instant
+  Save<X> save{};                                         // which states the solution keeps
+  const std::atomic<bool>* interrupt = nullptr;           // the run ends as `interrupted` once it is true
+  Callback<Real> progress{};                              // called with t now and then (about every thousand steps)
+  Projection<X> projection{};                             // onto invariants, after every step
+  std::vector<Sign> signs{};                              // of the components, one for each; empty: any
 };
 
 }  // namespace continuo

@@ -12,12 +12,14 @@ namespace continuo {
 /// (accepted where <= 1), `component` the worst of it.
 template <class Real>
 struct Outcome {
-  Ending ending = Ending::reached_end;
-  Real t{}, h{}, error{};
-  std::string component{};  // the worst component by name; empty where none is to blame
-  std::string event{};      // the event that stopped the run or accumulates
-  Real limit_time{};        // the limit of the times of accumulating events
-  std::string hint{};       // what to try
+  Ending ending = Ending::reached_end;  // why the run ended
+  Real t{};                             // the time of the last attempt
+  Real h{};                             // its step size
+  Real error{};                         // its error estimate, in units of the tolerance
+  std::string component{};              // the worst component by name; empty where none is to blame
+  std::string event{};                  // the event that stopped the run or accumulates
+  Real limit_time{};                    // the limit of the times of accumulating events
+  std::string hint{};                   // what to try
 
   /// Whether the run reached its end, or an event stopped it.
   explicit operator bool() const { return succeeded(ending); }
@@ -39,12 +41,14 @@ namespace detail {
 
 /// The cost of a run.
 struct Statistics {
-  std::size_t steps = 0;                                             // accepted
-  std::size_t rejected = 0;                                          // tried and not accepted
-  std::size_t evaluations = 0;                                       // of f
-  std::size_t jacobians = 0, factorizations = 0, linear_solves = 0;  // of the equations of implicit methods
-  std::size_t events = 0;                                            // fired
-  double seconds = 0;                                                // wall time
+  std::size_t steps = 0;           // accepted
+  std::size_t rejected = 0;        // tried and not accepted
+  std::size_t evaluations = 0;     // of f
+  std::size_t jacobians = 0;       // df/dx computed, for implicit methods
+  std::size_t factorizations = 0;  // of their matrices
+  std::size_t linear_solves = 0;   // with these factors
+  std::size_t events = 0;          // fired
+  double seconds = 0;              // wall time
 };
 
 }  // namespace continuo

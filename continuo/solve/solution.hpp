@@ -20,15 +20,19 @@ namespace continuo {
 template <State X>
 struct EventRecord {
   std::size_t event;  // its number; Solution::event_names has the name
-  Scalar<X> t;
-  X before, after;
+  Scalar<X> t;        // its time
+  X before;           // the state before its action
+  X after;            // the state after it
 };
 
 /// A piece of a step's polynomial: x(t) = sum_j coefficients[j] theta^j, theta = (t - origin) / h, from begin to end.
 template <State X>
 struct DenseSegment {
-  Scalar<X> begin, end, origin, h;
-  std::vector<X> coefficients;
+  Scalar<X> begin;              // the first time of the piece
+  Scalar<X> end;                // its last time
+  Scalar<X> origin;             // where theta is 0
+  Scalar<X> h;                  // the size of the step: theta is 1 at origin + h
+  std::vector<X> coefficients;  // of theta^0, theta^1, ...
 
   /// x = x(t), for t from begin to end; outside, the polynomial is continued.
   void operator()(Scalar<X> t, X& x) const {
@@ -44,14 +48,14 @@ template <State X>
 struct Solution {
   using Real = Scalar<X>;
   std::vector<Real> t;  // the times of the kept states, see Save; where an event changes the state, two of them
-  std::vector<X> x;
-  std::vector<EventRecord<X>> events;
-  std::vector<std::string> event_names;
+  std::vector<X> x;     // the kept states, one for each t
+  std::vector<EventRecord<X>> events;     // all that have occurred, in the order of time
+  std::vector<std::string> event_names;   // by number
   std::vector<DenseSegment<X>> segments;  // with Save::dense()
-  Statistics statistics;
-  Outcome<Real> outcome;
-  std::optional<X> last{};  // the last valid state, whatever is saved
-  bool dense = false;       // saved with Save::dense()
+  Statistics statistics;                  // what the run has cost
+  Outcome<Real> outcome;                  // why it ended
+  std::optional<X> last{};                // the last valid state, whatever is saved
+  bool dense = false;                     // saved with Save::dense()
 
   /// The last valid state, at outcome.t. It is known whatever the run saves.
   [[nodiscard]] const X& final_state() const {

@@ -39,9 +39,9 @@ inline constexpr Ending last_ending = Ending::stopped_by_callback;
 
 /// How an operation ended, in words.
 struct [[nodiscard]] Status {
-  Ending ending = Ending::reached_end;
-  std::string message{};  ///< One sentence: what is wrong and how to mend it; empty after a success.
-  std::string place{};    ///< What the message is about: a file, a body, a time; empty where the message names it.
+  Ending ending = Ending::reached_end;  ///< Why it ended.
+  std::string message{};                ///< One sentence: what is wrong and how to mend it; empty after a success.
+  std::string place{};  ///< What the message is about: a file, a body, a time; empty where the message names it.
 
   /// Whether it succeeded.
   explicit operator bool() const { return succeeded(ending); }

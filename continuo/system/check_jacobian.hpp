@@ -24,12 +24,15 @@ namespace continuo {
 /// d f[row] / d x[column]; for df/dt the column is the number of components.
 template <class Real>
 struct JacobianEntry {
-  std::size_t row{}, column{};
-  Real given{};              // 0 where the pattern leaves it out
-  Real measured{}, doubt{};  // by differences, and how far they may be off
-  Real below{}, above{};     // slopes to either side
-  Real apart{};              // |given - measured| in parts of the row's greatest, each column times its component
-  bool in_pattern = true;
+  std::size_t row{};       // of f
+  std::size_t column{};    // of x; the number of components for df/dt
+  Real given{};            // 0 where the pattern leaves it out
+  Real measured{};         // by differences
+  Real doubt{};            // how far they may be off
+  Real below{};            // the slope to the smaller side
+  Real above{};            // and to the greater
+  Real apart{};            // |given - measured| in parts of the row's greatest, each column times its component
+  bool in_pattern = true;  // false: the pattern says that it is 0
 };
 
 /// The entries of df/dx and df/dt, sorted by the verdict on each.
@@ -40,7 +43,7 @@ struct JacobianCheck {
   std::vector<Entry> kinks;      // f has no derivative here: its slopes to either side differ, given is between them
   std::vector<Entry> undecided;  // f is not finite nearby, or too rough for any difference
   std::vector<Entry> right;      // at most one: the one furthest apart
-  std::size_t compared = 0;
+  std::size_t compared = 0;      // entries of all kinds
 
   /// Whether no entry is wrong.
   [[nodiscard]] bool agrees() const { return wrong.empty(); }

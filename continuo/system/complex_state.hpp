@@ -20,7 +20,7 @@ struct ComplexState {
   using value_type = typename Number::value_type;
   static_assert(sizeof(Number) == 2 * sizeof(value_type), "the container must contain std::complex");
 
-  Container z;
+  Container z;  // the complex components
 
   // An array of std::complex may be read as one of its parts: [complex.numbers.general] of the C++ standard.
   /// The parts, real and imaginary in turn.

@@ -17,9 +17,10 @@ namespace continuo {
 /// The derivative of one component of f by one variable.
 template <class Real>
 struct Difference {
-  Real slope{};
+  Real slope{};                                        // the estimate of the derivative
   Real doubt = std::numeric_limits<Real>::infinity();  // |slope - the derivative| is not above it
-  Real below{}, above{};                               // slopes to either side, where they differ
+  Real below{};                                        // the slope to the smaller side, where the two differ
+  Real above{};                                        // the slope to the greater side
   bool found = false;                                  // f is finite around
   bool kinked = false;                                 // the slopes to either side stay apart: no derivative here
 };

@@ -46,7 +46,7 @@ struct ParametricSystem {
   /// So many conservation laws are held (conservation_laws.hpp), what is off dies away at this rate: as many
   /// eigenvalues are minus that, which say nothing of the system.
   std::size_t conserved = 0;
-  double conserved_rate = 0;
+  double conserved_rate = 0;  // per time
 
   /// The number of components with a derivative.
   [[nodiscard]] std::size_t differential() const { return size - algebraic; }

@@ -54,7 +54,7 @@ void for_each_pair(const F& f, const X& x, Body&& body) {
 /// then the velocities.
 template <class Acceleration>
 struct SecondOrderSystem {
-  Acceleration acceleration;
+  Acceleration acceleration;  // a(t, q) or a(t, q, v), as returned or as written
 
   /// dxdt = (v, a(t, q, v)).
   template <State X>

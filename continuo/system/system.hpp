@@ -88,7 +88,8 @@ concept Named = requires(const F& f, std::size_t i) {
 
 /// A position and its velocity, as components of the state.
 struct PositionVelocity {
-  std::size_t position, velocity;
+  std::size_t position;  // the component x[position], a position
+  std::size_t velocity;  // the component that is its derivative
 };
 /// The system says which components are a position and which the velocity of that position: pair_count(size) and
 /// pair(i, size), with x[position]' = x[velocity]. Methods for x'' = a(t, x) need it.
