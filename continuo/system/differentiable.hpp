@@ -24,6 +24,7 @@
 
 #include <continuo/numerics/sparse_pattern.hpp>
 #include <continuo/numerics/state.hpp>
+#include <continuo/system/rebound_state.hpp>
 #include <continuo/system/system.hpp>
 
 namespace continuo {
@@ -37,17 +38,8 @@ template <class Real, std::size_t Count>
 using Dual = ceres::Jet<Real, static_cast<int>(Count)>;
 
 /// The state of the duals of a state.
-template <class X, class Number>
-struct Rebound {
-  using type = std::vector<Number>;
-};
-template <class X, class Number>
-  requires is_fixed<X>
-struct Rebound<X, Number> {
-  using type = std::array<Number, std::tuple_size<X>::value>;
-};
 template <State X, std::size_t Count>
-using DualState = typename Rebound<X, Dual<Scalar<X>, Count>>::type;
+using DualState = ReboundState<X, Dual<Scalar<X>, Count>>;
 
 /// The duals of one right-hand side. Real is the scalar of states of run-time size.
 template <class Real>
