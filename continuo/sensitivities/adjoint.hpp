@@ -77,7 +77,7 @@ struct Gradient {
   X by_initial_values;  // dG/dx0
   P by_parameters;      // dG/dp, at fixed x0
   DerivativeCosts costs{};
-  Scalar<X> error_of_integral{};  // an estimate of what the steps have left; not a number without an embedded method
+  Scalar<X> error_of_integral{};  // an estimate; not a number where the tableau has no embedded weights
   Status status{};                // a failure where there is no gradient
 };
 

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include <continuo/sensitivities/forward/variational_events.hpp>
+#include <continuo/sensitivities/forward/variational_system.hpp>
 #include <continuo/sensitivities/parametric_event.hpp>
-#include <continuo/sensitivities/variational_events.hpp>
-#include <continuo/sensitivities/variational_system.hpp>
 #include <continuo/solve/solve.hpp>
 
 namespace continuo {

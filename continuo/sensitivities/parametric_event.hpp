@@ -31,6 +31,14 @@ struct ParametricAction {
   bool stop = false;
 };
 
+/// An event of a run, and how its time depends on the influences: dt/dp, and dt/dx0 where that was asked for.
+template <class Real>
+struct EventTime {
+  std::size_t event;  // its number
+  Real t;
+  std::vector<Real> moves;
+};
+
 namespace detail {
 
 template <class E>

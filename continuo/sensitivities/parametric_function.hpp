@@ -44,6 +44,13 @@ void evaluate(F& f, const T& t, const X& x, const P& p, X& dxdt) {
   if constexpr (requires { detail::keep_size(x, dxdt); }) detail::keep_size(x, dxdt);
 }
 
+/// The number of evaluations that derivatives have cost. A traced evaluation is one of f.
+struct DerivativeCosts {
+  std::size_t evaluations = 0;               // of f
+  std::size_t jacobians = 0;                 // of df/dx or df/dp, as members of f
+  std::size_t vector_jacobian_products = 0;  // lambda^T df/dx and lambda^T df/dp together
+};
+
 namespace detail {
 
 template <State X>

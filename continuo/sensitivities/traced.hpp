@@ -97,6 +97,7 @@ class Trace {
 template <class Real>
 class Traced {
  public:
+  /// The constant 0.
   Traced() = default;
   /// A constant.
   template <class Number>
@@ -125,6 +126,8 @@ class Traced {
     return Traced(value, *a.trace_, a.trace_->add(a.place_, by_a, b.place_, by_b));
   }
 
+  /// Arithmetic.
+  /// @{
   friend Traced operator+(const Traced& a) { return a; }
   friend Traced operator-(const Traced& a) { return of(a, -a.value_, Real(-1)); }
   friend Traced operator+(const Traced& a, const Traced& b) { return of(a, b, a.value_ + b.value_, Real(1), Real(1)); }
@@ -140,6 +143,7 @@ class Traced {
   Traced& operator-=(const Traced& b) { return *this = *this - b; }
   Traced& operator*=(const Traced& b) { return *this = *this * b; }
   Traced& operator/=(const Traced& b) { return *this = *this / b; }
+  /// @}
 
   /// Functions of two numbers, of which one may be a constant.
   /// @{
@@ -157,9 +161,11 @@ class Traced {
   [[nodiscard]] friend Traced min(const Traced& a, const Traced& b) { return b.value_ < a.value_ ? b : a; }
   /// @}
 
-  // Comparisons are those of the values: a branch is differentiated as the one that was taken.
+  /// Comparisons are those of the values: a branch is differentiated as the one that was taken.
+  /// @{
   friend bool operator==(const Traced& a, const Traced& b) { return a.value_ == b.value_; }
   friend auto operator<=>(const Traced& a, const Traced& b) { return a.value_ <=> b.value_; }
+  /// @}
 
  private:
   Real value_{};

@@ -10,6 +10,10 @@ namespace {
 [[maybe_unused]] const auto f = [](double, const X& x) { return X{x[1], -x[0]}; };
 [[maybe_unused]] const auto g = [](double, const X& x) { return x[0]; };
 [[maybe_unused]] const X x0{1, 0};
+[[maybe_unused]] const auto sensitive = [](auto, const auto& x, const auto& p, auto& dxdt) {
+  dxdt[0] = p[0] * x[1];
+  dxdt[1] = -p[1] * x[0];
+};
 
 struct Base {
   X operator()(double, const X& x) const { return {x[1], -x[0]}; }
@@ -365,6 +369,52 @@ struct Sum {
 };
 int main() {
   return solve(f, x0, {0, 1}, with_norm(Dop853{}, Sum{})).outcome ? 0 : 1;
+}
+#elif MISTAKE == 61  // refused: the adjoint goes back over the steps of Runge-Kutta methods
+int main() {
+  return solve_for_adjoint(sensitive, x0, x0, {0, 1}, Radau{}).status ? 0 : 1;
+}
+#elif MISTAKE == 62  // refused: what follows the options must be events as falls
+int main() {
+  return forward_sensitivities(sensitive, x0, x0, {0, 1}, Dop853{}, {}, falls<X>("named", g)).status ? 0 : 1;
+}
+#elif MISTAKE == 63  // refused: the guard of an event must take any number type
+int main() {
+  return forward_sensitivities(sensitive, x0, x0, {0, 1}, Dop853{}, {}, falls("plain", g)).status ? 0 : 1;
+}
+#elif MISTAKE == 64  // refused: the member `jacobian` would be ignored: with parameters
+struct WithoutParameters {
+  X operator()(double, const X& x, const X& p) const { return {x[1] * p[0], -x[0]}; }
+  void jacobian(double, const X&, std::span<double>) {}
+};
+int main() {
+  return forward_sensitivities(WithoutParameters{}, x0, x0, {0, 1}, Dop853{}).status ? 0 : 1;
+}
+#elif MISTAKE == 65  // refused: a mass matrix is not supported
+struct Heavy {
+  X operator()(double, const X& x, const X& p) const { return {x[1] * p[0], -x[0]}; }
+  double mass(std::size_t) const { return 2; }
+};
+int main() {
+  return forward_sensitivities(Heavy{}, x0, x0, {0, 1}, Radau{}).status ? 0 : 1;
+}
+#elif MISTAKE == 66  // refused: an objective has the terms
+int main() {
+  const auto run = solve_for_adjoint(sensitive, x0, x0, {0, 1}, Dop853{});
+  return run.gradient([](auto, const auto& x, auto) { return x[0]; }).status ? 0 : 1;
+}
+#elif MISTAKE == 67  // refused: where events accumulate the motion has no derivative
+int main() {
+  const auto floor = falls("floor", [](auto, const auto& x) { return x[0]; }, [](auto& now) { now.x[1] *= -0.5; });
+  return forward_sensitivities(sensitive, x0, x0, {0, 1}, Dop853{}, {}, floor.then([](auto&) {})).status ? 0 : 1;
+}
+#elif MISTAKE == 68  // refused: sensitivities use jacobian
+struct Ignored {
+  X operator()(double, const X& x, const X& p) const { return {x[1] * p[0], -x[0]}; }
+  void time_derivative(double, const X&, X&) {}
+};
+int main() {
+  return forward_sensitivities(Ignored{}, x0, x0, {0, 1}, Dop853{}).status ? 0 : 1;
 }
 #else
 #error "there is no such mistake"

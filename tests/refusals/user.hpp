@@ -12,6 +12,8 @@
 #include <continuo/methods/collocation/radau.hpp>
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/methods/symplectic/velocity_verlet.hpp>
+#include <continuo/sensitivities/adjoint.hpp>
+#include <continuo/sensitivities/forward_sensitivities.hpp>
 #include <continuo/solve/automatic.hpp>
 #include <continuo/solve/solve.hpp>
 #include <continuo/system/second_order.hpp>

@@ -3,6 +3,7 @@
 //   k_i = f(t + c_i h, x + h sum_j a_ij k_j),   x(t + theta h) = x + h sum_i B_i(theta) k_i.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <vector>
@@ -47,10 +48,15 @@ struct RungeKuttaTable {
   }
 };
 
+/// The weights of an estimate by the embedded method. A tableau without its weights has no sum of 1 in them.
 template <class M, class Real>
 void set_error_weights(RungeKuttaTable<Real>& table) {
   table.estimate_stages = table.step_stages;
   if constexpr (M::error_order > 0) {
+    using std::abs;
+    Real sum(0);
+    for (std::size_t i = 0; i < M::tableau.stages; ++i) sum += M::tableau.embedded[i].template as<Real>();
+    if (abs(sum - Real(1)) > Real(0.001)) return;
     for (std::size_t i = 0; i < M::tableau.stages; ++i) {
       table.error.push_back((M::tableau.b[i] - M::tableau.embedded[i]).template as<Real>());
       if (table.error.back() != Real(0)) table.estimate_stages = std::max(table.step_stages, i + 1);

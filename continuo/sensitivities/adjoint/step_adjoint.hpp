@@ -17,8 +17,8 @@
 
 #include <continuo/numerics/dense_lu.hpp>
 #include <continuo/sensitivities/adjoint/runge_kutta_table.hpp>
+#include <continuo/sensitivities/derivatives/parameter_derivatives.hpp>
 #include <continuo/sensitivities/objective.hpp>
-#include <continuo/sensitivities/parameter_derivatives.hpp>
 
 namespace continuo::detail {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <continuo/numerics/sparse_pattern.hpp>
-#include <continuo/sensitivities/parameter_derivatives.hpp>
+#include <continuo/sensitivities/derivatives/parameter_derivatives.hpp>
 
 namespace continuo {
 

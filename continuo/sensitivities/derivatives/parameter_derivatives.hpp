@@ -13,13 +13,6 @@
 
 namespace continuo {
 
-/// The number of evaluations that derivatives have cost. A traced evaluation is one of f.
-struct DerivativeCosts {
-  std::size_t evaluations = 0;               // of f
-  std::size_t jacobians = 0;                 // of df/dx or df/dp, as members of f
-  std::size_t vector_jacobian_products = 0;  // lambda^T df/dx and lambda^T df/dp together
-};
-
 namespace detail {
 
 /// A central difference of order 4: (8 (g(h) - g(-h)) - (g(2h) - g(-2h))) / 12 h. With h = eps^(1/5) of the variable

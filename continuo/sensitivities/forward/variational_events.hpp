@@ -10,20 +10,12 @@
 #include <vector>
 
 #include <continuo/numerics/finite.hpp>
+#include <continuo/sensitivities/forward/variational_system.hpp>
 #include <continuo/sensitivities/parametric_event.hpp>
-#include <continuo/sensitivities/variational_system.hpp>
 #include <continuo/solve/event.hpp>
 #include <continuo/status/status.hpp>
 
 namespace continuo {
-
-/// An event of a run, and how its time depends on the influences: dt/dp, and dt/dx0 where that was asked for.
-template <class Real>
-struct EventTime {
-  std::size_t event;  // its number
-  Real t;
-  std::vector<Real> moves;
-};
 
 /// The source of these events, for the states of a VariationalSystem.
 template <class F, State X, State P>
