@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include <continuo/numerics/sparse_pattern.hpp>
 #include <continuo/numerics/state.hpp>
@@ -23,6 +24,20 @@ template <class Real>
   return moved - x;
 }
 
+/// df/dx row by row from the entries of its pattern, for a system that gives no other. `values` is scratch, which keeps
+/// its size from call to call.
+template <State X, HasSparseJacobian<X> F>
+void scatter_jacobian_values(F& f, const Scalar<X>& t, const X& x, std::vector<Scalar<X>>& values,
+                             std::span<Scalar<X>> rows) {
+  const SparsePattern& pattern = f.jacobian_pattern();
+  values.assign(pattern.entries(), Scalar<X>(0));
+  f.jacobian_values(t, x, std::span<Scalar<X>>(values));
+  std::ranges::fill(rows, Scalar<X>(0));
+  const std::size_t n = dimension(x);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t p = pattern.begin(j); p < pattern.end(j); ++p) rows[pattern.row(p) * n + j] = values[p];
+}
+
 /// df/dx row by row; fx = f(t, x), `moved` and `slope` are scratch, least(j) > 0 is the least increment of
 /// component j. Returns the number of evaluations of f.
 template <class F, State X, class Least>
@@ -32,6 +47,10 @@ int evaluate_jacobian(F& f, const Scalar<X>& t, const X& x, const X& fx, X& move
     // A Jacobian that writes only its nonzero entries, or adds to them, is right only on zeros.
     std::ranges::fill(rows, Scalar<X>(0));
     f.jacobian(t, x, rows);
+    return 0;
+  } else if constexpr (HasSparseJacobian<F, X>) {
+    std::vector<Scalar<X>> values;
+    scatter_jacobian_values(f, t, x, values, rows);
     return 0;
   } else {
     const std::size_t n = dimension(x);

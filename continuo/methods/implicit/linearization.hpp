@@ -92,6 +92,10 @@ class Linearization {
         return evaluations;
       }
     }
+    if constexpr (HasSparseJacobian<F, X> && !HasJacobian<F, X>) {
+      scatter_jacobian_values(f, t, x, values_, std::span<Real>(rows_));
+      return 0;
+    }
     return evaluate_jacobian(f, t, x, fx, moved_, slope_, least, std::span<Real>(rows_));
   }
 
@@ -163,7 +167,7 @@ class Linearization {
   std::size_t size_;
   X moved_, slope_;
   BlockOf<Real, N, N * N> rows_{};     // of J, or the entries of its pattern, or its band
-  std::vector<Real> values_;           // the entries of the pattern, where they have to be brought to the band
+  std::vector<Real> values_;           // the entries of the pattern, where they have to be brought elsewhere
   std::vector<std::uint32_t> places_;  // where they are there
   BandLayout band_;
   ConstantMass<X> mass_;
