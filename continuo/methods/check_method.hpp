@@ -20,7 +20,7 @@ namespace detail {
 // A class that derives from M and from a class with a member `status` finds that name ambiguous exactly if M has a
 // member of this name too, whatever its type, its arguments and its access.
 struct NamesOfMethods {
-  int unsupported_reason, error_square, implicit, set_tolerance, status, costs, automatic, error_order_of,
+  int unsupported_reason, error_square, implicit, set_tolerance, status, costs, failure, automatic, error_order_of,
       starting_order, order_of_fixed_steps, next_factor, rejected, retaken, stability_limits, moved, fault;
 };
 template <class M>
@@ -259,6 +259,10 @@ consteval void check_optional_members() {
       keeps_costs,
       "the member `costs` of the method would be ignored: it must be public: static EquationCosts costs(const "
       "Workspace<X>& work)");
+  constexpr bool keeps_failure = HasFailure<M, Work> || requires { &With::failure; };
+  static_assert(keeps_failure,
+                "the member `failure` of the method would be ignored: it must be public: static std::string_view "
+                "failure(const Workspace<X>& work)");
   constexpr bool keeps_error_order_of = HasErrorOrderOf<M, Work> || requires { &With::error_order_of; };
   static_assert(keeps_error_order_of,
                 "the member `error_order_of` of the method would be ignored: it must be public: static int "
@@ -331,6 +335,8 @@ consteval bool check_method() {
   constexpr bool is_method = detail::ResemblesMethod<M>;
   static_assert(is_method,
                 "the type is no method: see the concept Method, or name one of the library, such as Dop853{}");
+  // A method that is made of others knows more about which go together.
+  if constexpr (requires { M::template check<X>(); }) (void)M::template check<X>();
   if constexpr (is_method) detail::check_required_members<M, X, System>();
   if constexpr (Method<M, X, System>) {
     detail::check_optional_members<M, X, System>();

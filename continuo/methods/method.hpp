@@ -189,6 +189,10 @@ concept HasStatus = requires(const Work& work) {
   { M::status(work) } -> std::convertible_to<StepStatus>;
 };
 template <class M, class Work>
+concept HasFailure = requires(const Work& work) {
+  { M::failure(work) } -> std::convertible_to<std::string_view>;
+};
+template <class M, class Work>
 concept HasCosts = requires(const Work& work) {
   { M::costs(work) } -> std::convertible_to<EquationCosts>;
 };
@@ -315,6 +319,8 @@ template <class M, class Work>
 ///   M::status(const Workspace<X>& work)   -> StepStatus of the last step; a step that is not `done` is rejected and
 ///       tried with a smaller h
 ///   M::costs(const Workspace<X>& work)    -> EquationCosts
+///   M::failure(const Workspace<X>& work)  -> where the status of the last step is not `done`, why; empty where the
+///       method knows no more than its status says. A run that ends there has it as its hint
 ///   M::automatic      true where it is an explicit and a stiff method that hand over to each other
 ///   M::error_order_of(const Workspace<X>& work) -> error_order where the order varies (then M::order and
 ///       M::error_order are the greatest)

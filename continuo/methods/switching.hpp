@@ -127,6 +127,14 @@ struct Switching {
   [[nodiscard]] static StepStatus status(const Workspace<X>& work) {
     return work.is_stiff ? detail::status_of<Stiff>(work.stiff) : detail::status_of<NonStiff>(work.nonstiff);
   }
+  /// What the stiff method says of a step that it could not solve; empty where it says nothing.
+  template <State X>
+  [[nodiscard]] static std::string_view failure(const Workspace<X>& work) {
+    if constexpr (detail::HasFailure<Stiff, StiffWork<X>>) {
+      if (work.is_stiff) return Stiff::failure(work.stiff);
+    }
+    return {};
+  }
   /// What the stiff method's equations have cost so far.
   template <State X>
   [[nodiscard]] static EquationCosts costs(const Workspace<X>& work) {

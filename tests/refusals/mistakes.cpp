@@ -416,6 +416,58 @@ struct Ignored {
 int main() {
   return forward_sensitivities(Ignored{}, x0, x0, {0, 1}, Dop853{}).status ? 0 : 1;
 }
+#elif MISTAKE == 69  // refused: the state has a fixed size, and its equations are solved in registers
+int main() {
+  return solve(f, x0, {0, 1}, Krylov<Radau>{}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 70  // refused: the method is explicit: it has no linear systems
+int main() {
+  const auto decay = [](double, const V& x) { return x; };
+  return solve(decay, V{1, 0}, {0, 1}, Krylov<Dop853>{}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 71  // refused: `factor` of the linear solver must return a Status
+struct Optimist {
+  bool factor(const ShiftedMatrix<V>&) { return true; }
+  Status solve(const ShiftedMatrix<V>&, std::span<double>) { return {}; }
+};
+int main() {
+  const auto decay = [](double, const V& x) { return x; };
+  return solve(decay, V{1, 0}, {0, 1}, WithSolver<Radau, Optimist>{}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 72  // refused: the linear solver lacks a public member `solve`
+struct Copying {
+  Status factor(ShiftedOperator<V>&) { return {}; }
+  Status solve(V b) { return b.empty() ? Status{} : Status{}; }
+};
+int main() {
+  const auto decay = [](double, const V& x) { return x; };
+  return solve(decay, V{1, 0}, {0, 1}, WithSolver<Radau, Copying>{}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 73  // refused: `factor` of the linear solver takes both kinds of matrices
+struct Anything {
+  Status factor(auto&) { return {}; }
+  Status solve(auto&, std::span<double>) { return {}; }
+};
+int main() {
+  const auto decay = [](double, const V& x) { return x; };
+  return solve(decay, V{1, 0}, {0, 1}, WithSolver<Radau, Anything>{}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 74  // refused: `factor` of the linear solver takes complex matrices
+struct Half {
+  Status factor(const ShiftedMatrix<V>&) { return {}; }
+  Status factor(const ShiftedMatrix<V, ComplexNumber<double>>&) { return {}; }
+  Status solve(const ShiftedMatrix<V>&, std::span<double>) { return {}; }
+};
+int main() {
+  const auto decay = [](double, const V& x) { return x; };
+  return solve(decay, V{1, 0}, {0, 1}, WithSolver<Radau, Half>{}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 75  // refused: the linear solver lacks a public member `factor`
+struct Nothing {};
+int main() {
+  const auto decay = [](double, const V& x) { return x; };
+  return solve(decay, V{1, 0}, {0, 1}, WithSolver<Radau, Nothing>{}).outcome ? 0 : 1;
+}
 #else
 #error "there is no such mistake"
 #endif

@@ -12,6 +12,7 @@
 #include <continuo/methods/collocation/radau.hpp>
 #include <continuo/methods/explicit_rk/dop853.hpp>
 #include <continuo/methods/symplectic/velocity_verlet.hpp>
+#include <continuo/methods/with_solver.hpp>
 #include <continuo/sensitivities/adjoint.hpp>
 #include <continuo/sensitivities/forward_sensitivities.hpp>
 #include <continuo/solve/automatic.hpp>

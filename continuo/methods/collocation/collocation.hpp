@@ -79,6 +79,7 @@ struct CollocationMethod : ImplicitMethod<> {
       work.linear.prepare(system, x);
       if (work.linear.has_mass()) work.rtol = Scalar<X>(-1);  // whose looseness it is was not known yet
     }
+    work.linear.bind(system);
     if (discontinuity) work.restart(least);
     int evaluations = 0;
     if (!work.has_f) {
@@ -361,7 +362,7 @@ struct CollocationMethod : ImplicitMethod<> {
     const std::size_t n = dimension(x);
     work.linear.multiply_mass(work.slope, work.right);
     for (std::size_t i = 0; i < n; ++i) work.error.data()[i] = work.f.data()[i] - work.right.data()[i];
-    work.lu.solve(work.error.data());
+    work.lu.solve(work.linear, work.error.data());
     ++work.costs.linear_solves;
     // Once more where h may be far off: the filter alone does not go to 0 with it (eq. 8.20).
     const bool doubtful = work.was_rejected || work.ahead_degree == 0;
@@ -369,7 +370,7 @@ struct CollocationMethod : ImplicitMethod<> {
     for (std::size_t i = 0; i < n; ++i) work.point.data()[i] = x.data()[i] + work.error.data()[i];
     evaluate(system, t, work.point, work.error);
     for (std::size_t i = 0; i < n; ++i) work.error.data()[i] -= work.right.data()[i];
-    work.lu.solve(work.error.data());
+    work.lu.solve(work.linear, work.error.data());
     ++work.costs.linear_solves;
     return 1;
   }
@@ -402,7 +403,7 @@ struct CollocationMethod : ImplicitMethod<> {
         pair[i] = ComplexNumber<Real>(4 * (work.right.data()[i] - slope));
       }
     }
-    work.pair_lu[0].solve(pair.data());
+    work.pair_lu[0].solve(work.linear, pair.data());
     ++work.costs.linear_solves;
     for (std::size_t i = 0; i < n; ++i) work.error.data()[i] = pair[i].re;
     return work.linear.has_mass() ? 1 : 2;

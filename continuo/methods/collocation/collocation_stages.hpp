@@ -142,8 +142,8 @@ template <Nodes nodes, std::size_t s, State X, std::size_t most>
   const auto& numbers = table_for<X, nodes, s>();
   constexpr std::size_t reals = s % 2, pairs = s / 2;
   set_right<nodes, s>(h, work);
-  if constexpr (reals == 1) work.lu.solve(work.right.data());
-  for (std::size_t p = 0; p < pairs; ++p) work.pair_lu[p].solve(work.pair_right[p].data());
+  if constexpr (reals == 1) work.lu.solve(work.linear, work.right.data());
+  for (std::size_t p = 0; p < pairs; ++p) work.pair_lu[p].solve(work.linear, work.pair_right[p].data());
   work.costs.linear_solves += reals + pairs;
   const std::size_t n = dimension(work.f);
   for_each_component(work.f, [&](std::size_t i) __attribute__((always_inline)) {

@@ -261,7 +261,7 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
       work.solver.status = StepStatus::done;
       for (std::size_t i = 0; i < dimension(x); ++i) k.data()[i] = Real(0);
     } else {
-      work.solver.lu.solve(k.data());
+      work.solver.lu.solve(work.solver.linear, k.data());
     }
     if constexpr (HasMassDiagonal<System, X>) {
       for (std::size_t i = 0; i < dimension(x); ++i)

@@ -100,6 +100,7 @@ struct Seulex : ImplicitMethod<>, ExtrapolationMethod<Seulex> {
   static int begin(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                    Workspace<X>& work) {
     if (!work.linear.prepared()) work.linear.prepare(system, x);
+    work.linear.bind(system);
     work.status = StepStatus::done;
     if (discontinuity) work.has_slope = work.has_jacobian = work.is_current = false;
     int evaluations = 0;
@@ -287,7 +288,7 @@ struct Seulex : ImplicitMethod<>, ExtrapolationMethod<Seulex> {
     } else {
       evaluate(system, t, work.argument, work.correction);
     }
-    work.lu.solve(work.correction.data());
+    work.lu.solve(work.linear, work.correction.data());
     ++work.costs.linear_solves;
     return is_known ? 0 : 1;
   }
@@ -302,7 +303,7 @@ struct Seulex : ImplicitMethod<>, ExtrapolationMethod<Seulex> {
     evaluate(system, Real(t + substep), work.argument, work.correction);
     work.linear.multiply_mass(work.change, work.product);
     for (std::size_t i = 0; i < dimension(x); ++i) work.correction.data()[i] -= work.product.data()[i] / substep;
-    work.lu.solve(work.correction.data());
+    work.lu.solve(work.linear, work.correction.data());
     ++work.costs.linear_solves;
     // A first correction below the tolerance does not count.
     work.rate = weighted_norm(work.correction, x, x, work.tolerance) / max(first, Real(1));

@@ -44,15 +44,17 @@ class DirectEquations : public StepEquations<Scalar<X>> {
     return 1 + linear_.evaluate(system, t, x, f, LeastIncrements(tolerance, h, x, f, has_mass()));
   }
   template <class System>
-  [[nodiscard]] bool decompose(System&, const Real& c) {
+  [[nodiscard]] bool decompose(System& system, const Real& c) {
+    linear_.bind(system);
     ++costs.factorizations;
     const bool done = lu_.factor(linear_, c);
     status = done ? StepStatus::done : linear_.status_of_failure();
     return done;
   }
   template <class System>
-  [[nodiscard]] int solve(System&, const Real&, const X&, const X&, const Real&, X& b) {
-    lu_.solve(b.data());
+  [[nodiscard]] int solve(System& system, const Real&, const X&, const X&, const Real&, X& b) {
+    linear_.bind(system);
+    lu_.solve(linear_, b.data());
     ++costs.linear_solves;
     return 0;
   }

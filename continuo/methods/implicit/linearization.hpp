@@ -4,8 +4,9 @@
 //
 //   work.linear.prepare(system, x);                       // once; the only place that allocates
 //   evaluations += work.linear.evaluate(system, t, x, fx, least);
+//   work.linear.bind(system);                             // in each step
 //   if (!work.lu.factor(work.linear, 1 / (gamma * h))) ...;  // singular
-//   work.lu.solve(b);
+//   work.lu.solve(work.linear, b);
 #pragma once
 #include <array>
 #include <concepts>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include <continuo/methods/implicit/constant_mass.hpp>
+#include <continuo/methods/implicit/solver_of_shift.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/numerics/band_layout.hpp>
 #include <continuo/numerics/banded_lu.hpp>
@@ -49,22 +51,27 @@ class Linearization {
 
   /// Learns the structure of the system: pattern and mass. To be called before anything else.
   template <class F>
-  void prepare(F& f, const X&) {
+  void prepare(F& f, const X& x) {
     prepared_ = true;
     mass_.read(f, size_);
+    if constexpr (has_own && detail::GivesSolver<F, X>) {
+      own_ = f.solver_source(x);
+      bind(f);
+      if (!own_->reads_entries()) return;
+    }
     if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
       static_assert(klu_is_installed || !HasJacobianPattern<F>,
                     "the pattern of the Jacobian of a system of run-time size needs the sparse solver KLU: install "
                     "libsuitesparse-dev (SuiteSparse)");
       pattern_ = f.jacobian_pattern();
-      sparse_ = !mass_.is_matrix() && size_ >= least_sparse_size &&
-                static_cast<double>(pattern_.entries()) <=
-                    greatest_sparse_part * static_cast<double>(size_) * static_cast<double>(size_);
+      sparse_ = own() || (!mass_.is_matrix() && size_ >= least_sparse_size &&
+                          static_cast<double>(pattern_.entries()) <=
+                              greatest_sparse_part * static_cast<double>(size_) * static_cast<double>(size_));
       if (sparse_) {
         solver_ = &klu;
         rows_.assign(pattern_.entries(), 0);
         if constexpr (!HasSparseJacobian<F, X>) groups_ = ColumnGroups(pattern_);
-        banded_ = pattern_.is_banded();
+        banded_ = !own() && pattern_.is_banded();
         if (banded_) prepare_band();
         diagonal_.resize(size_);
         for (std::size_t i = 0; i < size_; ++i) diagonal_[i] = pattern_.find(i, i);
@@ -75,9 +82,30 @@ class Linearization {
     }
   }
 
+  /// Where a step begins: the system may have moved since the last one.
+  template <class F>
+  void bind(F& f) {
+    if constexpr (has_own && detail::GivesSolver<F, X>) {
+      if (own_) f.bind(*own_);
+    }
+  }
+  /// The source of the solvers of the user's; null where the matrix is decomposed.
+  [[nodiscard]] detail::SolverSource<X>* own() const {
+    if constexpr (has_own) {
+      return own_ ? &*own_ : nullptr;
+    } else {
+      return nullptr;
+    }
+  }
+
   /// J at (t, x); fx = f(t, x), least(j) the least increment for a difference. Returns the number of evaluations of f.
   template <class F, class Least>
   [[nodiscard]] int evaluate(F& f, const Real& t, const X& x, const X& fx, const Least& least) {
+    if constexpr (has_own && detail::GivesSolver<F, X>) {
+      bind(f);
+      own_->set_point(t, x, fx);
+      if (!own_->reads_entries()) return 0;
+    }
     if constexpr (N == run_time_size && std::same_as<Real, double> && HasJacobianPattern<F>) {
       if constexpr (HasBandJacobian<F, X>) {
         if (banded_) {
@@ -164,6 +192,9 @@ class Linearization {
   }
   [[nodiscard]] std::size_t place(std::size_t p) const { return banded_ ? places_[p] : p; }
 
+  static constexpr bool has_own = N == run_time_size;
+  struct None {};
+
   std::size_t size_;
   X moved_, slope_;
   BlockOf<Real, N, N * N> rows_{};     // of J, or the entries of its pattern, or its band
@@ -176,6 +207,7 @@ class Linearization {
   ColumnGroups groups_;
   std::vector<std::size_t> diagonal_;  // where the pattern has it
   bool sparse_ = false, banded_ = false, prepared_ = false;
+  [[no_unique_address]] std::conditional_t<has_own, detail::Cloned<detail::SolverSource<X>>, None> own_{};
 };
 
 /// c M - J, decomposed. Number is the scalar of the state or a ComplexNumber of it.
@@ -188,6 +220,9 @@ class Factorization {
 
   /// False where the matrix is singular or not finite.
   [[nodiscard]] bool factor(const Linearization<X>& linear, const Number& c) {
+    if constexpr (N == run_time_size) {
+      if (linear.own()) return factor_own(linear, c);
+    }
     if constexpr (has_sparse) {
       if (linear.banded()) return factor_band(linear, c);
       if (linear.sparse()) {
@@ -204,7 +239,10 @@ class Factorization {
   }
 
   /// b becomes the solution. Compiled into the caller, as b of a small system is in registers there.
-  [[gnu::always_inline]] void solve(Number* b) {
+  [[gnu::always_inline]] void solve([[maybe_unused]] const Linearization<X>& linear, Number* b) {
+    if constexpr (N == run_time_size) {
+      if (own_) return own_->solve(linear, b);
+    }
     if constexpr (has_sparse) {
       if (band_.size() > 0) return band_.solve(b);
       if (sparse_) return sparse_->solve(b);
@@ -218,6 +256,16 @@ class Factorization {
   struct None {};
   using Sparse = std::conditional_t<has_sparse, SparseLU<std::conditional_t<has_sparse, Number, double>>, None>;
 
+  [[nodiscard]] bool factor_own(const Linearization<X>& linear, const Number& c) {
+    if (!own_) {
+      if constexpr (std::same_as<Number, Scalar<X>>) {
+        own_ = linear.own()->real_solver();
+      } else {
+        own_ = linear.own()->complex_solver();
+      }
+    }
+    return own_->factor(linear, c);
+  }
   [[nodiscard]] bool factor_band(const Linearization<X>& linear, const Number& c) {
     if (band_.size() == 0) band_ = BandedLU<Number>(linear.band());
     return band_.factor(linear.entries(), c, linear.mass_diagonal());
@@ -226,6 +274,8 @@ class Factorization {
   DenseLU<Number, N> dense_;
   std::optional<Sparse> sparse_;
   std::conditional_t<has_sparse, BandedLU<Number>, None> band_;
+  [[no_unique_address]] std::conditional_t<N == run_time_size, detail::Cloned<detail::SolverOfShift<X, Number>>, None>
+      own_{};
 };
 
 }  // namespace continuo

@@ -48,6 +48,7 @@ struct StageSolver : StepEquations<Scalar<X>> {
   /// Where a step begins: J at (t, x) unless the one at hand will do.
   template <class System>
   [[nodiscard]] int prepare(System& system, const Real& t, const X& x, const Real& h, bool discontinuity) {
+    linear.bind(system);
     status = StepStatus::done;
     slowest = Real(0);
     memory.matrix_is_known = is_current;
@@ -99,7 +100,7 @@ struct StageSolver : StepEquations<Scalar<X>> {
       ++evaluations;
       linear.multiply_mass(z, product);
       for (std::size_t i = 0; i < n; ++i) residual.data()[i] -= shift * product.data()[i];
-      lu.solve(residual.data());
+      lu.solve(linear, residual.data());
       ++costs.linear_solves;
       for (std::size_t i = 0; i < n; ++i) z.data()[i] += residual.data()[i];
       return root_mean_square<Real>(n, [&](std::size_t i) {

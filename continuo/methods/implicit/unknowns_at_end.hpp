@@ -43,7 +43,7 @@ template <class System, State X, class Linear, class Factors>
   const bool settled = newton(memory, target, most_iterations, [&] {
     evaluate(system, t, x_new, f);
     mask();
-    factors.solve(f.data());
+    factors.solve(linear, f.data());
     mask();
     for (std::size_t i = 0; i < dimension(f); ++i) x_new.data()[i] += f.data()[i];
     return weighted_norm(f, x, x, tolerance);

@@ -33,7 +33,7 @@ class UnknownsBetween {
     known_->interpolant(inside<Real>(), known_->point);
     evaluate(system, Real(t + inside<Real>() * h), known_->point, known_->error);
     mask(known_->error, linear);
-    lu.solve(known_->error.data());
+    lu.solve(linear, known_->error.data());
     mask(known_->error, linear);
     return 1;
   }

@@ -53,6 +53,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
   template <class System, State X>
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
+    work.linear.bind(system);
     int evaluations = linearize(system, t, x, h, discontinuity, work);
     ++work.costs.factorizations;
     if (!work.lu.factor(work.linear, 1 / (h * constant<GammaValue, Scalar<X>>()))) {
@@ -208,7 +209,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
     work.linear.multiply_mass(work.argument, work.product);
     const Scalar<X> c = 1 / (h * constant<GammaValue, Scalar<X>>());
     for (std::size_t i = 0; i < dimension(work.product); ++i) work.product.data()[i] *= c;
-    work.lu.solve(work.product.data());
+    work.lu.solve(work.linear, work.product.data());
     ++work.costs.linear_solves;
   }
 
@@ -292,7 +293,7 @@ struct RosenbrockMethod : ImplicitMethod<> {
         for (std::size_t i = 0; i < dimension(x); ++i) right.data()[i] += weight * work.time_slope.data()[i];
       }
     }
-    work.lu.solve(right.data());
+    work.lu.solve(work.linear, right.data());
   }
 
   /// y = x + sum_j row_j u_j. The newest term is added last and by itself: see advance().

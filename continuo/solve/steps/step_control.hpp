@@ -174,7 +174,7 @@ class StepControl final : public Steps<System, X> {
     attempt(short_step ? limit - begin_ : nominal, options);
     const StepStatus status = detail::status_of<M>(work_);
     if (status == StepStatus::newton_diverged || status == StepStatus::singular_matrix)
-      return fail_to_solve(status, options, outcome);
+      return fail_equations(status, options, outcome);
     if (status == StepStatus::not_finite || !finite_end()) {
       return fail(Ending::not_finite, 0, first_not_finite(x_end_),
                   "f, its Jacobian or the state is not finite: take a smaller step, or a method with error control",
@@ -347,10 +347,18 @@ class StepControl final : public Steps<System, X> {
                              const Options<X>& options, Outcome<Real>& outcome) {
     if (interrupted(options)) return fail(Ending::interrupted, error, {}, {}, outcome);
     if (const StepStatus status = detail::status_of<M>(work_); status != StepStatus::done && !not_finite)
-      return fail_to_solve(status, options, outcome);
+      return fail_equations(status, options, outcome);
     if (not_finite) return this->fail_not_finite(outcome);
     return fail(too_many ? Ending::too_many_rejects : Ending::step_too_small, error, worst_component(weights),
                 singular_hint, outcome);
+  }
+
+  [[nodiscard]] bool fail_equations(StepStatus status, const Options<X>& options, Outcome<Real>& outcome) {
+    if constexpr (detail::HasFailure<M, Work>) {
+      if (const std::string_view why = M::failure(work_); !why.empty())
+        return fail(Ending::nonlinear_solve_failed, 0, {}, std::string(why), outcome);
+    }
+    return fail_to_solve(status, options, outcome);
   }
 
   [[nodiscard]] std::string worst_component(const Tolerance<Real>& weights) const {
