@@ -13,9 +13,9 @@
 #include <type_traits>
 #include <utility>
 
-#include <continuo/methods/implicit/linear_solver.hpp>
 #include <continuo/methods/implicit/solver_view.hpp>
 #include <continuo/methods/implicit/weighted_gmres.hpp>
+#include <continuo/methods/linear_solver.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/system/system.hpp>
 

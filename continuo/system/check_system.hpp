@@ -346,9 +346,11 @@ consteval void check_system() {
   static_assert(!MentionsSpectralRadius<F> || HasSpectralRadius<F, X>,
                 "the member `spectral_radius` of the system would be ignored: it must be public: Real "
                 "spectral_radius(Real t, const X& x)");
-  static_assert(!MentionsMassMatrix<F> || HasMassMatrix<F, X>,
-                "the member `mass_matrix` of the system would be ignored: it must be public and const: void "
-                "mass_matrix(std::span<Real> rows) const, with the n*n numbers row by row");
+  static_assert(
+      !MentionsMassMatrix<F> || HasMassMatrix<F, X>,
+      "the member `mass_matrix` of the system would be ignored: it must be public and const: void "
+      "mass_matrix(std::span<Real> rows) const, with the n*n numbers row by row; a mass that depends on t and x is "
+      "given by with_mass(f, mass), of system/with_mass.hpp");
   static_assert(!MentionsMass<F> || HasMassDiagonal<F, X>,
                 "the member `mass` of the system would be ignored: the diagonal of a mass matrix is given by a public "
                 "and const member Real mass(std::size_t i) const; give a mass in kilograms another name");

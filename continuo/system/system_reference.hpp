@@ -140,6 +140,11 @@ class SystemReference : public detail::AutonomousOf<F> {
     return f_->size_problem(std::forward<Arguments>(arguments)...);
   }
   template <class... Arguments>
+    requires requires(F& f, Arguments&&... arguments) { f.start_problem(std::forward<Arguments>(arguments)...); }
+  decltype(auto) start_problem(Arguments&&... arguments) const {
+    return f_->start_problem(std::forward<Arguments>(arguments)...);
+  }
+  template <class... Arguments>
     requires requires(F& f, Arguments&&... arguments) { f.nonstiff(std::forward<Arguments>(arguments)...); }
   decltype(auto) nonstiff(Arguments&&... arguments) const {
     return f_->nonstiff(std::forward<Arguments>(arguments)...);

@@ -468,6 +468,27 @@ int main() {
   const auto decay = [](double, const V& x) { return x; };
   return solve(decay, V{1, 0}, {0, 1}, WithSolver<Radau, Nothing>{}).outcome ? 0 : 1;
 }
+#elif MISTAKE == 63  // refused: f has a member that is not that of M^-1 f and would be ignored
+struct Patterned : Base {
+  SparsePattern pattern;
+  const SparsePattern& jacobian_pattern() const { return pattern; }
+};
+int main() {
+  const auto heavy = [](double, const X&, std::span<double> rows) { rows[0] = rows[3] = 2; };
+  return solve(with_mass(Patterned{}, heavy), x0, {0, 1}, Radau{}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 64  // refused: the mass can not be called as mass(t, x, rows)
+int main() {
+  const auto heavy = [](const X&, std::span<double> rows) { rows[0] = rows[3] = 2; };
+  return solve(with_mass(f, heavy), x0, {0, 1}, Radau{}).outcome ? 0 : 1;
+}
+#elif MISTAKE == 65  // refused: a mass that depends on t and x is given by with_mass(f, mass)
+struct Lagrange : Base {
+  void mass_matrix(double, const X&, std::span<double> rows) const { rows[0] = rows[3] = 2; }
+};
+int main() {
+  return solve(Lagrange{}, x0, {0, 1}, Radau{}).outcome ? 0 : 1;
+}
 #else
 #error "there is no such mistake"
 #endif

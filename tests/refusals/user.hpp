@@ -18,3 +18,4 @@
 #include <continuo/solve/automatic.hpp>
 #include <continuo/solve/solve.hpp>
 #include <continuo/system/second_order.hpp>
+#include <continuo/system/with_mass.hpp>

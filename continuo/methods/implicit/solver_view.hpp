@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include <continuo/methods/implicit/linear_solver.hpp>
 #include <continuo/methods/implicit/linearization.hpp>
 #include <continuo/methods/implicit/solver_of_shift.hpp>
 #include <continuo/methods/implicit/weighted_gmres.hpp>
+#include <continuo/methods/linear_solver.hpp>
 #include <continuo/methods/method.hpp>
 #include <continuo/methods/support/tolerance_proportionality.hpp>
 #include <continuo/numerics/finite.hpp>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <continuo/methods/implicit/linear_solver.hpp>
+#include <continuo/methods/linear_solver.hpp>
 #include <continuo/numerics/finite.hpp>
 #include <continuo/numerics/gmres.hpp>
 #include <continuo/status/status.hpp>

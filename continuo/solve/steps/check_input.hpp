@@ -175,6 +175,9 @@ template <class System, State X>
   for (std::size_t i = 0; i < dimension(x); ++i)
     if (!(Real(0) * x.data()[i] == Real(0))) return component_name(system, i) + " is not finite at the start";
   if (!(Real(0) * (interval.to - interval.from) == Real(0))) return "the interval of time is not finite";
+  if constexpr (requires { std::string(system.start_problem(interval.from, x)); }) {
+    if (std::string why = system.start_problem(interval.from, x); !why.empty()) return why;
+  }
   const auto hint = [&](std::string_view text) { return std::string(method.name).append(text); };
   if (has_mass<X>(system) && !method.implicit)
     return hint(" cannot integrate M x' = f(t, x): take an implicit method, such as rodas5p");

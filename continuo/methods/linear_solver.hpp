@@ -7,7 +7,7 @@
 //     Status solve(const ShiftedMatrix<X>& a, std::span<double> b);     // b becomes the solution
 //   };
 //
-// WithSolver (methods/with_solver.hpp) gives it to an implicit method. docs/extending.md has an example.
+// WithSolver (with_solver.hpp) gives it to an implicit method. docs/extending.md has an example.
 #pragma once
 #include <cmath>
 #include <concepts>
