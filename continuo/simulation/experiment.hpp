@@ -71,6 +71,8 @@ struct Plan {
 
 /// E340, E344 with the names that may have been meant.
 [[nodiscard]] Diagnostic no_parameter(const Model& model, std::string_view name, Span span);
+/// E330, with the name that may have been meant.
+[[nodiscard]] Diagnostic no_method(std::string_view name, Span span);
 /// E344, with the names that may have been meant.
 [[nodiscard]] Diagnostic no_state(const Model& model, std::string_view name, Span span);
 

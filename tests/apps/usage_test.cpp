@@ -75,6 +75,16 @@ TEST(Usage, AWrongVerbIsToldTheNearest) {
   EXPECT_THAT(result.out, IsEmpty());
 }
 
+TEST(Usage, HelpForAWrongVerbTellsTheNearestOrWhereAllAre) {
+  const Shell shell;
+  const Result near = shell.run("help verfy");
+  EXPECT_EQ(near.exit, 1);
+  EXPECT_THAT(near.err, HasSubstr("did you mean `verify`?"));
+  const Result far = shell.run("help nope");
+  EXPECT_EQ(far.exit, 1);
+  EXPECT_THAT(far.err, HasSubstr("there is no verb `nope` (continuo help lists the verbs)"));
+}
+
 TEST(Usage, AWrongOptionIsToldTheNearest) {
   const Shell shell;
   shell.write("spring.sim", spring);
@@ -101,6 +111,12 @@ TEST(Usage, AWrongMethodOrParameterIsToldTheNearest) {
   const Result method = shell.run("run spring.sim --method dop85");
   EXPECT_EQ(method.exit, 1);
   EXPECT_THAT(method.err, HasSubstr("`dop853`"));
+  // Its place is the option: the model is not to blame.
+  EXPECT_THAT(method.err, HasSubstr("--> --method:1:1\n  1 | dop85\n    | ^^^^^"));
+  EXPECT_THAT(method.err, Not(HasSubstr("spring.sim")));
+  const auto messages = nlohmann::json::parse(shell.run("run spring.sim --method dop85 --json").out)["messages"];
+  EXPECT_EQ(messages.at(0).at("code"), "E330");
+  EXPECT_EQ(messages.at(0).at("file"), "--method");
   const Result parameter = shell.run("run spring.sim --set stifness=5");
   EXPECT_EQ(parameter.exit, 1);
   EXPECT_THAT(parameter.err, HasSubstr("`stiffness`"));

@@ -26,7 +26,7 @@ ExitCode help(const CLI::App& app, const HelpRequest& request) {
   }
   const Verb* verb = find_verb(app, request.verb);
   if (verb == nullptr) {
-    say(no_such_verb(app, request.verb));
+    say(no_such_verb(app, request.verb) + " (continuo help lists the verbs)");
     return usage;
   }
   print(request.markdown ? verb_page(*verb) : verb->help("continuo"));

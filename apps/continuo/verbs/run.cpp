@@ -1,8 +1,10 @@
 // continuo run FILE: the motion, its events, plots, and what it cost.
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <apps/continuo/options/boundary_options.hpp>
 #include <apps/continuo/options/command_line.hpp>
@@ -18,6 +20,7 @@
 
 #include <continuo/runs/kind.hpp>
 #include <continuo/runs/run.hpp>
+#include <continuo/solve/catalogue.hpp>
 #include <continuo/worlds/run_log.hpp>
 
 namespace continuo::app {
@@ -53,6 +56,19 @@ bool shows_families(const RunRequest& request) {
   return false;
 }
 
+/// True, after saying why, where --method names no method. The message stands under the option, not in the model, whose
+/// own method may be right. What a world of bodies and a boundary-value problem say of a method is their own.
+bool has_no_method(const RunRequest& request, const model::Model& model) {
+  const std::optional<std::string>& name = request.experiment.method;
+  if (!name || find_method(*name) != nullptr || model.world || !runs::kind_of(model).has_start) return false;
+  const std::vector<model::Diagnostic> problems{
+      model::no_method(*name, {.begin = 0, .end = static_cast<std::uint32_t>(name->size())})};
+  const model::Source option("--method", *name);
+  show(problems, option);
+  if (request.outputs.json) print_no_run(problems, option);
+  return true;
+}
+
 ExitCode run(const RunRequest& request) {
   std::vector<std::string> written = files_of(request.outputs);
   written.push_back(request.record.path);
@@ -70,6 +86,7 @@ ExitCode run(const RunRequest& request) {
     if (request.outputs.json) print_no_run(prepared.loaded.diagnostics, source);
     return prepared.exit;
   }
+  if (has_no_method(request, prepared.program->model)) return usage;
   if (!are_apart(files_of(prepared.program->model, request.experiment.file), written)) return usage;
   const auto boundary = read_boundary(request.boundary, prepared);
   if (!boundary) return usage;

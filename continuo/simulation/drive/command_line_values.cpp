@@ -10,6 +10,7 @@
 
 #include <continuo/language/load.hpp>
 #include <continuo/simulation/simulate.hpp>
+#include <continuo/solve/catalogue.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 #include <continuo/symbolic/units/units.hpp>
 
@@ -69,6 +70,14 @@ Diagnostic no_parameter(const Model& model, std::string_view name, Span span) {
   for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
   return error("E340", span, fmt::format("the model has no parameter `{}`", name), {},
                known_names(names, name, "parameters"));
+}
+
+Diagnostic no_method(std::string_view name, Span span) {
+  std::vector<std::string_view> names;
+  for (const MethodInfo& info : method_catalogue()) names.push_back(info.name);
+  const std::string near = did_you_mean(name, names);
+  return error("E330", span, fmt::format("there is no method `{}`", name), {},
+               near.empty() ? "`continuo methods` lists them" : near);
 }
 
 Diagnostic no_state(const Model& model, std::string_view name, Span span) {

@@ -10,7 +10,6 @@
 #include <continuo/simulation/drive/planner.hpp>
 #include <continuo/simulation/program/model_system.hpp>
 #include <continuo/simulation/program/singular_mass.hpp>
-#include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model {
 
@@ -146,14 +145,9 @@ void Planner::set_method() {
   const auto [name, reason] = choice();
   plan_.method = canonical_name(name);
   plan_.reason = reason;
-  std::vector<std::string> names;
-  for (const MethodInfo& info : method_catalogue()) {
-    names.emplace_back(info.name);
-    if (info.name == plan_.method) return accept(info);
-  }
-  const std::string near = did_you_mean(name, names);
-  fail("E330", fmt::format("there is no method `{}`", name), near.empty() ? "`continuo methods` lists them" : near,
-       experiment_.method.has_value());
+  if (const MethodInfo* info = find_method(name)) return accept(*info);
+  Diagnostic problem = no_method(name, run_.span);
+  fail("E330", std::move(problem.message), std::move(problem.help), experiment_.method.has_value());
 }
 
 Choice Planner::choice() const {
