@@ -102,7 +102,7 @@ class EffectiveMatrix {
     std::vector<MatrixPlace> places;
     for_each_entry([&](std::size_t, MatrixPlace place, std::size_t) { places.push_back(place); });
     pattern_ = SparsePattern(pairs, places);
-    sparse_.emplace(pattern_);
+    sparse_.emplace(pattern_, linear.sparse_solver());
     targets_.assign(pattern.entries(), {nowhere, false});
     for_each_entry([&](std::size_t p, MatrixPlace place, std::size_t column) {
       targets_[p] = {pattern_.find(place.row, place.column), is_velocity[column] != 0};
