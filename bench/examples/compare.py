@@ -37,6 +37,10 @@ PAIRS = [
     ("coming_from_sundials", 7, "arkode/C_serial/ark_kepler.c", []),  # of SUNDIALS 7
     ("coming_from_sundials", 8, "cvode/serial/cvRocket_dns.c", []),
     ("coming_from_sundials", 9, "ida/serial/idaSlCrank_dns.c", []),
+    ("coming_from_sundials", 10, "cvode/serial/cvRoberts_dns_constraints.c", []),
+    ("coming_from_sundials", 11, "cvode/serial/cvRoberts_block_klu.c", []),
+    ("coming_from_sundials", 12, "cvode/serial/cvPendulum_dns.c", []),
+    ("sensitivities_cpp", 3, "cvodes/serial/cvsRoberts_ASAi_dns.c", []),
 ]
 ARGUMENTS = {"cvsRoberts_FSA_dns.c": ["-sensi", "sim", "t"]}
 
@@ -102,7 +106,7 @@ def build(scratch, name, source, flags, libraries):
 def sundials_libraries(example):
     solver = {"cvode": "cvode", "cvodes": "cvodes", "ida": "ida", "arkode": "arkode"}[example.split("/")[0]]
     others = ("nvecserial sunmatrixdense sunmatrixband sunlinsoldense sunlinsolband sunlinsolspgmr sunlinsolspgmr "
-              "sunnonlinsolfixedpoint")
+              "sunnonlinsolfixedpoint sunmatrixsparse sunlinsolklu")
     return f"-lsundials_{solver} " + " ".join(f"-lsundials_{one}" for one in others.split()) + " -lm"
 
 
