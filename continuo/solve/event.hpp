@@ -47,6 +47,8 @@ struct EventAction {
   // Set it where the action moves x by no more than the tolerance, and f is the same: at the end of a step, where a
   // scheduled event happens, the method keeps its history, moved by the same way. A greater change begins anew.
   bool correction = false;
+  // Set it where the action changes the number of components: the method begins anew with room for the new ones.
+  bool resize = false;
   [[no_unique_address]] detail::NotCopied not_copied{};
 };
 
@@ -248,6 +250,7 @@ struct EventResponse {
   bool restart = false;  // data that f reads has changed: the motion begins again
   bool changed = false;  // something else has changed: a state that f does not read and that is constant between events
   bool correction = false;  // restart, only because x has moved: see EventAction::correction
+  bool resize = false;      // restart, with another number of components
 };
 
 /// The functions of a source of events, which the driver calls. `size()` counts guards and scheduled events together,
@@ -377,7 +380,11 @@ class EventList {
   [[nodiscard]] static EventResponse response(const EventAction<X>& now) {
     bool changed = now.restart || dimension(now.x) != dimension(now.before);
     for (std::size_t k = 0; !changed && k < dimension(now.x); ++k) changed = now.x.data()[k] != now.before.data()[k];
-    return {.stop = now.stop, .restart = changed, .changed = false, .correction = now.correction && !now.restart};
+    return {.stop = now.stop,
+            .restart = changed,
+            .changed = false,
+            .correction = now.correction && !now.restart,
+            .resize = now.resize};
   }
 
   [[nodiscard]] static std::string problem_of(const Event<X>& event, Real from, Real to, const X& x) {

@@ -37,7 +37,8 @@ class Integrator : public Driver<System, X, Events> {
   /// The same with events of another source.
   Integrator(System f, X x0, Interval<std::type_identity_t<Real>> interval, M method,
              std::type_identity_t<Options<X>> options, Events events)
-      : Base(begin(method, std::move(f), x0, interval, options), x0, interval, options, std::move(events)) {}
+      : Base(begin(method, std::move(f), x0, interval, options), begin_of(method), x0, interval, options,
+             std::move(events)) {}
 
   /// The last step: dense output in theta = (t - begin) / size.
   [[nodiscard]] const auto& interpolant()
@@ -52,10 +53,13 @@ class Integrator : public Driver<System, X, Events> {
     static_cast<void>(check_state<X>());
     check_system<ReferredSystem<System>, X>();
     const Real forward = interval.to < interval.from ? Real(-1) : Real(1);
+    return begin_of(method)(std::move(f), x0, interval.from, forward, options);
+  }
+  [[nodiscard]] static typename Base::Begin begin_of(M method) {
     if constexpr (std::same_as<M, AnyMethod<System, X>>) {
-      return method.begin(std::move(f), x0, interval.from, forward, options);
+      return method.begin;
     } else {
-      return begin_steps<M, System, X>(std::move(f), x0, interval.from, forward, options);
+      return begin_steps<M, System, X>;
     }
   }
 };

@@ -67,7 +67,8 @@ class SolutionRecorder {
     for (const std::size_t event : now.events) solution_.events.push_back({event, now.t, now.before, now.after});
     if (save_.kind == Save<X>::Kind::end || only_times()) return;
     if (!kept_at(now.t)) keep(integrator, now.t, now.before);
-    if (!std::equal(now.after.data(), now.after.data() + dimension(now.after), now.before.data()))
+    if (dimension(now.after) != dimension(now.before) ||
+        !std::equal(now.after.data(), now.after.data() + dimension(now.after), now.before.data()))
       keep(integrator, now.t, now.after);
   }
 

@@ -75,6 +75,9 @@ class Driver {
       if (!options_.signs.empty()) keep_signs(options_, x);
       return;
     }
+    if constexpr (!FixedSize<X>) {
+      if (dimension(x) != dimension(x_)) x = x_;
+    }
     steps().at(t, x);
     for (const Shift& shift : shifts_)
       if (shift.earlier || forward() * (t - shift.t) > 0) x.data()[shift.component] = shift.value;
@@ -127,6 +130,29 @@ class Driver {
     x_ = x;
     keeps_history ? correct() : restart();
   }
+  /// Continues from a state that may have another number of components: cells that have divided, particles that have
+  /// left. The method begins anew with room for them, the statistics go on, and the last step is not known any more.
+  /// Before that `change` gets the system by reference, if it must know. Tolerances and signs by component, pairs,
+  /// masses and the pattern of the Jacobian must fit the new state: else the run ends as invalid input.
+  template <class Change>
+    requires(!FixedSize<X>)
+  void resize(const X& x, Change&& change) {
+    change(steps().system());
+    before_ = x_;
+    x_ = x;
+    if (const std::string why = take_size(); !why.empty()) {
+      x_ = before_;
+      end(Ending::invalid_input, why);
+      return;
+    }
+    restart();
+  }
+  /// The same where the system need not know.
+  void resize(const X& x)
+    requires(!FixedSize<X>)
+  {
+    resize(x, [](System&) {});
+  }
   /// Changes the system from outside, for example a parameter or an input: `change` gets it by reference.
   template <class Change>
   void change_system(Change&& change) {
@@ -144,12 +170,17 @@ class Driver {
   }
 
  protected:
-  Driver(std::unique_ptr<Steps<System, X>> steps, X x0, Interval<Real> interval, Options<X> options, Events events)
+  /// Begins the steps of the method of the run.
+  using Begin = std::unique_ptr<Steps<System, X>> (*)(System, X x0, Real t0, Real forward, const Options<X>&);
+
+  Driver(std::unique_ptr<Steps<System, X>> steps, Begin begin, X x0, Interval<Real> interval, Options<X> options,
+         Events events)
       : options_(std::move(options)),
         interval_(interval),
         t_(interval.from),
         x_(x0),
         before_(std::move(x0)),
+        begin_(begin),
         steps_(std::move(steps)),
         logic_(std::move(events), x_, interval.to < interval.from ? Real(-1) : Real(1), length_of(interval)),
         guard_values_(logic_.events().size()),
@@ -556,7 +587,14 @@ class Driver {
     before_ = x_;
     EventResponse response = at_limit ? limit_action(i) : logic_.events().fire(steps().system(), i, t_, before_, x_);
     if (!at_limit) ++steps().statistics().events;
-    if (dimension(x_) != dimension(before_)) return end_resized(i);
+    if constexpr (!FixedSize<X>) {
+      if (dimension(x_) != dimension(before_)) {
+        if (!response.resize) return end_resized(i);
+        if (std::string why = take_size(); !why.empty()) return end_at_fault(i, "after its action " + why);
+        response.restart = true;
+        response.correction = false;
+      }
+    }
     if (std::string why = problem_of_signs(x_); !why.empty()) return end_at_fault(i, "after its action " + why);
     if (response.restart) settle_algebraic();
     if (response.changed && !response.restart) note_shifts();
@@ -573,7 +611,7 @@ class Driver {
     }
     const EventResponse further = act(i, observer, true);
     return {response.stop || further.stop, response.restart || further.restart, response.changed || further.changed,
-            response.correction && (further.correction || !further.restart)};
+            response.correction && (further.correction || !further.restart), response.resize || further.resize};
   }
 
   [[nodiscard]] bool has_limit_action(std::size_t i) const {
@@ -591,9 +629,23 @@ class Driver {
     }
   }
 
+  // Begins the steps of the method anew for x_, of another size than they were. Returns why it cannot; empty where it
+  // has.
+  [[nodiscard]] std::string take_size() {
+    problem_.reset();
+    if (!problem().empty()) return *problem_;
+    const Statistics so_far = statistics();
+    steps_ = StepsValue<System, X>(begin_(std::move(steps().system()), x_, t_, forward(), options_));
+    steps().follow(so_far);
+    logic_.resize(x_);
+    shifts_.clear();
+    shifted_.clear();
+    return {};
+  }
   [[nodiscard]] EventResponse end_resized(std::size_t event) {
     return end_at_fault(event, "its action has changed the number of components from " +
-                                   std::to_string(dimension(before_)) + " to " + std::to_string(dimension(x_)));
+                                   std::to_string(dimension(before_)) + " to " + std::to_string(dimension(x_)) +
+                                   ": an action that is to do so sets `resize`");
   }
   [[nodiscard]] EventResponse end_at_fault(std::size_t event, std::string why) {
     end(Ending::invalid_input, std::move(why));
@@ -640,6 +692,7 @@ class Driver {
   X x_, before_;
   X solved_ = x_;
   UnknownsSolver<X> unknowns_{x_};
+  Begin begin_;
   StepsValue<System, X> steps_;
   Logic logic_;
   std::vector<Real> guard_values_, later_values_;

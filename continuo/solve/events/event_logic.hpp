@@ -53,6 +53,9 @@ class EventLogic {
     next_.reserve(events_.size());
   }
 
+  /// For states of the size of x from here on.
+  void resize(const X& x) { moved_ = first_ = second_ = x; }
+
   [[nodiscard]] const Events& events() const { return events_; }
   [[nodiscard]] Events& events() { return events_; }
   [[nodiscard]] bool any_guard() const { return any_guard_; }
@@ -639,7 +642,7 @@ class EventLogic {
   std::vector<std::size_t> fired_, next_;
   std::optional<Real> last_event_, scheduled_at_;
   Real forward_, longest_, size_{};
-  X moved_, first_, second_;
+  X moved_, first_, second_;  // scratch
   bool any_guard_ = false, any_turning_guard_ = false, any_scheduled_ = false;
   bool jumped_ = false, restarted_ = false;  // of the present round
 };

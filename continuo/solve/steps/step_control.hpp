@@ -86,9 +86,9 @@ class StepControl final : public Steps<System, X> {
  private:
   using Base::accepted, Base::fail, Base::fail_to_solve, Base::finite_end, Base::first_not_finite, Base::fixed,
       Base::interrupted, Base::singular_hint, Base::tolerance;
-  using Base::begin_, Base::carried_, Base::corrects_, Base::end_, Base::errors_, Base::forward_, Base::grid_,
-      Base::grid_steps_, Base::h_, Base::interpolated_, Base::jumped_, Base::moved_, Base::next_, Base::statistics_,
-      Base::step_begin_, Base::system_, Base::unmoved_, Base::x_begin_, Base::x_end_;
+  using Base::begin_, Base::carried_, Base::corrects_, Base::earlier_, Base::end_, Base::errors_, Base::forward_,
+      Base::grid_, Base::grid_steps_, Base::h_, Base::interpolated_, Base::jumped_, Base::moved_, Base::next_,
+      Base::statistics_, Base::step_begin_, Base::system_, Base::unmoved_, Base::x_begin_, Base::x_end_;
 
   void advance_to_end() {
     if (!jumped_) {
@@ -129,9 +129,9 @@ class StepControl final : public Steps<System, X> {
     detail::keep_size(x_begin_, x_end_);
     if constexpr (detail::HasCosts<M, Work>) {
       const EquationCosts costs = M::costs(work_);
-      statistics_.jacobians = costs.jacobians;
-      statistics_.factorizations = costs.factorizations;
-      statistics_.linear_solves = costs.linear_solves;
+      statistics_.jacobians = earlier_.jacobians + costs.jacobians;
+      statistics_.factorizations = earlier_.factorizations + costs.factorizations;
+      statistics_.linear_solves = earlier_.linear_solves + costs.linear_solves;
     }
   }
 

@@ -63,6 +63,11 @@ class Steps {
   [[nodiscard]] bool jumped() const { return jumped_; }
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
   [[nodiscard]] Statistics& statistics() { return statistics_; }
+  /// These steps follow others of the run, of states of another size: what those have cost is kept.
+  void follow(const Statistics& earlier) {
+    statistics_ = earlier;
+    earlier_ = {earlier.jacobians, earlier.factorizations, earlier.linear_solves};
+  }
 
   /// Continues the trajectory from another state, or with another f: step size and history are reset.
   void jump(Real t, const X& x, const Options<X>& options) {
@@ -371,6 +376,7 @@ class Steps {
   ErrorHistory errors_;
   X x_begin_, x_end_, scratch_, slope_;
   Statistics statistics_;
+  EquationCosts earlier_;  // of the steps before these, see follow()
   std::optional<StiffnessWatch<X>> stiffness_;
   std::size_t probes_ = 0, stiff_probes_ = 0;
   StepBudget<Real> step_budget_;
