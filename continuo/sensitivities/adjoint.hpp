@@ -29,7 +29,7 @@ namespace continuo {
 
 namespace detail {
 
-/// x' = f(t, x, p) at fixed p as a System, with the Jacobian where f gives it or can be traced.
+/// x' = f(t, x, p) at fixed p as a System.
 template <class F, State X, State P>
 class AtParameters : public AutonomyOf<F> {
  public:
@@ -40,21 +40,28 @@ class AtParameters : public AutonomyOf<F> {
     if constexpr (KnowsAutonomous<F>) this->autonomous = is_autonomous(derivatives_.function());
   }
   void operator()(const Real& t, const X& x, X& dxdt) { derivatives_.derivative(t, x, p_, dxdt); }
-  void jacobian(const Real& t, const X& x, std::span<Real> rows)
-    requires(ParameterDerivatives<F, X, P>::knows_jacobian)
-  {
-    derivatives_.go_to(t, x, p_);
-    derivatives_.rows_by_x(rows);
-  }
   [[nodiscard]] std::string component_name(std::size_t i) const {
     return continuo::component_name(derivatives_.function(), i);
   }
   [[nodiscard]] const ParameterDerivatives<F, X, P>& derivatives() const { return derivatives_; }
 
- private:
+ protected:
   ParameterDerivatives<F, X, P> derivatives_;
   P p_;
 };
+/// The same with df/dx, where it is known without differences.
+template <class F, State X, State P>
+class AtParametersWithJacobian : public AtParameters<F, X, P> {
+ public:
+  using AtParameters<F, X, P>::AtParameters;
+  void jacobian(const Scalar<X>& t, const X& x, std::span<Scalar<X>> rows) {
+    this->derivatives_.go_to(t, x, this->p_);
+    this->derivatives_.rows_by_x(rows);
+  }
+};
+template <class F, State X, State P>
+using SystemAtParameters = std::conditional_t<ParameterDerivatives<F, X, P>::knows_jacobian,
+                                              AtParametersWithJacobian<F, X, P>, AtParameters<F, X, P>>;
 
 /// Refuses, at compile time, a method whose steps have no adjoint here.
 template <class M>
@@ -161,7 +168,7 @@ template <class F, State X, State P, class M, class... Events>
 
 template <class F, State X, State P, class M>
 void AdjointRun<F, X, P, M>::integrate(Options<X> options) {
-  using System = detail::AtParameters<F, X, P>;
+  using System = detail::SystemAtParameters<F, X, P>;
   std::vector<Real> times;
   if (options.save.kind == Save<X>::Kind::times) times = std::move(options.save.times);
   has_times_ = !times.empty();
@@ -190,7 +197,7 @@ void AdjointRun<F, X, P, M>::integrate(Options<X> options) {
   solution.outcome = integrator.outcome();
   solution.statistics = integrator.statistics();
   costs = integrator.system().derivatives().costs();
-  status = continuo::status(solution.outcome);
+  status = detail::status_of_run(solution.outcome);
 }
 
 template <class F, State X, State P, class M>

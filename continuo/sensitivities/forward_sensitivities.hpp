@@ -70,6 +70,19 @@ struct ForwardSensitivities {
 
 namespace detail {
 
+/// The outcome of a run in any number type as a Status.
+template <class Real>
+[[nodiscard]] Status status_of_run(const Outcome<Real>& outcome) {
+  return status(Outcome<double>{.ending = outcome.ending,
+                                .t = static_cast<double>(outcome.t),
+                                .h = static_cast<double>(outcome.h),
+                                .error = static_cast<double>(outcome.error),
+                                .component = outcome.component,
+                                .event = outcome.event,
+                                .limit_time = static_cast<double>(outcome.limit_time),
+                                .hint = outcome.hint});
+}
+
 /// Of each component, for differences: what is small is told by the tolerances.
 template <State X>
 [[nodiscard]] std::vector<Scalar<X>> sizes_for_differences(const X& x, const Options<X>& options) {
@@ -207,7 +220,7 @@ template <class F, State X, State P, class M, class... Events>
     result.events = integrator.events().times();
     result.costs = integrator.system().costs();
     result.status = integrator.events().status();
-    if (result.status) result.status = continuo::status(result.run.outcome);
+    if (result.status) result.status = detail::status_of_run(result.run.outcome);
   }
   return result;
 }

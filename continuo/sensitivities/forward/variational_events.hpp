@@ -111,7 +111,7 @@ class VariationalEvents {
     Real rate = by_x_[n + m];
     for (std::size_t j = 0; j < n; ++j) rate += by_x_[j] * slope_.data()[j];
     // A guard further from zero than its slope comes in this part of the run has jumped there.
-    if (!(abs(g) <= Real(least_jump) * abs(rate) * length_)) return no_derivative(i, rate == Real(0), moves);
+    if (!(abs(g) <= Real(least_jump) * abs(rate) * length_)) return no_derivative(i, g == Real(0), moves);
     for (std::size_t k = 0; k < moves.size(); ++k) {
       Real along = k < m ? by_x_[n + k] : Real(0);
       for (std::size_t j = 0; j < n; ++j) along += by_x_[j] * z[n * (1 + k) + j];
