@@ -116,6 +116,9 @@ template <State X, State P>
     return "the events of a run with sensitivities follow its options as arguments: those in the options have no "
            "derivatives";
   if (run.save.callback) return "a run with sensitivities does not support a callback for saved states";
+  if (run.projection || !run.signs.empty())
+    return "a run with sensitivities supports neither a projection nor signs: they move the state by a way whose "
+           "derivative is not known";
   for (std::size_t k = 0; k < dimension(p); ++k)
     if (!is_finite(p.data()[k])) return "parameter " + std::to_string(k) + " is not finite";
   if (!parameter_sizes.empty() && parameter_sizes.size() != dimension(p))

@@ -267,6 +267,7 @@ TEST(Adjoint, WhatCannotBeMeantIsRefused) {
   };
   EXPECT_THAT(refusal({}), HasSubstr("give it a step"));
   EXPECT_THAT(refusal({.step = 0.1, .save = save_dense()}), HasSubstr("keeps its steps"));
+  EXPECT_THAT(refusal({.step = 0.1, .projection = [](double, Y&) {}}), HasSubstr("neither a projection nor signs"));
   EXPECT_THAT(refusal({.step = 0.1, .save = save_at({3.0})}), HasSubstr("lies outside of the run"));
   const auto run = solve_for_adjoint(decay, Y{1.0}, Y{2.0}, {0, 1}, Rk4{}, {.step = 0.1});
   const auto gradient =

@@ -134,6 +134,8 @@ TEST(ForwardSensitivities, InputThatCannotBeMeantIsRefused) {
               HasSubstr("follow its options as arguments"));
   EXPECT_THAT(refusal({.run = {.save = Save<Y>::every_step([](double, const Y&) {})}}), HasSubstr("callback"));
   EXPECT_THAT(refusal({.run = {.rtol = -1}}), HasSubstr("rtol"));
+  EXPECT_THAT(refusal({.run = {.projection = [](double, Y&) {}}}), HasSubstr("neither a projection nor signs"));
+  EXPECT_THAT(refusal({.run = {.signs = {Sign::positive}}}), HasSubstr("neither a projection nor signs"));
   EXPECT_THAT(refusal({.initial_by_parameters = {1, 2}}), HasSubstr("initial_by_parameters has 2 numbers"));
   EXPECT_THAT(refusal({.parameter_sizes = {0}}), HasSubstr("size of a parameter"));
   EXPECT_THAT(refusal({.parameter_sizes = {1, 1}}), HasSubstr("parameter_sizes has 2 numbers"));
