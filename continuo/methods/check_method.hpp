@@ -336,7 +336,7 @@ consteval bool check_method() {
   static_assert(is_method,
                 "the type is no method: see the concept Method, or name one of the library, such as Dop853{}");
   // A method that is made of others knows more about which go together.
-  if constexpr (requires { M::template check<X>(); }) (void)M::template check<X>();
+  if constexpr (requires { M::template check_for_states<X>(); }) (void)M::template check_for_states<X>();
   if constexpr (is_method) detail::check_required_members<M, X, System>();
   if constexpr (Method<M, X, System>) {
     detail::check_optional_members<M, X, System>();

@@ -45,7 +45,7 @@ struct WithSolver : M {
   };
   /// Refuses, by a sentence, what cannot be combined for states X; true where all can.
   template <State X>
-  [[nodiscard]] static consteval bool check() {
+  [[nodiscard]] static consteval bool check_for_states() {
     constexpr bool implicit = detail::is_implicit<M>();
     static_assert(implicit, "the method is explicit: it has no linear systems that a solver could solve");
     constexpr bool automatic = detail::is_automatic<M>();
@@ -66,7 +66,7 @@ struct WithSolver : M {
   /// The workspace for states like x.
   template <State X>
   [[nodiscard]] static Workspace<X> workspace(const X& x) {
-    static_assert(check<X>());
+    static_assert(check_for_states<X>());
     return Workspace<X>(M::workspace(x));
   }
 

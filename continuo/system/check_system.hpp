@@ -292,6 +292,8 @@ template <class F, State X>
 template <class F, State X>
 consteval void check_system() {
   using namespace detail;
+  // A system that is made of others knows more about which go together.
+  if constexpr (requires { F::template check_for_states<X>(); }) (void)F::template check_for_states<X>();
   static_assert(
       !writes_into_copy<F, X>(),
       "f takes dxdt by value, so that its result is lost: declare the third parameter as a reference, X& dxdt");

@@ -99,15 +99,21 @@ class DividedByMass : public WithNamesOf<F> {
   DividedByMass(F function, M matrix, std::vector<std::size_t> algebraic)
       : WithNamesOf<F>{std::move(function)}, mass_(std::move(matrix)), algebraic_(std::move(algebraic)) {}
 
+  /// Refuses, by a sentence, a mass that is not one for states X; true where it is.
+  template <State X>
+  [[nodiscard]] static consteval bool check_for_states() {
+    constexpr bool writes_mass = WritesMass<M, X>;
+    static_assert(writes_mass,
+                  "the mass can not be called as mass(t, x, rows), with t a number, x of the type of x0, and the n*n "
+                  "numbers row by row: void mass(Real t, const X& x, std::span<Real> rows)");
+    return writes_mass;
+  }
+
   /// x' of the components with mass, f of those without. Not a number where M(t, x) cannot be decomposed. Costs a
   /// decomposition, n^3 / 3 operations.
   template <State X>
     requires RightHandSide<F, X>
   void operator()(const Scalar<X>& t, const X& x, X& dxdt) {
-    constexpr bool writes_mass = WritesMass<M, X>;
-    static_assert(writes_mass,
-                  "the mass can not be called as mass(t, x, rows), with t a number, x of the type of x0, and the n*n "
-                  "numbers row by row: void mass(Real t, const X& x, std::span<Real> rows)");
     evaluate(this->f, t, x, dxdt);
     with_factors(t, x, [&](auto* factors) {
       if (factors) return factors->solve(dxdt.data());
@@ -123,6 +129,7 @@ class DividedByMass : public WithNamesOf<F> {
   }
   /// Why a run cannot begin with M(t, x); empty where it can.
   template <State X>
+    requires WritesMass<M, X>
   [[nodiscard]] std::string start_problem(const Scalar<X>& t, const X& x) const {
     for (const std::size_t i : algebraic_)
       if (i >= dimension(x))
