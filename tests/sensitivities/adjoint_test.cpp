@@ -202,6 +202,44 @@ TEST(Adjoint, AgreesWithForwardSensitivitiesThroughRandomEvents) {
   }
 }
 
+// An action that carries other guards across, whose events move as it does; and a guard that is crossed at the same
+// instant as another, by the motion, which moves by itself.
+TEST(Adjoint, EventsOfOneInstantMoveWithWhatSetsThemOff) {
+  const auto f = [](const auto& t, const auto& x, const auto& q, auto& dxdt) {
+    dxdt[0] = q[0] + 0.1 * x[1];
+    dxdt[1] = -x[1] * q[1] + 0.2 * t;
+  };
+  const auto first = rises(
+      "first", [](const auto&, const auto& x, const auto& q) { return x[0] - q[2]; },
+      [](auto& now) { now.x[1] = now.before[1] + 3.0 * now.p[1] + now.t; });
+  const auto twin = rises(
+      "twin", [](const auto&, const auto& x, const auto& q) { return 2.0 * (x[0] - q[2]); },
+      [](auto& now) { now.x[1] = 0.5 * now.before[1] * now.p[0] + now.t; });
+  const auto set_off = rises(
+      "set off", [](const auto&, const auto& x) { return x[1] - 2.0; },
+      [](auto& now) {
+        now.x[0] = now.before[0] - 4.0 * now.p[0] * now.t;
+        now.x[1] = 0.3 * now.before[1] * now.p[2];
+      });
+  const std::array start{0.0, 1.0};
+  const std::array q{1.0, 0.7, 0.8};
+  const auto compare = [&](const auto&... events) {
+    const auto forward = forward_sensitivities(
+        f, start, q, {0, 2}, Dop853{}, {.run = {.rtol = 1e-11, .atol = 1e-12}, .by_initial_values = true}, events...);
+    ASSERT_TRUE(forward.status) << describe(forward.status);
+    ASSERT_EQ(forward.events.size(), 2U);
+    EXPECT_EQ(forward.events[0].t, forward.events[1].t);
+    const auto run = solve_for_adjoint(f, start, q, {0, 2}, Dop853{}, {.rtol = 1e-11, .atol = 1e-12}, events...);
+    const auto gradient = run.gradient(AtEnd{[](const auto&, const auto& x, const auto&) { return x[0]; }});
+    ASSERT_TRUE(gradient.status) << describe(gradient.status);
+    std::vector<double> expected;
+    for (std::size_t k = 0; k < 5; ++k) expected.push_back(forward.final_sensitivity(0, k < 2 ? 3 + k : k - 2));
+    expect_near(all_of(gradient), expected, 1e-9);
+  };
+  compare(first, set_off);
+  compare(first, twin);
+}
+
 // Lotka's and Volterra's equations: an objective of all kinds of terms, against the forward sensitivities of the same
 // terms, of which the integral is a component of the state; and the cost in evaluations and products.
 TEST(Adjoint, SumsAndIntegralsAgreeWithForwardSensitivitiesAndCostFewRuns) {
