@@ -102,13 +102,13 @@ class StepControl final : public Steps<System, X> {
     interpolated_ = false;
   }
 
-  void tell_of_move() {
+  [[gnu::noinline]] void tell_of_move() {
     if constexpr (detail::HasMoved<M, X, Work>) M::moved(work_, *unmoved_, x_end_);
   }
 
   // The polynomial ends where the step was moved to. What is added has no slope at both ends, as far as the degree
   // allows: theta^2 (3 - 2 theta), or theta.
-  void bend() {
+  [[gnu::noinline]] void bend() {
     for (std::size_t i = 0; i < dimension(x_end_); ++i) {
       const Real way = x_end_.data()[i] - unmoved_->data()[i];
       if constexpr (M::dense_degree >= 3) {
@@ -159,7 +159,7 @@ class StepControl final : public Steps<System, X> {
     }
   }
 
-  [[nodiscard]] bool take_fixed(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
+  [[nodiscard, gnu::always_inline]] bool take_fixed(Real limit, const Options<X>& options, Outcome<Real>& outcome) {
     // The grid is computed afresh at each step, so a million steps do not drift.
     const Real nominal = forward_ * options.step;
     const Real on_grid = grid_ + Real(grid_steps_ + 1) * nominal;
@@ -181,9 +181,8 @@ class StepControl final : public Steps<System, X> {
                   outcome);
     }
     end_ = last ? limit : on_grid;
-    if (corrects_) {
-      if (!(this->correct_end(end_, tolerance(options), options) < std::numeric_limits<Real>::infinity()))
-        return this->fail_to_correct(Ending::cannot_continue, 0, outcome);
+    if (corrects_) [[unlikely]] {
+      if (!correct_fixed(options, outcome)) return false;
     }
     ++grid_steps_;
     if (short_step) grid_ = limit, grid_steps_ = 0;
@@ -272,6 +271,12 @@ class StepControl final : public Steps<System, X> {
     }
   }
 
+  // Not inlined, as all that few runs need: the loop of short steps is faster by a third if it fits the registers.
+  [[nodiscard, gnu::noinline]] bool correct_fixed(const Options<X>& options, Outcome<Real>& outcome) {
+    if (this->correct_end(end_, tolerance(options), options) < std::numeric_limits<Real>::infinity()) return true;
+    return this->fail_to_correct(Ending::cannot_continue, 0, outcome);
+  }
+
   [[nodiscard]] bool has_fault() const {
     if constexpr (detail::HasFault<M, Work>) {
       return !std::string_view(M::fault(work_)).empty();
@@ -353,7 +358,8 @@ class StepControl final : public Steps<System, X> {
                 singular_hint, outcome);
   }
 
-  [[nodiscard]] bool fail_equations(StepStatus status, const Options<X>& options, Outcome<Real>& outcome) {
+  [[nodiscard, gnu::noinline]] bool fail_equations(StepStatus status, const Options<X>& options,
+                                                   Outcome<Real>& outcome) {
     if constexpr (detail::HasFailure<M, Work>) {
       if (const std::string_view why = M::failure(work_); !why.empty())
         return fail(Ending::nonlinear_solve_failed, 0, {}, std::string(why), outcome);
