@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
+#include <continuo/results/measurements.hpp>
 #include <continuo/simulation/experiment.hpp>
 #include <continuo/simulation/program/model_program.hpp>
 #include <continuo/status/status.hpp>
 #include <continuo/studies/fit/variance_components.hpp>
 #include <continuo/studies/least_squares.hpp>
 #include <continuo/studies/sensitivity/influence.hpp>
-#include <continuo/studies/support/measurements.hpp>
 
 namespace continuo::studies {
 
@@ -43,7 +43,7 @@ inline constexpr std::size_t fewest_of_own_deviation = 5;
 
 /// One set of measurements: a run of its own in the search.
 struct FitData {
-  Measurements measurements;
+  results::Measurements measurements;
   std::vector<FitColumn> columns;
   model::Overrides parameters{};  // in this set only
 };

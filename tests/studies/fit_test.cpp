@@ -22,8 +22,8 @@ double swing(double t, double k, double c) {
   return std::exp(-d * t) * (std::cos(w * t) + d / w * std::sin(w * t));
 }
 
-Measurements spring_data(std::size_t count, double noise, std::mt19937_64& random) {
-  Measurements data{.file = "spring.csv", .columns = {"x"}, .times = {}, .lines = {}, .values = {{}}};
+results::Measurements spring_data(std::size_t count, double noise, std::mt19937_64& random) {
+  results::Measurements data{.file = "spring.csv", .columns = {"x"}, .times = {}, .lines = {}, .values = {{}}};
   std::normal_distribution<double> error(0, 1);
   for (std::size_t i = 0; i < count; ++i) {
     data.times.push_back(10 * static_cast<double>(i + 1) / static_cast<double>(count));
@@ -91,7 +91,7 @@ TEST(Fit, FindsInitialValuesToo) {
 TEST(Fit, RobustLossesForgiveOutliers) {
   std::mt19937_64 random(4);
   FitRequest request = spring_request(100, 0.05, random);
-  Measurements& data = request.data[0].measurements;
+  results::Measurements& data = request.data[0].measurements;
   for (std::size_t i = 5; i < 100; i += 10)
     data.values[0][i] += swing(data.times[i], 4.01, 0.6) > swing(data.times[i], 3.99, 0.6) ? 3 : -3;
   const Fit plain = fit(request);
@@ -120,8 +120,9 @@ TEST(Fit, KeepsBoundsAndSaysWhichHolds) {
 TEST(Fit, TakesSeveralSetsEachWithItsOwnParametersAndGaps) {
   const auto program = program_of("param a = 1, x0 = 1\nx' = -a*x\nx(0) = x0\noutput twice = 2*x\nrun 0..2\n");
   const double nan = std::numeric_limits<double>::quiet_NaN(), a = 0.7;
-  const Measurements first{"1.csv", {"x"}, {0, 1, 2}, {2, 3, 4}, {{nan, std::exp(-a), nan}}};
-  const Measurements second{"2.csv", {"twice"}, {0.5, 0.5}, {2, 3}, {{6 * std::exp(-a / 2), 6 * std::exp(-a / 2)}}};
+  const results::Measurements first{"1.csv", {"x"}, {0, 1, 2}, {2, 3, 4}, {{nan, std::exp(-a), nan}}};
+  const results::Measurements second{
+      "2.csv", {"twice"}, {0.5, 0.5}, {2, 3}, {{6 * std::exp(-a / 2), 6 * std::exp(-a / 2)}}};
   const Fit result =
       fit({.program = program,
            .data = {{.measurements = first, .columns = {{0, "x", 0.1}}},
@@ -154,7 +155,7 @@ TEST(Fit, WeighsQuantitiesOfDifferentSizeByTheirOwnNoise) {
   const auto program = program_of("param a = 1\nx' = -a*x\nx(0) = 1\noutput big = 1e6*x\nrun 0..2\n");
   std::mt19937_64 random(7);
   std::normal_distribution<double> error(0, 1);
-  Measurements data{"d.csv", {"x", "big"}, {}, {}, {{}, {}}};
+  results::Measurements data{"d.csv", {"x", "big"}, {}, {}, {{}, {}}};
   for (std::size_t i = 1; i <= 200; ++i) {
     data.times.push_back(0.01 * static_cast<double>(i));
     data.lines.push_back(i);

@@ -9,9 +9,9 @@
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
+#include <continuo/results/measurements.hpp>
 #include <continuo/runs/kind.hpp>
 #include <continuo/simulation/simulate.hpp>
-#include <continuo/studies/support/measurements.hpp>
 
 namespace continuo::app {
 namespace {
@@ -86,7 +86,7 @@ std::optional<boundary::BoundaryRequest> read_boundary(const BoundaryOptions& op
   }
   if (!options.guess.empty()) {
     if (!readable(options.guess)) return std::nullopt;
-    auto read = studies::read_measurements(options.guess);
+    auto read = results::read_measurements(options.guess);
     if (!read) {
       say(read.status().message);
       return std::nullopt;

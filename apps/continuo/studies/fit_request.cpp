@@ -86,7 +86,7 @@ class FitRequestReader {
  private:
   bool read_data() {
     for (const std::string& file : options_.data) {
-      auto read = studies::read_measurements(file);
+      auto read = results::read_measurements(file);
       if (!read) {
         say(read.status().message);
         return false;
@@ -212,7 +212,7 @@ class FitRequestReader {
   }
 
   /// `0.01`, `5%`, `0.01+5%`, or the name of a column of deviations.
-  bool set_deviation(const studies::Measurements& measurements, studies::FitColumn& column, const std::string& text,
+  bool set_deviation(const results::Measurements& measurements, studies::FitColumn& column, const std::string& text,
                      const std::string& deviation) const {
     const auto refused = [&](std::string_view why) {
       say(fmt::format("--sigma {}: {}", text, why));

@@ -11,7 +11,7 @@ namespace continuo::app {
 namespace {
 
 /// By what a number of one unit is multiplied to be one of the other; 1 where one of them is not said.
-std::optional<double> factor_between(const studies::Measurements& data, const std::string& column,
+std::optional<double> factor_between(const results::Measurements& data, const std::string& column,
                                      const std::string& from, const std::string& to) {
   if (from.empty() || to.empty()) return 1;
   const Result<model::Unit> parsed = model::parse_unit(from), wanted = model::parse_unit(to);
@@ -27,7 +27,7 @@ std::optional<double> factor_between(const studies::Measurements& data, const st
   return result;
 }
 
-bool convert(studies::Measurements& measured, studies::FitColumn& column, const std::string& unit) {
+bool convert(results::Measurements& measured, studies::FitColumn& column, const std::string& unit) {
   const std::string& own = measured.units[column.column];
   const auto of_values = factor_between(measured, measured.columns[column.column], own, unit);
   if (!of_values) return false;
@@ -57,7 +57,7 @@ std::string unit_of_quantity(const model::Model& model, const std::string& name)
 bool to_units_of_model(studies::FitRequest& request) {
   const model::Model& model = request.program->model;
   for (studies::FitData& data : request.data) {
-    studies::Measurements& measured = data.measurements;
+    results::Measurements& measured = data.measurements;
     const auto of_time = factor_between(measured, "t", measured.time_unit, model.time_unit);
     if (!of_time) return false;
     for (double& t : measured.times) t *= *of_time;

@@ -76,7 +76,7 @@ Status jump_of(const FitProblem& problem, const model::Model& model, std::span<c
 Status outside(const FitRequest& request, double start) {
   const model::Model& model = request.program->model;
   for (const FitData& data : request.data) {
-    const Measurements& measured = data.measurements;
+    const results::Measurements& measured = data.measurements;
     const double end = runs::kind_of(model).has_start ? std::numeric_limits<double>::infinity()
                                                       : request.experiment.to.value_or(model.run.to->value);
     for (std::size_t i = 0; i < measured.times.size(); ++i) {
@@ -101,7 +101,7 @@ bool is_beyond_numbers(double size) {
 
 /// A failure where a column of the data is so large or small that sums of its squares would be no numbers.
 /// Of deviations each must be within, of values the largest.
-Status beyond_numbers(const Measurements& measured, std::size_t column, bool each) {
+Status beyond_numbers(const results::Measurements& measured, std::size_t column, bool each) {
   const auto& values = measured.values[column];
   std::size_t largest = values.size();
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -119,7 +119,7 @@ FitProblem::FitProblem(const FitRequest& request) : request_(request) {
 }
 
 void FitProblem::add_column(const FitData& data, const FitColumn& column) {
-  const Measurements& measurements = data.measurements;
+  const results::Measurements& measurements = data.measurements;
   Column added{.column = &column, .components = {0, 0}};
   std::size_t row = 0;
   for (std::size_t i = 0; i < measurements.times.size(); ++i) {

@@ -1,4 +1,4 @@
-// Measured columns over time from a CSV file, for fits:
+// Columns over time read from a CSV file: measurements to fit, the guess of a boundary-value problem.
 //
 //   const Result<Measurements> read = read_measurements("spring.csv");
 //   if (!read) fmt::print("{}\n", read.status().message);   // "spring.csv:7: `abc` in column `x` is no number"
@@ -10,7 +10,7 @@
 
 #include <continuo/status/result.hpp>
 
-namespace continuo::studies {
+namespace continuo::results {
 
 struct Measurements {
   std::string file;
@@ -29,4 +29,4 @@ struct Measurements {
 /// The same from text, `name` being what messages call it.
 [[nodiscard]] Result<Measurements> parse_measurements(std::string_view text, const std::string& name);
 
-}  // namespace continuo::studies
+}  // namespace continuo::results

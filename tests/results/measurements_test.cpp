@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <continuo/studies/support/measurements.hpp>
+#include <continuo/results/measurements.hpp>
 
-namespace continuo::studies::measurements_test {
+namespace continuo::results::measurements_test {
 namespace {
 
 TEST(Measurements, AreReadWithGapsAndInAnyOrder) {
@@ -41,4 +41,4 @@ TEST(Measurements, SayFileAndLineOfWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace continuo::studies::measurements_test
+}  // namespace continuo::results::measurements_test

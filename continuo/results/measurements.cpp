@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include <continuo/studies/support/measurements.hpp>
+#include <continuo/results/measurements.hpp>
 #include <continuo/symbolic/graph/cells.hpp>
 
-namespace continuo::studies {
+namespace continuo::results {
 
 namespace {
 
@@ -131,4 +131,4 @@ Result<Measurements> read_measurements(const std::string& file) {
   return parse_measurements(text, file);
 }
 
-}  // namespace continuo::studies
+}  // namespace continuo::results
