@@ -12,23 +12,17 @@ if [[ -L $self ]]; then self=$(readlink -f -- "$self"); fi
 root=.
 if [[ $self == */* ]]; then root=${self%/*}; fi
 build=$root/build
-stamp=$build/.built
-web=$root/web
-if [[ ! -d $web ]]; then web=$root/cmake; fi  # a clone without the page
+# shellcheck source=cmake/setup.sh
+source "$root/cmake/setup.sh"
 
-# If nothing is newer than the last build, run the command at once. A folder's time changes when files are added or removed.
-if [[ ! -x $build/continuo || ! -e $stamp ]] ||
-   [[ -n $(find "$root/continuo" "$root/apps" "$root/cmake" "$root/CMakeLists.txt" "$root/CMakePresets.json" \
-             "$web" -name node_modules -prune -o -newer "$stamp" ! -name '*.md' -print -quit) ]]; then
-  # shellcheck source=cmake/setup.sh
-  source "$root/cmake/setup.sh"
-  setup_packages build
-  setup_build "$build" continuo "$stamp"
-fi
+setup_program continuo
+# These two catch what the studies say, so that is not the time to build them.
+if [[ ${1-} == docs || (${1-} == report && " $* " == *" --with"*) ]]; then setup_program continuo-studies; fi
 if [[ ${1-} == docs ]]; then
-  # shellcheck source=cmake/setup.sh
-  source "$root/cmake/setup.sh"
   setup_packages docs
   exec "$(python_of_packages)" "$root/docs/site/build.py" --command "$build/continuo" --out "$build/site"
 fi
+# The command starts its program for studies by this script, which builds it the first time.
+export CONTINUO_STUDIES=$root/cmake/studies.sh
+if [[ $root != /* ]]; then CONTINUO_STUDIES=$PWD/$CONTINUO_STUDIES; fi
 exec "$build/continuo" "$@"

@@ -28,7 +28,8 @@ say "building the command, the library and the tests"
 cmake --preset release -DCONTINUO_TESTS=ON -DCONTINUO_CHECKS=ON -DCMAKE_UNITY_BUILD=ON >&2
 touch build/.built.began
 cmake --build build >&2
-mv build/.built.began build/.built  # continuo.sh finds the command fresh
+mv build/.built.began build/.built
+cp -p build/.built build/.built_studies  # continuo.sh finds both programs of the command fresh
 
 tests=(ctest --test-dir build --output-on-failure --parallel "$(nproc)")
 if (($#)); then exec "${tests[@]}" "$@"; fi

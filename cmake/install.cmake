@@ -39,7 +39,8 @@ install(FILES ${PROJECT_BINARY_DIR}/ContinuoConfig.cmake ${PROJECT_BINARY_DIR}/C
 if(TARGET continuo)
   get_property(loaded GLOBAL PROPERTY CONTINUO_MODULE_TARGETS)
   install(TARGETS continuo)
-  install(TARGETS ${loaded} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo)
+  install(TARGETS continuo-studies ${loaded} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo
+                                             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/continuo OPTIONAL)

@@ -1,4 +1,4 @@
-# cmake/setup.sh: what continuo.sh and test.sh share. Sourced, with `root` set to the folder of the clone.
+# cmake/setup.sh: what continuo.sh, studies.sh and test.sh share. Sourced, with `root` set to the folder of the clone.
 # Everything here speaks on standard error.
 
 # What the build and the tests need: package, the command that proves it is there ("-": ask the package system), why.
@@ -96,6 +96,26 @@ quietly() {
     cat "$log" >&2
     return 1
   fi
+}
+
+# The programs of the command, each with the stamp of its last build.
+declare -A stamps=([continuo]=.built [continuo-studies]=.built_studies)
+
+# setup_program NAME: builds a program of the command in the folder that `build` names, unless nothing is newer than its last build.
+# A folder's time changes when files are added or removed.
+setup_program() {
+  local program=$1 stamp=$build/${stamps[$1]} web=$root/web
+  if [[ ! -d $web ]]; then web=$root/cmake; fi  # a clone without the page
+  if [[ -x $build/$program && -e $stamp ]] &&
+     [[ -z $(find "$root/continuo" "$root/apps" "$root/cmake" "$root/CMakeLists.txt" "$root/CMakePresets.json" \
+               "$web" -name node_modules -prune -o -newer "$stamp" ! -name '*.md' -print -quit) ]]; then
+    return 0
+  fi
+  setup_packages build
+  if [[ $program == continuo-studies && ! -e $stamp ]]; then
+    say "building the part of the command for studies, which takes some minutes this once"
+  fi
+  setup_build "$build" "$program" "$stamp"
 }
 
 # setup_build FOLDER TARGET STAMP: builds one target; the stamp carries the time at which the build began, so that a

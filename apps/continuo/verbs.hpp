@@ -6,13 +6,19 @@
 
 namespace continuo::app {
 
-void add_run(CLI::App& app, ExitCode& exit);
+// Of the program continuo.
 void add_replay(CLI::App& app, ExitCode& exit);
 void add_resume(CLI::App& app, ExitCode& exit);
 void add_view(CLI::App& app, ExitCode& exit);
 void add_check(CLI::App& app, ExitCode& exit);
 void add_info(CLI::App& app, ExitCode& exit);
 void add_verify(CLI::App& app, ExitCode& exit);
+void add_report(CLI::App& app, ExitCode& exit);
+void add_methods(CLI::App& app, ExitCode& exit);
+void add_explain(CLI::App& app, ExitCode& exit);
+void add_new(CLI::App& app, ExitCode& exit);
+
+// Of the program continuo-studies.
 void add_compare(CLI::App& app, ExitCode& exit);
 void add_converge(CLI::App& app, ExitCode& exit);
 void add_stability(CLI::App& app, ExitCode& exit);
@@ -20,13 +26,11 @@ void add_steady(CLI::App& app, ExitCode& exit);
 void add_linearize(CLI::App& app, ExitCode& exit);
 void add_phase(CLI::App& app, ExitCode& exit);
 void add_orbit(CLI::App& app, ExitCode& exit);
-void add_report(CLI::App& app, ExitCode& exit);
 void add_explore(CLI::App& app, ExitCode& exit);
 void add_sense(CLI::App& app, ExitCode& exit);
 void add_fit(CLI::App& app, ExitCode& exit);
-void add_methods(CLI::App& app, ExitCode& exit);
-void add_explain(CLI::App& app, ExitCode& exit);
-void add_new(CLI::App& app, ExitCode& exit);
+
+// Of both; `run` is in verbs/run.hpp.
 void add_help(CLI::App& app, ExitCode& exit);
 
 }  // namespace continuo::app

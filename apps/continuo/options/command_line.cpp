@@ -61,9 +61,8 @@ std::string with_hint(std::string message, const std::string& hint) {
 Verb::Verb(CLI::App& app, std::string name, std::string description)
     : CLI::App(std::move(description), std::move(name), &app) {}
 
-Verb* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples,
-               std::vector<ExitCode> failures) {
-  auto verb = std::make_shared<Verb>(app, std::move(name), std::move(description));
+Verb* add_verb(CLI::App& app, const ListedVerb& listed, std::string_view examples, std::vector<ExitCode> failures) {
+  auto verb = std::make_shared<Verb>(app, std::string(listed.name), std::string(listed.purpose));
   verb->examples = examples;
   verb->failures = std::move(failures);
   examples_first(*verb, examples);

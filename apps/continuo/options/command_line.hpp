@@ -8,6 +8,7 @@
 
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/exit_codes.hpp>
 
 namespace continuo::app {
@@ -24,8 +25,7 @@ class Verb : public CLI::App {
 
 /// A verb whose help begins with `examples` (lines of `continuo VERB ...`). `failures`: its exit codes besides `done`
 /// and `usage`, which all verbs have.
-Verb* add_verb(CLI::App& app, std::string name, std::string description, std::string_view examples,
-               std::vector<ExitCode> failures);
+Verb* add_verb(CLI::App& app, const ListedVerb& listed, std::string_view examples, std::vector<ExitCode> failures);
 
 /// Help of every verb begins with its examples.
 void examples_first(CLI::App& app, std::string_view examples);

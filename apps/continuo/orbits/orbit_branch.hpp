@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include <apps/continuo/options/branch_steps.hpp>
+#include <apps/continuo/studies/branch_steps.hpp>
 #include <apps/continuo/orbits/hybrid_orbit.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 

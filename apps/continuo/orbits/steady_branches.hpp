@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <apps/continuo/options/branch_steps.hpp>
+#include <apps/continuo/studies/branch_steps.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 #include <nlohmann/json.hpp>
 

@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
-#include <apps/continuo/options/influences.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/studies/fit_request.hpp>
 #include <apps/continuo/studies/fit_units.hpp>
+#include <apps/continuo/studies/influences.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 

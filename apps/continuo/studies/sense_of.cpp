@@ -1,7 +1,7 @@
 // Sensitivities of event times, periods and equilibria: computed and printed.
 #include <cmath>
 
-#include <apps/continuo/options/influences.hpp>
+#include <apps/continuo/studies/influences.hpp>
 #include <apps/continuo/studies/orbit_text.hpp>
 #include <apps/continuo/studies/sense_of.hpp>
 #include <apps/continuo/studies/studied_model.hpp>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include <apps/continuo/options/influences.hpp>
+#include <apps/continuo/studies/influences.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>

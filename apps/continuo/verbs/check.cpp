@@ -6,6 +6,7 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -96,8 +97,7 @@ void add_check(CLI::App& app, ExitCode& exit) {
       "  continuo check models/          every model of a folder\n"
       "  continuo check spring.sim --json\n"
       "  continuo check spring.sim --jacobian   df/dx and df/dt against differences, along a run\n";
-  Verb* verb = add_verb(app, "check", "Checks text, names and units of models, and their derivatives", examples,
-                        {wrong_model, numerical_failure, check_failed, interrupted});
+  Verb* verb = add_verb(app, listed("check"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
   verb->json_examples = {"continuo check models/pendulum.sim --jacobian --json"};
   auto request = std::make_shared<CheckRequest>();
   verb->add_option("files", request->files, "Models, or folders of models")->required()->type_name("");

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -44,7 +45,7 @@ void add_explain(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo explain E201     its meaning, an example, a remedy\n"
       "  continuo explain          all codes\n";
-  Verb* verb = add_verb(app, "explain", "Explains the code of a message", examples, {});
+  Verb* verb = add_verb(app, listed("explain"), examples, {});
   auto code = std::make_shared<std::string>();
   verb->add_option("code", *code, "The code of the message, E201")->type_name("");
   verb->callback([&exit, code] { exit = code->empty() ? list() : explain(*code); });

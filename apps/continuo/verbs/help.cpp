@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Formatter.hpp>
 #include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/options/verb_page.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -40,7 +41,7 @@ void add_help(CLI::App& app, ExitCode& exit) {
       "  continuo help             the verbs\n"
       "  continuo help run         the options of a verb, as does continuo run --help\n"
       "  continuo help run --markdown > run.md\n";
-  Verb* verb = add_verb(app, "help", "Shows the options of a verb", examples, {});
+  Verb* verb = add_verb(app, listed("help"), examples, {});
   auto request = std::make_shared<HelpRequest>();
   verb->add_option("verb", request->verb, "The verb; without it, all verbs are listed")->type_name("");
   verb->add_flag("--markdown", request->markdown, "As a page of the reference, with exit codes");

@@ -4,6 +4,7 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 
@@ -23,8 +24,7 @@ ExitCode info(const std::string& path) {
 }  // namespace
 
 void add_info(CLI::App& app, ExitCode& exit) {
-  Verb* verb = add_verb(app, "info", "Shows the equations, states, parameters, events and experiment of a model",
-                        "  continuo info models/bouncing_ball.sim\n", {wrong_model});
+  Verb* verb = add_verb(app, listed("info"), "  continuo info models/bouncing_ball.sim\n", {wrong_model});
   auto path = std::make_shared<std::string>();
   verb->add_option("file", *path, "The model")->required()->type_name("");
   verb->callback([&exit, path] { exit = info(*path); });

@@ -9,6 +9,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -116,7 +117,7 @@ void add_methods(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo methods\n  continuo methods --why models/lorenz.sim\n  continuo run models/kepler.sim --method "
       "dop853\n";
-  Verb* verb = add_verb(app, "methods", "Lists the integration methods", examples, {wrong_model});
+  Verb* verb = add_verb(app, listed("methods"), examples, {wrong_model});
   auto file = std::make_shared<std::string>();
   verb->add_option("--why", *file, "Shows the method chosen for this model, and the reason")->type_name("FILE");
   verb->callback([&exit, file] { exit = file->empty() ? methods() : why(*file); });

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -81,7 +82,7 @@ ExitCode write_starter(const std::string& name) {
 
 void add_new(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples = "  continuo new spring       writes spring.sim\n";
-  Verb* verb = add_verb(app, "new", "Writes a commented model to start from", examples, {});
+  Verb* verb = add_verb(app, listed("new"), examples, {});
   auto name = std::make_shared<std::string>();
   verb->add_option("name", *name, "Name of the file, with or without .sim")->required()->type_name("");
   verb->callback([&exit, name] { exit = write_starter(*name); });

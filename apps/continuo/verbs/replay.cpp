@@ -8,6 +8,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/runs/run_file.hpp>
 #include <apps/continuo/runs/run_results.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
@@ -122,8 +123,7 @@ void add_replay(CLI::App& app, ExitCode& exit) {
       "  continuo run gas.sim --record gas.run                      runs a world and records it\n"
       "  continuo replay gas.run                                    its results, without simulating\n"
       "  continuo replay gas.run -o gas.nc --plot gas.svg           its rows and a plot\n";
-  Verb* verb = add_verb(app, "replay", "Shows, plots or writes a recorded run, without simulating", examples,
-                        {wrong_model, numerical_failure, check_failed, interrupted});
+  Verb* verb = add_verb(app, listed("replay"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
   verb->json_examples = {
       "continuo run models/newtons_cradle.sim --record cradle.run && continuo replay cradle.run --json"};
   auto request = std::make_shared<ReplayRequest>();
@@ -137,9 +137,7 @@ void add_resume(CLI::App& app, ExitCode& exit) {
       "  continuo resume gas.run                                    continues an interrupted run to its end\n"
       "  continuo resume gas.run --until 100 --record longer.run    continues beyond its end\n"
       "  continuo resume gas.run --at 20 -o gas.csv                 restarts from the last snapshot before t = 20\n";
-  Verb* verb =
-      add_verb(app, "resume", "Continues a recorded run, with bitwise the same results as without interruption",
-               examples, {wrong_model, numerical_failure, check_failed, interrupted});
+  Verb* verb = add_verb(app, listed("resume"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
   verb->json_examples = {
       "continuo run models/newtons_cradle.sim --record cradle.run && continuo resume cradle.run --json"};
   auto request = std::make_shared<ReplayRequest>();

@@ -6,6 +6,7 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -91,8 +92,7 @@ void add_report(CLI::App& app, ExitCode& exit) {
       "  continuo report models/bouncing_ball.sim -o ball.html\n"
       "  continuo report models/lorenz.sim --with steady --with \"steady --along rho=0..30\" -o lorenz.html\n"
       "  continuo report models/pendulum.sim --with \"phase --box theta=-7..7\" --with linearize -o pendulum.html\n";
-  Verb* verb = add_verb(app, "report", "Writes a page with a model, its run and studies of it", examples,
-                        {wrong_model, numerical_failure, interrupted});
+  Verb* verb = add_verb(app, listed("report"), examples, {wrong_model, numerical_failure, interrupted});
   auto options = std::make_shared<ReportOptions>();
   verb->add_option("file", options->file, "The model")->required()->type_name("");
   verb->add_option("--with", options->studies,

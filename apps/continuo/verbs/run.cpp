@@ -4,18 +4,19 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <apps/continuo/options/boundary_options.hpp>
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/runs/run_file.hpp>
 #include <apps/continuo/runs/run_results.hpp>
-#include <apps/continuo/studies/boundary_families.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
-#include <apps/continuo/verbs.hpp>
+#include <apps/continuo/verbs/run.hpp>
 #include <fmt/format.h>
 
 #include <continuo/runs/kind.hpp>
@@ -69,7 +70,7 @@ bool has_no_method(const RunRequest& request, const model::Model& model) {
   return true;
 }
 
-ExitCode run(const RunRequest& request) {
+ExitCode run(const RunRequest& request, const ShowFamilies& show_families) {
   std::vector<std::string> written = files_of(request.outputs);
   written.push_back(request.record.path);
   if (!can_be_written(request.outputs) || !can_be_written(request.record) ||
@@ -111,7 +112,7 @@ ExitCode run(const RunRequest& request) {
 
 }  // namespace
 
-void add_run(CLI::App& app, ExitCode& exit) {
+void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families) {
   static constexpr std::string_view examples =
       "  continuo run models/bouncing_ball.sim                      the motion in a few lines\n"
       "  continuo run ball.sim -o ball.csv --plot ball.svg          all rows, and a plot\n"
@@ -126,8 +127,7 @@ void add_run(CLI::App& app, ExitCode& exit) {
       "  continuo run bratu.sim --family p=0.1..4 --plot bratu.svg  all solutions along p, around folds and at branch "
       "points\n"
       "  continuo run ball.sim --json                               outcome, state, events, cost\n";
-  Verb* verb = add_verb(app, "run", "Runs a model and shows, plots or writes its motion", examples,
-                        {wrong_model, numerical_failure, check_failed, interrupted});
+  Verb* verb = add_verb(app, listed("run"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
   verb->json_examples = {"continuo run models/bouncing_ball.sim --json",
                          "continuo run models/bratu.sim --family lambda=0.1..4 --json"};
   auto request = std::make_shared<RunRequest>();
@@ -139,7 +139,7 @@ void add_run(CLI::App& app, ExitCode& exit) {
   verb->add_flag("--estimate-error", request->estimate_error,
                  "Estimates the global error by a second run with a tolerance a hundred times smaller");
   add_boundary(*verb, request->boundary);
-  verb->callback([&exit, request] { exit = run(*request); });
+  verb->callback([&exit, request, show_families = std::move(show_families)] { exit = run(*request, show_families); });
 }
 
 }  // namespace continuo::app

@@ -8,6 +8,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -97,8 +98,7 @@ void add_verify(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
       "  continuo verify models/            every model of a folder\n"
       "  continuo verify ball.sim spring.sim\n";
-  Verb* verb = add_verb(app, "verify", "Runs models and tests all of their checks", examples,
-                        {wrong_model, numerical_failure, check_failed, interrupted});
+  Verb* verb = add_verb(app, listed("verify"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
   auto places = std::make_shared<std::vector<std::string>>();
   verb->add_option("files", *places, "Models, or folders of models")->required()->type_name("");
   verb->callback([&exit, places] { exit = verify_all(*places); });

@@ -12,6 +12,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/page.hpp>
 #include <apps/continuo/pictures/recording.hpp>
 #include <apps/continuo/terminal/browser.hpp>
@@ -188,7 +189,7 @@ void add_view(CLI::App& app, ExitCode& exit) {
       "  continuo view ball.sim --export ball.html                  one page that replays the run, for a lecture\n"
       "  continuo view ball.sim --record frames/                    pictures, without a browser\n"
       "  continuo view ball.sim --listen 0.0.0.0 --port 8000        for others in this network too\n";
-  Verb* verb = add_verb(app, "view", "Shows a model live in the browser", examples, {wrong_model});
+  Verb* verb = add_verb(app, listed("view"), examples, {wrong_model});
   auto request = std::make_shared<ViewRequest>();
   add_model(*verb, request->experiment);
   add_method(*verb, request->experiment);

@@ -1,7 +1,7 @@
 // Finds parameters and states by their names on the command line, and refuses unsuitable options.
 #include <algorithm>
 
-#include <apps/continuo/options/influences.hpp>
+#include <apps/continuo/studies/influences.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 

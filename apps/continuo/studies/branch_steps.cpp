@@ -1,7 +1,7 @@
 // Adds the options for the length of steps along a branch, and tests their order.
 #include <algorithm>
 
-#include <apps/continuo/options/branch_steps.hpp>
+#include <apps/continuo/studies/branch_steps.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -169,8 +170,7 @@ void add_linearize(CLI::App& app, ExitCode& exit) {
       "damping\n"
       "  continuo linearize models/pendulum.sim --at theta=3.14159  at another point\n"
       "  continuo linearize models/lorenz.sim --start --json\n";
-  Verb* verb = add_verb(app, "linearize", "Linearizes a model at a point, and prints its modes", examples,
-                        {wrong_model, numerical_failure});
+  Verb* verb = add_verb(app, listed("linearize"), examples, {wrong_model, numerical_failure});
   verb->json_examples = {"continuo linearize models/mass_spring_damper.sim --json"};
   auto options = std::make_shared<LinearizeOptions>();
   add_model(*verb, options->experiment);

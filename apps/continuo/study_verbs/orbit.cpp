@@ -8,6 +8,7 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/orbits/degenerate_curves.hpp>
 #include <apps/continuo/orbits/hybrid_orbit.hpp>
 #include <apps/continuo/orbits/long_motion.hpp>
@@ -222,8 +223,7 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
       "forces\n"
       "  continuo orbit models/lorenz.sim --lyapunov --duration 5000              Lyapunov exponents\n"
       "  continuo orbit models/lorenz.sim --section z=27 --duration 500 -o s.csv  a Poincare section\n";
-  Verb* verb = add_verb(app, "orbit", "Finds periodic orbits, Poincare sections, or Lyapunov exponents", examples,
-                        {wrong_model, numerical_failure, interrupted});
+  Verb* verb = add_verb(app, listed("orbit"), examples, {wrong_model, numerical_failure, interrupted});
   verb->json_examples = {"continuo orbit models/van_der_pol_stiff.sim --set mu=1 --json",
                          "continuo orbit models/van_der_pol_stiff.sim --set mu=1 --along mu=0.5..2 --json",
                          "continuo orbit models/lorenz.sim --lyapunov --duration 100 --json"};

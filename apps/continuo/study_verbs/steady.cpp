@@ -7,6 +7,7 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/orbits/steady_branches.hpp>
 #include <apps/continuo/orbits/steady_curves.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
@@ -200,8 +201,7 @@ void add_steady(CLI::App& app, ExitCode& exit) {
       "  continuo steady models/lorenz.sim --along rho=0..30 --plot branches.svg -o branches.csv\n"
       "  continuo steady models/lorenz.sim --along rho=0..30 --and sigma=5..20   bifurcation curves in two parameters\n"
       "  continuo steady models/pendulum.sim --box theta=-7..7          restricts the search\n";
-  Verb* verb = add_verb(app, "steady", "Finds the equilibria of a model and their stability", examples,
-                        {wrong_model, numerical_failure, interrupted});
+  Verb* verb = add_verb(app, listed("steady"), examples, {wrong_model, numerical_failure, interrupted});
   verb->json_examples = {"continuo steady models/lorenz.sim --json",
                          "continuo steady models/lorenz.sim --along rho=0..30 --json"};
   auto options = std::make_shared<SteadyOptions>();

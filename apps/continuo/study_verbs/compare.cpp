@@ -8,6 +8,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/study_json.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
@@ -126,8 +127,7 @@ void add_compare(CLI::App& app, ExitCode& exit) {
       "  continuo compare models/mass_spring.sim --methods euler,semi_implicit_euler,rk4 --step 0.1,0.05\n"
       "  continuo compare models/kepler.sim --methods dop853,tsitouras5 --tol 1e-6,1e-9 --plot methods.svg\n"
       "  continuo compare models/chain.sim --methods exact,central_difference,explicit_euler --step 0.005\n";
-  Verb* verb = add_verb(app, "compare", "Compares errors and cost of several methods and steps on a model", examples,
-                        {wrong_model, numerical_failure, interrupted});
+  Verb* verb = add_verb(app, listed("compare"), examples, {wrong_model, numerical_failure, interrupted});
   verb->json_examples = {"continuo compare models/mass_spring.sim --methods euler,rk4 --step 0.1 --json"};
   auto options = std::make_shared<CompareOptions>();
   add_experiment(*verb, options->experiment);

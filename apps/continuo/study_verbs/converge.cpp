@@ -10,6 +10,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/converge_text.hpp>
 #include <apps/continuo/studies/differences.hpp>
 #include <apps/continuo/studies/study_json.hpp>
@@ -104,8 +105,7 @@ void add_converge(CLI::App& app, ExitCode& exit) {
       "  continuo converge models/kepler.sim --methods adams --tol 1e-3,1e-5,1e-7\n"
       "  continuo converge models/chain.sim --methods fast,rk4 --until 2         bodies, against their exact motion\n"
       "  continuo converge --derivative \"sin(x)\" --at 1            difference schemes for f' and f''\n";
-  Verb* verb = add_verb(app, "converge", "Measures the order of methods, and the limit set by rounding", examples,
-                        {wrong_model, numerical_failure, interrupted});
+  Verb* verb = add_verb(app, listed("converge"), examples, {wrong_model, numerical_failure, interrupted});
   verb->json_examples = {"continuo converge models/mass_spring_damper.sim --methods rk4 --most-steps 256 --json"};
   auto options = std::make_shared<ConvergeOptions>();
   add_experiment(*verb, options->experiment);

@@ -6,10 +6,11 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
-#include <apps/continuo/options/influences.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/fit_request.hpp>
 #include <apps/continuo/studies/fit_results.hpp>
+#include <apps/continuo/studies/influences.hpp>
 #include <apps/continuo/terminal/modules.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -92,8 +93,7 @@ void add_fit(CLI::App& app, ExitCode& exit) {
       "  continuo fit spring.sim measured.csv --param k,c --initial x --loss huber --plot fit.svg\n"
       "  continuo fit spring.sim a.csv b.csv --param k --in b.csv:m=2 --column \"pos=x\" --sigma pos=0.01\n"
       "  continuo fit decay.sim counts.csv --param a --log a --error n=poisson --profile --json\n";
-  Verb* verb = add_verb(app, "fit", "Finds parameters and initial values from measurements", examples,
-                        {wrong_model, numerical_failure, interrupted});
+  Verb* verb = add_verb(app, listed("fit"), examples, {wrong_model, numerical_failure, interrupted});
   verb->json_examples = {
       "continuo run models/mass_spring_damper.sim -o measured.csv && continuo fit models/mass_spring_damper.sim "
       "measured.csv --param k,c --profile --json"};

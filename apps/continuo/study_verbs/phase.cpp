@@ -8,6 +8,7 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 #include <apps/continuo/studies/study_json.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
@@ -210,8 +211,7 @@ void add_phase(CLI::App& app, ExitCode& exit) {
       "  continuo phase models/pendulum.sim --plot pendulum.svg\n"
       "  continuo phase models/predator_prey.sim --box hares=0..4,lynxes=0..3 --plot plane.svg\n"
       "  continuo phase models/pendulum.sim --start \"theta=1;theta'=0\" --plot one.svg\n";
-  Verb* verb =
-      add_verb(app, "phase", "Draws the phase plane of a model with two states", examples, {wrong_model, interrupted});
+  Verb* verb = add_verb(app, listed("phase"), examples, {wrong_model, interrupted});
   verb->json_examples = {"continuo phase models/pendulum.sim --json"};
   auto options = std::make_shared<PhaseOptions>();
   add_model(*verb, options->experiment);

@@ -12,6 +12,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/converge_text.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
@@ -267,8 +268,7 @@ void add_stability(CLI::App& app, ExitCode& exit) {
       "  continuo stability euler,heun,rk4 --plot regions.svg         regions of absolute stability\n"
       "  continuo stability euler,rk4,bdf2 --model models/heat_equation.sim     the largest stable step\n"
       "  continuo stability central_difference --model models/mass_spring_damper.sim --set c=0\n";
-  Verb* verb = add_verb(app, "stability", "Computes regions of stability and the largest stable step", examples,
-                        {wrong_model, numerical_failure, interrupted});
+  Verb* verb = add_verb(app, listed("stability"), examples, {wrong_model, numerical_failure, interrupted});
   verb->json_examples = {"continuo stability rk4 --model models/heat_equation.sim --json"};
   auto options = std::make_shared<StabilityOptions>();
   verb->add_option("methods", options->methods, "Methods, separated by commas")

@@ -7,8 +7,9 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
-#include <apps/continuo/options/influences.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/studies/influences.hpp>
 #include <apps/continuo/studies/sense_of.hpp>
 #include <apps/continuo/studies/study_json.hpp>
 #include <apps/continuo/terminal/progress.hpp>
@@ -192,9 +193,7 @@ void add_sense(CLI::App& app, ExitCode& exit) {
       "  continuo sense models/bouncing_ball.sim --param e,g --until 8 --plot ball.svg\n"
       "  continuo sense models/lorenz.sim --initial x --until 5 -o growth.csv\n"
       "  continuo sense models/thermostat.sim --param tau,high --of period      and --of events, --of equilibrium\n";
-  Verb* verb =
-      add_verb(app, "sense", "Computes sensitivities: derivatives of a motion by parameters and initial values",
-               examples, {wrong_model, numerical_failure, interrupted});
+  Verb* verb = add_verb(app, listed("sense"), examples, {wrong_model, numerical_failure, interrupted});
   verb->json_examples = {"continuo sense models/mass_spring_damper.sim --param k,c --json",
                          "continuo sense models/lorenz.sim --param rho --of equilibrium --json"};
   auto options = std::make_shared<SenseOptions>();

@@ -4,6 +4,7 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/orbits/exploration.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -43,8 +44,7 @@ void add_explore(CLI::App& app, ExitCode& exit) {
       "and open questions\n"
       "  continuo explore models/van_der_pol_stiff.sim --plot page.svg\n"
       "  continuo explore models/mass_spring_damper.sim --json\n";
-  Verb* verb = add_verb(app, "explore", "Gives an overview of a model: run, equilibria, orbits, parameters", examples,
-                        {wrong_model, interrupted});
+  Verb* verb = add_verb(app, listed("explore"), examples, {wrong_model, interrupted});
   verb->json_examples = {"continuo explore models/mass_spring_damper.sim --json"};
   auto options = std::make_shared<ExploreOptions>();
   add_model(*verb, options->experiment);

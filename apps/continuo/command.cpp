@@ -1,0 +1,84 @@
+// Parses the command line and runs the verb that it names.
+#include <algorithm>
+#include <exception>
+#include <string>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <apps/continuo/command.hpp>
+#include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <fmt/format.h>
+
+namespace continuo::app {
+namespace {
+
+constexpr std::string_view command_examples =
+    "  continuo run models/bouncing_ball.sim                     the motion in a few lines\n"
+    "  continuo view models/spring_pendulum.sim                  the motion live in the browser: drag the mass, slide "
+    "k\n"
+    "  continuo run models/kepler.sim -o orbit.csv --plot orbit.svg\n"
+    "  continuo compare models/mass_spring.sim --methods euler,rk4 --step 0.1,0.05\n"
+    "  continuo new spring                                       a commented model to start from\n"
+    "  continuo verify models/                                   tests every check of every model\n"
+    "  continuo explain E201                                     the explanation of a message\n";
+
+/// All verbs in the order of their list; those of the other program have no more than their names and purposes.
+void add_verbs(CLI::App& app, ExitCode& exit, std::span<const OwnVerb> verbs) {
+  for (const ListedVerb& listed : all_verbs) {
+    const auto own = std::ranges::find(verbs, listed.name, &OwnVerb::name);
+    if (own != verbs.end())
+      own->add(app, exit);
+    else
+      app.add_subcommand(std::string(listed.name), std::string(listed.purpose));
+  }
+}
+
+int command(int argc, char** argv, std::span<const OwnVerb> verbs) {
+  CLI::App app(
+      "Simulates continuous systems from their differential equations, with located events and error estimates.",
+      "continuo");
+  examples_first(app, command_examples);
+  app.set_version_flag("--version", "continuo " CONTINUO_VERSION);
+  app.require_subcommand(1);
+  ExitCode exit = done;
+  add_verbs(app, exit, verbs);
+
+  for (CLI::App* verb : app.get_subcommands({})) refuse_empty(*verb);
+  if (argc == 1) {
+    print(app.help());
+    return usage;
+  }
+  const auto advice = [&] {
+    const auto chosen = app.get_subcommands();
+    return fmt::format("continuo {}--help shows how", chosen.empty() ? "" : chosen.front()->get_name() + " ");
+  };
+  try {
+    app.parse(argc, argv);
+    return exit;
+  } catch (const CLI::Success& success) {  // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ExtrasError&) {
+    say(fmt::format("{} ({})", unexpected(app, argc, argv), advice()));
+  } catch (const CLI::ParseError& error) {
+    const bool no_verb = app.get_subcommands().empty();
+    say(fmt::format("{} ({})", no_verb ? unexpected(app, argc, argv) : error.what(), advice()));
+  }
+  return usage;
+}
+
+}  // namespace
+
+int run_command(int argc, char** argv, std::span<const OwnVerb> verbs) {
+  try {
+    const int exit = command(argc, argv, verbs);
+    if (exit != done) return exit;
+    return all_printed() ? done : usage;
+  } catch (const std::exception& error) {
+    say(fmt::format("internal error: {}", error.what()));
+    return numerical_failure;
+  }
+}
+
+}  // namespace continuo::app
