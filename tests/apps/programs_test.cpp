@@ -53,7 +53,7 @@ TEST(Programs, MessagesAndHelpKnowTheVerbsOfBoth) {
   EXPECT_THAT(shell.run("--help").out, AllOf(HasSubstr("Finds periodic orbits"), HasSubstr("Lists the integration")));
   EXPECT_THAT(shell.run("orbt x.sim").err, HasSubstr("did you mean `orbit`?"));
   EXPECT_THAT(shell.run("help orbt").err, HasSubstr("did you mean `orbit`?"));
-  EXPECT_THAT(shell.run("x.sim orbit").err, HasSubstr("`orbit` has no use for `x.sim`"));
+  EXPECT_THAT(shell.run("x.sim orbit y.sim").err, HasSubstr("`orbit` has no use for `x.sim`"));
   EXPECT_THAT(shell.run("orbit x.sim --plto a.svg").err, HasSubstr("did you mean `--plot`?"));
   EXPECT_THAT(shell.run("orbit nothing.sim").err, StartsWith("continuo: cannot read nothing.sim"));
 }
@@ -81,7 +81,7 @@ TEST(Programs, AVariableNamesAnotherOneForTheStudies) {
   const Shell shell;
   shell.write("spring.sim", spring);
   EXPECT_EQ(shell.run("steady 'two words' --json", "CONTINUO_STUDIES=/bin/echo").out, "steady two words --json\n");
-  EXPECT_EQ(shell.run("run spring.sim", "CONTINUO_STUDIES=/bin/echo").out, shell.run("run spring.sim").out);
+  EXPECT_EQ(shell.run("info spring.sim", "CONTINUO_STUDIES=/bin/echo").out, shell.run("info spring.sim").out);
   const Result none = shell.run("steady spring.sim", "CONTINUO_STUDIES=/no/such/program");
   EXPECT_EQ(none.exit, 1);
   EXPECT_THAT(none.err, AllOf(HasSubstr("cannot start"), HasSubstr("/no/such/program: No such file")));

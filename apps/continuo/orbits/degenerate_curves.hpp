@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <apps/continuo/studies/branch_steps.hpp>
 #include <apps/continuo/orbits/steady_curves.hpp>
+#include <apps/continuo/studies/branch_steps.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 #include <nlohmann/json.hpp>
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include <apps/continuo/studies/branch_steps.hpp>
 #include <apps/continuo/orbits/hybrid_orbit.hpp>
+#include <apps/continuo/studies/branch_steps.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 
 #include <continuo/studies/periodic_orbit.hpp>
