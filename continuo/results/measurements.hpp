@@ -12,6 +12,7 @@
 
 namespace continuo::results {
 
+/// A table of measurements: a column of times, and columns of values.
 struct Measurements {
   std::string file;
   std::vector<std::string> columns;         // without the time's
