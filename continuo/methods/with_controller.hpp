@@ -78,19 +78,28 @@ struct WithController : M {
   /// The workspace of M, and the controller.
   template <State X>
   struct Workspace : M::template Workspace<X> {
-    static_assert(StepController<C, Scalar<X>>,
-                  "a controller is called as controller(const StepError<Real>& step) and returns a Real, and can be "
-                  "copied and made as C{}");
-    static_assert(!detail::HasErrorOrderOf<M, typename M::template Workspace<X>>,
-                  "the method chooses its order and its step together: it has a controller of its own");
     C controller{};
     mutable Scalar<X> error{};  // of the last step
     bool controls = true;
   };
 
+  /// Refuses, by a sentence, what cannot be combined for states X; true where all can.
+  template <State X>
+  [[nodiscard]] static consteval bool check_for_states() {
+    constexpr bool controller = StepController<C, Scalar<X>>;
+    static_assert(controller,
+                  "a controller is called as controller(const StepError<Real>& step) and returns a Real, and can be "
+                  "copied and made as C{}");
+    constexpr bool free = !detail::HasErrorOrderOf<M, typename M::template Workspace<X>>;
+    static_assert(free, "the method chooses its order and its step together: it has a controller of its own");
+    if constexpr (requires { M::template check_for_states<X>(); }) return M::template check_for_states<X>();
+    return controller && free;
+  }
+
   /// Allocates for M.
   template <State X>
   [[nodiscard]] static Workspace<X> workspace(const X& x) {
+    static_assert(check_for_states<X>());
     return {M::workspace(x)};
   }
 

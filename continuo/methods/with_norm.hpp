@@ -50,16 +50,25 @@ struct WithNorm : M {
   /// The workspace of M, and the errors.
   template <State X>
   struct Workspace : M::template Workspace<X> {
-    static_assert(ErrorNorm<N, Scalar<X>>,
-                  "a norm is an empty type that is called as norm(std::span<const Real> errors) and returns a Real");
     mutable X errors, rtol_each, atol_each;
     mutable Scalar<X> ratio{1};  // N / R of the last step
     mutable bool is_norm = true;
   };
 
+  /// Refuses, by a sentence, a norm that is none for states X; true where it is one.
+  template <State X>
+  [[nodiscard]] static consteval bool check_for_states() {
+    constexpr bool norm = ErrorNorm<N, Scalar<X>>;
+    static_assert(norm,
+                  "a norm is an empty type that is called as norm(std::span<const Real> errors) and returns a Real");
+    if constexpr (requires { M::template check_for_states<X>(); }) return M::template check_for_states<X>();
+    return norm;
+  }
+
   /// Allocates for M and for the errors.
   template <State X>
   [[nodiscard]] static Workspace<X> workspace(const X& x) {
+    static_assert(check_for_states<X>());
     return {M::workspace(x), x, x, x};
   }
 

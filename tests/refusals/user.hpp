@@ -11,6 +11,7 @@
 
 #include <continuo/methods/collocation/radau.hpp>
 #include <continuo/methods/explicit_rk/dop853.hpp>
+#include <continuo/methods/linear_solver.hpp>
 #include <continuo/methods/symplectic/velocity_verlet.hpp>
 #include <continuo/methods/with_solver.hpp>
 #include <continuo/sensitivities/adjoint.hpp>
