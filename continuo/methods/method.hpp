@@ -37,6 +37,24 @@ struct Interpolant {
     return value;
   }
 
+  /// xs[k] = x(t + thetas[k] h), to the same bits as one at a time, but in half the time where states are small: the
+  /// chains of operations of the places are independent of each other.
+  template <std::size_t Count>
+  void operator()(std::span<const Scalar<X>, Count> thetas, std::span<X, Count> xs) const {
+    std::array<Scalar<X>, Count> theta, values;
+    std::ranges::copy(thetas, theta.begin());
+    for (std::size_t i = 0; i < dimension(xs.front()); ++i) {
+      values.fill(c[Degree].data()[i]);
+#pragma GCC unroll 20
+      for (int j = Degree - 1; j >= 0; --j) {
+        const Scalar<X> next = c[static_cast<std::size_t>(j)].data()[i];
+#pragma GCC unroll 20
+        for (std::size_t k = 0; k < Count; ++k) values[k] = values[k] * theta[k] + next;
+      }
+      for (std::size_t k = 0; k < Count; ++k) xs[k].data()[i] = values[k];
+    }
+  }
+
   /// Becomes the cubic with the values x, x_new and the slopes slope, slope_new (x') at the ends of a step of size h.
   void set_cubic_hermite(const X& x, const X& slope, const X& x_new, const X& slope_new, const Scalar<X>& h)
     requires(Degree >= 3)

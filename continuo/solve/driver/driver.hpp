@@ -349,7 +349,7 @@ class Driver {
     const Real begin = steps().begin();
     Real length = steps().end() - begin, from = t_, offset = t_ - begin;
     const Real instant = 4 * std::numeric_limits<Real>::epsilon() * abs(steps().end());
-    const auto evaluate = [&](Real place, std::span<Real> values) { guards_at(place, length, values); };
+    const auto evaluate = [&](const auto& place, auto&& values) { guards_at(place, length, values); };
     bool from_here = true;  // the search begins at t_
     while (true) {
       if (logic_.any_guard() && Logic::has_enclosures) logic_.take_step(steps(), dense_output());
@@ -436,6 +436,29 @@ class Driver {
     logic_.events().guards(steps().system(), offset == length ? steps().end() : steps().begin() + offset, before_,
                            values);
     return values;
+  }
+
+  // The guards at the places of a sample, the last of which may be the end of the step.
+  template <std::size_t Count>
+  void guards_at(const std::array<Real, Count>& places, Real length, std::span<std::vector<Real>, Count> values) {
+    if constexpr (FixedSize<X> && Count == Steps<System, X>::parts_at_once) {
+      std::array<Real, Count> parts;
+      for (std::size_t k = 0; k < Count; ++k) parts[k] = places[k] / steps().size();
+      samples_.resize(Count, x_);
+      steps().at_parts(parts, std::span<X, Count>(samples_));
+      for (std::size_t k = 0; k < Count; ++k) {
+        if (places[k] == length) {
+          guards_at(length, length, values[k]);
+        } else {
+          const Real t = steps().begin() + places[k];
+          shift(samples_[k]);
+          complete(t, samples_[k]);
+          logic_.events().guards(steps().system(), t, samples_[k], values[k]);
+        }
+      }
+    } else {
+      for (std::size_t k = 0; k < Count; ++k) guards_at(places[k], length, values[k]);
+    }
   }
 
   void look_at(const Crossing<Real>& crossing, Real from, Real length) {
@@ -690,6 +713,7 @@ class Driver {
   Interval<Real> interval_;
   Real t_;
   X x_, before_;
+  std::vector<X> samples_;  // the states of the last sample of the guards
   X solved_ = x_;
   UnknownsSolver<X> unknowns_{x_};
   Begin begin_;

@@ -81,10 +81,13 @@ struct EnclosedStep {
 
 /// The guards of one run. Places are offsets s from the start of the step: these numbers are denser than those at t, so
 /// that a ball at t = 1000 is located on the floor, not a hundred thousand roundings of h below it. `evaluate(s, span)`
-/// gives all guards at a place of the present segment.
+/// gives all guards at a place of the present segment, and `evaluate(array, span of vectors)` those at several places.
 template <class Real>
 class EventLocator {
  public:
+  /// The samples of a segment behind its beginning.
+  static constexpr std::size_t later_samples = bernstein::count - 1;
+
   explicit EventLocator(std::size_t size = 0)
       : states_(size),
         scanned_(size),
@@ -156,9 +159,14 @@ class EventLocator {
   template <class Evaluate>
   void sample(Real from, Real to, std::span<const Real> known, Evaluate& evaluate) {
     static_assert(bernstein::nodes.front() == 0);
-    if (!known.empty()) std::ranges::copy(known, samples_.front().begin());
-    for (std::size_t k = known.empty() ? 0 : 1; k < bernstein::count; ++k)
-      evaluate(time(from, to, bernstein::nodes[k]), samples_[k]);
+    if (known.empty()) {
+      evaluate(from, samples_.front());
+    } else {
+      std::ranges::copy(known, samples_.front().begin());
+    }
+    std::array<Real, later_samples> places;
+    for (std::size_t k = 0; k < later_samples; ++k) places[k] = time(from, to, bernstein::nodes[k + 1]);
+    evaluate(places, std::span<std::vector<Real>, later_samples>(samples_.begin() + 1, later_samples));
     resampled_ = false;
   }
 

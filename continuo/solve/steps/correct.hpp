@@ -31,12 +31,13 @@ template <State X>
 void keep_signs(const Options<X>& options, X& x) {
   using Real = Scalar<X>;
   using std::max;
-  const Tolerance<Real> tolerance = tolerance_of(options);
   for (std::size_t i = 0; i < std::min(options.signs.size(), dimension(x)); ++i) {
     const Sign sign = options.signs[i];
     Real& value = x.data()[i];
-    if (detail::has_sign(sign, value)) continue;
-    const Real least = max(Real(tolerance.scale(i, value, value) / Real(10)), std::numeric_limits<Real>::min());
+    if (detail::has_sign(sign, value)) [[likely]]
+      continue;
+    const Real scale = tolerance_of(options).scale(i, value, value);
+    const Real least = max(Real(scale / Real(10)), std::numeric_limits<Real>::min());
     value = sign == Sign::positive ? least : sign == Sign::negative ? -least : Real(0);
   }
 }

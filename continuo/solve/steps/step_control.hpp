@@ -61,6 +61,9 @@ class StepControl final : public Steps<System, X> {
   }
   [[nodiscard]] std::span<const X> dense_output() override { return interpolant().c; }
   void at_part(Real theta, X& x) override { interpolant()(theta, x); }
+  void at_parts(std::span<const Real, Base::parts_at_once> thetas, std::span<X, Base::parts_at_once> xs) override {
+    interpolant()(thetas, xs);
+  }
 
   [[nodiscard]] bool lands() const override { return detail::is_implicit<M>(); }
   [[nodiscard]] bool retake(Real size, const Options<X>& options) override {

@@ -41,6 +41,9 @@ class Steps {
   /// The last step's dense output: coefficients in theta = (t - begin) / size, see Interpolant.
   virtual std::span<const X> dense_output() = 0;
   virtual void at_part(Real theta, X& x) = 0;
+  /// The same at several places at once, which is faster for small states.
+  static constexpr std::size_t parts_at_once = 8;
+  virtual void at_parts(std::span<const Real, parts_at_once> thetas, std::span<X, parts_at_once> xs) = 0;
   /// Whether the state within a step must be found by a shorter step, not from the dense output: the polynomial of an
   /// implicit method leaves the slow solution of a stiff system.
   [[nodiscard]] virtual bool lands() const = 0;
