@@ -438,9 +438,12 @@ class Driver {
     return values;
   }
 
-  // The guards at the places of a sample, the last of which may be the end of the step.
+  // The guards at the places of a sample, one place after the other; the last may be the end of the step.
   template <std::size_t Count>
-  void guards_at(const std::array<Real, Count>& places, Real length, std::span<std::vector<Real>, Count> values) {
+  void guards_at(const std::array<Real, Count>& places, Real length, std::span<Real> values) {
+    const auto values_at = [size = values.size() / Count, values](std::size_t k) {
+      return values.subspan(k * size, size);
+    };
     if constexpr (FixedSize<X> && Count == Steps<System, X>::parts_at_once) {
       std::array<Real, Count> parts;
       for (std::size_t k = 0; k < Count; ++k) parts[k] = places[k] / steps().size();
@@ -448,16 +451,16 @@ class Driver {
       steps().at_parts(parts, std::span<X, Count>(samples_));
       for (std::size_t k = 0; k < Count; ++k) {
         if (places[k] == length) {
-          guards_at(length, length, values[k]);
+          guards_at(length, length, values_at(k));
         } else {
           const Real t = steps().begin() + places[k];
           shift(samples_[k]);
           complete(t, samples_[k]);
-          logic_.events().guards(steps().system(), t, samples_[k], values[k]);
+          logic_.events().guards(steps().system(), t, samples_[k], values_at(k));
         }
       }
     } else {
-      for (std::size_t k = 0; k < Count; ++k) guards_at(places[k], length, values[k]);
+      for (std::size_t k = 0; k < Count; ++k) guards_at(places[k], length, values_at(k));
     }
   }
 

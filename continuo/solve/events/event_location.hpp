@@ -81,7 +81,8 @@ struct EnclosedStep {
 
 /// The guards of one run. Places are offsets s from the start of the step: these numbers are denser than those at t, so
 /// that a ball at t = 1000 is located on the floor, not a hundred thousand roundings of h below it. `evaluate(s, span)`
-/// gives all guards at a place of the present segment, and `evaluate(array, span of vectors)` those at several places.
+/// gives all guards at a place of the present segment, and `evaluate(array, span)` those at several places, one place
+/// after the other.
 template <class Real>
 class EventLocator {
  public:
@@ -89,11 +90,7 @@ class EventLocator {
   static constexpr std::size_t later_samples = bernstein::count - 1;
 
   explicit EventLocator(std::size_t size = 0)
-      : states_(size),
-        scanned_(size),
-        first_(size),
-        scratch_(size),
-        samples_(bernstein::count, std::vector<Real>(size)) {
+      : states_(size), scanned_(size), first_(size), scratch_(size), samples_(bernstein::count * size) {
     crossing_.guards.reserve(size);
   }
 
@@ -159,15 +156,21 @@ class EventLocator {
   template <class Evaluate>
   void sample(Real from, Real to, std::span<const Real> known, Evaluate& evaluate) {
     static_assert(bernstein::nodes.front() == 0);
+    const std::span<Real> first(samples_.data(), states_.size());
+    const std::span<Real> later = std::span<Real>(samples_).subspan(first.size());
     if (known.empty()) {
-      evaluate(from, samples_.front());
+      evaluate(from, first);
     } else {
-      std::ranges::copy(known, samples_.front().begin());
+      std::ranges::copy(known, first.begin());
     }
     std::array<Real, later_samples> places;
     for (std::size_t k = 0; k < later_samples; ++k) places[k] = time(from, to, bernstein::nodes[k + 1]);
-    evaluate(places, std::span<std::vector<Real>, later_samples>(samples_.begin() + 1, later_samples));
+    evaluate(places, later);
     resampled_ = false;
+  }
+
+  [[nodiscard]] const Real& sample_of(std::size_t guard, std::size_t k) const {
+    return samples_[k * states_.size() + guard];
   }
 
   [[nodiscard]] static Real time(Real from, Real to, double part) {
@@ -177,7 +180,7 @@ class EventLocator {
   [[nodiscard]] std::array<double, bernstein::count> values(const Scan& scan) const {
     std::array<double, bernstein::count> value;
     const Real level = scan.state.level();
-    for (std::size_t k = 0; k < bernstein::count; ++k) value[k] = static_cast<double>(samples_[k][scan.guard] - level);
+    for (std::size_t k = 0; k < bernstein::count; ++k) value[k] = static_cast<double>(sample_of(scan.guard, k) - level);
     return value;
   }
 
@@ -222,9 +225,9 @@ class EventLocator {
   // them, which is taken as its whole range over the step.
   [[nodiscard]] bool cheap_no(const Scan& scan) const {
     if (scan.state.side == 0) return false;
-    Real least = samples_[0][scan.guard], greatest = least;
+    Real least = sample_of(scan.guard, 0), greatest = least;
     for (std::size_t k = 1; k < bernstein::count; ++k) {
-      const Real g = samples_[k][scan.guard];
+      const Real g = sample_of(scan.guard, k);
       if (!(g >= least)) least = g;
       if (!(g <= greatest)) greatest = g;
     }
@@ -277,7 +280,7 @@ class EventLocator {
     using std::abs;
     const Real band = scan.state.band;
     for (std::size_t k = 1; k < bernstein::count; ++k) {
-      const Real g = samples_[k][scan.guard];
+      const Real g = sample_of(scan.guard, k);
       if (!(abs(g) > band)) continue;
       const auto beyond = [&](Real s) { return abs(guard_at(scan.guard, s, evaluate)) - band; };
       const Real near = time(from, to, bernstein::nodes[k - 1]), far = time(from, to, bernstein::nodes[k]);
@@ -344,7 +347,7 @@ class EventLocator {
 
   std::vector<GuardState<Real>> states_, scanned_;
   std::vector<Real> first_, scratch_;
-  std::vector<std::vector<Real>> samples_;
+  std::vector<Real> samples_;  // those of all guards at one place side by side
   bool resampled_ = false;
   Crossing<Real> crossing_{};
 };
