@@ -70,7 +70,7 @@ Json manifest_object(const model::Model& model, const model::Run& run, std::stri
     json["atol"] = plan.atol;
     if (std::isfinite(plan.max_step)) json["max_step"] = plan.max_step;
   }
-  if (plan.max_steps != model::usual_max_steps) json["max_steps"] = plan.max_steps;
+  if (plan.max_steps != max_steps_of(plan)) json["max_steps"] = plan.max_steps;
   json["seed"] = nullptr;
   json["outcome"] = outcome_of(run.outcome);
   json["statistics"] = statistics_of(run.statistics);

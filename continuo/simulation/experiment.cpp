@@ -1,5 +1,6 @@
 // continuo/simulation/experiment.cpp
 // Makes a plan of a model's `run` statement and a caller's experiment, and the times of its rows.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -38,6 +39,12 @@ std::optional<Plan> plan(const Model& model, const Experiment& experiment, std::
   planner.begin();
   planner.set_integration();
   return planner.finish();
+}
+
+std::size_t max_steps_of(const Plan& plan) {
+  constexpr double most = 1e18;
+  const double given = plan.step > 0 ? std::min((plan.to - plan.from) / plan.step, most) : 0;
+  return usual_max_steps + (given > 0 ? static_cast<std::size_t>(given) : 0);
 }
 
 double OutputTimes::operator[](std::size_t k) const {

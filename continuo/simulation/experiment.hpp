@@ -61,6 +61,9 @@ struct Plan {
   [[nodiscard]] double atol_of(std::size_t state) const { return atol.size() == 1 ? atol.front() : atol[state]; }
 };
 
+/// The limit of steps where nobody gives one: steps of a given size are as many as they are.
+[[nodiscard]] std::size_t max_steps_of(const Plan& plan);
+
 /// The plan of an integration from the start, or nothing where `problems` has the reason: E33x, E34x; E321 and E323 for
 /// conditions at several times and for bodies, which runs::plan plans as well.
 [[nodiscard]] std::optional<Plan> plan(const Model& model, const Experiment& experiment,

@@ -25,8 +25,10 @@ fold, beyond which the unknown has no solution.
 
 Fix: describe a jump of a right-hand side by an event (`when`, `at`); stop before a singularity with
 `when ... { stop }`; increase a tolerance below 1e-14.)"},
-    Code{"E303", "too many steps",
-         R"(The run needs more steps than the limit: 10 million, or the number given by `max steps` or --max-steps.
+    Code{
+        "E303", "too many steps",
+        R"(The run needs more steps than the limit: the number given by `max steps` or --max-steps, else 10 million. Where
+the step is given, its steps do not count unless a limit is.
 Most often the equations are stiff: a fast component has decayed, but would grow without bound if the step were longer
 than about twice its time constant. Stability, not accuracy, then limits the steps of an explicit method, although the
 solution hardly changes, and a larger tolerance does not help.

@@ -87,7 +87,8 @@ void Planner::set_accuracy() {
 
 /// A fixed step that a caller asks for takes the place of the model's longest one.
 void Planner::set_limits() {
-  plan_.max_steps = experiment_.max_steps.value_or(run_.max_steps.value_or(usual_max_steps));
+  const auto limit = experiment_.max_steps ? experiment_.max_steps : run_.max_steps;
+  plan_.max_steps = limit.value_or(max_steps_of(plan_));
   if (plan_.max_steps == 0) fail("E333", "a run of no steps leads nowhere", "give at least --max-steps 1", true);
   if (plan_.step > 0 && experiment_.max_step)
     fail("E333", "steps that are given have no longest one", "leave out the step, or --max-step", true);
