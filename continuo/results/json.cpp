@@ -59,6 +59,7 @@ Json manifest_object(const model::Model& model, const model::Run& run, std::stri
       {"to", plan.to},
       {"time_unit", model.time_unit},
       {"method", plan.method}};
+  if (!plan.initial.empty()) json["initial"] = plan.initial;
   if (plan.step > 0) {
     json["step"] = plan.step;
   } else {

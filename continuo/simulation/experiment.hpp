@@ -27,6 +27,7 @@ struct Experiment {
   std::optional<double> output{};  // a row every so much time
   bool output_steps = false;       // a row at every step
   Overrides parameters{};
+  Overrides initial{};  // of single states or families of them, by their columns: "x'", "u[3]", "u"
   std::optional<double> max_step{};
   std::optional<std::size_t> max_steps{};
   const std::atomic<bool>* interrupt = nullptr;
@@ -54,6 +55,7 @@ struct Plan {
   int per_decade = 0;             // of Kind::logarithmic,
   double first = 0;               // and its first time
   std::vector<double> variables;  // the register file at the start
+  Overrides initial{};            // what the experiment has put in place of the model's initial values
 
   /// The relative tolerance of a state.
   [[nodiscard]] double rtol_of(std::size_t state) const { return rtol_each.empty() ? rtol : rtol_each[state]; }

@@ -58,6 +58,15 @@ struct ParameterSetting {
 [[nodiscard]] std::optional<ParameterSetting> parse_setting(const Model& model, std::string_view text,
                                                             std::vector<Diagnostic>& problems);
 
+/// `x=3`, `x' = 0.5 [m/s]`, `u[1]=2`: a state or a family of states, and where it begins, in the unit of the state.
+struct InitialSetting {
+  std::string name;
+  double value;
+};
+/// Empty where the text cannot be used; `problems` says why (E344, E346).
+[[nodiscard]] std::optional<InitialSetting> parse_initial(const Model& model, std::string_view text,
+                                                          std::vector<Diagnostic>& problems);
+
 /// `1e-8` for all states, `y2=1e-10`, `x' = 1 [mm/s]` for one or a family of them; absolute ones in the state's unit.
 enum class ToleranceKind { relative, absolute };
 /// A tolerance for one state, a family of states, or all.

@@ -1,6 +1,8 @@
 // Adds the options that change an experiment, and reads them into one.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <span>
 #include <utility>
 
@@ -12,6 +14,8 @@
 #include <fmt/format.h>
 
 #include <continuo/language/text/diagnostic.hpp>
+#include <continuo/results/csv_writer.hpp>
+#include <continuo/results/measurements.hpp>
 #include <continuo/runs/kind.hpp>
 #include <continuo/runs/run.hpp>
 #include <continuo/simulation/simulate.hpp>
@@ -68,6 +72,116 @@ bool read_tolerances(const model::Model& model, const ExperimentOptions& options
   return fine;
 }
 
+/// "other.csv@2.5": the file, and the time of the row. A file of that very name is what it is.
+std::pair<std::string, std::string> file_and_time(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos || std::filesystem::exists(text)) return {text, {}};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+/// The row of a table that a run begins at; nothing after saying why.
+std::optional<std::size_t> row_at(const results::Measurements& table, const std::string& time) {
+  if (table.times.empty()) {
+    say(fmt::format("{} has no rows to begin at", table.file));
+    return std::nullopt;
+  }
+  if (time.empty()) return table.times.size() - 1;
+  double t = 0;
+  if (!CLI::detail::lexical_cast(time, t)) {
+    say(fmt::format("--initial-from {}@{}: the time of a row is expected behind @, as in {}@2.5", table.file, time,
+                    table.file));
+    return std::nullopt;
+  }
+  // Of two rows of one time, before and after an event, the second.
+  const auto after = std::ranges::upper_bound(table.times, t);
+  if (after != table.times.begin() && *(after - 1) == t)
+    return static_cast<std::size_t>(after - table.times.begin()) - 1;
+  std::string near;
+  if (after != table.times.begin()) near = results::number(*(after - 1));
+  if (after != table.times.end()) near += (near.empty() ? "" : " and ") + results::number(*after);
+  say(fmt::format("--initial-from: {} has no row at t = {}; the nearest are at t = {}", table.file, time, near));
+  return std::nullopt;
+}
+
+bool is_quantity(const model::Model& model, const std::string& column) {
+  const auto is_it = [&](const model::Quantity& quantity) { return quantity.name == column; };
+  return std::ranges::any_of(model.outputs, is_it) || std::ranges::any_of(model.energies, is_it);
+}
+
+/// False, after saying why, where the table cannot be used. What of it does not fit is said as well.
+bool read_initial_table(const model::Model& model, const std::string& text, model::Overrides& values) {
+  const auto [file, time] = file_and_time(text);
+  if (!readable(file)) return false;
+  const auto table = results::read_measurements(file);
+  if (!table) {
+    say(table.status().message);
+    return false;
+  }
+  const auto row = row_at(*table, time);
+  if (!row) return false;
+  std::vector<std::string> unknown;
+  for (std::size_t c = 0; c < table->columns.size(); ++c) {
+    const std::string& column = table->columns[c];
+    const double value = table->values[c][*row];
+    const bool is_state = std::ranges::any_of(model.states, [&](const auto& state) { return state.column == column; });
+    if (!is_state && !is_quantity(model, column)) unknown.push_back(column);
+    if (!is_state || std::isnan(value)) continue;
+    if (table->units.empty() || table->units[c].empty()) {
+      values[column] = value;
+      continue;
+    }
+    std::vector<model::Diagnostic> problems;
+    const std::string setting = fmt::format("{} = {} [{}]", column, results::number(value), table->units[c]);
+    const auto given = model::parse_initial(model, setting, problems);
+    show(problems, model::Source(file, setting));
+    if (!given) return false;
+    values[column] = given->value;
+  }
+  std::vector<std::string> missing;
+  for (const model::State& state : model.states)
+    if (!state.in_world && !values.contains(state.column)) missing.push_back(state.column);
+  if (values.empty()) {
+    say(fmt::format("--initial-from: {} has no column with the name of a state: {}", file,
+                    fmt::join(std::span(missing).first(std::min<std::size_t>(missing.size(), 8)), ", ")));
+    return false;
+  }
+  const auto list = [](const std::vector<std::string>& names) {
+    constexpr std::size_t most = 8;
+    return fmt::format("{}{}", fmt::join(std::span(names).first(std::min(names.size(), most)), ", "),
+                       names.size() > most ? ", ..." : "");
+  };
+  if (!missing.empty())
+    say(fmt::format("--initial-from: {} has no value for {}: the model's own start is taken", file, list(missing)));
+  if (!unknown.empty()) say(fmt::format("--initial-from: no state is called {}: passed over", list(unknown)));
+  return true;
+}
+
+/// Where states begin, by their columns.
+std::optional<model::Overrides> read_initial(const model::Model& model, const ExperimentOptions& options) {
+  model::Overrides values;
+  if (options.initial.empty() && options.initial_from.empty()) return values;
+  if (!runs::kind_of(model).has_start) {
+    say("--initial: a boundary-value problem has no start; --guess gives a first guess of its solution");
+    return std::nullopt;
+  }
+  bool fine = options.initial_from.empty() || read_initial_table(model, options.initial_from, values);
+  std::vector<std::string> names;
+  for (const std::string& text : options.initial) {
+    std::vector<model::Diagnostic> problems;
+    const auto initial = model::parse_initial(model, text, problems);
+    show(problems, model::Source("--initial", text));
+    fine = fine && initial.has_value();
+    if (!initial) continue;
+    if (std::ranges::find(names, initial->name) != names.end()) {
+      say(fmt::format("--initial {}: `{}` is given twice", text, initial->name));
+      fine = false;
+    }
+    names.push_back(initial->name);
+    for (const std::size_t i : states_named(model, initial->name)) values[model.states[i].column] = initial->value;
+  }
+  return fine ? std::optional(std::move(values)) : std::nullopt;
+}
+
 bool decides_a_size(const model::Model& model, const model::Overrides& values) {
   return std::ranges::any_of(values, [&](const auto& value) {
     const std::size_t i = model::find_parameter(model, value.first);
@@ -89,6 +203,20 @@ void add_experiment(CLI::App& verb, ExperimentOptions& options) {
   add_model(verb, options);
   verb.add_option("--until", options.until, "End time of the run")->type_name("T");
   verb.add_option("--output", options.output, "Output interval")->type_name("DT")->transform(quotients());
+}
+
+void add_initial(CLI::App& verb, ExperimentOptions& options) {
+  verb.add_option("--initial", options.initial, "Sets where a state begins: --initial x=3 --initial \"x'=0.5 [m/s]\"")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option("--initial-from", options.initial_from,
+                  "Begins at the last row of a table of results, or at its row of time T")
+      ->type_name("FILE[@T]");
+}
+
+std::string file_of_initial(const ExperimentOptions& options) {
+  return file_and_time(options.initial_from).first;
 }
 
 void add_tolerances(CLI::App& verb, ExperimentOptions& options) {
@@ -191,7 +319,9 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
                          .max_step = options.max_step,
                          .max_steps = options.max_steps,
                          .interrupt = &interrupt_flag()};
-  if (!read_tolerances(*prepared.loaded.model, options, prepared.experiment)) prepared.exit = usage;
+  auto initial = read_initial(*prepared.loaded.model, options);
+  if (initial) prepared.experiment.initial = std::move(*initial);
+  if (!initial || !read_tolerances(*prepared.loaded.model, options, prepared.experiment)) prepared.exit = usage;
   return prepared;
 }
 

@@ -20,6 +20,8 @@ namespace continuo::app {
 struct ExperimentOptions {
   std::string file;
   std::vector<std::string> settings;  // "k=5"
+  std::vector<std::string> initial;   // "x=3"
+  std::string initial_from;           // "other.csv", "other.csv@2.5"
   std::optional<std::string> method;
   std::vector<std::string> tolerances, absolute_tolerances;  // "1e-8", "y2=1e-10"
   std::optional<double> step, until, output, max_step;
@@ -28,8 +30,8 @@ struct ExperimentOptions {
   /// The motion is the one that the model describes, by its own method: then its checks are meant for this run. Which
   /// rows of it are wanted makes no difference.
   bool as_written() const {
-    return settings.empty() && !method && tolerances.empty() && absolute_tolerances.empty() && !step && !until &&
-           !max_step && !max_steps;
+    return settings.empty() && initial.empty() && initial_from.empty() && !method && tolerances.empty() &&
+           absolute_tolerances.empty() && !step && !until && !max_step && !max_steps;
   }
 };
 
@@ -37,6 +39,10 @@ struct ExperimentOptions {
 void add_model(CLI::App& verb, ExperimentOptions& options);
 /// These and --until and --output, for verbs with a run of their own.
 void add_experiment(CLI::App& verb, ExperimentOptions& options);
+/// --initial and --initial-from.
+void add_initial(CLI::App& verb, ExperimentOptions& options);
+/// The table of --initial-from, without the time behind it.
+std::string file_of_initial(const ExperimentOptions& options);
 /// An option that other verbs have and this one cannot: it says why, where the name alone would be called unknown.
 void refuse_option(CLI::App& verb, const std::string& name, const std::string& why);
 /// --tol and --atol, for all states or single ones.

@@ -74,7 +74,7 @@ ExitCode run(const RunRequest& request, const ShowFamilies& show_families) {
   std::vector<std::string> written = files_of(request.outputs);
   written.push_back(request.record.path);
   if (!can_be_written(request.outputs) || !can_be_written(request.record) ||
-      !are_apart({request.experiment.file, request.boundary.guess}, written))
+      !are_apart({request.experiment.file, request.boundary.guess, file_of_initial(request.experiment)}, written))
     return usage;
   Prepared prepared = prepare(request.experiment, Worlds::welcome);
   const model::Source& source = prepared.loaded.source;
@@ -120,6 +120,8 @@ void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families) {
       "  continuo run ball.sim --set g=1.62 --until 20              on the Moon, for longer\n"
       "  continuo run orbit.sim --method rk4 --step 0.01 --events apsides.csv\n"
       "  continuo run scene.sim --method fast --step 0.01           a world of bodies, in fixed steps\n"
+      "  continuo run ball.sim --initial h=3 --initial \"h'=-1\"      from another start\n"
+      "  continuo run ball.sim --initial-from ball.csv              on from the last row of a table\n"
       "  continuo run gas.sim --record gas.run                      a recording, for replay and resume\n"
       "  continuo run ball.sim -o - | head                          rows for another program\n"
       "  continuo run layer.sim --along eps=1..1e-4                 boundary-value problem, continued from an easy "
@@ -134,6 +136,7 @@ void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families) {
   add_experiment(*verb, request->experiment);
   add_method(*verb, request->experiment);
   add_limits(*verb, request->experiment);
+  add_initial(*verb, request->experiment);
   add_outputs(*verb, request->outputs);
   add_record(*verb, request->record);
   verb->add_flag("--estimate-error", request->estimate_error,

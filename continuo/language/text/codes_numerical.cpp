@@ -148,12 +148,20 @@ cannot be changed after the model has been read. The command line reads the mode
 
   load("heat.sim", {.overrides = {{"N", 200}}}))"},
     Code{"E344", "there is no such state",
-         R"(--tol and --atol accept the column names of states, with primes and index: --atol "h'=1e-9" --tol
+         R"(--initial, --tol and --atol accept the column names of states, with primes and index: --atol "h'=1e-9" --tol
 "u[3]=1e-10". The name of a family without an index means all of its members: --tol u=1e-10.)"},
     Code{"E345", "the tolerance cannot be used",
          R"(--tol takes a relative tolerance, a number without a unit between 0 and 1; --atol an absolute one, in
 the unit of the state unless it names another of the same kind: --atol "h = 1 [um]". With NAME= before it the
 tolerance is that of one state, without it that of all.)"},
+    Code{
+        "E346", "the initial value cannot be used",
+        R"(The text behind --initial is not an initial value. The name is that of a state as the columns of a run have it
+(x, x', u[3]) or of a family of states (u); the value is read like that of a parameter in a model, and its unit, if
+there is one, measures the same kind of quantity as the state. Bodies begin where `world` puts them, and a
+boundary-value problem has no start.
+
+Fix: for example --initial x=3, --initial "x'=0.5 [m/s]", --initial "u[1]=2".)"},
     Code{"E349", "the guess does not fit the model",
          R"(--guess reads the initial guess from a CSV file, as written by `continuo run -o`: a column `t` and at
 least one column with the name of a state, `y` or `y'`, at times within the run.)"},

@@ -118,6 +118,30 @@ std::optional<ParameterSetting> parse_setting(const Model& model, std::string_vi
   return ParameterSetting{std::string(name), *value};
 }
 
+std::optional<InitialSetting> parse_initial(const Model& model, std::string_view text,
+                                            std::vector<Diagnostic>& problems) {
+  const std::size_t equals = text.find('=');
+  const std::string_view name = trimmed(text.substr(0, equals));
+  if (equals == std::string_view::npos || name.empty()) {
+    problems.push_back(
+        error("E346", place(text, text), fmt::format("`{}` sets nothing", text), {}, "write NAME=VALUE, such as x=3"));
+    return std::nullopt;
+  }
+  const std::vector<std::size_t> meant = states_named(model, name);
+  if (meant.empty()) {
+    problems.push_back(no_state(model, name, place(text, name)));
+    return std::nullopt;
+  }
+  const std::string_view given_text = trimmed(text.substr(equals + 1));
+  std::string problem;
+  const auto given = read_value(given_text, problem);
+  const auto value = given ? in_unit(model.states[meant.front()].unit, *given, problem) : std::nullopt;
+  if (value) return InitialSetting{std::string(name), *value};
+  problems.push_back(error("E346", given_text.empty() ? place(text, text) : place(text, given_text),
+                           fmt::format("`{}` cannot begin at `{}`", name, given_text), problem));
+  return std::nullopt;
+}
+
 std::optional<ToleranceSetting> parse_tolerance(const Model& model, ToleranceKind kind, std::string_view text,
                                                 std::vector<Diagnostic>& problems) {
   const std::size_t equals = text.find('=');

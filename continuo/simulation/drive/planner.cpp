@@ -23,6 +23,7 @@ constexpr double atol_part = 1e-3;  // of rtol, where nothing is said
 void Planner::begin() {
   check_parameters();
   plan_.variables = start_values(model_, experiment_.parameters, experiment_.from);
+  set_start();
   set_interval();
 }
 
@@ -60,6 +61,23 @@ void Planner::check_parameters() {
       problems_.push_back(error("E343", model_.parameters[i].span,
                                 fmt::format("`{}` decides how many equations there are", name), {},
                                 "read the model anew with this value (CheckOptions::overrides)"));
+    }
+  }
+}
+
+// In the order of the names, so that u[3] comes after u, its family.
+void Planner::set_start() {
+  plan_.initial = experiment_.initial;
+  for (const auto& [name, value] : experiment_.initial) {
+    const std::vector<std::size_t> meant = states_named(model_, name);
+    if (meant.empty()) problems_.push_back(no_state(model_, name, run_.span));
+    for (const std::size_t i : meant) {
+      if (model_.states[i].in_world) {
+        fail("E346", fmt::format("`{}` is of a body, which begins where `world` puts it", name),
+             "change the world, or a parameter that it reads", true);
+        break;
+      }
+      plan_.variables[model_.layout.states + i] = value;
     }
   }
 }

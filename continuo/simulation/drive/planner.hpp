@@ -41,6 +41,7 @@ class Planner {
  private:
   [[nodiscard]] double value(const Setting& setting) const;
   void check_parameters();
+  void set_start();
   void set_interval();
   void set_accuracy();
   void set_limits();
