@@ -112,6 +112,12 @@ struct EquationCosts {
   std::size_t jacobians = 0;       // df/dx computed
   std::size_t factorizations = 0;  // of matrices made of it
   std::size_t linear_solves = 0;   // with these factors
+
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(jacobians, factorizations, linear_solves);
+  }
 };
 
 namespace detail {

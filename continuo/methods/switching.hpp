@@ -71,6 +71,13 @@ struct Switching {
     Scalar<X> worthwhile_h{};  // |h| from which the stiff method is the cheaper one, as it was when it took over
     bool worthwhile = false;   // it has come that far
     Scalar<X> h_of_stiff{};    // its |h| when it was left last
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(nonstiff, stiff, watch, is_stiff, fresh, begun, has_mass, h, steps, turns, begins, in_favour, patience);
+      archive(worthwhile_h, worthwhile, h_of_stiff);
+    }
   };
 
   /// Allocates for both methods.

@@ -91,6 +91,22 @@ class SparseLU {
   /// b becomes the solution.
   void solve(Number* b) { factors_->solve(b); }
 
+  /// For checkpoints: the pivots in use, by the matrix that they were chosen for.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    bool has_pivots = !pivot_values_.empty();
+    archive(has_pivots);
+    if constexpr (Archive::reads) pivot_values_.resize(has_pivots ? values_.size() : 0);
+    if (has_pivots) archive(pivot_values_);
+    if constexpr (Archive::reads) {
+      if (has_pivots && !factors_->choose_pivots(pivot_values_.data())) pivot_values_.clear();
+    }
+  }
+  /// Decomposes the matrix as the last `factor` before a checkpoint has: without other pivots.
+  void factor_with_known_pivots() {
+    if (!pivot_values_.empty()) static_cast<void>(factors_->refactor(values_.data()));
+  }
+
  private:
   [[nodiscard]] static std::unique_ptr<SparseFactors<Number>> analyse(const SparsePattern& pattern,
                                                                       const SparseSolver& solver) {

@@ -59,7 +59,8 @@ Points points_of(const std::shared_ptr<const ModelProgram>& program, const Plan&
   options.max_steps = most_steps;
   options.interrupt = experiment.interrupt;
   Integrator integrator(ModelSystem(program, plan.variables), std::move(x0), {plan.from, plan.to},
-                        model_method<Rodas5P>(), std::move(options), ModelEvents(*program, plan.variables, plan.from));
+                        model_method<Rodas5P>().method, std::move(options),
+                        ModelEvents(*program, plan.variables, plan.from));
   Points points(model.states.size());
   points.add(integrator.t(), integrator.x(), integrator.system());
   while (integrator.advance()) points.add(integrator.t(), integrator.x(), integrator.system());

@@ -17,6 +17,11 @@
 #include <continuo/solve/options.hpp>
 #include <continuo/solve/outcome.hpp>
 
+namespace continuo {
+class ByteReader;
+class ByteWriter;
+}  // namespace continuo
+
 namespace continuo::model {
 
 /// What an integrator is made of, besides the method.
@@ -75,6 +80,12 @@ class Stepping {
   [[nodiscard]] virtual Statistics statistics() const = 0;
   /// Moves the end of the run to a later time.
   virtual void extend_to(double to) = 0;
+
+  /// A checkpoint between two steps: what the run from here on depends on, but for the dense output of the last step.
+  virtual void save(ByteWriter& bytes) = 0;
+  /// Reads a checkpoint of the same model, by the same plan but for its end, into a run that has not made a step: it
+  /// goes on to the same bits. Bytes that cannot be such a checkpoint make the reader fail, and the run is of no use.
+  virtual void restore(ByteReader& bytes) = 0;
 
   /// Goes on from another instant with these parameters and inputs, as after an event; events scheduled for that very
   /// instant are over. States that are `held` stand still from here on.

@@ -49,6 +49,12 @@ struct Statistics {
   std::size_t linear_solves = 0;   // with these factors
   std::size_t events = 0;          // fired
   double seconds = 0;              // wall time
+
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(steps, rejected, evaluations, jacobians, factorizations, linear_solves, events, seconds);
+  }
 };
 
 }  // namespace continuo

@@ -75,6 +75,20 @@ struct Workspace : StepEquations<Scalar<X>> {
   std::size_t jacobian_age = 0;  // accepted steps since it was evaluated
   bool has_jacobian = false, has_f = false, was_rejected = false, oscillates = false;
 
+  /// For checkpoints: what the next step depends on.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(this->costs, this->status, Z, W, ahead, f, f_end, error, slope, slope_end, linear);
+    lu.transfer(archive, linear);
+    for (auto& factors : pair_lu) factors.transfer(archive, linear);
+    archive(memory, rtol, looseness, target, h, ahead_h, decomposed_for, last_h, last_error);
+    archive.index(decomposed_stages, most);
+    archive.index(stages, most);
+    archive.index(next_stages, most);
+    archive.index(ahead_degree, most);
+    archive(steps_of_order, jacobian_age, has_jacobian, has_f, was_rejected, oscillates);
+  }
+
   void restart(std::size_t first_stages) {
     if (stages != first_stages) rtol = Real(-1);
     stages = next_stages = first_stages;

@@ -47,6 +47,12 @@ struct DiagonallyImplicitRungeKutta : ImplicitMethod<InStageSolver> {
     UnknownsBetween<Derived, X> unknowns{};
     bool start_fresh = false;  // k[0] is x' at the start of the next step
     bool has_guess = false;    // k is that of the step before
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(k, solver, start_fresh, has_guess);
+    }
   };
 
   template <State X>

@@ -51,6 +51,12 @@ struct ExplicitRungeKutta {
     X argument;                // of f, where X has no fixed size
     bool start_fresh = false;  // k[0] is f at the start of the next step
     bool end_fresh = false;    // k[end_slot()] is f at the end of the last step
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(k[0], k[ExplicitRungeKutta::end_slot()], start_fresh, end_fresh);
+    }
   };
 
   template <State X>

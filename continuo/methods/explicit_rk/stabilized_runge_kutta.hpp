@@ -43,6 +43,12 @@ struct StabilizedRungeKutta {
     std::size_t stages = 0;      // of the last step
     bool retry = false;          // the last step was rejected: f at its start is known
     bool moved = false;          // the end of the last step was moved: f at the start of this one is not known
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(start, end, spectrum, radius, t, radius_age, stages, retry, moved);
+    }
   };
 
   template <State X>

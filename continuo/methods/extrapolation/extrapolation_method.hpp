@@ -52,6 +52,13 @@ struct ExtrapolationTable {
   bool was_rejected = false;            // whether the last try of this step was rejected
 
   ExtrapolationTable(const X& x, std::size_t starting_rows) : rows(starting_rows) { table.fill(x); }
+
+  /// For checkpoints: what the next step depends on.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    for (std::size_t* count : {&rows, &computed, &next_rows}) archive.index(*count, most);
+    archive(errors, planned, least_error, controlled, was_rejected);
+  }
 };
 
 template <class Derived>

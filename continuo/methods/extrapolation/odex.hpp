@@ -49,6 +49,13 @@ struct Odex : ExtrapolationMethod<Odex> {
     Tolerance<Real> tolerance{Real(1e-6), Real(1e-9)};
     bool has_slope = false, has_end_slope = false;
 
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      ExtrapolationTable<X, numbers.size()>::transfer(archive);
+      archive(slope, end_slope, has_slope, has_end_slope);
+    }
+
     explicit Workspace(const X& x)
         : ExtrapolationTable<X, numbers.size()>(x, starting_rows),
           slope(x),

@@ -62,6 +62,15 @@ struct Seulex : ImplicitMethod<>, ExtrapolationMethod<Seulex> {
     bool has_jacobian = false;  // J may be used in this step
     bool is_current = false;    // J was evaluated at the start of this step
 
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      ExtrapolationTable<X, numbers.size()>::transfer(archive);
+      archive(this->costs, this->status, slope, linear);
+      lu.transfer(archive, linear);
+      archive(rate, has_slope, has_jacobian, is_current);
+    }
+
     explicit Workspace(const X& x)
         : ExtrapolationTable<X, numbers.size()>(x, starting_rows),
           slope(x),

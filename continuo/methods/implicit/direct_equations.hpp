@@ -24,6 +24,13 @@ class DirectEquations : public StepEquations<Scalar<X>> {
 
   explicit DirectEquations(const X& x) : linear_(x), lu_(x) {}
 
+  /// For checkpoints: what the next step depends on.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(costs, status, linear_);
+    lu_.transfer(archive, linear_);
+  }
+
   [[nodiscard]] bool prepared() const { return linear_.prepared(); }
   template <class System>
   void prepare(System& system, const X& x) {

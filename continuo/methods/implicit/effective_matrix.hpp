@@ -42,12 +42,41 @@ class EffectiveMatrix {
     if constexpr (has_sparse) prepare_sparse(system, linear, pairs);
   }
 
+  /// For checkpoints: the matrix is decomposed again, with the same pivots and so to the same bits.
+  template <class Archive>
+  void transfer(Archive& archive, const Linearization<X>& linear)
+    requires(N == run_time_size)
+  {
+    Weights weights = last_;
+    archive(weights.mass, weights.damping, weights.stiffness);
+    if constexpr (Archive::reads) {
+      if (linear.prepared()) prepare(archive.system(), linear);
+    }
+    if constexpr (has_sparse) {
+      if (sparse_) sparse_->transfer(archive);
+    }
+    if constexpr (Archive::reads) {
+      if (weights.mass == Real(0) || !linear.prepared()) return;
+      if (sparse_) {
+        fill_sparse(archive.system(), linear, weights, part_.size());
+        sparse_->factor_with_known_pivots();
+        last_ = weights;
+      } else {
+        static_cast<void>(factor(archive.system(), linear, weights));
+      }
+    }
+  }
+
   /// False where E is singular or not finite.
   template <class System>
   [[nodiscard]] bool factor(const System& system, const Linearization<X>& linear, const Weights& weights) {
     const std::size_t size = linear.size(), pairs = system.pair_count(size);
+    last_ = weights;
     if constexpr (has_sparse) {
-      if (sparse_) return factor_sparse(system, linear, weights, pairs);
+      if (sparse_) {
+        fill_sparse(system, linear, weights, pairs);
+        return sparse_->factor();
+      }
     }
     const auto jacobian = linear.entries();
     for (std::size_t i = 0; i < pairs; ++i) {
@@ -110,8 +139,7 @@ class EffectiveMatrix {
   }
 
   template <class System>
-  [[nodiscard]] bool factor_sparse(const System& system, const Linearization<X>& linear, const Weights& weights,
-                                   std::size_t pairs) {
+  void fill_sparse(const System& system, const Linearization<X>& linear, const Weights& weights, std::size_t pairs) {
     const auto values = sparse_->values();
     for (double& value : values) value = 0;
     for (std::size_t p = 0; p < targets_.size(); ++p) {
@@ -122,10 +150,10 @@ class EffectiveMatrix {
       const std::size_t row = system.pair(i, linear.size()).velocity;
       values[pattern_.find(i, i)] += weights.mass * linear.mass(row, row);
     }
-    return sparse_->factor();
   }
 
   struct None {};
+  Weights last_{};
   DenseLU<Real, Half> dense_;
   std::optional<std::conditional_t<has_sparse, SparseLU<double>, None>> sparse_;
   SparsePattern pattern_;

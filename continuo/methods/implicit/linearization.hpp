@@ -82,6 +82,17 @@ class Linearization {
     }
   }
 
+  /// For checkpoints: J, as it was evaluated last. The structure is that of the system.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    bool was_prepared = prepared_;
+    archive(was_prepared);
+    if constexpr (Archive::reads) {
+      if (was_prepared && !prepared_) prepare(archive.system(), moved_);
+    }
+    if (was_prepared) archive(rows_);
+  }
+
   /// Where a step begins: the system may have moved since the last one.
   template <class F>
   void bind(F& f) {
@@ -218,9 +229,39 @@ class Factorization {
 
   explicit Factorization(const X& x) : dense_(N == run_time_size ? 0 : dimension(x)) {}
 
+  /// For checkpoints: the matrix is decomposed again, with the same pivots and so to the same bits.
+  template <class Archive>
+  void transfer(Archive& archive, const Linearization<X>& linear)
+    requires(N == run_time_size)
+  {
+    Number c = shift_;
+    archive(c);
+    if constexpr (has_sparse) {
+      bool is_sparse = sparse_.has_value();
+      archive(is_sparse);
+      if (Archive::reads && is_sparse && !sparse_) {
+        if (!linear.sparse() || linear.banded()) return archive.fail("the factors of another matrix");
+        sparse_.emplace(linear.pattern(), linear.sparse_solver());
+      }
+      if (is_sparse) sparse_->transfer(archive);
+    }
+    if constexpr (Archive::reads) {
+      shift_ = c;
+      if (magnitude(c) == Scalar<X>(0) || !linear.prepared()) return;
+      if constexpr (has_sparse) {
+        if (sparse_) {
+          linear.shifted_entries(c, sparse_->values().data());
+          return sparse_->factor_with_known_pivots();
+        }
+      }
+      static_cast<void>(factor(linear, c));
+    }
+  }
+
   /// False where the matrix is singular or not finite.
   [[nodiscard]] bool factor(const Linearization<X>& linear, const Number& c) {
     if constexpr (N == run_time_size) {
+      shift_ = c;
       if (linear.own()) return factor_own(linear, c);
     }
     if constexpr (has_sparse) {
@@ -271,6 +312,7 @@ class Factorization {
     return band_.factor(linear.entries(), c, linear.mass_diagonal());
   }
 
+  [[no_unique_address]] std::conditional_t<N == run_time_size, Number, None> shift_{};  // the last c
   DenseLU<Number, N> dense_;
   std::optional<Sparse> sparse_;
   std::conditional_t<has_sparse, BandedLU<Number>, None> band_;

@@ -30,6 +30,12 @@ struct NewtonMemory {
   bool measures_anew = false;
   Real rounding = 0;  // then: corrections that may be no more than it, in tolerances
 
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(remainder, rate, iterations, finite, matrix_is_known, measures_anew, rounding);
+  }
+
   /// How the equations of a step have ended, after the last call.
   [[nodiscard]] StepStatus status(bool converged) const {
     if (converged) return StepStatus::done;

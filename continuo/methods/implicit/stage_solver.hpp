@@ -38,6 +38,14 @@ struct StageSolver : StepEquations<Scalar<X>> {
 
   explicit StageSolver(const X& x) : linear(x), lu(x), argument(x), residual(x), product(x) {}
 
+  /// For checkpoints: what the next step depends on.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(costs, status, linear);
+    lu.transfer(archive, linear);
+    archive(memory, shift, evaluated_for, slowest, is_current, grown_old);
+  }
+
   /// Above this rate of convergence a new Jacobian saves more iterations than it costs.
   static constexpr double worst_rate = 0.1;
   /// What a Jacobian misses counts in proportion to h, and may be masked in all rates that were measured so far: after

@@ -52,6 +52,16 @@ struct Adams {
     std::size_t equal_steps = 0, rejections = 0;
     bool starting = true;        // the order rises with every step, the step doubles
     bool has_new_point = false;  // the step was accepted, f at its end is not yet among the differences
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(phi, f, d, b, psi, beta, g, h, h_last);
+      archive.index(order, greatest_order);
+      archive.index(next_order, greatest_order);
+      archive.index(known, greatest_order + 2);
+      archive(equal_steps, rejections, starting, has_new_point);
+    }
   };
 
   template <State X>

@@ -113,6 +113,15 @@ struct BackwardDifferentiation : ImplicitMethod<InEquations> {
     std::size_t rejections = 0;                     // since the last accepted
     std::size_t jacobian_age = 0;                   // steps
     bool has_jacobian = false, is_current = false;  // current: evaluated in this step
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(D, d, end, rounding, equations, memory, h, decomposed_for);
+      archive.index(order, greatest_order);
+      archive.index(next_order, greatest_order);
+      archive(equal_steps, rejections, jacobian_age, has_jacobian, is_current);
+    }
   };
 
   template <State X>

@@ -39,6 +39,12 @@ struct Bdf2 : ImplicitMethod<InFirstStep> {
     X slope, end_slope;          // x' at both ends of this step
     Scalar<X> h_before{}, h_current{};
     bool started = false;  // this step was one of TR-BDF2
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(start, before, current, slope, end_slope, h_before, h_current, started);
+    }
   };
   template <State X>
   [[nodiscard]] static Workspace<X> workspace(const X& x) {

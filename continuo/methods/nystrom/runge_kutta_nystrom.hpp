@@ -71,6 +71,12 @@ struct RungeKuttaNystrom {
     X between;          // and f there, for the dense output
     std::array<detail::Accelerations<X>, 4> k_between;
     bool start_fresh = false, end_fresh = false;
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(k[0], k[Derived::tableau.stages - 1], end, slope, start_fresh, end_fresh);
+    }
   };
 
   template <State X>

@@ -40,6 +40,14 @@ struct RosenbrockMethod : ImplicitMethod<> {
     UnknownsBetween<Derived, X> unknowns{};
     bool start_fresh = false;   // slope is f at the start of the next step
     bool linear_fresh = false;  // J and df/dt are those of the start of the next step: it was rejected
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(this->costs, this->status, slope, end_slope, rest, rest_new, linear);
+      lu.transfer(archive, linear);
+      archive(start_fresh, linear_fresh);
+    }
   };
 
   template <State X>

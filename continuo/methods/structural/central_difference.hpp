@@ -25,6 +25,13 @@ struct CentralDifference : SecondOrderMethod {
     X half_new;                 // w of the step not yet accepted
     Scalar<X> h_last, h_taken;  // of the last accepted step (0: none since a jump) and of the last one tried
     bool has_history = false;
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      EndDerivatives<X>::transfer(archive);
+      archive(half, half_new, h_last, h_taken, has_history);
+    }
   };
 
   template <State X>

@@ -57,6 +57,14 @@ struct StructuralDynamics : ImplicitMethod<> {
     Real offset{}, offset_new{};           // a is the acceleration of the time t + offset, a_new of t + h + offset_new
     Real gamma{};                          // of this step
     bool has_jacobian = false, is_current = false;
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      archive(this->costs, this->status, a, a_new, a_last, linear);
+      effective.transfer(archive, linear);
+      archive(memory, h, h_last, decomposed_for, offset, offset_new, gamma, has_jacobian, is_current);
+    }
   };
 
   template <State X>

@@ -20,6 +20,12 @@ struct EndDerivatives {
   X start, end;
   bool start_fresh = false, end_fresh = false;
 
+  /// For checkpoints: what the next step depends on.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(start, end, start_fresh, end_fresh);
+  }
+
   /// Returns the number of evaluations.
   template <class System>
   [[nodiscard]] int evaluate_start(System& system, const Scalar<X>& t, const X& x, bool discontinuity) {

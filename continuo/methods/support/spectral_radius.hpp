@@ -20,6 +20,12 @@ struct SpectralRadius {
 
   explicit SpectralRadius(const X& x) : direction(x), moved(x), slope(x) {}
 
+  /// For checkpoints: what the next estimate depends on.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(direction, known);
+  }
+
   /// Somewhat more than the spectral radius at (t, x), where f is fx; not a number where f is not finite nearby.
   template <class F>
   [[nodiscard]] Scalar<X> estimate(F& f, const Scalar<X>& t, const X& x, const X& fx, int& evaluations) {

@@ -81,6 +81,12 @@ class StiffnessWatch {
     real_part_ = product / square;
   }
 
+  /// For checkpoints: what the next probe depends on.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(direction_, before_, growth_, radius_, real_part_, turn_, begun_);
+  }
+
   /// |lambda| and Re(lambda) of the dominant eigenvalue, as far as the iteration has come.
   [[nodiscard]] Real radius() const { return radius_; }
   [[nodiscard]] Real real_part() const { return real_part_; }

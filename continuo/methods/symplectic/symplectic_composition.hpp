@@ -65,6 +65,13 @@ struct SymplecticComposition : SecondOrderMethod {
     X slope;           // f within the step
     X between;         // and f there, for the dense output
     std::array<X, 4> f_between;
+
+    /// For checkpoints: what the next step depends on.
+    template <class Archive>
+    void transfer(Archive& archive) {
+      EndDerivatives<X>::transfer(archive);
+      archive(rest, rest_new);
+    }
   };
 
   template <State X>

@@ -53,6 +53,15 @@ class SteppingByName final : public Stepping {
   Statistics statistics() const override { return sum(past_, integrator_->statistics()); }
   void extend_to(double to) override { integrator_->extend_to(to); }
 
+  void save(ByteWriter& bytes) override {
+    StateWriter archive(bytes);
+    integrator_->transfer(archive, method_.write);
+  }
+  void restore(ByteReader& bytes) override {
+    StateReader archive(bytes);
+    integrator_->transfer(archive, method_.read);
+  }
+
   void go_on(const Instant& instant, std::span<const double> variables, std::span<const std::size_t> held) override {
     past_ = statistics();
     ModelSystem system = integrator_->system();
@@ -69,7 +78,7 @@ class SteppingByName final : public Stepping {
 
  private:
   using Driving = Driver<ModelSystem, X, ModelEvents>;
-  using Integrating = Integrator<ModelSystem, X, ModelMethod, ModelEvents>;
+  using Integrating = Integrator<ModelSystem, X, AnyMethod<ModelSystem, X>, ModelEvents>;
 
   struct Forward {
     SteppingByName& run;
@@ -79,7 +88,8 @@ class SteppingByName final : public Stepping {
   };
 
   void begin(ModelSystem system, X x0, Interval<double> interval, Options<X> options, ModelEvents events) {
-    integrator_.emplace(std::move(system), std::move(x0), interval, method_, std::move(options), std::move(events));
+    integrator_.emplace(std::move(system), std::move(x0), interval, method_.method, std::move(options),
+                        std::move(events));
   }
 
   ModelMethod method_;

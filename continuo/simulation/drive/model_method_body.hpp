@@ -12,10 +12,15 @@ template <class M>
   return true;
 }
 
+template <class M, class Archive>
+void transfer_steps(Steps<ModelSystem, ModelSystem::X>& steps, Archive& archive) {
+  static_cast<StepControl<ModelSystem, ModelSystem::X, M>&>(steps).transfer(archive);
+}
+
 template <class M>
 [[nodiscard]] ModelMethod model_method() {
   static_assert(is_enclosed<M>(), "greatest_enclosed_degree is the greatest degree of dense output of all methods");
-  return any_method<M, ModelSystem, ModelSystem::X>();
+  return {any_method<M, ModelSystem, ModelSystem::X>(), transfer_steps<M, StateWriter>, transfer_steps<M, StateReader>};
 }
 
 }  // namespace continuo::model

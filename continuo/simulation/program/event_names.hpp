@@ -24,6 +24,8 @@ class EventNames {
                                           bool with_slides = false);
   /// How many marks the source had at the last instant.
   [[nodiscard]] std::size_t marks_seen() const { return marks_seen_; }
+  /// The source has been read from a checkpoint, where so many marks had been seen.
+  void see(std::size_t marks) { marks_seen_ = marks; }
   /// The source has been made anew.
   void restart() { marks_seen_ = 0; }
 

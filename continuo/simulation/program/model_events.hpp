@@ -23,6 +23,12 @@ struct Marked {
   double t;
   std::string text;
   std::size_t event;  // which of the source's events
+
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(t, text);
+  }
 };
 
 class ModelEvents {
@@ -76,6 +82,15 @@ class ModelEvents {
   void resume(double t, std::span<const std::size_t> stops) {
     resumed_ = t;
     stop_counts_.assign(stops.begin(), stops.end());
+  }
+
+  /// For checkpoints. What is evaluated from the system's variables is made anew from those.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(resumed_, stop_counts_);
+    archive.list(marks_);
+    archive(stop_text_);
+    for (Marked& mark : marks_) archive.index(mark.event, size() - 1);
   }
 
   /// The author knows of it; steps of inputs and jumps of equations are nobody's event.

@@ -82,6 +82,20 @@ class ModelSystem {
   [[nodiscard]] std::span<const NodeId> equations() const {
     return has_switches() ? program_->switches[mode_].derivatives : model().modes[mode_].derivatives;
   }
+  /// For checkpoints. A system that locates the jumps of its equations is read into one that does.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    std::size_t mode = mode_;
+    archive.index(mode, model().modes.size() - 1);
+    std::vector<double> variables = variables_;
+    archive(variables);
+    if constexpr (Archive::reads) {
+      go(mode);
+      set_all(variables);
+    }
+    if (switched_) switched_->transfer(archive, mode);
+    if constexpr (Archive::reads) place_switches();
+  }
   [[nodiscard]] const std::vector<double>& variables() const { return variables_; }
 
   [[nodiscard]] const ModelProgram& program() const { return *program_; }

@@ -55,6 +55,28 @@ class SwitchedMotion {
   /// The values of the mode's switches; of one that slides that of its lower side.
   [[nodiscard]] std::span<const double> values() const { return values_; }
 
+  /// For checkpoints: the switches of this mode, which is the present one.
+  template <class Archive>
+  void transfer(Archive& archive, std::size_t mode) {
+    const std::size_t n = switches(mode).size();
+    std::size_t count = values_.size(), sliding = sliding_.size();
+    archive.index(count, n);
+    archive.index(sliding, count);
+    if constexpr (Archive::reads) {
+      mode_ = mode;
+      values_.assign(count, 0);
+      sliding_.assign(sliding, Sliding{});
+    }
+    archive(values_);
+    for (Sliding& one : sliding_) {
+      archive.index(one.k, n - 1);
+      archive(one.below, one.above);
+    }
+    if constexpr (Archive::reads) {
+      for (std::size_t k = 0; k < count; ++k) place(mode, k, values_[k]);
+    }
+  }
+
   /// A surface the motion slides along: the values of the switch on its two sides.
   struct Sliding {
     std::size_t k;

@@ -101,6 +101,24 @@ class Driver {
 
   /// Whether the run can begin. If it cannot, the first advance() ends it as invalid input, with the reason.
   [[nodiscard]] bool can_begin() { return problem().empty(); }
+  /// For checkpoints, between two steps: reads or writes what the run from here on depends on. It is read into a driver
+  /// that has been made for the same system, method and options, and has not made a step. `transfer_steps(steps,
+  /// archive)` does the part of the method. The dense output of the last step is not kept.
+  template <class Archive, class TransferSteps>
+  void transfer(Archive& archive, TransferSteps&& transfer_steps) {
+    archive.bind(steps().system());
+    transfer_steps(steps(), archive);
+    archive(t_, x_, started_, solved_to_rounding_, shifts_end_, restarts_, marks_, logic_);
+    if constexpr (HasMassDiagonal<System, X>) unknowns_.transfer(archive, x_);
+    std::size_t shifts = shifted_.size();
+    archive.index(shifts, dimension(x_));
+    if constexpr (Archive::reads) shifted_.resize(shifts, Shift{});
+    for (Shift& shift : shifted_) {
+      archive(shift.earlier, shift.t, shift.value);
+      archive.index(shift.component, dimension(x_) - 1);
+    }
+  }
+
   /// Ends the run at its present time or at an earlier one of its last step, with the state x there: for observers.
   void stop(Real t, const X& x) {
     if (ended_) return;

@@ -13,6 +13,14 @@ namespace continuo {
 template <class Real>
 class StepMarks {
  public:
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(times_);
+    archive.index(count_, most);
+    archive(every_, next_);
+  }
+
   /// `steps`: tries so far, rejected ones with them.
   void mark(std::size_t steps, const Real& t) {
     if (steps < next_) return;

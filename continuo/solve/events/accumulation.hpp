@@ -39,6 +39,13 @@ class AccumulationWatch {
     return t + forward * rest;
   }
 
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    for (Track& track : tracks_)
+      archive(track.t, track.gap, track.ratio, track.start, track.count, track.shrinking, track.at_instant);
+  }
+
   /// Resets the count of event i, after its accumulation has been handled.
   void forget(std::size_t i) { tracks_[i] = {}; }
 

@@ -47,6 +47,12 @@ struct GuardState {
   Real band{};
   int returns = 0;  // crossings in a row out of the band to the far side, without leaving it to the other
 
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(side, at_zero, active, band, returns);
+  }
+
   /// The value that g has to pass for its side to change.
   [[nodiscard]] Real level() const { return at_zero && side != 0 ? -Real(side) * band : Real(0); }
 };

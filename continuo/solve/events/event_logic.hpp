@@ -53,6 +53,16 @@ class EventLogic {
     next_.reserve(events_.size());
   }
 
+  /// For checkpoints, between two steps.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(events_, accumulation_, g_, rounding_, wide_, slack_, marks_, jumps_, held_, turned_back_);
+    for (GuardState<Real>& state : watch_.states()) archive(state);
+    for (std::optional<Real>* time : {&last_event_, &scheduled_at_}) archive.optional(*time);
+    archive(size_, jumped_, restarted_);
+    if constexpr (Archive::reads) clear();
+  }
+
   /// For states of the size of x from here on.
   void resize(const X& x) { moved_ = first_ = second_ = x; }
 

@@ -86,6 +86,23 @@ class UnknownsSolver {
     return found;
   }
 
+  /// For checkpoints: the matrix of the last place, which the next one may do with.
+  template <class Archive>
+  void transfer(Archive& archive, const X& x) {
+    bool has_matrix = has_matrix_;
+    archive(has_matrix);
+    if (!has_matrix) return;
+    if constexpr (Archive::reads) list_unknowns(archive.system(), x);
+    const std::size_t n = dimension(x), m = unknown_.size();
+    for (const std::size_t row : unknown_)
+      for (const std::size_t column : unknown_) archive(rows_[row * n + column]);
+    if constexpr (Archive::reads) {
+      for (std::size_t i = 0; i < m; ++i)
+        for (std::size_t j = 0; j < m; ++j) lu_.matrix()[i * m + j] = -rows_[unknown_[i] * n + unknown_[j]];
+      has_matrix_ = lu_.factor();
+    }
+  }
+
  private:
   static constexpr int most_iterations = 50, most_halvings = 20, most_further = 4;
 

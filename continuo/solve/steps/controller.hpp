@@ -60,6 +60,12 @@ namespace detail {
 struct ErrorHistory {
   float last = 0, before_last = 0;
 
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(last, before_last);
+  }
+
   /// The factor for the next step after an accepted one; the error is kept for the steps after.
   [[nodiscard]] float accept(const Controller& controller, int error_order, float error_square) {
     const float exponent = exponent_of(error_order);

@@ -31,6 +31,12 @@ class StepBudget {
   /// Starts again where stiffness does not limit the steps, or something has changed.
   void forget() { *this = {}; }
 
+  /// For checkpoints.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    archive(t_, per_step_, steps_, begun_, steady_);
+  }
+
   [[nodiscard]] bool steady() const { return steady_; }
   /// The steps that the rest of the way needs.
   [[nodiscard]] Real steps_for(const Real& way) const {

@@ -35,6 +35,13 @@ class StepControl final : public Steps<System, X> {
 
   [[nodiscard]] std::unique_ptr<Base> clone() const override { return std::make_unique<StepControl>(*this); }
 
+  /// For checkpoints: what the next step depends on. Of the last step the dense output is not kept.
+  template <class Archive>
+  void transfer(Archive& archive) {
+    this->transfer_base(archive);
+    archive(work_, origin_, reach_, began_anew_);
+  }
+
   [[nodiscard]] MethodNeeds needs(const X& x) const override { return needs_of<M>(system_, x); }
 
   [[nodiscard]] bool take(Real limit, const Options<X>& options, Outcome<Real>& outcome) override {

@@ -147,6 +147,17 @@ class Steps {
   Steps& operator=(const Steps&) = default;
   Steps& operator=(Steps&&) = default;
 
+  template <class Archive>
+  void transfer_base(Archive& archive) {
+    archive(system_, begin_, end_, h_, next_, step_begin_, carried_, grid_, grid_steps_, standing_, stood_at_, jumped_);
+    archive(moved_, driven_, errors_, x_begin_, x_end_, slope_, statistics_, earlier_);
+    if (dimension(x_begin_) > 0) archive.index(refused_, dimension(x_begin_) - 1);
+    transfer_optional(archive, unmoved_);
+    transfer_optional(archive, stiffness_);
+    archive(probes_, stiff_probes_, step_budget_);
+    interpolated_ = false;
+  }
+
   [[nodiscard]] static bool fixed(const Options<X>& options) { return options.step > 0; }
   [[nodiscard]] static bool interrupted(const Options<X>& options) {
     return options.interrupt && options.interrupt->load(std::memory_order_relaxed);
@@ -321,6 +332,15 @@ class Steps {
             ? "f drives it out of the sign that is asked of it: no solution keeps it from here on"
             : "it leaves the sign that is asked of it, however short the step: f jumps, or leads far away";
     return fail(ending, error, component_name(system_, refused_), hint, outcome);
+  }
+
+  template <class Archive, class Value>
+  void transfer_optional(Archive& archive, std::optional<Value>& value) {
+    bool is_there = value.has_value();
+    archive(is_there);
+    if (!is_there) return value.reset();
+    if (!value) value.emplace(x_begin_);
+    archive(*value);
   }
 
   enum class Refusal { none, too_far, no_state, resized, sign };
