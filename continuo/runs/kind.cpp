@@ -15,7 +15,9 @@ Kind kind_of(const model::Model& model) {
             .has_rows_at_any_time = false,
             .can_be_recorded = true,
             .cost = "collisions"};
-  return {.solver = has_start ? Solver::integration : Solver::collocation, .has_start = has_start};
+  return {.solver = has_start ? Solver::integration : Solver::collocation,
+          .has_start = has_start,
+          .can_be_recorded = has_start};
 }
 
 double cost_of(const model::Model& model, const model::Run& run) {

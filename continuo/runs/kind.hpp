@@ -25,7 +25,7 @@ struct Kind {
   bool has_exact_derivatives = true;      // by parameters and initial values; false: differences of whole runs
   bool has_absolute_tolerances = true;    // false: one relative tolerance for all
   bool has_rows_at_any_time = true;       // false: moved in steps, at the first end of one that is not before it
-  bool can_be_recorded = false;           // worlds/run_log.hpp
+  bool can_be_recorded = false;           // runs/recording.hpp
   std::string_view cost = "evaluations";  // what is counted of a run
 };
 

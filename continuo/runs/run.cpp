@@ -9,9 +9,12 @@ namespace continuo::runs {
 model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
                      const RunRequest& request) {
   const Solver solver = kind_of(program->model).solver;
-  if (solver == Solver::world) return worlds::simulate_world(program, experiment, request.log);
+  Log* const log = request.log;
+  if (solver == Solver::world) return worlds::simulate_world(program, experiment, log ? log->world() : nullptr);
   if (solver == Solver::collocation && !request.from_start)
     return boundary::simulate_boundary(program, experiment, request.boundary);
+  if (log && log->integration() && solver == Solver::integration)
+    return simulate_recorded(program, experiment, *log->integration());
   return model::simulate(program, experiment);
 }
 

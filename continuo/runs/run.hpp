@@ -8,15 +8,15 @@
 #include <vector>
 
 #include <continuo/boundary/boundary_of_model.hpp>
+#include <continuo/runs/recording.hpp>
 #include <continuo/simulation/simulate.hpp>
-#include <continuo/worlds/run_log.hpp>
 
 namespace continuo::runs {
 
 /// What is asked beside the experiment. Each is for models of one kind, and no others heed it.
 struct RunRequest {
   boundary::BoundaryRequest boundary{};  // which solution, and how it is searched for
-  worlds::RunLog* log = nullptr;         // in which the run of a world is recorded as it goes
+  Log* log = nullptr;                    // in which the run is recorded as it goes
   bool from_start = false;               // conditions at several times are refused (E321)
 };
 

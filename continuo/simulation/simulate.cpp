@@ -9,6 +9,7 @@
 #include <continuo/simulation/drive/integrate.hpp>
 #include <continuo/simulation/drive/run_checks.hpp>
 #include <continuo/simulation/drive/run_recorder.hpp>
+#include <continuo/simulation/integration_recording.hpp>
 #include <continuo/simulation/simulate.hpp>
 
 namespace continuo::model {
@@ -68,26 +69,104 @@ Integration integration_of(const std::shared_ptr<const ModelProgram>& program, c
           ModelEvents(*program, plan.variables, plan.from, true)};
 }
 
-Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {
-  Simulated simulated;
-  const Model& model = program->model;
-  auto planned = plan_run(*program, experiment, simulated.diagnostics);
-  if (!planned) return simulated;
+namespace {
 
-  Run run;
-  run.plan = std::move(*planned);
-  RunRecorder recorder(*program, run.plan, experiment.keep_rows, sample_times(model, run.plan), program->always);
-  integrate(run.plan.method, integration_of(program, run.plan, experiment), recorder, run);
+RunRecorder recorder_of(const ModelProgram& program, const Plan& plan, const Experiment& experiment) {
+  return {program, plan, experiment.keep_rows, sample_times(program.model, plan), program.always};
+}
+
+/// The run that the recorder has watched, judged; its end goes into the log.
+Simulated judged(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment, Run run,
+                 RunRecorder& recorder, IntegrationLog* log = nullptr) {
+  Simulated simulated;
+  RecordedPart rest = log ? recorder.part() : RecordedPart{};
   recorder.give(run);
-  run.checks = judge(model, run, recorder);
+  run.checks = judge(program->model, run, recorder);
   if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(*program, run));
   if (experiment.estimate_error && succeeded(run.outcome.ending)) run.error = estimate_error(program, experiment, run);
   if (experiment.doubts && !run.error && succeeded(run.outcome.ending)) {
     const std::string doubt = doubt_of(program, experiment, run);
     if (!doubt.empty()) run.outcome.hint += (run.outcome.hint.empty() ? "" : "; ") + doubt;
   }
+  if (log) log->add({std::move(rest), {run.outcome, run.stop_text, {}, run.statistics}});
   simulated.run = std::move(run);
   return simulated;
+}
+
+Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                   IntegrationLog* log) {
+  Simulated simulated;
+  auto planned = plan_run(*program, experiment, simulated.diagnostics);
+  if (!planned) return simulated;
+  Run run;
+  run.plan = std::move(*planned);
+  RunRecorder recorder = recorder_of(*program, run.plan, experiment);
+  integrate(run.plan.method, integration_of(program, run.plan, experiment), recorder, run, log);
+  return judged(program, experiment, std::move(run), recorder, log);
+}
+
+Simulated does_not_fit(const Model& model, std::string why) {
+  return {.run = {},
+          .diagnostics = {error("E325", model.run.span, "the recording does not fit its model", std::move(why))}};
+}
+
+}  // namespace
+
+Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {
+  return simulate(program, experiment, nullptr);
+}
+
+Simulated simulate_recorded(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                            IntegrationLog& log) {
+  return simulate(program, experiment, &log);
+}
+
+Simulated replay_integration(const std::shared_ptr<const ModelProgram>& program,
+                             const IntegrationRecording& recording) {
+  Simulated simulated;
+  Experiment experiment = recording.head.experiment;
+  experiment.doubts = experiment.estimate_error = false;  // what was found then stands in the recording
+  auto planned = plan_run(*program, experiment, simulated.diagnostics);
+  if (!planned) return simulated;
+  Run run;
+  run.plan = std::move(*planned);
+  RunRecorder recorder = recorder_of(*program, run.plan, experiment);
+  bool fits = true;
+  for (const IntegrationCheckpoint& checkpoint : recording.checkpoints) fits = fits && recorder.add(checkpoint.part);
+  if (recording.end) fits = fits && recorder.add(recording.end->part);
+  if (!fits) return does_not_fit(program->model, "it has other states");
+  if (recording.end) {
+    run.outcome = recording.end->end.outcome;
+    run.stop_text = recording.end->end.stop_text;
+    run.statistics = recording.end->end.statistics;
+  } else {
+    run.outcome.ending = Ending::interrupted;
+    run.outcome.t = recording.checkpoints.back().t;
+  }
+  return judged(program, experiment, std::move(run), recorder);
+}
+
+Simulated resume_integration(const std::shared_ptr<const ModelProgram>& program, const IntegrationRecording& recording,
+                             std::size_t checkpoint, const ResumeOptions& how, IntegrationLog* log) {
+  Simulated simulated;
+  Experiment experiment = recording.head.experiment;
+  experiment.interrupt = how.interrupt;
+  experiment.progress = how.progress;
+  if (how.to) experiment.to = how.to;
+  if (how.max_steps) experiment.max_steps = how.max_steps;
+  auto planned = plan_run(*program, experiment, simulated.diagnostics);
+  if (!planned) return simulated;
+  Run run;
+  run.plan = std::move(*planned);
+  RunRecorder recorder = recorder_of(*program, run.plan, experiment);
+  for (std::size_t k = 0; k <= checkpoint; ++k) {
+    if (!recorder.add(recording.checkpoints[k].part)) return does_not_fit(program->model, "it has other states");
+    if (log) log->add(recording.checkpoints[k]);
+  }
+  if (!integrate_from(recording.checkpoints[checkpoint], integration_of(program, run.plan, experiment), recorder, run,
+                      log))
+    return does_not_fit(program->model, "its checkpoint is of another integration");
+  return judged(program, experiment, std::move(run), recorder, log);
 }
 
 Simulated simulate(const Model& model, const Experiment& experiment) {

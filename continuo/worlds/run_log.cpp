@@ -1,9 +1,9 @@
 // Runs of worlds as files of blocks: the contents of every part, and the order of parts.
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
+#include <continuo/simulation/drive/recorded_parts.hpp>
 #include <continuo/worlds/run_log.hpp>
 
 namespace continuo::worlds {
@@ -11,67 +11,16 @@ namespace continuo::worlds {
 namespace {
 
 constexpr FileFormat run_format{
-    {'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'}, 1, "this is no recording of a run", "a recording of another version"};
+    {'c', 'o', 'n', 't', 'i', 'r', 'u', 'n'}, 2, "this is no recording of a run", "a recording of another version"};
 enum class Part : std::uint8_t { head, note, checkpoint, end };
 
-// The contents of every part, for writing and reading.
+}  // namespace
 
-template <class Archive, class T>
-  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-void transfer(Archive& archive, T& value) {
-  archive(value);
-}
-template <class Archive>
-void transfer(Archive& archive, std::string& text) {
-  std::vector<char> letters(text.begin(), text.end());
-  archive(letters);
-  if constexpr (Archive::reads) text.assign(letters.begin(), letters.end());
-}
-template <class Archive>
-void transfer(Archive& archive, model::EventName& name) {
-  transfer(archive, name.event), transfer(archive, name.mark);
-}
-template <class Archive>
-void transfer(Archive& archive, std::pair<std::string, double>& value) {
-  transfer(archive, value.first), transfer(archive, value.second);
-}
-template <class Archive, class T>
-void transfer(Archive& archive, std::optional<T>& value) {
-  bool is_there = value.has_value();
-  archive(is_there);
-  if (!is_there) return;
-  if constexpr (Archive::reads) value.emplace();
-  transfer(archive, *value);
-}
-template <class Archive, class T>
-void transfer_list(Archive& archive, std::vector<T>& values) {
-  auto count = static_cast<std::uint64_t>(values.size());
-  archive(count);
-  if constexpr (Archive::reads) {
-    values.clear();
-    if (count > archive.left()) return archive.fail("a list longer than the bytes that are left");
-    for (std::uint64_t i = 0; i < count && archive.ok(); ++i) transfer(archive, values.emplace_back());
-  } else {
-    for (T& value : values) transfer(archive, value);
-  }
-}
-template <class Archive>
-void transfer(Archive& archive, model::Overrides& values) {
-  std::vector<std::pair<std::string, double>> list(values.begin(), values.end());
-  transfer_list(archive, list);
-  if constexpr (Archive::reads) values = model::Overrides(list.begin(), list.end());
-}
+// The contents of every part, for writing and reading. Found by their arguments, so that they are in this namespace.
 
-template <class Archive>
-void transfer(Archive& archive, RunHead& head) {
-  transfer(archive, head.file), transfer(archive, head.text);
-  archive(head.decides_size), archive(head.as_written);
-  model::Experiment& e = head.experiment;
-  transfer(archive, e.method);
-  for (std::optional<double>* number : {&e.rtol, &e.step, &e.from, &e.to, &e.output}) transfer(archive, *number);
-  archive(e.output_steps), archive(e.atol), archive(e.keep_rows);
-  transfer(archive, e.rtol_of), transfer(archive, e.atol_of), transfer(archive, e.parameters);
-}
+using model::recorded::transfer;
+using model::recorded::transfer_list;
+
 template <class Archive>
 void transfer(Archive& archive, Note& note) {
   archive(note.kind), archive(note.t);
@@ -96,30 +45,8 @@ void transfer(Archive& archive, Checkpoint& checkpoint) {
     archive.expect(std::isfinite(world.time) && std::isfinite(world.start), "a checkpoint at no time");
   }
 }
-template <class Archive>
-void transfer(Archive& archive, RunEnd& end) {
-  Outcome<double>& o = end.outcome;
-  archive(o.ending), archive(o.t), archive(o.h), archive(o.error), archive(o.limit_time);
-  for (std::string* text : {&o.component, &o.event, &o.hint, &end.stop_text, &end.error}) transfer(archive, *text);
-  archive(end.seconds);
-  if constexpr (Archive::reads) {
-    const auto ending = static_cast<int>(o.ending);
-    archive.expect(ending >= 0 && ending <= static_cast<int>(last_ending), "an end of no known kind");
-  }
-}
-
-template <class T>
-Bytes bytes_of(const T& part) {
-  ByteWriter writer;
-  transfer(writer, const_cast<T&>(part));  // a writer only reads it
-  return writer.take();
-}
-template <class T>
-void read_part(ByteReader& file, std::span<const std::byte> block, T& part) {
-  read_block(file, block, [&](ByteReader& reader) { transfer(reader, part); });
-}
-
-}  // namespace
+using model::recorded::bytes_of;
+using model::recorded::read_part;
 
 void tell(model::RunRecorder& recorder, const Note& note) {
   switch (note.kind) {

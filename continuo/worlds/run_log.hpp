@@ -21,20 +21,15 @@
 
 #include <continuo/bodies/support/blocks.hpp>
 #include <continuo/simulation/drive/run_recorder.hpp>
-#include <continuo/simulation/experiment.hpp>
+#include <continuo/simulation/recorded_run.hpp>
 #include <continuo/simulation/run.hpp>
 #include <continuo/status/result.hpp>
 #include <continuo/worlds/world_run.hpp>
 
 namespace continuo::worlds {
 
-/// The head of a recording: the text of the model, and the experiment.
-struct RunHead {
-  std::string file{}, text{};  // the folder of the file is where tables are
-  bool decides_size = false;   // the parameters are needed when the text is read
-  bool as_written = true;      // the checks of the model apply to this run
-  model::Experiment experiment{};
-};
+using model::RunEnd;
+using model::RunHead;
 
 /// A message of a run to its recorder.
 struct Note {
@@ -58,13 +53,6 @@ struct Checkpoint {
   std::uint64_t next_output = 0, next_sample = 0, contacts = 0;
   std::vector<std::uint64_t> stops{};
   std::size_t notes = 0;  // the number of notes before it
-};
-
-/// How it ended.
-struct RunEnd {
-  Outcome<double> outcome{};
-  std::string stop_text{}, error{};
-  double seconds = 0;
 };
 
 /// Writes a run to a stream while it advances.

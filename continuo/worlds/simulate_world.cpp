@@ -103,7 +103,7 @@ class Simulation {
     note({.kind = Note::Kind::finish, .t = world_->time(), .x = world_->state()});
     run_.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     run_.stop_text = events_.stop_text();
-    if (log_) log_->add(RunEnd{run_.outcome, run_.stop_text, error_, run_.statistics.seconds});
+    if (log_) log_->add(RunEnd{run_.outcome, run_.stop_text, error_, run_.statistics});
     recorder_.give(run_);
     run_.checks = judge(program_->model, run_, recorder_);
     model::Simulated simulated;
@@ -303,7 +303,7 @@ model::Simulated replay_world(const std::shared_ptr<const model::ModelProgram>& 
   if (recording.end) {
     run.outcome = recording.end->outcome;
     run.stop_text = recording.end->stop_text;
-    run.statistics.seconds = recording.end->seconds;
+    run.statistics = recording.end->statistics;
   } else {
     run.outcome.ending = Ending::interrupted;
     run.outcome.t = recording.notes.back().t;

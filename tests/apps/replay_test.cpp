@@ -70,10 +70,56 @@ TEST(Replay, GoesOnWithWhatWasInterrupted) {
   EXPECT_THAT(kept.out, HasSubstr("to go on from"));
 }
 
+TEST(Replay, GoesOnWithEquations) {
+  const Shell shell;
+  shell.write(
+      "ball.sim",
+      "param g = 9.8\nh'' = -g\nh(0) = 1; h'(0) = 0\ninput push from \"push.csv\" step\nz' = push - z\nz(0) = 0\n"
+      "when h falls through 0 { h := 0; h' := -0.9*h'; mark \"bounce\" }\n"
+      "energy all = g*h + h'^2/2\ncheck count of events > 2\nrun 0..3 output 0.1\n");
+  shell.write("push.csv", "t,push\n0,1\n1.1,2\n2.3,0\n");
+  const Result whole = shell.run("run ball.sim -o a.csv --events ae.csv");
+  ASSERT_EQ(whole.exit, 0) << whole.err;
+  const Result broken = shell.run("run ball.sim --record ball.run --max-steps 25");
+  EXPECT_EQ(broken.exit, 3);
+  const Result on = shell.run("resume ball.run --max-steps 100000 -o b.csv --events be.csv --record whole.run");
+  EXPECT_EQ(on.exit, 0) << on.err;
+  EXPECT_EQ(rows(shell.read("b.csv")), rows(shell.read("a.csv")));
+  EXPECT_EQ(rows(shell.read("be.csv")), rows(shell.read("ae.csv")));
+  const Result again = shell.run("replay whole.run -o c.csv");
+  EXPECT_EQ(again.exit, 0) << again.err;
+  EXPECT_EQ(rows(shell.read("c.csv")), rows(shell.read("a.csv")));
+  // Killed at any place of the file: what is there is a beginning of the run.
+  const std::string file = shell.read("whole.run"), table = rows(shell.read("a.csv"));
+  for (const double part : {0.5, 0.7, 0.95}) {
+    shell.write("cut.run", file.substr(0, static_cast<std::size_t>(part * static_cast<double>(file.size()))));
+    EXPECT_EQ(shell.run("replay cut.run -o cut.csv").exit, 130);
+    const std::string beginning = rows(shell.read("cut.csv"));
+    EXPECT_EQ(beginning, table.substr(0, beginning.size()));
+    EXPECT_EQ(shell.run("resume cut.run -o b.csv").exit, 0);
+    EXPECT_EQ(rows(shell.read("b.csv")), table);
+  }
+  shell.write("push.csv", "t,push\n0,1\n1.1,3\n2.3,0\n");
+  const Result changed = shell.run("resume ball.run");
+  EXPECT_EQ(changed.exit, 1);
+  EXPECT_THAT(changed.err, HasSubstr("a table that ball.sim reads has changed"));
+}
+
+TEST(Replay, GoesOnWithEquationsAfterCtrlC) {
+  const Shell shell;
+  shell.write("long.sim", "x'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..1e9 output 1e5 method rk4 step 0.01\n");
+  const Result interrupted = shell.run("run long.sim --record long.run", "timeout -s INT 2");
+  EXPECT_THAT(interrupted.err, HasSubstr("interrupted"));
+  const Result kept = shell.run("replay long.run");
+  EXPECT_EQ(kept.exit, 130);
+  EXPECT_THAT(kept.err, Not(HasSubstr("cut off")));
+  EXPECT_THAT(kept.out, HasSubstr("to go on from"));
+}
+
 TEST(Replay, SaysWhatIsWrong) {
   const Shell shell;
   shell.write("bounce.sim", bouncing);
-  shell.write("decay.sim", "x' = -x\nx(0) = 1\nrun 0..1\n");
+  shell.write("both_ends.sim", "y'' = -y\ny(0) = 0; y(1) = 1\nrun 0..1\n");
   ASSERT_EQ(shell.run("run bounce.sim --record bounce.run --snapshots 0").exit, 0);
   std::string wrong = shell.read("bounce.run");
   wrong[wrong.size() / 2] ^= 1;
@@ -87,7 +133,7 @@ TEST(Replay, SaysWhatIsWrong) {
                            Case{"replay bounce.sim", "this is no recording of a run"},
                            Case{"replay empty.run", "byte 0"}, Case{"replay short.run", "cut off before it began"},
                            Case{"replay wrong.run", "byte "}, Case{"resume bounce.run", "no snapshot to resume from"},
-                           Case{"run decay.sim --record x.run", "--record is for worlds of bodies"},
+                           Case{"run both_ends.sim --record x.run", "--record: a boundary-value problem"},
                            Case{"run bounce.sim --record -", "--record takes the name of a file"},
                            Case{"run bounce.sim --record no/where.run", "cannot write no/where.run"},
                            Case{"run bounce.sim --snapshots 3", "--snapshots requires --record"}}) {

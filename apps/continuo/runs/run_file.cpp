@@ -12,8 +12,7 @@
 namespace continuo::app {
 
 void add_record(CLI::App& verb, RecordTo& record) {
-  auto* path =
-      verb.add_option("--record", record.path, "Worlds: records the run, for replay and resume")->type_name("FILE");
+  auto* path = verb.add_option("--record", record.path, "Records the run, for replay and resume")->type_name("FILE");
   verb.add_option("--snapshots", record.checkpoints,
                   "Number of snapshots in the recording, from which resume can start (20)")
       ->type_name("N")
@@ -27,11 +26,13 @@ bool can_be_written(const RecordTo& record) {
   return false;
 }
 
-worlds::RunLog* RunFile::begin(const worlds::RunHead& head) {
+runs::Log* RunFile::begin(const model::ModelProgram& program, model::RunHead head) {
   if (!is_wanted()) return nullptr;
+  head.version = CONTINUO_VERSION;
+  head.data = checksum_of_tables(program);
   file_.open(to_.path, std::ios::binary | std::ios::trunc);
   if (!file_) return nullptr;
-  log_ = std::make_unique<worlds::RunLog>(file_, head, to_.checkpoints);
+  log_ = std::make_unique<runs::Log>(file_, program.model, head, to_.checkpoints);
   return log_.get();
 }
 
@@ -44,7 +45,7 @@ bool RunFile::close() {
   return false;
 }
 
-std::optional<worlds::RunRecording> read_run(const std::string& path) {
+std::optional<runs::Recording> read_run(const std::string& path) {
   if (!readable(path)) return std::nullopt;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const auto size = file.tellg();
@@ -55,7 +56,7 @@ std::optional<worlds::RunRecording> read_run(const std::string& path) {
     say(fmt::format("cannot read {}", path));
     return std::nullopt;
   }
-  Result<worlds::RunRecording> recording = worlds::RunRecording::read(bytes);
+  Result<runs::Recording> recording = runs::read_recording(bytes);
   if (recording) return *std::move(recording);
   say(fmt::format("{}: {}", path, recording.status().message));
   return std::nullopt;

@@ -8,7 +8,7 @@
 
 #include <CLI/App.hpp>
 
-#include <continuo/worlds/run_log.hpp>
+#include <continuo/runs/recording.hpp>
 
 namespace continuo::app {
 
@@ -24,18 +24,18 @@ class RunFile {
  public:
   explicit RunFile(const RecordTo& to) : to_(to) {}
   bool is_wanted() const { return !to_.path.empty(); }
-  /// Opens the file. Null where it is not wanted, or cannot be opened.
-  worlds::RunLog* begin(const worlds::RunHead& head);
+  /// Opens the file, for a run of this program. Null where it is not wanted, or cannot be opened.
+  runs::Log* begin(const model::ModelProgram& program, model::RunHead head);
   /// False, and said, where not all of it could be written.
   bool close();
 
  private:
   RecordTo to_;
   std::ofstream file_;
-  std::unique_ptr<worlds::RunLog> log_;
+  std::unique_ptr<runs::Log> log_;
 };
 
 /// Says why there is none.
-std::optional<worlds::RunRecording> read_run(const std::string& path);
+std::optional<runs::Recording> read_run(const std::string& path);
 
 }  // namespace continuo::app

@@ -19,8 +19,8 @@
 
 #include <continuo/language/load.hpp>
 #include <continuo/runs/kind.hpp>
+#include <continuo/runs/recording.hpp>
 #include <continuo/runs/run.hpp>
-#include <continuo/worlds/simulate_world.hpp>
 
 namespace continuo::app {
 namespace {
@@ -29,13 +29,14 @@ struct ReplayRequest {
   std::string file;
   RunOutputs outputs;
   std::optional<double> at, until;
+  std::optional<std::size_t> max_steps;
   RecordTo record;
 };
 
 /// A recording and the model in it, or how the verb ends without.
 struct Opened {
   ExitCode exit = usage;
-  worlds::RunRecording recording{};
+  runs::Recording recording{};
   model::Loaded loaded{model::Source("", ""), {}, {}};
   std::shared_ptr<const model::ModelProgram> program{};
 };
@@ -46,11 +47,11 @@ Opened open(const ReplayRequest& request) {
   auto recording = read_run(request.file);
   if (!recording) return opened;
   opened.recording = std::move(*recording);
-  const worlds::RunHead& head = opened.recording.head;
+  const model::RunHead& head = runs::head_of(opened.recording);
   model::CheckOptions options;
   if (head.decides_size) options.overrides = head.experiment.parameters;
   opened.loaded = model::load(model::Source(head.file, head.text), options);
-  if (!opened.loaded || !runs::kind_of(*opened.loaded.model).can_be_recorded) {
+  if (!opened.loaded || !runs::fits(opened.recording, *opened.loaded.model)) {
     show(opened.loaded.diagnostics, opened.loaded.source);
     say(fmt::format("{}: the model in the recording is not in order", request.file));
     opened.exit = wrong_model;
@@ -61,58 +62,81 @@ Opened open(const ReplayRequest& request) {
   return opened;
 }
 
-std::string places_of(const worlds::RunRecording& recording) {
-  const auto& checkpoints = recording.checkpoints;
-  if (checkpoints.empty()) return "none to go on from";
-  return fmt::format("{} to go on from, t = {:g} to {:g}: continuo resume", checkpoints.size(),
-                     checkpoints.front().world.time, checkpoints.back().world.time);
+std::string places_of(const runs::Recording& recording) {
+  const std::vector<double> times = runs::checkpoints_of(recording);
+  if (times.empty()) return "none to go on from";
+  return fmt::format("{} to go on from, t = {:g} to {:g}: continuo resume", times.size(), times.front(), times.back());
 }
 
 ExitCode replay(const ReplayRequest& request) {
   const Opened opened = open(request);
   if (opened.exit != done) return opened.exit;
-  const auto& recording = opened.recording;
-  if (!recording.end) say(fmt::format("{} was cut off after t = {:g}", request.file, recording.notes.back().t));
-  const model::Simulated simulated = worlds::replay_world(opened.program, recording);
+  const runs::Recording& recording = opened.recording;
+  if (!runs::is_whole(recording))
+    say(fmt::format("{} was cut off after t = {:g}", request.file, runs::last_time(recording)));
+  const model::Simulated simulated = runs::replay(opened.program, recording);
   const ExitCode exit =
-      tell(simulated, opened.loaded.source, *opened.program, request.outputs, recording.head.as_written);
+      tell(simulated, opened.loaded.source, *opened.program, request.outputs, runs::head_of(recording).as_written);
   if (simulated.run && !request.outputs.data_to_standard_output())
     print(fmt::format("places  {}\n", places_of(recording)));
   return exit;
+}
+
+/// Whether the run would go on to other bits than those it was recorded with: said, and refused.
+bool has_changed(const ReplayRequest& request, const Opened& opened) {
+  const model::RunHead& head = runs::head_of(opened.recording);
+  if (head.version != CONTINUO_VERSION) {
+    say(fmt::format("{} was recorded by Continuo {}, this is {}: its steps may differ; run the model again",
+                    request.file, head.version, CONTINUO_VERSION));
+    return true;
+  }
+  if (head.data != checksum_of_tables(*opened.program)) {
+    say(fmt::format("{}: a table that {} reads has changed since: run the model again", request.file, head.file));
+    return true;
+  }
+  return false;
 }
 
 ExitCode resume(const ReplayRequest& request) {
   if (!can_be_written(request.record) || !are_apart({request.file}, {request.record.path})) return usage;
   const Opened opened = open(request);
   if (opened.exit != done) return opened.exit;
-  const auto& recording = opened.recording;
-  if (recording.checkpoints.empty()) {
+  if (has_changed(request, opened)) return usage;
+  const runs::Recording& recording = opened.recording;
+  const std::vector<double> times = runs::checkpoints_of(recording);
+  if (times.empty()) {
     say(fmt::format("{} contains no snapshot to resume from: it was recorded with --snapshots 0", request.file));
     return usage;
   }
-  const std::size_t checkpoint = request.at ? recording.checkpoint_at(*request.at) : recording.checkpoints.size() - 1;
-  const double from = recording.checkpoints[checkpoint].world.time;
+  const std::size_t checkpoint = request.at ? runs::checkpoint_at(recording, *request.at) : times.size() - 1;
+  const double from = times[checkpoint];
   if ((request.at && *request.at < from) || (request.until && *request.until < from)) {
     say(fmt::format("the snapshot to resume from is at t = {:g}; --at and --until cannot be earlier", from));
     return usage;
   }
+  if (request.max_steps && !std::holds_alternative<model::IntegrationRecording>(recording)) {
+    say("--max-steps is for equations");
+    return usage;
+  }
   say(fmt::format("resumes from t = {:g}", from));
   RunFile file(request.record);
-  worlds::RunHead head = recording.head;
+  model::RunHead head = runs::head_of(recording);
   if (request.until) head.experiment.to = request.until;
-  worlds::RunLog* const log = file.begin(head);
+  if (request.max_steps) head.experiment.max_steps = request.max_steps;
+  runs::Log* const log = file.begin(*opened.program, head);
   const model::Simulated simulated = [&] {
     Progress progress;
     std::vector<model::Diagnostic> problems;  // the run itself will tell of them
     const auto plan = runs::plan(opened.program->model, head.experiment, problems);
-    return worlds::resume_world(opened.program, recording, checkpoint,
-                                {.to = request.until,
-                                 .interrupt = &interrupt_flag(),
-                                 .progress = plan ? progress.over(from, plan->to) : nullptr},
-                                log);
+    return runs::resume(opened.program, recording, checkpoint,
+                        {.to = request.until,
+                         .max_steps = request.max_steps,
+                         .interrupt = &interrupt_flag(),
+                         .progress = plan ? progress.over(from, plan->to) : nullptr},
+                        log);
   }();
-  const ExitCode exit = tell(simulated, opened.loaded.source, *opened.program, request.outputs,
-                             recording.head.as_written && !request.until);
+  const ExitCode exit =
+      tell(simulated, opened.loaded.source, *opened.program, request.outputs, head.as_written && !request.until);
   return file.close() || exit != done ? exit : usage;
 }
 
@@ -120,7 +144,7 @@ ExitCode resume(const ReplayRequest& request) {
 
 void add_replay(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples =
-      "  continuo run gas.sim --record gas.run                      runs a world and records it\n"
+      "  continuo run gas.sim --record gas.run                      runs a model and records it\n"
       "  continuo replay gas.run                                    its results, without simulating\n"
       "  continuo replay gas.run -o gas.nc --plot gas.svg           its rows and a plot\n";
   Verb* verb = add_verb(app, listed("replay"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
@@ -145,6 +169,9 @@ void add_resume(CLI::App& app, ExitCode& exit) {
   verb->add_option("--at", request->at, "Starts from the last snapshot at or before this time (default: the last one)")
       ->type_name("T");
   verb->add_option("--until", request->until, "End time of the run")->type_name("T");
+  verb->add_option("--max-steps", request->max_steps, "Equations: largest number of steps, with those before the break")
+      ->check(count_from(1, 1'000'000'000'000))
+      ->type_name("N");
   add_outputs(*verb, request->outputs);
   add_record(*verb, request->record);
   verb->callback([&exit, request] { exit = resume(*request); });

@@ -22,7 +22,6 @@
 #include <continuo/runs/kind.hpp>
 #include <continuo/runs/run.hpp>
 #include <continuo/solve/catalogue.hpp>
-#include <continuo/worlds/run_log.hpp>
 
 namespace continuo::app {
 namespace {
@@ -36,13 +35,15 @@ struct RunRequest {
 };
 
 /// Where the run is recorded as it goes; null where nobody wants that.
-worlds::RunLog* log_of(const RunRequest& request, const Prepared& prepared, RunFile& file) {
+runs::Log* log_of(const RunRequest& request, const Prepared& prepared, RunFile& file) {
   if (!file.is_wanted()) return nullptr;
-  return file.begin({.file = prepared.loaded.source.name(),
-                     .text = prepared.loaded.source.text(),
-                     .decides_size = prepared.decides_size,
-                     .as_written = request.experiment.as_written(),
-                     .experiment = prepared.experiment});
+  model::RunHead head;
+  head.file = prepared.loaded.source.name();
+  head.text = prepared.loaded.source.text();
+  head.decides_size = prepared.decides_size;
+  head.as_written = request.experiment.as_written();
+  head.experiment = prepared.experiment;
+  return file.begin(*prepared.program, std::move(head));
 }
 
 /// Families are no run: nothing of it can be written, which is said and not passed over.
@@ -80,7 +81,7 @@ ExitCode run(const RunRequest& request, const ShowFamilies& show_families) {
   const model::Source& source = prepared.loaded.source;
   if (prepared.exit == done && !request.record.path.empty() &&
       !runs::kind_of(prepared.program->model).can_be_recorded) {
-    say("--record is for worlds of bodies; -o saves the run of equations");
+    say("--record: a boundary-value problem is solved at once, so there is nothing to resume; -o saves its solution");
     return usage;
   }
   if (prepared.exit != done) {

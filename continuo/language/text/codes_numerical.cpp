@@ -28,7 +28,7 @@ Fix: describe a jump of a right-hand side by an event (`when`, `at`); stop befor
     Code{
         "E303", "too many steps",
         R"(The run needs more steps than the limit: the number given by `max steps` or --max-steps, else 10 million. Where
-the step is given, its steps do not count unless a limit is.
+the step is given, its steps do not count unless a limit is. A run with --record can go on: `continuo resume`.
 Most often the equations are stiff: a fast component has decayed, but would grow without bound if the step were longer
 than about twice its time constant. Stability, not accuracy, then limits the steps of an explicit method, although the
 solution hardly changes, and a larger tolerance does not help.

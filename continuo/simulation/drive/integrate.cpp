@@ -28,6 +28,9 @@ class Recording final : public StepWatcher {
     recorder_.on_event(now.t, names_.of(run.events(), now.events, true), now.before, now.after);
   }
 
+  [[nodiscard]] std::size_t marks_seen() const { return names_.marks_seen(); }
+  void see_marks(std::size_t count) { names_.see(count); }
+
  private:
   RunRecorder& recorder_;
   EventNames names_;
@@ -119,21 +122,98 @@ std::unique_ptr<Stepping> begin_integration(std::string_view method, Integration
   return run;
 }
 
-void integrate(std::string_view method, Integration integration, RunRecorder& recorder, Run& run) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto progress = integration.options.progress;
-  const std::unique_ptr<Stepping> steps =
-      begin_integration(method, std::move(integration), {run.plan.from, run.plan.to});
-  recorder.begin(run.plan.from, steps->x());  // where unknowns of algebraic equations have been found
-  Recording recording(recorder);
-  for (std::size_t count = 1; steps->advance(recording); ++count) {
-    if (count % 1024 == 0 && progress) progress(steps->t());
+namespace {
+
+constexpr std::chrono::seconds checkpoint_of_clock{10};  // a long run that is killed loses no more than this
+
+/// A run on its way to its end.
+class Progression {
+ public:
+  Progression(std::string_view method, Integration integration, RunRecorder& recorder, Run& run, IntegrationLog* log)
+      : options_(integration.options),
+        recorder_(recorder),
+        recording_(recorder),
+        run_(run),
+        log_(log),
+        steps_(begin_integration(method, std::move(integration), {run.plan.from, run.plan.to})) {
+    if (log_ && log_->checkpoints() > 0)
+      every_ = (run.plan.to - run.plan.from) / static_cast<double>(log_->checkpoints());
   }
-  recorder.finish(steps->t(), steps->x());
-  run.outcome = steps->outcome();
-  run.statistics = steps->statistics();
-  run.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  run.stop_text = steps->events().stop_text();
+
+  void begin() {
+    recorder_.begin(run_.plan.from, steps_->x());  // where unknowns of algebraic equations have been found
+    next_ = run_.plan.from;
+  }
+
+  [[nodiscard]] bool begin_from(const IntegrationCheckpoint& checkpoint) {
+    ByteReader reader(checkpoint.state);
+    steps_->restore(reader);
+    reader.expect_end();
+    if (!reader.ok() || steps_->t() != checkpoint.t || checkpoint.marks_seen > steps_->events().marks().size())
+      return false;
+    recording_.see_marks(checkpoint.marks_seen);
+    next_ = checkpoint.t + every_;
+    return true;
+  }
+
+  void go() {
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::size_t count = 1;; ++count) {
+      if (log_) note();
+      if (!steps_->advance(recording_)) break;
+      if (count % 1024 == 0 && options_.progress) options_.progress(steps_->t());
+    }
+    recorder_.finish(steps_->t(), steps_->x());
+    run_.outcome = steps_->outcome();
+    run_.statistics = steps_->statistics();
+    run_.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    run_.stop_text = steps_->events().stop_text();
+  }
+
+ private:
+  /// Writes a checkpoint where one is due by the time of the run or by the clock, and where the run is about to be
+  /// broken off.
+  void note() {
+    if (!(every_ > 0)) return;
+    const double t = steps_->t();
+    const auto now = std::chrono::steady_clock::now();
+    const Statistics cost = steps_->statistics();
+    const bool is_broken_off = (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) ||
+                               cost.steps + cost.rejected >= options_.max_steps;
+    if (t < next_ && now - noted_ < checkpoint_of_clock && !is_broken_off) return;
+    noted_ = now;
+    next_ = t + every_;
+    IntegrationCheckpoint checkpoint{.t = t, .part = recorder_.part(), .marks_seen = recording_.marks_seen()};
+    ByteWriter writer;
+    steps_->save(writer);
+    checkpoint.state = writer.take();
+    log_->add(checkpoint);
+  }
+
+  Options<ModelSystem::X> options_;
+  RunRecorder& recorder_;
+  Recording recording_;
+  Run& run_;
+  IntegrationLog* log_;
+  std::unique_ptr<Stepping> steps_;
+  double every_ = 0, next_ = 0;
+  std::chrono::steady_clock::time_point noted_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+void integrate(std::string_view method, Integration integration, RunRecorder& recorder, Run& run, IntegrationLog* log) {
+  Progression progression(method, std::move(integration), recorder, run, log);
+  progression.begin();
+  progression.go();
+}
+
+bool integrate_from(const IntegrationCheckpoint& checkpoint, Integration integration, RunRecorder& recorder, Run& run,
+                    IntegrationLog* log) {
+  Progression progression(run.plan.method, std::move(integration), recorder, run, log);
+  if (!progression.begin_from(checkpoint)) return false;
+  progression.go();
+  return true;
 }
 
 }  // namespace continuo::model

@@ -134,6 +134,55 @@ void RunRecorder::finish(double t, const X& x) {
   if (last_row_ != t) add_row(t, x);
 }
 
+RecordedPart RunRecorder::part() {
+  const auto since = [](const auto& list, std::size_t& parted) {
+    const auto begin = list.begin() + static_cast<std::ptrdiff_t>(std::exchange(parted, list.size()));
+    return std::remove_cvref_t<decltype(list)>(begin, list.end());
+  };
+  return {.rows = since(motion_.values, values_parted_),
+          .total_energy = since(total_energy_, energies_parted_),
+          .events = since(events_, events_parted_),
+          .next_output = next_output_,
+          .next_sample = next_sample_,
+          .samples = {samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(next_sample_)},
+          .extremes = extremes_,
+          .energy = energy_,
+          .x = x_,
+          .last_row = last_row_,
+          .any = any_};
+}
+
+bool RunRecorder::add(const RecordedPart& part) {
+  const std::size_t columns = motion_.columns.size(), states = motion_.states;
+  const std::size_t rows = part.rows.size() / columns;
+  const auto is_state = [&](const X& x) { return x.empty() || x.size() == states; };
+  const bool fits =
+      rows * columns == part.rows.size() && part.x.size() == states &&
+      part.total_energy.size() == (has_energy_ ? rows : 0) && part.next_sample <= samples_.size() &&
+      part.samples.size() == part.next_sample && part.extremes.size() == (part.any ? watched_values_.size() : 0) &&
+      part.energy.has_value() == (has_energy_ && part.any) &&
+      std::ranges::all_of(
+          part.events,
+          [&](const RecordedEvent& event) { return event.before.size() == states && event.after.size() == states; }) &&
+      std::ranges::all_of(part.samples, [&](const SampledState& sample) { return is_state(sample.x); });
+  if (!fits) return false;
+  for (std::size_t k = 0; k < part.next_sample; ++k)
+    if (part.samples[k].t != samples_[k].t) return false;
+  motion_.values.insert(motion_.values.end(), part.rows.begin(), part.rows.end());
+  total_energy_.insert(total_energy_.end(), part.total_energy.begin(), part.total_energy.end());
+  events_.insert(events_.end(), part.events.begin(), part.events.end());
+  next_output_ = part.next_output;
+  next_sample_ = part.next_sample;
+  std::ranges::copy(part.samples, samples_.begin());
+  extremes_ = part.extremes;
+  energy_ = part.energy;
+  x_ = part.x;
+  last_row_ = part.last_row;
+  any_ = part.any;
+  values_parted_ = motion_.values.size(), energies_parted_ = total_energy_.size(), events_parted_ = events_.size();
+  return true;
+}
+
 double RunRecorder::next_sample() const {
   return next_sample_ < samples_.size() ? samples_[next_sample_].t : std::numeric_limits<double>::infinity();
 }

@@ -2,6 +2,7 @@
 // Watches an integration and keeps what a Run holds. Internal to simulate.
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,19 @@ struct Extremes {
   double t_low, t_high;
 };
 
+/// What has been recorded since some moment, and what the recorder has to know to go on from there.
+struct RecordedPart {
+  std::vector<double> rows{}, total_energy{};  // as in Motion::values, Run::total_energy
+  std::vector<RecordedEvent> events{};
+  std::size_t next_output = 0, next_sample = 0;
+  std::vector<SampledState> samples{};  // all that were taken
+  std::vector<Extremes> extremes{};
+  std::optional<EnergyBalance> energy{};
+  std::vector<double> x{};
+  double last_row = 0;
+  bool any = false;
+};
+
 class RunRecorder {
  public:
   using X = std::vector<double>;
@@ -49,6 +63,11 @@ class RunRecorder {
   /// Of bodies; before and after are not kept.
   void contact(double t, std::string name, double impulse);
   void finish(double t, const X& x);
+
+  /// What has been recorded since the last call.
+  [[nodiscard]] RecordedPart part();
+  /// Adds such a part, of a recorder of the same model and plan. False where it cannot be one.
+  [[nodiscard]] bool add(const RecordedPart& part);
 
   [[nodiscard]] std::span<const SampledState> samples() const { return samples_; }
   /// When the next sample is wanted, infinity after the last; how many came before.
@@ -85,6 +104,7 @@ class RunRecorder {
   X x_;
   double last_row_ = 0;
   bool has_energy_, any_ = false;
+  std::size_t values_parted_ = 0, energies_parted_ = 0, events_parted_ = 0;  // by the last call of `part`
 };
 
 }  // namespace continuo::model
