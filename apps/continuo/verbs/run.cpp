@@ -14,6 +14,8 @@
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/runs/run_file.hpp>
 #include <apps/continuo/runs/run_results.hpp>
+#include <apps/continuo/runs/sweep.hpp>
+#include <apps/continuo/runs/sweep_results.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs/run.hpp>
@@ -71,7 +73,34 @@ bool has_no_method(const RunRequest& request, const model::Model& model) {
   return true;
 }
 
-ExitCode run(const RunRequest& request, const ShowFamilies& show_families) {
+/// The option that goes with one run only; null where none of them is given.
+const char* not_of_sweep(const RunRequest& request) {
+  if (!request.record.path.empty()) return "--record";
+  if (!request.boundary.family.empty()) return "--family";
+  if (!request.boundary.guess.empty()) return "--guess";
+  if (!request.boundary.as_written()) return "--along and --solution";
+  return nullptr;
+}
+
+ExitCode sweep(const RunRequest& request, const std::vector<SweepText>& texts, Prepared& base) {
+  if (const char* option = not_of_sweep(request)) {
+    say(fmt::format("{} is for one run, and {} asks for several", option, texts.front().text));
+    return usage;
+  }
+  if (!can_be_written_of_sweep(request.outputs)) return usage;
+  const std::optional<Sweep> asked = read_sweep(texts, base);
+  if (!asked) return usage;
+  base.experiment.estimate_error = request.estimate_error;
+  base.experiment.doubts = true;
+  const std::vector<SweepMember> members = [&] {
+    Progress progress;
+    return run_sweep(*asked, base, progress.parts());
+  }();
+  return tell_sweep(*asked, members, base, request.outputs);
+}
+
+ExitCode run(RunRequest request, const ShowFamilies& show_families) {
+  const std::vector<SweepText> swept = take_sweep(request.experiment);
   std::vector<std::string> written = files_of(request.outputs);
   written.push_back(request.record.path);
   if (!can_be_written(request.outputs) || !can_be_written(request.record) ||
@@ -90,6 +119,7 @@ ExitCode run(const RunRequest& request, const ShowFamilies& show_families) {
   }
   if (has_no_method(request, prepared.program->model)) return usage;
   if (!are_apart(files_of(prepared.program->model, request.experiment.file), written)) return usage;
+  if (!swept.empty()) return sweep(request, swept, prepared);
   const auto boundary = read_boundary(request.boundary, prepared);
   if (!boundary) return usage;
   if (!request.boundary.family.empty()) {
@@ -119,6 +149,8 @@ void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families) {
       "  continuo run ball.sim -o ball.csv --plot ball.svg          all rows, and a plot\n"
       "  continuo run gas.sim -o gas.nc                             the same for xarray, bodies as arrays\n"
       "  continuo run ball.sim --set g=1.62 --until 20              on the Moon, for longer\n"
+      "  continuo run spring.sim --set k=1,2,5 --plot k.svg         several runs: one table, one picture\n"
+      "  continuo run spring.sim --set k=1..5/9 --initial x=1,2     nine values of k, each from two starts\n"
       "  continuo run orbit.sim --method rk4 --step 0.01 --events apsides.csv\n"
       "  continuo run scene.sim --method fast --step 0.01           a world of bodies, in fixed steps\n"
       "  continuo run ball.sim --initial h=3 --initial \"h'=-1\"      from another start\n"

@@ -1,0 +1,282 @@
+// Writes the table, the events, the picture and the manifest of a sweep, and prints its summary or its object.
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <apps/continuo/runs/sweep_results.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
+#include <apps/continuo/terminal/terminal.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <continuo/results/csv_writer.hpp>
+#include <continuo/results/json.hpp>
+#include <continuo/results/netcdf.hpp>
+#include <continuo/results/output_file.hpp>
+#include <continuo/results/plots.hpp>
+#include <continuo/results/sha256.hpp>
+#include <continuo/results/summary.hpp>
+
+namespace continuo::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Members = std::vector<SweepMember>;
+
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+/// The columns that say which run a row is of.
+std::vector<std::string> columns_of(const Sweep& sweep) {
+  std::vector<std::string> columns;
+  for (const SweepAxis& axis : sweep.axes) columns.push_back(axis.column());
+  return columns;
+}
+std::vector<double> values_of(const Sweep& sweep, std::size_t member) {
+  std::vector<double> values;
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) values.push_back(sweep.value(member, a));
+  return values;
+}
+Json json_of(const Sweep& sweep, std::size_t member) {
+  Json json = Json::object();
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) json[sweep.axes[a].column()] = sweep.value(member, a);
+  return json;
+}
+
+/// The manifests of all runs in one, without the model's text in each.
+std::string manifest_of(const Sweep& sweep, const Members& members, std::string& hash) {
+  Json json{{"continuo", CONTINUO_VERSION}, {"sweep", columns_of(sweep)}};
+  std::string hashes;
+  Json runs = Json::array();
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (!members[m].simulated.run) continue;
+    const model::Model& model = members[m].program->model;
+    Json one = Json::parse(results::manifest(model, *members[m].simulated.run, CONTINUO_VERSION));
+    hashes += one["hash"].get<std::string>();
+    if (!json.contains("model")) json["model"] = one["model"];
+    for (const char* same : {"continuo", "model"}) one.erase(same);
+    Json entry = json_of(sweep, m);
+    entry.update(one);
+    runs.push_back(std::move(entry));
+  }
+  hash = results::sha256(hashes);
+  json["runs"] = std::move(runs);
+  json["hash"] = hash;
+  return text_of(json);
+}
+
+const model::Run* first_run(const Members& members) {
+  for (const SweepMember& member : members)
+    if (member.simulated.run) return &*member.simulated.run;
+  return nullptr;
+}
+
+/// Rows of all runs have the same columns, unless a parameter decides how many equations there are.
+bool have_one_table(const Members& members) {
+  const model::Run* const first = first_run(members);
+  const auto names = [](const model::Run& run) {
+    std::vector<std::string> all;
+    for (const model::Column& column : run.motion.columns) all.push_back(column.name);
+    return all;
+  };
+  for (const SweepMember& member : members)
+    if (member.simulated.run && names(*member.simulated.run) != names(*first)) return false;
+  return true;
+}
+
+Status write_rows(const Sweep& sweep, const Members& members, const std::string& path, const std::string& hash) {
+  std::vector<std::string> columns = columns_of(sweep);
+  for (const model::Column& column : first_run(members)->motion.columns) columns.push_back(column.name);
+  results::OutputFile out(path);
+  results::CsvWriter csv(out, hash, columns);
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (!members[m].simulated.run) continue;
+    const model::Motion& motion = members[m].simulated.run->motion;
+    std::vector<double> row = values_of(sweep, m);
+    const std::size_t swept = row.size();
+    for (std::size_t i = 0; i < motion.rows() && out.status(); ++i) {
+      row.resize(swept);
+      const auto values = motion.row(i);
+      row.insert(row.end(), values.begin(), values.end());
+      csv.row(row);
+    }
+  }
+  return out.close();
+}
+
+Status write_events(const Sweep& sweep, const Members& members, const std::string& path, const std::string& hash) {
+  const model::Motion& motion = first_run(members)->motion;
+  std::vector<std::string> columns{"event"};
+  for (std::string& column : columns_of(sweep)) columns.push_back(std::move(column));
+  columns.insert(columns.end(), {"t", "impulse"});
+  for (const char* side : {"before ", "after "})
+    for (std::size_t i = 1; i <= motion.states; ++i) columns.push_back(side + motion.columns[i].name);
+  results::OutputFile out(path);
+  results::CsvWriter csv(out, hash, columns);
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (!members[m].simulated.run) continue;
+    for (const model::RecordedEvent& event : members[m].simulated.run->events) {
+      std::vector<double> row = values_of(sweep, m);
+      row.push_back(event.t);
+      row.push_back(event.impulse.value_or(std::nan("")));
+      row.insert(row.end(), event.before.begin(), event.before.end());
+      row.insert(row.end(), event.after.begin(), event.after.end());
+      row.resize(columns.size() - 1, std::nan(""));
+      csv.row(event.name, row);
+    }
+  }
+  return out.close();
+}
+
+/// The curves of all runs in the panels of one, named by what was swept.
+results::Figure figure_of(const Sweep& sweep, const Members& members) {
+  results::Figure figure;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (!members[m].simulated.run) continue;
+    results::Figure one = results::figure_of(*members[m].program, *members[m].simulated.run);
+    if (figure.title.empty()) figure.title = one.title;
+    for (std::size_t p = 0; p < one.panels.size(); ++p) {
+      results::Panel& panel = one.panels[p];
+      const bool is_alone = panel.curves.size() == 1;
+      for (results::Curve& curve : panel.curves)
+        curve.label = is_alone ? sweep.label(m) : curve.label + ", " + sweep.label(m);
+      panel.marks.clear();  // each run has its own
+      if (p >= figure.panels.size()) {
+        figure.panels.push_back(std::move(panel));
+      } else {
+        auto& curves = figure.panels[p].curves;
+        std::ranges::move(panel.curves, std::back_inserter(curves));
+      }
+    }
+  }
+  return figure;
+}
+
+std::string beside(const RunOutputs& outputs) {
+  if (!outputs.manifest.empty()) return outputs.manifest;
+  for (const std::string& table : {outputs.motion, outputs.events})
+    if (!table.empty() && table != "-") return table + ".manifest.json";
+  return {};
+}
+
+bool write_files(const Sweep& sweep, const Members& members, const RunOutputs& outputs) {
+  std::string hash;
+  const std::string manifest = manifest_of(sweep, members, hash);
+  bool fine = true;
+  const bool wants_table = !outputs.motion.empty() || !outputs.events.empty();
+  if (wants_table && !have_one_table(members)) {
+    say("the runs have different states, so they have no common table: leave out -o and --events");
+    return false;
+  }
+  if (!outputs.motion.empty()) fine = written(write_rows(sweep, members, outputs.motion, hash)) && fine;
+  if (!outputs.events.empty()) fine = written(write_events(sweep, members, outputs.events, hash)) && fine;
+  if (const std::string path = beside(outputs); !path.empty())
+    fine = written(results::write_file(path, manifest)) && fine;
+  if (!outputs.plot.empty()) fine = written(results::draw(figure_of(sweep, members), outputs.plot)) && fine;
+  return fine;
+}
+
+std::string object_of(const Sweep& sweep, const Members& members, const model::Source& source) {
+  Json runs = Json::array();
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    if (!members[m].begun) continue;
+    Json run = json_of(sweep, m);
+    if (members[m].simulated.run) {
+      run.update(Json::parse(results::run_json(*members[m].simulated.run)));
+    } else {
+      run["outcome"] = "not run";
+      run["messages"] = Json::parse(model::to_json(members[m].simulated.diagnostics, source));
+    }
+    runs.push_back(std::move(run));
+  }
+  return text_of({{"sweep", columns_of(sweep)}, {"runs", std::move(runs)}});
+}
+
+/// A line for each run: what it was run with, how it ended, where.
+std::string summary_of(const Sweep& sweep, const Members& members) {
+  constexpr std::size_t most_states = 6;
+  const model::Run* const first = first_run(members);
+  const bool one_table = first && have_one_table(members);
+  std::vector<std::vector<std::string>> lines{columns_of(sweep)};
+  lines.front().emplace_back("ending");
+  lines.front().emplace_back("t");
+  const std::size_t states = one_table ? std::min(first->motion.states, most_states) : 0;
+  for (std::size_t i = 1; i <= states; ++i) lines.front().push_back(first->motion.columns[i].name);
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    std::vector<std::string>& line = lines.emplace_back();
+    for (const double value : values_of(sweep, m)) line.push_back(results::short_number(value));
+    if (!members[m].simulated.run) {
+      line.emplace_back(members[m].begun ? "not run" : "not begun");
+      continue;
+    }
+    const model::Run& run = *members[m].simulated.run;
+    line.emplace_back(to_string(run.outcome.ending));
+    line.push_back(results::short_number(run.final_time()));
+    for (std::size_t i = 0; i < states; ++i) line.push_back(results::short_number(run.final_state()[i]));
+  }
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const auto& line : lines)
+    for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], line[c].size());
+  std::string text;
+  for (const auto& line : lines) {
+    std::string row;
+    for (std::size_t c = 0; c < line.size(); ++c) row += fmt::format("{:<{}}  ", line[c], widths[c]);
+    row.erase(row.find_last_not_of(' ') + 1);
+    text += row + '\n';
+  }
+  return text;
+}
+
+/// What went wrong, each message once with the first member that it is of.
+void show_failures(const Sweep& sweep, const Members& members) {
+  std::vector<std::pair<std::string, std::vector<std::size_t>>> failures;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    for (const model::Diagnostic& diagnostic : members[m].simulated.diagnostics) {
+      if (diagnostic.severity != model::Severity::error) continue;
+      const std::string text = fmt::format("{} [{}]", diagnostic.message, diagnostic.code);
+      const auto known = std::ranges::find(failures, text, &std::pair<std::string, std::vector<std::size_t>>::first);
+      known == failures.end() ? failures.push_back({text, {m}}) : known->second.push_back(m);
+    }
+  }
+  for (const auto& [text, of] : failures)
+    say(fmt::format("{}{}: {}", sweep.label(of.front()),
+                    of.size() > 1 ? fmt::format(" and {} more", of.size() - 1) : std::string(), text));
+}
+
+ExitCode exit_of(const Members& members) {
+  bool has_failed = false;
+  for (const SweepMember& member : members) {
+    if (!member.begun) return interrupted;
+    const auto& run = member.simulated.run;
+    if (run && run->outcome.ending == Ending::interrupted) return interrupted;
+    has_failed = has_failed || !run || !succeeded(run->outcome.ending);
+  }
+  return has_failed ? numerical_failure : done;
+}
+
+}  // namespace
+
+bool can_be_written_of_sweep(const RunOutputs& outputs) {
+  if (!results::is_netcdf(outputs.motion)) return true;
+  say(fmt::format("cannot write {}: the table of several runs is CSV", outputs.motion));
+  return false;
+}
+
+ExitCode tell_sweep(const Sweep& sweep, const std::vector<SweepMember>& members, const Prepared& base,
+                    const RunOutputs& outputs) {
+  const bool any = first_run(members) != nullptr;
+  const bool fine = !any || write_files(sweep, members, outputs);
+  if (outputs.json) {
+    print(object_of(sweep, members, base.loaded.source));
+  } else if (!outputs.data_to_standard_output()) {
+    print(summary_of(sweep, members));
+  }
+  show_failures(sweep, members);
+  const ExitCode exit = exit_of(members);
+  return exit == done && !fine ? usage : exit;
+}
+
+}  // namespace continuo::app
