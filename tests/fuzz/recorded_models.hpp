@@ -37,4 +37,35 @@ run 0..1 output log 3 per decade from 0.01
 )"},
 }};
 
+/// Of equations: events with modes and a schedule, jumps of equations, algebraic equations. No two have as many states.
+inline constexpr std::array<RecordedModel, 3> recorded_equations{{
+    {"equations", R"(
+param g = 9.8
+mode flight { h'' = -g }
+mode rest { h'' = 0 }
+h(0) = 1; h'(0) = 0
+when h falls through 0 in flight { h := 0; if -0.5*h' > 0.3 { h' := -0.5*h' } else { h' := 0; go rest } }
+every 0.3 { mark "tick" }
+energy height = g*h
+run 0..1 output 0.1 method dop853_radau tol 1e-4
+)"},
+    {"equations_with_jumps", R"(
+v' = sin(9*t) - 0.5*sign(v)
+u' = floor(3*t) - 100*u
+w' = v*u
+v(0) = 0.3; u(0) = 0; w(0) = 1
+check always w < 100
+run 0..1 output 0.1 method bdf tol 1e-4
+)"},
+    {"algebraic_equations", R"(
+unknown v = 0.6
+q' = 1e-3*(exp(v/0.2) - 1)
+0 = 3 - q - 1e-3*(exp(v/0.2) - 1) - v
+p'' = -p
+q(0) = 0; p(0) = 1; p'(0) = 0
+when v falls through 0.9 { mark "low" }
+run 0..1 output 0.1 method radau tol 1e-4
+)"},
+}};
+
 }  // namespace continuo

@@ -23,6 +23,7 @@
 #include <continuo/bodies/recording.hpp>
 #include <continuo/language/check/check.hpp>
 #include <continuo/language/syntax/parser.hpp>
+#include <continuo/simulation/integration_recording.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 
 namespace {
@@ -105,6 +106,34 @@ void go_on(std::span<const std::byte> bytes) {
   tell_and_go_on(found == programs.end() ? programs.front() : *found, *recording);
 }
 
+void go_on_with_equations(std::span<const std::byte> bytes) {
+  static const std::array programs{program_of(recorded_equations[0].text), program_of(recorded_equations[1].text),
+                                   program_of(recorded_equations[2].text)};
+  const Result<model::IntegrationRecording> recording = model::IntegrationRecording::read(bytes);
+  if (!recording) return check_refusal(recording.status());
+  const auto fits = [&](const auto& program) {
+    return !recording->checkpoints.empty() &&
+           program->model.states.size() == recording->checkpoints.front().part.x.size();
+  };
+  const auto found = std::ranges::find_if(programs, fits);
+  const auto& program = found == programs.end() ? programs.front() : *found;
+  if (!is_short(recording->head.experiment, 0)) return;
+  const model::Simulated told = replay_integration(program, *recording);
+  if (!told.run && told.diagnostics.empty()) std::abort();
+  if (recording->checkpoints.empty()) return;
+  const double from = recording->checkpoints.back().t;
+  std::atomic<bool> enough = false;
+  const Timer timer(enough);
+  std::ostringstream file;
+  model::IntegrationLog log(file, recording->head, 3);
+  const model::Simulated on = resume_integration(program, *recording, recording->checkpoints.size() - 1,
+                                                 {.to = from + 0.05, .interrupt = &enough}, &log);
+  if (!on.run && on.diagnostics.empty()) std::abort();
+  if (!on.run) return;
+  const std::string text = file.str();
+  if (!model::IntegrationRecording::read(std::as_bytes(std::span(text)))) std::abort();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -122,6 +151,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     reader(count);
     if (count <= block.size() - 8) put_sum_right(block.subspan(8, static_cast<std::size_t>(count)));
   });
-  go_on(bytes);
+  if (model::IntegrationRecording::is_one(bytes)) {
+    go_on_with_equations(bytes);
+  } else {
+    go_on(bytes);
+  }
   return 0;
 }

@@ -16,6 +16,7 @@
 #include <continuo/bodies/snapshot.hpp>
 #include <continuo/language/check/check.hpp>
 #include <continuo/language/syntax/parser.hpp>
+#include <continuo/simulation/integration_recording.hpp>
 #include <continuo/worlds/simulate_world.hpp>
 
 namespace {
@@ -103,8 +104,24 @@ bool renew_recordings(const std::filesystem::path& folder) {
     if (!checked.model) return false;
     const auto program = model::compile(std::move(*checked.model));
     std::ostringstream file;
-    worlds::RunLog log(file, {.file = std::string(each.name) + ".sim", .text = text}, 3);
+    model::RunHead head;
+    head.file = std::string(each.name) + ".sim";
+    head.text = text;
+    worlds::RunLog log(file, head, 3);
     if (!worlds::simulate_world(program, {}, &log).run) return false;
+    if (!write(folder / each.name, std::as_bytes(std::span(std::string_view(file.view()))))) return false;
+  }
+  for (const RecordedModel& each : recorded_equations) {
+    const model::Source source("scene.sim", each.text);
+    model::Checked checked = check(model::parse(source).model, source);
+    if (!checked.model) return false;
+    const auto program = model::compile(std::move(*checked.model));
+    std::ostringstream file;
+    model::RunHead head;
+    head.file = std::string(each.name) + ".sim";
+    head.text = each.text;
+    model::IntegrationLog log(file, head, 3);
+    if (!model::simulate_recorded(program, {}, log).run) return false;
     if (!write(folder / each.name, std::as_bytes(std::span(std::string_view(file.view()))))) return false;
   }
   return true;
