@@ -87,7 +87,6 @@ ExitCode sweep(const RunRequest& request, const std::vector<SweepText>& texts, P
     say(fmt::format("{} is for one run, and {} asks for several", option, texts.front().text));
     return usage;
   }
-  if (!can_be_written_of_sweep(request.outputs)) return usage;
   const std::optional<Sweep> asked = read_sweep(texts, base);
   if (!asked) return usage;
   base.experiment.estimate_error = request.estimate_error;
@@ -101,6 +100,7 @@ ExitCode sweep(const RunRequest& request, const std::vector<SweepText>& texts, P
 
 ExitCode run(RunRequest request, const ShowFamilies& show_families) {
   const std::vector<SweepText> swept = take_sweep(request.experiment);
+  if (!swept.empty() && !can_be_written_of_sweep(request.outputs)) return usage;
   std::vector<std::string> written = files_of(request.outputs);
   written.push_back(request.record.path);
   if (!can_be_written(request.outputs) || !can_be_written(request.record) ||
