@@ -74,7 +74,7 @@ TEST(Replay, GoesOnWithEquations) {
   const Shell shell;
   shell.write(
       "ball.sim",
-      "param g = 9.8\nh'' = -g\nh(0) = 1; h'(0) = 0\ninput push from \"push.csv\" step\nz' = push - z\nz(0) = 0\n"
+      "param g = 9.8\nh'' = -g\nh(0) = 1; h'(0) = 0\ninput push = 1 from \"push.csv\" step\nz' = push - z\nz(0) = 0\n"
       "when h falls through 0 { h := 0; h' := -0.9*h'; mark \"bounce\" }\n"
       "energy all = g*h + h'^2/2\ncheck count of events > 2\nrun 0..3 output 0.1\n");
   shell.write("push.csv", "t,push\n0,1\n1.1,2\n2.3,0\n");
