@@ -108,7 +108,8 @@ ExitCode resume(const ReplayRequest& request) {
     say(fmt::format("{} contains no snapshot to resume from: it was recorded with --snapshots 0", request.file));
     return usage;
   }
-  const std::size_t checkpoint = request.at ? runs::checkpoint_at(recording, *request.at) : times.size() - 1;
+  const std::optional<double> latest = request.at ? request.at : request.until;
+  const std::size_t checkpoint = latest ? runs::checkpoint_at(recording, *latest) : times.size() - 1;
   const double from = times[checkpoint];
   if ((request.at && *request.at < from) || (request.until && *request.until < from)) {
     say(fmt::format("the snapshot to resume from is at t = {:g}; --at and --until cannot be earlier", from));
