@@ -11,9 +11,15 @@ std::vector<std::string> world_measures(int dimension) {
   return names;
 }
 
-std::vector<std::string> world_methods() {
-  return {"exact",         "dop853", "rk4", "fast", "semi_implicit_euler", "implicit_euler", "central_difference",
+std::vector<std::string> world_integrators() {
+  return {"semi_implicit_euler", "symplectic_euler_position_first", "implicit_euler", "central_difference",
           "explicit_euler"};
+}
+
+std::vector<std::string> world_methods() {
+  std::vector<std::string> names{"exact", "dop853", "rk4", "fast"};
+  for (const std::string& integrator : world_integrators()) names.push_back(integrator);
+  return names;
 }
 
 double collisions_of(const WorldDescription& world, std::span<const double> state) {

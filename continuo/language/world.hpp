@@ -114,6 +114,9 @@ struct WorldDescription {
 /// So many there were until the model was in this state.
 [[nodiscard]] double collisions_of(const WorldDescription& world, std::span<const double> state);
 
+/// What can stand behind `integrator` in `mode fast`.
+[[nodiscard]] std::vector<std::string> world_integrators();
+
 /// What can stand in place of the mode of a world: `exact`, and its paths by `dop853` or `rk4` with a step; `fast` with
 /// the integrator that the world names, or by the name of one.
 [[nodiscard]] std::vector<std::string> world_methods();

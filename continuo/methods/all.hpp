@@ -45,14 +45,16 @@
 #include <continuo/methods/symplectic/kahan_li8.hpp>
 #include <continuo/methods/symplectic/mclachlan_atela4.hpp>
 #include <continuo/methods/symplectic/semi_implicit_euler.hpp>
+#include <continuo/methods/symplectic/symplectic_euler_position_first.hpp>
 #include <continuo/methods/symplectic/velocity_verlet.hpp>
 #include <continuo/methods/symplectic/yoshida6.hpp>
 
 namespace continuo {
 
 /// By family, then by order.
-using ExplicitMethods = std::tuple<ExplicitEuler, SemiImplicitEuler, CentralDifference, VelocityVerlet, Midpoint, Heun,
-                                   Rk4, Rk38, BogackiShampine3, DormandPrince5, Tsitouras5, Dop853, Verner7, Verner9>;
+using ExplicitMethods =
+    std::tuple<ExplicitEuler, SemiImplicitEuler, SymplecticEulerPositionFirst, CentralDifference, VelocityVerlet,
+               Midpoint, Heun, Rk4, Rk38, BogackiShampine3, DormandPrince5, Tsitouras5, Dop853, Verner7, Verner9>;
 /// For x'' = a(t, x).
 using AccelerationMethods = std::tuple<McLachlanAtela4, Yoshida6, KahanLi8, DormandPrinceNystrom6,
                                        DormandPrinceNystrom8, DormandPrinceNystrom12>;

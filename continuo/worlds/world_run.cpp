@@ -21,6 +21,7 @@ namespace {
 
 std::optional<ForceIntegrator> integrator_named(std::string_view name) {
   if (name == "semi_implicit_euler") return ForceIntegrator::semi_implicit_euler;
+  if (name == "symplectic_euler_position_first") return ForceIntegrator::symplectic_euler_position_first;
   if (name == "implicit_euler") return ForceIntegrator::implicit_euler;
   if (name == "central_difference") return ForceIntegrator::central_difference;
   if (name == "explicit_euler") return ForceIntegrator::explicit_euler;

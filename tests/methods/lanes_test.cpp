@@ -38,8 +38,8 @@ struct NameOfMethod {
     return std::string(M::name);
   }
 };
-using Methods = ::testing::Types<ExplicitEuler, SemiImplicitEuler, CentralDifference, VelocityVerlet, BogackiShampine3,
-                                 DormandPrince5, Tsitouras5, Dop853, Verner7>;
+using Methods = ::testing::Types<ExplicitEuler, SemiImplicitEuler, SymplecticEulerPositionFirst, CentralDifference,
+                                 VelocityVerlet, BogackiShampine3, DormandPrince5, Tsitouras5, Dop853, Verner7>;
 TYPED_TEST_SUITE(OverLanes, Methods, NameOfMethod);
 
 TYPED_TEST(OverLanes, AStepGivesTheBitsOfEachLaneAlone) {

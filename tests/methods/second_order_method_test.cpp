@@ -7,6 +7,7 @@
 
 #include <continuo/methods/structural/central_difference.hpp>
 #include <continuo/methods/symplectic/semi_implicit_euler.hpp>
+#include <continuo/methods/symplectic/symplectic_euler_position_first.hpp>
 #include <continuo/methods/symplectic/velocity_verlet.hpp>
 
 namespace continuo::second_order_method_test {
@@ -149,6 +150,9 @@ void expect_order_beside_pairs() {
 }
 TEST(SemiImplicitEuler, AComponentInNoPairHasItsOrder) {
   expect_order_beside_pairs<SemiImplicitEuler>();
+}
+TEST(SymplecticEulerPositionFirst, AComponentInNoPairHasItsOrder) {
+  expect_order_beside_pairs<SymplecticEulerPositionFirst>();
 }
 TEST(VelocityVerlet, AComponentInNoPairHasItsOrder) {
   expect_order_beside_pairs<VelocityVerlet>();

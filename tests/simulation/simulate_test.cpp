@@ -278,9 +278,9 @@ TEST(Simulate, ParametersOfTheRunReplaceThoseOfTheText) {
 }
 
 TEST(Simulate, EveryMethodOfTheCatalogueRuns) {
-  for (const char* method :
-       {"explicit_euler", "euler", "semi_implicit_euler", "central_difference", "velocity_verlet", "midpoint", "heun",
-        "rk4", "rk38", "bogacki_shampine3", "dormand_prince5", "tsitouras5", "dop853", "verner7", "verner9"}) {
+  for (const char* method : {"explicit_euler", "euler", "semi_implicit_euler", "symplectic_euler_position_first",
+                             "central_difference", "velocity_verlet", "midpoint", "heun", "rk4", "rk38",
+                             "bogacki_shampine3", "dormand_prince5", "tsitouras5", "dop853", "verner7", "verner9"}) {
     const auto run = run_of("x'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..1\n", {.method = method, .step = 0.001});
     EXPECT_NEAR(run.final_state()[0], std::cos(1.0), 1e-3) << method;
   }

@@ -27,6 +27,8 @@ struct Citation {
 constexpr std::array citations{
     Citation{"explicit_euler", "Euler, Institutiones calculi integralis I (1768); also `euler`"},
     Citation{"semi_implicit_euler", "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2"},
+    Citation{"symplectic_euler_position_first",
+             "Hairer, Lubich, Wanner, Geometric Numerical Integration, VI.3; x first, then v with a(x)"},
     Citation{"central_difference", "Hairer, Lubich, Wanner, Acta Numerica 12 (2003), leapfrog"},
     Citation{"velocity_verlet", "Swope, Andersen, Berens, Wilson, J. Chem. Phys. 76 (1982)"},
     Citation{"midpoint", "Runge, Math. Ann. 46 (1895)"},
@@ -88,10 +90,10 @@ std::string_view kind_of(const MethodInfo& method) {
 }
 
 ExitCode methods() {
-  std::string text = fmt::format("{:<20} {:>5}  {:<26} {}\n", "method", "order", "kind", "source");
+  std::string text = fmt::format("{:<31} {:>5}  {:<26} {}\n", "method", "order", "kind", "source");
   for (const MethodInfo& method : method_catalogue()) {
     text +=
-        fmt::format("{:<20} {:>5}  {:<26} {}\n", method.name, method.order, kind_of(method), source_of(method.name));
+        fmt::format("{:<31} {:>5}  {:<26} {}\n", method.name, method.order, kind_of(method), source_of(method.name));
   }
   print(text);
   return done;

@@ -235,9 +235,9 @@ class FastMotion<Real, Dim>::Stepper {
       passes.push(step, push_body);
       torques_.turn(bodies_, rule, h);
       passes.relax(step, move_body);
-      if (forces_.acts() && rule.ends_with_correction) {
-        forces_.correct(bodies_, team_, now + h, h);
-        torques_.correct(bodies_, now + h, h);
+      if (forces_.acts() && rule.correction != EndCorrection::none) {
+        forces_.correct(bodies_, team_, rule, now + h, h);
+        torques_.correct(bodies_, rule, now + h, h);
       }
     }
     return true;

@@ -32,16 +32,20 @@ class ForceIntegration {
     if (!acts_) return true;
     return find(bodies, t, rule.solves_equations ? h : Real(0));
   }
-  /// Corrects the velocities at the end t of a substep, so that the mean of the accelerations at its beginning and its
-  /// end has changed them.
-  void correct(Bodies& bodies, ThreadTeam& team, const Real& t, const Real& h) {
+  /// Corrects the velocities at the end t of a substep, as the rule says.
+  void correct(Bodies& bodies, ThreadTeam& team, const IntegratorRule& rule, const Real& t, const Real& h) {
     const std::vector<V> before = bodies.accelerations;
+    const bool anew = rule.correction == EndCorrection::anew;
+    const auto add = [&](const auto& change) {
+      team.for_each(0, bodies.size(), 1024, [&](std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k)
+          if (!bodies.touched[k]) put(V(bodies.v(k) + change(k)), bodies.motion[k].linear);
+      });
+    };
+    if (anew) add([&](std::size_t k) { return V(before[k] * -h); });
     find(bodies, t, Real(0));
-    team.for_each(0, bodies.size(), 1024, [&](std::size_t from, std::size_t to) {
-      for (std::size_t k = from; k < to; ++k)
-        if (!bodies.touched[k])
-          put(V(bodies.v(k) + (bodies.accelerations[k] - before[k]) * (h / 2)), bodies.motion[k].linear);
-    });
+    const std::vector<V>& after = bodies.accelerations;
+    add([&](std::size_t k) { return anew ? V(after[k] * h) : V((after[k] - before[k]) * (h / 2)); });
   }
   /// Whether only gravity and the constant force act on the body at place k.
   [[nodiscard]] bool is_steady(const Bodies& bodies, std::size_t k) const {

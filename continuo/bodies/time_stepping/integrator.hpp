@@ -2,13 +2,15 @@
 //
 //   explicit Euler       x1 = x0 + h v0             v1 = v0 + h a(t0, x0, v0)     order 1, grows whatever h
 //   semi-implicit Euler  x1 = x0 + h v1             v1 = v0 + h a(t0, x0, v0)     order 1, stable for h < 2 / omega
+//   ..., position first  x1 = x0 + h v0             v1 = v0 + h a(t1, x1, v0)     order 1, stable for h < 2 / omega
 //   implicit Euler       x1 = x0 + h v1             v1 = v0 + h a(t1, x1, v1)     order 1, stable for any h, damps
 //   central difference   x1 = x0 + h v0 + h^2/2 a0  v1 = v0 + h (a0 + a1) / 2     order 2, stable for h < 2 / omega
 //
 // omega is the highest angular frequency of springs and masses; the limits are those of x'' = -omega^2 x (E. Hairer,
 // C. Lubich, G. Wanner, "Geometric Numerical Integration", 2006, I.1). The central difference is also known as leapfrog
 // and as velocity Verlet. A body on which nothing acts but gravity and its constant force follows its parabola exactly,
-// but for explicit Euler. One in contact is moved as its contacts allow, by the velocity at the end.
+// but for explicit Euler and the position first, which give the numbers of their formulas. One in contact is moved as
+// its contacts allow, by the velocity at the end.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -22,26 +24,41 @@
 
 namespace continuo {
 
-enum class ForceIntegrator { semi_implicit_euler, implicit_euler, central_difference, explicit_euler };
+enum class ForceIntegrator {
+  semi_implicit_euler,
+  symplectic_euler_position_first,
+  implicit_euler,
+  central_difference,
+  explicit_euler
+};
+
+/// What corrects the velocity at the end of a substep.
+enum class EndCorrection {
+  none,
+  mean,  // v1 += h (a1 - a0) / 2
+  anew   // v1 = v0 + h a1, where a1 reads v0
+};
 
 /// With the velocity v1 = v0 + h a the position is x0 + h (v1 - lag h a), with steady_lag where a is constant.
 struct IntegratorRule {
   double lag, steady_lag;
-  bool ends_with_correction;  // v1 += h (a1 - a0) / 2
-  bool solves_equations;      // a is that of the end
+  EndCorrection correction;
+  bool solves_equations;  // a is that of the end
 };
 [[nodiscard]] constexpr IntegratorRule rule_of(ForceIntegrator integrator) {
   switch (integrator) {
     case ForceIntegrator::implicit_euler:
-      return {0, 0.5, false, true};
+      return {0, 0.5, EndCorrection::none, true};
     case ForceIntegrator::central_difference:
-      return {0.5, 0.5, true, false};
+      return {0.5, 0.5, EndCorrection::mean, false};
     case ForceIntegrator::explicit_euler:
-      return {1, 1, false, false};
+      return {1, 1, EndCorrection::none, false};
+    case ForceIntegrator::symplectic_euler_position_first:
+      return {1, 1, EndCorrection::anew, false};
     case ForceIntegrator::semi_implicit_euler:
       break;
   }
-  return {0, 0.5, false, false};
+  return {0, 0.5, EndCorrection::none, false};
 }
 
 /// force[i] becomes that at the end of an implicit Euler step from x, v: u = v + h force(t + h, x + h u, u) / m is

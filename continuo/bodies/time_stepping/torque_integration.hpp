@@ -45,12 +45,17 @@ class TorqueIntegration {
       orientation = turned(orientation, spin, h);
     }
   }
-  /// Corrects the spins, so that the mean of the rates at the beginning and the end of the substep has changed them.
-  void correct(Bodies& bodies, const Real& t, const Real& h) {
+  /// Corrects the spins at the end t of the substep, as the rule says.
+  void correct(Bodies& bodies, const IntegratorRule& rule, const Real& t, const Real& h) {
     if (!acts_) return;
+    const bool anew = rule.correction == EndCorrection::anew;
+    const auto add_to_all = [&](const auto& change) {
+      for (std::size_t k = 0; k < bodies.size(); ++k)
+        if (!bodies.touched[k]) add(bodies, k, change(k));
+    };
+    if (anew) add_to_all([&](std::size_t k) { return S(rate_[k] * -h); });
     find_rates(bodies, t, rate_after_);
-    for (std::size_t k = 0; k < bodies.size(); ++k)
-      if (!bodies.touched[k]) add(bodies, k, (rate_after_[k] - rate_[k]) * (h / 2));
+    add_to_all([&](std::size_t k) { return anew ? S(rate_after_[k] * h) : S((rate_after_[k] - rate_[k]) * (h / 2)); });
   }
   [[nodiscard]] const Orientation<Real, Dim>& orientation(std::size_t body) const { return orientation_[body]; }
 

@@ -182,8 +182,9 @@ path each state may be assigned only once, and the mode changed only once:
   level(0) = 1
   every 2 { level := level/2 })"},
     Code{"E260", "there is no such method",
-         R"(explicit_euler (also euler), semi_implicit_euler, central_difference, velocity_verlet, midpoint, heun,
-rk4, rk38, bogacki_shampine3, dormand_prince5, tsitouras5, dop853, verner7, verner9 and many more.)"},
+         R"(explicit_euler (also euler), semi_implicit_euler, symplectic_euler_position_first, central_difference,
+velocity_verlet, midpoint, heun, rk4, rk38, bogacki_shampine3, dormand_prince5, tsitouras5, dop853, verner7,
+verner9 and many more.)"},
     Code{"E261", "a time or tolerance is not sensible",
          R"(The end of a run must be after its start; steps, output intervals, periods and tolerances must be
 greater than zero.)"},

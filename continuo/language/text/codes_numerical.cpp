@@ -122,8 +122,8 @@ or an interval that is not positive, or a number of tolerances different from th
     Code{"E334", "there is no such method for bodies",
          R"(A world is moved `exact`, from collision to collision, where under forces the paths between are
 integrated by `dop853` to a tolerance or by `rk4` with a step; or `fast` in steps, its forces by
-semi_implicit_euler, implicit_euler, central_difference or explicit_euler. Each of these names may stand behind
---method.)"},
+semi_implicit_euler, symplectic_euler_position_first, implicit_euler, central_difference or explicit_euler. Each of
+these names may stand behind --method.)"},
     Code{"E335", "a mass matrix is singular at the start",
          R"(The equations are solved for their highest derivatives: m*x'' = F by a division by m, coupled ones by the
 matrix before them. With the parameters and the initial state this coefficient is 0, or the matrix is singular, so the

@@ -135,12 +135,12 @@ struct SecondOrderMethod {
     for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
       work.end.data()[position] = x_new.data()[velocity];
     });
-    work.end_fresh = holds_after_correction(system, x);
+    work.end_fresh = holds_after_kick(system, x);
   }
-  /// What f gave at a predicted state holds at the corrected one: the correction moves velocities only, and f ignores
-  /// them but for the positions' slopes, which are the velocities.
+  /// What f gave holds when velocities alone have changed: f ignores them but for the positions' slopes, which are the
+  /// velocities.
   template <class System, State X>
-  [[nodiscard]] static bool holds_after_correction(const System& system, const X& x) {
+  [[nodiscard]] static bool holds_after_kick(const System& system, const X& x) {
     return ignores_velocity(system, x) && 2 * system.pair_count(dimension(x)) == dimension(x);
   }
 };

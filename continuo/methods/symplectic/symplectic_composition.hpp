@@ -51,13 +51,15 @@ template <std::size_t Half>
   }(std::make_index_sequence<2 * Half>());
 }
 
-/// `Derived` has a tableau. Fixed steps; systems whose accelerations read velocities are refused.
+/// `Derived` has a tableau. Fixed steps; systems whose accelerations read velocities are refused, unless `Derived` says
+/// that it treats them.
 template <class Derived>
 struct SymplecticComposition : SecondOrderMethod {
   /// Between the ends the quintic that meets position, velocity and acceleration at both of them, made better in
   /// `Derived::dense_rounds` (refined_quintic.hpp) for two and four accelerations each.
   /// The velocity is its derivative and has the error of the step divided by h: one order less than the method's.
   static constexpr int dense_degree = 5, dense_order = 3, dense_rounds = 0;
+  static constexpr bool compensated = true;
 
   template <State X>
   struct Workspace : EndDerivatives<X> {
@@ -88,7 +90,7 @@ struct SymplecticComposition : SecondOrderMethod {
   static int step(System& system, const Scalar<X>& t, const X& x, const Scalar<X>& h, bool discontinuity,
                   Workspace<X>& work, X& x_new) {
     int evaluations = work.evaluate_start(system, t, x, discontinuity);
-    if (!unsupported_reason(system, x).empty()) {
+    if (!Derived::unsupported_reason(system, x).empty()) {
       for (std::size_t i = 0; i < dimension(x); ++i)
         x_new.data()[i] = Scalar<X>(std::numeric_limits<double>::quiet_NaN());
       return evaluations;
@@ -96,7 +98,7 @@ struct SymplecticComposition : SecondOrderMethod {
     if (discontinuity) {
       for (std::size_t i = 0; i < dimension(x); ++i) work.rest.data()[i] = Scalar<X>(0);
     }
-    x_new = x;
+    begin_step(system, x, h, work, x_new);
     work.rest_new = work.rest;
     [&]<std::size_t... i>(std::index_sequence<i...>) {
       (stage<i>(system, t, h, work, x_new), ...);
@@ -105,7 +107,7 @@ struct SymplecticComposition : SecondOrderMethod {
       for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
         work.end.data()[position] = x_new.data()[velocity];
       });
-      work.end_fresh = true;
+      work.end_fresh = holds_after_kick(system, x);
     }
     return evaluations + static_cast<int>(Derived::tableau.stages) - 1;
   }
@@ -138,6 +140,18 @@ struct SymplecticComposition : SecondOrderMethod {
   }
 
  private:
+  /// x_new = x, but components in no pair take an explicit Euler step.
+  template <class System, State X>
+  static void begin_step(const System& system, const X& x, const Scalar<X>& h, const Workspace<X>& work, X& x_new) {
+    x_new = x;
+    if (2 * system.pair_count(dimension(x)) == dimension(x)) return;
+    euler(x, h, work.start, x_new);
+    for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
+      x_new.data()[position] = x.data()[position];
+      x_new.data()[velocity] = x.data()[velocity];
+    });
+  }
+
   template <int Round, class System, State X, int Degree>
   [[nodiscard]] static int refine(System& system, const Scalar<X>& t, const Scalar<X>& h, Workspace<X>& work,
                                   Interpolant<X, Degree>& interpolant) {
@@ -164,12 +178,16 @@ struct SymplecticComposition : SecondOrderMethod {
     if constexpr (i > 0) evaluate(system, t + h * time.template as<CoefficientOf<Real>>(), x, slope);
     const Real kicked = h * kick.template as<CoefficientOf<Real>>();
     const Real drifted = h * drift.template as<CoefficientOf<Real>>();
-    for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
-      detail::add_compensated<Real>(kicked * slope.data()[velocity], x.data()[velocity],
-                                    work.rest_new.data()[velocity]);
-      if constexpr (!drift.is_zero()) {
-        detail::add_compensated<Real>(drifted * x.data()[velocity], x.data()[position], work.rest_new.data()[position]);
+    const auto add = [&](const Real& term, std::size_t component) {
+      if constexpr (Derived::compensated) {
+        detail::add_compensated<Real>(term, x.data()[component], work.rest_new.data()[component]);
+      } else {
+        x.data()[component] += term;
       }
+    };
+    for_each_pair(system, x, [&](std::size_t position, std::size_t velocity) {
+      if constexpr (!kick.is_zero()) add(kicked * slope.data()[velocity], velocity);
+      if constexpr (!drift.is_zero()) add(drifted * x.data()[velocity], position);
     });
   }
 };

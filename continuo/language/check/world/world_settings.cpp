@@ -134,7 +134,7 @@ void WorldSettings::read_mode(const ast::WorldSetting& setting, Scope& scope) {
 
 void WorldSettings::read_integrator(const ast::Expression& text) {
   WorldMode& mode = work_.made.mode;
-  const std::vector<std::string> names{"semi_implicit_euler", "implicit_euler", "central_difference", "explicit_euler"};
+  const std::vector<std::string> names = world_integrators();
   mode.integrator = std::get<ast::Name>(text.node).text;
   if (std::ranges::find(names, mode.integrator) == names.end()) {
     const std::string near = did_you_mean(mode.integrator, names);
