@@ -1,7 +1,12 @@
 // Every ```console block shows commands after `$ ` and their output. The commands are run in order, in one folder per
-// document, and must print the output shown. `exit=2` on the fence states the exit code of the block's last command.
+// document, and must print the output shown. `exit=2` on the fence states the exit code of the block's last command;
+// `needs=scipy` that the block is for computers which have this program or module of Python.
 #include <cstdlib>
+#include <iostream>
+#include <map>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <tests/docs/blocks.hpp>
@@ -30,6 +35,16 @@ std::vector<Example> examples_of(const Block& block) {
   return examples;
 }
 
+bool is_there(const std::string& name) {
+  static std::map<std::string, bool> known;
+  const auto [entry, is_new] = known.emplace(name, false);
+  if (is_new) {
+    const std::string test = "command -v " + name + " || python3 -c 'import " + name + "'";
+    entry->second = run_in(CONTINUO_DOCS_SCRATCH, test).exit_code == 0;
+  }
+  return entry->second;
+}
+
 class Document : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(Document, ShowsWhatTheCommandsPrint) {
@@ -43,6 +58,10 @@ TEST_P(Document, ShowsWhatTheCommandsPrint) {
     SCOPED_TRACE(block.place());
     if (block.tags.contains("file")) {
       run_in(folder, "cat > '" + block.tags.at("file") + "' <<'END_OF_BLOCK'\n" + block.text + "END_OF_BLOCK");
+      continue;
+    }
+    if (block.tags.contains("needs") && !is_there(block.tags.at("needs"))) {
+      std::cout << block.place() << " was not run: there is no " << block.tags.at("needs") << "\n";
       continue;
     }
     const auto examples = examples_of(block);
