@@ -8,14 +8,19 @@ namespace continuo::runs {
 
 model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
                      const RunRequest& request) {
+  return run(program, experiment, request, {});
+}
+
+model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
+                     const RunRequest& request, const model::OnRow& on_row) {
   const Solver solver = kind_of(program->model).solver;
   Log* const log = request.log;
-  if (solver == Solver::world) return worlds::simulate_world(program, experiment, log ? log->world() : nullptr);
+  if (solver == Solver::world) return worlds::simulate_world(program, experiment, log ? log->world() : nullptr, on_row);
   if (solver == Solver::collocation && !request.from_start)
     return boundary::simulate_boundary(program, experiment, request.boundary);
   if (log && log->integration() && solver == Solver::integration)
-    return simulate_recorded(program, experiment, *log->integration());
-  return model::simulate(program, experiment);
+    return simulate_recorded(program, experiment, *log->integration(), on_row);
+  return model::simulate(program, experiment, on_row);
 }
 
 std::optional<model::Plan> plan(const model::Model& model, const model::Experiment& experiment,

@@ -23,6 +23,11 @@ struct RunRequest {
 /// A run, or why there is none.
 [[nodiscard]] model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program,
                                    const model::Experiment& experiment = {}, const RunRequest& request = {});
+/// The same with its rows handed over while it goes on, as by model::simulate. A solution of conditions at several
+/// times is known all at once: its rows are not handed over, and stand in the run.
+[[nodiscard]] model::Simulated run(const std::shared_ptr<const model::ModelProgram>& program,
+                                   const model::Experiment& experiment, const RunRequest& request,
+                                   const model::OnRow& on_row);
 
 /// The plan of its run, or nothing where `problems` has the reason: E33x, E34x.
 [[nodiscard]] std::optional<model::Plan> plan(const model::Model& model, const model::Experiment& experiment,

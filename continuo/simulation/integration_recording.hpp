@@ -79,9 +79,9 @@ struct IntegrationRecording {
   [[nodiscard]] double last_time() const { return end ? end->end.outcome.t : checkpoints.back().t; }
 };
 
-/// As simulate, recorded while it advances.
+/// As simulate, recorded while it advances. Where Experiment::keep_rows is false, the recording has no rows.
 [[nodiscard]] Simulated simulate_recorded(const std::shared_ptr<const ModelProgram>& program,
-                                          const Experiment& experiment, IntegrationLog& log);
+                                          const Experiment& experiment, IntegrationLog& log, const OnRow& on_row = {});
 
 /// Replays a recorded run. The program must be that of its text; a recording that does not fit the program is reported
 /// (E325).

@@ -2,6 +2,7 @@
 // What a run of a model leaves: rows, events, marks, energies, checks, outcome and cost. Plain data.
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,6 +35,15 @@ struct Motion {
   /// The states of row i, each in its unit.
   [[nodiscard]] std::span<const double> state(std::size_t i) const { return row(i).subspan(1, states); }
 };
+
+/// A row of a run, handed over while the run goes on.
+struct RunRow {
+  std::span<const Column> columns;
+  std::size_t states;              // how many columns after t are states
+  std::span<const double> values;  // one for each column; then the sum of the energies, if the model declares any
+};
+/// Gets every row of a run as it comes; returns whether the run is to go on.
+using OnRow = std::function<bool(const RunRow&)>;
 
 /// One event of the model that has occurred, as the recorder keeps it.
 struct RecordedEvent {
@@ -76,7 +86,7 @@ struct ErrorEstimate {
 struct Run {
   Plan plan;
   Motion motion;
-  std::vector<double> total_energy;  // at each row, if the model declares energies
+  std::vector<double> total_energy;  // at each row that is kept, if the model declares energies
   std::vector<RecordedEvent> events;
   std::string stop_text;  // of the `stop` that ended the run
   Outcome<double> outcome;
@@ -87,6 +97,10 @@ struct Run {
 
   /// The time of the last row.
   [[nodiscard]] double final_time() const { return motion.time(motion.rows() - 1); }
+  /// The states of the first row; none where there is no row.
+  [[nodiscard]] std::span<const double> first_state() const {
+    return motion.rows() > 0 ? motion.state(0) : std::span<const double>();
+  }
   /// The states of the last row.
   [[nodiscard]] std::span<const double> final_state() const { return motion.state(motion.rows() - 1); }
   /// Whether all checks passed; true of a model without checks.

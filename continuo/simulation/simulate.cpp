@@ -71,8 +71,9 @@ Integration integration_of(const std::shared_ptr<const ModelProgram>& program, c
 
 namespace {
 
-RunRecorder recorder_of(const ModelProgram& program, const Plan& plan, const Experiment& experiment) {
-  return {program, plan, experiment.keep_rows, sample_times(program.model, plan), program.always};
+RunRecorder recorder_of(const ModelProgram& program, const Plan& plan, const Experiment& experiment,
+                        const OnRow& on_row = {}) {
+  return {program, plan, experiment.keep_rows, sample_times(program.model, plan), program.always, on_row};
 }
 
 /// The run that the recorder has watched, judged; its end goes into the log.
@@ -83,8 +84,9 @@ Simulated judged(const std::shared_ptr<const ModelProgram>& program, const Exper
   recorder.give(run);
   run.checks = judge(program->model, run, recorder);
   if (!succeeded(run.outcome.ending)) simulated.diagnostics.push_back(failure(*program, run));
-  if (experiment.estimate_error && succeeded(run.outcome.ending)) run.error = estimate_error(program, experiment, run);
-  if (experiment.doubts && !run.error && succeeded(run.outcome.ending)) {
+  const bool is_whole = succeeded(run.outcome.ending) && !recorder.is_refused();
+  if (experiment.estimate_error && is_whole) run.error = estimate_error(program, experiment, run);
+  if (experiment.doubts && !run.error && is_whole) {
     const std::string doubt = doubt_of(program, experiment, run);
     if (!doubt.empty()) run.outcome.hint += (run.outcome.hint.empty() ? "" : "; ") + doubt;
   }
@@ -94,13 +96,13 @@ Simulated judged(const std::shared_ptr<const ModelProgram>& program, const Exper
 }
 
 Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                   IntegrationLog* log) {
+                   IntegrationLog* log, const OnRow& on_row) {
   Simulated simulated;
   auto planned = plan_run(*program, experiment, simulated.diagnostics);
   if (!planned) return simulated;
   Run run;
   run.plan = std::move(*planned);
-  RunRecorder recorder = recorder_of(*program, run.plan, experiment);
+  RunRecorder recorder = recorder_of(*program, run.plan, experiment, on_row);
   integrate(run.plan.method, integration_of(program, run.plan, experiment), recorder, run, log);
   return judged(program, experiment, std::move(run), recorder, log);
 }
@@ -113,12 +115,17 @@ Simulated does_not_fit(const Model& model, std::string why) {
 }  // namespace
 
 Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {
-  return simulate(program, experiment, nullptr);
+  return simulate(program, experiment, nullptr, {});
+}
+
+Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                   const OnRow& on_row) {
+  return simulate(program, experiment, nullptr, on_row);
 }
 
 Simulated simulate_recorded(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                            IntegrationLog& log) {
-  return simulate(program, experiment, &log);
+                            IntegrationLog& log, const OnRow& on_row) {
+  return simulate(program, experiment, &log, on_row);
 }
 
 Simulated replay_integration(const std::shared_ptr<const ModelProgram>& program,

@@ -35,6 +35,10 @@ struct Simulated {
 [[nodiscard]] Simulated simulate(const Model& model, const Experiment& experiment = {});
 /// The same for a program compiled before: for many runs of one model.
 [[nodiscard]] Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment = {});
+/// The same with its rows handed over while it goes on. Where Experiment::keep_rows is false, the run itself has the
+/// first and the last one alone, and needs no memory for the others.
+[[nodiscard]] Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                                 const OnRow& on_row);
 
 /// The plan of a run with its inputs in place, or why there can be no run.
 [[nodiscard]] std::optional<Plan> plan_run(const ModelProgram& program, const Experiment& experiment,

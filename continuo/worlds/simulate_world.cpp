@@ -44,7 +44,7 @@ class Simulation {
  public:
   /// `look` is the time between two samples of the conditions of `when`.
   Simulation(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
-             model::Plan plan, std::unique_ptr<WorldRun> world, double look, RunLog* log)
+             model::Plan plan, std::unique_ptr<WorldRun> world, double look, RunLog* log, model::OnRow on_row = {})
       : program_(program),
         experiment_(experiment),
         world_(std::move(world)),
@@ -52,7 +52,7 @@ class Simulation {
         events_(program, plan.variables, plan.from, look),
         times_(plan),
         recorder_(*program, as_the_recorder_sees(plan), experiment.keep_rows, sample_times(program->model, plan),
-                  program->always) {
+                  program->always, std::move(on_row)) {
     run_.plan = std::move(plan);
     end_time_ = run_.plan.to;
     if (log_ && log_->checkpoints() > 0)
@@ -151,6 +151,7 @@ class Simulation {
 
   /// Advances to the next instant with a row, a sample or an event.
   void advance() {
+    if (recorder_.is_refused()) return end(Ending::stopped_by_callback);
     if (is_interrupted()) {
       stand(true);
       return end(Ending::interrupted);
@@ -244,14 +245,20 @@ Diagnostic does_not_fit(const model::Model& model, std::string_view why) {
 
 model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
                                 const model::Experiment& experiment, RunLog* log) {
+  return simulate_world(program, experiment, log, {});
+}
+
+model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
+                                const model::Experiment& experiment, RunLog* log, const model::OnRow& on_row) {
   model::Simulated simulated;
   PreparedWorld prepared = prepare_world(program, experiment, simulated.diagnostics);
   if (!prepared.world) return simulated;
   const double look = look_of(*prepared.plan);
-  Simulation simulation(program, experiment, std::move(*prepared.plan), std::move(prepared.world), look, log);
+  Simulation simulation(program, experiment, std::move(*prepared.plan), std::move(prepared.world), look, log, on_row);
   simulation.begin();
   simulated = simulation.go();
-  if (experiment.estimate_error && succeeded(simulated.run->outcome.ending))
+  const Ending ending = simulated.run->outcome.ending;
+  if (experiment.estimate_error && succeeded(ending) && ending != Ending::stopped_by_callback)
     simulated.run->error = estimate_error(program, experiment, *simulated.run, [&](model::Experiment strict) {
       strict.atol.clear();  // bodies have a relative one only
       return simulate_world(program, strict);

@@ -23,6 +23,10 @@ namespace continuo::worlds {
 /// With a log, the run is recorded while it advances.
 [[nodiscard]] model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
                                               const model::Experiment& experiment = {}, RunLog* log = nullptr);
+/// The same with its rows handed over while it advances, as by model::simulate.
+[[nodiscard]] model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
+                                              const model::Experiment& experiment, RunLog* log,
+                                              const model::OnRow& on_row);
 
 /// Replays a recorded run. The program must be that of its text; a recording that does not fit the program is reported
 /// (E325).

@@ -160,11 +160,12 @@ class Progression {
     const auto begin = std::chrono::steady_clock::now();
     for (std::size_t count = 1;; ++count) {
       if (log_) note();
-      if (!steps_->advance(recording_)) break;
+      if (recorder_.is_refused() || !steps_->advance(recording_)) break;
       if (count % 1024 == 0 && options_.progress) options_.progress(steps_->t());
     }
     recorder_.finish(steps_->t(), steps_->x());
     run_.outcome = steps_->outcome();
+    if (recorder_.is_refused()) run_.outcome = {.ending = Ending::stopped_by_callback, .t = steps_->t()};
     run_.statistics = steps_->statistics();
     run_.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     run_.stop_text = steps_->events().stop_text();

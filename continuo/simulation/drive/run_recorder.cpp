@@ -30,11 +30,12 @@ std::vector<Column> columns_of(const Model& model) {
 }  // namespace
 
 RunRecorder::RunRecorder(const ModelProgram& program, const Plan& plan, bool keep_rows,
-                         std::vector<double> sample_times, std::span<const NodeId> watched)
+                         std::vector<double> sample_times, std::span<const NodeId> watched, OnRow on_row)
     : program_(program),
       times_(plan),
       every_step_(plan.output == OutputPlan::Kind::steps),
       keep_rows_(keep_rows),
+      on_row_(std::move(on_row)),
       has_energy_(program.model.total_energy.valid()) {
   const Model& model = program.model;
   motion_.columns = columns_of(model);
@@ -56,14 +57,26 @@ void RunRecorder::set_inputs(Evaluation& evaluation, double t) const {
 
 void RunRecorder::add_row(double t, const X& x) {
   last_row_ = t;
-  motion_.values.push_back(t);
-  motion_.values.insert(motion_.values.end(), x.begin(), x.end());
-  if (quantity_values_.empty()) return;
-  set_inputs(quantities_, t);
-  quantities_(t, x, quantity_values_);
-  const auto end = quantity_values_.end() - (has_energy_ ? 1 : 0);
-  motion_.values.insert(motion_.values.end(), quantity_values_.begin(), end);
-  if (has_energy_) total_energy_.push_back(quantity_values_.back());
+  row_.assign(1, t);
+  row_.insert(row_.end(), x.begin(), x.end());
+  if (!quantity_values_.empty()) {
+    set_inputs(quantities_, t);
+    quantities_(t, x, quantity_values_);
+    row_.insert(row_.end(), quantity_values_.begin(), quantity_values_.end());
+  }
+  if (on_row_ && !is_refused_)
+    is_refused_ = !on_row_({.columns = motion_.columns, .states = motion_.states, .values = row_});
+  keep_row();
+}
+
+void RunRecorder::keep_row() {
+  const std::size_t size = motion_.columns.size();
+  if (!keep_rows_ && motion_.rows() == 2) {  // the last one gives way
+    motion_.values.resize(size);
+    if (has_energy_) total_energy_.resize(1);
+  }
+  motion_.values.insert(motion_.values.end(), row_.begin(), row_.begin() + static_cast<std::ptrdiff_t>(size));
+  if (has_energy_) total_energy_.push_back(row_.back());
 }
 
 void RunRecorder::watch(double t, const X& x) {
@@ -96,7 +109,8 @@ void RunRecorder::begin(double t, const X& x) {
 }
 
 void RunRecorder::on_segment(double to, const At& at) {
-  if (keep_rows_ && !every_step_) {
+  const bool wants_rows = keep_rows_ || on_row_;
+  if (wants_rows && !every_step_) {
     for (; times_[next_output_] <= to; ++next_output_) {
       at(times_[next_output_], x_);
       add_row(times_[next_output_], x_);
@@ -110,14 +124,14 @@ void RunRecorder::on_segment(double to, const At& at) {
   if (watched_values_.empty() && !every_step_) return;
   at(to, x_);
   watch(to, x_);
-  if (every_step_ && keep_rows_) add_row(to, x_);
+  if (every_step_ && wants_rows) add_row(to, x_);
 }
 
 void RunRecorder::on_event(double t, std::span<const EventName> names, const X& before, const X& after) {
   for (const EventName& name : names) events_.push_back({name.event, name.mark, t, before, after});
   watch(t, after);
   for (std::size_t k = next_sample_; k-- > 0 && samples_[k].t == t;) samples_[k].x = after;
-  if (!keep_rows_ || (names.empty() && before == after)) return;
+  if (!(keep_rows_ || on_row_) || (names.empty() && before == after)) return;
   if (last_row_ != t) add_row(t, before);
   if (before != after) add_row(t, after);
 }
@@ -135,6 +149,7 @@ void RunRecorder::finish(double t, const X& x) {
 }
 
 RecordedPart RunRecorder::part() {
+  if (!keep_rows_) values_parted_ = motion_.values.size(), energies_parted_ = total_energy_.size();
   const auto since = [](const auto& list, std::size_t& parted) {
     const auto begin = list.begin() + static_cast<std::ptrdiff_t>(std::exchange(parted, list.size()));
     return std::remove_cvref_t<decltype(list)>(begin, list.end());

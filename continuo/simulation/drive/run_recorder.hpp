@@ -52,7 +52,7 @@ class RunRecorder {
 
   /// `sample_times` ascending; `watched`: expressions whose extremes over the run are wanted.
   RunRecorder(const ModelProgram& program, const Plan& plan, bool keep_rows, std::vector<double> sample_times,
-              std::span<const NodeId> watched);
+              std::span<const NodeId> watched, OnRow on_row = {});
 
   void begin(double t, const X& x);
   void on_segment(double to, const At& at);
@@ -75,11 +75,14 @@ class RunRecorder {
   [[nodiscard]] std::size_t samples_taken() const { return next_sample_; }
   [[nodiscard]] const SampledState* sample(double t) const;
   [[nodiscard]] std::span<const Extremes> extremes() const { return extremes_; }
+  /// Whether who gets the rows wants no more of them.
+  [[nodiscard]] bool is_refused() const { return is_refused_; }
   /// Moves what was kept into the run.
   void give(Run& run);
 
  private:
   void add_row(double t, const X& x);
+  void keep_row();
   void watch(double t, const X& x);
   /// `take(sample)` for each that is wanted up to `to`, once.
   template <class Take>
@@ -92,8 +95,11 @@ class RunRecorder {
   const ModelProgram& program_;
   OutputTimes times_;
   bool every_step_, keep_rows_;
+  OnRow on_row_;
+  bool is_refused_ = false;
   std::size_t next_output_ = 0, next_sample_ = 0;
   Motion motion_;
+  std::vector<double> row_;  // that is being added
   std::vector<double> total_energy_;
   std::vector<RecordedEvent> events_;
   Evaluation quantities_, watched_;
