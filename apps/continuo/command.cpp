@@ -59,6 +59,8 @@ int command(int argc, char** argv, std::span<const OwnVerb> verbs) {
     return exit;
   } catch (const CLI::Success& success) {  // --help, --version
     return app.exit(success);
+  } catch (const FileFault& fault) {
+    say(fault.what());
   } catch (const CLI::ExtrasError&) {
     say(fmt::format("{} ({})", unexpected(app, argc, argv), advice()));
   } catch (const CLI::ParseError& error) {

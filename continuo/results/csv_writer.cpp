@@ -22,7 +22,7 @@ std::string number(double value) {
 }
 
 void append_field(std::string& text, std::string_view field) {
-  if (field.find_first_of(",\"\r\n") == std::string_view::npos) {
+  if (field.find_first_of(",\t\"\r\n") == std::string_view::npos) {
     text += field;
     return;
   }
@@ -34,20 +34,22 @@ void append_field(std::string& text, std::string_view field) {
   text += '"';
 }
 
-CsvWriter::CsvWriter(OutputFile& out, std::string_view manifest_hash, std::span<const std::string> columns)
-    : out_(out) {
+CsvWriter::CsvWriter(OutputFile& out, std::string_view manifest_hash, std::span<const std::string> columns,
+                     char separator)
+    : out_(out), separator_(separator) {
   if (!manifest_hash.empty()) line_ = fmt::format("# manifest {}\n", manifest_hash);
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (i > 0) line_ += ',';
+    if (i > 0) line_ += separator_;
     append_field(line_, columns[i]);
   }
   line_ += '\n';
   out_.write(line_);
+  out_.flush();
 }
 
 void CsvWriter::append_values(std::span<const double> values) {
   for (const double value : values) {
-    if (!line_.empty()) line_ += ',';
+    if (!line_.empty()) line_ += separator_;
     append_number(line_, value);
   }
   line_ += '\n';

@@ -18,14 +18,15 @@ void append_number(std::string& text, double value);
 /// The shortest text that reads back as the same double.
 [[nodiscard]] std::string number(double value);
 
-/// The field at the end of the text, in quotes where it holds a comma, a quote or a line end.
+/// The field at the end of the text, in quotes where it holds a comma, a tab, a quote or a line end.
 void append_field(std::string& text, std::string_view field);
 
 /// Writes row by row as they come; nothing is kept.
 class CsvWriter {
  public:
   /// Writes the first line with the hash, and the names of the columns. The file must outlive the writer.
-  CsvWriter(OutputFile& out, std::string_view manifest_hash, std::span<const std::string> columns);
+  CsvWriter(OutputFile& out, std::string_view manifest_hash, std::span<const std::string> columns,
+            char separator = ',');
 
   /// A row of numbers, one for each column.
   void row(std::span<const double> values);
@@ -36,6 +37,7 @@ class CsvWriter {
   void append_values(std::span<const double> values);
 
   OutputFile& out_;
+  char separator_;
   std::string line_;
 };
 

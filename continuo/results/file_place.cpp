@@ -30,7 +30,8 @@ std::optional<int> descriptor_of(std::string_view path) {
 
 /// The path behind links. A link that leads to nothing is followed as well: what is written through it lies there.
 fs::path behind_links(fs::path path) {
-  constexpr int most_links = 40;  // as the system has it
+  constexpr int most_links = 40;                                                    // as the system has it
+  if (!path.has_filename() && path.has_relative_path()) path = path.parent_path();  // frames/ is frames
   std::error_code error;
   for (int links = 0; links < most_links && fs::is_symlink(path, error); ++links) {
     const fs::path target = fs::read_symlink(path, error);

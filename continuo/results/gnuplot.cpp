@@ -313,6 +313,11 @@ bool is_whole_picture(const std::string& path) {
   return end.find(ending_of(path) == ".png" ? "IEND" : "</svg>") != std::string::npos;
 }
 
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /// As much of a curve as the picture needs.
 Curve drawn(const Panel& panel, const Curve& curve) {
   if (curve.style == Curve::Style::area && !curve.widens_axes) {  // gnuplot leaves some of it beyond the frame
@@ -377,7 +382,7 @@ Status draw(const Figure& figure, const std::string& path) {
   if (ending != ".svg" && ending != ".png") {
     return invalid_input(fmt::format("cannot plot to {}: the file's name ends in .svg or .png", path));
   }
-  if (Status status = write_file(path, ""); !status)
+  if (Status status = check_writable(path); !status)
     return status;  // a folder that is not there is our message, not gnuplot's
 
   std::string name = (std::filesystem::temp_directory_path() / "continuo-plot-XXXXXX").string();
@@ -386,11 +391,17 @@ Status draw(const Figure& figure, const std::string& path) {
     return {.ending = Ending::unwritable, .message = fmt::format("cannot write {}: {}", name, std::strerror(errno))};
   ::close(descriptor);
   const TemporaryFile file{name};
-  if (Status status = write_file(name, gnuplot_script(figure, path)); !status) return status;
+  // An older picture stays until the new one is whole.
+  const bool is_file = place_of(path).kind == FilePlace::Kind::file;
+  const TemporaryFile drawing{is_file ? free_unfinished_name(path) : std::string()};
+  const std::string& target = is_file ? drawing.path : path;
+  if (Status status = write_file(name, gnuplot_script(figure, target)); !status) return status;
   if (Status status = run_gnuplot(name); !status) return status;
-  if (is_whole_picture(path)) return {};
-  return {.ending = Ending::unwritable,
-          .message = fmt::format("cannot write {}: the picture is cut off, as where a disk is full", path)};
+  if (!is_whole_picture(target)) {
+    return {.ending = Ending::unwritable,
+            .message = fmt::format("cannot write {}: the picture is cut off, as where a disk is full", path)};
+  }
+  return is_file ? write_file(path, content_of(target)) : Status();
 }
 
 }  // namespace continuo::results

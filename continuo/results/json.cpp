@@ -1,6 +1,7 @@
 // Builds the manifest of a run and the object of `--json`.
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -45,8 +46,8 @@ Json outcome_of(const Outcome<double>& outcome) {
   return json;
 }
 
-Json manifest_object(const model::Model& model, const model::Run& run, std::string_view version) {
-  const model::Plan& plan = run.plan;
+/// What determines a run, but for its initial states.
+Json plan_object(const model::Model& model, const model::Plan& plan, std::string_view version) {
   Json parameters = Json::object();
   for (const model::Parameter& parameter : model.parameters)
     parameters[parameter.name] = plan.variables[parameter.variable];
@@ -73,8 +74,6 @@ Json manifest_object(const model::Model& model, const model::Run& run, std::stri
   }
   if (plan.max_steps != max_steps_of(plan)) json["max_steps"] = plan.max_steps;
   json["seed"] = nullptr;
-  json["outcome"] = outcome_of(run.outcome);
-  json["statistics"] = statistics_of(run.statistics);
   return json;
 }
 
@@ -109,15 +108,18 @@ Json checks_of(const model::Run& run) {
 }  // namespace
 
 std::string manifest(const model::Model& model, const model::Run& run, std::string_view version) {
-  Json json = manifest_object(model, run, version);
-  json["hash"] = manifest_hash(model, run, version);
+  Json json = plan_object(model, run.plan, version);
+  json["outcome"] = outcome_of(run.outcome);
+  json["statistics"] = statistics_of(run.statistics);
+  json["hash"] = manifest_hash(model, run.plan, run.first_state(), version);
   return text_of(json);
 }
 
-std::string manifest_hash(const model::Model& model, const model::Run& run, std::string_view version) {
-  Json json = manifest_object(model, run, version);
+std::string manifest_hash(const model::Model& model, const model::Plan& plan, std::span<const double> first_state,
+                          std::string_view version) {
+  Json json = plan_object(model, plan, version);
   json["model"].erase("path");
-  json["statistics"].erase("seconds");
+  json["start"] = std::vector<double>(first_state.begin(), first_state.end());
   return sha256(text_of(json));
 }
 

@@ -1,7 +1,9 @@
 // Collects the dimensions, variables and attributes of a netCDF file from a run.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <span>
 #include <string>
@@ -11,7 +13,6 @@
 #include <continuo/language/world.hpp>
 #include <continuo/results/families.hpp>
 #include <continuo/results/netcdf.hpp>
-#include <continuo/results/netcdf_file.hpp>
 
 namespace continuo::results {
 
@@ -38,37 +39,29 @@ std::vector<OfBodies> variables_of(const model::Model& model) {
           {.name = "spin", .unit = model.states[10].unit, .long_name = "angular velocity", .states = {10, 11, 12}}};
 }
 
-/// A run as such a file, whose values refer to the model and the run.
-class Contents {
+/// The layout of the runs of a model.
+class ModelLayout {
  public:
-  Contents(const model::Model& model, const model::Run& run) : model_(model), run_(run) {}
+  ModelLayout(const model::Model& model, const model::Plan& plan, std::span<const model::Column> columns)
+      : model_(model), plan_(plan), columns_(columns) {}
 
-  NetcdfFile file(std::string_view hash) {
+  NetcdfLayout layout(std::string_view hash) {
     file_.attributes = {{"Conventions", "CF-1.8"},
                         {"title", model_.name},
-                        {"source", "Continuo, method " + run_.plan.method},
+                        {"source", "Continuo, method " + plan_.method},
                         {"comment", model_.heading},
                         {"manifest", std::string(hash)}};
-    time_ = file_.dimension("time", run_.motion.rows());
+    time_ = file_.dimension("time");
     file_.variable({.name = "time",
                     .dimensions = {time_},
                     .attributes = {{"units", model_.time_unit}, {"standard_name", "time"}, {"axis", "T"}},
-                    .values = columns({0})});
+                    .values = NetcdfVariable::Columns{0}});
     if (model_.has_world()) add_bodies();
     add_columns();
     return std::move(file_);
   }
 
  private:
-  NetcdfVariable::Numbers columns(std::vector<std::size_t> places) const {
-    return [&run = run_, places = std::move(places)] {
-      std::vector<double> values;
-      for (std::size_t row = 0; row < run.motion.rows(); ++row)
-        for (const std::size_t place : places) values.push_back(run.motion.row(row)[place]);
-      return values;
-    };
-  }
-
   void add_bodies() {
     const model::WorldDescription& world = *model_.world;
     const bool in_space = world.dimension == 3;
@@ -98,48 +91,40 @@ class Contents {
     add_property("mass", body, world.mass_unit, &model::BodyDescription::mass);
   }
 
-  NetcdfVariable::Numbers states(std::vector<std::size_t> of_each) const {
-    return [&run = run_, &bodies = model_.world->bodies, of_each = std::move(of_each)] {
-      std::vector<double> values;
-      for (std::size_t row = 0; row < run.motion.rows(); ++row) {
-        const auto state = run.motion.state(row);
-        for (const model::BodyDescription& body : bodies)
-          for (const std::size_t k : of_each) values.push_back(state[body.first_state + k]);
-      }
-      return values;
-    };
+  NetcdfVariable::Columns states(const std::vector<std::size_t>& of_each) const {
+    NetcdfVariable::Columns places;
+    for (const model::BodyDescription& body : model_.world->bodies)
+      for (const std::size_t k : of_each) places.push_back(1 + body.first_state + k);
+    return places;
   }
 
   void add_property(const char* name, std::size_t body, const std::string& unit,
                     model::NodeId model::BodyDescription::* property) {
+    std::vector<model::NodeId> nodes;
+    for (const model::BodyDescription& one : model_.world->bodies) nodes.push_back(one.*property);
     file_.variable({.name = name,
                     .dimensions = {body},
                     .attributes = {{"units", unit}},
-                    .values = NetcdfVariable::Numbers([&model = model_, &run = run_, property] {
-                      std::vector<model::NodeId> nodes;
-                      for (const model::BodyDescription& one : model.world->bodies) nodes.push_back(one.*property);
-                      return evaluate(model, nodes, run.plan.variables);
-                    })});
+                    .values = evaluate(model_, nodes, plan_.variables)});
   }
 
   /// All that is not of bodies: states of equations, measures of the world, outputs, energies; families as arrays.
   void add_columns() {
     const std::size_t first = 1 + (model_.has_world() ? model_.world->body_states() : 0);
-    for (ColumnFamily& family : families_of(std::span(run_.motion.columns).subspan(first))) {
+    for (ColumnFamily& family : families_of(columns_.subspan(first))) {
       std::vector<std::size_t> dimensions{time_};
       for (const ColumnFamily::Axis& axis : family.axes) dimensions.push_back(dimension_of(axis, dimensions));
       for (std::size_t& place : family.places) place += first;
       file_.variable({.name = free_name(family.name),
                       .dimensions = dimensions,
                       .attributes = {{"units", family.unit}},
-                      .values = columns(std::move(family.places))});
+                      .values = std::move(family.places)});
     }
-    if (run_.total_energy.empty()) return;
-    file_.variable(
-        {.name = free_name("energy"),
-         .dimensions = {time_},
-         .attributes = {{"units", run_.energy ? run_.energy->unit : ""}, {"long_name", "sum of all energies"}},
-         .values = NetcdfVariable::Numbers([&run = run_] { return run.total_energy; })});
+    if (!model_.total_energy.valid()) return;
+    file_.variable({.name = free_name("energy"),
+                    .dimensions = {time_},
+                    .attributes = {{"units", model_.total_energy_unit}, {"long_name", "sum of all energies"}},
+                    .values = NetcdfVariable::Columns{columns_.size()}});
   }
   /// Families of the same indices share their dimensions, `i`, `j`, ..., so that they can be added to each other.
   std::size_t dimension_of(const ColumnFamily::Axis& axis, const std::vector<std::size_t>& taken) {
@@ -154,14 +139,9 @@ class Contents {
     const std::string name = free_name(letter);
     const std::size_t place = file_.dimension(name, axis.count);
     axes_.emplace_back(axis, place);
-    file_.variable({.name = name,
-                    .dimensions = {place},
-                    .values = NetcdfVariable::Numbers([axis] {
-                      std::vector<double> indices(axis.count);
-                      std::iota(indices.begin(), indices.end(), static_cast<double>(axis.first));
-                      return indices;
-                    }),
-                    .integers = true});
+    NetcdfVariable::Integers indices(axis.count);
+    std::iota(indices.begin(), indices.end(), static_cast<std::int32_t>(axis.first));
+    file_.variable({.name = name, .dimensions = {place}, .values = std::move(indices)});
     return place;
   }
   /// An output may be called like one of ours.
@@ -172,8 +152,9 @@ class Contents {
   }
 
   const model::Model& model_;
-  const model::Run& run_;
-  NetcdfFile file_;
+  const model::Plan& plan_;
+  std::span<const model::Column> columns_;
+  NetcdfLayout file_;
   std::size_t time_ = 0;
   std::vector<std::pair<ColumnFamily::Axis, std::size_t>> axes_;
   std::vector<std::string> taken_{"time",  "body",        "component", "part",   "position", "velocity",
@@ -182,13 +163,21 @@ class Contents {
 
 }  // namespace
 
-bool is_netcdf(std::string_view path) {
-  return path.ends_with(".nc");
+NetcdfLayout netcdf_layout(const model::Model& model, const model::Plan& plan, std::span<const model::Column> columns,
+                           std::string_view manifest_hash) {
+  return ModelLayout(model, plan, columns).layout(manifest_hash);
 }
 
 Status write_netcdf(const model::Model& model, const model::Run& run, const std::string& path,
                     std::string_view manifest_hash) {
-  return write_netcdf_file(Contents(model, run).file(manifest_hash), path);
+  NetcdfFile file(path, netcdf_layout(model, run.plan, run.motion.columns, manifest_hash));
+  std::vector<double> values;
+  for (std::size_t row = 0; row < run.motion.rows() && file.status(); ++row) {
+    values.assign(run.motion.row(row).begin(), run.motion.row(row).end());
+    values.push_back(run.total_energy.empty() ? std::nan("") : run.total_energy[row]);
+    file.row(values);
+  }
+  return file.close();
 }
 
 }  // namespace continuo::results

@@ -25,7 +25,9 @@ enum class Unfinished { kept, removed };
 class OutputFile {
  public:
   /// Begins the file; "-" is standard output.
-  explicit OutputFile(std::string path, Unfinished unfinished = Unfinished::removed);
+  /// `unfinished_ending`: that of its name until it is whole, where this is another one.
+  explicit OutputFile(std::string path, Unfinished unfinished = Unfinished::removed,
+                      std::string_view unfinished_ending = {});
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   /// A file that was not closed is not whole: it is kept under its other name, or removed.
@@ -34,6 +36,8 @@ class OutputFile {
   /// Appends bytes, whole rows of a table. They are on the disk after a second at most, or when many have come
   /// together. After a failure this does nothing.
   void write(std::string_view bytes);
+  /// Stores what was written so far.
+  void flush();
   /// Changes bytes that were written before. Pipes and devices cannot.
   void overwrite(std::uint64_t at, std::string_view bytes);
   /// How many bytes are on the disk. What the program has to lose is behind them.
@@ -43,6 +47,8 @@ class OutputFile {
   Status close();
   /// Writes what is left, and keeps the file under its other name.
   Status leave();
+  /// Ends the writing for a reason of the caller's.
+  void fail(const std::string& reason);
   /// The first failure so far, or a success.
   [[nodiscard]] const Status& status() const { return status_; }
   /// The name under which the bytes stand at present; empty for pipes, devices and files without a name yet.
@@ -52,14 +58,13 @@ class OutputFile {
   void open();
   bool open_beside();
   bool open_without_name();
-  void flush();
   void store(std::string_view bytes, std::uint64_t at);
   void end(bool is_whole);
+  bool name_beside();
   bool give_name();
   void fail();
-  void fail(const std::string& reason);
 
-  std::string path_, present_name_;
+  std::string path_, present_name_, unfinished_ending_;
   Unfinished unfinished_;
   FilePlace place_;
   bool is_file_ = false;  // not a pipe or a device
@@ -70,8 +75,14 @@ class OutputFile {
   Status status_;
 };
 
-/// "ball.unfinished.csv", "ball.unfinished2.csv": the names of a file that is not whole.
-[[nodiscard]] std::string unfinished_name(const std::string& path, int number = 1);
+/// "ball.unfinished.csv", "ball.unfinished2.csv": the names of a file that is not whole. `ending`: another one.
+[[nodiscard]] std::string unfinished_name(const std::string& path, int number = 1, std::string_view ending = {});
+
+/// That of them which no file has yet.
+[[nodiscard]] std::string free_unfinished_name(const std::string& path);
+
+/// Whether a file can be written there, to be told before a long run and not after it.
+Status check_writable(const std::string& path);
 
 /// The whole text at once.
 Status write_file(const std::string& path, std::string_view text);

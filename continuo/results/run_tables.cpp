@@ -7,16 +7,14 @@
 #include <continuo/results/csv_writer.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/run_tables.hpp>
+#include <continuo/results/table_file.hpp>
 
 namespace continuo::results {
 
 Status write_motion(const model::Run& run, const std::string& path, std::string_view manifest_hash) {
-  std::vector<std::string> names;
-  for (const model::Column& column : run.motion.columns) names.push_back(column.name);
-  OutputFile out(path);
-  CsvWriter csv(out, manifest_hash, names);
-  for (std::size_t i = 0; i < run.motion.rows() && out.status(); ++i) csv.row(run.motion.row(i));
-  return out.close();
+  TableFile table(path, {.columns = run.motion.columns, .manifest = std::string(manifest_hash)});
+  for (std::size_t i = 0; i < run.motion.rows() && table.status(); ++i) table.row(run.motion.row(i));
+  return table.close();
 }
 
 Status write_events(const model::Run& run, const std::string& path, std::string_view manifest_hash) {

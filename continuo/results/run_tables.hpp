@@ -1,5 +1,5 @@
 // continuo/results/run_tables.hpp
-// The two tables of a run as CSV files.
+// The two tables of a run as files.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,6 +11,7 @@
 namespace continuo::results {
 
 /// `t`, states, outputs: an event stands as two rows of equal t, the state before it and after it.
+/// The ending of the name says the format (table_file.hpp).
 /// Each returns what went wrong, if anything; "-" is standard output.
 Status write_motion(const model::Run& run, const std::string& path, std::string_view manifest_hash);
 

@@ -70,7 +70,7 @@ TEST(Worlds, GoToNetCdf) {
   shell.write("bounce.sim", bounce);
   const Result result = shell.run("run bounce.sim -o rows.nc");
   EXPECT_EQ(result.exit, 0) << result.err;
-  EXPECT_THAT(shell.read("rows.nc").substr(1, 3), "HDF");
+  EXPECT_THAT(shell.read("rows.nc").substr(0, 3), "CDF");
   EXPECT_TRUE(shell.has("rows.nc.manifest.json"));
 }
 

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -32,7 +33,8 @@ TEST(Manifest, SaysWhatWasRunAndHow) {
   EXPECT_EQ(object["atol"], json::array({1e-12}));
   EXPECT_EQ(object["statistics"]["evaluations"], 48);
   EXPECT_EQ(object["outcome"]["ending"], "reached end");
-  EXPECT_EQ(object["hash"], manifest_hash(falling_ball().model, falling_ball().run, "0.1.0"));
+  EXPECT_EQ(object["hash"],
+            manifest_hash(falling_ball().model, falling_ball().run.plan, std::array{1.0, 0.0}, "0.1.0"));
 }
 
 TEST(Manifest, HoldsTheLimitsOfStepsThatWereSaid) {
@@ -48,7 +50,7 @@ TEST(Manifest, HoldsTheLimitsOfStepsThatWereSaid) {
 
 TEST(Manifest, TheHashForgetsTheClockAndThePlaceButNotAParameter) {
   const auto hash = [](const Example& example, std::string_view version = "0.1.0") {
-    return manifest_hash(example.model, example.run, version);
+    return manifest_hash(example.model, example.run.plan, example.run.first_state(), version);
   };
   Example first = falling_ball(), slower = falling_ball(), elsewhere = falling_ball(), heavier = falling_ball();
   slower.run.statistics.seconds = 9;

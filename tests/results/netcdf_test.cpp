@@ -49,10 +49,14 @@ class Reading {
     return values;
   }
   std::vector<std::string> texts(const char* variable) const {
-    std::vector<char*> pointers(size(variable));
-    EXPECT_EQ(nc_get_var_string(file_, id(variable), pointers.data()), NC_NOERR) << variable;
-    std::vector<std::string> texts(pointers.begin(), pointers.end());
-    nc_free_string(pointers.size(), pointers.data());
+    const std::size_t longest = size(("letters_of_" + std::string(variable)).c_str());
+    std::vector<char> letters(size(variable) * longest + 1);
+    EXPECT_EQ(nc_get_var_text(file_, id(variable), letters.data()), NC_NOERR) << variable;
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < size(variable); ++i) {
+      const std::string text(letters.data() + i * longest, longest);
+      texts.push_back(text.substr(0, text.find('\0')));
+    }
     return texts;
   }
   std::string attribute(const char* variable, const char* name) const {

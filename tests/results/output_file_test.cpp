@@ -30,6 +30,7 @@ TEST(OutputFile, HasItsNameWhenItIsWhole) {
   ASSERT_TRUE(write_file(folder / "a.csv", "old"));
   OutputFile out(folder / "a.csv", Unfinished::kept);
   out.write("new");
+  out.flush();
   EXPECT_EQ(content(folder / "a.csv"), "old");
   EXPECT_EQ(out.present_name(), folder / "a.unfinished.csv");
   ASSERT_TRUE(out.close());

@@ -5,6 +5,7 @@
 
 #include <apps/continuo/options/boundary_options.hpp>
 #include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/file_options.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
@@ -56,9 +57,8 @@ void add_boundary(CLI::App& verb, BoundaryOptions& options) {
                   "Boundary-value problems: continuation from a parameter value for which the problem is easy: --along "
                   "eps=1..1e-4")
       ->type_name("NAME=A..B");
-  verb.add_option("--guess", options.guess,
-                  "Boundary-value problems: initial guess, the CSV file of an earlier run (-o)")
-      ->type_name("FILE");
+  reads_file(verb, verb.add_option("--guess", options.guess,
+                                   "Boundary-value problems: initial guess, the CSV file of an earlier run (-o)"));
   auto* family = verb.add_option("--family", options.family,
                                  "Boundary-value problems: follows all solutions along a parameter, around folds and "
                                  "into crossing families; -o, --plot and --json then show these")

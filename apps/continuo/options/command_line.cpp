@@ -61,6 +61,15 @@ std::string with_hint(std::string message, const std::string& hint) {
 Verb::Verb(CLI::App& app, std::string name, std::string description)
     : CLI::App(std::move(description), std::move(name), &app) {}
 
+void Verb::callback(std::function<void()> act) {
+  CLI::App::callback([this, act = std::move(act)] {
+    const CLI::Option* json = get_option_no_throw("--json");
+    const std::string fault = fault_of_files(files, json != nullptr && json->count() > 0);
+    if (!fault.empty()) throw FileFault(fault);
+    act();
+  });
+}
+
 Verb* add_verb(CLI::App& app, const ListedVerb& listed, std::string_view examples, std::vector<ExitCode> failures) {
   auto verb = std::make_shared<Verb>(app, std::string(listed.name), std::string(listed.purpose));
   verb->examples = examples;

@@ -2,22 +2,34 @@
 // What CLI11 leaves to us: help that begins with examples, and "did you mean".
 #pragma once
 #include <cstddef>
+#include <functional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>
+#include <apps/continuo/options/file_options.hpp>
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/terminal/exit_codes.hpp>
 
 namespace continuo::app {
 
-/// A verb, with the facts that only its page in the reference states.
+/// Why a verb does not begin: a file of its command line would be written over another one.
+struct FileFault : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A verb, with its files, and the facts that only its page in the reference states.
 class Verb : public CLI::App {
  public:
   Verb(CLI::App& app, std::string name, std::string description);
 
+  /// What the verb does once its words are read and its files in order; else there is a FileFault.
+  void callback(std::function<void()> act);
+
+  std::vector<FileOption> files;  // declared by reads_file, writes_file and their like
   std::string examples;
   std::vector<ExitCode> failures;          // its exit codes besides `done` and `usage`
   std::vector<std::string> json_examples;  // commands on models of the gallery: their output shows the layout of --json

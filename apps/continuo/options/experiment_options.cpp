@@ -8,6 +8,7 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/experiment_options.hpp>
+#include <apps/continuo/options/file_options.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -192,7 +193,7 @@ bool decides_a_size(const model::Model& model, const model::Overrides& values) {
 }  // namespace
 
 void add_model(CLI::App& verb, ExperimentOptions& options) {
-  verb.add_option("file", options.file, "The model")->required()->type_name("");
+  reads_file(verb, verb.add_option("file", options.file, "The model")->required(), files_of_model);
   verb.add_option("--set", options.settings, "Sets a parameter: --set k=5 --set \"c=0.2 [N*s/m]\"")
       ->type_name("NAME=VALUE")
       ->expected(1)
@@ -210,13 +211,11 @@ void add_initial(CLI::App& verb, ExperimentOptions& options) {
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb.add_option("--initial-from", options.initial_from,
-                  "Begins at the last row of a table of results, or at its row of time T")
+  reads_file(verb,
+             verb.add_option("--initial-from", options.initial_from,
+                             "Begins at the last row of a table of results, or at its row of time T"),
+             [](const std::string& text) { return std::vector{file_and_time(text).first}; })
       ->type_name("FILE[@T]");
-}
-
-std::string file_of_initial(const ExperimentOptions& options) {
-  return file_and_time(options.initial_from).first;
 }
 
 void add_tolerances(CLI::App& verb, ExperimentOptions& options) {

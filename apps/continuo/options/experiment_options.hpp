@@ -41,8 +41,6 @@ void add_model(CLI::App& verb, ExperimentOptions& options);
 void add_experiment(CLI::App& verb, ExperimentOptions& options);
 /// --initial and --initial-from.
 void add_initial(CLI::App& verb, ExperimentOptions& options);
-/// The table of --initial-from, without the time behind it.
-std::string file_of_initial(const ExperimentOptions& options);
 /// An option that other verbs have and this one cannot: it says why, where the name alone would be called unknown.
 void refuse_option(CLI::App& verb, const std::string& name, const std::string& why);
 /// --tol and --atol, for all states or single ones.

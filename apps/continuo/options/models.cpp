@@ -1,4 +1,4 @@
-// Loads models, tests whether files can be read and written, and collects the models of folders.
+// Loads models, tests whether files can be read, and collects the models of folders.
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -9,7 +9,6 @@
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <continuo/symbolic/names/suggest.hpp>
 
@@ -32,14 +31,6 @@ std::vector<std::string> neighbours(const fs::path& path) {
   return names;
 }
 
-/// Whether two names are of one file on a disk. Devices and pipes take what comes.
-bool are_names_of_one_file(const std::string& a, const std::string& b) {
-  if (a.empty() || b.empty() || a == "-" || b == "-") return false;
-  std::error_code error;
-  if (fs::exists(b, error)) return fs::is_regular_file(b, error) && fs::equivalent(a, b, error) && !error;
-  return fs::absolute(a, error).lexically_normal() == fs::absolute(b, error).lexically_normal();
-}
-
 }  // namespace
 
 bool readable(const std::string& path) {
@@ -57,47 +48,12 @@ bool readable(const std::string& path) {
   return false;
 }
 
-bool writable(const std::string& path) {
-  if (path.empty() || path == "-") return true;
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  std::error_code error;
-  const std::string place = fs::exists(path, error) ? path : folder.string();
-  if (access(place.c_str(), W_OK) == 0) return true;
-  say(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
-  return false;
-}
-
 bool drawable(const std::string& path) {
   if (path.empty()) return true;
   const std::string ending = fs::path(path).extension().string();
-  if (ending == ".svg" || ending == ".png") return writable(path);
+  if (ending == ".svg" || ending == ".png") return true;
   say(fmt::format("cannot plot to {}: the file's name ends in .svg or .png", path));
   return false;
-}
-
-bool are_apart(const std::vector<std::string>& read, const std::vector<std::string>& written) {
-  for (auto output = written.begin(); output != written.end(); ++output) {
-    if (std::ranges::any_of(read, [&](const std::string& input) { return are_names_of_one_file(input, *output); })) {
-      say(fmt::format("cannot write {}: it is read as input; give another name", *output));
-      return false;
-    }
-    if (std::any_of(written.begin(), output,
-                    [&](const std::string& other) { return are_names_of_one_file(other, *output); })) {
-      say(fmt::format("cannot write {} twice: each output needs a name of its own", *output));
-      return false;
-    }
-  }
-  return true;
-}
-
-std::vector<std::string> files_of(const model::Model& model, const std::string& path) {
-  std::vector<std::string> files;
-  const auto add = [&](const std::string& file) {
-    if (!file.empty()) files.push_back((fs::path(path).parent_path() / file).string());
-  };
-  for (const auto& table : model.tables) add(table.file);
-  for (const auto& input : model.inputs) add(input.file);
-  return files;
 }
 
 model::Loaded load_model(const std::string& path, const model::CheckOptions& options) {

@@ -22,15 +22,7 @@ ModelFiles find_models(const std::vector<std::string>& files_and_folders);
 /// Whether the path can be read; says so where not.
 bool readable(const std::string& path);
 
-/// Whether a file can be written there, and a picture drawn: told before a long run, not after it.
-bool writable(const std::string& path);
+/// Whether a picture of this name can be drawn: told before a long run, not after it.
 bool drawable(const std::string& path);
-
-/// Whether no file is written over one that is read, or over another one; says so where one is. Empty names and - are
-/// no files.
-bool are_apart(const std::vector<std::string>& read, const std::vector<std::string>& written);
-
-/// What a model reads besides itself: its tables, and the values of its inputs.
-std::vector<std::string> files_of(const model::Model& model, const std::string& path);
 
 }  // namespace continuo::app

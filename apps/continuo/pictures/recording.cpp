@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include <apps/continuo/options/models.hpp>
 #include <apps/continuo/pictures/pictures.hpp>
 #include <apps/continuo/pictures/recorder.hpp>
 #include <apps/continuo/pictures/recording.hpp>
@@ -82,7 +81,6 @@ ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std:
                     request.pictures));
     return usage;
   }
-  if (!writable(request.page) || (film && !writable(request.pictures))) return usage;
   if (film && run_program({"ffmpeg", "-version"}) != 0) {
     say("a video needs ffmpeg, which is not installed; --record FOLDER writes pictures");
     return usage;

@@ -4,7 +4,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <apps/continuo/terminal/exit_codes.hpp>
 
@@ -17,7 +16,6 @@ struct RecordingRequest {
   std::string model;            // its file
   std::optional<double> until;  // else as long as the text says
   double rate = 30;             // pictures a second
-  std::vector<std::string> files() const { return {page, pictures}; }
   bool wanted() const { return !page.empty() || !pictures.empty(); }
 };
 

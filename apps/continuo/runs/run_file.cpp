@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/file_options.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/runs/run_file.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -12,7 +13,7 @@
 namespace continuo::app {
 
 void add_record(CLI::App& verb, RecordTo& record) {
-  auto* path = verb.add_option("--record", record.path, "Records the run, for replay and resume")->type_name("FILE");
+  auto* path = writes_file(verb, verb.add_option("--record", record.path, "Records the run, for replay and resume"));
   verb.add_option("--snapshots", record.checkpoints,
                   "Number of snapshots in the recording, from which resume can start (20)")
       ->type_name("N")
@@ -21,7 +22,7 @@ void add_record(CLI::App& verb, RecordTo& record) {
 }
 
 bool can_be_written(const RecordTo& record) {
-  if (record.path != "-") return writable(record.path);
+  if (record.path != "-") return true;
   say("--record takes the name of a file");
   return false;
 }
@@ -60,6 +61,19 @@ std::optional<runs::Recording> read_run(const std::string& path) {
   if (recording) return *std::move(recording);
   say(fmt::format("{}: {}", path, recording.status().message));
   return std::nullopt;
+}
+
+std::vector<std::string> files_of_recording(const std::string& path) {
+  constexpr std::size_t beginning = std::size_t{16} << 20;  // bytes; the text of the model is in the first block
+  std::ifstream file(path, std::ios::binary);
+  Bytes bytes(beginning);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  // A file that ends anywhere is read as far as it goes.
+  const Result<runs::Recording> recording = runs::read_recording(bytes);
+  if (!recording) return {};
+  const model::RunHead& head = runs::head_of(*recording);
+  return files_of_text(head.file, head.text);
 }
 
 }  // namespace continuo::app

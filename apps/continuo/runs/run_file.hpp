@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 
@@ -34,6 +35,9 @@ class RunFile {
   std::ofstream file_;
   std::unique_ptr<runs::Log> log_;
 };
+
+/// What the model in a recording reads, which a replay reads again.
+std::vector<std::string> files_of_recording(const std::string& path);
 
 /// Says why there is none.
 std::optional<runs::Recording> read_run(const std::string& path);

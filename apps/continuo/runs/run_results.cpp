@@ -3,15 +3,15 @@
 #include <span>
 
 #include <apps/continuo/options/experiment_options.hpp>
+#include <apps/continuo/options/file_options.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/runs/run_results.hpp>
-#include <apps/continuo/terminal/modules.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/results/json.hpp>
-#include <continuo/results/netcdf.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/run_tables.hpp>
@@ -20,28 +20,36 @@
 namespace continuo::app {
 namespace {
 
-/// Beside a table stands the manifest that its first line points to.
-std::string manifest_file(const RunOutputs& outputs) {
-  if (!outputs.manifest.empty()) return outputs.manifest;
-  for (const std::string& table : {outputs.motion, outputs.events}) {
-    if (!table.empty() && table != "-") return table + ".manifest.json";
-  }
-  return {};
+constexpr std::string_view manifest_suffix = ".manifest.json";
+
+/// Not standard output, a pipe or a device.
+bool is_file(const std::string& path) {
+  const results::FilePlace place = results::place_of(path);
+  return !path.empty() && !place.descriptor && place.kind == results::FilePlace::Kind::file;
 }
 
-bool write_files(const RunOutputs& outputs, const model::ModelProgram& program, const model::Run& run) {
+/// The files of a run that was ended before its time have the names of unfinished ones.
+RunOutputs unfinished(RunOutputs outputs) {
+  for (std::string* path : {&outputs.events, &outputs.plot, &outputs.manifest})
+    if (is_file(*path)) *path = results::free_unfinished_name(*path);
+  return outputs;
+}
+
+bool write_files(const RunOutputs& asked, const model::ModelProgram& program, const model::Run& run,
+                 MotionTable& motion) {
   const model::Model& model = program.model;
-  const std::string manifest_path = manifest_file(outputs);
-  bool fine = true;
-  if (!outputs.motion.empty() || !outputs.events.empty()) {
-    const std::string hash = results::manifest_hash(model, run, CONTINUO_VERSION);
-    if (results::is_netcdf(outputs.motion)) {
-      fine = written(results::write_netcdf(model, run, outputs.motion, hash)) && fine;
-    } else if (!outputs.motion.empty()) {
-      fine = written(results::write_motion(run, outputs.motion, hash)) && fine;
-    }
-    if (!outputs.events.empty()) fine = written(results::write_events(run, outputs.events, hash)) && fine;
+  const bool is_whole = !interrupt_flag().load();
+  RunOutputs outputs = is_whole ? asked : unfinished(asked);
+  bool fine = written(motion.finish(run, is_whole));
+  if (!is_whole && !motion.present_name().empty()) {
+    outputs.motion = motion.present_name();
+    say(fmt::format("the rows up to t = {:g} are in {}", run.final_time(), outputs.motion));
   }
+  if (!outputs.events.empty()) {
+    const std::string hash = results::manifest_hash(model, run.plan, run.first_state(), CONTINUO_VERSION);
+    fine = written(results::write_events(run, outputs.events, hash)) && fine;
+  }
+  const std::string manifest_path = manifest_file(outputs);
   if (!manifest_path.empty()) {
     fine = written(results::write_file(manifest_path, results::manifest(model, run, CONTINUO_VERSION))) && fine;
   }
@@ -75,16 +83,30 @@ ExitCode exit_without_run(std::span<const model::Diagnostic> diagnostics) {
 
 }  // namespace
 
+std::string manifest_file(const RunOutputs& outputs) {
+  if (!outputs.manifest.empty()) return outputs.manifest;
+  for (const std::string& table : {outputs.motion, outputs.events}) {
+    if (is_file(table)) return table + std::string(manifest_suffix);
+  }
+  return {};
+}
+
 void add_outputs(CLI::App& verb, RunOutputs& outputs) {
-  verb.add_option("-o,--out", outputs.motion, "Writes all rows, as CSV (- for standard output) or .nc (netCDF)")
-      ->type_name("FILE");
-  verb.add_option("--events", outputs.events,
-                  "Writes all events as CSV, with the states before and after; contacts of bodies with their impulse")
-      ->type_name("FILE");
-  verb.add_option("--plot", outputs.plot, "Writes a plot, .svg or .png")->type_name("FILE");
-  verb.add_option("--manifest", outputs.manifest,
-                  "Writes the manifest: model, options, versions (default: beside the CSV)")
-      ->type_name("FILE");
+  const auto* motion = writes_table(
+      verb,
+      verb.add_option("-o,--out", outputs.motion,
+                      "Writes all rows, as .csv, .tsv, .json, .nc (netCDF) or .mat (MATLAB); - for standard output"));
+  const auto* events = writes_file(
+      verb,
+      verb.add_option(
+          "--events", outputs.events,
+          "Writes all events as CSV, with the states before and after; contacts of bodies with their impulse"),
+      {".csv"});
+  writes_file(verb, verb.add_option("--plot", outputs.plot, "Writes a plot, .svg or .png"));
+  const auto* manifest =
+      writes_file(verb, verb.add_option("--manifest", outputs.manifest,
+                                        "Writes the manifest: model, options, versions (default: beside the table)"));
+  for (const CLI::Option* table : {motion, events}) writes_beside(verb, table, std::string(manifest_suffix), manifest);
   verb.add_flag("--json", outputs.json, "The result as one JSON object on standard output");
 }
 
@@ -93,23 +115,28 @@ void print_no_run(std::span<const model::Diagnostic> diagnostics, const model::S
 }
 
 bool can_be_written(const RunOutputs& outputs) {
-  if (results::is_netcdf(outputs.motion) && !loadable(netcdf_module)) return false;
-  return writable(outputs.motion) && writable(outputs.events) && writable(outputs.manifest) && drawable(outputs.plot);
+  return drawable(outputs.plot);
 }
 
-std::vector<std::string> files_of(const RunOutputs& outputs) {
-  return {outputs.motion, outputs.events, outputs.manifest, outputs.plot};
+bool needs_rows(const RunOutputs& outputs) {
+  return !outputs.plot.empty();
 }
 
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
               const RunOutputs& outputs, bool as_written) {
+  MotionTable motion(outputs.motion, program);
+  return tell(simulated, source, program, outputs, as_written, motion);
+}
+
+ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
+              const RunOutputs& outputs, bool as_written, MotionTable& motion) {
   show(simulated.diagnostics, source);
   if (!simulated.run) {
     if (outputs.json) print_no_run(simulated.diagnostics, source);
     return exit_without_run(simulated.diagnostics);
   }
   const model::Run& run = *simulated.run;
-  const bool fine = write_files(outputs, program, run);
+  const bool fine = write_files(outputs, program, run, motion);
   if (outputs.json) {
     print(results::run_json(run));
   } else if (!outputs.data_to_standard_output()) {
@@ -117,7 +144,7 @@ ExitCode tell(const model::Simulated& simulated, const model::Source& source, co
   }
   show_failed_checks(run, as_written);
   const ExitCode exit = exit_of(run, as_written);
-  return exit == done && !fine ? usage : exit;
+  return fine || exit == numerical_failure ? exit : usage;
 }
 
 }  // namespace continuo::app

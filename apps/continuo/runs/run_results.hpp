@@ -3,6 +3,7 @@
 #include <string>
 
 #include <CLI/App.hpp>
+#include <apps/continuo/runs/motion_table.hpp>
 #include <apps/continuo/terminal/exit_codes.hpp>
 
 #include <continuo/simulation/simulate.hpp>
@@ -19,11 +20,18 @@ struct RunOutputs {
 void add_outputs(CLI::App& verb, RunOutputs& outputs);
 /// Said before a long run, not after it.
 bool can_be_written(const RunOutputs& outputs);
-std::vector<std::string> files_of(const RunOutputs& outputs);
+/// Where the manifest goes: as asked, or beside the table; empty for nowhere.
+std::string manifest_file(const RunOutputs& outputs);
+/// Whether something is asked for that is made of all rows together.
+bool needs_rows(const RunOutputs& outputs);
 
 /// Writes and prints what is wanted. Checks are meant for a run as its model is written.
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
               const RunOutputs& outputs, bool as_written);
+
+/// The same, with the table of -o as it was written during the run.
+ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
+              const RunOutputs& outputs, bool as_written, MotionTable& motion);
 
 /// Why there is no run, as JSON.
 void print_no_run(std::span<const model::Diagnostic> diagnostics, const model::Source& source);

@@ -13,11 +13,11 @@
 
 #include <continuo/results/csv_writer.hpp>
 #include <continuo/results/json.hpp>
-#include <continuo/results/netcdf.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/sha256.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/results/table_file.hpp>
 
 namespace continuo::app {
 namespace {
@@ -88,23 +88,24 @@ bool have_one_table(const Members& members) {
 }
 
 Status write_rows(const Sweep& sweep, const Members& members, const std::string& path, const std::string& hash) {
-  std::vector<std::string> columns = columns_of(sweep);
-  for (const model::Column& column : first_run(members)->motion.columns) columns.push_back(column.name);
-  results::OutputFile out(path);
-  results::CsvWriter csv(out, hash, columns);
+  results::TableHead head{.manifest = hash};
+  for (std::string& name : columns_of(sweep)) head.columns.push_back({.name = std::move(name), .unit = {}});
+  const auto& columns = first_run(members)->motion.columns;
+  head.columns.insert(head.columns.end(), columns.begin(), columns.end());
+  results::TableFile table(path, std::move(head));
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (!members[m].simulated.run) continue;
     const model::Motion& motion = members[m].simulated.run->motion;
     std::vector<double> row = values_of(sweep, m);
     const std::size_t swept = row.size();
-    for (std::size_t i = 0; i < motion.rows() && out.status(); ++i) {
+    for (std::size_t i = 0; i < motion.rows() && table.status(); ++i) {
       row.resize(swept);
       const auto values = motion.row(i);
       row.insert(row.end(), values.begin(), values.end());
-      csv.row(row);
+      table.row(row);
     }
   }
-  return out.close();
+  return table.close();
 }
 
 Status write_events(const Sweep& sweep, const Members& members, const std::string& path, const std::string& hash) {
@@ -155,13 +156,6 @@ results::Figure figure_of(const Sweep& sweep, const Members& members) {
   return figure;
 }
 
-std::string beside(const RunOutputs& outputs) {
-  if (!outputs.manifest.empty()) return outputs.manifest;
-  for (const std::string& table : {outputs.motion, outputs.events})
-    if (!table.empty() && table != "-") return table + ".manifest.json";
-  return {};
-}
-
 bool write_files(const Sweep& sweep, const Members& members, const RunOutputs& outputs) {
   std::string hash;
   const std::string manifest = manifest_of(sweep, members, hash);
@@ -173,7 +167,7 @@ bool write_files(const Sweep& sweep, const Members& members, const RunOutputs& o
   }
   if (!outputs.motion.empty()) fine = written(write_rows(sweep, members, outputs.motion, hash)) && fine;
   if (!outputs.events.empty()) fine = written(write_events(sweep, members, outputs.events, hash)) && fine;
-  if (const std::string path = beside(outputs); !path.empty())
+  if (const std::string path = manifest_file(outputs); !path.empty())
     fine = written(results::write_file(path, manifest)) && fine;
   if (!outputs.plot.empty()) fine = written(results::draw(figure_of(sweep, members), outputs.plot)) && fine;
   return fine;
@@ -258,12 +252,6 @@ ExitCode exit_of(const Members& members) {
 }
 
 }  // namespace
-
-bool can_be_written_of_sweep(const RunOutputs& outputs) {
-  if (!results::is_netcdf(outputs.motion)) return true;
-  say(fmt::format("cannot write {}: the table of several runs is CSV", outputs.motion));
-  return false;
-}
 
 ExitCode tell_sweep(const Sweep& sweep, const std::vector<SweepMember>& members, const Prepared& base,
                     const RunOutputs& outputs) {

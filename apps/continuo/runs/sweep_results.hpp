@@ -8,8 +8,6 @@
 
 namespace continuo::app {
 
-/// Whether what is asked of it can be written; says why not.
-bool can_be_written_of_sweep(const RunOutputs& outputs);
 /// Writes and prints what is wanted. The exit code is that of the worst member.
 ExitCode tell_sweep(const Sweep& sweep, const std::vector<SweepMember>& members, const Prepared& base,
                     const RunOutputs& outputs);

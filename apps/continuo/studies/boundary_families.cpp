@@ -16,9 +16,9 @@
 
 #include <continuo/results/csv_writer.hpp>
 #include <continuo/results/figure.hpp>
-#include <continuo/results/netcdf.hpp>
 #include <continuo/results/output_file.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/results/table_file.hpp>
 #include <continuo/studies/boundary_family_of_model.hpp>
 
 namespace continuo::app {
@@ -178,7 +178,8 @@ ExitCode show_families(const Prepared& prepared, const boundary::BoundaryRequest
     say(fmt::format("--family {}: the range must go from a smaller value to a greater one", range.parameter));
     return usage;
   }
-  if (results::is_netcdf(outputs.motion)) {
+  if (const auto format = results::table_format(outputs.motion);
+      !outputs.motion.empty() && format && *format != results::TableFormat::csv) {
     say(fmt::format("cannot write {}: the table of --family is CSV", outputs.motion));
     return usage;
   }

@@ -144,7 +144,7 @@ void add_compare(CLI::App& app, ExitCode& exit) {
       ->type_name("RTOL,...")
       ->excludes(steps);
   verb->add_flag("--json", options->json, "Every run and its errors over time as one JSON object");
-  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
+  writes_file(*verb, verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png"));
   verb->callback([&exit, options] { exit = compare(*options); });
 }
 

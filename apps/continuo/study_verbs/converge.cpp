@@ -130,7 +130,7 @@ void add_converge(CLI::App& app, ExitCode& exit) {
                          ->type_name("EXPRESSION")
                          ->excludes(json);
   verb->add_option("--at", options->at, "The value of x for --derivative (0)")->needs(derivative)->type_name("X");
-  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
+  writes_file(*verb, verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png"));
   verb->callback([&exit, options] { exit = converge(*options); });
 }
 

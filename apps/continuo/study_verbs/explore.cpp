@@ -61,7 +61,7 @@ void add_explore(CLI::App& app, ExitCode& exit) {
       ->check(number_above(0))
       ->type_name("T");
   verb->add_flag("--json", options->json, "All of it as one JSON object");
-  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
+  writes_file(*verb, verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png"));
   verb->callback([&exit, options] { exit = explore_model(*options); });
 }
 

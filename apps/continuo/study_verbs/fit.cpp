@@ -102,9 +102,9 @@ void add_fit(CLI::App& app, ExitCode& exit) {
   refuse_option(*verb, "--until", "a fit's runs end with each data file's last time");
   refuse_option(*verb, "--output", "a fit's runs have their rows at the times of the data");
   refuse_methods(*verb);
-  verb->add_option("data", options->data, "CSV files: t, and columns named like states or outputs")
-      ->required()
-      ->type_name("");
+  reads_file(
+      *verb,
+      verb->add_option("data", options->data, "CSV files: t, and columns named like states or outputs")->required());
   const auto list = [&](const char* name, std::vector<std::string>& target, const char* text, const char* type) {
     verb->add_option(name, target, text)->delimiter(',')->allow_extra_args(false)->type_name(type);
   };
@@ -139,8 +139,8 @@ void add_fit(CLI::App& app, ExitCode& exit) {
   verb->add_flag("--profile", options->profile, "Also computes intervals from the profile likelihood");
   verb->add_flag("--json", options->json, "The result with its residuals as one JSON object");
   add_tolerances(*verb, options->experiment);
-  verb->add_option("--plot", options->plot, "Measurements, fit, prediction band and residuals, .svg or .png")
-      ->type_name("FILE");
+  writes_file(*verb, verb->add_option("--plot", options->plot,
+                                      "Measurements, fit, prediction band and residuals, .svg or .png"));
   verb->callback([&exit, options] { exit = fit(*options); });
 }
 

@@ -161,15 +161,12 @@ std::optional<OrbitRanges> ranges_of(const OrbitOptions& options) {
 }
 
 ExitCode orbit(OrbitOptions options) {
-  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps) ||
-      !are_apart({options.experiment.file}, {options.out}) || !has_its_outputs(options))
-    return usage;
+  if (!drawable(options.plot) || !are_in_order(options.steps) || !has_its_outputs(options)) return usage;
   const auto ranges = ranges_of(options);
   if (!ranges) return usage;
   const auto& [range, second, third, constants] = *ranges;
   Studied studied = study(options.experiment, options.mode, constants);
   if (studied.prepared.exit != done) return studied.prepared.exit;
-  if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
   const double run = run_length(studied.prepared.program->model);
   options.patient = !options.settle && !(options.duration > 0);
   if (!options.settle) options.settle = run;
@@ -270,11 +267,13 @@ void add_orbit(CLI::App& app, ExitCode& exit) {
   add_branch_steps(*verb, options->steps, along);
   verb->add_flag("--json", options->json, "All of it as one JSON object");
   verb->add_option("--of", options->of, "The state to plot over the parameter")->type_name("STATE")->needs(along);
-  verb->add_option("-o,--out", options->out,
-                   "Writes the section (default: standard output), or the table of --along or --and")
-      ->type_name("FILE");
-  verb->add_option("--plot", options->plot, "Plots the orbit, --along, --and or --section, .svg or .png")
-      ->type_name("FILE");
+  writes_file(
+      *verb,
+      verb->add_option("-o,--out", options->out,
+                       "Writes the section (default: standard output), or the table of --along or --and, as CSV"),
+      {".csv"});
+  writes_file(*verb,
+              verb->add_option("--plot", options->plot, "Plots the orbit, --along, --and or --section, .svg or .png"));
   verb->callback([&exit, options] { exit = orbit(*options); });
 }
 

@@ -227,7 +227,7 @@ void add_phase(CLI::App& app, ExitCode& exit) {
       ->check(finite_number())
       ->type_name("T");
   verb->add_flag("--json", options->json, "Prints equilibria, nullclines and trajectories as one JSON object");
-  verb->add_option("--plot", options->plot, "The picture, .svg or .png")->type_name("FILE");
+  writes_file(*verb, verb->add_option("--plot", options->plot, "The picture, .svg or .png"));
   verb->callback([&exit, options] { exit = phase(*options); });
 }
 

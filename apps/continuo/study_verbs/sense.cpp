@@ -17,10 +17,10 @@
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
 
-#include <continuo/results/csv_writer.hpp>
 #include <continuo/results/figure.hpp>
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
+#include <continuo/results/table_file.hpp>
 #include <continuo/runs/kind.hpp>
 #include <continuo/studies/sensitivity.hpp>
 
@@ -87,19 +87,22 @@ std::string table_of(const model::Model& model, const SensitivityRun& run,
 
 Status write(const model::Model& model, const SensitivityRun& run, const std::vector<studies::Influence>& influences,
              const std::string& path) {
-  std::vector<std::string> names{results::label_of({"t", model.time_unit})};
-  for (const model::State& state : model.states) names.push_back(results::label_of({state.column, state.unit}));
+  std::vector<model::Column> columns{{"t", model.time_unit}};
+  for (const model::State& state : model.states) columns.push_back({state.column, state.unit});
   for (const studies::Influence& influence : influences)
-    for (std::size_t i = 0; i < run.states; ++i) names.push_back(results::label_of(column_of(model, i, influence)));
-  results::OutputFile out(path);
-  results::CsvWriter csv(out, "", names);
+    for (std::size_t i = 0; i < run.states; ++i) columns.push_back(column_of(model, i, influence));
+  // Text has no other place for the units.
+  const Result<results::TableFormat> format = results::table_format(path);
+  if (format && (*format == results::TableFormat::csv || *format == results::TableFormat::tsv))
+    for (model::Column& column : columns) column.name = results::label_of(column);
+  results::TableFile table(path, {.columns = std::move(columns)});
   std::vector<double> row;
-  for (std::size_t r = 0; r < run.rows() && out.status(); ++r) {
+  for (std::size_t r = 0; r < run.rows() && table.status(); ++r) {
     row.assign(1, run.times[r]);
     row.insert(row.end(), run.row(r).begin(), run.row(r).end());
-    csv.row(row);
+    table.row(row);
   }
-  return out.close();
+  return table.close();
 }
 
 /// A panel for each influence and unit.
@@ -142,13 +145,11 @@ ExitCode sense_of_limit(const SenseOptions& options) {
 }
 
 ExitCode sense(const SenseOptions& options) {
-  if (!drawable(options.plot) || !writable(options.output) || !are_apart({options.experiment.file}, {options.output}))
-    return usage;
+  if (!drawable(options.plot)) return usage;
   if (options.of == "period" || options.of == "equilibrium") return sense_of_limit(options);
   Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   const model::Model& model = prepared.program->model;
-  if (!are_apart(files_of(model, options.experiment.file), {options.output})) return usage;
   say_step_has_no_part(prepared);
   const auto influences = influences_named(model, options.parameters, options.initial);
   if (!influences) return usage;
@@ -210,10 +211,12 @@ void add_sense(CLI::App& app, ExitCode& exit) {
       ->type_name("WHAT");
   refuse_methods(*verb);
   add_tolerances(*verb, options->experiment);
-  verb->add_option("-o", options->output, "A CSV file of states and sensitivities; - is standard output")
-      ->type_name("FILE");
+  writes_table(*verb,
+               verb->add_option("-o", options->output,
+                                "Writes states and sensitivities, as .csv, .tsv, .json, .nc or .mat; - is standard "
+                                "output"));
   verb->add_flag("--json", options->json, "Every row and event as one JSON object");
-  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
+  writes_file(*verb, verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png"));
   verb->callback([&exit, options] { exit = sense(*options); });
 }
 

@@ -275,14 +275,15 @@ void add_stability(CLI::App& app, ExitCode& exit) {
       ->required()
       ->delimiter(',')
       ->type_name("");
-  auto* model =
-      verb->add_option("--model", options->experiment.file, "A model whose eigenvalues are drawn into the regions")
-          ->type_name("FILE");
+  auto* model = reads_file(
+      *verb,
+      verb->add_option("--model", options->experiment.file, "A model whose eigenvalues are drawn into the regions"),
+      files_of_model);
   verb->add_option("--set", options->experiment.settings, "Sets a parameter of the model")
       ->needs(model)
       ->type_name("NAME=VALUE");
   verb->add_flag("--json", options->json, "The limits as one JSON object");
-  verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png")->type_name("FILE");
+  writes_file(*verb, verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png"));
   verb->callback([&exit, options] { exit = stability(*options); });
 }
 

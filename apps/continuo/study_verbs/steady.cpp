@@ -137,9 +137,7 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
 }
 
 ExitCode steady(const SteadyOptions& options) {
-  if (!drawable(options.plot) || !writable(options.out) || !are_in_order(options.steps) ||
-      !are_apart({options.experiment.file}, {options.out}))
-    return usage;
+  if (!drawable(options.plot) || !are_in_order(options.steps)) return usage;
   if (!options.plot.empty() && options.along.empty()) {
     say("--plot draws the equilibria over a parameter: give --along NAME=LOW..HIGH");
     return usage;
@@ -163,7 +161,6 @@ ExitCode steady(const SteadyOptions& options) {
   }
   Studied studied = study(options.experiment, options.mode, constants, Equations::algebraic_too);
   if (studied.prepared.exit != done) return studied.prepared.exit;
-  if (!are_apart(files_of(studied.prepared.program->model, options.experiment.file), {options.out})) return usage;
   if (!stands_still_in_time(studied, "equilibria are searched for")) return wrong_model;
   hold_conserved(studied);
   if (second && !is_plane(studied, {*range, *second})) return usage;
@@ -223,10 +220,11 @@ void add_steady(CLI::App& app, ExitCode& exit) {
   add_branch_steps(*verb, options->steps, along);
   verb->add_option("--of", options->of, "The state to plot over the parameter")->type_name("STATE")->needs(along);
   verb->add_flag("--json", options->json, "Prints all results as one JSON object");
-  verb->add_option("-o,--out", options->out, "Writes the table of --along, or of --and, as CSV")
-      ->type_name("FILE")
-      ->needs(along);
-  verb->add_option("--plot", options->plot, "Plots --along, or --and, .svg or .png")->type_name("FILE");
+  writes_file(
+      *verb,
+      verb->add_option("-o,--out", options->out, "Writes the table of --along, or of --and, as CSV")->needs(along),
+      {".csv"});
+  writes_file(*verb, verb->add_option("--plot", options->plot, "Plots --along, or --and, .svg or .png"));
   verb->callback([&exit, options] { exit = steady(*options); });
 }
 

@@ -1,4 +1,4 @@
-// Loads the shared libraries of rarely used parts, and forwards calls to that of netCDF.
+// Loads the shared libraries of rarely used parts.
 #include <stdexcept>
 #include <string>
 
@@ -7,8 +7,6 @@
 #include <apps/continuo/terminal/terminal.hpp>
 #include <dlfcn.h>
 #include <fmt/format.h>
-
-#include <continuo/results/netcdf_file.hpp>
 
 namespace continuo::app {
 namespace {
@@ -42,11 +40,3 @@ const void* content_of(const char* module) {
 }
 
 }  // namespace continuo::app
-
-namespace continuo {
-
-Status results::write_netcdf_file(const NetcdfFile& file, const std::string& path) {
-  return app::entry_of<decltype(&write_netcdf_file)>(app::netcdf_module)(file, path);
-}
-
-}  // namespace continuo

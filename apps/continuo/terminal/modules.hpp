@@ -6,7 +6,6 @@
 
 namespace continuo::app {
 
-inline constexpr const char* netcdf_module = "netcdf";
 inline constexpr const char* least_squares_module = "least_squares";
 
 /// Whether the part is there with all that it needs; says what is missing where not: told before a long run, not after.

@@ -100,7 +100,7 @@ void add_check(CLI::App& app, ExitCode& exit) {
   Verb* verb = add_verb(app, listed("check"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
   verb->json_examples = {"continuo check models/pendulum.sim --jacobian --json"};
   auto request = std::make_shared<CheckRequest>();
-  verb->add_option("files", request->files, "Models, or folders of models")->required()->type_name("");
+  reads_file(*verb, verb->add_option("files", request->files, "Models, or folders of models")->required());
   verb->add_flag("--json", request->json, "Prints the messages as JSON, one array per file");
   verb->add_flag(
       "--jacobian", request->jacobian,

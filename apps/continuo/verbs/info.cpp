@@ -26,7 +26,7 @@ ExitCode info(const std::string& path) {
 void add_info(CLI::App& app, ExitCode& exit) {
   Verb* verb = add_verb(app, listed("info"), "  continuo info models/bouncing_ball.sim\n", {wrong_model});
   auto path = std::make_shared<std::string>();
-  verb->add_option("file", *path, "The model")->required()->type_name("");
+  reads_file(*verb, verb->add_option("file", *path, "The model")->required(), files_of_model);
   verb->callback([&exit, path] { exit = info(*path); });
 }
 

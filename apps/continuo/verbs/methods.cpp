@@ -121,7 +121,8 @@ void add_methods(CLI::App& app, ExitCode& exit) {
       "dop853\n";
   Verb* verb = add_verb(app, listed("methods"), examples, {wrong_model});
   auto file = std::make_shared<std::string>();
-  verb->add_option("--why", *file, "Shows the method chosen for this model, and the reason")->type_name("FILE");
+  reads_file(*verb, verb->add_option("--why", *file, "Shows the method chosen for this model, and the reason"),
+             files_of_model);
   verb->callback([&exit, file] { exit = file->empty() ? methods() : why(*file); });
 }
 

@@ -43,7 +43,7 @@ struct Opened {
 
 Opened open(const ReplayRequest& request) {
   Opened opened;
-  if (!can_be_written(request.outputs) || !are_apart({request.file}, files_of(request.outputs))) return opened;
+  if (!can_be_written(request.outputs)) return opened;
   auto recording = read_run(request.file);
   if (!recording) return opened;
   opened.recording = std::move(*recording);
@@ -98,7 +98,7 @@ bool has_changed(const ReplayRequest& request, const Opened& opened) {
 }
 
 ExitCode resume(const ReplayRequest& request) {
-  if (!can_be_written(request.record) || !are_apart({request.file}, {request.record.path})) return usage;
+  if (!can_be_written(request.record)) return usage;
   const Opened opened = open(request);
   if (opened.exit != done) return opened.exit;
   if (has_changed(request, opened)) return usage;
@@ -152,7 +152,8 @@ void add_replay(CLI::App& app, ExitCode& exit) {
   verb->json_examples = {
       "continuo run models/newtons_cradle.sim --record cradle.run && continuo replay cradle.run --json"};
   auto request = std::make_shared<ReplayRequest>();
-  verb->add_option("file", request->file, "A recording, written by --record")->required()->type_name("");
+  reads_file(*verb, verb->add_option("file", request->file, "A recording, written by --record")->required(),
+             files_of_recording);
   add_outputs(*verb, request->outputs);
   verb->callback([&exit, request] { exit = replay(*request); });
 }
@@ -166,7 +167,8 @@ void add_resume(CLI::App& app, ExitCode& exit) {
   verb->json_examples = {
       "continuo run models/newtons_cradle.sim --record cradle.run && continuo resume cradle.run --json"};
   auto request = std::make_shared<ReplayRequest>();
-  verb->add_option("file", request->file, "A recording, written by --record")->required()->type_name("");
+  reads_file(*verb, verb->add_option("file", request->file, "A recording, written by --record")->required(),
+             files_of_recording);
   verb->add_option("--at", request->at, "Starts from the last snapshot at or before this time (default: the last one)")
       ->type_name("T");
   verb->add_option("--until", request->until, "End time of the run")->type_name("T");

@@ -1,4 +1,5 @@
 // continuo report FILE: a run and studies of a model on one page.
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -29,6 +30,23 @@ std::string quoted(const std::string& word) {
   return word.find_first_of(" ;'\"[]()*") == std::string::npos ? word : "\"" + word + "\"";
 }
 
+/// Whether a study writes a file of its own, which the report cannot hold against its own and those of other studies;
+/// says so.
+bool writes_files(const std::vector<std::string>& studies) {
+  for (const std::string& line : studies) {
+    for (const std::string& word : words_of(line)) {
+      const std::string name = word.starts_with("--") ? word.substr(0, word.find('=')) : word.substr(0, 2);
+      if (std::ranges::find(options_that_write, name) == options_that_write.end()) continue;
+      say(fmt::format(
+          "--with \"{}\": a study of a report writes no files, its text and picture are on the page; leave out "
+          "{}, or call it by itself",
+          line, name));
+      return true;
+    }
+  }
+  return false;
+}
+
 /// What a verb says of the model, with its picture. A verb that takes no --plot is asked again without.
 results::ReportSection section_of(std::string title, std::vector<std::string> words, const ScratchFolder& scratch,
                                   int& exit) {
@@ -48,11 +66,10 @@ results::ReportSection section_of(std::string title, std::vector<std::string> wo
 }
 
 ExitCode report(const ReportOptions& options) {
-  if (!readable(options.file) || !writable(options.out) || !are_apart({options.file}, {options.out})) return usage;
+  if (!readable(options.file) || writes_files(options.studies)) return usage;
   const model::Loaded loaded = load_model(options.file);
   if (!loaded) return wrong_model;
   const model::Model& model = *loaded.model;
-  if (!are_apart(files_of(model, options.file), {options.out})) return usage;
   const ScratchFolder scratch;
   std::vector<results::ReportSection> sections;
   sections.push_back({.title = "Model", .text = model.text.content});
@@ -94,13 +111,13 @@ void add_report(CLI::App& app, ExitCode& exit) {
       "  continuo report models/pendulum.sim --with \"phase --box theta=-7..7\" --with linearize -o pendulum.html\n";
   Verb* verb = add_verb(app, listed("report"), examples, {wrong_model, numerical_failure, interrupted});
   auto options = std::make_shared<ReportOptions>();
-  verb->add_option("file", options->file, "The model")->required()->type_name("");
+  reads_file(*verb, verb->add_option("file", options->file, "The model")->required(), files_of_model);
   verb->add_option("--with", options->studies,
                    "A study: another verb with its options, without the file; may be repeated")
       ->type_name("\"VERB ...\"")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("-o,--out", options->out, "The page, .html")->required()->type_name("FILE");
+  writes_file(*verb, verb->add_option("-o,--out", options->out, "The page, .html")->required(), {".html"});
   verb->callback([&exit, options] { exit = report(*options); });
 }
 

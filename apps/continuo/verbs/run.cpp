@@ -45,6 +45,7 @@ runs::Log* log_of(const RunRequest& request, const Prepared& prepared, RunFile& 
   head.decides_size = prepared.decides_size;
   head.as_written = request.experiment.as_written();
   head.experiment = prepared.experiment;
+  head.experiment.keep_rows = true;  // a replay has no table that it could hand them to
   return file.begin(*prepared.program, std::move(head));
 }
 
@@ -100,12 +101,7 @@ ExitCode sweep(const RunRequest& request, const std::vector<SweepText>& texts, P
 
 ExitCode run(RunRequest request, const ShowFamilies& show_families) {
   const std::vector<SweepText> swept = take_sweep(request.experiment);
-  if (!swept.empty() && !can_be_written_of_sweep(request.outputs)) return usage;
-  std::vector<std::string> written = files_of(request.outputs);
-  written.push_back(request.record.path);
-  if (!can_be_written(request.outputs) || !can_be_written(request.record) ||
-      !are_apart({request.experiment.file, request.boundary.guess, file_of_initial(request.experiment)}, written))
-    return usage;
+  if (!can_be_written(request.outputs) || !can_be_written(request.record)) return usage;
   Prepared prepared = prepare(request.experiment, Worlds::welcome);
   const model::Source& source = prepared.loaded.source;
   if (prepared.exit == done && !request.record.path.empty() &&
@@ -118,7 +114,6 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families) {
     return prepared.exit;
   }
   if (has_no_method(request, prepared.program->model)) return usage;
-  if (!are_apart(files_of(prepared.program->model, request.experiment.file), written)) return usage;
   if (!swept.empty()) return sweep(request, swept, prepared);
   const auto boundary = read_boundary(request.boundary, prepared);
   if (!boundary) return usage;
@@ -128,16 +123,19 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families) {
     return range ? show_families(prepared, *boundary, *range, request.boundary.of, request.outputs) : usage;
   }
   RunFile file(request.record);
+  MotionTable motion(request.outputs.motion, *prepared.program);
+  const model::OnRow on_row =
+      motion.rows_of(prepared.experiment, needs_rows(request.outputs) || request.estimate_error || file.is_wanted());
   const model::Simulated simulated = [&] {
     Progress progress;
     prepared.experiment.progress = watcher_of(prepared, progress);
     prepared.experiment.estimate_error = request.estimate_error;
     prepared.experiment.doubts = true;
     return runs::run(prepared.program, prepared.experiment,
-                     {.boundary = *boundary, .log = log_of(request, prepared, file)});
+                     {.boundary = *boundary, .log = log_of(request, prepared, file)}, on_row);
   }();
   const ExitCode exit = tell(simulated, source, *prepared.program, request.outputs,
-                             request.experiment.as_written() && request.boundary.as_written());
+                             request.experiment.as_written() && request.boundary.as_written(), motion);
   return file.close() || exit != done ? exit : usage;
 }
 

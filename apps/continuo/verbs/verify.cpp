@@ -100,7 +100,7 @@ void add_verify(CLI::App& app, ExitCode& exit) {
       "  continuo verify ball.sim spring.sim\n";
   Verb* verb = add_verb(app, listed("verify"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
   auto places = std::make_shared<std::vector<std::string>>();
-  verb->add_option("files", *places, "Models, or folders of models")->required()->type_name("");
+  reads_file(*verb, verb->add_option("files", *places, "Models, or folders of models")->required());
   verb->callback([&exit, places] { exit = verify_all(*places); });
 }
 

@@ -126,7 +126,6 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
   const model::Loaded loaded = session.open_file();
   if (!loaded.diagnostics.empty()) fmt::print(stderr, "{}", loaded.text({.color = colors_wanted()}));
   if (!loaded.model) return wrong_model;
-  if (!are_apart(files_of(*loaded.model, request.experiment.file), request.recording.files())) return usage;
   if (!session.is_open()) {
     fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
     if (!runs::kind_of(*loaded.model).has_start)
@@ -142,9 +141,7 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
 }
 
 ExitCode view(ViewRequest& request) {
-  if (!readable(request.experiment.file) ||
-      !are_apart({request.experiment.file, request.page_file}, request.recording.files()))
-    return usage;
+  if (!readable(request.experiment.file)) return usage;
   const auto page = page_of(request);
   if (!page) return usage;
   request.server.page = *page;
@@ -206,11 +203,11 @@ void add_view(CLI::App& app, ExitCode& exit) {
   verb->add_option("--port", request->server.port, "Port of the server (default: any free port)")
       ->type_name("N")
       ->check(CLI::Validator(port_fault, ""));
-  verb->add_option("--page", request->page_file, "Serves this page in place of the built-in one")->type_name("FILE");
-  verb->add_option("--export", request->recording.page, "Writes one page that replays the run, and ends")
-      ->type_name("FILE");
-  verb->add_option("--record", request->recording.pictures, "Writes pictures to a folder, or a video (.mp4, by ffmpeg)")
-      ->type_name("PATH");
+  reads_file(*verb, verb->add_option("--page", request->page_file, "Serves this page in place of the built-in one"));
+  writes_file(*verb,
+              verb->add_option("--export", request->recording.page, "Writes one page that replays the run, and ends"));
+  writes_pictures(*verb, verb->add_option("--record", request->recording.pictures,
+                                          "Writes pictures to a folder, or a video (.mp4, by ffmpeg)"));
   verb->add_option("--fps", request->recording.rate, "Pictures per second, for --export and --record")
       ->type_name("N")
       ->check(CLI::Range(1, 120));
