@@ -1,0 +1,225 @@
+// Runs that are killed, interrupted or run out of disk leave what was computed, and nothing else is lost. Rows need no
+// memory.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <netcdf.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "shell.hpp"
+
+namespace continuo::app {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+constexpr const char* swinging = "param n = 40000\nx'' = -x\nx(0) = 1; x'(0) = 0\nrun 0..n*0.01 output 0.01\n";
+
+/// The process of a run, with its messages thrown away.
+class Process {
+ public:
+  explicit Process(const std::vector<std::string>& words) {
+    std::vector<std::string> all{CONTINUO_COMMAND};
+    all.insert(all.end(), words.begin(), words.end());
+    process_ = fork();
+    if (process_ != 0) return;
+    const int nowhere = open("/dev/null", O_RDWR);
+    dup2(nowhere, STDOUT_FILENO), dup2(nowhere, STDERR_FILENO);
+    std::vector<char*> pointers;
+    for (std::string& word : all) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    execv(CONTINUO_COMMAND, pointers.data());
+    _exit(127);
+  }
+  void send(int signal) const { kill(process_, signal); }
+  /// Its exit code, or that of a shell for a signal; and how much memory it had.
+  int wait() {
+    int status = 0;
+    rusage used{};
+    wait4(process_, &status, 0, &used);
+    kilobytes_ = used.ru_maxrss;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  long kilobytes() const { return kilobytes_; }
+
+ private:
+  pid_t process_;
+  long kilobytes_ = 0;
+};
+
+/// A folder with the model, in which the processes are.
+class Place {
+ public:
+  Place() {
+    shell.write("swing.sim", swinging);
+    folder = lines_of(shell.call("pwd").out).at(0);
+  }
+  std::string path(const std::string& name) const { return folder + "/" + name; }
+  const Shell shell;
+  std::string folder;
+};
+
+using Rows = std::vector<std::vector<double>>;
+
+Rows rows_of_text(const std::string& text) {
+  Rows rows;
+  for (const std::string& line : lines_of(text)) {
+    if (line.starts_with('#') || line.starts_with('t')) continue;
+    rows.emplace_back();
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, ',');) rows.back().push_back(std::stod(cell));
+  }
+  return rows;
+}
+
+/// By the library of the format's inventors.
+Rows rows_of_netcdf(const std::string& path) {
+  int file = -1, variables = 0;
+  EXPECT_EQ(nc_open(path.c_str(), NC_NOWRITE, &file), NC_NOERR) << path;
+  EXPECT_EQ(nc_inq_nvars(file, &variables), NC_NOERR);
+  int record = -1;
+  std::size_t count = 0;
+  EXPECT_EQ(nc_inq_unlimdim(file, &record), NC_NOERR);
+  EXPECT_EQ(nc_inq_dimlen(file, record, &count), NC_NOERR);
+  Rows rows(count, std::vector<double>(static_cast<std::size_t>(variables)));
+  std::vector<double> column(count);
+  for (int variable = 0; variable < variables; ++variable) {
+    EXPECT_EQ(nc_get_var_double(file, variable, column.data()), NC_NOERR);
+    for (std::size_t i = 0; i < count; ++i) rows[i][static_cast<std::size_t>(variable)] = column[i];
+  }
+  nc_close(file);
+  return rows;
+}
+
+Rows rows_of_json(const std::string& text) {
+  return nlohmann::json::parse(text)["rows"].get<Rows>();
+}
+
+/// A cut last line is no row.
+std::string whole_lines(const std::string& text) {
+  return text.substr(0, text.rfind('\n') + 1);
+}
+
+void expect_prefix(const Rows& rows, const Rows& whole) {
+  ASSERT_LE(rows.size(), whole.size());
+  ASSERT_TRUE(std::equal(rows.begin(), rows.end(), whole.begin()));
+}
+
+class Killed : public testing::TestWithParam<const char*> {};
+
+TEST_P(Killed, AtAnyTimeLeavesABeginningOfTheTable) {
+  const Place place;
+  const std::string ending = GetParam(), name = "out." + ending;
+  ASSERT_EQ(place.shell.run("run swing.sim -o whole.csv").exit, 0);
+  const Rows whole = rows_of_text(place.shell.read("whole.csv"));
+  ASSERT_EQ(whole.size(), 40001u);
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(place.shell.run("run swing.sim -o whole_too." + ending).exit, 0);
+  const auto duration = std::chrono::steady_clock::now() - begin;
+  const std::string whole_text = place.shell.read("whole_too." + ending);
+  std::mt19937 random(2026);
+  std::uniform_real_distribution<double> part(0, 1.1);
+  std::size_t partial = 0;
+  for (int time = 0; time < 50; ++time) {
+    for (const auto& entry : fs::directory_iterator(place.folder))
+      if (entry.path().filename().string().starts_with("out")) fs::remove(entry);
+    place.shell.write(name, "an older one");
+    Process process({"run", place.path("swing.sim"), "-o", place.path(name)});
+    std::this_thread::sleep_for(duration * part(random));
+    process.send(SIGKILL);
+    (void)process.wait();
+    const std::string now = place.shell.read(name);
+    ASSERT_TRUE(now == "an older one" || now == whole_text) << now.size();
+    const std::string csv = "out.unfinished.csv", netcdf = "out.unfinished.nc";
+    if (place.shell.has(csv)) {
+      ASSERT_TRUE(place.shell.read("whole.csv").starts_with(place.shell.read(csv)));
+      expect_prefix(rows_of_text(whole_lines(place.shell.read(csv))), whole);
+      ++partial;
+    } else if (place.shell.has(netcdf)) {
+      expect_prefix(rows_of_netcdf(place.path(netcdf)), whole);
+      ++partial;
+    }
+    for (const auto& entry : fs::directory_iterator(place.folder)) {
+      const std::string other = entry.path().filename().string();
+      if (!other.starts_with("out")) continue;
+      ASSERT_TRUE(other == name || other == csv || other == netcdf || other == name + ".manifest.json") << other;
+    }
+  }
+  EXPECT_GT(partial, 5u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Killed, testing::Values("csv", "nc", "json", "mat"));
+
+TEST(Interrupted, KeepsTheRowsUnderTheNameOfAnUnfinishedTable) {
+  for (const std::string ending : {"csv", "tsv", "nc", "json", "mat"}) {
+    const Place place;
+    const std::string name = "out." + ending, unfinished = "out.unfinished." + ending;
+    place.shell.write(name, "an older one");
+    const Result result = place.shell.run(
+        "run swing.sim --set n=1e9 --max-steps 1000000000 -o " + name + " --events events.csv --manifest manifest.json",
+        "timeout --signal=INT 1");
+    EXPECT_THAT(result.exit, AnyOf(130, 124)) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("are in " + unfinished)) << ending;
+    EXPECT_EQ(place.shell.read(name), "an older one");
+    EXPECT_GT(place.shell.read(unfinished).size(), 1000u);
+    EXPECT_TRUE(place.shell.has("events.unfinished.csv"));
+    EXPECT_TRUE(place.shell.has("manifest.unfinished.json"));
+    EXPECT_FALSE(place.shell.has("out.unfinished.nc") && ending != "nc");
+    if (ending == "json") {
+      EXPECT_GT(rows_of_json(place.shell.read(unfinished)).size(), 10u);
+    } else if (ending == "nc") {
+      EXPECT_GT(rows_of_netcdf(place.path(unfinished)).size(), 10u);
+    }
+  }
+}
+
+// The shell's limit on file sizes stands for a full disk; its signal is ignored, since a full disk sends none.
+TEST(FullDisk, EndsTheRunAndKeepsTheRowsBefore) {
+  for (const std::string ending : {"csv", "nc", "json", "mat"}) {
+    const Place place;
+    const std::string name = "out." + ending;
+    place.shell.write(name, "an older one");
+    const Result result = place.shell.call("trap '' XFSZ; ulimit -f 600; timeout 60 '" CONTINUO_COMMAND
+                                           "' run swing.sim --set n=1e8 --max-steps 1000000000 -o " +
+                                           name);
+    EXPECT_EQ(result.exit, 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("cannot write out." + (ending == "csv" ? ending : std::string()))) << result.err;
+    EXPECT_EQ(place.shell.read(name), "an older one");
+    if (ending == "csv") {
+      EXPECT_GT(rows_of_text(whole_lines(place.shell.read("out.unfinished.csv"))).size(), 100u);
+    } else {
+      EXPECT_GT(rows_of_netcdf(place.path("out.unfinished.nc")).size(), 100u);
+    }
+  }
+}
+
+// Kept in memory, the three million numbers of this run would be 24 MB.
+TEST(Rows, NeedNoMemory) {
+  for (const std::string ending : {"csv", "nc", "json", "mat"}) {
+    const Place place;
+    const auto memory_of = [&](const std::string& rows) {
+      Process process({"run", place.path("swing.sim"), "--set", "n=" + rows, "-o", place.path("out." + ending)});
+      EXPECT_EQ(process.wait(), 0);
+      return process.kilobytes();
+    };
+    const long few = memory_of("100000"), many = memory_of("1000000");
+    EXPECT_LT(many - few, 8000) << ending << ": " << few << ' ' << many;
+    EXPECT_LT(many, 100'000) << ending;
+  }
+}
+
+}  // namespace
+}  // namespace continuo::app
