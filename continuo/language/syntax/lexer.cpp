@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/language/syntax/blackboard.hpp>
 #include <continuo/language/syntax/lexer.hpp>
 #include <continuo/language/text/unicode.hpp>
 
@@ -68,6 +69,7 @@ struct Foreign {
   std::string_view text, ours;
 };
 constexpr std::array foreign = {
+    Foreign{"...", "a range is written 0..10"},
     Foreign{"**", "a power is written x^2"},
     Foreign{"&&", "write `and`"},
     Foreign{"||", "write `or`"},
@@ -100,6 +102,23 @@ constexpr std::array foreign = {
     Foreign{"\xE2\x89\xA0", "write `!=`"},
     Foreign{"\xE2\x80\xA6", "a range is written 0..10"},
     Foreign{"\xC2\xA0", "this is a no-break space; write an ordinary one"},
+    Foreign{"\xE3\x80\x80", "this is a wide space; write an ordinary one"},
+    Foreign{"\xE2\x80\x89", "this is a thin space; write an ordinary one"},
+    Foreign{"\xE2\x80\xAF", "this is a narrow no-break space; write an ordinary one"},
+    Foreign{"\xE2\x80\x94", "write the minus of the keyboard, `-`"},
+    Foreign{"\xE2\x80\x90", "write the minus of the keyboard, `-`"},
+    Foreign{"\xE2\x80\x91", "write the minus of the keyboard, `-`"},
+    Foreign{"\xE2\x88\x97", "write `*`"},
+    Foreign{"\xE2\x88\x99", "write `*`"},
+    Foreign{"\xE2\x80\xA2", "write `*`"},
+    Foreign{"\xE2\x88\x95", "write `/`"},
+    Foreign{"\xE2\x81\x84", "write `/`"},
+    Foreign{"\xE2\x88\x9A", "a square root is written sqrt(x)"},
+    Foreign{"\xC2\xB1", "a value has one sign: write `+` or `-`, or multiply by a parameter that is 1 or -1"},
+    Foreign{"\xC2\xB0", "an angle in degrees has its unit in brackets, as in 30 [deg]"},
+    Foreign{"\xE2\x88\x9E", "there is no infinite number; write a large one, such as 1e300"},
+    Foreign{"?", "a choice is written: if c then a else b"},
+    Foreign{"|", "an absolute value is written abs(x)"},
 };
 
 std::size_t name_size(std::string_view text, std::size_t at) {
@@ -113,7 +132,7 @@ std::size_t name_size(std::string_view text, std::size_t at) {
 
 }  // namespace
 
-Lexer::Lexer(const Source& source) : text_(source.text()) {
+Lexer::Lexer(const Source& source) : source_(source), text_(source.text()) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text_.starts_with(byte_order_mark)) at_ = byte_order_mark.size();
 }
@@ -137,7 +156,7 @@ bool Lexer::skip_blanks() {
   const std::size_t from = at_;
   while (at_ < text_.size()) {
     const char c = text_[at_];
-    if (c == ' ' || c == '\t' || c == '\r') {
+    if (c == ' ' || c == '\t' || (c == '\r' && (at_ + 1 >= text_.size() || text_[at_ + 1] == '\n'))) {
       ++at_;
     } else if (c == '#') {
       at_ = std::min(text_.find('\n', at_), text_.size());
@@ -217,9 +236,10 @@ Token Lexer::scan_number() {
   if (after.size > 0 && begins_name(after.value)) {
     const std::size_t letters = name_size(text_, end);
     const std::string_view word = text_.substr(end, letters);
+    const Span number{static_cast<std::uint32_t>(at_), static_cast<std::uint32_t>(end)};
     return bad(spelled.size() + letters, "E116",
                fmt::format("an operator is missing between `{}` and `{}`", spelled, word), "",
-               fmt::format("write {}*{}, or {} [{}] if it is a unit", spelled, word, spelled, word));
+               help_after_number(source_, number, word));
   }
   Token token = make(TokenKind::number, spelled.size());
   token.number = value;
@@ -264,8 +284,9 @@ Token Lexer::scan_unit() {
 
 Token Lexer::scan_sign() {
   const std::string_view rest = text_.substr(at_, 3);
+  const bool three_dots = rest == "...";  // no range up to .5
   for (const Sign& sign : signs) {
-    if (sign.text.size() == 2 && rest.starts_with(sign.text)) return make(sign.kind, 2);
+    if (!three_dots && sign.text.size() == 2 && rest.starts_with(sign.text)) return make(sign.kind, 2);
   }
   for (const Foreign& sign : foreign) {
     if (rest.starts_with(sign.text)) {
@@ -285,9 +306,19 @@ Token Lexer::scan_unknown() {
   const CodePoint c = decode(text_, at_);
   const std::size_t size = std::max<std::size_t>(c.size, 1);
   const bool shown = c.value > 0x20 && c.value != 0x7F && (c.value < 0x80 || c.value >= 0xA0);
-  const std::string name = shown ? fmt::format("`{}`", text_.substr(at_, size))
-                                 : fmt::format("the character U+{:04X}", static_cast<unsigned>(c.value));
-  return bad(size, "E102", name + " has no meaning here", "", "");
+  const bool invisible = !shown || c.value == 0xAD || (c.value >= 0x200B && c.value <= 0x200F) || c.value == 0x2060 ||
+                         c.value == 0xFEFF || c.value == 0x2028 || c.value == 0x2029;
+  const std::string name = invisible ? fmt::format("the character U+{:04X}", static_cast<unsigned>(c.value))
+                                     : fmt::format("`{}`", text_.substr(at_, size));
+  std::string help;
+  if (c.value == '\r') {
+    help = "lines end with this sign alone, as on old computers: save the file with the line ends of Unix or Windows";
+  } else if (invisible) {
+    help = "it cannot be seen: delete what is between its neighbours and write them again";
+  } else if (c.value >= 0xFF01 && c.value <= 0xFF5E) {  // a whole block of Unicode repeats the signs of ASCII
+    help = fmt::format("this is a wide character; write `{}`", static_cast<char>(c.value - 0xFEE0));
+  }
+  return bad(size, "E102", name + " has no meaning here", "", std::move(help));
 }
 
 std::string heading_of(std::string_view text) {

@@ -77,6 +77,7 @@ class Lexer {
   [[nodiscard]] Token bad(std::size_t size, std::string code, std::string message, std::string label, std::string help);
   bool skip_blanks();
 
+  const Source& source_;
   std::string_view text_;
   std::size_t at_ = 0;
   TokenKind before_ = TokenKind::line_end;

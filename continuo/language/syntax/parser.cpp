@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/language/syntax/blackboard.hpp>
 #include <continuo/language/syntax/parser_core.hpp>
 #include <continuo/language/text/unicode.hpp>
 #include <continuo/language/text/words.hpp>
@@ -55,14 +56,15 @@ bool is_derivative_call(std::string_view name) {
   return name == "der" || name == "d" || name == "diff" || name == "ddt" || name == "deriv";
 }
 
-/// The name below `dx/dt`, or nothing.
-std::string below_derivative(const Expression& left) {
-  const auto* quotient = std::get_if<ast::Binary>(&left.node);
-  if (!quotient || quotient->op != ast::BinaryOperator::divide) return {};
-  const auto* above = std::get_if<ast::Name>(&quotient->left->node);
-  const auto* below = std::get_if<ast::Name>(&quotient->right->node);
-  if (!above || !below || below->text != "dt" || above->text.size() < 2 || above->text[0] != 'd') return {};
-  return above->text.substr(1);
+/// The name in `der(x)` with a prime, in `der(der(x))` with two; nothing where it is no derivative.
+std::string within_derivatives(const Expression& left) {
+  const auto* call = std::get_if<ast::Call>(&left.node);
+  if (!call || call->arguments.empty() || !is_derivative_call(call->callee.text)) return {};
+  const Expression& inside = call->arguments.front();
+  if (const auto* name = std::get_if<ast::Name>(&inside.node))
+    return name->text + std::string(static_cast<std::size_t>(name->primes) + 1, '\'');
+  const std::string deeper = within_derivatives(inside);
+  return deeper.empty() ? deeper : deeper + "'";
 }
 
 constexpr std::array<std::string_view, 9> family_words = {"param", "let", "output", "energy", "unknown",
@@ -146,7 +148,10 @@ Statement Parser::parse_statement(Context context) {
     const TokenKind next = look(1).kind;
     const bool as_name = next == TokenKind::define || next == TokenKind::prime || next == TokenKind::open_index ||
                          (next == TokenKind::open_round && !look(1).after_space && word != "check");
-    if (at_world_word(context)) {
+    if (word == "plot" && next == TokenKind::open_round && as_name) {
+      const Span span = advance().span;
+      fail(error("E112", span, "`plot` has no brackets", "", "write plot x against t, or plot x"));
+    } else if (at_world_word(context)) {
       node = parse_world_or_force();
     } else if (is_reserved(word) && word != "if" && word != "not" && word != "sum" && as_name) {
       parse_identifier("a name");  // says what is wrong
@@ -260,16 +265,36 @@ ast::Family Parser::parse_family(Context context) {
 }
 
 void Parser::explain_left_side(const Expression& left) {
-  if (const std::string name = below_derivative(left); !name.empty())
-    fail(error("E134", left.span, "a derivative is written with a prime", "", fmt::format("write {}' = ...", name)));
+  // d(0) = 3 is the start of a state d.
+  if (const std::string primed = within_derivatives(left); !primed.empty())
+    fail(error("E134", left.span, "a derivative is written with a prime", "",
+               with_corrected_line("write " + primed + " on the left", source_, left.span, primed)));
   const auto* call = std::get_if<ast::Call>(&left.node);
-  if (!call || call->arguments.empty() || !is_derivative_call(call->callee.text)) return;
-  if (!std::holds_alternative<ast::Name>(call->arguments.front().node)) return;  // d(0) = 3: the start of a state d
-  fail(error("E134", left.span, "a derivative is written with a prime", "",
-             fmt::format("write {}' = ...", source_.slice(call->arguments.front().span))));
+  if (!call || call->callee.primes == 0 || call->arguments.size() != 1) return;
+  const auto* time = std::get_if<ast::Name>(&call->arguments.front().node);
+  if (!time || time->text != "t") return;
+  const std::string_view primed = source_.slice(call->callee.span);
+  fail(error("E134", left.span, "an equation holds at all times, which are not written", "",
+             fmt::format("write {} = ..., and x for x(t)", primed)));
+}
+
+/// `dx/dt = ...`, `d^2x/dt^2 = ...`: before the signs in it are read.
+void Parser::explain_derivative_by_time() {
+  const std::uint32_t begin = current().span.begin;
+  const auto found = derivative_by_time(std::string_view(source_.text()).substr(begin));
+  if (!found) return;
+  const std::size_t behind = source_.text().find_first_not_of(" \t", begin + found->size);
+  if (behind == std::string::npos || source_.text()[behind] != '=') return;
+  const Span span{begin, static_cast<std::uint32_t>(begin + found->size)};
+  fail(error("E134", span, "a derivative is written with a prime", "",
+             with_corrected_line("write " + found->primed + " on the left", source_, span, found->primed)));
 }
 
 Statement::Node Parser::parse_equation() {
+  explain_derivative_by_time();
+  if (at(TokenKind::minus) && look(1).kind == TokenKind::minus && !look(1).after_space)
+    fail(error("E127", cover(current().span, look(1).span), "`--` is not a sign of the language", "",
+               "a comment begins with `#`"));
   Expression left = parse_sum_of_terms();
   if (at(TokenKind::assign)) {
     fail(error("E118", current().span, "`:=` assigns, which happens only in events", "",
@@ -283,6 +308,10 @@ Statement::Node Parser::parse_equation() {
   explain_left_side(left);
   advance();
   Expression right = parse_value();
+  if (at_word("at")) {
+    unexpected("the end of the statement", fmt::format("an initial value is written {}(0) = {}",
+                                                       source_.slice(left.span), source_.slice(right.span)));
+  }
   expect_statement_end();
   const auto* call = std::get_if<ast::Call>(&left.node);
   if (call && (!is_function(call->callee.text) || call->callee.primes > 0 || !call->callee.indices.empty()))

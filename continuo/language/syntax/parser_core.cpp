@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/language/syntax/blackboard.hpp>
 #include <continuo/language/syntax/parser_core.hpp>
 #include <continuo/language/text/words.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
@@ -152,13 +153,23 @@ void Parser::left_over(std::initializer_list<std::string_view> words) {
     fail(error("E128", token.span, "a unit cannot stand here", "",
                "one unit follows a number or a bracket; write an index without a space before it, as in u[i]"));
   }
-  if (token.kind == TokenKind::prime)
+  if (token.kind == TokenKind::prime) {
+    if (last_kind_ == TokenKind::number && look(1).kind == TokenKind::number)
+      fail(error("E129", token.span, "a prime follows a name", "", "a number has no separators between its digits"));
     fail(error("E129", token.span, "a prime follows its name without a space", "", "write it as in x'"));
+  }
   const bool word = token.kind == TokenKind::name && is_reserved(spelled(token));
   if (ends_value(last_kind_) && begins_value(token.kind) && !token.goes_on && !word) {
+    if (const std::string help = argument_help(); !help.empty())
+      fail(error("E116", token.span, fmt::format("a bracket is missing before {}", found), "", help));
     fail(error("E116", token.span, fmt::format("an operator is missing before {}", found), "", product_help()));
   }
-  if (token.kind == TokenKind::comma) unexpected("the end of the statement", "separate statements with `;`");
+  if (token.kind == TokenKind::comma) {
+    const std::string help = last_kind_ == TokenKind::number ? help_with_commas(source_, token.span.begin) : "";
+    unexpected("the end of the statement", help.empty() ? "separate statements with `;`" : help);
+  }
+  if (token.kind == TokenKind::name && found == "`if`")
+    unexpected("the end of the statement", "a choice is written: if c then a else b");
   if (token.kind == TokenKind::define || token.kind == TokenKind::assign) {
     std::string help = continuation_help();
     if (help.empty()) help = "a statement ends with its line or with `;`";
@@ -167,19 +178,51 @@ void Parser::left_over(std::initializer_list<std::string_view> words) {
   unexpected("the end of the statement", "a statement ends with its line or with `;`");
 }
 
+/// `sin x`, `sin^2(x)`: what the function is of stands in brackets.
+std::string Parser::argument_help() {
+  const std::string_view text = source_.text();
+  const std::uint32_t begin = current().span.begin;
+  if (last_kind_ == TokenKind::name && is_function(source_.slice(last_span_))) {
+    // Up to where a sum, a bracket, a comma or the statement ends.
+    const std::size_t end = std::min(text.find_first_of("+-),;\n#{}[<>=", begin), text.size());
+    std::string_view argument = text.substr(begin, end - begin);
+    argument = argument.substr(0, argument.find_last_not_of(" \t\r") + 1);
+    if (argument.starts_with('(')) return {};
+    const std::string call = fmt::format("{}({})", source_.slice(last_span_), argument);
+    const Span all{last_span_.begin, static_cast<std::uint32_t>(begin + argument.size())};
+    return with_corrected_line("a function has brackets", source_, all, call);
+  }
+  if (last_kind_ == TokenKind::number && current().kind == TokenKind::open_round && last_span_.begin > 0 &&
+      text[last_span_.begin - 1] == '^') {
+    std::size_t first = last_span_.begin - 1;
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
+    while (first > 0 && is_letter(text[first - 1])) --first;
+    const std::string_view function = text.substr(first, last_span_.begin - 1 - first);
+    if (!is_function(function)) return {};
+    return fmt::format("the power stands behind the bracket: {}(...)^{}", function, source_.slice(last_span_));
+  }
+  return {};
+}
+
 /// For two values side by side, of which the second is the current token: most often a product is meant.
 std::string Parser::product_help() {
   const std::string_view left = source_.slice(last_span_), right = spelled(current());
   const TokenKind kind = current().kind;
   if (kind == TokenKind::name && look(1).kind == TokenKind::define)
     return "separate definitions with a comma, statements with `;`";
+  if (kind == TokenKind::number && last_kind_ == TokenKind::number && right.size() == 3)
+    return with_corrected_line("a number has no blanks between its digits", source_,
+                               {last_span_.begin, current().span.end}, fmt::format("{}{}", left, right));
   if (kind == TokenKind::number && last_kind_ == TokenKind::number)
     return fmt::format("a number has no blanks and one point, as in {}", left);
   const bool short_name = last_kind_ == TokenKind::name || last_kind_ == TokenKind::number;
   if (!short_name || left.size() + right.size() > 60) return "write `*` for a product";
   const std::string product = fmt::format("write {}*{}", left, kind == TokenKind::open_round ? "(...)" : right);
   if (last_kind_ != TokenKind::number || kind != TokenKind::name) return product + " for a product";
-  return fmt::format("{}, or {} [{}] if it is a unit", product, left, right);
+  // A unit goes on with powers, products and quotients: N/m, m/s^2.
+  const std::string_view rest = std::string_view(source_.text()).substr(current().span.begin, 40);
+  const std::string_view unit = rest.substr(0, rest.find_first_of(" \t\r\n,;#)}"));
+  return fmt::format("{}, or {} [{}] if it is a unit", product, left, unit);
 }
 
 void Parser::expect_statement_end(std::initializer_list<std::string_view> words) {

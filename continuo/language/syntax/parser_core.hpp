@@ -86,6 +86,7 @@ class Parser {
   void expect_statement_end(std::initializer_list<std::string_view> words = {});
   [[nodiscard]] std::string continuation_help();
   [[nodiscard]] std::string product_help();
+  [[nodiscard]] std::string argument_help();
   void recover();
   void recover_to_block();
   [[nodiscard]] bool at_unclosed_block();
@@ -155,6 +156,7 @@ class Parser {
   [[nodiscard]] ast::Statement::Node parse_equation();
   [[nodiscard]] ast::Condition as_condition(ast::Expression left, ast::Expression value);
   void explain_left_side(const ast::Expression& left);
+  void explain_derivative_by_time();
   void require_allowed(std::string_view word, Context context);
   [[noreturn]] void unknown_statement();
   [[nodiscard]] std::vector<ast::Statement> parse_statements(std::string_view wanted, Context context);
@@ -176,6 +178,7 @@ class Parser {
 
   // --- settings (parser_settings.cpp)
   [[nodiscard]] ast::Run parse_run();
+  [[nodiscard]] std::string help_for_run(std::uint32_t begin);
   [[nodiscard]] bool parse_run_part(ast::Run& run);
   void parse_limit_of_steps(ast::Run& run);
   [[nodiscard]] ast::OutputTimes parse_output_times();

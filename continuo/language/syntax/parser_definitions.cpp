@@ -1,6 +1,7 @@
 // Parses definitions: parameters, lets, outputs, inputs, tables, unknowns.
 #include <fmt/format.h>
 
+#include <continuo/language/syntax/blackboard.hpp>
 #include <continuo/language/syntax/parser_core.hpp>
 #include <continuo/language/text/words.hpp>
 
@@ -12,8 +13,11 @@ std::vector<ast::Definition> Parser::parse_definitions(bool with_range) {
   std::vector<ast::Definition> items;
   do {
     if (!items.empty() && at(TokenKind::number)) {
+      const bool is_list = items.back().elements.has_value();
+      const std::string help = is_list ? "a list stands in brackets, (9, 8); the decimal sign is a point: 9.8"
+                                       : help_with_commas(source_, current().span.begin);
       fail(error("E110", current().span, "expected a name after the comma, found " + describe(current(), source_), "",
-                 "the decimal sign is a point: 9.8, not 9,8"));
+                 help.empty() ? "the decimal sign is a point: 9.8, not 9,8" : help));
     }
     items.push_back(parse_definition(with_range));
   } while (accept(TokenKind::comma));
@@ -44,6 +48,9 @@ ast::Definition Parser::parse_definition(bool with_range) {
   if (at(TokenKind::assign)) {
     fail(error("E118", current().span, "`:=` assigns in an event", "", "write `=` to define"));
   }
+  if (at(TokenKind::colon))
+    unexpected(fmt::format("`=` and the value of `{}`", definition.name.text),
+               with_corrected_line("write `=`", source_, {definition.name.span.end, current().span.end}, " ="));
   expect(TokenKind::define, fmt::format("`=` and the value of `{}`", definition.name.text));
   definition.value = parse_value_or_list();
   if (const auto* list = std::get_if<ast::List>(&definition.value.node); list && !definition.elements) {

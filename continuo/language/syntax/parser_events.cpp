@@ -84,6 +84,8 @@ void Parser::parse_direction(ast::When& event) {
   } else {
     std::string help = did_you_mean(word, direction_words);
     if (help.empty()) help = "write falls, rises or crosses: when h falls through 0 { ... }";
+    if (word == "then" || word == "do")
+      help = fmt::format("what happens stands in braces: when {} {{ ... }}", source_.slice(event.subject.span));
     fail(error("E125", current().span, fmt::format("`{}` is no direction", word), "", help));
   }
   if (condition) {

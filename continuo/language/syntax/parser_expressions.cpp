@@ -172,7 +172,13 @@ void Parser::value_missing() {
   const Token& token = current();
   if (token.problem) fail(*token.problem);
   std::string help;
-  if (token.kind == TokenKind::unit) help = "a unit follows its number, as in 3 [m]; a list is written (1, 2, 3)";
+  if (token.kind == TokenKind::unit)
+    help = "a unit follows its number, as in 3 [m]; brackets of expressions and lists are round: (x + 1), (1, 2, 3)";
+  if (token.kind == TokenKind::open_brace) help = "brackets of expressions are round: (x + 1)";
+  if (token.kind == TokenKind::prime) help = "a prime follows its name, as in x'";
+  if (token.kind == TokenKind::star && last_kind_ == TokenKind::open_round)
+    fail(error("E127", cover(last_span_, token.span), "`(*` is not a sign of the language", "",
+               "a comment begins with `#` and ends with its line"));
   if (token.kind == TokenKind::caret || token.kind == TokenKind::star || token.kind == TokenKind::slash)
     help = "this sign stands between two values";
   if (token.kind == TokenKind::text) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <continuo/language/syntax/blackboard.hpp>
 #include <continuo/language/syntax/parser_core.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
@@ -48,9 +49,15 @@ const std::array<ShapeRule, 9> shapes = {{
 
 ast::Run Parser::parse_run() {
   ast::Run run;
+  const std::uint32_t begin = current().span.begin;
+  const bool is_pair =
+      at(TokenKind::open_round) && look(1).kind == TokenKind::number && look(2).kind == TokenKind::comma;
+  if (at(TokenKind::unit) || is_pair) unexpected("the start of the run", help_for_run(begin));
   Expression first = parse_sum_of_terms();
   if (!at(TokenKind::dots)) {
-    unexpected("`..` and the end of the run", fmt::format("write run 0..{}", source_.slice(first.span)));
+    std::string help = help_for_run(begin);
+    if (help.empty()) help = fmt::format("write run 0..{}", source_.slice(first.span));
+    unexpected("`..` and the end of the run", std::move(help));
   }
   run.interval = parse_range_from(std::move(first));
   while (true) {
@@ -66,8 +73,35 @@ ast::Run Parser::parse_run() {
     if (comma) unexpected("a part of the run after the comma: output, method, step, tol, abs, max or realtime");
     break;
   }
+  if (at_word("dt") || at_word("by") || at_word("every"))
+    unexpected("the end of the statement",
+               "rows in equal intervals are written run 0..10 output 0.1, steps of one size run 0..10 step 0.1");
   expect_statement_end({"output", "method", "step", "tol", "abs", "max", "realtime"});
   return run;
+}
+
+/// For `run 0,10`, `0 to 10`, `0:10`, `0:0.1:10`, `[0, 10]`, `(0, 10)`, `0-10`, `until 10`: the range that was meant.
+std::string Parser::help_for_run(std::uint32_t begin) {
+  std::string text(source_.text().substr(begin, source_.text().find_first_of("\n;#{", begin) - begin));
+  for (const std::string_view word :
+       {" to ", " until ", " till ", ":", ",", "[", "]", "(", ")", "until ", "to ", "for "})
+    for (std::size_t i = text.find(word); i != std::string::npos; i = text.find(word))
+      text.replace(i, word.size(), "\n");
+  if (text.find_first_of("eE") == std::string::npos) std::ranges::replace(text, '-', '\n');
+  std::vector<std::string> numbers;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t end = std::min(text.find('\n', i), text.size());
+    std::string number = text.substr(i, end - i);
+    number.erase(0, number.find_first_not_of(" \t\r"));
+    number.erase(number.find_last_not_of(" \t\r") + 1);
+    if (!number.empty() && number.find_first_not_of("0123456789.eE-+") != std::string::npos) return {};
+    if (!number.empty()) numbers.push_back(std::move(number));
+    i = end + 1;
+  }
+  if (numbers.size() == 1) return fmt::format("write run 0..{}", numbers[0]);
+  if (numbers.size() == 2) return fmt::format("write run {}..{}", numbers[0], numbers[1]);
+  if (numbers.size() == 3) return fmt::format("write run {}..{} output {}", numbers[0], numbers[2], numbers[1]);
+  return {};
 }
 
 bool Parser::parse_run_part(ast::Run& run) {
@@ -142,6 +176,8 @@ ast::Plot Parser::parse_plot() {
     plot.curves.push_back(parse_sum_of_terms());
   } while (accept(TokenKind::comma));
   if (accept_word("against")) plot.against = parse_sum_of_terms();
+  if (at_word("vs") || at_word("versus") || at_word("over"))
+    unexpected("the end of the statement", with_corrected_line("write `against`", source_, current().span, "against"));
   expect_statement_end({"against"});
   return plot;
 }

@@ -29,7 +29,8 @@ std::optional<Table> points_of(const std::string& file, Span span, Table::Betwee
   }
   Result<Table> read = read_table(file, between);
   if (read) return *std::move(read);
-  report.fail("E272", span, "this file is not a table", describe(read.status()));
+  report.fail("E272", span, "this file is not a table", describe(read.status()),
+              column.empty() ? std::string() : fmt::format("a column named `{}` is read where there is one", column));
   return std::nullopt;
 }
 

@@ -6,6 +6,8 @@
 
 #include <continuo/language/check/expressions/expressions.hpp>
 #include <continuo/language/check/names/functions.hpp>
+#include <continuo/language/syntax/blackboard.hpp>
+#include <continuo/language/text/words.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -136,6 +138,8 @@ Value Calls::unknown_function(const ast::Name& callee) const {
   if (workspace_.declared.world.text) names.insert(names.end(), {"distance", "within", "ray"});
   std::string near = did_you_mean(callee.text, names);
   if (const auto here = function_from_elsewhere(callee.text); !here.empty()) near = here;
+  if (is_function(callee.member))
+    near = with_corrected_line("functions have no name before them", report_.source(), callee.span, callee.member);
   report_.fail("E215", callee.span, fmt::format("there is no function `{}`", callee.text), {}, near);
   return operations_.bad();
 }

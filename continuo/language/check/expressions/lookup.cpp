@@ -6,6 +6,7 @@
 
 #include <continuo/language/check/expressions/expressions.hpp>
 #include <continuo/language/check/names/functions.hpp>
+#include <continuo/language/syntax/blackboard.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::model::detail {
@@ -168,6 +169,36 @@ Value Lookup::not_a_value(const ast::Name& name) const {
   return operations_.bad();
 }
 
+/// What a name that is not declared stands for: a derivative (dx/dt, x_dot), an initial value (x0, x_0), a power of
+/// Euler's number. Empty where it is none of these.
+std::string Lookup::blackboard_help(const ast::Name& name) const {
+  const Source& source = report_.source();
+  const auto is_state = [&](std::string_view base) {
+    return std::ranges::any_of(workspace_.declared.bases, [&](const Base& known) { return known.name == base; });
+  };
+  const auto base_of = [](const std::string& primed) { return primed.substr(0, primed.find('\'')); };
+  const std::string_view text = std::string_view(source.text()).substr(name.span.begin);
+  if (const auto whole = derivative_by_time(text); whole && is_state(base_of(whole->primed)))
+    return with_corrected_line("a derivative is written with a prime", source,
+                               {name.span.begin, name.span.begin + static_cast<std::uint32_t>(whole->size)},
+                               whole->primed);
+  if (const auto primed = derivative_in_name(name.text); primed && is_state(base_of(*primed)))
+    return with_corrected_line("a derivative is written with a prime", source, name.span, *primed);
+  for (const std::string_view zero : {"_0", "0"}) {
+    if (!name.text.ends_with(zero)) continue;
+    const std::string base = name.text.substr(0, name.text.size() - zero.size());
+    if (is_state(base)) return with_corrected_line("an initial value is written", source, name.span, base + "(0)");
+  }
+  if (name.text != "e" || !text.starts_with("e^")) return {};
+  const std::size_t end = text[2] == '(' ? text.find(')') : std::min(text.find_first_of(" +*/,;)\r\n"), text.size());
+  if (end == std::string_view::npos) return {};
+  const std::string_view exponent = text[2] == '(' ? text.substr(3, end - 3) : text.substr(2, end - 2);
+  if (exponent.find('(') != std::string_view::npos) return {};
+  const auto size = static_cast<std::uint32_t>(text[2] == '(' ? end + 1 : end);
+  return with_corrected_line("powers of Euler's number are exp(x)", source, {name.span.begin, name.span.begin + size},
+                             fmt::format("exp({})", exponent));
+}
+
 /// `undeclared`: what to do about it where the name is not like any other.
 Value Lookup::unknown_name(const ast::Name& name, const std::string& key, std::string undeclared) const {
   if (report_.was_reported("E210", name.span) || report_.was_reported("E220", name.span) || report_.is_silent())
@@ -178,6 +209,7 @@ Value Lookup::unknown_name(const ast::Name& name, const std::string& key, std::s
   if (!family) {
     std::string near = did_you_mean(name.text, workspace_.declared.symbols.all());
     if (const auto here = name_from_elsewhere(name.text); !here.empty()) near = here;
+    if (const std::string here = blackboard_help(name); !here.empty()) near = here;
     if (undeclared.empty()) undeclared = fmt::format("declare it: param {} = ..., or give it an equation", name.text);
     report_.fail("E210", name.span, fmt::format("there is no `{}`", key), {}, near.empty() ? undeclared : near);
     return operations_.bad();
@@ -188,8 +220,10 @@ Value Lookup::unknown_name(const ast::Name& name, const std::string& key, std::s
     report_.fail("E220", name.span, fmt::format("`{}` is out of range", key),
                  fmt::format("`{}` goes from `{}` to `{}`", name.text, first, last));
   } else if (shape.dimensions == 0) {
+    const bool is_start = report_.source().slice(name.span) == name.text + "[0]";
     report_.fail("E219", name.span, fmt::format("`{}` has no index", name.text), {},
-                 fmt::format("write {}", name.text));
+                 is_start ? fmt::format("an initial value is written {}(0) = ...", name.text)
+                          : fmt::format("write {}", name.text));
   } else {
     report_.fail("E219", name.span,
                  fmt::format("`{}` needs {}", name.text,

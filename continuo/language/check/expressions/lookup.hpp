@@ -35,6 +35,7 @@ class Lookup {
   [[nodiscard]] Value builtin(const ast::Name& name, const std::string& key, Scope& scope) const;
   [[nodiscard]] Value without_time(const ast::Name& name, const Scope& scope) const;
   [[nodiscard]] Value not_a_value(const ast::Name& name) const;
+  [[nodiscard]] std::string blackboard_help(const ast::Name& name) const;
   [[nodiscard]] std::size_t first_world_measure() const;  // of the kinetic energy, among the states
 
   Expressions& expressions_;

@@ -102,10 +102,22 @@ constexpr Elsewhere functions[] = {
     {"where", choice},
 };
 
+constexpr std::string_view no_infinity = "there is no infinite number; write a large one, such as 1e300";
+
 constexpr Elsewhere names[] = {
-    {"PI", "write pi"},      {"Pi", "write pi"},
-    {"Time", "time is `t`"}, {"e", "Euler's number is exp(1), its power exp(x)"},
+    {"Infinity", no_infinity},
+    {"Inf", no_infinity},
+    {"NaN", "leave the value out, or write a number"},
+    {"PI", "write pi"},
+    {"Pi", "write pi"},
+    {"Time", "time is `t`"},
+    {"e", "Euler's number is exp(1), its power e^x is written exp(x)"},
+    {"inf", no_infinity},
+    {"infinity", no_infinity},
+    {"rand", random},
+    {"random", random},
     {"time", "time is `t`"},
+    {"\xCF\x80", "write pi"},
 };
 
 }  // namespace other_languages
