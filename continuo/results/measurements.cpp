@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,8 +30,10 @@ class Reader {
       row(text.substr(0, std::min(text.find_first_of("#\r\n"), end)));
       text.remove_prefix(std::min(end + 1, text.size()));
     }
+    tell_bad_cells();
     if (status_ && headings_.empty()) fail("the file is empty");
     if (status_ && data_.times.empty()) fail("no rows of numbers below the names of the columns");
+    data_.has_decimal_commas = signs_.are_commas();
     if (status_) sort();
     if (!status_) return std::move(status_);
     return std::move(data_);
@@ -42,21 +45,53 @@ class Reader {
                .message = fmt::format("{}:{}: {}", data_.file, std::max<std::size_t>(line_, 1), what)};
   }
 
+  /// All cells that are no numbers, by their places; of many the first ones.
+  void tell_bad_cells() {
+    constexpr std::size_t most_told = 10;
+    if (!status_ || bad_cells_.empty()) return;
+    const std::size_t told = std::min(bad_cells_.size(), most_told);
+    std::string text =
+        fmt::format("{}", fmt::join(bad_cells_.begin(), bad_cells_.begin() + static_cast<std::ptrdiff_t>(told), "\n"));
+    if (told < bad_cells_.size()) text += fmt::format("\nand {} more cells", bad_cells_.size() - told);
+    status_ = {.ending = Ending::unreadable, .message = std::move(text)};
+  }
+
+  /// Nothing, and noted, where the cell is no number. A missing value is not a number, NaN.
+  std::optional<double> number_in(std::string_view cell, const std::string& heading) {
+    if (cell.empty() || cell == "NA" || cell == "nan" || cell == "NaN") return std::nan("");
+    const auto number = format_->number(cell);
+    std::string problem;
+    if (!number || std::isinf(number->value)) {
+      problem = fmt::format("`{}` in column `{}` is no number", cell, heading);
+    } else if (!signs_.add(*number, line_)) {
+      problem = fmt::format("`{}` in column `{}` has a decimal {}, but line {} has a decimal {}", cell, heading,
+                            number->has_comma ? "comma" : "point",
+                            number->has_comma ? signs_.first_point() : signs_.first_comma(),
+                            number->has_comma ? "point" : "comma");
+    } else {
+      return number->value;
+    }
+    bad_cells_.push_back(fmt::format("{}:{}: {}", data_.file, line_, problem));
+    return std::nullopt;
+  }
+
   void row(std::string_view line) {
-    const auto cells = model::split_cells(line);
+    if (!format_ && line.find_first_not_of(" \t") != std::string_view::npos) format_.emplace(line);
+    const auto cells = format_ ? format_->split(line) : std::vector<std::string_view>();
     if (cells.empty() || std::ranges::all_of(cells, [](auto cell) { return cell.empty(); })) return;
     if (headings_.empty()) return head(cells);
     if (cells.size() > headings_.size())
-      return fail(fmt::format("{} cells under {} names of columns", cells.size(), headings_.size()));
+      return fail(fmt::format("{} cells under {} names of columns{}", cells.size(), headings_.size(),
+                              format_->has_commas_between_cells()
+                                  ? "; numbers with decimal commas need semicolons between the cells"
+                                  : ""));
     for (std::size_t c = 0; c < headings_.size() && status_; ++c) {
       const std::string_view cell = c < cells.size() ? cells[c] : std::string_view();
-      const bool missing = cell.empty() || cell == "NA" || cell == "nan" || cell == "NaN";
-      const auto number = missing ? std::nan("") : model::cell_number(cell);
-      if (!number || std::isinf(*number)) {
-        fail(fmt::format("`{}` in column `{}` is no number", cell, headings_[c]));
-      } else if (c != time_) {
+      const auto number = number_in(cell, headings_[c]);
+      if (!number) continue;
+      if (c != time_) {
         data_.values[c - (c > time_ ? 1 : 0)].push_back(*number);
-      } else if (missing) {
+      } else if (std::isnan(*number)) {
         fail(fmt::format("no time in column `{}`", headings_[c]));
       } else {
         data_.times.push_back(*number);
@@ -75,7 +110,7 @@ class Reader {
   }
 
   void head(const std::vector<std::string_view>& cells) {
-    if (std::ranges::any_of(cells, [](auto cell) { return model::cell_number(cell).has_value(); }))
+    if (std::ranges::any_of(cells, [&](auto cell) { return format_->number(cell).has_value(); }))
       return fail("the first line must name the columns, like `t,x`");
     std::vector<std::string> units;
     for (const std::string_view cell : cells) {
@@ -111,7 +146,9 @@ class Reader {
 
   Measurements data_;
   Status status_;
-  std::vector<std::string> headings_;
+  std::vector<std::string> headings_, bad_cells_;
+  std::optional<model::CellFormat> format_;
+  model::DecimalSigns signs_;
   std::size_t time_ = 0, line_ = 0;
 };
 

@@ -21,11 +21,13 @@ struct Measurements {
   std::vector<std::vector<double>> values;  // by column, one per time; NaN where nothing was measured
   std::vector<std::string> units{};         // by column; empty where the heading gives none
   std::string time_unit{};
+  bool has_decimal_commas = false;  // 1,5 was read as 1.5
 };
 
-/// The first line names the columns; one of them is `t`, else the first is the time. Empty cells, `nan` and `NA` are
-/// missing values. Rows may come in any order. A name may have its unit behind it, after a blank: `x [cm]`.
-/// The message of a failure begins with "file:line: ".
+/// The first line names the columns; one of them is `t`, else the first is the time. Where it has semicolons they are
+/// between the cells, and numbers may have decimal commas. Empty cells, `nan` and `NA` are missing values. Rows may
+/// come in any order. A name may have its unit behind it, after a blank: `x [cm]`. The message of a failure begins with
+/// "file:line: ".
 [[nodiscard]] Result<Measurements> read_measurements(const std::string& file);
 /// The same from text, `name` being what messages call it.
 [[nodiscard]] Result<Measurements> parse_measurements(std::string_view text, const std::string& name);

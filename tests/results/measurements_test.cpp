@@ -1,4 +1,5 @@
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -34,10 +35,46 @@ TEST(Measurements, SayFileAndLineOfWhatIsWrong) {
   EXPECT_EQ(problem("t,x,x\n"), "a.csv:1: two columns are called `x`");
   EXPECT_EQ(problem("t,x\n0,1\n1,abc\n"), "a.csv:3: `abc` in column `x` is no number");
   EXPECT_EQ(problem("t,x\n,1\n"), "a.csv:2: no time in column `t`");
-  EXPECT_EQ(problem("t,x\n0,1,2\n"), "a.csv:2: 3 cells under 2 names of columns");
+  EXPECT_EQ(problem("t,x\n0,1,2\n"),
+            "a.csv:2: 3 cells under 2 names of columns; numbers with decimal commas need semicolons between the cells");
+  EXPECT_EQ(problem("t;x\n0;1;2\n"), "a.csv:2: 3 cells under 2 names of columns");
   const Status status = read_measurements("/no/such.csv").status();
   EXPECT_EQ(status.ending, Ending::unreadable);
   EXPECT_EQ(status.message, "/no/such.csv:1: the file cannot be read");
+}
+
+TEST(Measurements, WithDecimalCommasAreReadAndSaidToBe) {
+  const auto read = parse_measurements("t;x;y\r\n0,5;-1,25;\r\n1;2e-1;\"3,5\"\r\n", "a.csv");
+  ASSERT_TRUE(read) << read.status().message;
+  EXPECT_TRUE(read->has_decimal_commas);
+  EXPECT_EQ(read->times, (std::vector<double>{0.5, 1}));
+  EXPECT_EQ(read->values[0], (std::vector<double>{-1.25, 0.2}));
+  EXPECT_TRUE(std::isnan(read->values[1][0]));  // not the half of a number
+  EXPECT_EQ(read->values[1][1], 3.5);
+  EXPECT_EQ(parse_measurements("t\tx\n0,5\t1,5\n", "a.csv")->values[0][0], 1.5);
+  EXPECT_EQ(parse_measurements("t x\n0,5 1,5\n", "a.csv")->values[0][0], 1.5);
+  EXPECT_FALSE(parse_measurements("t;x\n0.5;1.5\n", "a.csv")->has_decimal_commas);
+  EXPECT_FALSE(parse_measurements("t,x\n0,1\n", "a.csv")->has_decimal_commas);
+}
+
+// What one country writes for three halves is fifteen hundred in another.
+TEST(Measurements, OfTwoDecimalSignsOneIsWrong) {
+  const auto problem = [](const char* text) { return parse_measurements(text, "a.csv").status().message; };
+  EXPECT_EQ(problem("t;x\n0;1,5\n1;1.5\n"),
+            "a.csv:3: `1.5` in column `x` has a decimal point, but line 2 has a decimal comma");
+  EXPECT_EQ(problem("t;x\n0;1.234,5\n"), "a.csv:2: `1.234,5` in column `x` is no number");
+  EXPECT_EQ(problem("t,x\n0,\"1,234\"\n"), "a.csv:2: `1,234` in column `x` is no number");
+}
+
+TEST(Measurements, EveryBadCellIsNamedByItsPlace) {
+  const auto problem = [](const std::string& text) { return parse_measurements(text, "a.csv").status().message; };
+  EXPECT_EQ(problem("t,x,y\n0,one,1\n1,2,2,\nx,3,-\n"),
+            "a.csv:2: `one` in column `x` is no number\n"
+            "a.csv:4: `x` in column `t` is no number\n"
+            "a.csv:4: `-` in column `y` is no number");
+  std::string many = "t,x\n";
+  for (int i = 0; i < 25; ++i) many += std::to_string(i) + ",bad\n";
+  EXPECT_NE(problem(many).find("a.csv:11: `bad` in column `x` is no number\nand 15 more cells"), std::string::npos);
 }
 
 }  // namespace

@@ -37,6 +37,17 @@ TEST(Table, ColumnsAreFoundByName) {
   EXPECT_EQ(read->value(1), 4);
 }
 
+TEST(Table, SemicolonsLeaveCommasToTheNumbers) {
+  const auto read = parse_table("x;y\n0,5;1,25\n1,5;2\n", "f.csv", linear);
+  ASSERT_TRUE(read) << describe(read.status());
+  EXPECT_EQ(read->value(0.5), 1.25);
+  EXPECT_EQ(read->value(1), 1.625);
+  const auto problem = [](const char* text) { return describe(parse_table(text, "f.csv", linear).status()); };
+  EXPECT_EQ(problem("x;y\n0,5;1\n1.5;2\n"),
+            "f.csv:3: `1.5` and line 2 have different decimal signs, a point and a comma");
+  EXPECT_EQ(problem("0,1,2\n1,2,3\n"), "f.csv:1: 3 columns, but a table has two: which ones are meant, nobody knows");
+}
+
 TEST(Table, WrongFilesAreNamedByLine) {
   const auto problem = [](const char* text) { return describe(parse_table(text, "f.csv", linear).status()); };
   EXPECT_EQ(problem("t,y\n0,1\n3,1\n2,1\n"), "f.csv:4: 2 comes after 3: t must increase");

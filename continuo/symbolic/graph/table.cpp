@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,19 +59,20 @@ class Reader {
   void fail(std::string_view what) { status_ = unreadable(std::string(what), name_, std::max<std::size_t>(line_, 1)); }
 
   void row(std::string_view line) {
-    const auto cells = split_cells(line);
+    if (line.find_first_not_of(" \t") == std::string_view::npos) return;
+    if (!format_) format_.emplace(line);
+    const auto cells = format_->split(line);
     if (cells.empty()) return;
     if (!started_) {
       started_ = true;
-      const bool is_heading = std::ranges::none_of(cells, [](auto cell) { return cell_number(cell).has_value(); });
+      const bool is_heading = std::ranges::none_of(cells, [&](auto cell) { return format_->number(cell).has_value(); });
       if (!choose_columns(cells, is_heading) || is_heading) return;
     }
     if (cells.size() <= std::max(x_column_, y_column_)) {
       return fail(fmt::format("{} columns, but column {} is needed", cells.size(), std::max(x_column_, y_column_) + 1));
     }
-    const auto x = cell_number(cells[x_column_]), y = cell_number(cells[y_column_]);
-    if (!x) return fail(fmt::format("`{}` is not a number", cells[x_column_]));
-    if (!y) return fail(fmt::format("`{}` is not a number", cells[y_column_]));
+    const auto x = number_in(cells[x_column_]), y = number_in(cells[y_column_]);
+    if (!x || !y) return;
     if (!std::isfinite(*x) || !std::isfinite(*y)) return fail("a number is not finite");
     if (!xs_.empty() && !(*x > xs_.back())) {
       return fail(fmt::format("{} comes after {}: {} must increase", *x, xs_.back(), x_title_));
@@ -79,9 +81,27 @@ class Reader {
     ys_.push_back(*y);
   }
 
+  /// Says what is wrong.
+  std::optional<double> number_in(std::string_view cell) {
+    const auto number = format_->number(cell);
+    if (!number) {
+      fail(fmt::format("`{}` is not a number", cell));
+    } else if (!signs_.add(*number, line_)) {
+      fail(fmt::format("`{}` and line {} have different decimal signs, a point and a comma", cell,
+                       number->has_comma ? signs_.first_point() : signs_.first_comma()));
+    } else {
+      return number->value;
+    }
+    return std::nullopt;
+  }
+
   bool choose_columns(const std::vector<std::string_view>& cells, bool is_heading) {
     if (is_heading) x_title_ = cells.front();
-    if (x_name_.empty() && y_name_.empty()) return true;
+    if (x_name_.empty() && y_name_.empty()) {
+      if (cells.size() <= 2) return true;
+      return fail(fmt::format("{} columns, but a table has two: which ones are meant, nobody knows", cells.size())),
+             false;
+    }
     if (!is_heading) return fail("columns are asked for by name, but the first line has no names"), false;
     const auto find = [&](std::string_view name, std::size_t& column) {
       const auto found = std::ranges::find(cells, name);
@@ -102,6 +122,8 @@ class Reader {
   std::string_view x_name_, y_name_;
   std::size_t x_column_ = 0, y_column_ = 1, line_ = 0;
   bool started_ = false;
+  std::optional<CellFormat> format_;
+  DecimalSigns signs_;
   std::string x_title_ = "the first column";
   std::vector<double> xs_, ys_;
   Status status_;
