@@ -7,7 +7,9 @@
 #include <CLI/Formatter.hpp>
 #include <apps/continuo/command.hpp>
 #include <apps/continuo/options/command_line.hpp>
+#include <apps/continuo/options/completion.hpp>
 #include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
@@ -35,7 +37,14 @@ void add_verbs(CLI::App& app, ExitCode& exit, std::span<const OwnVerb> verbs) {
   }
 }
 
-int command(int argc, char** argv, std::span<const OwnVerb> verbs) {
+/// How a command line ended: the verb is empty where none was understood.
+struct Ended {
+  int exit = usage;
+  std::string verb{};
+  bool showed_help = false;
+};
+
+Ended command(int argc, char** argv, std::span<const OwnVerb> verbs) {
   CLI::App app(
       "Simulates continuous systems from their differential equations, with located events and error estimates.",
       "continuo");
@@ -46,41 +55,52 @@ int command(int argc, char** argv, std::span<const OwnVerb> verbs) {
   add_verbs(app, exit, verbs);
 
   for (CLI::App* verb : app.get_subcommands({})) refuse_empty(*verb);
+  if (argc > 1 && argv[1] == completion_request) {
+    for (const std::string& word : completions(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(2)))
+      print(word + "\n");
+    return {.exit = done, .showed_help = true};
+  }
   if (argc == 1) {
     print(app.help());
-    return usage;
+    return {};
   }
-  const auto advice = [&] {
+  const auto verb = [&] {
     const auto chosen = app.get_subcommands();
-    return fmt::format("continuo {}--help shows how", chosen.empty() ? "" : chosen.front()->get_name() + " ");
+    return chosen.empty() ? std::string() : chosen.front()->get_name();
   };
+  const auto advice = [&] { return fmt::format("continuo {}--help shows how", verb().empty() ? "" : verb() + " "); };
   try {
     app.parse(argc, argv);
-    return exit;
+    return {.exit = exit, .verb = verb()};
   } catch (const CLI::Success& success) {  // --help, --version
-    return app.exit(success);
+    return {.exit = app.exit(success), .verb = verb(), .showed_help = true};
   } catch (const FileFault& fault) {
     say(fault.what());
   } catch (const CLI::ExtrasError&) {
     say(fmt::format("{} ({})", unexpected(app, argc, argv), advice()));
   } catch (const CLI::ParseError& error) {
-    const bool no_verb = app.get_subcommands().empty();
-    say(fmt::format("{} ({})", no_verb ? unexpected(app, argc, argv) : error.what(), advice()));
+    say(fmt::format("{} ({})", verb().empty() ? unexpected(app, argc, argv) : error.what(), advice()));
   }
-  return usage;
+  return {.verb = verb()};
+}
+
+/// What the verb did, or how it broke off.
+Ended call(int argc, char** argv, std::span<const OwnVerb> verbs) {
+  try {
+    return command(argc, argv, verbs);
+  } catch (const std::exception& error) {
+    say(fmt::format("internal error: {}", error.what()));
+    return {.exit = numerical_failure};
+  }
 }
 
 }  // namespace
 
 int run_command(int argc, char** argv, std::span<const OwnVerb> verbs) {
-  try {
-    const int exit = command(argc, argv, verbs);
-    if (exit != done) return exit;
-    return all_printed() ? done : usage;
-  } catch (const std::exception& error) {
-    say(fmt::format("internal error: {}", error.what()));
-    return numerical_failure;
-  }
+  const Ended ended = call(argc, argv, verbs);
+  if (wants_json(argc, argv) && !ended.showed_help) print_answer(ended.verb, ended.exit);
+  if (ended.exit != done) return ended.exit;
+  return all_printed() ? done : usage;
 }
 
 }  // namespace continuo::app

@@ -3,6 +3,7 @@
 
 #include <apps/continuo/command.hpp>
 #include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/studies_program.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <apps/continuo/verbs/run.hpp>
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   using namespace continuo::app;
   if (program_for(argc, argv) == Program::studies) {
     become_studies_program(argv);
+    if (wants_json(argc, argv)) print_answer("", usage);
     return usage;
   }
   const std::array verbs{

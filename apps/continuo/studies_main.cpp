@@ -4,6 +4,7 @@
 #include <apps/continuo/command.hpp>
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/boundary_families.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <apps/continuo/verbs/run.hpp>
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
   using namespace continuo::app;
   if (program_for(argc, argv) != Program::studies) {
     say("this is the part of the command for studies, and these words are for the other one: call continuo");
+    if (wants_json(argc, argv)) print_answer("", usage);
     return usage;
   }
   const std::array verbs{

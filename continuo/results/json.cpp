@@ -82,7 +82,7 @@ Json error_of(const model::Run& run) {
   const model::ErrorEstimate& error = *run.error;
   if (!error.message.empty()) json["message"] = error.message;
   for (std::size_t i = 0; i < error.at_end.size(); ++i) {
-    Json& state = json[run.motion.columns[i + 1].name];
+    Json& state = json["states"][run.motion.columns[i + 1].name];
     state["at_end"] = error.at_end[i];
     if (!error.largest.empty()) state["largest"] = error.largest[i];
   }

@@ -27,7 +27,7 @@ TEST(OrbitPlane, FoldsOfOrbitsAsTableAndJson) {
   EXPECT_EQ(found["curves"][0]["kind"], "fold");
   EXPECT_TRUE(found["curves"][0]["degenerate"].empty());
   for (const auto& point : found["curves"][0]["points"]) {
-    const double mu = point["mu"], nu = point["nu"];
+    const double mu = point["at"][0], nu = point["at"][1];
     EXPECT_NEAR(mu, -nu * nu / 4, 1e-7);
   }
   EXPECT_THAT(shell.read("c.csv"), StartsWith("curve,kind,mu,nu,period,rotation,x min,x max,y min,y max"));
@@ -52,7 +52,7 @@ TEST(OrbitPlane, HomoclinicOrbitsBeginAtADoubleZero) {
   EXPECT_EQ(found["curves"][0]["kind"], "homoclinic orbit");
   ASSERT_GT(found["curves"][0]["points"].size(), 3u);
   for (const auto& point : found["curves"][0]["points"]) {
-    const double m0 = point["m0"], m1 = point["m1"];
+    const double m0 = point["at"][0], m1 = point["at"][1];
     EXPECT_NEAR(m0 / (m1 * m1), -6.0 / 25, 0.24 * 0.5 * std::sqrt(-m1));
   }
 }
@@ -73,7 +73,7 @@ TEST(OrbitSpace, SaddleNodesAndNeutralSaddles) {
   for (const auto& curve : found["three"]["curves"]) {
     ASSERT_GT(curve["points"].size(), 3u);
     for (const auto& point : curve["points"]) {
-      const double nu = point["nu"], a = point["a"], b = point["b"];
+      const double nu = point["at"][0], a = point["at"][1], b = point["at"][2];
       EXPECT_NEAR(nu, 0, 1e-7);
       EXPECT_NEAR(a, curve["kind"] == "saddle-node" ? b : 0, 1e-7);
     }

@@ -182,13 +182,13 @@ TEST(Steady, BranchesThatCrossAsTableAndJson) {
   std::size_t transcritical = 0, hopf = 0;
   for (const auto& branch : found["branches"])
     for (const auto& point : branch["bifurcations"]) {
-      const double p = point["p"], at_third = 2.0 / 3 / (1 - std::exp(-5.0 / 3));
+      const double p = point["at"], at_third = 2.0 / 3 / (1 - std::exp(-5.0 / 3));
       if (point["kind"] == "transcritical point") {
         ++transcritical;
         EXPECT_LT(std::min(std::abs(p - 0.6), std::abs(p - at_third)), 1e-10);
       } else if (point["kind"] == "Hopf point") {
         ++hopf;
-        EXPECT_LT(point["first Lyapunov coefficient"], 0);
+        EXPECT_LT(point["first_lyapunov_coefficient"], 0);
       }
     }
   EXPECT_EQ(hopf, 1u);
@@ -250,7 +250,7 @@ TEST(Steady, HoldsWhatIsConserved) {  // a + b = total, at rest a = total / 3
   EXPECT_EQ(found["conserved"][0]["sum"], "a + b");
   ASSERT_EQ(found["branches"].size(), 1u);
   for (const auto& point : found["branches"][0]["points"])
-    EXPECT_NEAR(point["x"][0].get<double>(), point["total"].get<double>() / 3, 1e-9);
+    EXPECT_NEAR(point["x"][0].get<double>(), point["at"].get<double>() / 3, 1e-9);
   EXPECT_THAT(shell.run("sense pair.sim --of equilibrium --param total").out, HasSubstr("0.333333"));
   EXPECT_THAT(shell.run("explore pair.sim").out, HasSubstr("conserved   a + b = 3\nequilibria"));
 }
@@ -288,8 +288,8 @@ TEST(Orbit, ABranchWithItsTableAndPicture) {
   EXPECT_THAT(shell.run("orbit bautin.sim --along mu=-1..1 --from-hopf").out, HasSubstr("mu = -0.25: fold"));
   const auto as_json = nlohmann::json::parse(shell.run("orbit bautin.sim --along mu=-1..1 --json").out);
   ASSERT_EQ(as_json["branches"].size(), 1u);
-  EXPECT_NEAR(as_json["branches"][0]["bifurcations"][0]["mu"], -0.25, 1e-8);
-  EXPECT_EQ(as_json["branches"][0]["ends"][1]["mu"], 1);
+  EXPECT_NEAR(as_json["branches"][0]["bifurcations"][0]["at"], -0.25, 1e-8);
+  EXPECT_EQ(as_json["branches"][0]["ends"][1]["at"], 1);
   // From the initial values the motion tends to an equilibrium; the orbits begin elsewhere.
   const Result fallback = shell.run("orbit bautin.sim --along mu=-1..1 --set mu=-0.5");
   EXPECT_EQ(fallback.exit, 0);
@@ -433,7 +433,7 @@ TEST(Orbit, ThroughEventsIsFollowedAlongAParameter) {
   const auto found = nlohmann::json::parse(shell.run("orbit map.sim --along r=2..3.5 --branches 1 --json").out);
   ASSERT_EQ(found["branches"].size(), 2u);
   EXPECT_EQ(found["branches"][0]["bifurcations"][0]["kind"], "period doubling");
-  EXPECT_NEAR(found["branches"][0]["bifurcations"][0]["r"].get<double>(), 3, 1e-9);
+  EXPECT_NEAR(found["branches"][0]["bifurcations"][0]["at"].get<double>(), 3, 1e-9);
   const auto refused = [&](const std::string& options, const std::string& reason) {
     const Result result = shell.run("orbit map.sim " + options);
     EXPECT_NE(result.exit, 0) << options;

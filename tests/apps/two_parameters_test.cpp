@@ -31,7 +31,7 @@ TEST(SteadyPlane, FoldsAndHopfPointsOfBazykin) {
   std::size_t double_zeros = 0, cusps = 0, bautin = 0;
   for (const auto& curve : found["curves"])
     for (const auto& point : curve["degenerate"]) {
-      const double alpha = point["alpha"], delta = point["delta"];
+      const double alpha = point["at"][0], delta = point["at"][1];
       if (point["kind"] == "Bogdanov-Takens point") {
         ++double_zeros;
         EXPECT_LT(

@@ -172,8 +172,8 @@ TEST(Check, DerivativesAreComparedWithDifferencesAlongARun) {
   EXPECT_THAT(shell.run("check kink.sim --jacobian").out, HasSubstr("kink    d(v')/d(v) at t = 0: 1 below, -1 above"));
   const auto object = nlohmann::json::parse(shell.run("check kink.sim --jacobian --json").out);
   EXPECT_TRUE(object["messages"].empty());
-  EXPECT_EQ(object["jacobian"]["kinks"][0]["entry"], "d(v')/d(v)");
-  EXPECT_TRUE(object["jacobian"]["agrees"]);
+  EXPECT_EQ(object["files"][0]["jacobian"]["kinks"][0]["entry"], "d(v')/d(v)");
+  EXPECT_TRUE(object["files"][0]["jacobian"]["agrees"]);
 }
 
 TEST(Check, DerivativesOfAModelWithoutARunAreNotCompared) {

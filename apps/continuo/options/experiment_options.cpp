@@ -193,7 +193,8 @@ bool decides_a_size(const model::Model& model, const model::Overrides& values) {
 }  // namespace
 
 void add_model(CLI::App& verb, ExperimentOptions& options) {
-  reads_file(verb, verb.add_option("file", options.file, "The model")->required(), files_of_model);
+  reads_file(verb, verb.add_option("file", options.file, "The model (- for standard input)")->required(),
+             files_of_model);
   verb.add_option("--set", options.settings, "Sets a parameter: --set k=5 --set \"c=0.2 [N*s/m]\"")
       ->type_name("NAME=VALUE")
       ->expected(1)
@@ -277,10 +278,6 @@ std::function<void(double)> watcher_of(const Prepared& prepared, Progress& progr
   return plan ? progress.over(plan->from, plan->to) : progress.number("t");
 }
 
-void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source) {
-  if (!diagnostics.empty()) fmt::print(stderr, "{}", model::render(diagnostics, source, {.color = colors_wanted()}));
-}
-
 Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
   if (!readable(options.file))
     return {.exit = usage, .loaded = {model::Source("", ""), {}, {}}, .program = {}, .experiment = {}};
@@ -303,7 +300,7 @@ Prepared prepare(const ExperimentOptions& options, Worlds worlds) {
   }
   if (decides_a_size(*prepared.loaded.model, *values)) {
     prepared.decides_size = true;
-    prepared.loaded = load_model(options.file, {.overrides = *values});
+    prepared.loaded = load_model(prepared.loaded.source, {.overrides = *values});
     if (!prepared.loaded) {
       prepared.exit = wrong_model;
       return prepared;

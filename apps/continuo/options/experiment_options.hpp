@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <CLI/App.hpp>
+#include <apps/continuo/options/models.hpp>
 #include <apps/continuo/terminal/exit_codes.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 
@@ -70,8 +71,5 @@ bool has_no_start(const Prepared& prepared);
 
 /// What the experiment calls on its way, with the time that is left.
 std::function<void(double)> watcher_of(const Prepared& prepared, Progress& progress);
-
-/// Messages of a run as people read them, on standard error.
-void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source);
 
 }  // namespace continuo::app

@@ -7,8 +7,11 @@
 #include <memory>
 
 #include <apps/continuo/options/models.hpp>
+#include <apps/continuo/terminal/answer.hpp>
+#include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/symbolic/names/suggest.hpp>
 
@@ -34,6 +37,7 @@ std::vector<std::string> neighbours(const fs::path& path) {
 }  // namespace
 
 bool readable(const std::string& path) {
+  if (path == standard_input) return true;
   std::error_code error;
   std::string reason;
   if (fs::is_directory(path, error)) {
@@ -56,14 +60,39 @@ bool drawable(const std::string& path) {
   return false;
 }
 
+bool reads_standard_input_once(const std::vector<std::string>& read) {
+  if (std::ranges::count(read, standard_input) <= 1) return true;
+  say("standard input (-) can be read once: give the name of a file for the others");
+  return false;
+}
+
+void show(std::span<const model::Diagnostic> diagnostics, const model::Source& source) {
+  if (diagnostics.empty()) return;
+  fmt::print(stderr, "{}", model::render(diagnostics, source, {.color = colors_wanted()}));
+  for (const model::Diagnostic& diagnostic : diagnostics)
+    record_message(nlohmann::ordered_json::parse(model::to_json(diagnostic, source)));
+}
+
+std::string name_of_file(const std::string& path) {
+  return path == standard_input ? "standard input" : path;
+}
+
 model::Loaded load_model(const std::string& path, const model::CheckOptions& options) {
+  if (path == standard_input) return load_model(model::Source(name_of_file(path), contents_of(path)), options);
   model::Loaded loaded = model::load(path, options);
-  if (!loaded.diagnostics.empty()) fmt::print(stderr, "{}", loaded.text({.color = colors_wanted()}));
+  show(loaded.diagnostics, loaded.source);
+  return loaded;
+}
+
+model::Loaded load_model(model::Source source, const model::CheckOptions& options) {
+  model::Loaded loaded = model::load(std::move(source), options);
+  show(loaded.diagnostics, loaded.source);
   return loaded;
 }
 
 ModelFiles find_models(const std::vector<std::string>& files_and_folders) {
-  ModelFiles found;
+  ModelFiles found{.paths = {}, .complete = reads_standard_input_once(files_and_folders)};
+  if (!found.complete) return found;
   for (const std::string& place : files_and_folders) {
     std::error_code error;
     if (!fs::is_directory(place, error)) {

@@ -34,15 +34,14 @@ std::string space_place(const DegenerateHomoclinicPoint& point, const NamedSpace
   return text;
 }
 
-nlohmann::json json_of(const DegenerateHomoclinicPoint& point, const NamedSpace& space) {
-  nlohmann::json entry{{"x", point.orbit.x},
-                       {"min", point.orbit.low},
-                       {"max", point.orbit.high},
-                       {"interval", point.orbit.period},
-                       {"eigenvalues", app::json_of(point.orbit.eigenvalues)},
-                       {"truncation", point.orbit.truncation}};
-  for (std::size_t k = 0; k < 3; ++k) entry[space[k].name] = point.constants[k];
-  return entry;
+nlohmann::json json_of(const DegenerateHomoclinicPoint& point) {
+  return {{"at", {point.constants[0], point.constants[1], point.constants[2]}},
+          {"x", point.orbit.x},
+          {"min", point.orbit.low},
+          {"max", point.orbit.high},
+          {"interval", point.orbit.period},
+          {"eigenvalues", app::json_of(point.orbit.eigenvalues)},
+          {"truncation", point.orbit.truncation}};
 }
 
 /// The points of a curve and between them those that are more.
@@ -142,17 +141,16 @@ nlohmann::json json_of(const SpaceCurves& curves, const NamedSpace& space) {
                          {"degenerate", nlohmann::json::array()},
                          {"ends", nlohmann::json::array()}};
     if (!curve.status) entry["message"] = curve.status.message;
-    for (const DegenerateHomoclinicPoint& point : curve.points) entry["points"].push_back(json_of(point, space));
+    for (const DegenerateHomoclinicPoint& point : curve.points) entry["points"].push_back(json_of(point));
     for (const MarkedHomoclinic& mark : curve.marks) {
-      nlohmann::json at = json_of(mark.at, space);
+      nlohmann::json at = json_of(mark.at);
       at["kind"] = to_string(mark.kind);
       entry["degenerate"].push_back(std::move(at));
     }
     for (std::size_t side = 0; side < 2 && !curve.points.empty(); ++side) {
       const auto& last = side == 0 ? curve.points.front() : curve.points.back();
-      nlohmann::json end{{"reason", curve.ends[side].reason}};
-      for (std::size_t k = 0; k < 3; ++k) end[space[k].name] = last.constants[k];
-      entry["ends"].push_back(std::move(end));
+      entry["ends"].push_back(
+          {{"at", {last.constants[0], last.constants[1], last.constants[2]}}, {"reason", curve.ends[side].reason}});
     }
     list.push_back(std::move(entry));
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <apps/continuo/studies/studied_model.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <continuo/results/figure.hpp>
 #include <continuo/simulation/simulate.hpp>
@@ -64,7 +65,7 @@ struct ExplorationLimits {
 Exploration explore(const Studied& studied, const ExplorationLimits& limits);
 
 std::string exploration_text(const Studied& studied, const Exploration& found);
-std::string exploration_json(const Studied& studied, const Exploration& found);
+nlohmann::json exploration_json(const Studied& studied, const Exploration& found);
 /// The run, the plane of the first two states with its equilibria and orbit, and a panel for each slider.
 results::Figure exploration_figure(const Studied& studied, const Exploration& found);
 

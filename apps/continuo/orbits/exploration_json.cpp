@@ -40,7 +40,7 @@ json slider_json(const Slider& slider) {
 
 }  // namespace
 
-std::string exploration_json(const Studied& studied, const Exploration& found) {
+nlohmann::json exploration_json(const Studied& studied, const Exploration& found) {
   json states = json::array(), sliders = json::array(), influences = json::array();
   for (const model::State& state : studied.prepared.program->model.states) states.push_back(state.column);
   for (const Slider& slider : found.sliders) sliders.push_back(slider_json(slider));
@@ -71,7 +71,7 @@ std::string exploration_json(const Studied& studied, const Exploration& found) {
                        {"multipliers", json_of(found.hybrid_orbit->multipliers)}};
   if (found.exponents)
     result["exponents"] = {{"values", found.exponents->exponents}, {"spread", found.exponents->spread}};
-  return result.dump(2) + "\n";
+  return result;
 }
 
 }  // namespace continuo::app

@@ -8,6 +8,7 @@
 #include <apps/continuo/orbits/orbit_figure.hpp>
 #include <apps/continuo/orbits/steady_branches.hpp>
 #include <apps/continuo/studies/orbit_text.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -101,8 +102,8 @@ std::string text_of(const model::Model& model, const studies::HybridOrbit& found
   return text;
 }
 
-std::string json_text(const model::Model& model, const studies::HybridOrbit& found,
-                      const std::optional<double>& forcing) {
+nlohmann::json json_of(const model::Model& model, const studies::HybridOrbit& found,
+                       const std::optional<double>& forcing) {
   auto states = nlohmann::json::array(), events = nlohmann::json::array(), aside = nlohmann::json::array();
   for (const model::State& state : model.states) states.push_back(state.column);
   for (const studies::SensitivityEvent& event : found.events) events.push_back({{"name", event.name}, {"t", event.t}});
@@ -121,7 +122,7 @@ std::string json_text(const model::Model& model, const studies::HybridOrbit& fou
                         {"aside", aside}};
   if (model.modes.size() > 1) object["mode"] = model.modes[found.start.mode].name;
   if (forcing) object.update({{"forcing", *forcing}, {"turns", found.turns}});
-  return object.dump(2) + "\n";
+  return object;
 }
 
 }  // namespace
@@ -158,7 +159,11 @@ ExitCode show_hybrid_orbit(const Studied& studied, const HybridOrbitRequest& req
     return find_hybrid_orbit(studied, request, *search);
   }();
   if (!found.outcome) return failed_exit(found.outcome);
-  print(request.json ? json_text(model, found, search->forcing) : text_of(model, found, search->forcing));
+  if (request.json) {
+    answer("continuo.orbit/1", json_of(model, found, search->forcing));
+  } else {
+    print(text_of(model, found, search->forcing));
+  }
   if (!request.plot.empty() && !written(results::draw(figure_of(model, found), request.plot))) return usage;
   return done;
 }

@@ -4,6 +4,7 @@
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/orbits/long_motion.hpp>
 #include <apps/continuo/studies/orbit_text.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -99,7 +100,7 @@ ExitCode show_exponents(const Studied& studied, const LongMotion& motion) {
                               {"spread", found.spread},
                               {"averaged", found.averaged},
                               {"complete", static_cast<bool>(found.outcome)}};
-    print(json.dump(2) + "\n");
+    answer("continuo.exponents/1", json);
   } else {
     std::string text = fmt::format("Lyapunov exponents over {}\n", with_time_unit(found.averaged, model));
     for (std::size_t i = 0; i < found.exponents.size(); ++i)
@@ -127,7 +128,7 @@ ExitCode show_section(const Studied& studied, const std::string& text, const Lon
     return studies::poincare_section(studied.system, studied.start, component, passing);
   }();
   const bool to_terminal = motion.out.empty() || motion.out == "-";
-  if (motion.json) print(section_json(model, section, component, levels[component]).dump(2) + "\n");
+  if (motion.json) answer("continuo.section/1", section_json(model, section, component, levels[component]));
   if (!to_terminal) {
     if (!written(results::write_file(motion.out, section_table(model, section)))) return usage;
   } else if (!motion.json && (motion.plot.empty() || motion.out == "-")) {
@@ -135,7 +136,7 @@ ExitCode show_section(const Studied& studied, const std::string& text, const Lon
   }
   if (!motion.plot.empty() && !written(results::draw(section_figure(model, section, component), motion.plot)))
     return usage;
-  say(fmt::format("{} passes through {}", section.points.size(), text));
+  mention(fmt::format("{} passes through {}", section.points.size(), text));
   return section.outcome ? done : failed_exit(section.outcome);
 }
 

@@ -10,10 +10,12 @@
 #include <apps/continuo/orbits/steady_branches.hpp>
 #include <apps/continuo/studies/branch_curves.hpp>
 #include <apps/continuo/studies/orbit_text.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/results/csv_writer.hpp>
 #include <continuo/results/figure.hpp>
@@ -270,10 +272,10 @@ std::vector<OrbitBranch> follow(const Studied& studied, const OrbitBranchOptions
   return branches;
 }
 
-nlohmann::json json_of(const studies::OrbitPoint& point, const NamedRange& range) {
-  return {{range.name, point.constant}, {"period", point.period},  {"x", point.x},
-          {"min", point.low},           {"max", point.high},       {"multipliers", app::json_of(point.multipliers)},
-          {"stable", point.stable},     {"advance", point.advance}};
+nlohmann::json json_of(const studies::OrbitPoint& point) {
+  return {{"at", point.constant},   {"period", point.period},  {"x", point.x},
+          {"min", point.low},       {"max", point.high},       {"multipliers", app::json_of(point.multipliers)},
+          {"stable", point.stable}, {"advance", point.advance}};
 }
 nlohmann::json json_of(const std::vector<OrbitBranch>& branches, const model::Model& model, const NamedRange& range) {
   auto list = nlohmann::json::array();
@@ -281,15 +283,15 @@ nlohmann::json json_of(const std::vector<OrbitBranch>& branches, const model::Mo
     nlohmann::json entry{{"points", nlohmann::json::array()},
                          {"bifurcations", nlohmann::json::array()},
                          {"ends", nlohmann::json::array()}};
-    for (const studies::OrbitPoint& point : branch.points) entry["points"].push_back(json_of(point, range));
+    for (const studies::OrbitPoint& point : branch.points) entry["points"].push_back(json_of(point));
     for (const studies::OrbitMark& mark : branch.marks) {
-      nlohmann::json at = json_of(mark.at, range);
+      nlohmann::json at = json_of(mark.at);
       at["kind"] = to_string(mark.kind);
       if (mark.kind == studies::OrbitBifurcation::torus) at["rotation"] = mark.rotation;
       entry["bifurcations"].push_back(std::move(at));
     }
     for (const studies::OrbitBranchEnd& end : branch.ends)
-      entry["ends"].push_back({{range.name, end.constant}, {"reason", end.reason}});
+      entry["ends"].push_back({{"at", end.constant}, {"reason", end.reason}});
     list.push_back(std::move(entry));
   }
   auto states = nlohmann::json::array();
@@ -305,7 +307,7 @@ ExitCode show_degenerate(const Studied& studied, const std::vector<studies::Orbi
   const auto degenerate = app::curves_of(studied, curves, space, options.steps);
   if (options.json) {
     document["three"] = app::json_of(degenerate, space);
-    print(document.dump(2) + "\n");
+    answer("continuo.orbit_branches/1", document);
   } else {
     print(app::text_of(degenerate, space));
   }
@@ -330,7 +332,7 @@ ExitCode show_curves(const Studied& studied, const std::vector<OrbitBranch>& bra
   if (options.json) {
     document = json_of(branches, model, options.range);
     document.update(app::json_of(curves, plane));
-    if (!options.third) print(document.dump(2) + "\n");
+    if (!options.third) answer("continuo.orbit_branches/1", document);
   } else {
     print(text_of(curves, plane));
   }
@@ -389,7 +391,7 @@ ExitCode show_orbit_branches(const Studied& studied, const OrbitBranchOptions& o
     say(fmt::format("no orbit was found to follow along {}={:.10g}..{:.10g}", range.name, range.low, range.high));
     return numerical_failure;
   }
-  if (options.json && !options.second) print(json_of(branches, model, range).dump(2) + "\n");
+  if (options.json && !options.second) answer("continuo.orbit_branches/1", json_of(branches, model, range));
   for (std::size_t b = 0; b < branches.size() && !options.json; ++b)
     print((branches.size() == 1 ? "" : fmt::format("{}{}: ", b == 0 ? "" : "\n", b + 1)) +
           table_of(branches[b], model, range));

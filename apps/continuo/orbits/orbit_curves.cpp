@@ -33,12 +33,9 @@ std::string orbit_place(const OrbitCurvePoint& point, const NamedPlane& plane) {
                      plane.second.name, shown(point.constants[1], plane.second));
 }
 
-nlohmann::json json_of(const OrbitCurvePoint& point, const OrbitCurve& curve, const NamedPlane& plane) {
-  nlohmann::json entry{{plane.first.name, point.constants[0]},
-                       {plane.second.name, point.constants[1]},
-                       {"x", point.x},
-                       {"min", point.low},
-                       {"max", point.high}};
+nlohmann::json json_of(const OrbitCurvePoint& point, const OrbitCurve& curve) {
+  nlohmann::json entry{
+      {"at", {point.constants[0], point.constants[1]}}, {"x", point.x}, {"min", point.low}, {"max", point.high}};
   if (is_homoclinic(curve.kind)) {
     entry["interval"] = point.period;
     entry["eigenvalues"] = app::json_of(point.eigenvalues);
@@ -127,18 +124,16 @@ nlohmann::json json_of(const OrbitCurves& curves, const NamedPlane& plane) {
                          {"degenerate", nlohmann::json::array()},
                          {"ends", nlohmann::json::array()}};
     if (!curve.status) entry["message"] = curve.status.message;
-    for (const OrbitCurvePoint& point : curve.points) entry["points"].push_back(json_of(point, curve, plane));
+    for (const OrbitCurvePoint& point : curve.points) entry["points"].push_back(json_of(point, curve));
     for (const DegenerateOrbit& mark : curve.marks) {
-      nlohmann::json at = json_of(mark.at, curve, plane);
+      nlohmann::json at = json_of(mark.at, curve);
       at["kind"] = to_string(mark.kind);
       entry["degenerate"].push_back(std::move(at));
     }
     if (!curve.points.empty())
       for (std::size_t side = 0; side < 2; ++side) {
         const OrbitCurvePoint& last = side == 0 ? curve.points.front() : curve.points.back();
-        entry["ends"].push_back({{plane.first.name, last.constants[0]},
-                                 {plane.second.name, last.constants[1]},
-                                 {"reason", curve.ends[side].reason}});
+        entry["ends"].push_back({{"at", {last.constants[0], last.constants[1]}}, {"reason", curve.ends[side].reason}});
       }
     list.push_back(std::move(entry));
   }

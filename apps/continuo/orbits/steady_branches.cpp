@@ -57,8 +57,8 @@ std::vector<const studies::BranchPoint*> all_points(const Branch& branch) {
   return points;
 }
 
-nlohmann::json json_of(const studies::BranchPoint& point, const NamedRange& range) {
-  return {{range.name, point.constant},
+nlohmann::json json_of(const studies::BranchPoint& point) {
+  return {{"at", point.constant},
           {"x", point.x},
           {"stability", to_string(point.stability)},
           {"eigenvalues", app::json_of(point.eigenvalues)}};
@@ -143,13 +143,13 @@ nlohmann::json json_of(const SteadyDiagram& diagram, const model::Model& model, 
                          {"complete", static_cast<bool>(branch.status)},
                          {"message", branch.status.message}};
     if (crossed) entry["across"] = *crossed + 1;
-    for (const studies::BranchPoint& point : branch.points) entry["points"].push_back(json_of(point, range));
+    for (const studies::BranchPoint& point : branch.points) entry["points"].push_back(json_of(point));
     for (const studies::BifurcationPoint& point : branch.bifurcations) {
-      nlohmann::json at = json_of(point.at, range);
+      nlohmann::json at = json_of(point.at);
       at["kind"] = to_string(point.kind);
       if (point.kind == studies::Bifurcation::hopf) at["frequency"] = point.frequency;
       if (point.coefficient)
-        at[point.kind == studies::Bifurcation::hopf ? "first Lyapunov coefficient" : "coefficient"] =
+        at[point.kind == studies::Bifurcation::hopf ? "first_lyapunov_coefficient" : "coefficient"] =
             *point.coefficient;
       entry["bifurcations"].push_back(std::move(at));
     }

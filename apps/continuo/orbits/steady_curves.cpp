@@ -46,14 +46,13 @@ std::string mark_text(const DegeneratePoint& mark, const NamedPlane& plane) {
   return line + "\n";
 }
 
-nlohmann::json json_of(const CurvePoint& point, const BifurcationCurve& curve, const NamedPlane& plane) {
-  nlohmann::json entry{{plane.first.name, point.constants[0]},
-                       {plane.second.name, point.constants[1]},
+nlohmann::json json_of(const CurvePoint& point, const BifurcationCurve& curve) {
+  nlohmann::json entry{{"at", {point.constants[0], point.constants[1]}},
                        {"x", point.x},
                        {"eigenvalues", app::json_of(point.eigenvalues)}};
   const bool hopf = curve.kind == studies::Bifurcation::hopf;
   if (hopf) entry["frequency"] = point.frequency;
-  if (point.coefficient) entry[hopf ? "first Lyapunov coefficient" : "coefficient"] = *point.coefficient;
+  if (point.coefficient) entry[hopf ? "first_lyapunov_coefficient" : "coefficient"] = *point.coefficient;
   return entry;
 }
 
@@ -168,20 +167,20 @@ nlohmann::json json_of(const Curves& curves, const NamedPlane& plane) {
                          {"ends", nlohmann::json::array()}};
     if (!curve.status) entry["message"] = curve.status.message;
     if (from) entry["from"] = *from + 1;
-    for (const CurvePoint& point : curve.points) entry["points"].push_back(json_of(point, curve, plane));
+    for (const CurvePoint& point : curve.points) entry["points"].push_back(json_of(point, curve));
     for (const DegeneratePoint& mark : curve.marks) {
-      nlohmann::json at = json_of(mark.at, curve, plane);
+      nlohmann::json at = json_of(mark.at, curve);
       at["kind"] = to_string(mark.kind);
-      if (mark.other_frequency > 0) at["other frequency"] = mark.other_frequency;
-      for (const studies::NormalFormNumber& number : mark.numbers) at[std::string(number.name)] = number.value;
+      if (mark.other_frequency > 0) at["other_frequency"] = mark.other_frequency;
+      at["normal_form"] = nlohmann::json::object();
+      for (const studies::NormalFormNumber& number : mark.numbers)
+        at["normal_form"][std::string(number.name)] = number.value;
       entry["degenerate"].push_back(std::move(at));
     }
     if (!curve.points.empty())
       for (std::size_t side = 0; side < 2; ++side) {
         const CurvePoint& last = side == 0 ? curve.points.front() : curve.points.back();
-        entry["ends"].push_back({{plane.first.name, last.constants[0]},
-                                 {plane.second.name, last.constants[1]},
-                                 {"reason", curve.ends[side].reason}});
+        entry["ends"].push_back({{"at", {last.constants[0], last.constants[1]}}, {"reason", curve.ends[side].reason}});
       }
     list.push_back(std::move(entry));
   }

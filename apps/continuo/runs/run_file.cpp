@@ -7,6 +7,7 @@
 #include <apps/continuo/options/file_options.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/runs/run_file.hpp>
+#include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
@@ -48,18 +49,12 @@ bool RunFile::close() {
 
 std::optional<runs::Recording> read_run(const std::string& path) {
   if (!readable(path)) return std::nullopt;
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const auto size = file.tellg();
-  Bytes bytes(size > 0 ? static_cast<std::size_t>(size) : 0);
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!file) {
-    say(fmt::format("cannot read {}", path));
-    return std::nullopt;
-  }
+  const std::string text = contents_of(path);
+  const auto* const first = reinterpret_cast<const Bytes::value_type*>(text.data());
+  const Bytes bytes(first, first + text.size());
   Result<runs::Recording> recording = runs::read_recording(bytes);
   if (recording) return *std::move(recording);
-  say(fmt::format("{}: {}", path, recording.status().message));
+  say(fmt::format("{}: {}", name_of_file(path), recording.status().message));
   return std::nullopt;
 }
 

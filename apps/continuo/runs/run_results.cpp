@@ -6,9 +6,11 @@
 #include <apps/continuo/options/file_options.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/runs/run_results.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/language/text/diagnostic.hpp>
 #include <continuo/results/json.hpp>
@@ -110,10 +112,6 @@ void add_outputs(CLI::App& verb, RunOutputs& outputs) {
   verb.add_flag("--json", outputs.json, "The result as one JSON object on standard output");
 }
 
-void print_no_run(std::span<const model::Diagnostic> diagnostics, const model::Source& source) {
-  print(fmt::format("{{\n  \"outcome\": \"not run\",\n  \"messages\": {}\n}}\n", model::to_json(diagnostics, source)));
-}
-
 bool can_be_written(const RunOutputs& outputs) {
   return drawable(outputs.plot);
 }
@@ -131,14 +129,11 @@ ExitCode tell(const model::Simulated& simulated, const model::Source& source, co
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
               const RunOutputs& outputs, bool as_written, MotionTable& motion) {
   show(simulated.diagnostics, source);
-  if (!simulated.run) {
-    if (outputs.json) print_no_run(simulated.diagnostics, source);
-    return exit_without_run(simulated.diagnostics);
-  }
+  if (!simulated.run) return exit_without_run(simulated.diagnostics);
   const model::Run& run = *simulated.run;
   const bool fine = write_files(outputs, program, run, motion);
   if (outputs.json) {
-    print(results::run_json(run));
+    answer("continuo.run/1", nlohmann::ordered_json::parse(results::run_json(run)));
   } else if (!outputs.data_to_standard_output()) {
     print(results::summary(program.model, run, as_written));
   }

@@ -14,7 +14,9 @@ struct RunOutputs {
   std::string motion{}, events{}, plot{}, manifest{};  // files; empty: not wanted
   bool json = false;
 
-  bool data_to_standard_output() const { return json || motion == "-" || events == "-" || manifest == "-"; }
+  /// How many of them are for standard output.
+  int to_standard_output() const { return json + (motion == "-") + (events == "-") + (manifest == "-"); }
+  bool data_to_standard_output() const { return to_standard_output() > 0; }
 };
 /// -o, --events, --plot, --manifest and --json.
 void add_outputs(CLI::App& verb, RunOutputs& outputs);
@@ -32,8 +34,5 @@ ExitCode tell(const model::Simulated& simulated, const model::Source& source, co
 /// The same, with the table of -o as it was written during the run.
 ExitCode tell(const model::Simulated& simulated, const model::Source& source, const model::ModelProgram& program,
               const RunOutputs& outputs, bool as_written, MotionTable& motion);
-
-/// Why there is no run, as JSON.
-void print_no_run(std::span<const model::Diagnostic> diagnostics, const model::Source& source);
 
 }  // namespace continuo::app

@@ -8,6 +8,7 @@
 #include <apps/continuo/studies/boundary_families.hpp>
 #include <apps/continuo/studies/branch_curves.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -96,7 +97,7 @@ nlohmann::json json_of(const FamilyPoint& point, const Shown& shown) {
     states[shown.model.states[i].column] = {
         {"low", extent.low}, {"high", extent.high}, {"start", extent.at_start}, {"end", extent.at_end}};
   }
-  return {{shown.parameter, point.constant}, {"states", states}};
+  return {{"at", point.constant}, {"states", states}};
 }
 
 nlohmann::json json_of(const ModelFamilies& found, const Shown& shown) {
@@ -193,7 +194,7 @@ ExitCode show_families(const Prepared& prepared, const boundary::BoundaryRequest
   show(found.diagnostics, prepared.loaded.source);
   if (found.families.empty()) return interrupt_flag() ? interrupted : numerical_failure;
   const Shown shown{model, range.parameter, range.from, range.to};
-  if (outputs.json) print(json_of(found, shown).dump(2) + "\n");
+  if (outputs.json) answer("continuo.families/1", json_of(found, shown));
   if (outputs.motion == "-")
     print(csv_of(found, shown));
   else if (!outputs.motion.empty() && !written(results::write_file(outputs.motion, csv_of(found, shown))))

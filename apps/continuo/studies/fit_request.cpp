@@ -10,6 +10,7 @@
 #include <apps/continuo/studies/fit_request.hpp>
 #include <apps/continuo/studies/fit_units.hpp>
 #include <apps/continuo/studies/influences.hpp>
+#include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
@@ -86,11 +87,14 @@ class FitRequestReader {
  private:
   bool read_data() {
     for (const std::string& file : options_.data) {
-      auto read = results::read_measurements(file);
+      auto read = file == standard_input ? results::parse_measurements(contents_of(file), name_of_file(file))
+                                         : results::read_measurements(file);
       if (!read) {
         say(read.status().message);
         return false;
       }
+      if (read->has_decimal_commas)
+        mention(fmt::format("{} has decimal commas: 1,5 is read as 1.5", name_of_file(file)));
       std::error_code error;
       for (const studies::FitData& other : request_.data)
         if (other.measurements.file == file || std::filesystem::equivalent(other.measurements.file, file, error)) {
@@ -106,7 +110,7 @@ class FitRequestReader {
   bool read_settings() {
     for (const std::string& text : options_.settings) {
       const std::size_t colon = text.rfind(':');
-      const auto set = std::ranges::find(request_.data, text.substr(0, std::min(colon, text.size())),
+      const auto set = std::ranges::find(request_.data, name_of_file(text.substr(0, std::min(colon, text.size()))),
                                          [](const studies::FitData& data) { return data.measurements.file; });
       if (colon == std::string::npos || set == request_.data.end()) {
         say(fmt::format("`{}` is not FILE:NAME=VALUE with one of the data files", text));

@@ -123,13 +123,13 @@ std::string columns_text(const studies::FitRequest& request, const studies::Fit&
 
 std::string statistics_text(const studies::FitStatistics& statistics) {
   std::vector<std::string> parts;
-  if (statistics.sum_of_squares) parts.push_back("sum of squares " + short_number(*statistics.sum_of_squares));
-  parts.push_back(fmt::format("{} degrees of freedom", short_number(statistics.degrees)));
+  if (statistics.sum_of_squares) parts.push_back(fmt::format("sum of squares {:.4g}", *statistics.sum_of_squares));
+  parts.push_back(fmt::format("{:.4g} degrees of freedom", statistics.degrees));
   if (statistics.chi_squared)
     parts.push_back(
-        fmt::format("chi squared {} (p = {:.2g})", short_number(*statistics.chi_squared), *statistics.chi_squared_p));
+        fmt::format("chi squared {:.4g} (p = {:.2g})", *statistics.chi_squared, *statistics.chi_squared_p));
   if (statistics.aic)
-    parts.push_back(fmt::format("AIC {}, BIC {}", short_number(*statistics.aic), short_number(*statistics.bic)));
+    parts.push_back(fmt::format("AIC {:.1f}, BIC {:.1f}", *statistics.aic, *statistics.bic));
   return fmt::format("{}\n", fmt::join(parts, ", "));
 }
 
@@ -167,8 +167,8 @@ std::string fit_text(const studies::FitRequest& request, const studies::Fit& fit
   return text + (least.interrupted ? "interrupted: the best there was until then\n" : "");
 }
 
-std::string fit_json(const studies::FitRequest& request, const studies::Fit& fit,
-                     const std::vector<studies::Profile>& profiles) {
+nlohmann::json fit_json(const studies::FitRequest& request, const studies::Fit& fit,
+                        const std::vector<studies::Profile>& profiles) {
   using nlohmann::json;
   const model::Model& model = request.program->model;
   const std::size_t m = fit.estimates.size();
@@ -237,35 +237,35 @@ std::string fit_json(const studies::FitRequest& request, const studies::Fit& fit
     doubts.push_back({{"kind", studies::doubt_names[static_cast<std::size_t>(doubt.kind)]}, {"text", doubt.text}});
   const studies::FitStatistics& s = fit.statistics;
   const auto known = [](const std::optional<double>& value) { return value ? json(*value) : json(); };
-  const json result{{"model", model.name},
-                    {"likelihood", studies::likelihood_names[static_cast<std::size_t>(request.likelihood)]},
-                    {"loss", studies::loss_names[static_cast<std::size_t>(request.options.loss)]},
-                    {"converged", fit.least.converged},
-                    {"interrupted", fit.least.interrupted},
-                    {"unknowns", std::move(unknowns)},
-                    {"correlations", std::move(correlations)},
-                    {"undetermined", std::move(directions)},
-                    {"columns", std::move(columns)},
-                    {"statistics",
-                     {{"values", s.values},
-                      {"free_unknowns", s.free_unknowns},
-                      {"estimated_variances", s.estimated_variances},
-                      {"degrees", s.degrees},
-                      {"sum_of_squares", known(s.sum_of_squares)},
-                      {"chi_squared", known(s.chi_squared)},
-                      {"p", known(s.chi_squared_p)},
-                      {"log_likelihood", known(s.log_likelihood)},
-                      {"aic", known(s.aic)},
-                      {"aicc", known(s.aicc)},
-                      {"bic", known(s.bic)}}},
-                    {"search",
-                     {{"iterations", fit.least.iterations},
-                      {"runs", fit.runs},
-                      {"starts", fit.least.starts_done},
-                      {"starts_agreeing", fit.least.starts_agreeing},
-                      {"best_start", fit.least.best_start}}},
-                    {"doubts", std::move(doubts)}};
-  return result.dump(2) + "\n";
+  json result{{"model", model.name},
+              {"likelihood", studies::likelihood_names[static_cast<std::size_t>(request.likelihood)]},
+              {"loss", studies::loss_names[static_cast<std::size_t>(request.options.loss)]},
+              {"converged", fit.least.converged},
+              {"interrupted", fit.least.interrupted},
+              {"unknowns", std::move(unknowns)},
+              {"correlations", std::move(correlations)},
+              {"undetermined", std::move(directions)},
+              {"columns", std::move(columns)},
+              {"statistics",
+               {{"values", s.values},
+                {"free_unknowns", s.free_unknowns},
+                {"estimated_variances", s.estimated_variances},
+                {"degrees", s.degrees},
+                {"sum_of_squares", known(s.sum_of_squares)},
+                {"chi_squared", known(s.chi_squared)},
+                {"p", known(s.chi_squared_p)},
+                {"log_likelihood", known(s.log_likelihood)},
+                {"aic", known(s.aic)},
+                {"aicc", known(s.aicc)},
+                {"bic", known(s.bic)}}},
+              {"search",
+               {{"iterations", fit.least.iterations},
+                {"runs", fit.runs},
+                {"starts", fit.least.starts_done},
+                {"starts_agreeing", fit.least.starts_agreeing},
+                {"best_start", fit.least.best_start}}},
+              {"doubts", std::move(doubts)}};
+  return result;
 }
 
 results::Figure fit_figure(const studies::FitRequest& request, const studies::Fit& fit,

@@ -11,8 +11,8 @@ namespace continuo::app {
 std::string fit_text(const studies::FitRequest& request, const studies::Fit& fit,
                      const std::vector<studies::Profile>& profiles);
 
-std::string fit_json(const studies::FitRequest& request, const studies::Fit& fit,
-                     const std::vector<studies::Profile>& profiles);
+nlohmann::json fit_json(const studies::FitRequest& request, const studies::Fit& fit,
+                        const std::vector<studies::Profile>& profiles);
 
 /// Measurements, fit and band; below them residuals over their deviations, and profiles.
 results::Figure fit_figure(const studies::FitRequest& request, const studies::Fit& fit,

@@ -5,6 +5,7 @@
 #include <apps/continuo/studies/orbit_text.hpp>
 #include <apps/continuo/studies/sense_of.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ std::string line_of(const model::Model& model, const std::string& of, const std:
   return fmt::format("{:<{}} {:>14} {:<14} {:>12}\n", fmt::format("d {} / d {}", of, parameter.name), name_width,
                      results::short_number(derivative),
                      model.has_units ? studies::unit_of_ratio(unit, parameter.unit) : "",
-                     value == 0 ? "-" : results::short_number(p / value * derivative));
+                     value == 0 ? "-" : fmt::format("{:.3g}", p / value * derivative));
 }
 
 std::string head() {
@@ -81,8 +82,7 @@ ExitCode sense_period(const ExperimentOptions& options, const std::vector<std::s
     return numerical_failure;
   }
   if (json) {
-    nlohmann::json object{{"period", found.period}, {"by", parameters}, {"period_by", found.period_by}};
-    print(object.dump(2) + "\n");
+    answer("continuo.sense_period/1", {{"period", found.period}, {"by", parameters}, {"period_by", found.period_by}});
     return done;
   }
   std::string text = fmt::format("period {}\n", with_time_unit(found.period, model)) + head();
@@ -126,7 +126,7 @@ ExitCode sense_equilibrium(const ExperimentOptions& options, const std::vector<s
   if (json) {
     nlohmann::json object{{"states", system.names}, {"x", search.x}, {"by", parameters}, {"x_by", by}};
     add_events(object, studied, search.x);
-    print(object.dump(2) + "\n");
+    answer("continuo.sense_equilibrium/1", object);
     return done;
   }
   std::string text = "equilibrium:";

@@ -9,10 +9,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string text_of(const json& object) {
-  return object.dump(2) + "\n";
-}
-
 json outcome_json(const Outcome<double>& outcome) {
   json result{{"ending", to_string(outcome.ending)}, {"t", outcome.t}};
   if (!outcome.hint.empty()) result["hint"] = outcome.hint;
@@ -57,8 +53,8 @@ json curves_json(const std::vector<studies::PlaneCurve>& curves) {
 
 }  // namespace
 
-std::string sensitivity_json(const model::Model& model, const studies::SensitivityRun& run,
-                             const std::vector<studies::Influence>& influences) {
+nlohmann::json sensitivity_json(const model::Model& model, const studies::SensitivityRun& run,
+                                const std::vector<studies::Influence>& influences) {
   json rows = json::array(), events = json::array(), by = json::array(), states = json::array();
   for (const model::State& state : model.states) states.push_back(state.column);
   for (const studies::Influence& influence : influences) by.push_back(name_of(model, influence));
@@ -76,18 +72,17 @@ std::string sensitivity_json(const model::Model& model, const studies::Sensitivi
   json result{
       {"states", states}, {"by", by}, {"rows", rows}, {"events", events}, {"outcome", outcome_json(run.outcome)}};
   if (run.has_no_derivative()) result["problem"] = run.status.message;
-  return text_of(result);
+  return result;
 }
 
-std::string comparison_json(const studies::Comparison& comparison) {
+nlohmann::json comparison_json(const studies::Comparison& comparison) {
   json contenders = json::array();
   for (const studies::Contender& contender : comparison.contenders) contenders.push_back(contender_json(contender));
-  return text_of(
-      {{"reference", {{"method", comparison.reference.run->plan.method}, {"tolerance", studies::reference_rtol}}},
-       {"contenders", contenders}});
+  return {{"reference", {{"method", comparison.reference.run->plan.method}, {"tolerance", studies::reference_rtol}}},
+          {"contenders", contenders}};
 }
 
-std::string convergence_json(const studies::Convergence& study) {
+nlohmann::json convergence_json(const studies::Convergence& study) {
   json methods = json::array();
   for (const studies::MethodConvergence& method : study.methods) {
     json points = json::array();
@@ -119,11 +114,30 @@ std::string convergence_json(const studies::Convergence& study) {
       kinks.push_back({{"text", kink.text}, {"jumps", kink.jumps}, {"times", kink.times}, {"first", kink.first}});
     result["spoiled_by"] = {{"kinks", kinks}, {"events", study.spoiled->events}};
   }
-  return text_of(result);
+  return result;
 }
 
-std::string portrait_json(const model::Model& model, const studies::PhasePortrait& portrait,
-                          const studies::PhasePlane& plane) {
+nlohmann::json differences_json(const std::vector<studies::DifferenceErrors>& study, const std::string& expression,
+                                double at) {
+  const auto errors_json = [](const studies::ErrorCurve& curve, const studies::Balance& predicted,
+                              const std::vector<double>& errors) {
+    json result{{"errors", errors}, {"found", curve_json(curve)}, {"predicted", nullptr}};
+    if (curve.found && predicted.step > 0) result["predicted"] = {{"step", predicted.step}, {"error", predicted.error}};
+    return result;
+  };
+  json schemes = json::array();
+  for (const studies::DifferenceErrors& errors : study)
+    schemes.push_back({{"name", errors.scheme.name},
+                       {"derivative", errors.scheme.derivative},
+                       {"order", errors.scheme.order},
+                       {"steps", errors.steps},
+                       {"in_double", errors_json(errors.of_double, errors.predicted, errors.in_double)},
+                       {"in_float", errors_json(errors.of_float, errors.predicted_in_float, errors.in_float)}});
+  return {{"derivative", expression}, {"at", at}, {"schemes", schemes}};
+}
+
+nlohmann::json portrait_json(const model::Model& model, const studies::PhasePortrait& portrait,
+                             const studies::PhasePlane& plane) {
   json equilibria = json::array(), arrows = json::array();
   for (const studies::Equilibrium& e : portrait.equilibria) {
     json eigenvalues = json::array();
@@ -132,15 +146,15 @@ std::string portrait_json(const model::Model& model, const studies::PhasePortrai
   }
   for (const studies::FieldArrow& arrow : portrait.field)
     arrows.push_back({{"at", arrow.at}, {"direction", arrow.direction}, {"speed", arrow.speed}});
-  return text_of({{"states", {model.states[0].column, model.states[1].column}},
-                  {"low", plane.low},
-                  {"high", plane.high},
-                  {"complete", portrait.complete},
-                  {"equilibria", equilibria},
-                  {"nullclines", {curves_json(portrait.nullclines[0]), curves_json(portrait.nullclines[1])}},
-                  {"separatrices", curves_json(portrait.separatrices)},
-                  {"motions", curves_json(portrait.motions)},
-                  {"field", arrows}});
+  return {{"states", {model.states[0].column, model.states[1].column}},
+          {"low", plane.low},
+          {"high", plane.high},
+          {"complete", portrait.complete},
+          {"equilibria", equilibria},
+          {"nullclines", {curves_json(portrait.nullclines[0]), curves_json(portrait.nullclines[1])}},
+          {"separatrices", curves_json(portrait.separatrices)},
+          {"motions", curves_json(portrait.motions)},
+          {"field", arrows}};
 }
 
 }  // namespace continuo::app

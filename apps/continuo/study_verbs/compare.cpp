@@ -10,9 +10,11 @@
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/study_json.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/results/figure.hpp>
 #include <continuo/results/plots.hpp>
@@ -111,7 +113,11 @@ ExitCode compare(const CompareOptions& options) {
     say("there is no reference run to compare with");
     return numerical_failure;
   }
-  print(options.json ? comparison_json(comparison) : table_of(prepared.program->model, comparison));
+  if (options.json) {
+    answer("continuo.compare/1", comparison_json(comparison));
+  } else {
+    print(table_of(prepared.program->model, comparison));
+  }
   const ExitCode exit = exit_of(comparison);
   if (!options.plot.empty()) {
     if (!written(results::draw(figure_of(*prepared.program, comparison), options.plot)))

@@ -14,11 +14,13 @@
 #include <apps/continuo/studies/converge_text.hpp>
 #include <apps/continuo/studies/differences.hpp>
 #include <apps/continuo/studies/study_json.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/results/figure.hpp>
 #include <continuo/runs/kind.hpp>
@@ -60,7 +62,11 @@ ExitCode converge(const ConvergeOptions& options) {
     }
     const auto study = study_differences(options.derivative, options.at);
     if (!study) return usage;
-    print(differences_text(*study, options.in_float));
+    if (options.json) {
+      answer("continuo.differences/1", differences_json(*study, options.derivative, options.at));
+    } else {
+      print(differences_text(*study, options.in_float));
+    }
     return draw(differences_figure(*study, options.in_float, options.derivative), options.plot, done);
   }
   if (options.experiment.file.empty() || options.methods.empty()) {
@@ -87,9 +93,12 @@ ExitCode converge(const ConvergeOptions& options) {
     say(study.status().message);
     return numerical_failure;
   }
-  print(options.json ? convergence_json(*study)
-                     : convergence_text(*study, prepared.program->model, options.in_float, options.in_long_double,
-                                        options.all_points));
+  if (options.json) {
+    answer("continuo.converge/1", convergence_json(*study));
+  } else {
+    print(convergence_text(*study, prepared.program->model, options.in_float, options.in_long_double,
+                           options.all_points));
+  }
   const bool nothing =
       std::ranges::all_of(study->methods, [](const studies::MethodConvergence& method) { return !method.status; });
   const ExitCode exit = study->interrupted ? interrupted : nothing ? usage : done;
@@ -124,11 +133,10 @@ void add_converge(CLI::App& app, ExitCode& exit) {
       ->excludes(tolerances);
   verb->add_flag("--long", options->in_long_double, "Also in extended precision (64 bits)")->excludes(tolerances);
   verb->add_flag("--points", options->all_points, "Prints every step size and its errors");
-  auto* json = verb->add_flag("--json", options->json, "Every step, its errors and the orders as one JSON object");
+  verb->add_flag("--json", options->json, "Every step, its errors and the orders as one JSON object");
   auto* derivative = verb->add_option("--derivative", options->derivative,
                                       "Without a model: difference quotients of this function of x")
-                         ->type_name("EXPRESSION")
-                         ->excludes(json);
+                         ->type_name("EXPRESSION");
   verb->add_option("--at", options->at, "The value of x for --derivative (0)")->needs(derivative)->type_name("X");
   writes_file(*verb, verb->add_option("--plot", options->plot, "Writes a plot, .svg or .png"));
   verb->callback([&exit, options] { exit = converge(*options); });

@@ -6,9 +6,11 @@
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/orbits/exploration.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
+#include <nlohmann/json.hpp>
 
 namespace continuo::app {
 namespace {
@@ -30,7 +32,11 @@ ExitCode explore_model(const ExploreOptions& options) {
   }
   hold_conserved(studied);
   const Exploration found = explore(studied, options.limits);
-  print(options.json ? exploration_json(studied, found) : exploration_text(studied, found));
+  if (options.json) {
+    answer("continuo.explore/1", exploration_json(studied, found));
+  } else {
+    print(exploration_text(studied, found));
+  }
   const ExitCode exit = found.complete ? done : interrupted;
   if (options.plot.empty() || written(results::draw(exploration_figure(studied, found), options.plot))) return exit;
   return exit == done ? usage : exit;

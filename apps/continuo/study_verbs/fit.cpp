@@ -11,11 +11,13 @@
 #include <apps/continuo/studies/fit_request.hpp>
 #include <apps/continuo/studies/fit_results.hpp>
 #include <apps/continuo/studies/influences.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/modules.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/results/plots.hpp>
 #include <continuo/results/summary.hpp>
@@ -47,7 +49,9 @@ bool strict_enough(const model::Experiment& experiment) {
 }
 
 ExitCode fit(const FitOptions& options) {
-  if (!drawable(options.plot) || !loadable(least_squares_module)) return usage;
+  std::vector<std::string> inputs = options.data;
+  inputs.push_back(options.experiment.file);
+  if (!drawable(options.plot) || !loadable(least_squares_module) || !reads_standard_input_once(inputs)) return usage;
   Prepared prepared = prepare(options.experiment, Worlds::welcome);
   if (prepared.exit != done) return prepared.exit;
   if (!strict_enough(prepared.experiment)) return usage;
@@ -78,7 +82,11 @@ ExitCode fit(const FitOptions& options) {
     if (found.status.ending == Ending::interrupted) return interrupted;
     return found.diagnostics.empty() ? numerical_failure : wrong_model;
   }
-  print(options.json ? fit_json(*request, found, profiles) : fit_text(*request, found, profiles));
+  if (options.json) {
+    answer("continuo.fit/1", fit_json(*request, found, profiles));
+  } else {
+    print(fit_text(*request, found, profiles));
+  }
   if (!options.plot.empty() && !written(results::draw(fit_figure(*request, found, profiles), options.plot)))
     return usage;
   if (found.least.interrupted) return interrupted;

@@ -8,6 +8,7 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
@@ -63,8 +64,8 @@ std::string modes_text(const std::vector<studies::MotionMode>& modes, const mode
   return text;
 }
 
-std::string as_json(const studies::LinearModel& linear, const std::vector<double>& point, const Studied& studied,
-                    const std::vector<studies::MotionMode>& modes) {
+nlohmann::json json_of(const studies::LinearModel& linear, const std::vector<double>& point, const Studied& studied,
+                       const std::vector<studies::MotionMode>& modes) {
   const model::Model& model = studied.prepared.program->model;
   const auto matrix = [](const std::vector<double>& rows, std::size_t columns) {
     auto result = nlohmann::json::array();
@@ -93,7 +94,7 @@ std::string as_json(const studies::LinearModel& linear, const std::vector<double
                              {"frequency", mode.frequency},
                              {"damping", mode.damping}});
   add_events(json, studied, point);
-  return json.dump(2) + "\n";
+  return json;
 }
 
 ExitCode linearize(const LinearizeOptions& options) {
@@ -147,7 +148,7 @@ ExitCode linearize(const LinearizeOptions& options) {
   }
   const auto modes = studies::modes_of(linear.a, linear.states.size());
   if (options.json) {
-    print(as_json(linear, x, studied, modes));
+    answer("continuo.linearize/1", json_of(linear, x, studied, modes));
     return done;
   }
   std::string text = options.at.empty() && !options.start ? "equilibrium:" : "at:";

@@ -18,6 +18,7 @@
 #include <apps/continuo/orbits/steady_curves.hpp>
 #include <apps/continuo/studies/orbit_text.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -109,7 +110,7 @@ ExitCode show_orbit(const Studied& studied, const OrbitOptions& options) {
                         {"max", extents.high},    {"multipliers", app::json_of(found.multipliers)},
                         {"stable", found.stable}, {"advance", found.advance}};
     add_conserved(json, studied);
-    print(json.dump(2) + "\n");
+    answer("continuo.orbit/1", json);
   }
   const std::string text = fmt::format("period {}{}, {}\n", with_time_unit(found.period, model),
                                        advance_text(model, found.advance), found.stable ? "stable" : "unstable") +

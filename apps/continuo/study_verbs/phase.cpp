@@ -11,11 +11,13 @@
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
 #include <apps/continuo/studies/study_json.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/results/figure.hpp>
 #include <continuo/results/summary.hpp>
@@ -197,7 +199,11 @@ ExitCode phase(const PhaseOptions& options) {
     e.stability = studies::Stability::undecided;
     e.eigenvalues.clear();
   }
-  print(options.json ? portrait_json(model, portrait, plane) : summary_of(model, portrait, plane));
+  if (options.json) {
+    answer("continuo.phase/1", portrait_json(model, portrait, plane));
+  } else {
+    print(summary_of(model, portrait, plane));
+  }
   if (!options.plot.empty()) {
     if (!written(results::draw(figure_of(model, portrait, plane), options.plot))) return usage;
   }

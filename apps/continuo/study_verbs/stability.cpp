@@ -15,6 +15,7 @@
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/studies/converge_text.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -121,7 +122,7 @@ std::string confirmed_text(const std::vector<Confirmed>& all, const std::string&
 }
 
 /// A limit that is not known is null, one that there is none of "none".
-std::string as_json(const std::vector<Region>& regions, const std::vector<Confirmed>& confirmed) {
+nlohmann::json json_of(const std::vector<Region>& regions, const std::vector<Confirmed>& confirmed) {
   const auto limit = [](double value) { return std::isinf(value) ? nlohmann::json("none") : nlohmann::json(value); };
   auto methods = nlohmann::json::array();
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -138,7 +139,7 @@ std::string as_json(const std::vector<Region>& regions, const std::vector<Confir
                    {"just_above", studies::to_string(one.above)}});
     methods.back()["largest"] = std::move(step);
   }
-  return nlohmann::json{{"methods", methods}}.dump(2) + "\n";
+  return {{"methods", methods}};
 }
 
 /// Each region lightly filled, with its crossings of the axes. Returns the number of each method's colour.
@@ -246,12 +247,15 @@ ExitCode stability(const StabilityOptions& options) {
       confirmed.push_back(confirm(method, *studied, samples, spectrum));
       go_on = more();
     }
-  std::string text = options.json ? as_json(regions, confirmed) : regions_text(regions);
-  if (!confirmed.empty() && !options.json) {
-    const std::string& unit = studied->prepared.program->model.time_unit;
-    text += confirmed_text(confirmed, unit.empty() ? "" : " " + unit);
+  if (options.json) {
+    answer("continuo.stability/1", json_of(regions, confirmed));
+  } else {
+    print(regions_text(regions));
+    if (!confirmed.empty()) {
+      const std::string& unit = studied->prepared.program->model.time_unit;
+      print(confirmed_text(confirmed, unit.empty() ? "" : " " + unit));
+    }
   }
-  print(text);
   ExitCode exit = go_on ? done : interrupted;
   if (!options.plot.empty()) {
     const std::string title = with_model ? studied->prepared.program->model.name : "Regions of absolute stability";

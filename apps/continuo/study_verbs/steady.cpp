@@ -11,6 +11,7 @@
 #include <apps/continuo/orbits/steady_branches.hpp>
 #include <apps/continuo/orbits/steady_curves.hpp>
 #include <apps/continuo/studies/studied_model.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
@@ -105,7 +106,7 @@ ExitCode follow_curves(const Studied& studied, const studies::Equilibria& found,
     nlohmann::json json = json_of(found, studied);
     json.update(json_of(diagram, model, plane.first));
     json.update(json_of(curves, plane));
-    print(json.dump(2) + "\n");
+    answer("continuo.steady/1", json);
   } else {
     print(text_of(curves, plane));
   }
@@ -127,7 +128,7 @@ ExitCode follow(const Studied& studied, const studies::Equilibria& found, const 
   if (options.json) {
     nlohmann::json json = json_of(found, studied);
     json.update(json_of(diagram, model, range));
-    print(json.dump(2) + "\n");
+    answer("continuo.steady/1", json);
   } else {
     print(text_of(diagram, model, range, found.equilibria.size()));
   }
@@ -185,7 +186,7 @@ ExitCode steady(const SteadyOptions& options) {
   }
   if (!options.json) print(table_of(found, studied) + conserved_text(studied));
   if (range && !interrupt_flag()) return follow(studied, found, *range, second, box, *component, options);
-  if (options.json) print(json_of(found, studied).dump(2) + "\n");
+  if (options.json) answer("continuo.steady/1", json_of(found, studied));
   return interrupt_flag() ? interrupted : done;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 
 #include <apps/continuo/terminal/own_process.hpp>
@@ -27,11 +28,12 @@ ScratchFolder::~ScratchFolder() {
 }
 
 std::string contents_of(const std::string& path) {
+  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-Printed call_self(const std::vector<std::string>& arguments) {
+Printed call_self(const std::vector<std::string>& arguments, const std::string& input) {
   const ScratchFolder scratch;
   if (!scratch.exists()) return {};
   std::vector<std::string> words{"continuo"};
@@ -42,6 +44,7 @@ Printed call_self(const std::vector<std::string>& arguments) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   const std::string out = scratch.file("out"), err = scratch.file("err");
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, input.c_str(), O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   pid_t process = 0;

@@ -10,8 +10,8 @@ struct Printed {
   std::string out, err;
 };
 
-/// `continuo ARGUMENTS...`, its output caught.
-Printed call_self(const std::vector<std::string>& arguments);
+/// `continuo ARGUMENTS...`, its output caught; its standard input is the file `input`.
+Printed call_self(const std::vector<std::string>& arguments, const std::string& input);
 
 /// A folder that goes when the value does.
 class ScratchFolder {
@@ -28,7 +28,7 @@ class ScratchFolder {
   std::string folder_;
 };
 
-/// The whole file, empty where there is none.
+/// The whole file, empty where there is none; of `-`, standard input to its end.
 std::string contents_of(const std::string& path);
 
 /// Words of a command line; double quotes hold spaces together.

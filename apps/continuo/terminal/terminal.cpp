@@ -2,14 +2,22 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 namespace continuo::app {
 
 void say(std::string_view message) {
   fmt::print(stderr, "continuo: {}\n", message);
+  record_message({{"severity", "error"}, {"message", message}});
+}
+
+void mention(std::string_view message) {
+  fmt::print(stderr, "continuo: {}\n", message);
+  record_message({{"severity", "note"}, {"message", message}});
 }
 
 bool written(const Status& status) {

@@ -9,8 +9,9 @@
 
 namespace continuo::app {
 
-/// "continuo: MESSAGE" on standard error.
+/// "continuo: MESSAGE" on standard error, and in the answer to --json: what is wrong, and with `mention` what is not.
 void say(std::string_view message);
+void mention(std::string_view message);
 
 /// False, after saying why, where a file could not be written or a picture not be drawn.
 bool written(const Status& status);

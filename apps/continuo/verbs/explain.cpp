@@ -1,18 +1,26 @@
 // continuo explain CODE: more about a message.
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/language/text/codes.hpp>
 #include <continuo/symbolic/names/suggest.hpp>
 
 namespace continuo::app {
 namespace {
+
+struct ExplainRequest {
+  std::string code;
+  bool json = false;
+};
 
 std::vector<model::Code> all_codes() {
   std::vector<model::Code> codes;
@@ -22,14 +30,29 @@ std::vector<model::Code> all_codes() {
   return codes;
 }
 
-ExitCode list() {
-  for (const model::Code& code : all_codes()) print(fmt::format("{}  {}\n", code.code, code.title));
+void answer_with(const std::vector<model::Code>& codes) {
+  auto list = nlohmann::ordered_json::array();
+  for (const model::Code& code : codes)
+    list.push_back({{"code", code.code}, {"title", code.title}, {"explanation", code.explanation}});
+  answer("continuo.explain/1", {{"codes", list}});
+}
+
+ExitCode list(bool json) {
+  if (json) {
+    answer_with(all_codes());
+  } else {
+    for (const model::Code& code : all_codes()) print(fmt::format("{}  {}\n", code.code, code.title));
+  }
   return done;
 }
 
-ExitCode explain(const std::string& wanted) {
+ExitCode explain(const std::string& wanted, bool json) {
   if (const model::Code* code = model::find_code(wanted)) {
-    print(fmt::format("{}: {}\n\n{}\n", code->code, code->title, code->explanation));
+    if (json) {
+      answer_with({*code});
+    } else {
+      print(fmt::format("{}: {}\n\n{}\n", code->code, code->title, code->explanation));
+    }
     return done;
   }
   std::vector<std::string_view> names;
@@ -46,9 +69,12 @@ void add_explain(CLI::App& app, ExitCode& exit) {
       "  continuo explain E201     its meaning, an example, a remedy\n"
       "  continuo explain          all codes\n";
   Verb* verb = add_verb(app, listed("explain"), examples, {});
-  auto code = std::make_shared<std::string>();
-  verb->add_option("code", *code, "The code of the message, E201")->type_name("");
-  verb->callback([&exit, code] { exit = code->empty() ? list() : explain(*code); });
+  verb->json_examples = {"continuo explain E201 --json"};
+  auto request = std::make_shared<ExplainRequest>();
+  verb->add_option("code", request->code, "The code of the message, E201")->type_name("");
+  verb->add_flag("--json", request->json, "The codes and their explanations as one JSON object");
+  verb->callback(
+      [&exit, request] { exit = request->code.empty() ? list(request->json) : explain(request->code, request->json); });
 }
 
 }  // namespace continuo::app

@@ -10,9 +10,11 @@
 #include <apps/continuo/options/experiment_options.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/runs/run.hpp>
 #include <continuo/simulation/experiment.hpp>
@@ -20,6 +22,11 @@
 
 namespace continuo::app {
 namespace {
+
+struct MethodsRequest {
+  std::string file;
+  bool json = false;
+};
 
 struct Citation {
   std::string_view method, source;
@@ -89,7 +96,22 @@ std::string_view kind_of(const MethodInfo& method) {
   return method.error_order > 0 ? "adaptive" : "fixed step";
 }
 
-ExitCode methods() {
+ExitCode methods(bool json) {
+  if (json) {
+    auto list = nlohmann::ordered_json::array();
+    for (const MethodInfo& method : method_catalogue())
+      list.push_back({{"name", method.name},
+                      {"order", method.order},
+                      {"error_order", method.error_order},
+                      {"adaptive", method.error_order > 0},
+                      {"implicit", method.implicit},
+                      {"second_order", method.second_order},
+                      {"automatic", method.automatic},
+                      {"kind", kind_of(method)},
+                      {"source", source_of(method.name)}});
+    answer("continuo.methods/1", {{"methods", list}});
+    return done;
+  }
   std::string text = fmt::format("{:<31} {:>5}  {:<26} {}\n", "method", "order", "kind", "source");
   for (const MethodInfo& method : method_catalogue()) {
     text +=
@@ -100,7 +122,7 @@ ExitCode methods() {
 }
 
 /// The method that a run of the model would take, and the reason.
-ExitCode why(const std::string& file) {
+ExitCode why(const std::string& file, bool json) {
   if (!readable(file)) return usage;
   const model::Loaded loaded = load_model(file);
   if (!loaded) return wrong_model;
@@ -109,7 +131,11 @@ ExitCode why(const std::string& file) {
   const auto plan = runs::plan(model, {}, problems);
   show(problems, loaded.source);
   if (!plan) return usage;
-  print(fmt::format("{}: {}; {}\n", model.name, plan->method, plan->reason));
+  if (json) {
+    answer("continuo.method_choice/1", {{"model", model.name}, {"method", plan->method}, {"reason", plan->reason}});
+  } else {
+    print(fmt::format("{}: {}; {}\n", model.name, plan->method, plan->reason));
+  }
   return done;
 }
 
@@ -120,10 +146,13 @@ void add_methods(CLI::App& app, ExitCode& exit) {
       "  continuo methods\n  continuo methods --why models/lorenz.sim\n  continuo run models/kepler.sim --method "
       "dop853\n";
   Verb* verb = add_verb(app, listed("methods"), examples, {wrong_model});
-  auto file = std::make_shared<std::string>();
-  reads_file(*verb, verb->add_option("--why", *file, "Shows the method chosen for this model, and the reason"),
+  verb->json_examples = {"continuo methods --json", "continuo methods --why models/lorenz.sim --json"};
+  auto request = std::make_shared<MethodsRequest>();
+  reads_file(*verb, verb->add_option("--why", request->file, "Shows the method chosen for this model, and the reason"),
              files_of_model);
-  verb->callback([&exit, file] { exit = file->empty() ? methods() : why(*file); });
+  verb->add_flag("--json", request->json, "The methods, or the choice, as one JSON object");
+  verb->callback(
+      [&exit, request] { exit = request->file.empty() ? methods(request->json) : why(request->file, request->json); });
 }
 
 }  // namespace continuo::app

@@ -7,9 +7,11 @@
 
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/results/output_file.hpp>
 
@@ -62,7 +64,13 @@ std::string model_name(std::string_view stem) {
   return starts_well ? name : "Model" + name;
 }
 
-ExitCode write_starter(const std::string& name) {
+struct NewRequest {
+  std::string name;
+  bool json = false;
+};
+
+ExitCode write_starter(const NewRequest& request) {
+  const std::string& name = request.name;
   std::filesystem::path path(name);
   if (path.extension() != ".sim") path += ".sim";
   if (std::filesystem::exists(path)) {
@@ -74,7 +82,8 @@ ExitCode write_starter(const std::string& name) {
     say(status.message);
     return usage;
   }
-  say(fmt::format("wrote {0}; next: continuo run {0}", path.string()));
+  mention(fmt::format("wrote {0}; next: continuo run {0}", path.string()));
+  if (request.json) answer("continuo.new/1", {{"file", path.string()}, {"model", model_name(path.stem().string())}});
   return done;
 }
 
@@ -83,9 +92,11 @@ ExitCode write_starter(const std::string& name) {
 void add_new(CLI::App& app, ExitCode& exit) {
   static constexpr std::string_view examples = "  continuo new spring       writes spring.sim\n";
   Verb* verb = add_verb(app, listed("new"), examples, {});
-  auto name = std::make_shared<std::string>();
-  verb->add_option("name", *name, "Name of the file, with or without .sim")->required()->type_name("");
-  verb->callback([&exit, name] { exit = write_starter(*name); });
+  verb->json_examples = {"continuo new spring --json"};
+  auto request = std::make_shared<NewRequest>();
+  verb->add_option("name", request->name, "Name of the file, with or without .sim")->required()->type_name("");
+  verb->add_flag("--json", request->json, "The file that was written, as a JSON object");
+  verb->callback([&exit, request] { exit = write_starter(*request); });
 }
 
 }  // namespace continuo::app

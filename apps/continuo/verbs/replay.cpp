@@ -73,7 +73,7 @@ ExitCode replay(const ReplayRequest& request) {
   if (opened.exit != done) return opened.exit;
   const runs::Recording& recording = opened.recording;
   if (!runs::is_whole(recording))
-    say(fmt::format("{} was cut off after t = {:g}", request.file, runs::last_time(recording)));
+    mention(fmt::format("{} was cut off after t = {:g}", request.file, runs::last_time(recording)));
   const model::Simulated simulated = runs::replay(opened.program, recording);
   const ExitCode exit =
       tell(simulated, opened.loaded.source, *opened.program, request.outputs, runs::head_of(recording).as_written);
@@ -119,7 +119,7 @@ ExitCode resume(const ReplayRequest& request) {
     say("--max-steps is for equations");
     return usage;
   }
-  say(fmt::format("resumes from t = {:g}", from));
+  mention(fmt::format("resumes from t = {:g}", from));
   RunFile file(request.record);
   model::RunHead head = runs::head_of(recording);
   if (request.until) head.experiment.to = request.until;

@@ -8,11 +8,13 @@
 #include <apps/continuo/options/command_line.hpp>
 #include <apps/continuo/options/models.hpp>
 #include <apps/continuo/options/verb_list.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/language/describe.hpp>
 #include <continuo/results/output_file.hpp>
@@ -24,6 +26,7 @@ namespace {
 struct ReportOptions {
   std::string file, out;
   std::vector<std::string> studies;
+  bool json = false;
 };
 
 std::string quoted(const std::string& word) {
@@ -49,14 +52,14 @@ bool writes_files(const std::vector<std::string>& studies) {
 
 /// What a verb says of the model, with its picture. A verb that takes no --plot is asked again without.
 results::ReportSection section_of(std::string title, std::vector<std::string> words, const ScratchFolder& scratch,
-                                  int& exit) {
+                                  const std::string& input, int& exit) {
   results::ReportSection section{.title = std::move(title)};
   for (const std::string& word : words) section.command += (section.command.empty() ? "continuo " : " ") + quoted(word);
   const std::string picture = scratch.file("picture.svg");
   std::vector<std::string> with_plot = words;
   with_plot.insert(with_plot.end(), {"--plot", picture});
-  Printed printed = call_self(with_plot);
-  if (printed.exit == usage) printed = call_self(words);
+  Printed printed = call_self(with_plot, input);
+  if (printed.exit == usage) printed = call_self(words, input);
   section.text = printed.out;
   section.messages = printed.err;
   section.svg = contents_of(picture);
@@ -71,13 +74,20 @@ ExitCode report(const ReportOptions& options) {
   if (!loaded) return wrong_model;
   const model::Model& model = *loaded.model;
   const ScratchFolder scratch;
+  std::string input = "/dev/null";
+  if (options.file == standard_input) {  // which has been read: the verbs read a copy
+    input = scratch.file("model");
+    if (!written(results::write_file(input, model.text.content))) return usage;
+  }
   std::vector<results::ReportSection> sections;
+  auto parts = nlohmann::ordered_json::array();
   sections.push_back({.title = "Model", .text = model.text.content});
   sections.push_back({.title = "What Continuo made of it", .text = model::describe(model)});
   int exit = 0;
   const std::string manifest = scratch.file("manifest.json");
-  sections.push_back(section_of("Run", {"run", options.file, "--manifest", manifest}, scratch, exit));
+  sections.push_back(section_of("Run", {"run", options.file, "--manifest", manifest}, scratch, input, exit));
   sections.back().command = "continuo run " + quoted(options.file);
+  parts.push_back({{"command", sections.back().command}, {"exit", exit}});
   ExitCode worst = exit == done ? done : exit == interrupted ? interrupted : numerical_failure;
   for (const std::string& line : options.studies) {
     if (interrupt_flag() || worst == interrupted) break;
@@ -88,7 +98,8 @@ ExitCode report(const ReportOptions& options) {
     } else {
       words.insert(words.begin() + 1, options.file);
     }
-    sections.push_back(section_of(line, words, scratch, exit));
+    sections.push_back(section_of(line, words, scratch, input, exit));
+    parts.push_back({{"command", sections.back().command}, {"exit", exit}});
     if (exit == usage) {
       say(fmt::format("`{}` was refused:\n{}", line, sections.back().messages));
       return usage;
@@ -99,6 +110,7 @@ ExitCode report(const ReportOptions& options) {
     sections.push_back({.title = "Manifest", .text = text, .folded = true});
   if (!written(results::write_file(options.out, results::report_page(model.name, model.heading, sections))))
     return usage;
+  if (options.json) answer("continuo.report/1", {{"file", options.out}, {"model", model.name}, {"sections", parts}});
   return worst;  // the page is there all the same, and says what failed
 }
 
@@ -110,14 +122,17 @@ void add_report(CLI::App& app, ExitCode& exit) {
       "  continuo report models/lorenz.sim --with steady --with \"steady --along rho=0..30\" -o lorenz.html\n"
       "  continuo report models/pendulum.sim --with \"phase --box theta=-7..7\" --with linearize -o pendulum.html\n";
   Verb* verb = add_verb(app, listed("report"), examples, {wrong_model, numerical_failure, interrupted});
+  verb->json_examples = {"continuo report models/bouncing_ball.sim -o ball.html --json"};
   auto options = std::make_shared<ReportOptions>();
-  reads_file(*verb, verb->add_option("file", options->file, "The model")->required(), files_of_model);
+  reads_file(*verb, verb->add_option("file", options->file, "The model (- for standard input)")->required(),
+             files_of_model);
   verb->add_option("--with", options->studies,
                    "A study: another verb with its options, without the file; may be repeated")
       ->type_name("\"VERB ...\"")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   writes_file(*verb, verb->add_option("-o,--out", options->out, "The page, .html")->required(), {".html"});
+  verb->add_flag("--json", options->json, "The file that was written, and how each part ended, as one JSON object");
   verb->callback([&exit, options] { exit = report(*options); });
 }
 

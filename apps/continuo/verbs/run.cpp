@@ -70,7 +70,6 @@ bool has_no_method(const RunRequest& request, const model::Model& model) {
       model::no_method(*name, {.begin = 0, .end = static_cast<std::uint32_t>(name->size())})};
   const model::Source option("--method", *name);
   show(problems, option);
-  if (request.outputs.json) print_no_run(problems, option);
   return true;
 }
 
@@ -101,7 +100,9 @@ ExitCode sweep(const RunRequest& request, const std::vector<SweepText>& texts, P
 
 ExitCode run(RunRequest request, const ShowFamilies& show_families) {
   const std::vector<SweepText> swept = take_sweep(request.experiment);
-  if (!can_be_written(request.outputs) || !can_be_written(request.record)) return usage;
+  if (!reads_standard_input_once({request.experiment.file, request.boundary.guess, request.experiment.initial_from}) ||
+      !can_be_written(request.outputs) || !can_be_written(request.record))
+    return usage;
   Prepared prepared = prepare(request.experiment, Worlds::welcome);
   const model::Source& source = prepared.loaded.source;
   if (prepared.exit == done && !request.record.path.empty() &&
@@ -109,10 +110,7 @@ ExitCode run(RunRequest request, const ShowFamilies& show_families) {
     say("--record: a boundary-value problem is solved at once, so there is nothing to resume; -o saves its solution");
     return usage;
   }
-  if (prepared.exit != done) {
-    if (request.outputs.json) print_no_run(prepared.loaded.diagnostics, source);
-    return prepared.exit;
-  }
+  if (prepared.exit != done) return prepared.exit;
   if (has_no_method(request, prepared.program->model)) return usage;
   if (!swept.empty()) return sweep(request, swept, prepared);
   const auto boundary = read_boundary(request.boundary, prepared);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <thread>
 
@@ -15,11 +13,14 @@
 #include <apps/continuo/options/verb_list.hpp>
 #include <apps/continuo/page.hpp>
 #include <apps/continuo/pictures/recording.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/browser.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
+#include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/live/loop.hpp>
 #include <continuo/live/server.hpp>
@@ -32,12 +33,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using Json = nlohmann::ordered_json;
+
 struct ViewRequest {
   ExperimentOptions experiment;
   live::ServerOptions server;
   std::string page_file;
   std::optional<double> speed;
-  bool no_open = false, paused = false;
+  bool no_open = false, paused = false, json = false;
   RecordingRequest recording;
 };
 
@@ -59,7 +62,7 @@ bool apply_options(const ExperimentOptions& options, live::Session& session) {
   for (const std::string& text : options.settings) {
     std::vector<model::Diagnostic> problems;
     const auto setting = parse_setting(session.shown().model(), text, problems);
-    for (const model::Diagnostic& problem : problems) say(problem.message);
+    show(problems, model::Source("--set", text));
     if (!setting) return false;
     session.set_parameter(setting->name, setting->value);
   }
@@ -67,7 +70,7 @@ bool apply_options(const ExperimentOptions& options, live::Session& session) {
   for (const std::string& text : options.tolerances) {
     std::vector<model::Diagnostic> problems;
     const auto setting = parse_tolerance(session.shown().model(), model::ToleranceKind::relative, text, problems);
-    for (const model::Diagnostic& problem : problems) say(problem.message);
+    show(problems, model::Source("--tol", text));
     if (!setting) return false;
     choice.rtol = setting->value;
   }
@@ -90,12 +93,8 @@ std::optional<double> number_of(const std::string& text) {
 
 std::optional<std::string> page_of(const ViewRequest& request) {
   if (request.page_file.empty()) return std::string(built_in_page());
-  std::ifstream file(request.page_file, std::ios::binary);
-  if (!file) {
-    say(fmt::format("cannot read {}", request.page_file));
-    return std::nullopt;
-  }
-  return live::stored(std::string(std::istreambuf_iterator<char>(file), {}));
+  if (!readable(request.page_file)) return std::nullopt;
+  return live::stored(contents_of(request.page_file));
 }
 
 ExitCode show_to_the_world(const ViewRequest& request, live::Session& session, live::Server& server) {
@@ -111,9 +110,13 @@ ExitCode show_to_the_world(const ViewRequest& request, live::Session& session, l
            }});
   loop.start();
   const bool quiet = request.no_open;
-  print(fmt::format("{}\n", server.url()));
-  std::fflush(stdout);
-  say("Ctrl-C ends the view");
+  mention("Ctrl-C ends the view");
+  if (request.json) {
+    answer("continuo.view/1", {{"address", server.url()}, {"file", name_of_file(request.experiment.file)}});
+    print_answer_now();
+  } else {
+    print(fmt::format("{}\n", server.url()));
+  }
   if (!quiet) open_browser(server.url());
   while (!interrupted.load()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   loop.stop();
@@ -124,10 +127,10 @@ ExitCode show_to_the_world(const ViewRequest& request, live::Session& session, l
 /// The model in the session, as the command line wants it.
 ExitCode open_session(const ViewRequest& request, live::Session& session) {
   const model::Loaded loaded = session.open_file();
-  if (!loaded.diagnostics.empty()) fmt::print(stderr, "{}", loaded.text({.color = colors_wanted()}));
+  show(loaded.diagnostics, loaded.source);
   if (!loaded.model) return wrong_model;
   if (!session.is_open()) {
-    fmt::print(stderr, "{}", render(session.problems(), loaded.source, {.color = colors_wanted()}));
+    show(session.problems(), loaded.source);
     if (!runs::kind_of(*loaded.model).has_start)
       say(
           fmt::format("the live view needs an initial-value problem; this model is a boundary-value problem: `continuo "
@@ -141,6 +144,10 @@ ExitCode open_session(const ViewRequest& request, live::Session& session) {
 }
 
 ExitCode view(ViewRequest& request) {
+  if (request.experiment.file == standard_input) {
+    say("view needs a file, which its page shows and saves: give it a name, or let run and report read standard input");
+    return usage;
+  }
   if (!readable(request.experiment.file)) return usage;
   const auto page = page_of(request);
   if (!page) return usage;
@@ -150,7 +157,13 @@ ExitCode view(ViewRequest& request) {
   if (request.recording.wanted()) {
     request.recording.model = request.experiment.file;
     request.recording.until = request.experiment.until;
-    return record(request.recording, set_up, *page);
+    const ExitCode exit = record(request.recording, set_up, *page);
+    if (request.json && exit == done) {
+      const auto file_or_null = [](const std::string& path) { return path.empty() ? Json() : Json(path); };
+      answer("continuo.recording/1",
+             {{"page", file_or_null(request.recording.page)}, {"pictures", file_or_null(request.recording.pictures)}});
+    }
+    return exit;
   }
   if (page->empty())
     say("this build has no page: build with -DCONTINUO_PAGE=ON (needs npm), or give --page FILE; other clients can use "
@@ -187,6 +200,7 @@ void add_view(CLI::App& app, ExitCode& exit) {
       "  continuo view ball.sim --record frames/                    pictures, without a browser\n"
       "  continuo view ball.sim --listen 0.0.0.0 --port 8000        for others in this network too\n";
   Verb* verb = add_verb(app, listed("view"), examples, {wrong_model});
+  verb->json_examples = {"continuo view models/pendulum.sim --export pendulum.html --until 1 --json"};
   auto request = std::make_shared<ViewRequest>();
   add_model(*verb, request->experiment);
   add_method(*verb, request->experiment);
@@ -211,6 +225,7 @@ void add_view(CLI::App& app, ExitCode& exit) {
   verb->add_option("--fps", request->recording.rate, "Pictures per second, for --export and --record")
       ->type_name("N")
       ->check(CLI::Range(1, 120));
+  verb->add_flag("--json", request->json, "The address, or the files of --export and --record, as one JSON object");
   verb->callback([&exit, request] { exit = view(*request); });
 }
 
