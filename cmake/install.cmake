@@ -41,6 +41,13 @@ if(TARGET continuo)
   install(TARGETS continuo)
   install(TARGETS continuo-studies ${loaded} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo
                                              LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/continuo)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/manual/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(DIRECTORY apps/continuo/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/continuo)
+  set(completions apps/continuo/completions)
+  install(FILES ${completions}/continuo.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          RENAME continuo)
+  install(FILES ${completions}/_continuo DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES ${completions}/continuo.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/continuo OPTIONAL)

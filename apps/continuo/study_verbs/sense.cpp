@@ -12,10 +12,12 @@
 #include <apps/continuo/studies/influences.hpp>
 #include <apps/continuo/studies/sense_of.hpp>
 #include <apps/continuo/studies/study_json.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <apps/continuo/verbs.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <continuo/results/figure.hpp>
 #include <continuo/results/plots.hpp>
@@ -68,7 +70,7 @@ std::string table_of(const model::Model& model, const SensitivityRun& run,
     const double p = value_of(model, run, influences[k]);
     for (std::size_t i = 0; i < run.states; ++i) {
       const double s = run.sensitivity(last, i, k);
-      const auto relative = [&](double x) { return x == 0 ? std::string("-") : results::short_number(p / x * s); };
+      const auto relative = [&](double x) { return x == 0 ? std::string("-") : fmt::format("{:.3g}", p / x * s); };
       const model::Column column = column_of(model, i, influences[k]);
       text += fmt::format("{:<26} {:>14} {:<14} {:>12} {:>14}\n", column.name, results::short_number(s), column.unit,
                           relative(run.value(last, i)), relative(sizes[i]));
@@ -170,7 +172,7 @@ ExitCode sense(const SenseOptions& options) {
   }
   ExitCode exit = done;
   if (options.json) {
-    print(sensitivity_json(model, run, *influences));
+    answer("continuo.sense/1", sensitivity_json(model, run, *influences));
   } else if (options.of == "events") {
     print(events_table(model, run, *influences));
   } else if (run.rows() > 0) {

@@ -1,0 +1,10 @@
+# Writes the manual pages of the command: cmake -DCOMMAND=build/continuo -DFOLDER=build/manual -P cmake/manual.cmake
+file(MAKE_DIRECTORY ${FOLDER})
+execute_process(COMMAND ${COMMAND} help --json OUTPUT_VARIABLE answer COMMAND_ERROR_IS_FATAL ANY)
+string(JSON count LENGTH ${answer} verbs)
+math(EXPR last "${count} - 1")
+foreach(i RANGE ${last})
+  string(JSON verb GET ${answer} verbs ${i} name)
+  execute_process(COMMAND ${COMMAND} help ${verb} --man OUTPUT_FILE ${FOLDER}/continuo-${verb}.1 COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+execute_process(COMMAND ${COMMAND} help --man OUTPUT_FILE ${FOLDER}/continuo.1 COMMAND_ERROR_IS_FATAL ANY)
