@@ -111,6 +111,8 @@ def gallery():
     answer(["check", "models/bouncing_ball.sim", "--jacobian"])
     answer(["verify", "models/pendulum.sim", "models/newtons_cradle.sim"], 0, layout="continuo.verify/1")
     answer(["run", "models/kepler.sim", "--estimate-error"], 0)
+    answer(["run", "models/mass_spring.sim", "--set", "k=1,2", "--initial", "x=1..2/3"], 0, layout="continuo.sweep/1")
+    answer(["run", "models/mass_spring.sim", "--set", "k=1,2", "--max-steps", "3"], 3, layout="continuo.sweep/1")
     answer(["run", "models/bratu.sim", "--family", "lambda=0.1..4"], 0, layout="continuo.families/1")
     call(["run", "models/newtons_cradle.sim", "--record", "cradle.run"])
     answer(["replay", "cradle.run"], 0, layout="continuo.run/1")

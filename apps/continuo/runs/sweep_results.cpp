@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <apps/continuo/runs/sweep_results.hpp>
+#include <apps/continuo/terminal/answer.hpp>
 #include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
@@ -173,20 +174,18 @@ bool write_files(const Sweep& sweep, const Members& members, const RunOutputs& o
   return fine;
 }
 
-std::string object_of(const Sweep& sweep, const Members& members, const model::Source& source) {
+/// What was run and how it ended; a run that could not begin is null, and says why.
+Json object_of(const Sweep& sweep, const Members& members, const model::Source& source) {
   Json runs = Json::array();
   for (std::size_t m = 0; m < members.size(); ++m) {
     if (!members[m].begun) continue;
-    Json run = json_of(sweep, m);
-    if (members[m].simulated.run) {
-      run.update(Json::parse(results::run_json(*members[m].simulated.run)));
-    } else {
-      run["outcome"] = "not run";
-      run["messages"] = Json::parse(model::to_json(members[m].simulated.diagnostics, source));
-    }
-    runs.push_back(std::move(run));
+    Json one{{"at", json_of(sweep, m)}, {"run", nullptr}};
+    const auto& simulated = members[m].simulated;
+    if (simulated.run) one["run"] = Json::parse(results::run_json(*simulated.run));
+    one["messages"] = Json::parse(model::to_json(simulated.diagnostics, source));
+    runs.push_back(std::move(one));
   }
-  return text_of({{"sweep", columns_of(sweep)}, {"runs", std::move(runs)}});
+  return {{"swept", columns_of(sweep)}, {"runs", std::move(runs)}};
 }
 
 /// A line for each run: what it was run with, how it ended, where.
@@ -258,7 +257,7 @@ ExitCode tell_sweep(const Sweep& sweep, const std::vector<SweepMember>& members,
   const bool any = first_run(members) != nullptr;
   const bool fine = !any || write_files(sweep, members, outputs);
   if (outputs.json) {
-    print(object_of(sweep, members, base.loaded.source));
+    answer("continuo.sweep/1", object_of(sweep, members, base.loaded.source));
   } else if (!outputs.data_to_standard_output()) {
     print(summary_of(sweep, members));
   }

@@ -160,6 +160,7 @@ void add_run(CLI::App& app, ExitCode& exit, ShowFamilies show_families) {
       "  continuo run ball.sim --json                               outcome, state, events, cost\n";
   Verb* verb = add_verb(app, listed("run"), examples, {wrong_model, numerical_failure, check_failed, interrupted});
   verb->json_examples = {"continuo run models/bouncing_ball.sim --json",
+                         "continuo run models/mass_spring.sim --set k=1,2,5 --json",
                          "continuo run models/bratu.sim --family lambda=0.1..4 --json"};
   auto request = std::make_shared<RunRequest>();
   add_experiment(*verb, request->experiment);
