@@ -76,7 +76,7 @@ TEST(Sweep, ReadsListsAndRanges) {
     std::vector<double> found;
     if (result.exit != 0) return found;
     const json object = json::parse(result.out);
-    for (const json& run : object["runs"]) found.push_back(run[object["sweep"][0].get<std::string>()]);
+    for (const json& run : object["runs"]) found.push_back(run["at"][object["swept"][0].get<std::string>()]);
     return found;
   };
   EXPECT_THAT(values("--set k=1,2,5"), ElementsAre(1, 2, 5));
@@ -96,8 +96,7 @@ TEST(Sweep, ReadsListsAndRanges) {
         Case{"--set q=1,2", "no parameter `q`"}, Case{"--set k=1,two", "k"},
         Case{"--set k=1,2 --set k=3", "`k` is given twice"}, Case{"--initial y=1,2", "no state `y`"},
         Case{"--set k=1..2/1000 --set m=1..2/1000", "these are 1000000 runs"},
-        Case{"--set k=1,2 --record x.run", "--record is for one run"},
-        Case{"--set k=1,2 -o x.nc", "the table of several runs is CSV"}}) {
+        Case{"--set k=1,2 --record x.run", "--record is for one run"}}) {
     const Result result = shell.run(std::string("run spring.sim ") + each.options);
     EXPECT_EQ(result.exit, 1) << each.options;
     EXPECT_THAT(result.err, HasSubstr(each.says)) << each.options;
@@ -114,9 +113,9 @@ TEST(Sweep, KeepsTheOthersWhereOneFails) {
   EXPECT_THAT(shell.read("x.csv"), HasSubstr("\n-1,2,"));
   const json object = json::parse(shell.run("run grows.sim --set a=0,1,-1 --json").out);
   ASSERT_THAT(object["runs"], SizeIs(3));
-  EXPECT_EQ(object["runs"][0]["outcome"], "reached end");
-  EXPECT_NE(object["runs"][1]["outcome"], "reached end");
-  EXPECT_EQ(object["runs"][2]["outcome"], "reached end");
+  EXPECT_EQ(object["runs"][0]["run"]["outcome"], "reached end");
+  EXPECT_NE(object["runs"][1]["run"]["outcome"], "reached end");
+  EXPECT_EQ(object["runs"][2]["run"]["outcome"], "reached end");
 }
 
 TEST(Sweep, RunsOverTheNumberOfEquations) {
@@ -125,8 +124,8 @@ TEST(Sweep, RunsOverTheNumberOfEquations) {
   const Result result = shell.run("run rod.sim --set N=2,4 --json");
   ASSERT_EQ(result.exit, 0) << result.err;
   const json object = json::parse(result.out);
-  EXPECT_THAT(object["runs"][0]["state"], SizeIs(2));
-  EXPECT_THAT(object["runs"][1]["state"], SizeIs(4));
+  EXPECT_THAT(object["runs"][0]["run"]["state"], SizeIs(2));
+  EXPECT_THAT(object["runs"][1]["run"]["state"], SizeIs(4));
   EXPECT_THAT(shell.run("run rod.sim --set N=2,4 -o x.csv").err, HasSubstr("no common table"));
 }
 
@@ -167,7 +166,8 @@ TEST(Initial, IsReadFromATable) {
   EXPECT_THAT(part.err, HasSubstr("has no value for x'"));
   EXPECT_THAT(part.err, HasSubstr("no state is called other"));
   EXPECT_THAT(rows_of(shell.read("on.csv"))[0], StartsWith("0,2,0,"));
-  EXPECT_THAT(shell.run("run spring.sim --initial-from first.csv@0.6").err, HasSubstr("nearest are at t = 0.5 and 0.785"));
+  EXPECT_THAT(shell.run("run spring.sim --initial-from first.csv@0.6").err,
+              HasSubstr("nearest are at t = 0.5 and 0.785"));
   shell.write("no.csv", "t,other\n0,2\n");
   EXPECT_THAT(shell.run("run spring.sim --initial-from no.csv").err, HasSubstr("no column with the name of a state"));
   EXPECT_EQ(shell.run("run spring.sim --initial-from first.csv -o first.csv").exit, 1);
