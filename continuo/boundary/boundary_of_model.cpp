@@ -14,6 +14,7 @@
 #include <continuo/boundary/boundary_of_model.hpp>
 #include <continuo/boundary/boundary_problem_of_model.hpp>
 #include <continuo/boundary/boundary_value.hpp>
+#include <continuo/boundary/watched_boundary.hpp>
 #include <continuo/simulation/run_along.hpp>
 
 namespace continuo::boundary {
@@ -35,6 +36,15 @@ model::Run run_of(const ModelProgram& program, const Plan& plan, const BoundaryV
   run.statistics.evaluations = solution.evaluations;
   run.statistics.factorizations = run.statistics.jacobians = solution.iterations;
   return run;
+}
+
+/// The solution between the points of its mesh, as a motion that somebody watches.
+void show(const Plan& plan, const BoundaryValueSolution& solution, model::MotionWatcher& watcher) {
+  watcher.begin(plan, solution(plan.from));
+  for (const double to : solution.mesh) {
+    if (to > plan.from)
+      watcher.on_piece(std::min(to, plan.to), [&](double t, std::vector<double>& x) { solution.at(t, x); });
+  }
 }
 
 /// Largest difference of two solutions relative to the size of each component.
@@ -196,8 +206,11 @@ std::optional<BoundaryValueSolution> solution_of(const std::shared_ptr<const Mod
 
 }  // namespace
 
-BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, const Experiment& asked,
-                            const BoundaryRequest& request) {
+namespace {
+
+/// `watcher`, who may be null, sees the solution that is asked for.
+BoundaryRuns solve(const std::shared_ptr<const ModelProgram>& program, const Experiment& asked,
+                   const BoundaryRequest& request, model::MotionWatcher* watcher) {
   BoundaryRuns result;
   const Model& model = program->model;
   Experiment experiment = asked;
@@ -233,6 +246,7 @@ BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, 
     run.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     run.outcome.hint = solution.outcome.hint;
     if (experiment.estimate_error) run.error = error_of(posed->problem, solution, run, posed->options);
+    if (watcher && result.runs.size() + 1 == request.solution) show(run.plan, solution, *watcher);
     found.push_back(std::move(solution));
     result.runs.push_back(std::move(run));
   }
@@ -246,21 +260,37 @@ BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, 
   return result;
 }
 
-model::Simulated simulate_boundary(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                                   const BoundaryRequest& request) {
-  BoundaryRuns solved = solve_boundary(program, experiment, request);
+/// The one of them that is asked for, as a run.
+model::Simulated asked_of(const ModelProgram& program, const BoundaryRequest& request, BoundaryRuns solved) {
   const std::size_t solution = request.solution;
   model::Simulated simulated{std::nullopt, std::move(solved.diagnostics)};
   if (solution - 1 < solved.runs.size()) {
     simulated.run = std::move(solved.runs[solution - 1]);
   } else if (!solved.runs.empty()) {
     simulated.diagnostics.push_back(
-        model::error("E322", program->model.boundary.front().span,
+        model::error("E322", program.model.boundary.front().span,
                      fmt::format("there is no solution {}; {} found", solution,
                                  solved.runs.size() == 1 ? "one was" : fmt::format("{} were", solved.runs.size())),
                      {}, "another `guess x = ...` may lead to another solution"));
   }
   return simulated;
+}
+
+}  // namespace
+
+BoundaryRuns solve_boundary(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                            const BoundaryRequest& request) {
+  return solve(program, experiment, request, nullptr);
+}
+
+model::Simulated simulate_boundary(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                                   const BoundaryRequest& request) {
+  return asked_of(*program, request, solve(program, experiment, request, nullptr));
+}
+
+model::Simulated simulate_boundary(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
+                                   const BoundaryRequest& request, model::MotionWatcher& watcher) {
+  return asked_of(*program, request, solve(program, experiment, request, &watcher));
 }
 
 }  // namespace continuo::boundary

@@ -95,18 +95,6 @@ Simulated judged(const std::shared_ptr<const ModelProgram>& program, const Exper
   return simulated;
 }
 
-Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                   IntegrationLog* log, const OnRow& on_row) {
-  Simulated simulated;
-  auto planned = plan_run(*program, experiment, simulated.diagnostics);
-  if (!planned) return simulated;
-  Run run;
-  run.plan = std::move(*planned);
-  RunRecorder recorder = recorder_of(*program, run.plan, experiment, on_row);
-  integrate(run.plan.method, integration_of(program, run.plan, experiment), recorder, run, log);
-  return judged(program, experiment, std::move(run), recorder, log);
-}
-
 Simulated does_not_fit(const Model& model, std::string why) {
   return {.run = {},
           .diagnostics = {error("E325", model.run.span, "the recording does not fit its model", std::move(why))}};
@@ -115,17 +103,19 @@ Simulated does_not_fit(const Model& model, std::string why) {
 }  // namespace
 
 Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment) {
-  return simulate(program, experiment, nullptr, {});
+  return simulate(program, experiment, {});
 }
 
 Simulated simulate(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                   const OnRow& on_row) {
-  return simulate(program, experiment, nullptr, on_row);
-}
-
-Simulated simulate_recorded(const std::shared_ptr<const ModelProgram>& program, const Experiment& experiment,
-                            IntegrationLog& log, const OnRow& on_row) {
-  return simulate(program, experiment, &log, on_row);
+                   const Followers& followers) {
+  Simulated simulated;
+  auto planned = plan_run(*program, experiment, simulated.diagnostics);
+  if (!planned) return simulated;
+  Run run;
+  run.plan = std::move(*planned);
+  RunRecorder recorder = recorder_of(*program, run.plan, experiment, followers.on_row);
+  integrate(run.plan.method, integration_of(program, run.plan, experiment), recorder, run, followers);
+  return judged(program, experiment, std::move(run), recorder, followers.log);
 }
 
 Simulated replay_integration(const std::shared_ptr<const ModelProgram>& program,

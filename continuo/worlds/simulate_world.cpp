@@ -2,6 +2,7 @@
 // Drives a world through a run, with rows, events, contacts, checks and notes for a recording.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include <continuo/simulation/drive/error_estimate.hpp>
 #include <continuo/simulation/drive/run_checks.hpp>
 #include <continuo/simulation/drive/run_recorder.hpp>
+#include <continuo/simulation/motion_watcher.hpp>
+#include <continuo/worlds/flight.hpp>
 #include <continuo/worlds/plan_world.hpp>
 #include <continuo/worlds/prepared_world.hpp>
 #include <continuo/worlds/simulate_world.hpp>
@@ -60,8 +63,18 @@ class Simulation {
     next_checkpoint_ = run_.plan.from;
   }
 
+  /// Shows the motion to a watcher as it goes, who looks at these times, ascending, and at the end of every step.
+  void show_to(model::MotionWatcher& watcher, std::vector<double> looks) {
+    watcher_ = &watcher;
+    looks_ = std::move(looks);
+  }
+
   void begin() {
     const double from = run_.plan.from;
+    if (watcher_) {
+      watcher_->begin(run_.plan, world_->state());
+      seen_ = {.from = from, .to = from, .start = world_->state(), .end = world_->state()};
+    }
     note({.kind = Note::Kind::begin, .t = from, .x = world_->state()});
     for (; next_row() <= from; ++next_output_) {
     }
@@ -157,15 +170,35 @@ class Simulation {
       return end(Ending::interrupted);
     }
     double to = std::min({end_time_, next_row(), events_.next(*world_), recorder_.next_sample()});
-    if (!program_->always.empty() && in_steps()) to = std::min(to, world_->time() + world_->step());
+    if ((watcher_ || !program_->always.empty()) && in_steps()) to = std::min(to, world_->time() + world_->step());
+    if (watcher_) to = std::min(to, next_look());
     Status status = events_.advance(*world_, to);
+    const bool has_hit = !world_->contacts().empty();
     note_contacts();
+    if (watcher_) show_piece(has_hit);
     arrive();
     if (!status && is_interrupted()) return end(Ending::interrupted);
     if (status) status = events_.fire_due(*world_, sink());
     if (!status) return fail(std::move(status));
     end_where_stopped();
     if (experiment_.progress) experiment_.progress(world_->time());
+  }
+
+  double next_look() {
+    for (; next_look_ < looks_.size() && looks_[next_look_] <= world_->time(); ++next_look_) {
+    }
+    return next_look_ < looks_.size() ? looks_[next_look_] : end_time_;
+  }
+  void show_piece(bool has_hit) {
+    seen_.from = seen_.to;
+    seen_.to = world_->time();
+    seen_.start = std::move(seen_.end);
+    seen_.end = world_->state();
+    seen_.is_straight = has_hit || in_steps();
+    watcher_->on_piece(seen_.to, [this](double t, X& x) {
+      x.resize(seen_.end.size());
+      seen_.at(program_->model, t, x);
+    });
   }
 
   /// Notes the rows and samples that are due.
@@ -198,6 +231,10 @@ class Simulation {
 
   WorldEvents::Sink sink() {
     return [this](const WorldEventOccurrence& now) {
+      if (watcher_) {
+        seen_.end = world_->state();
+        watcher_->on_jump(now.t, now.before, seen_.end);
+      }
       note({.kind = Note::Kind::event, .t = now.t, .x = world_->state(), .before = now.before, .names = now.names});
     };
   }
@@ -225,6 +262,10 @@ class Simulation {
   std::chrono::steady_clock::time_point stood_ = std::chrono::steady_clock::now();
   bool ended_ = false;
   std::string error_;
+  model::MotionWatcher* watcher_ = nullptr;
+  std::vector<double> looks_;
+  std::size_t next_look_ = 0;
+  Flight seen_;  // the last piece
 };
 
 double look_of(const model::Plan& plan) {
@@ -264,6 +305,33 @@ model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>
       return simulate_world(program, strict);
     });
   return simulated;
+}
+
+bool show_world(const std::shared_ptr<const model::ModelProgram>& program, const model::Experiment& experiment,
+                const model::Run& run, model::MotionWatcher& watcher) {
+  constexpr double longest = 20;  // seconds
+  constexpr double same = 1e-6;   // of the size of a state
+  if (run.statistics.seconds > longest || run.motion.rows() == 0) return false;
+  model::Experiment again = experiment;
+  again.estimate_error = again.doubts = again.keep_rows = false;
+  again.progress = {};
+  std::vector<Diagnostic> problems;
+  PreparedWorld prepared = prepare_world(program, again, problems);
+  if (!prepared.world) return false;
+  std::vector<double> contacts;
+  for (const model::RecordedEvent& event : run.events)
+    if (event.is_contact()) contacts.push_back(event.t);
+  prepared.plan->to = std::min(prepared.plan->to, run.outcome.t);
+  const double look = look_of(run.plan);
+  auto times = looks_at(prepared.plan->from, prepared.plan->to, contacts);
+  Simulation simulation(program, again, std::move(*prepared.plan), std::move(prepared.world), look, nullptr);
+  simulation.show_to(watcher, std::move(times));
+  simulation.begin();
+  const model::Simulated simulated = simulation.go();
+  const auto last = run.final_state(), seen = simulated.run->final_state();
+  for (std::size_t i = 0; i < last.size(); ++i)
+    if (!(std::abs(seen[i] - last[i]) <= same * (1 + std::abs(last[i])))) return false;
+  return true;
 }
 
 model::Simulated resume_world(const std::shared_ptr<const model::ModelProgram>& program, const RunRecording& recording,

@@ -15,7 +15,7 @@
 #include <memory>
 #include <optional>
 
-#include <continuo/simulation/simulate.hpp>
+#include <continuo/simulation/motion_watcher.hpp>
 #include <continuo/worlds/run_log.hpp>
 
 namespace continuo::worlds {
@@ -27,6 +27,13 @@ namespace continuo::worlds {
 [[nodiscard]] model::Simulated simulate_world(const std::shared_ptr<const model::ModelProgram>& program,
                                               const model::Experiment& experiment, RunLog* log,
                                               const model::OnRow& on_row);
+
+/// Shows the motion of a run to a watcher, between its rows and at its contacts, by moving the world once more; the run
+/// itself is not touched by that. False where it cannot be shown so: it took too long for a second time, or stopping
+/// more often has changed a motion that multiplies every rounding.
+[[nodiscard]] bool show_world(const std::shared_ptr<const model::ModelProgram>& program,
+                              const model::Experiment& experiment, const model::Run& run,
+                              model::MotionWatcher& watcher);
 
 /// Replays a recorded run. The program must be that of its text; a recording that does not fit the program is reported
 /// (E325).

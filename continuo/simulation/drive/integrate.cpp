@@ -7,6 +7,7 @@
 
 #include <continuo/simulation/drive/integrate.hpp>
 #include <continuo/simulation/drive/model_method.hpp>
+#include <continuo/simulation/motion_watcher.hpp>
 #include <continuo/simulation/program/event_names.hpp>
 #include <continuo/solve/integrator.hpp>
 #include <continuo/solve/with_method.hpp>
@@ -17,15 +18,17 @@ namespace {
 
 class Recording final : public StepWatcher {
  public:
-  explicit Recording(RunRecorder& recorder) : recorder_(recorder) {}
+  Recording(RunRecorder& recorder, MotionWatcher* watcher) : recorder_(recorder), watcher_(watcher) {}
 
   void on_segment(Stepping& run, double to) override {
     recorder_.on_segment(to,
                          At{&run, [](void* of, double t, ModelSystem::X& x) { static_cast<Stepping*>(of)->at(t, x); }});
+    if (watcher_) watcher_->on_piece(to, [&run](double t, ModelSystem::X& x) { run.at(t, x); });
   }
 
   void on_event(Stepping& run, const EventOccurrence<ModelSystem::X>& now) override {
     recorder_.on_event(now.t, names_.of(run.events(), now.events, true), now.before, now.after);
+    if (watcher_) watcher_->on_jump(now.t, now.before, now.after);
   }
 
   [[nodiscard]] std::size_t marks_seen() const { return names_.marks_seen(); }
@@ -33,6 +36,7 @@ class Recording final : public StepWatcher {
 
  private:
   RunRecorder& recorder_;
+  MotionWatcher* watcher_;  // may be null
   EventNames names_;
 };
 
@@ -129,12 +133,14 @@ constexpr std::chrono::seconds checkpoint_of_clock{10};  // a long run that is k
 /// A run on its way to its end.
 class Progression {
  public:
-  Progression(std::string_view method, Integration integration, RunRecorder& recorder, Run& run, IntegrationLog* log)
+  Progression(std::string_view method, Integration integration, RunRecorder& recorder, Run& run,
+              const Followers& followers)
       : options_(integration.options),
         recorder_(recorder),
-        recording_(recorder),
+        watcher_(followers.watcher),
+        recording_(recorder, watcher_),
         run_(run),
-        log_(log),
+        log_(followers.log),
         steps_(begin_integration(method, std::move(integration), {run.plan.from, run.plan.to})) {
     if (log_ && log_->checkpoints() > 0)
       every_ = (run.plan.to - run.plan.from) / static_cast<double>(log_->checkpoints());
@@ -142,6 +148,7 @@ class Progression {
 
   void begin() {
     recorder_.begin(run_.plan.from, steps_->x());  // where unknowns of algebraic equations have been found
+    if (watcher_) watcher_->begin(run_.plan, steps_->x());
     next_ = run_.plan.from;
   }
 
@@ -193,6 +200,7 @@ class Progression {
 
   Options<ModelSystem::X> options_;
   RunRecorder& recorder_;
+  MotionWatcher* watcher_;  // may be null
   Recording recording_;
   Run& run_;
   IntegrationLog* log_;
@@ -203,15 +211,16 @@ class Progression {
 
 }  // namespace
 
-void integrate(std::string_view method, Integration integration, RunRecorder& recorder, Run& run, IntegrationLog* log) {
-  Progression progression(method, std::move(integration), recorder, run, log);
+void integrate(std::string_view method, Integration integration, RunRecorder& recorder, Run& run,
+               const Followers& followers) {
+  Progression progression(method, std::move(integration), recorder, run, followers);
   progression.begin();
   progression.go();
 }
 
 bool integrate_from(const IntegrationCheckpoint& checkpoint, Integration integration, RunRecorder& recorder, Run& run,
                     IntegrationLog* log) {
-  Progression progression(run.plan.method, std::move(integration), recorder, run, log);
+  Progression progression(run.plan.method, std::move(integration), recorder, run, {.log = log});
   if (!progression.begin_from(checkpoint)) return false;
   progression.go();
   return true;

@@ -5,14 +5,15 @@
 
 #include <continuo/simulation/drive/run_recorder.hpp>
 #include <continuo/simulation/integration_recording.hpp>
+#include <continuo/simulation/simulate.hpp>
 #include <continuo/simulation/stepping.hpp>
 
 namespace continuo::model {
 
 /// Runs from run.plan.from to run.plan.to; leaves outcome, statistics, marks and the text of a stop in the run.
-/// The method's name must be one of the catalogue. With a log, the run is recorded while it advances.
+/// The method's name must be one of the catalogue.
 void integrate(std::string_view method, Integration integration, RunRecorder& recorder, Run& run,
-               IntegrationLog* log = nullptr);
+               const Followers& followers = {});
 
 /// The same from a checkpoint; the recorder has its parts already. False where it does not fit, and then nothing has
 /// been done.
