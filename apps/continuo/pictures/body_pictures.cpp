@@ -12,8 +12,8 @@ namespace {
 
 using worlds::dot, worlds::Point;
 
-// Colours as numbers, which `lc rgb variable` wants. The palette is Okabe's and Ito's, for all eyes.
-constexpr std::array<std::uint32_t, 7> palette = {0x0072B2, 0xE69F00, 0x009E73, 0xD55E00, 0xCC79A7, 0x56B4E9, 0xB8A800};
+// Colours as numbers, which `lc rgb variable` wants: the first of the curves', as on the page.
+constexpr std::array<std::uint32_t, 5> colors_of_bodies = {0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00};
 constexpr std::uint32_t still = 0x8A8A8A, white = 0xFFFFFF, black = 0x000000;
 constexpr std::string_view wall_color = "#e9e9e9", edge_color = "#8a8a8a";
 constexpr std::string_view as_circles = "using 1:2:3:4 with circles lc rgb variable fs solid noborder";
@@ -166,7 +166,7 @@ void BodyPictures::draw_discs(const live::Bodies& bodies, PictureParts& parts) c
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
     const Flat at = flat(place(bodies, i));
     const double radius = shapes_[i].radius, angle = static_cast<double>(bodies.orientation[i]);
-    const std::uint32_t color = shapes_[i].fixed ? still : palette[i % palette.size()];
+    const std::uint32_t color = shapes_[i].fixed ? still : colors_of_bodies[i % colors_of_bodies.size()];
     discs += circle(at, radius, mixed(color, black, 0.35)) + circle(at, 0.92 * radius, color);
     if (!shapes_[i].fixed)
       marks += fmt::format("{:.7g} {:.7g}\n{:.7g} {:.7g}\n\n", at.x, at.y, at.x + 0.9 * radius * std::cos(angle),
@@ -190,7 +190,7 @@ void BodyPictures::draw_spheres(const live::Bodies& bodies, PictureParts& parts)
     const Point p = place(bodies, i);
     const Flat at = flat(p);
     const double radius = radius_of(i);
-    const std::uint32_t color = shapes_[i].fixed ? still : palette[i % palette.size()];
+    const std::uint32_t color = shapes_[i].fixed ? still : colors_of_bodies[i % colors_of_bodies.size()];
     spheres += circle(at, radius, mixed(color, black, 0.45));
     spheres += circle({at.x - 0.06 * radius, at.y + 0.07 * radius}, 0.9 * radius, color);
     spheres += circle({at.x - 0.2 * radius, at.y + 0.24 * radius}, 0.55 * radius, mixed(color, white, 0.25));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -11,6 +12,7 @@
 #include <apps/continuo/pictures/pictures.hpp>
 #include <apps/continuo/pictures/plot_pictures.hpp>
 #include <apps/continuo/pictures/scene_pictures.hpp>
+#include <apps/continuo/terminal/interrupt.hpp>
 #include <apps/continuo/terminal/own_process.hpp>
 #include <apps/continuo/terminal/program.hpp>
 #include <fmt/format.h>
@@ -52,8 +54,8 @@ class ScenePictures {
 
   std::string set_up() const {
     return fmt::format(
-        "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset grid lc rgb 'gray90'\n"
-        "set border lc rgb 'gray60'\n",
+        "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset grid lc rgb '#e6eaef'\n"
+        "set border lc rgb '#c8d0d8'\nset tics textcolor rgb '#5c6b7a'\n",
         frame_.left, frame_.right, frame_.low, frame_.high);
   }
   std::string commands(std::size_t number) const {
@@ -120,8 +122,10 @@ Status keep_whole(const std::string& folder, std::size_t first, std::size_t end)
 
 /// So many pictures at a time as fit into memory well.
 template <class Pictures>
-Status draw_all(const std::string& folder, const std::string& set_up, const Pictures& pictures, std::size_t count) {
+Status draw_all(const std::string& folder, const std::string& set_up, const Pictures& pictures, std::size_t count,
+                const std::function<void(double part)>& progress) {
   constexpr std::size_t much = std::size_t{32} << 20;  // bytes
+  constexpr std::size_t many = 50;                     // pictures: then somebody hears how far it is
   const ScratchFolder scratch;
   if (!scratch.exists()) return unwritable("cannot make a folder for what gnuplot reads");
   const std::string head = fmt::format("cd '{}'\nset terminal pngcairo size {},{} font ',11' noenhanced\n{}",
@@ -130,10 +134,14 @@ Status draw_all(const std::string& folder, const std::string& set_up, const Pict
   std::size_t first = 0;
   for (std::size_t k = 0; k < count; ++k) {
     script += fmt::format("set output '{}'\n{}", part_of(picture_of("", k)).string(), pictures.commands(k));
-    if (script.size() < much && k + 1 < count) continue;
+    if (script.size() < much && k + 1 < std::min(count, first + many)) continue;
     // The last picture is written when the next one begins, or gnuplot ends.
     Status drawn = run_gnuplot(scratch, folder, head + script), kept = keep_whole(folder, first, k + 1);
+    if (interrupt_flag().load())
+      return {.ending = Ending::interrupted,
+              .message = fmt::format("interrupted after {} of {} pictures", first, count)};
     if (Status status = first_failure(std::move(drawn), std::move(kept)); !status) return status;
+    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(count));
     script.clear();
     first = k + 1;
   }
@@ -142,7 +150,8 @@ Status draw_all(const std::string& folder, const std::string& set_up, const Pict
 
 }  // namespace
 
-Status draw_pictures(const std::string& folder, const live::Session& session, const Recorder::Slices& slices) {
+Status draw_pictures(const std::string& folder, const live::Session& session, const Recorder::Slices& slices,
+                     const std::function<void(double part)>& progress) {
   if (folder.find('\'') != std::string::npos || folder.find('\n') != std::string::npos)
     return invalid_input(fmt::format("gnuplot cannot write into a folder of this name: {}", folder));
   std::error_code error;
@@ -150,11 +159,11 @@ Status draw_pictures(const std::string& folder, const live::Session& session, co
   if (error) return unwritable(fmt::format("cannot make {}: {}", folder, error.message()));
   if (session.shown().drawing.empty() && !session.world()) {
     const PlotPictures pictures(session.shown(), slices);
-    return draw_all(folder, pictures.data(), pictures, slices.size());
+    return draw_all(folder, pictures.data(), pictures, slices.size(), progress);
   }
   const ScenePictures pictures(session, slices);
   if (pictures.is_empty()) return invalid_input("nothing of the drawing has a place");
-  return draw_all(folder, pictures.set_up(), pictures, slices.size());
+  return draw_all(folder, pictures.set_up(), pictures, slices.size(), progress);
 }
 
 }  // namespace continuo::app

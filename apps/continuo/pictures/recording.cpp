@@ -5,11 +5,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include <apps/continuo/pictures/film.hpp>
 #include <apps/continuo/pictures/pictures.hpp>
 #include <apps/continuo/pictures/recorder.hpp>
 #include <apps/continuo/pictures/recording.hpp>
-#include <apps/continuo/terminal/own_process.hpp>
-#include <apps/continuo/terminal/program.hpp>
+#include <apps/continuo/terminal/progress.hpp>
 #include <apps/continuo/terminal/terminal.hpp>
 #include <fmt/format.h>
 
@@ -45,46 +45,23 @@ ExitCode write_page(const std::string& path, const std::string& compressed, cons
   return written(results::write_file(path, page)) ? done : usage;
 }
 
-ExitCode write_film(const std::string& path, double rate, const live::Session& session, const Recorder& recorder) {
-  const ScratchFolder scratch;
-  if (!scratch.exists()) {
-    say("cannot make a folder for the pictures of the film");
-    return usage;
-  }
-  const std::string folder = scratch.file("pictures");
-  if (!written(draw_pictures(folder, session, recorder.slices()))) return usage;
-  const std::string part = path + ".part";  // a film is there whole or not at all
-  const int exit = run_program({"ffmpeg", "-y", "-framerate", fmt::format("{}", rate), "-i", folder + "/%05d.png",
-                                "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", part});
-  std::error_code error;
-  if (exit == 0) std::filesystem::rename(part, path, error);
-  if (exit == 0 && !error) return done;
-  std::filesystem::remove(part, error);
-  say(exit == -1 ? fmt::format("ffmpeg was ended before it had written {}; --record FOLDER writes pictures", path)
-                 : fmt::format("ffmpeg could not write {}; --record FOLDER writes pictures", path));
-  return usage;
-}
-
 /// What somebody who wants another format would write.
 bool is_one_file(const std::string& path) {
-  static constexpr std::array<std::string_view, 10> endings = {".avi", ".mov", ".webm", ".mkv", ".mpg",
-                                                               ".m4v", ".gif", ".png",  ".jpg", ".svg"};
+  static constexpr std::array<std::string_view, 9> endings = {".avi", ".mov", ".webm", ".mkv", ".mpg",
+                                                              ".m4v", ".png", ".jpg",  ".svg"};
   return std::ranges::find(endings, std::filesystem::path(path).extension().string()) != endings.end();
 }
 
 }  // namespace
 
 ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std::string& page) {
-  const bool film = std::filesystem::path(request.pictures).extension() == ".mp4";
+  const bool film = is_film(request.pictures);
   if (!film && is_one_file(request.pictures)) {
-    say(fmt::format("cannot record {}: pictures need a folder, and the name of a video ends in .mp4",
+    say(fmt::format("cannot record {}: pictures need a folder, and the name of a film ends in .gif or .mp4",
                     request.pictures));
     return usage;
   }
-  if (film && run_program({"ffmpeg", "-version"}) != 0) {
-    say("a video needs ffmpeg, which is not installed; --record FOLDER writes pictures");
-    return usage;
-  }
+  if (film && !can_film(request.pictures)) return usage;
   double wall = 0;
   Recorder recorder;
   live::Session session([&wall] { return wall; }, recorder, {.path = request.model});
@@ -101,8 +78,10 @@ ExitCode record(const RecordingRequest& request, const SetUp& set_up, const std:
   ExitCode exit = done;
   if (!request.page.empty()) exit = write_page(request.page, page, recorder);
   if (exit != done || request.pictures.empty()) return exit;
-  if (film) return write_film(request.pictures, request.rate, session, recorder);
-  return written(draw_pictures(request.pictures, session, recorder.slices())) ? done : usage;
+  if (film) return write_film(request.pictures, request.rate, session, recorder.slices());
+  Progress progress;
+  const Status status = draw_pictures(request.pictures, session, recorder.slices(), progress.parts());
+  return written(status) ? done : status.ending == Ending::interrupted ? interrupted : usage;
 }
 
 }  // namespace continuo::app

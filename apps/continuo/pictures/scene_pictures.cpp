@@ -1,7 +1,10 @@
 // gnuplot commands for the scene of a model.
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cmath>
 #include <optional>
+#include <utility>
 
 #include <apps/continuo/pictures/scene_pictures.hpp>
 
@@ -58,14 +61,70 @@ class Drawn {
   const Recorder::Slices& slices_;
 };
 
-/// A name that gnuplot knows, else the item's place in the palette.
-std::string color_of(const live::SceneItem& item, std::size_t number) {
-  static constexpr std::array<std::string_view, 12> known = {"red",   "green", "blue", "orange", "black", "gray",
-                                                             "brown", "cyan",  "gold", "purple", "pink",  "yellow"};
-  if (std::ranges::find(known, item.color) != known.end()) return item.color;
-  const bool hexadecimal = item.color.size() == 7 && item.color.front() == '#' &&
-                           item.color.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
-  return hexadecimal ? item.color : std::string(results::color_of(number));
+constexpr std::string_view floor_color = "#8996a3", ground_color = "#e6eaf0", line_color = "#5c6b7a";
+
+/// What a model means by its colours: those of the page (web/src/palette.ts).
+std::string color_named(std::string name) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 14> named = {{{"red", "#d55e00"},
+                                                                                           {"blue", "#0072b2"},
+                                                                                           {"green", "#009e73"},
+                                                                                           {"orange", "#e69f00"},
+                                                                                           {"yellow", "#cdbf1a"},
+                                                                                           {"purple", "#cc79a7"},
+                                                                                           {"pink", "#cc79a7"},
+                                                                                           {"gray", "#7b8794"},
+                                                                                           {"grey", "#7b8794"},
+                                                                                           {"black", "#1b2733"},
+                                                                                           {"white", "#f4f6f8"},
+                                                                                           {"cyan", "#56b4e9"},
+                                                                                           {"gold", "#e69f00"},
+                                                                                           {"brown", "#8a5a2b"}}};
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto* const found = std::ranges::find(named, name, &std::pair<std::string_view, std::string_view>::first);
+  if (found != named.end()) return std::string(found->second);
+  const bool hexadecimal =
+      name.size() == 7 && name.front() == '#' && name.find_first_not_of("0123456789abcdef", 1) == std::string::npos;
+  return hexadecimal ? name : std::string(line_color);
+}
+
+/// As on the page: balls differ from one another where they are few, a trail has its ball's colour.
+std::vector<std::string> colors_of(const std::vector<live::SceneItem>& items) {
+  using model::Shape;
+  constexpr std::ptrdiff_t few = 8;
+  const auto is_plain = [](const live::SceneItem& item) { return item.shape == Shape::ball && item.color.empty(); };
+  const auto plain = std::ranges::count_if(items, is_plain);
+  std::size_t next = 0;
+  std::vector<std::string> colors;
+  for (const live::SceneItem& item : items) {
+    const bool differs = is_plain(item) && plain > 1 && plain <= few;
+    if (!item.color.empty()) {
+      colors.push_back(color_named(item.color));
+    } else if (item.shape == Shape::ball || item.shape == Shape::box) {
+      colors.emplace_back(results::color_of(differs ? next++ : 0));
+    } else if (item.shape == Shape::arrow) {
+      colors.emplace_back(results::color_of(1));
+    } else {
+      colors.emplace_back(item.shape == Shape::trail ? std::string_view() : line_color);
+    }
+  }
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (!colors[i].empty()) continue;
+    std::size_t ball = i;
+    while (ball > 0 && items[ball].shape != Shape::ball) --ball;
+    while (ball < items.size() && items[ball].shape != Shape::ball) ++ball;
+    colors[i] = ball < items.size() ? colors[ball] : std::string(results::color_of(1));
+  }
+  return colors;
+}
+
+/// A colour with so much of its light.
+std::string shaded(const std::string& color, double light) {
+  std::string made = "#";
+  for (std::size_t k = 1; k < 7; k += 2) {
+    const double part = std::stoi(color.substr(k, 2), nullptr, 16) * light;
+    made += fmt::format("{:02x}", static_cast<int>(std::clamp(part, 0.0, 255.0)));
+  }
+  return made;
 }
 
 class Page {
@@ -73,8 +132,9 @@ class Page {
   Page(const Drawn& drawn, std::size_t frame, PictureParts& parts) : drawn_(drawn), frame_(frame), parts_(parts) {}
 
   void draw(const PictureFrame& view) {
-    std::size_t number = 0;
-    for (const live::SceneItem& item : drawn_.shown().drawing) add(item, color_of(item, number++), view);
+    const auto& items = drawn_.shown().drawing;
+    const std::vector<std::string> colors = colors_of(items);
+    for (std::size_t i = 0; i < items.size(); ++i) add(items[i], colors[i], view);
   }
 
  private:
@@ -88,7 +148,8 @@ class Page {
     switch (item.shape) {
       case Shape::floor: {
         const double y = drawn_.value(item, "height", frame_, 0);
-        line({{view.left, y}, {view.right, y}}, "gray40", 3);
+        parts_.polygon({{view.left, view.low}, {view.right, view.low}, {view.right, y}, {view.left, y}}, ground_color);
+        line({{view.left, y}, {view.right, y}}, std::string(floor_color), 2);
         return;
       }
       case Shape::ball:
@@ -124,8 +185,14 @@ class Page {
   }
 
   void ball(Flat at, double radius, const std::string& color) {
-    parts_.objects += fmt::format("set object circle at {},{} size {} fc rgb '{}' fillstyle solid noborder front\n",
-                                  at.x, at.y, radius, color);
+    // A dark rim, and light from the upper left.
+    struct Disc {
+      double right, up, size, light;
+    };
+    for (const auto [right, up, size, light] :
+         {Disc{0, 0, 1, 0.7}, Disc{0, 0, 0.92, 0.9}, Disc{-0.08, 0.1, 0.78, 1.0}, Disc{-0.2, 0.26, 0.42, 1.12}})
+      parts_.objects += fmt::format("set object circle at {},{} size {} fc rgb '{}' fillstyle solid noborder front\n",
+                                    at.x + right * radius, at.y + up * radius, size * radius, shaded(color, light));
   }
 
   void box(const live::SceneItem& item, Flat at, const std::string& color) {
@@ -144,13 +211,17 @@ class Page {
     if (!(length > 0)) return;
     const int turns = std::clamp(static_cast<int>(drawn_.value(item, "turns", frame_, 10)), 1, 100);
     const double wide = drawn_.value(item, "width", frame_, 0.1) / 2;
-    std::vector<Flat> zigzag = {from};
-    for (int k = 0; k < 2 * turns; ++k) {
-      const double part = 0.1 + 0.8 * (k + 0.5) / (2 * turns), side = k % 2 == 0 ? wide : -wide;
-      zigzag.push_back({from.x + part * dx - side * dy / length, from.y + part * dy + side * dx / length});
+    // The page's coil (web/src/scene/curves.ts): straight ends, between them waves.
+    constexpr int points_of_turn = 14;
+    const int count = points_of_turn * turns;
+    std::vector<Flat> coil = {from};
+    for (int k = 0; k <= count; ++k) {
+      const double part = static_cast<double>(k) / count, along = 0.08 + 0.84 * part;
+      const double side = wide * std::sin(2 * std::acos(-1.0) * turns * part);
+      coil.push_back({from.x + along * dx - side * dy / length, from.y + along * dy + side * dx / length});
     }
-    zigzag.push_back(to);
-    line(zigzag, color, 2);
+    coil.push_back(to);
+    line(coil, color, 2);
   }
 
   /// Through the points of the rows, which are dense where it bends.
